@@ -1,4 +1,5 @@
 from zwidth import arms as arms
+from zwidth import firmware as firmware
 from zwidth import identification as identification
 from zwidth import links as links
 from zwidth import loop as simulation
@@ -26,6 +27,7 @@ from zwidth.environment import PulseTransferFunction as PulseTransferFunction
 from zwidth.environment import StandardLinearSolid as StandardLinearSolid
 from zwidth.environment import Wall as Wall
 from zwidth.errors import InputError as InputError
+from zwidth.firmware.emit import emit as emit
 from zwidth.gains import check_gains as check_gains
 from zwidth.gains import read_gains as read_gains
 from zwidth.identification import tissue as tissue

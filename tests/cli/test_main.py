@@ -181,7 +181,7 @@ def test_a_name_is_text_and_never_markup(run: Run) -> None:
             (),
             (
                 "which command",
-                "check, limit, pair, gains, map, simulate, serve, replay, doctor, network, traces, compare, "
+                "check, limit, pair, gains, map, simulate, serve, emit, replay, doctor, network, traces, compare, "
                 "links, workspace, "
                 "identify, plan, devices, verify",
             ),
@@ -438,3 +438,24 @@ def test_the_closed_forms_are_worked_out_once(monkeypatch: pytest.MonkeyPatch) -
     law = zw.Wall(stiffness=120, damping="0.2", velocity_filter=zw.rendering.Window(3))
     assert decided(Specification(device, law)).outcome == "passive in contact"
     assert asked == ["made and broken"]
+
+
+@pytest.mark.parametrize("module", ["zwidth.cli.main", "zwidth.cli.options", "zwidth.servo.serving"])
+def test_ctrl_c_during_an_import_ends_quietly(module: str) -> None:
+    """Status 130 and one line, whichever import it comes in: of the face itself or of a command."""
+    code = f"""
+import runpy, sys
+
+class Interrupts:
+    @staticmethod
+    def find_spec(name, path=None, target=None):
+        if name == "{module}":
+            raise KeyboardInterrupt
+
+sys.meta_path.insert(0, Interrupts)
+sys.argv = ["zwidth", "serve", "haptic-paddle", "--stiffness", "250"]
+runpy.run_module("zwidth", run_name="__main__")
+"""
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert ended.returncode == 130
+    assert ended.stderr == "zwidth: interrupted\n"

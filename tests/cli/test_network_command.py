@@ -4,11 +4,11 @@ import json
 import os
 import re
 import signal
-import socket
 import subprocess
 import sys
 
 import pytest
+from free_channels import free_ports
 
 from zwidth.cli.main import main
 from zwidth.cli.network import _Watch
@@ -84,16 +84,6 @@ inertia = "1e-4 kg*m^2"
 damping = "1 mN*m*s/rad"
 rate = "1 kHz"
 """
-
-
-def ports(n):
-    sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(n)]
-    for s in sockets:
-        s.bind(("127.0.0.1", 0))
-    found = [s.getsockname()[1] for s in sockets]
-    for s in sockets:
-        s.close()
-    return found
 
 
 def line(name, first, second, more=""):
@@ -196,7 +186,7 @@ def compiled(tmp_path):
 
 @pytest.mark.usefixtures("compiled")
 def test_a_bad_link_is_run_by_real_processes_and_one_that_is_killed_leaves_no_force(tmp_path):
-    p = ports(4)
+    p = free_ports(4)
     text = SCENE + NETWORK + line("paddle", p[0], p[1], 'delay = "4 ms"\njitter = "4 ms"\nloss = 0.2')
     path = file(tmp_path, text + line("spring tool–bed", p[2], p[3]))
     command = [sys.executable, "-m", "zwidth", "network", path, "--duration", "4 s", "--json", "--run"]

@@ -6,12 +6,11 @@ import json
 import math
 import re
 import signal
-import socket
 import subprocess
 import sys
-import uuid
 
 import pytest
+from free_channels import udp, zenoh
 from servo.emulators.faults import Fault
 from servo.emulators.hapkit import HapkitEmulator
 
@@ -84,26 +83,6 @@ def file(tmp_path, connection, port="/dev/null", line=""):
     text = SCENE + NETWORK.replace("CONNECTION", connection.replace("PORT", port)) + line
     path.write_text(text, encoding="utf-8")
     return path
-
-
-def free_ports(count):
-    sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(count)]
-    for one in sockets:
-        one.bind(("127.0.0.1", 0))
-    found = [one.getsockname()[1] for one in sockets]
-    for one in sockets:
-        one.close()
-    return found
-
-
-def udp():
-    one, other = free_ports(2)
-    return f"udp:127.0.0.1:{one},127.0.0.1:{other}"
-
-
-def zenoh():
-    pytest.importorskip("zenoh", reason="Eclipse Zenoh is not installed")
-    return f"zenoh:test/{uuid.uuid4().hex},udp/127.0.0.1:{free_ports(1)[0]}"
 
 
 def process(path, name):

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import socket
 import subprocess
 import sys
-import uuid
 
 import pytest
+from free_channels import udp, zenoh
 
 CHILD = """
 import json, os, signal, sys
@@ -38,26 +37,6 @@ if not first:
 run.close()
 peer.close()
 """
-
-
-def _free_ports(count):
-    sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(count)]
-    for one in sockets:
-        one.bind(("127.0.0.1", 0))
-    found = [one.getsockname()[1] for one in sockets]
-    for one in sockets:
-        one.close()
-    return found
-
-
-def udp():
-    one, other = _free_ports(2)
-    return f"udp:127.0.0.1:{one},127.0.0.1:{other}"
-
-
-def zenoh():
-    pytest.importorskip("zenoh", reason="Eclipse Zenoh is not installed")
-    return f"zenoh:test/{uuid.uuid4().hex},udp/127.0.0.1:{_free_ports(1)[0]}"
 
 
 def _child(channel, side, seconds, start):

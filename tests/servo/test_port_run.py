@@ -228,6 +228,19 @@ def test_a_loop_that_did_not_run_ends_the_force_and_long_periods_are_counted(tim
     run.close()
 
 
+def test_a_gap_ends_a_port_that_gave_no_force_just_then(time):
+    """Nobody is at the other end; the hand may have gone far by the next reading."""
+    run = run_on(Played(np.zeros(30)), PADDLE)
+    for _ in range(20):
+        run.step()
+    assert run.forces == {"line": 0.0}
+    assert run.ended == ""
+    time[1] = 51_000_000
+    run.step()
+    assert "did not run" in run.ended
+    run.close()
+
+
 @pytest.mark.parametrize(("counts", "ended"), [(10_000, False), (20_000, True)])
 def test_how_far_a_hand_goes_is_asked_of_the_time_that_passed(counts, ended, time):
     """10 m/s: in 30 ms not 0.45 m, but 0.22 m."""

@@ -170,23 +170,42 @@ def test_a_reading_that_cannot_be_ends_both(value, said, monkeypatch):
     assert leader.forces[80:90].all()
 
 
+def stalled(clock, arms, at=70):
+    """At this sample the law takes 60 ms."""
+    rows = seen(arms)
+    law = arms._law.forces
+
+    def stall(x, y):
+        clock[1] = 60_000_000 if len(rows) == at else 0
+        return law(x, y)
+
+    arms._law.forces = stall
+
+
 def test_a_loop_that_did_not_run_ends_both(clock, monkeypatch):
     """For more than 50 ms."""
     monkeypatch.setattr(PairServo, "measure", lambda self: None)
     monkeypatch.setattr(PairServo, "judge", lambda self: zw.check(self.pair))
     leader, follower = played()
     with PairServo(PAIR, leader, follower) as arms:
-        rows = seen(arms)
-        law = arms._law.forces
-
-        def stall(x, y):
-            clock[1] = 60_000_000 if len(rows) == 70 else 0
-            return law(x, y)
-
-        arms._law.forces = stall
+        stalled(clock, arms)
         report = arms.run("0.18 s", anyway=True)
     assert "did not run" in report.ended
     assert report.missed == 60
+
+
+@pytest.mark.parametrize(("apart", "ended"), [(0.0, True), (0.01, False)])
+def test_a_gap_ends_a_law_that_gave_no_force_and_not_one_that_waits(apart, ended, clock, monkeypatch):
+    """As in a served loop: where the arms stand together the law is served, and 1 cm apart it waits."""
+    monkeypatch.setattr(PairServo, "measure", lambda self: None)
+    monkeypatch.setattr(PairServo, "judge", lambda self: zw.check(self.pair))
+    leader, follower = Played(np.zeros(200)), Played(np.full(200, apart))
+    with PairServo(PAIR, leader, follower) as arms:
+        stalled(clock, arms)
+        report = arms.run("0.18 s", anyway=True)
+    assert ("did not run" in report.ended) == ended
+    assert report.missed == 60
+    assert not leader.forces.any()
 
 
 def test_arms_that_begin_apart_wait_until_their_forces_are_near_0(monkeypatch):

@@ -127,6 +127,19 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "--safety.force '0.1 N*m' -o session.mcap\n"
             "  zwidth serve my-inverse.toml --connection inverse --stiffness 200 --watch browser",
         ),
+        "emit": Command(
+            "a law that was proved, as C99 or JavaScript",
+            "Write the law as text for the machine that will run it: a C99 header or an ES module with\n"
+            "init, step and reset, a main program for the target, and the certificate. How much the\n"
+            "target's numbers round is bounded and is in the verdict.",
+            "A law that is not proved passive in the target's numbers is not written, unless --anyway\n"
+            "is given.\n\n"
+            "exit status: 0 written, 1 active, 2 bad input, 3 undecided, 4 passive while contact is kept\n\n"
+            "examples:\n"
+            "  zwidth emit haptic-paddle --stiffness 250 --target arduino --travel '-50 .. 50 mm' -o paddle\n"
+            "  zwidth emit my-wheel.toml my-bumpstop.toml --target cortex-m --number fixed -o wheel\n"
+            "  zwidth emit haptic-paddle --stiffness 250 --target javascript -o page",
+        ),
         "replay": Command(
             "what a recording of a served loop holds, and whether its law gives those forces again",
             "Read a recording, whole or cut off; compute its laws again from the readings, and compare the\n"

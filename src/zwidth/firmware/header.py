@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 from zwidth.firmware.c99 import C99, KEYWORDS, Real, real_text
+from zwidth.firmware.fixed_text import SHIFTS, FixedC99
 from zwidth.firmware.law import LawProgram
-from zwidth.firmware.program import Load, Operation, Store
+from zwidth.firmware.machine import Machine, rest_numbers
+from zwidth.firmware.program import Operation
 
 _GUARD = """\
 #if defined(__FAST_MATH__)
@@ -36,32 +39,43 @@ _AS_BEFORE = """\
 #endif"""
 
 
+_OF_MATH = {"abs", "floor", "ceil", "sqrt"}
+
+
+@dataclass(frozen=True)
+class _Body:
+    """What differs between kinds of numbers."""
+
+    guards: list[str]
+    includes: list[str]
+    force: str
+    given: str
+    memory: str
+    before: list[str]
+    rest: list[str]
+    step: list[str]
+    result: str
+
+
 def header(
-    law: LawProgram, *, name: str, real: Real, about: Sequence[str], numbers: Iterable[tuple[str, str, str]]
+    machine: Machine, *, name: str, about: Sequence[str], numbers: Iterable[tuple[str, str, str]]
 ) -> str:
-    """The text of the header in double or float.
+    """The text of the header.
 
     Parameters
     ----------
-    law
-        What is written.
+    machine
+        The law in the numbers of the target.
     name
         What every name begins with.
-    real
-        The type of its numbers.
     about
         Lines of the comment at its head.
     numbers
         Name, value and meaning of each `#define`.
     """
-    c = C99(law.program, KEYWORDS | {name}, real=real, prefix=name)
-    body = [*c.changing(), *_lines(c, 1)]
-    result = c.read(law.program.results[0], alone=True)
-    upper = name.upper()
-    given = "int32_t counts" if law.resolution > 0 else f"{real} position"
-    seen = given.split()[1]
-    uses_library = any(isinstance(s, Operation) and s.operator in _OF_MATH for s in law.program.statements())
-    stored = any(isinstance(s, Load | Store) and not hasattr(s, "values") for s in law.program.statements())
+    body = _binary(machine, name) if machine.fixed is None else _whole(machine, name)
+    upper, seen = name.upper(), body.given.split()[1]
+    near = _nearest(machine, name, seen)
     lines = [
         "/*",
         *(f" * {line}".rstrip() for line in about),
@@ -69,40 +83,37 @@ def header(
         f"#ifndef {upper}_H",
         f"#define {upper}_H",
         "",
-        *(["#include <math.h>"] if uses_library else []),
-        "#include <stdint.h>",
+        *body.includes,
         "",
-        _GUARD,
-        *([_DOUBLE] if real == "double" else []),
+        *body.guards,
         "",
         *(f"#define {upper}_{key} {value}  /* {meaning} */" for key, value, meaning in numbers),
         "",
-        _UNCONTRACTED,
-        "",
-        f"typedef {real} {name}_force;  /* N, or N*m; out of a wall is positive */",
+        *([_UNCONTRACTED, ""] if machine.fixed is None else []),
+        f"typedef {body.force} {name}_force;  /* {upper}_FORCE_PER_UNIT each; out of a wall is positive */",
         "",
         "typedef struct {",
-        f"    {real} memory[{max(law.rest.shape[1], 1)}];",
-        f"    {given};  /* seen last */",
+        f"    {body.memory} memory[{max(machine.law.rest.shape[1], 1)}];",
+        f"    {body.given};  /* seen last */",
         f"}} {name}_state;",
         "",
-        *c.table_lines(),
-        *c.helper_lines(),
+        *body.before,
         "",
         f"/* At rest at this {seen}, as if it had been there for ever. */",
-        f"static inline void {name}_init({name}_state *s, {given})",
+        f"static inline void {name}_init({name}_state *s, {body.given})",
         "{",
-        *_rest(law, real, seen),
+        *near,
+        *body.rest,
         f"    s->{seen} = {seen};",
         "}",
         "",
         "/* One sample: the force to be given from now on. */",
-        f"static inline {name}_force {name}_step({name}_state *s, {given})",
+        f"static inline {name}_force {name}_step({name}_state *s, {body.given})",
         "{",
-        *([] if stored else ["    /* it remembers nothing */"]),
+        *near,
         f"    s->{seen} = {seen};",
-        *body,
-        f"    return {result};",
+        *body.step,
+        f"    return {body.result};",
         "}",
         "",
         "/* Forget what was, at rest where the handle was seen last. */",
@@ -111,28 +122,87 @@ def header(
         f"    {name}_init(s, s->{seen});",
         "}",
         "",
-        _AS_BEFORE,
-        "",
+        *([_AS_BEFORE, ""] if machine.fixed is None else []),
         "#endif",
     ]
     return "\n".join(lines) + "\n"
 
 
-_OF_MATH = {"abs", "floor", "ceil", "sqrt"}
+def _nearest(machine: Machine, name: str, seen: str) -> list[str]:
+    """A reading outside of what is claimed is taken as the nearest inside."""
+    law, upper = machine.law, name.upper()
+    if law.resolution > 0.0:
+        low, high = f"{upper}_COUNTS_MIN", f"{upper}_COUNTS_MAX"
+        if max(map(abs, machine.counts)) >= _WHOLE:
+            return []
+    else:
+        low, high = f"{upper}_POSITION_MIN", f"{upper}_POSITION_MAX"
+    return [f"    {seen} = {seen} < {low} ? {low} : {seen} > {high} ? {high} : {seen};"]
 
 
-def _lines(c: C99, depth: int) -> list[str]:
-    return c.block(c.program.body, depth)
+_WHOLE = 2**31 - 1
+
+
+def _binary(machine: Machine, name: str) -> _Body:
+    """In double or float."""
+    law = machine.law
+    real: Real = "float" if machine.number == "float" else "double"
+    c = C99(law.program, KEYWORDS | {name}, real=real, prefix=name)
+    step = [*c.changing(), *c.block(law.program.body, 1)]
+    result = c.read(law.program.results[0], alone=True)
+    given = "int32_t counts" if law.resolution > 0 else f"{real} position"
+    library = any(isinstance(s, Operation) and s.operator in _OF_MATH for s in law.program.statements())
+    return _Body(
+        guards=[_GUARD, *([_DOUBLE] if real == "double" else [])],
+        includes=[*(["#include <math.h>"] if library else []), "#include <stdint.h>"],
+        force=real,
+        given=given,
+        memory=real,
+        before=[*c.table_lines(), *c.helper_lines()],
+        rest=_rest(law, real, given.split()[1]),
+        step=step,
+        result=result,
+    )
 
 
 def _rest(law: LawProgram, real: Real, seen: str) -> list[str]:
     """What it remembers at rest, place by place."""
-    at, slope = law.rest
     x = f"(({real}){seen} * {real_text(law.resolution, real)})" if law.resolution > 0 else seen
     lines = []
-    for k, (start, per) in enumerate(zip(at, slope, strict=True)):
+    for k, (start, per) in enumerate(zip(*law.rest, strict=True)):
         value = real_text(float(start), real)
         if per != 0.0:
             value = f"{value} + {real_text(float(per), real)} * {x}"
         lines.append(f"    s->memory[{k}] = {value};")
     return lines or ["    s->memory[0] = 0;"]
+
+
+def _whole(machine: Machine, name: str) -> _Body:
+    """In whole numbers."""
+    fixed = machine.fixed
+    assert fixed is not None, "asked of fixed point"
+    word = fixed.units.scale.word
+    c = FixedC99(fixed.program, KEYWORDS | {name}, prefix=name, word=word, narrow=fixed.narrow)
+    step = [*c.changing(), *c.block(fixed.program.body, 1)]
+    result = c.read(fixed.program.results[0], alone=True)
+    rest = []
+    for k in range(machine.law.rest.shape[1]):
+        start, per, shift = rest_numbers(machine.law, fixed, k)
+        value = str(start)
+        if per:
+            value += (
+                f" + ((({'int64_t' if word == 64 or shift else c.integer})counts * {c.constant_text(per)})"
+            )
+            value += f" >> {shift})" if shift else ")"
+        rest.append(f"    s->memory[{k}] = ({c.integer})({value});")
+    return _Body(
+        guards=[SHIFTS],
+        includes=["#include <stdint.h>"],
+        force=c.integer,
+        given="int32_t counts",
+        memory=c.integer,
+        before=c.helper_lines(),
+        rest=rest or ["    s->memory[0] = 0;"],
+        step=step,
+        result=result,
+    )

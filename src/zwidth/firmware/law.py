@@ -65,8 +65,8 @@ def law_program(device: Device, environment: Environment | object) -> LawProgram
     """
     if not device.is_certain:
         raise InputError(
-            "a machine runs one law with one period: give single values for the device's intervals, or emit "
-            "for the values that you take"
+            "a machine runs one law with one period: give single values for the intervals, those that "
+            "you take"
         )
     packed = pack(device, as_environment(environment), 0.0, _SMALL)
     resolution = float(device.exact("resolution"))

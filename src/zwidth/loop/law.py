@@ -117,9 +117,7 @@ def rendered_force(law: Array, memory: Array, reading: float) -> float:
 @compiled
 def limited(law: Array, memory: Array, force: float) -> float:
     """The same within the force limit; the laws in the chain remember what is applied."""
-    f = force
-    if law[LIMIT] > 0.0 and abs(f) > law[LIMIT]:
-        f = law[LIMIT] if f > 0.0 else -law[LIMIT]
+    f = min(max(force, -law[LIMIT]), law[LIMIT]) if law[LIMIT] > 0.0 else force
     if law[CHAIN] > 0.0:
         memory[int(law[REMEMBERED])] = f
     return f

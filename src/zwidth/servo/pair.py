@@ -59,6 +59,9 @@ from zwidth.servo.safety import (
 )
 from zwidth.showing import Part, Shown, Table
 
+Law = Callable[[float, float], tuple[float, float]]
+"""Of both readings, the force of each side."""
+
 SERVED = ("passive", "theorem")
 """Outcomes of a pair that is served without being told to."""
 
@@ -210,6 +213,7 @@ class PairServo:
         self.verdict: PairVerdict | None = None
         self.granted: Granted | None = None
         self._reason = self._missed = self._held = self._cut = 0
+        self._serving = False
         self._late: list[float] = []
         self._took: list[float] = []
         places = placements or (Placement(), Placement())
@@ -239,7 +243,7 @@ class PairServo:
         InputError
             If a device does not answer.
         """
-        self._loop(self._count(duration), lambda x, y: (0.0, 0.0))
+        self._loop(self._count(duration))
         if self._reason != DONE:
             raise InputError(f"{self._title} does not answer: {ending(self._reason)}")
         waits = max(side.axis.connection.late for side in self._sides)
@@ -291,7 +295,7 @@ class PairServo:
                 "spring, raise the rate, or say anyway, with a small force limit",
             )
         self._law.begin()
-        self._loop(count, self._law.forces, waits=True)
+        self._loop(count, self._law.forces)
         return self.report()
 
     def stop(self) -> None:
@@ -338,11 +342,10 @@ class PairServo:
         scripts = (side.axis.connection.samples for side in self._sides)
         return min([max(1, int(seconds / self._period)), *(n for n in scripts if n is not None)])
 
-    def _loop(
-        self, last: int, law: Callable[[float, float], tuple[float, float]], waits: bool = False
-    ) -> None:
-        """Samples 0 to `last`; whatever ends it, the force is 0 afterwards."""
+    def _loop(self, last: int, law: Law | None = None) -> None:
+        """Samples 0 to `last`, without a law with force 0; whatever ends it, the force is 0 afterwards."""
         self._reason, self._missed, self._held, self._cut = RUNNING, 0, 0, 0
+        self._serving = False
         self._late, self._took = [], []
         self._stop.clear()
         for side in self._sides:
@@ -351,13 +354,13 @@ class PairServo:
             side.axis.begin()
         try:
             with self._real_time as self.granted:
-                self._samples(last, law, waits)
+                self._samples(last, law)
         except KeyboardInterrupt:
             self._reason = ASKED
         finally:
             self._let_go()
 
-    def _samples(self, last: int, law: Callable[[float, float], tuple[float, float]], waiting: bool) -> None:
+    def _samples(self, last: int, law: Law | None) -> None:
         period = float(self._period)
         tick, k = period * 1e9, 0
         most = most_awake(tick, self.granted is not None and "priority" in self.granted)
@@ -386,13 +389,7 @@ class PairServo:
             else:
                 if before is not None:
                     self._book(readings, k * period + late - before[1])
-                forces = law(*readings)
-                if waiting and not self._may_begin(forces):
-                    self._law.begin()
-                    forces = (0.0, 0.0)
-                else:
-                    waiting = False
-                self._give(forces)
+                self._give((0.0, 0.0) if law is None else self._forces(law, readings))
                 for side, x in zip(self._sides, readings, strict=True):
                     side.x = x
                 before = k, k * period + late
@@ -429,7 +426,7 @@ class PairServo:
             elif before is not None and abs(x - side.x) > side.limits.jump * (k - before[0]):
                 self._reason = JUMPED
         for side in self._sides:
-            if before is not None and side.force != 0.0 and t - before[1] > side.limits.gap:
+            if before is not None and self._serving and t - before[1] > side.limits.gap:
                 self._reason = GAP
 
     def _book(self, readings: tuple[float, float], took: float) -> None:
@@ -438,6 +435,15 @@ class PairServo:
             moved = x - side.x
             side.work -= side.force * moved
             side.loss += side.damping * moved * moved / took + side.coulomb * abs(moved)
+
+    def _forces(self, law: Law, readings: tuple[float, float]) -> tuple[float, float]:
+        """Of the law, from where it may begin; 0 until then."""
+        forces = law(*readings)
+        self._serving = self._serving or self._may_begin(forces)
+        if self._serving:
+            return forces
+        self._law.begin()
+        return (0.0, 0.0)
 
     def _may_begin(self, forces: tuple[float, float]) -> bool:
         """Near 0 on both sides, if both arms had always been where they are."""

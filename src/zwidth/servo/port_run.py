@@ -269,7 +269,7 @@ class PortRun:
             self._reason = NO_NUMBER
         elif before is not None and status == GOOD and self._is_too_far(x, k, at, before):
             self._reason = JUMPED
-        elif before is not None and self.port.force != 0.0 and (at - before[1]) * 1e-9 > limits.gap:
+        elif before is not None and (at - before[1]) * 1e-9 > limits.gap:
             self._reason = GAP
 
     def _is_too_far(self, x: float, k: int, at: int, before: tuple[int, int, float]) -> bool:

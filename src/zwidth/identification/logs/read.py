@@ -27,7 +27,7 @@ def read_log(
     counts_per_turn: object = None,
     motion: Motion | None = None,
 ) -> Log:
-    """A log from a file: text, Parquet, NetCDF, HDF5, MATLAB, MCAP, ROS bags, what zwidth wrote.
+    """A log from a file: text, Parquet, NetCDF, HDF5, MATLAB, MCAP, ROS bags, telemetry, what zwidth wrote.
 
     Parameters
     ----------
@@ -105,6 +105,11 @@ def _table(path: Path) -> Table:
         raise InputError(f"{path} is NetCDF 3; write it as NetCDF 4, for example with nccopy -k nc4")
     if start[:2] == b"PK":
         raise InputError(f"{path} is a zip archive or a spreadsheet; unpack it, or save it as CSV")
+    if b"zW" in start:
+        from zwidth.identification.logs.telemetry.table import is_telemetry, telemetry_table
+
+        if is_telemetry(start):
+            return telemetry_table(path)
     from zwidth.identification.logs.text import text_table
 
     return text_table(path)

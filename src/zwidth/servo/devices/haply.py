@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import math
 import struct
+from abc import abstractmethod
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -257,8 +258,9 @@ class _Haply(CompiledConnection):
             )
         return opened
 
+    @abstractmethod
     def _set_axis(self, memory: Array) -> None:
-        raise NotImplementedError
+        """Write which axis is measured, and what the compiled functions need for it."""
 
     def _setup(self) -> bytes:
         by_port = sorted(self.joints, key=lambda joint: joint.port)

@@ -1,0 +1,93 @@
+"""A program on whole numbers as C99."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from zwidth.firmware.c99 import C99
+from zwidth.firmware.program import Constant, Operand, Operation, Statement, Variable
+
+_CHOSEN = {"min": "least", "max": "most", "abs": "size"}
+
+HELPERS = {
+    "min": "static inline {word} {prefix}_least({word} a, {word} b) {{ return b < a ? b : a; }}",
+    "max": "static inline {word} {prefix}_most({word} a, {word} b) {{ return b > a ? b : a; }}",
+    "abs": "static inline {word} {prefix}_size({word} a) {{ return a < 0 ? -a : a; }}",
+    "scaled": """\
+/* n m / 2^k, to the nearest */
+static inline {word} {prefix}_scaled({word} n, {word} m, int k)
+{{
+    return ({word})(((int64_t)n * m + ((int64_t)1 << (k - 1))) >> k);
+}}""",
+}
+
+SHIFTS = """\
+#if (-1 >> 1) != -1
+#error "a shift to the right of a negative number does not round down here: emit the law in double or float"
+#endif"""
+
+
+@dataclass
+class FixedC99(C99):
+    """Writes whole numbers of 32 or 64 bits.
+
+    Parameters
+    ----------
+    word
+        Bits of a number.
+    narrow
+        Variables that 16 bits hold.
+    """
+
+    word: int = 32
+    narrow: frozenset[Variable] = frozenset()
+
+    @property
+    def integer(self) -> str:
+        """The type of a number."""
+        return f"int{self.word}_t"
+
+    def type_of(self, variable: Variable) -> str:
+        return "int" if variable.kind == "truth" else self.integer
+
+    def constant(self, constant: Constant) -> str:
+        return self.constant_text(int(constant.value))
+
+    def constant_text(self, value: int) -> str:
+        """A whole number of its word."""
+        return str(value) if abs(value) <= 32767 else f"{value}L" if self.word == 32 else f"{value}LL"
+
+    def made(self, statement: Statement) -> str:
+        if isinstance(statement, Operation) and statement.operator in ("<<", ">>", "product", "scaled"):
+            a, b = statement.operands[:2]
+            if statement.operator == "product":
+                return f"{self.factor(a)} * {self.factor(b, second=True)}"
+            if statement.operator == "scaled":
+                self.helpers.add("scaled")
+                of = ", ".join(self.read(o, alone=True) for o in statement.operands)
+                return f"{self.prefix}_scaled({of})"
+            if statement.operator == "<<":  # of a negative number it is not defined
+                return f"{self.read(a)} * ({self.integer}){self.constant_text(1 << self._value(b))}"
+            return f"{self.read(a)} >> {self.read(b)}"
+        return super().made(statement)
+
+    def operation(self, operator: str, kind: str, read: list[str]) -> str:
+        if operator in ("min", "max", "abs"):
+            self.helpers.add(operator)
+            return f"{self.prefix}_{_CHOSEN[operator]}({', '.join(read)})"
+        return super().operation(operator, kind, read)
+
+    def _value(self, operand: Operand) -> int:
+        assert isinstance(operand, Constant), "shifts are by known numbers"
+        return int(operand.value)
+
+    def factor(self, operand: Operand, second: bool = False) -> str:
+        """A factor in 16 bits where that holds it: two such are multiplied by one instruction or few."""
+        text = self.read(operand)
+        fits = operand in self.narrow if isinstance(operand, Variable) else abs(self._value(operand)) <= 32767
+        short = f"(int16_t){text}" if fits else text
+        return short if second else f"({self.integer}){short}"
+
+    def helper_lines(self) -> list[str]:
+        values = {"word": self.integer, "prefix": self.prefix}
+        return [text.format(**values) for name, text in HELPERS.items() if name in self.helpers]

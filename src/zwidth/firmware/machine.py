@@ -1,0 +1,234 @@
+"""How far a machine's force is from the law's, at any sample, whatever the hand does.
+
+    |f̃_k − f_k| ≤ ε        for all readings within their range
+
+f is the law in real numbers, with the force that no converter rounds; f̃ what the machine's numbers give, to
+the converter's nearest step.  The force that is off moves no more than ε |Δx| of energy in a move Δx, which
+Coulomb friction of ε takes: so a loop that is passive with f_c − ε is passive with f_c on this machine.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import floor, isfinite, log2
+from typing import Literal
+
+from zwidth.errors import InputError
+from zwidth.firmware.binary import DOUBLE, FLOAT
+from zwidth.firmware.bound import Bound, plain
+from zwidth.firmware.evaluation import Arithmetic, Exact, NoBound
+from zwidth.firmware.fixed import Fixed, TooLarge, lowered
+from zwidth.firmware.invariant import Invariant, Places, invariant
+from zwidth.firmware.law import LawProgram
+from zwidth.firmware.program import Operation, Variable
+from zwidth.firmware.units import Scale, Unit
+
+Number = Literal["double", "float", "fixed"]
+
+_FRACTIONS = {32: (24, 16, 8, 4, 0), 64: (40, 32, 24, 16, 8)}
+"""Parts of a force unit that are tried, as powers of two, by word: whole bytes are shifted in no time."""
+_WIDE = 2.0**-10
+"""Of the force: an error beyond this is worth a wider word."""
+
+
+@dataclass(frozen=True, eq=False)
+class Machine:
+    """A law in the numbers of a machine.
+
+    Parameters
+    ----------
+    law
+        What it computes.
+    number
+        "double", "float" or "fixed".
+    counts
+        The lowest and the highest reading: encoder counts, or a position [m; rad].
+    error
+        ε, with half a step of the converter in it [N; N·m]; None where no bound was found.
+    reason
+        Why none was found.
+    fixed
+        The program in whole numbers, where they are.
+    largest_force
+        The largest |f| that the machine can give [N; N·m]; None where it is not known.
+    """
+
+    law: LawProgram
+    number: Number
+    counts: tuple[float, float]
+    error: float | None
+    reason: str = ""
+    fixed: Fixed | None = None
+    largest_force: float | None = None
+
+    @property
+    def half_step(self) -> float:
+        """What the converter's rounding is in ε."""
+        return self.law.step / 2
+
+    @property
+    def rounding(self) -> float | None:
+        """What the machine's numbers are in ε."""
+        return None if self.error is None else max(self.error - self.half_step, 0.0)
+
+
+def machine(
+    law: LawProgram, number: Number, counts: tuple[float, float], force_unit: float | None = None
+) -> Machine:
+    """A law in the numbers of a machine, with the bound of their error.
+
+    Parameters
+    ----------
+    law
+        What it computes.
+    number
+        "double", "float" or "fixed".
+    counts
+        See `Machine`.
+    force_unit
+        In fixed point, where the device's converter has no known step: the unit of the force [N; N·m].
+
+    Raises
+    ------
+    InputError
+        If the law has no form in fixed point; and why.
+    """
+    converter = _converter(law)
+    if number != "fixed":
+        arithmetic: Arithmetic = DOUBLE if number == "double" else FLOAT
+        try:
+            found = _bounded(law, counts, arithmetic, converter)
+        except NoBound as reason:
+            return Machine(law, number, counts, None, str(reason))
+        return _machine(law, number, counts, found, None)
+    if law.resolution == 0.0:
+        raise InputError(
+            "fixed point counts encoder steps, and the device has no resolution: give it one, or take float"
+        )
+    try:
+        return _fixed(law, counts, converter, force_unit)
+    except NoBound as reason:
+        raise InputError(
+            f'the law cannot be written in fixed point: {reason}; take number="double" or "float" (on '
+            "the command line --number double), or another law"
+        ) from None
+
+
+def _machine(
+    law: LawProgram, number: Number, counts: tuple[float, float], found: Invariant, fixed: Fixed | None
+) -> Machine:
+    (result,) = found.results
+    if not isfinite(result.error):
+        return Machine(law, number, counts, None, "a number may leave its range", fixed)
+    return Machine(law, number, counts, float(result.error), "", fixed, float(result.computed_size))
+
+
+def _converter(law: LawProgram) -> Operation | None:
+    """The floor of the converter's rounding."""
+    if law.step == 0.0:
+        return None
+    floors = [s for s in law.program.statements() if isinstance(s, Operation) and s.operator == "floor"]
+    return floors[-1]
+
+
+def _given(law: LawProgram, counts: tuple[float, float]) -> dict[Variable, Bound]:
+    """The bounds of what is measured."""
+    low, high = counts
+    return {law.program.parameters[0]: plain(float(low), float(high), 0.0, signed=True)}
+
+
+def _rest(law: LawProgram, counts: tuple[float, float]) -> Places:
+    """What it remembers at first, at rest anywhere."""
+    unit = law.resolution or 1.0
+    places = []
+    for at, slope in zip(*law.rest, strict=True):
+        ends = [float(at + slope * unit * x) for x in counts]
+        places.append((min(ends), max(ends), 4e-16 * max(map(abs, ends))))
+    return places
+
+
+def _bounded(
+    law: LawProgram, counts: tuple[float, float], arithmetic: Arithmetic, converter: Operation | None
+) -> Invariant:
+    rest = _rest(law, counts)
+    if arithmetic is FLOAT:
+        rest = [(low, high, max(abs(low), abs(high)) * 2.0**-22) for low, high, _ in rest]
+    return invariant(law.program, _given(law, counts), rest, arithmetic, converter)
+
+
+# ---- fixed point
+
+
+def _fixed(
+    law: LawProgram, counts: tuple[float, float], converter: Operation | None, force_unit: float | None
+) -> Machine:
+    """The finest unit of force with which nothing leaves its word; a wider word where that is too coarse."""
+    exact = _bounded(law, counts, Exact(), converter)
+    sizes = exact.values
+    cells = [max(-low, high) for low, high, _ in exact.memory]
+    best: Machine | None = None
+    for word in (32, 64):
+        for fraction in _FRACTIONS[word]:
+            scale = Scale(law.resolution, _unit(law, exact, force_unit), fraction, word)
+            try:
+                found = lowered(law.program, scale, sizes, cells)
+                made = _proved(law, counts, converter, found)
+            except TooLarge:
+                continue
+            if best is None or (made.error or 0.0) < (best.error or 0.0):
+                best = made
+            if word == 64 or (made.rounding or 0.0) <= _WIDE * (made.largest_force or 0.0):
+                return best
+            break
+    if best is None:
+        raise NoBound("its numbers leave 64 bits")
+    return best
+
+
+def _unit(law: LawProgram, exact: Invariant, force_unit: float | None) -> float:
+    if law.step > 0.0:
+        return law.step
+    if force_unit is not None:
+        return force_unit
+    size = exact.results[0].size or 1.0
+    return float(2.0 ** floor(log2(size) - 14))
+
+
+def _proved(
+    law: LawProgram, counts: tuple[float, float], converter: Operation | None, fixed: Fixed
+) -> Machine:
+    """The bound of the error, and that no number is larger than it was written for."""
+    rest = [
+        (low, high, fixed_rest_error(law, fixed, k, max(abs(c) for c in counts)))
+        for k, (low, high, _) in enumerate(_rest(law, counts))
+    ]
+    found = invariant(law.program, _given(law, counts), rest, fixed, converter)
+    for variable, size in fixed.most.items():
+        if variable in found.values and found.values[variable].computed_size > size:
+            raise TooLarge
+    return _machine(law, "fixed", counts, found, fixed)
+
+
+def rest_numbers(law: LawProgram, fixed: Fixed, place: int) -> tuple[int, int, int]:
+    """(a, m, k) of what is remembered at rest at n counts, a + (m n >> k)."""
+    unit = cell_unit(fixed, place)
+    size = fixed.units.scale.size(unit)
+    at, slope = float(law.rest[0, place]), float(law.rest[1, place]) * law.resolution
+    ratio = slope / size
+    if ratio == 0.0 or abs(ratio - round(ratio)) <= 1e-12 * abs(ratio) or abs(ratio) >= 4096:
+        return round(at / size), round(ratio), 0
+    return round(at / size), round(ratio * 2**16), 16
+
+
+def fixed_rest_error(law: LawProgram, fixed: Fixed, place: int, most: float) -> float:
+    """How far that is off."""
+    size = fixed.units.scale.size(cell_unit(fixed, place))
+    a, m, k = rest_numbers(law, fixed, place)
+    slope = float(law.rest[1, place]) * law.resolution
+    own = abs(float(law.rest[0, place]) - a * size)
+    return own + abs(slope - m * 2.0**-k * size) * most + (size if k else 0.0)
+
+
+def cell_unit(fixed: Fixed, place: int) -> Unit:
+    """The unit of what is remembered in a place."""
+    return fixed.units.cells.get(place, fixed.units.scale.force)

@@ -1,0 +1,193 @@
+"""Fixed point: every number is a whole number of units, and no sum or product leaves its word.
+
+    position    n Δ                 counts, exact
+    force       n U 2⁻ᵍ             U the converter's step, or a unit that is chosen; g the same for all
+    product     c n Δ  →  n m,      m = round(c Δ/(U 2⁻ᵍ)): exact but for the rounding of m
+
+g is the largest with which nothing leaves its word.  So sums need no shift, and the converter's
+nearest step is one shift by g.  What is rounded is collected statement by statement, for `invariant`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import log2
+from typing import Any
+
+from zwidth.firmware.evaluation import NoBound
+from zwidth.firmware.program import Constant, Load, Operand, Operation, Program, Set, Store, Table, Variable
+
+_NEAR = 1e-12
+"""Relative: two units, or a number and a whole one, that differ by less are the same but for rounding."""
+
+
+@dataclass(frozen=True)
+class Unit:
+    """Δ^counts U^steps 2^−fraction."""
+
+    counts: int
+    steps: int
+    fraction: int
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What the units of a law are.
+
+    Parameters
+    ----------
+    count
+        Δ [m; rad].
+    step
+        U [N; N·m].
+    fraction
+        g.
+    word
+        Bits of a number, 32 or 64.
+    """
+
+    count: float
+    step: float
+    fraction: int
+    word: int = 32
+
+    @property
+    def force(self) -> Unit:
+        """U 2⁻ᵍ."""
+        return Unit(0, 1, self.fraction)
+
+    @property
+    def largest(self) -> int:
+        """The largest whole number of a word."""
+        return (1 << (self.word - 1)) - 1
+
+    def size(self, unit: Unit) -> float:
+        """A unit in SI."""
+        return float(self.count**unit.counts * self.step**unit.steps * 2.0**-unit.fraction)
+
+    def as_unit(self, number: float) -> Unit | None:
+        """The unit that a number is, if it is one."""
+        for counts in (0, 1, -1):
+            for steps in (0, 1, -1):
+                power = log2(number / (self.count**counts * self.step**steps))
+                if abs(power - round(power)) < _NEAR and abs(power) < 64:
+                    return Unit(counts, steps, -round(power))
+        return None
+
+
+@dataclass
+class Units:
+    """The unit of everything in a program; what none can be told of is kept as a force.
+
+    Parameters
+    ----------
+    scale
+        The units that there are.
+    values, cells
+        Those of results and of places of the memory.
+    """
+
+    scale: Scale
+    values: dict[Variable, Unit] = field(default_factory=dict)
+    cells: dict[int, Unit] = field(default_factory=dict)
+
+    def of(self, operand: Operand) -> Unit | None:
+        """The unit of an operand; None of a known number, and where it is not found yet."""
+        return self.values.get(operand) if isinstance(operand, Variable) else None
+
+    def whole(self, number: float, unit: Unit) -> bool:
+        """Whether a number is a whole number of units."""
+        n = number / self.scale.size(unit)
+        return abs(n - round(n)) <= _NEAR * max(abs(n), 1.0)
+
+    def common(self, a: Unit, b: Unit) -> Unit:
+        """A unit for both."""
+        if (a.counts, a.steps) == (b.counts, b.steps):
+            return a if a.fraction >= b.fraction else b
+        return self.scale.force
+
+    def together(self, a: Operand, b: Operand) -> Unit | None:
+        """A unit in which two operands can be added."""
+        one, two = self.of(a), self.of(b)
+        if one is not None and two is not None:
+            return self.common(one, two)
+        for unit, other in ((one, b), (two, a)):
+            if unit is not None and isinstance(other, Constant):
+                return unit if self.whole(float(other.value), unit) else self.scale.force
+            if unit is not None:
+                return unit  # the other is not found yet
+        return None
+
+    def scaled(self, unit: Unit, by: float) -> Unit:
+        """The unit of a product with a known number."""
+        own = self.scale.as_unit(abs(by)) if by else None
+        if own is None:
+            return self.scale.force
+        return Unit(unit.counts + own.counts, unit.steps + own.steps, unit.fraction + own.fraction)
+
+
+def units_of(program: Program, scale: Scale) -> Units:
+    """The units of a program.
+
+    Raises
+    ------
+    NoBound
+        If an operation has no fixed-point form.
+    """
+    units = Units(scale, {p: Unit(0, 0, 0) for p in program.parameters})
+    while True:
+        before = (dict(units.values), dict(units.cells))
+        for s in program.statements():
+            if isinstance(s, Operation) and s.result.kind != "truth":
+                _keep(units, units.values, s.result, _operation(s, units))
+            elif isinstance(s, Load):
+                known = scale.force if isinstance(s.source, Table) else units.cells.get(_index(s.index))
+                _keep(units, units.values, s.result, known)
+            elif isinstance(s, Store):
+                _keep(units, units.cells, _index(s.index), units.of(s.value))
+            elif isinstance(s, Set) and s.variable.kind != "truth":
+                _keep(units, units.values, s.variable, units.of(s.value))
+        if before != (units.values, units.cells):
+            continue
+        unknown = [
+            s.result for s in program.statements() if isinstance(s, Load) and s.result not in units.values
+        ]
+        if not unknown:
+            return units
+        units.values.update(dict.fromkeys(unknown, scale.force))
+
+
+def _keep(units: Units, held: dict[Any, Unit], key: Any, unit: Unit | None) -> None:
+    if unit is not None:
+        held[key] = units.common(held[key], unit) if key in held else unit
+
+
+def _index(index: Operand) -> int:
+    if isinstance(index, Variable):
+        raise NoBound("which of the numbers that it remembers it takes depends on what is measured")
+    return int(index.value)
+
+
+def _operation(s: Operation, units: Units) -> Unit | None:
+    a, b = s.operands[0], s.operands[-1]
+    if s.operator in ("real", "integer", "copy", "negate", "abs"):
+        return units.of(a)
+    if s.operator in ("+", "-", "min", "max"):
+        return units.together(a, b)
+    if s.operator in ("*", "/"):
+        for x, c in ((a, b), (b, a)):
+            if isinstance(c, Constant) and not (s.operator == "/" and c is a):
+                unit = units.of(x)
+                by = float(c.value)
+                if s.operator == "/":
+                    if by == 0.0:
+                        raise NoBound("it divides by 0")
+                    by = 1.0 / by
+                return None if unit is None else units.scaled(unit, by)
+        raise NoBound(
+            "it multiplies or divides two numbers that are both measured or remembered, which is written in "
+            "floating point only"
+        )
+    if s.operator == "floor":
+        return Unit(0, 0, 0)
+    raise NoBound(f"{s.operator!r} is written in floating point only")
