@@ -24,6 +24,7 @@ from zwidth.firmware.header import header
 from zwidth.firmware.javascript import KEYWORDS as OF_JAVASCRIPT
 from zwidth.firmware.javascript import JavaScript
 from zwidth.firmware.law import LawProgram
+from zwidth.firmware.machine import Machine
 from zwidth.firmware.program import Program
 
 Array = NDArray[np.float64]
@@ -124,10 +125,16 @@ for (const [name, [rows, wide, outputs]] of Object.entries(JSON.parse(readFileSy
 """
 
 
+_ANY = 2.0**31
+"""No count is beyond it."""
+
+
 def law_in_c(law: LawProgram, name: str) -> str:
     """A law's header, and a function for `run_c`: it begins at its first reading."""
     size, kind = law.rest.shape[1], "int32_t" if law.resolution > 0 else "double"
-    return f"""{header(law, name=name, real="double", about=[name], numbers=[])}
+    ends = [(f"POSITION_{end}", f"({sign}1e9)", "m") for end, sign in (("MIN", "-"), ("MAX", ""))]
+    everywhere = Machine(law, "double", (-_ANY, _ANY), None)
+    return f"""{header(everywhere, name=name, about=[name], numbers=ends)}
 void {name}_rows(const double *in, int rows, double *cells, double *out)
 {{
     {name}_state s;

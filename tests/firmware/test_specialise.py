@@ -194,12 +194,14 @@ _EMITTED = """
 import zwidth as zw
 from zwidth.firmware.header import header
 from zwidth.firmware.law import law_program
+from zwidth.firmware.machine import Machine
 from zwidth.firmware.module import module
 law = law_program(
     zw.catalogue.device("haptic-paddle"),
     zw.render(zw.Wall(300, "0.2"), zw.rendering.PassivityController(), zw.rendering.EventTransient()),
 )
-print(header(law, name="law", real="double", about=["a"], numbers=[]) + module(law, about=["a"], numbers=[]))
+wide = Machine(law, "double", (-1.0, 1.0), None)
+print(header(wide, name="law", about=["a"], numbers=[]) + module(law, about=["a"], numbers=[]))
 """
 
 

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from zwidth.firmware.printer import Printer
-from zwidth.firmware.program import Cells, Constant, Table, Variable
+from zwidth.firmware.program import Call, Cells, Constant, Table, Variable
 
 Real = Literal["double", "float"]
 
@@ -140,6 +140,38 @@ class C99(Printer):
 
     def place(self, source: Cells | Table, name: str, index: str) -> str:
         return f"s->{name}[{index}]" if isinstance(source, Cells) else f"{self.prefix}_{name}[{index}]"
+
+    def called(self, call: Call, names: list[str], given: list[str]) -> list[str]:
+        cells = ["s"] if call.program.cells else []
+        text = f"{self.prefix}_{call.name}({', '.join([*cells, *given])})"
+        if len(names) == 1:
+            return [self.given(call.results[0], names[0], text)]
+        if not names:
+            return [f"{text};"]
+        several = self.name(Variable("real", f"of_{call.name}"))
+        parts = [
+            self.given(result, name, f"{several}.r{k}")
+            for k, (result, name) in enumerate(zip(call.results, names, strict=True))
+            if self.is_read(result)
+        ]
+        return [f"const {self.prefix}_{call.name}_results {several} = {text};", *parts]
+
+    def whole_function(self) -> list[str]:
+        program, name = self.program, f"{self.prefix}_{self.function}"
+        cells = [f"{self.prefix}_state *s"] if program.cells else []
+        given = ", ".join([*cells, *(f"{self.type_of(v)} {self.name(v)}" for v in program.parameters)])
+        body = [*self.changing(), *self.block(program.body, 1)]
+        results = [self.read(r, alone=True) for r in program.results]
+        lines, kind = [*self.table_lines()], "void"
+        if len(results) == 1:
+            kind = self.type_of(Variable(program.results[0].kind))
+            body.append(f"    return {results[0]};")
+        elif results:
+            kind = f"{name}_results"
+            parts = " ".join(f"{self.type_of(Variable(r.kind))} r{k};" for k, r in enumerate(program.results))
+            lines.append(f"typedef struct {{ {parts} }} {kind};")
+            body += [f"    const {kind} results = {{ {', '.join(results)} }};", "    return results;"]
+        return [*lines, f"static {kind} {name}({given or 'void'})", "{", *body, "}"]
 
     def counter(self) -> str:
         return "int32_t"

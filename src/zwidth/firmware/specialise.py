@@ -15,6 +15,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from zwidth.firmware.apart import Apart
 from zwidth.firmware.arithmetic import as_operand, converted, is_known, kind_of
 from zwidth.firmware.expressions import Expressions
 from zwidth.firmware.places import cut_tables
@@ -41,7 +42,9 @@ MOST_WRITTEN_OUT = 32
 """Passes of a loop that are written one after the other; a longer one stays a loop."""
 
 
-def specialised(function: Callable[..., Any], arguments: Sequence[Any]) -> Program:
+def specialised(
+    function: Callable[..., Any], arguments: Sequence[Any], apart: Sequence[Callable[..., Any]] = ()
+) -> Program:
     """A program of one function.
 
     Parameters
@@ -51,6 +54,8 @@ def specialised(function: Callable[..., Any], arguments: Sequence[Any]) -> Progr
     arguments
         Of each argument: a number, an array or a tuple that is known; `Cells` for an array that is changed;
         a `Variable` for a number that is given at every call.
+    apart
+        Functions whose calls stay calls: a program that would be too long without them.
 
     Raises
     ------
@@ -59,7 +64,9 @@ def specialised(function: Callable[..., Any], arguments: Sequence[Any]) -> Progr
     """
     source = source_of(function)
     body: list[Statement] = []
-    value = _Writer(source, dict(zip(source.arguments, arguments, strict=True)), (source,)).whole(body)
+    names = dict(zip(source.arguments, arguments, strict=True))
+    standing = Apart(frozenset(source_of(f) for f in apart))
+    value = _Writer(source, names, (source,), standing).whole(body)
     results = value if isinstance(value, tuple) else (() if value is None else (value,))
     parameters = tuple(a for a in _flat(arguments) if isinstance(a, Variable))
     cells = tuple(a for a in arguments if isinstance(a, Cells))
@@ -87,6 +94,7 @@ _FELL, _OVER = False, True
 class _Writer(Expressions):
     """Writes the statements of one call."""
 
+    apart: Apart = field(default_factory=Apart)
     returned: Any = None
     nested: int = 0
     exits: _Exits = field(default_factory=_Exits)
@@ -97,8 +105,14 @@ class _Writer(Expressions):
         return self.returned
 
     def written_in_place(self, called: Source, names: dict[str, Any], block: list[Statement]) -> Any:
-        """Another call, inside this one."""
-        return _Writer(called, names, (*self.calls, called)).whole(block)
+        """Another call, inside this one or apart."""
+
+        def write(given: dict[str, Any], inner: list[Statement]) -> Any:
+            return _Writer(called, given, (*self.calls, called), self.apart).whole(inner)
+
+        if called in self.apart.sources:
+            return self.apart.call(called, names, write, block)
+        return write(names, block)
 
     def give_back(self, value: Any, node: ast.AST, block: list[Statement]) -> None:
         """A `return`: at once where it is the only one, else through variables that every way sets."""
