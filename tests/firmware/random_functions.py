@@ -1,7 +1,7 @@
 """Random functions of the subset of Python that is emitted, as text.
 
-Each has the arguments m, an array of 6; p, five known numbers; q, a known whole number; x, y and k.  Every loop
-ends, every index is inside and every whole number small, whatever x, y and k are.
+Each has the arguments m, an array of 6; p, five known numbers; q, a known whole number; x, y and k.  Every
+loop ends, every index is inside and every whole number small, whatever x, y and k are.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from random import Random
 
 CELLS, KNOWN = 6, 5
 
-HEAD = '''\
+HEAD = """\
 from math import ceil, fabs, floor, sqrt
 
 
@@ -49,7 +49,7 @@ def kept(m, i, a):
     m[i] = a + m[i]
     return m[i] > 0.0
 
-'''
+"""
 
 
 class _Function:
