@@ -4,7 +4,7 @@ A force that is off by e_k, |e_k| ≤ ε, gives Σ e_k Δx_k ≤ ε Σ |Δx_k| �
 Coulomb friction takes f_c ∫ |v| dt.  So if no hand gains from the law with f_c − ε, none gains from the
 machine with f_c; whatever the delay is, since the force that is off is held as the law's is.
 
-A chain of laws that ends in force bounding needs no ε: that law pays for its own rounding, of 53 bits or of 24,
+A chain of laws that ends in force bounding needs no ε: that law pays for its own rounding, of 53 or 24 bits,
 and for the converter, and whatever is commanded before it may be off by anything.
 """
 
