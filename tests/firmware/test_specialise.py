@@ -35,7 +35,7 @@ from small_functions import FUNCTIONS, NUMPY
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.firmware.program import Cells, Load, Program, Table, Variable
+from zwidth.firmware.program import Cells, Load, Program, Set, Table, Variable
 from zwidth.firmware.specialise import specialised
 
 Array = NDArray[np.float64]
@@ -170,6 +170,17 @@ def test_what_has_no_source_is_refused() -> None:
 
 
 def _searched(p: Array, x: float) -> float:
+    low, high = 3, 63
+    while high - low > 1:
+        middle = (low + high) // 2
+        if p[middle] <= x:
+            low = middle
+        else:
+            high = middle
+    return p[low] + p[low + 100]
+
+
+def _searched_shortly(p: Array, x: float) -> float:
     low, high = 3, 6
     while high - low > 1:
         middle = (low + high) // 2
@@ -180,14 +191,22 @@ def _searched(p: Array, x: float) -> float:
     return p[low] + p[low + 10]
 
 
+def test_a_short_search_is_written_out() -> None:
+    """No table is left: on each way the place is known, and so is the sum."""
+    program = specialised(_searched_shortly, (np.arange(20.0), Variable("real", "x")))
+    assert not program.tables()
+    given = {float(s.value.value) for s in program.statements() if isinstance(s, Set)}
+    assert given == {16.0, 18.0, 20.0}
+
+
 def test_a_table_has_what_can_be_read_alone() -> None:
-    """Of twenty known numbers, of which a search reads 3 to 5, and ten further, those are kept."""
-    numbers = np.arange(20.0)
+    """Of 200 known numbers, of which a search reads 3 to 62, and a hundred further, those are kept."""
+    numbers = np.arange(200.0)
     program = specialised(_searched, (numbers, Variable("real", "x")))
     kept = {
         s.source.values for s in program.statements() if isinstance(s, Load) and isinstance(s.source, Table)
     }
-    assert kept == {(3.0, 4.0, 5.0), (13.0, 14.0, 15.0)}
+    assert kept == {tuple(map(float, range(3, 63))), tuple(map(float, range(103, 163)))}
 
 
 _EMITTED = """

@@ -14,6 +14,7 @@ from zwidth.errors import InputError
 from zwidth.firmware.program import Cells, Program, Variable
 from zwidth.firmware.specialise import specialised
 from zwidth.loop.law import LIMIT, STEP, sampled_force, sampled_force_at
+from zwidth.passivity.bounding import is_bounded
 from zwidth.servo.packing import pack
 
 MEMORY = "memory"
@@ -36,12 +37,15 @@ class LawProgram:
         What it remembers at rest at 0, and per metre or radian away from it; 2 × n.
     resolution
         Δ, metres or radians per count; 0 where the position is given.
+    pays
+        Whether force bounding at its end pays for the roundings of its operations as they stand.
     """
 
     program: Program
     law: Array
     rest: Array
     resolution: float
+    pays: bool
 
     @property
     def step(self) -> float:
@@ -76,11 +80,14 @@ def law_program(device: Device, environment: Environment | object, *, single: bo
             "a machine runs one law with one period: give single values for the intervals, those that "
             "you take"
         )
-    packed = pack(device, as_environment(environment), 0.0, _SMALL, single=single)
+    law = as_environment(environment)
+    packed = pack(device, law, 0.0, _SMALL, single=single)
     resolution = float(device.exact("resolution"))
     cells = Cells(MEMORY, packed.rest.shape[1])
     if resolution > 0.0:
         program = specialised(sampled_force, (packed.law, cells, Variable("integer", "counts")))
     else:
         program = specialised(sampled_force_at, (packed.law, cells, Variable("real", "position")))
-    return LawProgram(program, packed.law, np.asarray(packed.rest, dtype=np.float64), resolution)
+    return LawProgram(
+        program, packed.law, np.asarray(packed.rest, dtype=np.float64), resolution, is_bounded(law)
+    )

@@ -9,7 +9,7 @@ Coulomb friction of ε takes: so a loop that is passive with f_c − ε is passi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import floor, isfinite, log2
 from typing import Literal
 
@@ -21,6 +21,7 @@ from zwidth.firmware.fixed import Fixed, TooLarge, lowered
 from zwidth.firmware.invariant import Invariant, Places, invariant
 from zwidth.firmware.law import LawProgram
 from zwidth.firmware.program import Operation, Variable
+from zwidth.firmware.simplified import simplified
 from zwidth.firmware.units import Scale, Unit
 
 Number = Literal["double", "float", "fixed"]
@@ -93,6 +94,8 @@ def machine(
     InputError
         If the law has no form in fixed point; and why.
     """
+    if number != "double" and not law.pays:
+        law = replace(law, program=simplified(law.program))
     converter = _converter(law)
     if number != "fixed":
         arithmetic: Arithmetic = DOUBLE if number == "double" else FLOAT

@@ -97,6 +97,7 @@ class _Writer(Expressions):
     apart: Apart = field(default_factory=Apart)
     returned: Any = None
     nested: int = 0
+    searching: frozenset[str] = frozenset()
     exits: _Exits = field(default_factory=_Exits)
 
     def whole(self, block: list[Statement]) -> Any:
@@ -239,14 +240,19 @@ class _Writer(Expressions):
             return None
         # what follows goes into the branch where one of its ways leaves
         leaves = may_leave(node.body) or may_leave(node.orelse)
-        rest = list(todo) if leaves else []
-        over = self.both(
-            test,
-            lambda b: self.run([*node.body, *rest], b),
-            lambda b: self.run([*node.orelse, *rest], b),
-            node,
-            block,
-        )
+        # so it does in a search that is written out: on each way the place is known
+        leaves = leaves or not self.searching.isdisjoint(assigned([node]))
+        rest, searching = list(todo) if leaves else [], self.searching
+
+        def way(body: list[ast.stmt]) -> Callable[[list[Statement]], bool]:
+            def write(inner: list[Statement]) -> bool:
+                self.searching = searching
+                return self.run([*body, *rest], inner)
+
+            return write
+
+        over = self.both(test, way(node.body), way(node.orelse), node, block)
+        self.searching = searching
         return over if leaves else None
 
     def both(
@@ -290,6 +296,8 @@ class _Writer(Expressions):
         if node.orelse:
             raise self.source.refuse(node.orelse[0], "else of a loop cannot be emitted")
         if isinstance(node, ast.While):
+            if self.search(node, todo, block):
+                return False
             self.while_loop(node, block)
         else:
             if not isinstance(node.target, ast.Name):
@@ -306,6 +314,27 @@ class _Writer(Expressions):
             assert self.exits.done is not None, "a loop that may return has it"
             block.append(Branch(self.exits.done, [Leave()]))
         return returns(node.body)
+
+    def search(self, node: ast.While, todo: list[ast.stmt], block: list[Statement]) -> bool:
+        """A search in a short table, step by step; False of any other loop.
+
+        Its ends are known, and each step takes one of two that are known too.
+        """
+        changed = assigned(node.body)
+        held = [self.names[name] for name in changed if name in self.names]
+        ends = [h for h in held if is_known(h) and kind_of(h) == "integer"]
+        short = ends and max(ends) - min(ends) <= MOST_WRITTEN_OUT
+        if len(ends) != len(held) or not short or self.exits.depth or returns(node.body):
+            return False
+        test = self.read(node.test, block)
+        if not is_known(test):
+            return False
+        if test:
+            self.searching = frozenset(changed)
+            todo[:0] = [*node.body, node]
+        else:
+            self.searching = frozenset()
+        return True
 
     def passes(self, node: ast.For, block: list[Statement]) -> list[Any] | tuple[Any, Any, int]:
         """What the counter of a short loop is in turn; of any other the start, the stop and the step."""
