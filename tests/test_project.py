@@ -123,11 +123,12 @@ def test_version_is_the_one_of_the_distribution() -> None:
 
 
 def test_what_is_shipped_beside_the_code() -> None:
-    """Type checkers find the marker; the catalogue its data; other checkers the schemas."""
+    """Type checkers find the marker; the catalogue its data; other checkers the schemas; laws their mains."""
     assert (SOURCE / "py.typed").exists()
     assert (SOURCE / "device" / "catalogue.toml").exists()
     assert (SOURCE / "gains" / "families.toml").exists()
     assert (SOURCE / "checker" / "schemas" / "spring.json").exists()
+    assert (SOURCE / "firmware" / "mains" / "shared" / "guard.h").exists()
 
 
 def _tracked() -> list[Path]:

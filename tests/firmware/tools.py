@@ -11,6 +11,7 @@ import shutil
 import subprocess
 from importlib.resources import files as resources
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
@@ -24,12 +25,21 @@ WARNINGS = ("-Wall", "-Wextra", "-Werror", "-Wno-unused-function")
 def tool(name: str) -> str:
     """The path of a compiler or another program; without it the test is skipped."""
     found = shutil.which(name)
-    if found is None:
-        reason = f"{name} is not on this machine"
-        if os.environ.get("ZWIDTH_EVERY_TARGET") == "1":
-            pytest.fail(f"{reason}, and every target is asked for")
-        pytest.skip(reason)
-    return found
+    return _missing(name) if found is None else found
+
+
+def needed_header(name: str) -> None:
+    """Without a header of a library, such as simavr/sim_avr.h, the test is skipped."""
+    asked = [tool("cc"), "-E", "-include", name, "-x", "c", os.devnull]
+    if subprocess.run(asked, capture_output=True, check=False).returncode != 0:
+        _missing(name)
+
+
+def _missing(name: str) -> NoReturn:
+    reason = f"{name} is not on this machine"
+    if os.environ.get("ZWIDTH_EVERY_TARGET") == "1":
+        pytest.fail(f"{reason}, and every target is asked for")
+    pytest.skip(reason)
 
 
 def run(*command: str | Path, cwd: Path | None = None) -> str:

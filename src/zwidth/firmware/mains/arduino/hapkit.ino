@@ -182,8 +182,8 @@ void setup() {
   TCCR0A = (1 << WGM01) | (1 << WGM00);   // pulses at 62.5 kHz: not heard
   TCCR0B = 1 << CS00;
 
-  UBRR0 = BAUD_DIVISOR;
   UCSR0A = 1 << U2X0;
+  UBRR0 = BAUD_DIVISOR;
   UCSR0B = 1 << TXEN0;
   UCSR0C = (1 << UCSZ01) | (1 << UCSZ00);
 

@@ -65,6 +65,13 @@ GUARD_CHECK(a_jump_fits, GUARD_SPEED * LAW_SAMPLE_PERIOD_S / LAW_RESOLUTION < 16
 GUARD_CHECK(the_limit_fits, LAW_FORCE_LIMIT / LAW_FORCE_PER_UNIT < 2147483647.0);
 #endif
 
+#ifdef __cplusplus
+template <class number> struct guard_is_double { enum { value = 0 }; };
+template <> struct guard_is_double<double> { enum { value = 1 }; };
+static_assert(!guard_is_double<law_force>::value || sizeof(double) == 8,
+              "double has 32 bits on this chip: emit the law in float, or in fixed point");
+#endif
+
 /* Farther than that no hand moves the device in a period [counts]. */
 #define GUARD_JUMP ((uint32_t)(GUARD_SPEED * LAW_SAMPLE_PERIOD_S / LAW_RESOLUTION))
 

@@ -8,7 +8,7 @@ a packet nothing is looked for.  Layout: firmware/mains/shared/telemetry.h.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,7 +85,7 @@ def find(data: Bytes, *, last: bool) -> Found:
     return Found(starts, sizes, rest)
 
 
-def number(data: Bytes, at: Indices, size: int) -> NDArray[Any]:
+def number(data: Bytes, at: Indices, size: int) -> Indices:
     """The numbers ≥ 0 of so many bytes that stand at these places."""
     value = np.zeros(at.shape, dtype=np.int64)
     for i in range(size):
@@ -93,10 +93,10 @@ def number(data: Bytes, at: Indices, size: int) -> NDArray[Any]:
     return value
 
 
-def signed(data: Bytes, at: Indices, size: int) -> NDArray[Any]:
+def signed(data: Bytes, at: Indices, size: int) -> Indices:
     """The same in two's complement."""
     value = number(data, at, size)
-    return value - ((value >> (8 * size - 1)) << (8 * size))
+    return np.asarray(value - ((value >> (8 * size - 1)) << (8 * size)))
 
 
 def _checked(data: Bytes, starts: Indices, size: int) -> NDArray[np.bool_]:
