@@ -18,13 +18,14 @@ from zwidth.elementary.power import power
 POINTS = 3000
 
 RANGES = [
-    (exp, mpmath.exp, even(-708.0, 709.78), 0.52),
-    (exp, mpmath.exp, even(-2.0, 2.0), 0.52),
-    (exp, mpmath.exp, both(wide(1e-20, 1.0)), 0.52),
+    (exp, mpmath.exp, even(-708.0, 709.78), 0.53),
+    (exp, mpmath.exp, even(-2.0, 2.0), 0.53),
+    (exp, mpmath.exp, both(wide(1e-20, 1.0)), 0.53),
     (exp, mpmath.exp, even(-746.0, -708.0), 0.8),
-    (expm1, mpmath.expm1, even(-45.0, 709.78), 0.52),
-    (expm1, mpmath.expm1, even(-2.0, 2.0), 0.52),
-    (expm1, mpmath.expm1, both(wide(1e-320, 1.0)), 0.52),
+    (expm1, mpmath.expm1, even(-45.0, 709.78), 0.65),
+    (expm1, mpmath.expm1, even(-2.0, 2.0), 0.65),
+    (expm1, mpmath.expm1, both(wide(1e-320, 1.0)), 0.65),
+    (expm1, mpmath.expm1, even(0.34, 0.37), 0.65),
     (log, mpmath.log, wide(1e-307, 1e308), 0.51),
     (log, mpmath.log, wide(5e-324, 1e-307), 0.51),
     (log, mpmath.log, even(0.5, 2.0), 0.51),
@@ -33,8 +34,8 @@ RANGES = [
     (log1p, mpmath.log1p, even(-1.0, 2.0), 0.51),
     (log1p, mpmath.log1p, both(wide(1e-320, 0.99)), 0.51),
     (log1p, mpmath.log1p, wide(1e-15, 0.5, -1.0), 0.51),
-    (tanh, mpmath.tanh, both(even(0.0, 21.0)), 0.52),
-    (tanh, mpmath.tanh, both(wide(1e-320, 3.0)), 0.52),
+    (tanh, mpmath.tanh, both(even(0.0, 21.0)), 0.6),
+    (tanh, mpmath.tanh, both(wide(1e-320, 3.0)), 0.6),
 ]
 
 EXPONENTS = [even(0.25, 10.0), *(lambda _, n=n: n for n in (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 9.5, 10.0))]
@@ -57,12 +58,12 @@ def test_error_in_the_last_place(function, exact, draw, bound):
 @pytest.mark.parametrize("exponent", EXPONENTS)
 @pytest.mark.parametrize("draw", [wide(1e-300, 1e6), wide(1e-6, 1e3), even(0.5, 2.0)])
 def test_error_of_powers(exponent, draw):
-    """The same for every power that is not below 2⁻¹⁰²², and less than one there."""
+    """The same for every power that is not below 2⁻¹⁰²², and less than 0.8 there."""
     random = Random(32)
     for _ in range(POINTS // 5):
         x, n = draw(random), exponent(random)
         exact = mpmath.power(mpmath.mpf(x), mpmath.mpf(n))
-        assert error_of(power(x, n), exact) < (0.53 if exact > 2.0**-1022 else 1.0), (x, n)
+        assert error_of(power(x, n), exact) < (0.55 if exact > 2.0**-1022 else 0.8), (x, n)
 
 
 def test_powers_beyond_the_range_that_laws_use():

@@ -12,7 +12,7 @@ import scipy.signal
 from played import Library, Played
 
 import zwidth as zw
-from zwidth.servo import Placement, Safety, Servo, session
+from zwidth.servo import Placement, Safety, Servo, proving, running
 from zwidth.servo.connection import CLOSED, GARBLED, REFUSED, SILENT, STALE
 from zwidth.servo.devices import Simulated
 
@@ -143,7 +143,7 @@ def test_a_short_hold_up_is_missed_samples_only() -> None:
 
 def test_program_that_hangs_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without its signs of life the force ends."""
-    monkeypatch.setattr(session, "_beat", lambda loop, ended: None)
+    monkeypatch.setattr(running, "_beat", lambda loop, ended: None)
     device = Played(np.concatenate([INSIDE, np.full(2000, 5e-3)]))
     servo = served(device, safety=Safety(host_timeout="0.5 s"))
     assert device.forces.any()
@@ -198,14 +198,14 @@ def test_law_changes_when_the_hand_is_outside() -> None:
 def test_what_is_not_proved_passive_is_refused() -> None:
     """Before serving and while it runs; told to, it is served all the same."""
     hard = zw.Wall(stiffness=900)
-    with pytest.raises(session.NotProved, match="active") as refused:
+    with pytest.raises(proving.NotProved, match="active") as refused:
         served(Played(INSIDE), hard)
     assert refused.value.verdict.outcome == "active"
 
     def change(servo: Servo) -> None:
         while servo.rows.count < 5:
             time.sleep(1e-3)
-        with pytest.raises(session.NotProved):
+        with pytest.raises(proving.NotProved):
             servo.change(hard)
 
     served(Played(INSIDE), change=change)
@@ -254,13 +254,35 @@ def test_library_in_python_is_served_alike() -> None:
     assert device.forces[-3:] == [0, 0, 0]
 
 
-def test_exception_of_a_library_ends_in_no_force() -> None:
-    """The last force is 0, and what was raised comes out of `wait`."""
+def test_a_cable_that_is_out_is_a_line_that_closed() -> None:
+    """An error of the system in a library ends the force as a closed line does; nothing is raised."""
     device = Library(INSIDE, fails=120)
     with Servo(PADDLE, SOFT, device, decide=at_once) as servo:
         servo.measure("10 ms")
         servo.start("1 s")
-        with pytest.raises(OSError, match="the cable is out"):
+        servo.wait()
+    assert device.forces[-3:] == [0, 0, 0]
+    assert min(device.forces) < -1
+    assert "the other side has closed" in servo.report().ended
+    assert servo.report().failed
+
+
+class Mistaken(Library):
+    """A library with a mistake of its own in it."""
+
+    def measure(self, until: int) -> tuple[int, float]:
+        if self.asked == 120:
+            raise ZeroDivisionError
+        return super().measure(until)
+
+
+def test_exception_of_a_library_ends_in_no_force() -> None:
+    """The last force is 0, and what was raised comes out of `wait`."""
+    device = Mistaken(INSIDE)
+    with Servo(PADDLE, SOFT, device, decide=at_once) as servo:
+        servo.measure("10 ms")
+        servo.start("1 s")
+        with pytest.raises(ZeroDivisionError):
             servo.wait()
     assert device.forces[-1] == 0
     assert min(device.forces) < -1

@@ -97,8 +97,8 @@ def run(arguments: argparse.Namespace) -> int:
     from zwidth.cli.compile_notice import warn_of_compiling_the_servo
     from zwidth.cli.decision import decided, exit_status
     from zwidth.cli.serve_commands import listen
+    from zwidth.servo.proving import NotProved
     from zwidth.servo.serving import serve
-    from zwidth.servo.session import NotProved
     from zwidth.specification.read import Specification
 
     save = _target(arguments)

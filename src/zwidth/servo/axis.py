@@ -6,11 +6,9 @@ the questions: what else runs in Python makes the loop later.
 
 from __future__ import annotations
 
-from math import nan
 from types import TracebackType
 
 from zwidth.servo.connection import (
-    CLOSED,
     FORCE,
     INDEX,
     READING,
@@ -20,10 +18,10 @@ from zwidth.servo.connection import (
     LibraryConnection,
     Opened,
     Placement,
+    ask_library,
+    give_library,
 )
-
-_ZEROS = 3
-"""How often force 0 is given at the end: a frame may be lost."""
+from zwidth.servo.safety import ZEROS
 
 
 class Axis:
@@ -77,10 +75,7 @@ class Axis:
         """
         if self._opened is None:
             assert isinstance(self.connection, LibraryConnection)
-            try:
-                status, reading = self.connection.measure(until)
-            except OSError:  # the cable, or the port
-                status, reading = CLOSED, nan
+            status, reading = ask_library(self.connection, until)
         else:
             assert isinstance(self.connection, CompiledConnection)
             memory = self._opened.memory
@@ -94,17 +89,14 @@ class Axis:
         along = self.placement.sense * force
         if self._opened is None:
             assert isinstance(self.connection, LibraryConnection)
-            try:
-                return self.connection.apply(along)
-            except OSError:
-                return CLOSED
+            return give_library(self.connection, along)
         assert isinstance(self.connection, CompiledConnection)
         self._opened.memory[FORCE] = along
         return type(self.connection).apply(*self._opened)
 
     def let_go(self) -> None:
         """Force 0, said more than once."""
-        for _ in range(_ZEROS):
+        for _ in range(ZEROS):
             self.give(0.0)
 
     def close(self) -> None:

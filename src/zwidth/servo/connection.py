@@ -13,7 +13,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import isfinite
+from math import isfinite, nan
 from typing import Any, ClassVar, Literal, NamedTuple, TypeVar, cast
 
 import numpy as np
@@ -143,6 +143,22 @@ class LibraryConnection(Connection):
     @abstractmethod
     def apply(self, force: float) -> int:
         """Give a force along the device's axis [N; N·m]; what became of it."""
+
+
+def ask_library(connection: LibraryConnection, until: int) -> tuple[int, float]:
+    """As `measure`; an error of the system, such as a cable that is out, is a line that has closed."""
+    try:
+        return connection.measure(until)
+    except OSError:
+        return CLOSED, nan
+
+
+def give_library(connection: LibraryConnection, force: float) -> int:
+    """As `apply`, and as `ask_library`."""
+    try:
+        return connection.apply(force)
+    except OSError:
+        return CLOSED
 
 
 @dataclass(frozen=True)

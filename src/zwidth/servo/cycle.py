@@ -21,7 +21,7 @@ detent at whose top the force is 0 as well, begins around its lowest rest alone.
 
 from __future__ import annotations
 
-from math import isfinite
+from math import isfinite, nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,8 @@ from numpy.typing import NDArray
 from zwidth.compiled import Array, compiled
 from zwidth.loop.kernel import commanded
 from zwidth.loop.law import CHAIN, REMEMBERED
-from zwidth.servo.connection import CLOSED, GOOD, MOST_TOLD, READING, REFUSED, TOLD
+from zwidth.servo.connection import GOOD, MOST_TOLD, READING, TOLD
+from zwidth.servo.judging import bad_in_a_row, judged_answer, judged_gap, judged_reading
 from zwidth.servo.ring import (
     AT,
     ENDED,
@@ -52,7 +53,7 @@ from zwidth.servo.ring import (
     WAITING,
     WISHED,
 )
-from zwidth.servo.safety import BAD_ANSWER, GAP, HOST_GONE, JUMPED, NO_FORCE, NO_NUMBER, RUNNING
+from zwidth.servo.safety import HOST_GONE, NO_FORCE, RUNNING
 from zwidth.servo.spread import count
 
 Words = NDArray[np.int64]
@@ -117,10 +118,13 @@ def answer(
     law = control[SERVED]
     if control[REASON] == RUNNING:
         _look_around(control, n, t, beaten)
-        _judge_answer(status, control, n)
+        n[BAD] = bad_in_a_row(status, n[BAD])
+    if control[REASON] == RUNNING:
+        control[REASON] = judged_answer(status, n[BAD], n[BAD_MOST])
     if control[REASON] == RUNNING and status == GOOD:
         x = n[SENSE] * (memory[READING] - n[ORIGIN])
-        _judge_reading(x, k, control, n)
+        before = n[X] if n[SEEN] > 0.0 else nan
+        control[REASON] = judged_reading(x, before, n[JUMP_MOST] * (k - n[K_BEFORE]))
     if control[REASON] != RUNNING:
         f = 0.0
     elif status == GOOD:
@@ -168,26 +172,10 @@ def _look_around(control: Words, n: Array, t: float, beaten: int) -> None:
     """Has somebody asked to end; do the loop and the program around it run?"""
     if control[STOP] != 0:
         control[REASON] = control[STOP]
-    elif n[SEEN] > 0.0 and control[SERVED] != NONE and t - n[T_BEFORE] > n[GAP_MOST]:
-        control[REASON] = GAP
-    elif (beaten - control[HEARTBEAT]) * 1e-9 > n[HOST_MOST]:
+    elif n[SEEN] > 0.0 and control[SERVED] != NONE:
+        control[REASON] = judged_gap(t - n[T_BEFORE], n[GAP_MOST])
+    if control[REASON] == RUNNING and (beaten - control[HEARTBEAT]) * 1e-9 > n[HOST_MOST]:
         control[REASON] = HOST_GONE
-
-
-@compiled
-def _judge_answer(status: int, control: Words, n: Array) -> None:
-    n[BAD] = 0.0 if status == GOOD else n[BAD] + 1.0
-    gone = status in (CLOSED, REFUSED)
-    if control[REASON] == RUNNING and (gone or n[BAD] > n[BAD_MOST]):
-        control[REASON] = BAD_ANSWER + status
-
-
-@compiled
-def _judge_reading(x: float, k: int, control: Words, n: Array) -> None:
-    if not isfinite(x):
-        control[REASON] = NO_NUMBER
-    elif n[SEEN] > 0.0 and abs(x - n[X]) > n[JUMP_MOST] * (k - n[K_BEFORE]):
-        control[REASON] = JUMPED
 
 
 @compiled

@@ -30,6 +30,8 @@ from zwidth.servo.connection import (
     CompiledConnection,
     LibraryConnection,
     Opened,
+    ask_library,
+    give_library,
 )
 from zwidth.servo.cycle import (
     AWAKE_MOST,
@@ -47,16 +49,10 @@ from zwidth.servo.cycle import (
     answer,
     noted,
 )
-from zwidth.servo.pace import MARGIN, margin, until
+from zwidth.servo.pace import ANSWERED, MARGIN, margin, until
 from zwidth.servo.posix import Bytes, now
-from zwidth.servo.safety import BAD_ANSWER, DONE, RUNNING
+from zwidth.servo.safety import BAD_ANSWER, DONE, RUNNING, ZEROS
 from zwidth.servo.spread import BINS
-
-_ZEROS = 3
-"""How often force 0 is given after the end: a frame may be lost."""
-
-_WAIT = 0.5
-"""For so much of a period an answer is waited for."""
 
 
 class Shared(NamedTuple):
@@ -144,7 +140,7 @@ def _run(
         k = taken
         late = lateness(at, due, n[PERIOD])
         memory[TIME], memory[INDEX] = k * n[PERIOD] + late, k
-        memory[UNTIL] = at + _WAIT * period
+        memory[UNTIL] = at + ANSWERED * period
         status = measure(memory, inbox, outbox)
         row = ring[control[ROWS] % ring.shape[0]]
         t = memory[TIME]
@@ -157,7 +153,7 @@ def _run(
         k += 1
         if control[REASON] != RUNNING:
             zeros += 1
-            if zeros == _ZEROS:
+            if zeros == ZEROS:
                 return
 
 
@@ -199,7 +195,7 @@ def run_library(connection: LibraryConnection, opened: Opened, last: int, shared
     _compile(memory, shared)
     most = int(n[AWAKE_MOST])
     start, awake = now(), min(MARGIN, most)
-    while zeros < _ZEROS:
+    while zeros < ZEROS:
         taken, due, at, awake = await_sample(k, start, step * 1e9, awake, most)
         if k == 0:
             taken, due, start = 0, at, at
@@ -211,10 +207,10 @@ def run_library(connection: LibraryConnection, opened: Opened, last: int, shared
         k = taken
         late = lateness(at, due, step)
         t = k * step + late
-        status, memory[READING] = connection.measure(int(at + _WAIT * step * 1e9))
+        status, memory[READING] = ask_library(connection, int(at + ANSWERED * step * 1e9))
         row = ring[control[ROWS] % ring.shape[0]]
         force = answer(status, k, t, at, memory, *shared[:-2], row)
-        given = connection.apply(-n[SENSE] * force)
+        given = give_library(connection, -n[SENSE] * force)
         if given in (CLOSED, REFUSED) and control[REASON] == RUNNING:
             control[REASON] = BAD_ANSWER + given
         noted(row, late, (now() - at) * 1e-9, control, n, spread)

@@ -22,6 +22,9 @@ MARGIN = 100_000
 AWAKE = 0.4
 """For so much of a period the clock may be watched: a kernel takes the core from who never sleeps."""
 
+ANSWERED = 0.5
+"""For so much of a period an answer is waited for, of two devices in turn half of it each."""
+
 _LEAST = 5_000
 _SHRINK = 100
 _GROW = 255 * _SHRINK

@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterable
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from fractions import Fraction
-from math import isfinite
+from math import nan
 from typing import Any
 
 import numpy as np
@@ -38,20 +38,25 @@ from zwidth.servo.connection import (
     LibraryConnection,
     Placement,
 )
+from zwidth.servo.judging import (
+    bad_in_a_row,
+    compile_judging,
+    judged_answer,
+    judged_gap,
+    judged_reading,
+)
 from zwidth.servo.measured import Measured, measured
-from zwidth.servo.pace import MARGIN, margin, most_awake, until
+from zwidth.servo.pace import ANSWERED, MARGIN, margin, most_awake, until
 from zwidth.servo.pair_law import PairLaw
 from zwidth.servo.posix import check_supported, now
 from zwidth.servo.priority import Granted, RealTime
+from zwidth.servo.proving import SERVED_OUTCOMES
 from zwidth.servo.report import ending
 from zwidth.servo.safety import (
     ASKED,
     BAD_ANSWER,
     DONE,
-    GAP,
     HOST_GONE,
-    JUMPED,
-    NO_NUMBER,
     RUNNING,
     Limits,
     Safety,
@@ -61,12 +66,6 @@ from zwidth.showing import Part, Shown, Table
 
 Law = Callable[[float, float], tuple[float, float]]
 """Of both readings, the force of each side."""
-
-SERVED = ("passive", "theorem")
-"""Outcomes of a pair that is served without being told to."""
-
-_WAIT = 0.25
-"""For so much of a period an answer of one arm is waited for."""
 
 _MEASURED = "1 s"
 
@@ -163,7 +162,7 @@ class _Side:
     x: float = 0.0
     force: float = 0.0
     """Against x, given last."""
-    bad: int = 0
+    bad: float = 0.0
     work: float = 0.0
     loss: float = 0.0
 
@@ -207,6 +206,7 @@ class PairServo:
             raise InputError("a pair's forces have no limit of their change here; leave out slew")
         self._period = pair.sample_period
         self._law = PairLaw(pair)
+        compile_judging()
         self._real_time = real_time or RealTime()
         self._stop = threading.Event()
         self.measured: Measured | None = None
@@ -265,12 +265,12 @@ class PairServo:
             for device, side in zip((self.pair.leader, self.pair.follower), self._sides, strict=True)
         ]
         verdict = check(self.pair.replace(leader=devices[0], follower=devices[1]))
-        if verdict.outcome not in SERVED:
+        if verdict.outcome not in SERVED_OUTCOMES:
             return verdict
         longest = self.measured.longest_period(self._period)
         one, other = (device.replace(sample_period=longest) for device in devices)
         slower = check(self.pair.replace(leader=one, follower=other))
-        return verdict if slower.outcome in SERVED else slower
+        return verdict if slower.outcome in SERVED_OUTCOMES else slower
 
     def run(self, duration: RealLike, *, anyway: bool = False) -> PairServoReport:
         """Serve for so long [s], from where both forces are near 0; until then they are 0.
@@ -288,7 +288,7 @@ class PairServo:
         if self.measured is None:
             self.measure()
         self.verdict = self.judge()
-        if self.verdict.outcome not in SERVED and not anyway:
+        if self.verdict.outcome not in SERVED_OUTCOMES and not anyway:
             raise PairNotProved(
                 self.verdict,
                 f"this pair is not served, it is {self.verdict.outcome}: {self.verdict.claim} Soften its "
@@ -349,8 +349,7 @@ class PairServo:
         self._late, self._took = [], []
         self._stop.clear()
         for side in self._sides:
-            side.x = side.force = side.work = side.loss = 0.0
-            side.bad = 0
+            side.x = side.force = side.work = side.loss = side.bad = 0.0
             side.axis.begin()
         try:
             with self._real_time as self.granted:
@@ -401,12 +400,11 @@ class PairServo:
         """Both readings; None where one has no good answer."""
         found = []
         for i, side in enumerate(self._sides):
-            end = at + int((i + 1) * _WAIT * 1e9 * float(self._period))
+            end = at + int((i + 1) / 2 * ANSWERED * 1e9 * float(self._period))
             status, x = side.axis.measure(k, end, late)
-            side.bad = 0 if status == GOOD else side.bad + 1
-            if status in (CLOSED, REFUSED) or side.bad > side.limits.bad_answers:
-                self._reason = BAD_ANSWER + status
-            elif status == GOOD:
+            side.bad = bad_in_a_row(status, side.bad)
+            self._reason = self._reason or judged_answer(status, side.bad, side.limits.bad_answers)
+            if status == GOOD:
                 found.append(x)
         return (found[0], found[1]) if len(found) == 2 else None
 
@@ -418,16 +416,13 @@ class PairServo:
             return
         if self._stop.is_set():
             self._reason = ASKED
-        elif not threading.main_thread().is_alive():
-            self._reason = HOST_GONE
+        elif before is not None and self._serving:
+            self._reason = judged_gap(t - before[1], self._sides[0].limits.gap)
+        if not threading.main_thread().is_alive():
+            self._reason = self._reason or HOST_GONE
         for side, x in zip(self._sides, readings or (), strict=False):
-            if not isfinite(x):
-                self._reason = NO_NUMBER
-            elif before is not None and abs(x - side.x) > side.limits.jump * (k - before[0]):
-                self._reason = JUMPED
-        for side in self._sides:
-            if before is not None and self._serving and t - before[1] > side.limits.gap:
-                self._reason = GAP
+            there, periods = (nan, 1) if before is None else (side.x, k - before[0])
+            self._reason = self._reason or judged_reading(x, there, side.limits.jump * periods)
 
     def _book(self, readings: tuple[float, float], took: float) -> None:
         """The energies up to this sample, as `servo.cycle` has them."""

@@ -19,7 +19,7 @@ import atexit
 from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from math import isfinite
+from math import nan
 from typing import Any
 
 from zwidth.errors import InputError
@@ -39,14 +39,20 @@ from zwidth.servo.connection import (
     LibraryConnection,
     Placement,
 )
+from zwidth.servo.judging import (
+    bad_in_a_row,
+    compile_judging,
+    judged_answer,
+    judged_gap,
+    judged_reading,
+)
+from zwidth.servo.pace import ANSWERED
 from zwidth.servo.posix import check_supported, now
 from zwidth.servo.report import ending
 from zwidth.servo.safety import (
     ASKED,
     BAD_ANSWER,
     DONE,
-    GAP,
-    JUMPED,
     NO_NUMBER,
     RUNNING,
     Limits,
@@ -60,9 +66,6 @@ _LONGER = Exact("1.2")
 
 _NO_LIMIT = 1e300
 """Of `Limits`."""
-
-_WAIT = 0.5
-"""For so much of a period an answer is waited for."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -170,12 +173,14 @@ class PortRun:
         ready = self.port.anew()  # what has to be compiled is compiled before the clock runs
         ready.receive([FIRST])
         ready.send(0.0)
+        compile_judging()
         self.connection, self.placement = connection, placement or Placement()
         self._period = float(period)
         self._axis: Axis | None = None
         self._reason = RUNNING
         self._message = ""
-        self._k = self._bad = self._samples = self._held = self._later = 0
+        self._k = self._samples = self._held = self._later = 0
+        self._bad = 0.0
         self._before: tuple[int, int, float] | None = None
         self._moving = False
 
@@ -227,7 +232,7 @@ class PortRun:
         assert self._axis is not None
         k, at = self._k, now()
         self._k += 1
-        status, x = self._axis.measure(k, at + int(_WAIT * 1e9 * self._period))
+        status, x = self._axis.measure(k, at + int(ANSWERED * 1e9 * self._period))
         self._look(status, x, k, at)
         if self._reason != RUNNING:
             self.end(self._reason)
@@ -261,22 +266,16 @@ class PortRun:
 
     def _look(self, status: int, x: float, k: int, at: int) -> None:
         """Whether the force has to end: as in a served loop, see `servo.safety`."""
-        limits, before = self._limits, self._before
-        self._bad = 0 if status == GOOD else self._bad + 1
-        if status in (CLOSED, REFUSED) or self._bad > limits.bad_answers:
-            self._reason = BAD_ANSWER + status
-        elif status == GOOD and not isfinite(x):
-            self._reason = NO_NUMBER
-        elif before is not None and status == GOOD and self._is_too_far(x, k, at, before):
-            self._reason = JUMPED
-        elif before is not None and (at - before[1]) * 1e-9 > limits.gap:
-            self._reason = GAP
-
-    def _is_too_far(self, x: float, k: int, at: int, before: tuple[int, int, float]) -> bool:
-        """For a hand, in the samples since the last reading, or in the time: late steps follow at once."""
-        number, began, there = before
-        periods = max(k - number, (at - began) * 1e-9 / self._period)
-        return abs(x - there) > self._limits.jump * periods
+        limits, there, periods = self._limits, nan, 1.0
+        if self._before is not None:
+            number, began, there = self._before
+            since = (at - began) * 1e-9
+            self._reason = judged_gap(since, limits.gap)
+            periods = max(float(k - number), since / self._period)  # late steps follow at once
+        self._bad = bad_in_a_row(status, self._bad)
+        self._reason = self._reason or judged_answer(status, self._bad, limits.bad_answers)
+        if status == GOOD:
+            self._reason = self._reason or judged_reading(x, there, limits.jump * periods)
 
     def end(self, reason: int = ASKED) -> None:
         """Force 0 for good, and no packet after it."""

@@ -18,10 +18,11 @@ from zwidth.quantity.exact import RealLike
 from zwidth.servo.connection import Connection, Placement
 from zwidth.servo.devices.simulated import Simulated
 from zwidth.servo.priority import RealTime
+from zwidth.servo.proving import Decide
 from zwidth.servo.recording.recorder import Recorder
 from zwidth.servo.report import ServoReport
 from zwidth.servo.safety import Safety
-from zwidth.servo.session import Contact, Decide, Servo
+from zwidth.servo.session import Contact, Servo
 
 Watch = Callable[[Servo], Callable[[], Any]]
 """Begins to look at a servo, and returns what ends that."""

@@ -12,9 +12,6 @@ The loop is a thread of its own.  What it is told, and what it tells, stands in 
 from __future__ import annotations
 
 import atexit
-import threading
-import time
-from collections.abc import Callable
 from fractions import Fraction
 from math import inf
 from typing import Any, Literal, cast
@@ -26,7 +23,7 @@ from zwidth.errors import InputError
 from zwidth.loop.plant import STATE_SIZE
 from zwidth.passivity.check import check
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.exact import Interval, RealLike, ends
+from zwidth.quantity.exact import RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import read_number
 from zwidth.servo import cycle
@@ -40,22 +37,18 @@ from zwidth.servo.connection import (
     blank,
 )
 from zwidth.servo.cycle import HEARTBEAT, REASON, ROWS, SERVED, STOP, WANTED
-from zwidth.servo.loop import Shared, run_compiled, run_library, shared
+from zwidth.servo.loop import Shared, shared
 from zwidth.servo.measured import Measured, measured
-from zwidth.servo.pace import most_awake
 from zwidth.servo.packing import Packed, pack
 from zwidth.servo.posix import check_supported, now
 from zwidth.servo.priority import Granted, RealTime
+from zwidth.servo.proving import Decide, check_kinds, judged, least_friction, refuse_not_proved
 from zwidth.servo.report import ServoReport, report_of
 from zwidth.servo.ring import MEASURING, Rows, ring
+from zwidth.servo.running import LoopThread
 from zwidth.servo.safety import ASKED, DONE, FAILED, RUNNING, Safety, limits_of
 
 Contact = Literal["made and broken", "kept"]
-Decide = Callable[[Device, Environment], Verdict]
-
-_BEAT = 0.02
-"""Between two signs of life of this program to the loop [s]."""
-
 _ROOM, _REMEMBERED = 1 << 15, 1 << 11
 """Numbers that a law may have which takes the place of another, and that it may remember: all of these are
 set at every sample at which it waits to begin."""
@@ -64,17 +57,6 @@ _LONGEST = 1 << 60
 """Samples that a loop can count."""
 
 _MEASURED = "1 s"
-
-SERVED_OUTCOMES = ("passive", "theorem")
-"""Of a verdict, with which a law is served without being told to."""
-
-
-class NotProved(InputError):
-    """A law is not served, since it is not proved passive; its verdict says what is known of it."""
-
-    def __init__(self, verdict: Verdict, message: str) -> None:
-        super().__init__(message)
-        self.verdict = verdict
 
 
 class Servo:
@@ -120,7 +102,7 @@ class Servo:
         real_time: RealTime | None = None,
     ) -> None:
         check_supported()
-        _check_kinds(device, connection)
+        check_kinds(device, connection)
         self.device, self.connection = device, connection
         self.environment = as_environment(environment)
         self.safety, self.placement = safety or Safety(), placement or Placement()
@@ -128,13 +110,9 @@ class Servo:
         self.verdict: Verdict | None = None
         self._contact: Contact = contact
         self._decide = decide or (lambda loop, law: check(loop, law, contact=self._contact))
-        self._certain = _certain(device)
+        self._certain = least_friction(device)
         self._period = self._certain.exact("sample_period")
-        self.granted: Granted | None = None
-        self._real_time = real_time or RealTime()
-        self._failure: BaseException | None = None
-        self._over = threading.Event()
-        self._over.set()
+        self._thread = LoopThread(connection, real_time or RealTime())
         limit = self._certain.force_limit
         most = None if limit is None else float(ends(limit)[0])
         self._limits = limits_of(self.safety, most, device.motion, float(self._period))
@@ -161,9 +139,14 @@ class Servo:
         return self._rows
 
     @property
+    def granted(self) -> Granted | None:
+        """What the system granted the loop's thread; None before the first run."""
+        return self._thread.granted
+
+    @property
     def running(self) -> bool:
         """True while the loop has not ended."""
-        return not self._over.is_set()
+        return self._thread.running
 
     def measure(self, duration: RealLike = _MEASURED) -> Measured:
         """Run the loop with force 0 for so long [s], and note what this machine and the link are like.
@@ -185,11 +168,11 @@ class Servo:
             last = min(last, self.connection.samples)
             opened = Opened(opened.memory.copy(), opened.inbox, opened.outbox)
         loop = self._shared = self._anew(opened)
-        self._run(loop, opened, last)
-        self._join()
+        self._thread.run(loop, opened, last)
+        self._thread.join()
         rows = self._rows.after(0)[1]
         rows = rows[rows[:, self._rows.column("phase")] == MEASURING]
-        self._raise_failure()
+        self._thread.raise_failure()
         if loop.control[REASON] != DONE:
             raise InputError(f"{self.connection.describe()} could not be measured: it {self.report().ended}")
         if len(rows) < min(last, 2):
@@ -206,13 +189,7 @@ class Servo:
         return self.measured
 
     def judge(self, environment: Environment | None = None) -> Verdict:
-        """What is claimed of a law on this device, with the delay and the longest period that were measured.
-
-        A law that is passive with a regular clock of T, but not with one that is always as late as one sample
-        in a hundred is, is judged by the slower clock.  That is the law as it would be made for that clock:
-        where it has damping, a filter or an estimator its coefficients are those of T + lateness there, and
-        the loop runs with those of T.  Nothing is claimed of periods that vary from sample to sample; samples
-        that are later still are counted.
+        """What is claimed of a law on this device, as measured here; see `servo.proving`.
 
         Raises
         ------
@@ -222,14 +199,8 @@ class Servo:
         law = self.environment if environment is None else environment
         if self.measured is None:
             raise InputError("measure first: a verdict needs the delay of this machine and link")
-        seen = self.device
-        if self.connection.samples is None:
-            seen = seen.replace(delay=self.measured.delay(self.device))
-        verdict = self._decide(seen, law)
-        if verdict.outcome not in SERVED_OUTCOMES:
-            return verdict
-        slower = self._decide(seen.replace(sample_period=self.measured.longest_period(self._period)), law)
-        return verdict if slower.outcome in SERVED_OUTCOMES else slower
+        simulated = self.connection.samples is not None
+        return judged(self._decide, self.device, law, self.measured, simulated=simulated)
 
     def start(self, duration: RealLike | None = None, *, anyway: bool = False) -> None:
         """Serve the law from where its force is near 0; until then the force is 0.
@@ -254,7 +225,7 @@ class Servo:
         last = self._last(duration)
         self.prove(anyway=anyway)
         self._shared.control[WANTED] = 0
-        self._run(self._shared, self._opened, last)
+        self._thread.run(self._shared, self._opened, last)
 
     def prove(self, *, anyway: bool = False) -> Verdict:
         """What is claimed of the law that is to be served; measures first, where that was not done yet.
@@ -270,7 +241,8 @@ class Servo:
             self.verdict = self.judge()
             self._laws = [(self._title, self.verdict)]
             self._rows.about["verdict"] = self.verdict.claim
-        self._refuse(self.verdict, anyway)
+        if not anyway:
+            refuse_not_proved(self.verdict, cast(Measured, self.measured))
         return self.verdict
 
     def change(self, environment: object, *, anyway: bool = False) -> Verdict:
@@ -292,7 +264,8 @@ class Servo:
             raise InputError("another law waits to begin: its force and that of the law now must come near 0")
         law = as_environment(environment)
         verdict = self.judge(law)
-        self._refuse(verdict, anyway)
+        if not anyway:
+            refuse_not_proved(verdict, cast(Measured, self.measured))
         place = 1 - int(control[SERVED])
         self._put(self._shared, place, self._packed(law, float(self._shared.numbers[cycle.X])))
         self.environment, self.verdict = law, verdict
@@ -315,28 +288,21 @@ class Servo:
         Exception
             What a connection in Python raised in the loop.
         """
-        until = None if timeout is None else time.monotonic() + timeout
-        while self.running:
-            left = 0.1 if until is None else min(0.1, until - time.monotonic())
-            if left <= 0:
-                return False
-            self._over.wait(left)  # in pieces: Ctrl-C is heard between them
-        self._raise_failure()
-        return True
+        return self._thread.wait(timeout)
 
     def close(self) -> None:
         """End the loop, give force 0, let the device go; may be called again."""
         atexit.unregister(self.close)
         self._closed = True
         self.stop()
-        self._join()
+        self._thread.join()
         self.connection.close()
 
     def report(self) -> ServoReport:
         """What happened so far; law and verdict are of the last one that began."""
         began = max(int(self._shared.control[cycle.CHANGES]) - 1, 0)
         title, verdict = self._laws[began] if self._laws else (self._title, None)
-        return report_of(self._shared, title, self.connection, self.measured, verdict, self.granted)
+        return report_of(self._shared, title, self.connection, self.measured, verdict, self._thread.granted)
 
     def _packed(self, law: Environment, here: float) -> Packed:
         return pack(self._certain, law, here, self._limits.start_force)
@@ -415,97 +381,9 @@ class Servo:
         ).fraction
         return min(max(1, int(seconds / self._period)), _LONGEST)
 
-    def _run(self, loop: Shared, opened: Opened, last: int) -> None:
-        over = self._over = threading.Event()
-        loop.control[HEARTBEAT] = now()
-        work = threading.Thread(
-            target=self._loop, args=(loop, opened, last, over), name="zwidth loop", daemon=True
-        )
-        beat = threading.Thread(target=_beat, args=(loop, over), name="zwidth heartbeat", daemon=True)
-        beat.start()
-        work.start()
-
-    def _loop(self, loop: Shared, opened: Opened, last: int, over: threading.Event) -> None:
-        try:
-            with self._real_time as self.granted:
-                has_priority = "priority" in self.granted
-                loop.numbers[cycle.AWAKE_MOST] = most_awake(1e9 * float(self._period), has_priority)
-                if isinstance(self.connection, CompiledConnection):
-                    run_compiled(self.connection, opened, last, loop)
-                else:
-                    run_library(cast(LibraryConnection, self.connection), opened, last, loop)
-        except BaseException as error:  # a thread's exceptions are seen by nobody
-            self._failure = error
-            loop.control[REASON] = loop.control[REASON] or FAILED
-            self._give_nothing()
-        finally:
-            over.set()
-
-    def _give_nothing(self) -> None:
-        """Force 0 once more, after a connection in Python raised something."""
-        try:
-            cast(LibraryConnection, self.connection).apply(0.0)
-        except BaseException:
-            self.connection.close()
-
-    def _join(self) -> None:
-        self._over.wait()  # not Thread.join: Ctrl-C in it makes Python 3.11 take the thread for ended
-
-    def _raise_failure(self) -> None:
-        failure, self._failure = self._failure, None
-        if failure is not None:
-            raise failure
-
     def _refuse_busy(self) -> None:
         """One loop at a time speaks to a device, and none to a device that was let go."""
         if self._closed:
             raise InputError("the device was let go: reach it again with another Servo")
         if self.running:
             raise InputError("the loop runs already: change the law, or stop it first")
-
-    def _refuse(self, verdict: Verdict, anyway: bool) -> None:
-        if verdict.outcome not in SERVED_OUTCOMES and not anyway:
-            assert self.measured is not None
-            late, exchange = (f"{1e6 * float(t):g} µs" for t in self.measured.supposed)
-            raise NotProved(
-                verdict,
-                f"this is not served, it is {verdict.outcome}: {verdict.claim} That is as measured here, "
-                f"samples {late} late and forces {exchange} after them. Soften the wall, raise the rate, or "
-                "say anyway, with a small force limit",
-            )
-
-
-def _beat(loop: Shared, over: threading.Event) -> None:
-    """Signs of life, as long as the program around the loop has a main thread."""
-    while not over.wait(_BEAT):
-        if threading.main_thread().is_alive():
-            loop.control[HEARTBEAT] = now()
-
-
-def _check_kinds(device: Device, connection: Connection) -> None:
-    if not isinstance(device, Device):
-        raise InputError(f"the device is a zwidth.Device, got {type(device).__name__}")
-    if not isinstance(connection, (CompiledConnection, LibraryConnection)):
-        raise InputError(
-            f"the connection is one of zwidth.servo.devices, got {type(connection).__name__}: it says how "
-            "the device is reached"
-        )
-    if connection.motion != device.motion:
-        raise InputError(
-            f"the device is {device.motion} and its connection {connection.motion}: position and force of "
-            "one are metres and newtons, of the other radians and newton metres; describe the device so"
-        )
-
-
-def _certain(device: Device) -> Device:
-    """The device with the least friction that it may have: the law does not depend on it."""
-    low = {key: ends(getattr(device, key))[0] for key in ("damping", "coulomb_friction", "delay")}
-    found = device.replace(stiction=None, **low)
-    uncertain = [key for key, value in found.parameters().items() if isinstance(value, Interval)]
-    needed = [key for key in uncertain if key not in ("mass", "friction_speed")]
-    if needed:
-        raise InputError(
-            f"{needed[0]} is the interval {getattr(device, needed[0])}, and a loop runs with one number: "
-            "give one; damping, coulomb_friction, delay and mass may stay intervals, which the verdict covers"
-        )
-    return found.replace(mass=None) if "mass" in uncertain else found
