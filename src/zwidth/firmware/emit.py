@@ -343,6 +343,7 @@ def _defines(
     rows = [
         ("SAMPLE_PERIOD_S", repr(period), "s"),
         ("RATE_HZ", f"{1 / period:.10g}", "Hz"),
+        ("ROTARY", str(int(not linear)), "1 where positions are in rad and forces in N*m"),
         ("RESOLUTION", repr(law.resolution), f"{length} per count"),
     ]
     if law.resolution > 0:

@@ -230,6 +230,7 @@ class _Lowering:
             self.off(self.roundings, s, abs(factor - m * size) * n)
             return self.made("product", (value, Constant(m, "integer")), out)
         shift = self.scale.word - 2 - max(ceil(abs(ratio)).bit_length(), 0)
+        shift = next((k for k in _BYTES if k < shift and n <= 2**k), shift)
         m = round(ratio * 2.0**shift)
         if abs(ratio) * n + 1 > self.scale.largest or shift < 1:
             raise TooLarge
@@ -342,5 +343,7 @@ class _Lowering:
 
 _MIRRORED = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
 _NARROW = 2**15 - 1
+_BYTES = (16, 24, 32)
+"""Shifts a small chip does by whole bytes; where n ≤ 2^k the factor's rounding is half a unit or less."""
 _PRECISE = 2.0**12
 """A factor from here on is as good as its whole number: off by one part in 8000, or less."""

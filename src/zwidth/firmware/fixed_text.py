@@ -7,12 +7,21 @@ from dataclasses import dataclass
 from zwidth.firmware.c99 import C99
 from zwidth.firmware.program import Constant, Operand, Operation, Statement, Variable
 
+NARROW = 2**15 - 1
+"""The largest number of 16 bits."""
+
 _CHOSEN = {"min": "least", "max": "most", "abs": "size"}
 
 HELPERS = {
     "min": "static inline {word} {prefix}_least({word} a, {word} b) {{ return b < a ? b : a; }}",
     "max": "static inline {word} {prefix}_most({word} a, {word} b) {{ return b > a ? b : a; }}",
     "abs": "static inline {word} {prefix}_size({word} a) {{ return a < 0 ? -a : a; }}",
+    "scaled_narrow": """\
+/* n (high 2^16 + low) / 2^16, to the nearest, without numbers of 64 bits: they are slow on small chips */
+static inline {word} {prefix}_scaled_narrow(int16_t n, int16_t high, int16_t low)
+{{
+    return (int32_t)n * high + (((int32_t)n * low + 32768L) >> 16);
+}}""",
     "scaled": """\
 /* n m / 2^k, to the nearest */
 static inline {word} {prefix}_scaled({word} n, {word} m, int k)
@@ -41,6 +50,8 @@ class FixedC99(C99):
 
     word: int = 32
     narrow: frozenset[Variable] = frozenset()
+    short: str = ""
+    """Of what is given the name that has 16 bits; none where it has more."""
 
     @property
     def integer(self) -> str:
@@ -55,7 +66,7 @@ class FixedC99(C99):
 
     def constant_text(self, value: int) -> str:
         """A whole number of its word."""
-        return str(value) if abs(value) <= 32767 else f"{value}L" if self.word == 32 else f"{value}LL"
+        return str(value) if abs(value) <= NARROW else f"{value}L" if self.word == 32 else f"{value}LL"
 
     def made(self, statement: Statement) -> str:
         if isinstance(statement, Operation) and statement.operator in ("<<", ">>", "product", "scaled"):
@@ -63,6 +74,9 @@ class FixedC99(C99):
             if statement.operator == "product":
                 return f"{self.factor(a)} * {self.factor(b, second=True)}"
             if statement.operator == "scaled":
+                narrow = self.scaled_narrow(*statement.operands)
+                if narrow is not None:
+                    return narrow
                 self.helpers.add("scaled")
                 of = ", ".join(self.read(o, alone=True) for o in statement.operands)
                 return f"{self.prefix}_scaled({of})"
@@ -70,6 +84,16 @@ class FixedC99(C99):
                 return f"{self.read(a)} * ({self.integer}){self.constant_text(1 << self._value(b))}"
             return f"{self.read(a)} >> {self.read(b)}"
         return super().made(statement)
+
+    def scaled_narrow(self, n: Operand, by: Operand, shift: Operand) -> str | None:
+        """The same where the number has 16 bits; None where it has more."""
+        m = self._value(by)
+        if not self.is_narrow(n) or self._value(shift) != 16 or abs(m) >= NARROW << 16:
+            return None
+        self.helpers.add("scaled_narrow")
+        high = (m + NARROW + 1) >> 16  # so that both parts have 16 bits and a sign
+        of = f"{self.shortened(n)}, {high}, {m - (high << 16)}"
+        return f"{self.prefix}_scaled_narrow({of})"
 
     def operation(self, operator: str, kind: str, read: list[str]) -> str:
         if operator in ("min", "max", "abs"):
@@ -81,12 +105,21 @@ class FixedC99(C99):
         assert isinstance(operand, Constant), "shifts are by known numbers"
         return int(operand.value)
 
+    def is_narrow(self, operand: Operand) -> bool:
+        """Whether 16 bits hold it."""
+        if isinstance(operand, Constant):
+            return abs(self._value(operand)) <= NARROW
+        return operand in self.narrow or bool(self.short and operand in self.program.parameters)
+
+    def shortened(self, operand: Operand) -> str:
+        """It in 16 bits."""
+        given = self.short and operand in self.program.parameters
+        return self.short if given else f"(int16_t){self.read(operand)}"
+
     def factor(self, operand: Operand, second: bool = False) -> str:
         """A factor in 16 bits where that holds it: two such are multiplied by one instruction or few."""
-        text = self.read(operand)
-        fits = operand in self.narrow if isinstance(operand, Variable) else abs(self._value(operand)) <= 32767
-        short = f"(int16_t){text}" if fits else text
-        return short if second else f"({self.integer}){short}"
+        text = self.shortened(operand) if self.is_narrow(operand) else self.read(operand)
+        return text if second else f"({self.integer}){text}"
 
     def helper_lines(self) -> list[str]:
         values = {"word": self.integer, "prefix": self.prefix}

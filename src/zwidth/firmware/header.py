@@ -6,10 +6,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from zwidth.firmware.c99 import C99, KEYWORDS, Real, real_text
-from zwidth.firmware.fixed_text import SHIFTS, FixedC99
+from zwidth.firmware.fixed_text import NARROW, SHIFTS, FixedC99
 from zwidth.firmware.law import LawProgram
 from zwidth.firmware.machine import Machine, rest_numbers
 from zwidth.firmware.program import Operation
+from zwidth.firmware.tidy import tidied
 
 GUARD = """\
 #if defined(__FAST_MATH__)
@@ -99,7 +100,7 @@ def header(
         "",
         *body.before,
         "",
-        f"/* At rest at this {seen}, as if it had been there for ever. */",
+        "/* At rest at this position, as if it had been there for ever. */",
         f"static inline void {name}_init({name}_state *s, {body.given})",
         "{",
         *near,
@@ -137,9 +138,21 @@ def _nearest(machine: Machine, name: str, seen: str) -> list[str]:
             return []
     else:
         low, high = f"{upper}_POSITION_MIN", f"{upper}_POSITION_MAX"
+    if _is_short(machine):  # what is computed of 16 bits is quick where the compiler sees that it has no more
+        return [
+            f"    const int16_t {_READING} =",
+            f"        {seen} < {low} ? {low} : {seen} > {high} ? {high} : (int16_t){seen};",
+            f"    {seen} = {_READING};",
+        ]
     return [f"    {seen} = {seen} < {low} ? {low} : {seen} > {high} ? {high} : {seen};"]
 
 
+def _is_short(machine: Machine) -> bool:
+    """Whether whole numbers are computed of readings of 16 bits."""
+    return machine.fixed is not None and max(map(abs, machine.counts)) <= NARROW
+
+
+_READING = "reading"
 _WHOLE = 2**31 - 1
 
 
@@ -182,19 +195,24 @@ def _whole(machine: Machine, name: str) -> _Body:
     fixed = machine.fixed
     assert fixed is not None, "asked of fixed point"
     word = fixed.units.scale.word
-    c = FixedC99(fixed.program, KEYWORDS | {name}, prefix=name, word=word, narrow=fixed.narrow)
-    step = [*c.changing(), *c.block(fixed.program.body, 1)]
-    result = c.read(fixed.program.results[0], alone=True)
+    program = tidied(fixed.program)
+    short = _READING if _is_short(machine) else ""
+    c = FixedC99(
+        program, KEYWORDS | {name, _READING}, prefix=name, word=word, narrow=fixed.narrow, short=short
+    )
+    step = [*c.changing(), *c.block(program.body, 1)]
+    result = c.read(program.results[0], alone=True)
     rest = []
     for k in range(machine.law.rest.shape[1]):
         start, per, shift = rest_numbers(machine.law, fixed, k)
-        value = str(start)
+        value = c.constant_text(start)
         if per:
-            value += (
-                f" + ((({'int64_t' if word == 64 or shift else c.integer})counts * {c.constant_text(per)})"
-            )
-            value += f" >> {shift})" if shift else ")"
-        rest.append(f"    s->memory[{k}] = ({c.integer})({value});")
+            wide = "int64_t" if word == 64 or shift else c.integer
+            moved = f"({wide})counts * {c.constant_text(per)}"
+            moved = f"({moved} >> {shift})" if shift else moved
+            value = f"{value} + {moved}" if start else moved
+            value = f"({c.integer}){value}" if shift and not start else f"({c.integer})({value})"
+        rest.append(f"    s->memory[{k}] = {value};")
     return _Body(
         guards=[SHIFTS],
         includes=["#include <stdint.h>"],

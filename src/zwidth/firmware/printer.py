@@ -151,7 +151,9 @@ class Printer(ABC):
         if made is None:
             return self.name(operand)
         text = self.made(made)
-        bare = alone or isinstance(made, Load) or (text.endswith(")") and _is_call(text))
+        bare = (
+            alone or isinstance(made, Load) or text.isidentifier() or (text.endswith(")") and _is_call(text))
+        )
         return text if bare else f"({text})"
 
     def made(self, statement: Statement) -> str:
