@@ -198,7 +198,8 @@ class C99(Printer):
 def real_text(value: float, real: Real) -> str:
     """A real number that C reads back to the last bit."""
     if real == "float":
-        number = np.float32(value)
+        with np.errstate(over="ignore"):  # no limit is 1e300
+            number = np.float32(value)
         return f"{_pointed(str(number))}f" if np.isfinite(number) else _endless(float(number), "f")
     return _pointed(repr(float(value))) if np.isfinite(value) else _endless(value, "")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from hashlib import sha256
-from math import floor
+from math import ceil, floor, inf
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -19,6 +19,7 @@ from zwidth.firmware.law import LawProgram, law_program
 from zwidth.firmware.machine import Machine, Number, machine
 from zwidth.firmware.module import module
 from zwidth.firmware.targets import TARGETS, Target
+from zwidth.loop.start import unloaded_range
 from zwidth.passivity.check import check
 from zwidth.passivity.document import to_json
 from zwidth.passivity.result import Result
@@ -31,7 +32,16 @@ from zwidth.writing import check_target, writing_whole
 MOST_COUNTS = 32767
 """Readings of a machine with narrow numbers, unless the travel is given."""
 
+_OF_FRICTION = 0.05
+"""A rounding beyond this part of the Coulomb friction is worth wider numbers."""
+
 _WHOLE = 2**31 - 1
+
+_START = 0.01
+"""Of the force limit: up to which a main program lets a law begin."""
+
+Define = tuple[str, str, str]
+"""Name, value and meaning of a constant."""
 
 
 class NotEmitted(InputError):
@@ -233,14 +243,20 @@ def emit(
     law = as_environment(environment)
     chosen = _number(number, kind)
     made = law_program(device, law, single=chosen == "float")
-    numbers = machine(made, chosen, _counts(device, made, chosen, travel), _force_unit(device, force_unit))
+    numbers = machine(
+        made,
+        chosen,
+        _counts(device, made, chosen, travel),
+        _force_unit(device, force_unit),
+        float(device.exact("coulomb_friction")) * _OF_FRICTION,
+    )
     found = judged(device, law, numbers, decide)
     if not (found.proved or anyway):
         raise NotEmitted(found, _why_not(found))
     certificate = f"{to_json(found.verdict.saved())}\n"
     files = {f"{prefix}.certificate.json": certificate}
     about = _about(prefix, device, law, found)
-    defines = _defines(device, made, numbers, certificate)
+    defines = _defines(device, law, made, numbers, certificate)
     if kind.language == "javascript":
         files[f"{prefix}.mjs"] = module(made, about=about, numbers=defines)
     else:
@@ -331,9 +347,21 @@ def _about(name: str, device: Device, environment: Environment, found: Judged) -
     return [line for part in parts for line in (*wrap(part, 96), "")][:-1]
 
 
+def _begins(law: LawProgram, environment: Environment, counts: tuple[float, float]) -> list[Define]:
+    """Where the law may begin, if it may not everywhere: on the top of a detent it would give what it holds."""
+    low, high = unloaded_range(environment, _START * law.limit, 0.0)
+    if law.resolution == 0.0 or (low, high) == (-inf, inf):
+        return []
+    least, most = max(low / law.resolution, counts[0]), min(high / law.resolution, counts[1])
+    return [
+        ("BEGINS_MIN", f"({ceil(least)})", "a main program lets the law begin from this reading"),
+        ("BEGINS_MAX", f"({floor(most)})", "to this one"),
+    ]
+
+
 def _defines(
-    device: Device, law: LawProgram, numbers: Machine, certificate: str
-) -> list[tuple[str, str, str]]:
+    device: Device, environment: Environment, law: LawProgram, numbers: Machine, certificate: str
+) -> list[Define]:
     """Name, value and meaning of the constants of a text."""
     linear = device.motion == "linear"
     force, length = ("N", "m") if linear else ("N*m", "rad")
@@ -356,6 +384,7 @@ def _defines(
             ("POSITION_MIN", f"({low!r})", f"{length}; readings below are taken as this"),
             ("POSITION_MAX", repr(high), f"{length}; readings above are taken as this"),
         ]
+    rows += _begins(law, environment, numbers.counts)
     rows.append(("FORCE_PER_UNIT", repr(unit), f"{force} per unit of the force"))
     if law.limit > 0:
         rows.append(("FORCE_LIMIT", repr(law.limit), force))
