@@ -348,7 +348,7 @@ def _about(name: str, device: Device, environment: Environment, found: Judged) -
 
 
 def _begins(law: LawProgram, environment: Environment, counts: tuple[float, float]) -> list[Define]:
-    """Where the law may begin, if it may not everywhere: on the top of a detent it would give what it holds."""
+    """Where the law may begin, if not everywhere: on the top of a detent it would give what it holds."""
     low, high = unloaded_range(environment, _START * law.limit, 0.0)
     if law.resolution == 0.0 or (low, high) == (-inf, inf):
         return []

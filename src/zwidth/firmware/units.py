@@ -17,7 +17,7 @@ from typing import Any
 from zwidth.firmware.evaluation import NoBound
 from zwidth.firmware.program import Constant, Load, Operand, Operation, Program, Set, Store, Table, Variable
 
-_FINE = 8
+_FINE = 6
 """Parts of a count, as a power of two, in which a place between two counts is kept."""
 
 _NEAR = 1e-12
