@@ -18,7 +18,7 @@ from zwidth.servo.packing import pack
 
 MEMORY = "memory"
 
-_SMALL = 1e300
+_SMALL = 1e150
 """Any force may be given where a law begins: the machine begins where it is."""
 
 
