@@ -170,18 +170,20 @@ def program_in_c(program: Program, name: str) -> str:
     given = "".join(f", {t} {v.hint}" for t, v in zip(types, program.parameters, strict=True))
     read = "".join(f", ({t})in[k * {len(types)} + {i}]" for i, t in enumerate(types))
     results = [f"    out[{i}] = {c.read(r, alone=True)};" for i, r in enumerate(program.results)]
+    functions = c.function_lines()
     lines = [
-        f"typedef struct {{ double {cell}[{size}]; }} {name}_cells;",
+        f"typedef struct {{ double {cell}[{size}]; }} {name}_state;",
         *c.table_lines(),
         *c.helper_lines(),
-        f"static void {name}({name}_cells *s{given}, double *out)",
+        *functions,
+        f"static void {name}({name}_state *s{given}, double *out)",
         "{",
         *body,
         *results,
         "}",
         f"void {name}_rows(const double *in, int rows, double *cells, double *out)",
         "{",
-        f"    for (int k = 0; k < rows; k += 1) {{ {name}(({name}_cells *)cells{read}, "
+        f"    for (int k = 0; k < rows; k += 1) {{ {name}(({name}_state *)cells{read}, "
         f"out + k * {len(results)}); }}",
         "}",
     ]
@@ -195,12 +197,14 @@ def program_in_javascript(program: Program, name: str) -> str:
     """A function for `run_node`."""
     js = JavaScript(program, OF_JAVASCRIPT)
     body = [*(f"    {line}" for line in js.changing()), *js.block(program.body, 1)]
+    functions = js.function_lines()
     cell = program.cells[0].name if program.cells else "m"
     names = ", ".join(v.hint for v in program.parameters)
     lines = [
         f"export const {name} = (() => {{",
         *js.table_lines(),
         *js.helper_lines(),
+        *functions,
         f"const whole = (s, {names}) => {{",
         *body,
         f"    return [{', '.join(js.read(r, alone=True) for r in program.results)}];",

@@ -144,10 +144,10 @@ class C99(Printer):
     def called(self, call: Call, names: list[str], given: list[str]) -> list[str]:
         cells = ["s"] if call.program.cells else []
         text = f"{self.prefix}_{call.name}({', '.join([*cells, *given])})"
+        if not any(map(self.is_read, call.results)):
+            return [f"{text};"]
         if len(names) == 1:
             return [self.given(call.results[0], names[0], text)]
-        if not names:
-            return [f"{text};"]
         several = self.name(Variable("real", f"of_{call.name}"))
         parts = [
             self.given(result, name, f"{several}.r{k}")

@@ -123,7 +123,7 @@ class JavaScript(Printer):
 
     def called(self, call: Call, names: list[str], given: list[str]) -> list[str]:
         text = f"{call.name}({', '.join([*(['s'] if call.program.cells else []), *given])});"
-        if not names:
+        if not any(map(self.is_read, call.results)):
             return [text]
         return [f"const {_one_or_list(names)} = {text}"]
 
