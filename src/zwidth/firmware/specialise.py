@@ -324,10 +324,13 @@ class _Writer(Expressions):
         held = [self.names[name] for name in changed if name in self.names]
         ends = [h for h in held if is_known(h) and kind_of(h) == "integer"]
         short = ends and max(ends) - min(ends) <= MOST_WRITTEN_OUT
-        if len(ends) != len(held) or not short or self.exits.depth or returns(node.body):
+        if len(ends) != len(held) or not short or self.exits.depth or may_leave(node.body):
             return False
-        test = self.read(node.test, block)
-        if not is_known(test):
+        if any(isinstance(n, ast.Call | ast.Subscript) for n in ast.walk(node.test)):
+            return False  # it is read once in each pass, and may change what is remembered
+        aside: list[Statement] = []
+        test = self.read(node.test, aside)
+        if aside or not is_known(test):
             return False
         if test:
             self.searching = frozenset(changed)
