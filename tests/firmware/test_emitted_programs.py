@@ -1,4 +1,4 @@
-"""From a proof to a program: what is emitted compiles as it is written, with every warning an error, and runs."""
+"""From a proof to a program: what is emitted compiles as it is, every warning an error, and runs."""
 
 from __future__ import annotations
 
