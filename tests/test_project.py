@@ -345,6 +345,7 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
         "serve",
         "replay",
         "doctor",
+        "emit",
         "compare",
         "identify",
         "plan",

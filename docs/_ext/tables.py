@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
+import chips
 import trust
 
 from zwidth import catalogue
@@ -222,7 +223,13 @@ def lines_to_trust() -> str:
     return markdown(head, [*trust.rows(), ("all of them", "", str(trust.total()), "")])
 
 
+def chip_costs() -> str:
+    """What a step of an emitted law costs on small chips."""
+    return chips.costs(markdown)
+
+
 TABLES: dict[str, Callable[[], str]] = {
+    "chip_costs": chip_costs,
     "connection_keys": connection_keys,
     "connection_options": connection_options,
     "safety_options": safety_options,

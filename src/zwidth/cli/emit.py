@@ -16,7 +16,7 @@ from zwidth.cli.options import (
     contact,
     overrides,
 )
-from zwidth.cli.output import print_json, print_text, quiet_pipe
+from zwidth.cli.output import print_json, quiet_pipe
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
@@ -119,7 +119,6 @@ def _give_out(found: Emitted, written: list[Path], as_json: bool) -> None:
     if as_json:
         print_json(found.to_json())
         return
-    from zwidth.cli.output import say_written
+    from zwidth.cli.emit_report import print_emitted
 
-    print_text(found)
-    say_written(*written)
+    print_emitted(found, written)

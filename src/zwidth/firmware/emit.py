@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from hashlib import sha256
-from math import ceil, floor, inf
+from math import floor
 from pathlib import Path
-from textwrap import wrap
+from re import fullmatch
 from typing import Any
 
 from zwidth.device.device import Device
@@ -18,15 +17,17 @@ from zwidth.firmware.judged import PROVED, Decide, Judged, judged
 from zwidth.firmware.law import LawProgram, law_program
 from zwidth.firmware.machine import Machine, Number, machine
 from zwidth.firmware.module import module
+from zwidth.firmware.preamble import about, claim, defines, digest
 from zwidth.firmware.targets import TARGETS, Target
-from zwidth.loop.start import unloaded_range
 from zwidth.passivity.check import check
 from zwidth.passivity.document import to_json
+from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.result import Result
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Interval, RealLike, ends
 from zwidth.quantity.text import quantity_unit
 from zwidth.quantity.units import parse, parse_number
+from zwidth.showing import Headline
 from zwidth.writing import check_target, writing_whole
 
 MOST_COUNTS = 32767
@@ -36,12 +37,6 @@ _OF_FRICTION = 0.05
 """A rounding beyond this part of the Coulomb friction is worth wider numbers."""
 
 _WHOLE = 2**31 - 1
-
-_START = 0.01
-"""Of the force limit: up to which a main program lets a law begin."""
-
-Define = tuple[str, str, str]
-"""Name, value and meaning of a constant."""
 
 
 class NotEmitted(InputError):
@@ -92,7 +87,7 @@ class Emitted(Result):
     @property
     def certificate_sha256(self) -> str:
         """Of the certificate's file; it stands in the header."""
-        return _digest(self.files[f"{self.prefix}.certificate.json"])
+        return digest(self.files[f"{self.prefix}.certificate.json"])
 
     @property
     def text(self) -> str:
@@ -111,10 +106,16 @@ class Emitted(Result):
             f"{self.judged.outcome}; {self.judged.statement}"
         )
 
-    def rows(self) -> list[tuple[str, str]]:
-        """The main numbers as (name, text)."""
+    @property
+    def claim(self) -> str:
+        """What is proved, or that nothing is."""
+        return claim(self.judged)
+
+    @property
+    def numbers(self) -> list[tuple[str, str]]:
+        """What the target's numbers are and cost, as (name, text)."""
         unit = quantity_unit("coulomb_friction", self.device.motion)
-        rows = [("numbers", _numbers(self.machine)), ("outcome", self.judged.outcome)]
+        rows = [("numbers", _numbers(self.machine))]
         if self.machine.error is not None:
             rows.append(("force off by at most", f"{self.machine.error:.4g} {unit}"))
         cost = self.judged.cost(self.device, self.environment)
@@ -122,20 +123,35 @@ class Emitted(Result):
             rows.append(
                 ("stiffness that it costs", f"{cost:.4g} {quantity_unit('stiffness', self.device.motion)}")
             )
-        return [*rows, *((file, f"{len(text.encode())} bytes") for file, text in sorted(self.files.items()))]
+        return rows
+
+    def rows(self) -> list[tuple[str, str]]:
+        """The main numbers as (name, text)."""
+        files = ((file, f"{len(text.encode())} bytes") for file, text in sorted(self.files.items()))
+        return [*self.numbers, *files]
+
+    def _headline(self) -> Headline:
+        return Headline(self.judged.outcome, COLOUR[self.judged.outcome], self.claim)
 
     @property
     def assumptions(self) -> tuple[str, ...]:
         """What the verdict takes for granted."""
+        stated = (line for line in self.verdict.assumptions if not line.startswith("ideal actuator"))
+        return (*stated, *self.beside)
+
+    @property
+    def beside(self) -> tuple[str, ...]:
+        """What the machine must do that no verdict counts."""
         low, high = self.machine.counts
-        actuator = "force limit, current rise and added filters are not in the claim"
+        actuator = "force limit, current rise and filters are not counted"
         if self.judged.counted and self.machine.law.step > 0:
-            actuator += "; the converter's steps are"
+            actuator += "; converter steps are"
         unit = "counts" if self.machine.law.resolution > 0 else quantity_unit("position", self.device.motion)
         return (
-            *(actuator if line.startswith("ideal actuator") else line for line in self.verdict.assumptions),
-            f"readings from {low:g} to {high:g} {unit}; beyond them the nearest is taken, nothing is claimed",
-            "the machine computes at every sample and holds the force to the next, after the delay",
+            actuator,
+            f"readings from {low:.10g} to {high:.10g} {unit}; beyond them nothing is claimed",
+            "a force at every sample, held to the next; what reading, step and converter take on the machine is "
+            f"in the device's delay of {float(self.device.exact('delay')):g} s",
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -153,7 +169,7 @@ class Emitted(Result):
             f"rounding_{force}": self.machine.rounding,
             f"stiffness_cost_{stiffness}": self.judged.cost(self.device, self.environment),
             "certificate_sha256": self.certificate_sha256,
-            "files": {file: _digest(text) for file, text in sorted(self.files.items())},
+            "files": {file: digest(text) for file, text in sorted(self.files.items())},
             "verdict": self.verdict.to_dict(),
         }
 
@@ -238,8 +254,7 @@ def emit(
         If it is not proved passive in the target's numbers.
     """
     kind = _target(target)
-    if not (isinstance(prefix, str) and prefix.isidentifier() and prefix.isascii()):
-        raise InputError(f"prefix is a name in C, such as 'law', got {prefix!r}")
+    _check_prefix(prefix, kind)
     law = as_environment(environment)
     chosen = _number(number, kind)
     made = law_program(device, law, single=chosen == "float")
@@ -255,12 +270,12 @@ def emit(
         raise NotEmitted(found, _why_not(found))
     certificate = f"{to_json(found.verdict.saved())}\n"
     files = {f"{prefix}.certificate.json": certificate}
-    about = _about(prefix, device, law, found)
-    defines = _defines(device, law, made, numbers, certificate)
+    head = about(prefix, device, law, found)
+    constants = defines(device, law, made, numbers, certificate)
     if kind.language == "javascript":
-        files[f"{prefix}.mjs"] = module(made, about=about, numbers=defines)
+        files[f"{prefix}.mjs"] = module(made, about=head, numbers=constants)
     else:
-        files[f"{prefix}.h"] = header(numbers, name=prefix, about=about, numbers=defines)
+        files[f"{prefix}.h"] = header(numbers, name=prefix, about=head, numbers=constants)
         files |= kind.mains(prefix)
     return Emitted(prefix, target, device, law, found, files)
 
@@ -281,6 +296,15 @@ def _target(target: str) -> Target:
     if target not in TARGETS:
         raise InputError(f"target is one of {', '.join(TARGETS)}, got {target!r}")
     return TARGETS[target]
+
+
+def _check_prefix(prefix: str, target: Target) -> None:
+    if not (isinstance(prefix, str) and fullmatch("[a-z][a-z0-9_]*", prefix)):
+        raise InputError(
+            f"prefix begins names in C: small letters, digits and _, such as law, got {prefix!r}"
+        )
+    if f"{prefix}.h" in target.mains(prefix):
+        raise InputError(f"prefix is {prefix!r}, and {prefix}.h is a file of the main program: take another")
 
 
 def _number(number: str | None, target: Target) -> Number:
@@ -323,69 +347,8 @@ def _force_unit(device: Device, given: RealLike | str | None) -> float | None:
     return value
 
 
-def _digest(text: str) -> str:
-    return sha256(text.encode()).hexdigest()
-
-
 def _numbers(machine: Machine) -> str:
     if machine.fixed is None:
         return machine.number
     scale = machine.fixed.units.scale
     return f"fixed point, {scale.word} bits, force in 2^-{scale.fraction} of a step"
-
-
-def _about(name: str, device: Device, environment: Environment, found: Judged) -> list[str]:
-    """The comment at the head of the text."""
-    proved = found.verdict.claim if found.proved else f"NOT PROVED: {found.verdict.claim}"
-    parts = [
-        f"{name}: {environment.describe(device.motion)}.",
-        repr(device).strip("<>"),
-        f"{proved} {found.statement}",
-        f"Proof: {name}.certificate.json, to be checked by: zwidth verify {name}.certificate.json",
-        "Written by zwidth from the functions that it simulates; do not edit.",
-    ]
-    return [line for part in parts for line in (*wrap(part, 96), "")][:-1]
-
-
-def _begins(law: LawProgram, environment: Environment, counts: tuple[float, float]) -> list[Define]:
-    """Where the law may begin, if not everywhere: on the top of a detent it would give what it holds."""
-    low, high = unloaded_range(environment, _START * law.limit, 0.0)
-    if law.resolution == 0.0 or (low, high) == (-inf, inf):
-        return []
-    least, most = max(low / law.resolution, counts[0]), min(high / law.resolution, counts[1])
-    return [
-        ("BEGINS_MIN", f"({ceil(least)})", "a main program lets the law begin from this reading"),
-        ("BEGINS_MAX", f"({floor(most)})", "to this one"),
-    ]
-
-
-def _defines(
-    device: Device, environment: Environment, law: LawProgram, numbers: Machine, certificate: str
-) -> list[Define]:
-    """Name, value and meaning of the constants of a text."""
-    linear = device.motion == "linear"
-    force, length = ("N", "m") if linear else ("N*m", "rad")
-    period = float(device.exact("sample_period"))
-    unit = 1.0 if numbers.fixed is None else numbers.fixed.units.scale.size(numbers.fixed.result)
-    low, high = numbers.counts
-    rows = [
-        ("SAMPLE_PERIOD_S", repr(period), "s"),
-        ("RATE_HZ", f"{1 / period:.10g}", "Hz"),
-        ("ROTARY", str(int(not linear)), "1 where positions are in rad and forces in N*m"),
-        ("RESOLUTION", repr(law.resolution), f"{length} per count"),
-    ]
-    if law.resolution > 0:
-        rows += [
-            ("COUNTS_MIN", f"({int(low)})", "readings below are taken as this"),
-            ("COUNTS_MAX", str(int(high)), "readings above are taken as this"),
-        ]
-    else:
-        rows += [
-            ("POSITION_MIN", f"({low!r})", f"{length}; readings below are taken as this"),
-            ("POSITION_MAX", repr(high), f"{length}; readings above are taken as this"),
-        ]
-    rows += _begins(law, environment, numbers.counts)
-    rows.append(("FORCE_PER_UNIT", repr(unit), f"{force} per unit of the force"))
-    if law.limit > 0:
-        rows.append(("FORCE_LIMIT", repr(law.limit), force))
-    return [*rows, ("CERTIFICATE_SHA256", f'"{_digest(certificate)}"', "of the certificate beside this")]

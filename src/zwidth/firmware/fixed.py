@@ -23,7 +23,7 @@ from zwidth.firmware.program import (
     Variable,
 )
 from zwidth.firmware.simplified import FOLDED
-from zwidth.firmware.units import Scale, Unit, Units, units_of
+from zwidth.firmware.units import SAME, Scale, Unit, Units, units_of
 
 _ROOM = 1.01
 """What the error may add to a number, relative; `invariant` tells afterwards whether it did not add more."""
@@ -299,7 +299,7 @@ class _Lowering:
         named = self.names[x]
         if by == 0.0:
             return Constant(0, "integer")
-        if self.units.scaled(own, by) == unit and self.scale.as_unit(abs(by)) is not None:
+        if abs(abs(by) * self.scale.size(own) / self.scale.size(unit) - 1.0) <= SAME:
             return named if by > 0 else self.made("negate", (named,), out)
         return self.product(named, n, by * self.scale.size(own), unit, s, out)
 

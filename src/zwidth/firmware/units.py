@@ -20,8 +20,12 @@ from zwidth.firmware.program import Constant, Load, Operand, Operation, Program,
 _FINE = 6
 """Parts of a count, as a power of two, in which a place between two counts is kept."""
 
-_NEAR = 1e-12
+SAME = 1e-12
 """Relative: two units, or a number and a whole one, that differ by less are the same but for rounding."""
+
+
+_MEANT = ((0, 0), (1, 0), (0, 1))
+"""Powers of a count and of a step that a number of a law has: none, a position, a force."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +77,7 @@ class Scale:
         for counts in (0, 1, -1):
             for steps in (0, 1, -1):
                 power = log2(number / (self.count**counts * self.step**steps))
-                if abs(power - round(power)) < _NEAR and abs(power) < 64:
+                if abs(power - round(power)) < SAME and abs(power) < 64:
                     return Unit(counts, steps, -round(power))
         return None
 
@@ -101,7 +105,7 @@ class Units:
     def whole(self, number: float, unit: Unit) -> bool:
         """Whether a number is a whole number of units."""
         n = number / self.scale.size(unit)
-        return abs(n - round(n)) <= _NEAR * max(abs(n), 1.0)
+        return abs(n - round(n)) <= SAME * max(abs(n), 1.0)
 
     def fine_enough(self, number: float, unit: Unit) -> Unit:
         """A unit of which a known number is a whole multiple, or nearly."""
@@ -134,7 +138,9 @@ class Units:
         own = self.scale.as_unit(abs(by)) if by else None
         if own is None:
             return self.scale.force
-        return Unit(unit.counts + own.counts, unit.steps + own.steps, unit.fraction + own.fraction)
+        made = Unit(unit.counts + own.counts, unit.steps + own.steps, unit.fraction + own.fraction)
+        # 200 N/m is 2/U where U is 0.01 N, by chance: no position per force is meant
+        return made if (made.counts, made.steps) in _MEANT else self.scale.force
 
 
 def units_of(program: Program, scale: Scale) -> Units:

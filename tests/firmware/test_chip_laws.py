@@ -1,0 +1,105 @@
+"""Emitted laws on their machines: the same forces everywhere, and as far off as was proved at most."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from firmware.baselines.read import touch
+from firmware.chip_laws import DEVICE, LAWS, emitted
+from firmware.emulated import cortex, node
+from firmware.emulated.avr import AvrLaw
+from firmware.emulated.host import HostLaw, watched
+from firmware.emulated.loop import Motion, closed
+from firmware.emulated.required import require
+
+import zwidth as zw
+from zwidth.firmware.emit import emit
+
+COUNTS = touch(1200, 2600)
+HAND = zw.operators.Dowel()
+
+
+@pytest.mark.parametrize("number", ["fixed", "float"])
+@pytest.mark.parametrize("name", LAWS)
+def test_other_numbers_are_off_as_was_proved(tmp_path: Path, name: str, number: str) -> None:
+    """Of the law in double, before its converter's rounding; nothing overflows."""
+    require("host")
+    exact, found = emitted(name, "double"), emitted(name, number)
+    forces = []
+    for k, law in enumerate((exact, found)):
+        (tmp_path / str(k)).mkdir()
+        host = HostLaw(law.text, tmp_path / str(k))
+        host.init(3)
+        forces.append(host.run(COUNTS) * host.force_per_unit)
+    assert found.machine.error is not None
+    step = DEVICE.force_resolution
+    assert step is not None
+    # each is off by its own error: half a step of the converter, and its rounding
+    assert np.abs(forces[0] - forces[1]).max() <= found.machine.error + float(step) / 2 + 1e-6
+    watched(found.text, COUNTS, tmp_path, 3)
+
+
+@pytest.mark.parametrize("number", ["fixed", "float"])
+@pytest.mark.parametrize("name", ["damped wall", "standard linear solid", "H(z) of order 4"])
+def test_the_chips_answer_alike(tmp_path: Path, name: str, number: str) -> None:
+    """The bits of this machine on the ATmega328P, as C and as a sketch, and on the Cortex-M4."""
+    require("host", "avr", "cortex-m4")
+    text = emitted(name, number).text
+    host = HostLaw(text, tmp_path)
+    host.init(0)
+    wanted = host.run(COUNTS)
+    for sketch in (False, True):
+        with AvrLaw(text, sketch=sketch) as law:
+            law.init(0)
+            assert np.array_equal(law.run(COUNTS).forces, wanted)
+    assert np.array_equal(cortex.run(text, COUNTS).forces, wanted)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_javascript_answers_like_c(tmp_path: Path, name: str) -> None:
+    """The same bits in double."""
+    require("host", "node")
+    host = HostLaw(emitted(name, "double").text, tmp_path)
+    host.init(7)
+    assert np.array_equal(node.run(emitted(name, "double", "javascript").text, COUNTS, 7), host.run(COUNTS))
+
+
+def test_a_damped_wall_in_300_cycles() -> None:
+    """In fixed point, on the ATmega328P, with the travel of a paddle."""
+    require("avr")
+    with AvrLaw(emitted("damped wall", "fixed", "arduino").text, sketch=True) as law:
+        law.init(0)
+        assert law.run(COUNTS).worst <= 300
+
+
+def on_the_chip(wall: zw.Wall, duration: float) -> Motion:
+    """A touch of a wall that the chip computes, emitted whatever is proved of it."""
+    require("avr")
+    with AvrLaw(emit(DEVICE, wall, target="arduino", anyway=True).text, sketch=True) as law:
+        return closed(DEVICE, HAND, duration, law.force, law.init)
+
+
+def test_the_certified_law_is_quiet_on_the_chip() -> None:
+    """The hand gets nothing out of it, as in the simulation, and the paddle rests in the wall."""
+    wall = zw.Wall(150, 0.05)
+    assert emit(DEVICE, wall, target="arduino").verdict.outcome == "passive"
+    motion = on_the_chip(wall, 1.0)
+    energy = zw.simulate(DEVICE, wall, HAND, duration=1.0).zwidth.energy
+    assert motion.extracted == energy.got_out == 0
+    assert motion.counts[-1] > 100
+    assert not motion.velocity[-100:].any()
+
+
+def test_the_refuted_law_buzzes_on_the_chip() -> None:
+    """It is emitted only where somebody insists, says so, and gives the energy that the simulation says."""
+    wall = zw.Wall(770)
+    found = emit(DEVICE, wall, target="arduino", anyway=True)
+    assert found.verdict.outcome == "active"
+    assert "NOT PROVED" in found.text
+    motion = on_the_chip(wall, 2.0)
+    energy = zw.simulate(DEVICE, wall, HAND, duration=2.0).zwidth.energy
+    assert motion.extracted > 0.01
+    assert motion.extracted == pytest.approx(energy.got_out, rel=0.1)
+    assert np.abs(motion.velocity[-500:]).max() > 0.5

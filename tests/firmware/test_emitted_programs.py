@@ -1,0 +1,185 @@
+"""From a proof to a program: what is emitted compiles as it is, every warning an error, and runs."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from hashlib import sha256
+from pathlib import Path
+
+import numpy as np
+import pytest
+from firmware.emulated.built import STRICT, called
+from firmware.emulated.built import WARNED as PEDANTIC
+from firmware.emulated.required import require
+from firmware.tools import DATA, STUBS, needed_header, run, tool
+
+import zwidth as zw
+from zwidth.cli.main import main
+from zwidth.firmware.emit import Emitted, emit
+from zwidth.firmware.telemetry import read_telemetry
+
+WARNED = ("-Wall", "-Wextra", "-Werror", "-ffp-contract=off")
+
+HAPKIT = zw.Device(
+    mass="20 g",
+    damping=0.15,
+    coulomb_friction="0.1 N",
+    resolution="13.1 um",
+    rate="1 kHz",
+    force_limit="5 N",
+    force_resolution="0.01 N",
+)
+MOTOR = zw.Device(
+    motion="rotary",
+    mass=1e-4,
+    damping=0.002,
+    coulomb_friction=0.004,
+    resolution="0.0007669903939428206 rad",
+    rate=1000,
+    force_limit=2,
+)
+WALL = zw.Wall(stiffness=150, damping=0.05)
+SPRING_OF_A_MOTOR = zw.Wall(stiffness=1)
+
+
+def written(folder: Path, target: str, number: str | None = None, prefix: str = "law") -> Emitted:
+    """The law of a target, in a folder."""
+    loop = (MOTOR, SPRING_OF_A_MOTOR) if target in ("simplefoc", "moteus") else (HAPKIT, WALL)
+    found = emit(
+        *loop, target=target, number=number, travel="-3 .. 3 rad" if loop[0] is MOTOR else None, prefix=prefix
+    )
+    found.write(folder)
+    return found
+
+
+def sketch(folder: Path) -> Path:
+    """The sketch of a folder as a program of its chip."""
+    require("avr")
+    chip = ["-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Os", "-fno-exceptions", "-std=gnu++11", *WARNED]
+    source = ["-x", "c++", "-include", "Arduino.h", str(folder / f"{folder.name}.ino")]
+    start = str(STUBS / "arduino" / "main.cpp")
+    called(
+        [
+            "avr-g++",
+            *chip,
+            f"-I{STUBS / 'arduino'}",
+            f"-I{folder}",
+            *source,
+            start,
+            "-o",
+            str(folder / "a.elf"),
+        ]
+    )
+    return folder / "a.elf"
+
+
+def force(data: object, error: float) -> None:
+    """Of a recording: the wall's, at every sample that was served, off by what was proved at most."""
+    counts = np.rint(data.position.values / 13.1e-6)  # type: ignore[attr-defined]
+    moved = np.diff(counts, prepend=counts[0])
+    wall = np.where(counts > 0, 13.1e-6 * (150 * counts + 0.05 / 1e-3 * moved), 0.0)
+    served = data.phase.values == 1  # type: ignore[attr-defined]
+    served[0] = False  # the wall is at rest there
+    assert served.sum() > 100
+    off = np.abs(data.actuator_force.values - np.clip(wall, -5, 5))[served]  # type: ignore[attr-defined]
+    assert off.max() <= error + 5 / 32767
+
+
+@pytest.mark.parametrize("number", ["fixed", "float"])
+def test_a_hapkit_alone_gives_the_force_that_was_proved(tmp_path: Path, number: str) -> None:
+    """The sketch on its emulated chip, the sensor moved by a swinging handle: forces by its own telemetry."""
+    found = written(tmp_path / "wall", "arduino", number)
+    program = sketch(tmp_path / "wall")
+    needed_header("simavr/sim_avr.h")
+    chip = tmp_path / "chip"
+    run(tool("cc"), "-std=gnu99", "-O2", DATA / "chip.c", "-o", chip, "-lsimavr", "-lm")
+    run(chip, program, "1000", tmp_path / "line.bin")
+    data = read_telemetry(tmp_path / "line.bin")
+    assert data.attrs["certificate_sha256"] == found.certificate_sha256
+    assert data.actuator_force.values.max() > 0.5
+    assert found.machine.error is not None
+    force(data, found.machine.error)
+
+
+@pytest.mark.parametrize("number", ["float", "fixed", "double"])
+def test_a_cortex_m_links(tmp_path: Path, number: str) -> None:
+    """By its own Makefile, without a library of a vendor."""
+    require("cortex-m4")
+    written(tmp_path / "board", "cortex-m", number)
+    flags = f"CFLAGS=-O2 {' '.join(WARNED)}"
+    called([tool("make"), "CC=arm-none-eabi-gcc", "CPU=-mcpu=cortex-m4", flags], tmp_path / "board")
+    assert (tmp_path / "board" / "law.elf").exists()
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the program asks Linux for its clock")
+@pytest.mark.parametrize("number", ["double", "float", "fixed"])
+def test_a_computer_serves_a_simulated_mass(tmp_path: Path, number: str) -> None:
+    """As it is written it runs, and tells the forces that were proved."""
+    found = written(tmp_path / "loop", "posix", number)
+    flags = f"CFLAGS=-O2 {' '.join(WARNED)} -D_GNU_SOURCE -DTIMEOUT=60000000000 -DLONGEST_GAP=60000000000"
+    called([tool("make"), f"CC={tool('cc')}", flags], tmp_path / "loop")
+    line = tmp_path / "line.bin"
+    done = subprocess.run(
+        [tmp_path / "loop" / "main", "-p", "0", "-n", "400", "-t", line], capture_output=True, check=False
+    )
+    assert done.returncode == 0
+    data = read_telemetry(line)
+    assert found.machine.error is not None
+    force(data, found.machine.error)
+
+
+def test_a_moteus_links(tmp_path: Path) -> None:
+    """By its own Makefile."""
+    written(tmp_path / "loop", "moteus")
+    called([tool("make"), f"CC={tool('cc')}", f"CFLAGS=-O2 {' '.join(WARNED)}"], tmp_path / "loop")
+
+
+def test_a_sketch_of_simplefoc_compiles(tmp_path: Path) -> None:
+    """Against a stub of the library, for a motor with an encoder of 8192 counts a turn."""
+    written(tmp_path / "motor", "simplefoc")
+    named = [f"-I{STUBS / 'simplefoc'}", f"-I{tmp_path / 'motor'}", "-fsyntax-only", "-x", "c++"]
+    called([tool("c++"), "-std=gnu++11", *WARNED, *named, str(tmp_path / "motor" / "motor.ino")])
+
+
+@pytest.mark.parametrize("number", ["double", "float", "fixed"])
+def test_a_header_compiles_alone(tmp_path: Path, number: str) -> None:
+    """As C and as C++, under another prefix, with nobody who calls its functions."""
+    require("host")
+    written(tmp_path, "c99", number, "wall")
+    for line in (["gcc", *STRICT], ["g++", "-std=gnu++11", *PEDANTIC, "-x", "c++"]):
+        if line[0] == "g++":
+            tool("g++")
+        called([*line, "-O2", "-fsyntax-only", "-include", str(tmp_path / "wall.h"), "/dev/null"])
+
+
+@pytest.mark.parametrize("target", ["c99", "arduino", "javascript"])
+def test_the_header_names_its_proof(tmp_path: Path, target: str) -> None:
+    """SHA-256 of the certificate's file, which the checker accepts; another byte has another one."""
+    found = written(tmp_path / "law", target)
+    certificate = tmp_path / "law" / "law.certificate.json"
+    bytes_ = certificate.read_bytes()
+    named = re.search(r'CERTIFICATE_SHA256 =? ?"([0-9a-f]{64})"', found.text)
+    assert named is not None
+    assert named[1] == sha256(bytes_).hexdigest() == found.certificate_sha256
+    assert sha256(bytes_.replace(b"1", b"2", 1)).hexdigest() != named[1]
+    assert main(["verify", str(certificate)]) == 0
+
+
+def test_what_is_emitted_is_the_same_everywhere(tmp_path: Path) -> None:
+    """Two processes, with other seeds of Python's hashes, write the same bytes."""
+    code = (
+        "import zwidth as zw; from zwidth.firmware.emit import emit; import sys;"
+        "d=zw.catalogue.device('haptic-paddle');"
+        "[emit(d, zw.Wall(stiffness=150, damping=0.05), target=t).write(f'{sys.argv[1]}/{t}')"
+        " for t in ('arduino', 'cortex-m', 'javascript')]"
+    )
+    for seed in ("1", "2"):
+        environment = {"PYTHONHASHSEED": seed, "PYTHONPATH": ":".join(sys.path), "PATH": "/usr/bin:/bin"}
+        subprocess.run([sys.executable, "-c", code, str(tmp_path / seed)], env=environment, check=True)
+    one, other = (
+        {p.relative_to(tmp_path / s): p.read_bytes() for p in (tmp_path / s).rglob("*.*")} for s in "12"
+    )
+    assert one == other
+    assert len(one) > 10
