@@ -17,7 +17,7 @@ from typing import Any
 from zwidth.firmware.evaluation import NoBound
 from zwidth.firmware.program import Constant, Load, Operand, Operation, Program, Set, Store, Table, Variable
 
-_NEAR = 1e-12
+NEAR = 1e-12
 """Relative: two units, or a number and a whole one, that differ by less are the same but for rounding."""
 
 
@@ -70,7 +70,7 @@ class Scale:
         for counts in (0, 1, -1):
             for steps in (0, 1, -1):
                 power = log2(number / (self.count**counts * self.step**steps))
-                if abs(power - round(power)) < _NEAR and abs(power) < 64:
+                if abs(power - round(power)) < NEAR and abs(power) < 64:
                     return Unit(counts, steps, -round(power))
         return None
 
@@ -98,7 +98,7 @@ class Units:
     def whole(self, number: float, unit: Unit) -> bool:
         """Whether a number is a whole number of units."""
         n = number / self.scale.size(unit)
-        return abs(n - round(n)) <= _NEAR * max(abs(n), 1.0)
+        return abs(n - round(n)) <= NEAR * max(abs(n), 1.0)
 
     def common(self, a: Unit, b: Unit) -> Unit:
         """A unit for both."""

@@ -24,7 +24,9 @@ def called(
 
 def defined(header: str, name: str) -> float:
     """The number that a header gives a name, such as FORCE_PER_UNIT of LAW_FORCE_PER_UNIT."""
-    found = re.search(rf"^\s*#\s*define\s+[A-Z]\w*?_{name}\s+\(?([-+.\w]+?)f?\)?\s*$", header, re.MULTILINE)
+    found = re.search(
+        rf"^\s*#\s*define\s+[A-Z]\w*?_{name}\s+\(?([-+.\w]+?)f?\)?(?:\s*/\*.*\*/)?\s*$", header, re.MULTILINE
+    )
     assert found, f"the header defines no {name}"
     return float.fromhex(found[1]) if found[1].lower().startswith("0x") else float(found[1])
 
