@@ -150,8 +150,8 @@ class Emitted(Result):
         return (
             actuator,
             f"readings from {low:.10g} to {high:.10g} {unit}; beyond them nothing is claimed",
-            "a force at every sample, held to the next; what reading, step and converter take on the machine is "
-            f"in the device's delay of {float(self.device.exact('delay')):g} s",
+            "a force at every sample, held to the next; the time from reading to force is the device's delay, "
+            f"{float(self.device.exact('delay')):g} s",
         )
 
     def to_dict(self) -> dict[str, Any]:
