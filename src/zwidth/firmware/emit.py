@@ -33,7 +33,7 @@ from zwidth.writing import check_target, writing_whole
 MOST_COUNTS = 32767
 """Readings of a machine with narrow numbers, unless the travel is given."""
 
-_OF_FRICTION = 0.05
+_OF_FRICTION = 0.1
 """A rounding beyond this part of the Coulomb friction is worth wider numbers."""
 
 _WHOLE = 2**31 - 1
@@ -150,7 +150,7 @@ class Emitted(Result):
         return (
             actuator,
             f"readings from {low:.10g} to {high:.10g} {unit}; beyond them nothing is claimed",
-            "a force at every sample, held to the next; the time from reading to force is the device's delay, "
+            "a force at every sample, held to the next; from reading to force it takes the device's delay, "
             f"{float(self.device.exact('delay')):g} s",
         )
 

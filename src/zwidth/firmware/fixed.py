@@ -127,6 +127,8 @@ class _Lowering:
         (result,) = program.results
         if isinstance(result, Constant):
             raise NoBound("its force is the same everywhere")
+        if self.largest(result) > _FORCE:
+            raise TooLarge
         out = self.read(result, self.unit(result), None, body)
         made = Program(program.parameters, program.cells, body, (out,))
         narrow = frozenset(self.names[v] for v, n in self.count.items() if n <= _NARROW and v in self.names)
@@ -363,6 +365,8 @@ class _Lowering:
 
 _MIRRORED = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
 _NARROW = 2**15 - 1
+_FORCE = 2**31 - 1
+"""The force is given in 32 bits, whatever the word is."""
 _BYTES = (16, 24, 32)
 """Shifts a small chip does by whole bytes; where n ≤ 2^k the factor's rounding is half a unit or less."""
 _PRECISE = 2.0**12

@@ -216,11 +216,11 @@ def _whole(machine: Machine, name: str) -> _Body:
     return _Body(
         guards=[SHIFTS],
         includes=["#include <stdint.h>"],
-        force=c.integer,
+        force="int32_t",
         given="int32_t counts",
         memory=c.integer,
         before=c.helper_lines(),
         rest=rest or ["    s->memory[0] = 0;"],
         step=step,
-        result=result,
+        result=f"(int32_t)({result})" if word == 64 else result,
     )
