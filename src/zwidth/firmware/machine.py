@@ -29,7 +29,7 @@ from zwidth.firmware.units import Scale, Unit
 
 Number = Literal["double", "float", "fixed"]
 
-_FRACTIONS = {32: (24, 16, 8, 4, 0), 64: (40, 32, 24, 16, 8, 0)}
+_FRACTIONS = {32: (24, 16, 8, 4, 1), 64: (40, 32, 24, 16, 8, 1)}
 """Parts of a force unit that are tried, as powers of two, by word: whole bytes are shifted in no time."""
 _WIDE = 2.0**-10
 """Of the force: an error beyond this is worth a wider word."""
