@@ -181,8 +181,8 @@ def test_a_name_is_text_and_never_markup(run: Run) -> None:
             (),
             (
                 "which command",
-                "check, limit, pair, gains, map, simulate, serve, emit, replay, doctor, network, traces, compare, "
-                "links, workspace, "
+                "check, limit, pair, gains, map, simulate, serve, emit, replay, doctor, network, traces, "
+                "compare, links, workspace, "
                 "identify, plan, devices, verify",
             ),
         ),

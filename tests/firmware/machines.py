@@ -1,7 +1,7 @@
 """Programs in C, compiled by the machine's compiler, and in JavaScript, run by node.
 
-Each program is given its inputs row by row and keeps its cells from row to row; all it gave back, and what its
-cells hold at the end, comes back as the bits of doubles.
+Each program is given its inputs row by row and keeps its cells from row to row; all it gave back, and what
+its cells hold at the end, comes back as the bits of doubles.
 """
 
 from __future__ import annotations
@@ -20,8 +20,11 @@ from numpy.typing import NDArray
 
 from zwidth.firmware.c99 import C99
 from zwidth.firmware.c99 import KEYWORDS as OF_C
+from zwidth.firmware.header import header
 from zwidth.firmware.javascript import KEYWORDS as OF_JAVASCRIPT
 from zwidth.firmware.javascript import JavaScript
+from zwidth.firmware.law import LawProgram
+from zwidth.firmware.machine import Machine
 from zwidth.firmware.program import Program
 
 Array = NDArray[np.float64]
@@ -45,17 +48,15 @@ def same_bits(one: Array, other: Array) -> bool:
     return a.shape == b.shape and bool((both | (a.view(np.int64) == b.view(np.int64))).all())
 
 
+_ALLOWED = ("unused-function", "unused-but-set-variable", "tautological-compare")
+"""Random functions compare x with x, and forget what they have computed."""
+
+
 def compiled_c(text: str, folder: Path, options: Sequence[str] = ("-std=c99", "-O2")) -> ctypes.CDLL:
     """A text in C as a library; warnings are errors."""
     source, library = folder / "emitted.c", folder / f"emitted{''.join(options)}.so".replace("=", "")
     source.write_text(text, encoding="utf-8")
-    strict = [
-        "-Wall",
-        "-Werror",
-        "-Wno-unused-function",
-        "-Wno-unused-but-set-variable",
-        "-Wno-tautological-compare",
-    ]
+    strict = ["-Wall", "-Werror", *(f"-Wno-{it}" for it in _ALLOWED)]
     command = ["cc", *options, *strict, "-fPIC", "-shared", "-o", str(library), str(source), "-lm"]
     made = subprocess.run(command, capture_output=True, text=True)
     assert made.returncode == 0, made.stderr
@@ -124,6 +125,41 @@ for (const [name, [rows, wide, outputs]] of Object.entries(JSON.parse(readFileSy
 """
 
 
+_ANY = 2.0**31
+"""No count is beyond it."""
+
+
+def law_in_c(law: LawProgram, name: str) -> str:
+    """A law's header, and a function for `run_c`: it begins at its first reading."""
+    size, kind = law.rest.shape[1], "int32_t" if law.resolution > 0 else "double"
+    ends = [(f"POSITION_{end}", f"({sign}1e9)", "m") for end, sign in (("MIN", "-"), ("MAX", ""))]
+    everywhere = Machine(law, "double", (-_ANY, _ANY), None)
+    return f"""{header(everywhere, name=name, about=[name], numbers=ends)}
+void {name}_rows(const double *in, int rows, double *cells, double *out)
+{{
+    {name}_state s;
+    {name}_init(&s, ({kind})in[0]);
+    for (int k = 0; k < rows; k += 1) {{ out[k] = {name}_step(&s, ({kind})in[k]); }}
+    for (int k = 0; k < {size}; k += 1) {{ cells[k] = s.memory[k]; }}
+}}
+"""
+
+
+def law_in_javascript(name: str) -> str:
+    """A function for `run_node` of the law whose module is beside it as NAME.mjs."""
+    return f"""import * as of_{name} from "./{name}.mjs";
+export const {name} = (() => {{
+    let s;
+    return (row, cells) => {{
+        s ??= of_{name}.init(row[0]);
+        const force = of_{name}.step(s, row[0]);
+        cells.set(s.memory.subarray(0, cells.length));
+        return [force];
+    }};
+}})();
+"""
+
+
 def program_in_c(program: Program, name: str) -> str:
     """A function for `run_c`; the program has one array of cells at most."""
     c = C99(program, OF_C, prefix=name)
@@ -134,18 +170,20 @@ def program_in_c(program: Program, name: str) -> str:
     given = "".join(f", {t} {v.hint}" for t, v in zip(types, program.parameters, strict=True))
     read = "".join(f", ({t})in[k * {len(types)} + {i}]" for i, t in enumerate(types))
     results = [f"    out[{i}] = {c.read(r, alone=True)};" for i, r in enumerate(program.results)]
+    functions = c.function_lines()
     lines = [
-        f"typedef struct {{ double {cell}[{size}]; }} {name}_cells;",
+        f"typedef struct {{ double {cell}[{size}]; }} {name}_state;",
         *c.table_lines(),
         *c.helper_lines(),
-        f"static void {name}({name}_cells *s{given}, double *out)",
+        *functions,
+        f"static void {name}({name}_state *s{given}, double *out)",
         "{",
         *body,
         *results,
         "}",
         f"void {name}_rows(const double *in, int rows, double *cells, double *out)",
         "{",
-        f"    for (int k = 0; k < rows; k += 1) {{ {name}(({name}_cells *)cells{read}, "
+        f"    for (int k = 0; k < rows; k += 1) {{ {name}(({name}_state *)cells{read}, "
         f"out + k * {len(results)}); }}",
         "}",
     ]
@@ -159,12 +197,14 @@ def program_in_javascript(program: Program, name: str) -> str:
     """A function for `run_node`."""
     js = JavaScript(program, OF_JAVASCRIPT)
     body = [*(f"    {line}" for line in js.changing()), *js.block(program.body, 1)]
+    functions = js.function_lines()
     cell = program.cells[0].name if program.cells else "m"
     names = ", ".join(v.hint for v in program.parameters)
     lines = [
         f"export const {name} = (() => {{",
         *js.table_lines(),
         *js.helper_lines(),
+        *functions,
         f"const whole = (s, {names}) => {{",
         *body,
         f"    return [{', '.join(js.read(r, alone=True) for r in program.results)}];",

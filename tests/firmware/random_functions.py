@@ -1,7 +1,7 @@
 """Random functions of the subset of Python that is emitted, as text.
 
-Each has the arguments m, an array of 6; p, five known numbers; q, a known whole number; x, y and k.  Every loop
-ends, every index is inside and every whole number small, whatever x, y and k are.
+Each has the arguments m, an array of 6; p, five known numbers; q, a known whole number; x, y and k.  Every
+loop ends, every index is inside and every whole number small, whatever x, y and k are.
 """
 
 from __future__ import annotations

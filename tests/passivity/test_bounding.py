@@ -39,7 +39,7 @@ class Crediting(ForceBounding):
     def numbers(self, at):
         """Credit, friction, count and half step, each so many times what they are."""
         own = super().numbers(at)
-        return [n * f for n, f in zip(own, (*self.factors, 1.0), strict=True)]
+        return [n * f for n, f in zip(own, (*self.factors, 1.0, 1.0), strict=True)]
 
 
 def crediting(*factors):

@@ -9,6 +9,7 @@ import numpy as np
 
 from zwidth.firmware.bound import Bound
 from zwidth.firmware.program import Constant, Operation, Statement, Store
+from zwidth.firmware.simplified import FOLDED
 
 _ROUNDED = {"+", "-", "*", "/", "sqrt", "real"}
 _DOUBLE = 2.0**-53
@@ -39,7 +40,7 @@ class Binary:
 
     def constant(self, value: float, statement: Statement | None) -> float:
         """A number of the law is the double nearest to the exact one."""
-        own = _DOUBLE * abs(value)
+        own = (FOLDED if self.single else _DOUBLE) * abs(value)
         if not self.single or abs(value) > self.largest:
             return own
         return own + abs(float(np.float32(value)) - value)

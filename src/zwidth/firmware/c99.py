@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from zwidth.firmware.printer import Printer
-from zwidth.firmware.program import Cells, Constant, Table, Variable
+from zwidth.firmware.program import Call, Cells, Constant, Table, Variable
 
 Real = Literal["double", "float"]
 
@@ -71,6 +71,8 @@ KEYWORDS = frozenset(
 )
 
 HELPERS = {
+    "opposite": "static inline {real} {prefix}_opposite({real} a) {{ return a == 0 ? 0 : -a; }}",
+    "size": "static inline int32_t {prefix}_size(int32_t a) {{ return a < 0 ? -a : a; }}",
     "least": "static inline {real} {prefix}_least({real} a, {real} b) {{ return b < a ? b : a; }}",
     "most": "static inline {real} {prefix}_most({real} a, {real} b) {{ return b > a ? b : a; }}",
     "rest": "static inline int32_t {prefix}_rest(int32_t a, int32_t b) "
@@ -99,6 +101,9 @@ class C99(Printer):
         return real_text(constant.value, self.real) if constant.kind == "real" else str(int(constant.value))
 
     def operation(self, operator: str, kind: str, read: list[str]) -> str:
+        if operator == "abs" and kind == "integer":
+            self.helpers.add("size")
+            return f"{self.prefix}_size({read[0]})"
         if operator in _LIBRARY:
             return f"{_LIBRARY[operator]}{self.suffix}({read[0]})"
         if operator in ("and", "or"):
@@ -120,6 +125,13 @@ class C99(Printer):
         self.helpers |= {helper, "rest"} if helper == "whole" else {helper}
         return f"{self.prefix}_{helper}({', '.join(read)})"
 
+    def infix(self, operator: str, kind: str, left: str, right: str) -> str:
+        if operator == "-" and kind == "real" and left in ("0.0", "0.0f"):
+            # gcc makes −x of 0.0 − x where it knows that x is not −0.0, and so −0.0 of 0.0 − 0.0
+            self.helpers.add("opposite")
+            return f"{self.prefix}_opposite({right})"
+        return f"{left} {operator} {right}"
+
     def declared(self, variable: Variable, name: str) -> str:
         return f"    {self.type_of(variable)} {name} = 0;"
 
@@ -128,6 +140,38 @@ class C99(Printer):
 
     def place(self, source: Cells | Table, name: str, index: str) -> str:
         return f"s->{name}[{index}]" if isinstance(source, Cells) else f"{self.prefix}_{name}[{index}]"
+
+    def called(self, call: Call, names: list[str], given: list[str]) -> list[str]:
+        cells = ["s"] if call.program.cells else []
+        text = f"{self.prefix}_{call.name}({', '.join([*cells, *given])})"
+        if not any(map(self.is_read, call.results)):
+            return [f"{text};"]
+        if len(names) == 1:
+            return [self.given(call.results[0], names[0], text)]
+        several = self.name(Variable("real", f"of_{call.name}"))
+        parts = [
+            self.given(result, name, f"{several}.r{k}")
+            for k, (result, name) in enumerate(zip(call.results, names, strict=True))
+            if self.is_read(result)
+        ]
+        return [f"const {self.prefix}_{call.name}_results {several} = {text};", *parts]
+
+    def whole_function(self) -> list[str]:
+        program, name = self.program, f"{self.prefix}_{self.function}"
+        cells = [f"{self.prefix}_state *s"] if program.cells else []
+        given = ", ".join([*cells, *(f"{self.type_of(v)} {self.name(v)}" for v in program.parameters)])
+        body = [*self.changing(), *self.block(program.body, 1)]
+        results = [self.read(r, alone=True) for r in program.results]
+        lines, kind = [*self.table_lines()], "void"
+        if len(results) == 1:
+            kind = self.type_of(Variable(program.results[0].kind))
+            body.append(f"    return {results[0]};")
+        elif results:
+            kind = f"{name}_results"
+            parts = " ".join(f"{self.type_of(Variable(r.kind))} r{k};" for k, r in enumerate(program.results))
+            lines.append(f"typedef struct {{ {parts} }} {kind};")
+            body += [f"    const {kind} results = {{ {', '.join(results)} }};", "    return results;"]
+        return [*lines, f"static {kind} {name}({given or 'void'})", "{", *body, "}"]
 
     def counter(self) -> str:
         return "int32_t"
@@ -154,7 +198,8 @@ class C99(Printer):
 def real_text(value: float, real: Real) -> str:
     """A real number that C reads back to the last bit."""
     if real == "float":
-        number = np.float32(value)
+        with np.errstate(over="ignore"):  # no limit is 1e300
+            number = np.float32(value)
         return f"{_pointed(str(number))}f" if np.isfinite(number) else _endless(float(number), "f")
     return _pointed(repr(float(value))) if np.isfinite(value) else _endless(value, "")
 

@@ -33,6 +33,9 @@ from zwidth.writing import check_target, writing_whole
 MOST_COUNTS = 32767
 """Readings of a machine with narrow numbers, unless the travel is given."""
 
+_OF_FRICTION = 0.05
+"""A rounding beyond this part of the Coulomb friction is worth wider numbers."""
+
 _WHOLE = 2**31 - 1
 
 
@@ -252,16 +255,22 @@ def emit(
     kind = _target(target)
     _check_prefix(prefix, kind)
     law = as_environment(environment)
-    made = law_program(device, law)
     chosen = _number(number, kind)
-    numbers = machine(made, chosen, _counts(device, made, chosen, travel), _force_unit(device, force_unit))
+    made = law_program(device, law, single=chosen == "float")
+    numbers = machine(
+        made,
+        chosen,
+        _counts(device, made, chosen, travel),
+        _force_unit(device, force_unit),
+        float(device.exact("coulomb_friction")) * _OF_FRICTION,
+    )
     found = judged(device, law, numbers, decide)
     if not (found.proved or anyway):
         raise NotEmitted(found, _why_not(found))
     certificate = f"{to_json(found.verdict.saved())}\n"
     files = {f"{prefix}.certificate.json": certificate}
     head = about(prefix, device, law, found)
-    constants = defines(device, made, numbers, certificate)
+    constants = defines(device, law, made, numbers, certificate)
     if kind.language == "javascript":
         files[f"{prefix}.mjs"] = module(made, about=head, numbers=constants)
     else:

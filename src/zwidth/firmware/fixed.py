@@ -22,6 +22,7 @@ from zwidth.firmware.program import (
     Store,
     Variable,
 )
+from zwidth.firmware.simplified import FOLDED
 from zwidth.firmware.units import SAME, Scale, Unit, Units, units_of
 
 _ROOM = 1.01
@@ -63,7 +64,7 @@ class Fixed:
     def constant(self, value: float, statement: Statement | None) -> float:
         """Its rounding to whole units, and that of the double that it comes from."""
         more = self.constants.get(statement, 0.0) if statement is not None else 0.0
-        return more + 2.0**-53 * abs(value)
+        return more + FOLDED * abs(value)
 
     def rounding(self, statement: Operation | Store, of: tuple[Bound, ...], result: Bound) -> float:
         """As it was collected."""

@@ -12,7 +12,7 @@ from zwidth.firmware.machine import Machine, rest_numbers
 from zwidth.firmware.program import Operation
 from zwidth.firmware.tidy import tidied
 
-_GUARD = """\
+GUARD = """\
 #if defined(__FAST_MATH__)
 #error "compile without -ffast-math: it changes the law that was proved"
 #endif
@@ -20,21 +20,21 @@ _GUARD = """\
 #error "numbers are kept with more digits than they have: compile with -msse2 -mfpmath=sse"
 #endif"""
 
-_DOUBLE = """\
+DOUBLE = """\
 #if __SIZEOF_DOUBLE__ != 8
 #error "double has no 64 bits here: emit the law in float or in fixed point"
 #endif"""
 
-_UNCONTRACTED = """\
-/* a product and a sum stay two operations with two roundings */
+UNCONTRACTED = """\
+/* a product and a sum stay two operations with two roundings; gcc 12 joins them in vectors all the same */
 #if defined(__clang__)
 #pragma STDC FP_CONTRACT OFF
 #elif defined(__GNUC__)
 #pragma GCC push_options
-#pragma GCC optimize("fp-contract=off")
+#pragma GCC optimize("fp-contract=off", "no-tree-slp-vectorize")
 #endif"""
 
-_AS_BEFORE = """\
+AS_BEFORE = """\
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC pop_options
 #endif"""
@@ -90,7 +90,7 @@ def header(
         "",
         *(f"#define {upper}_{key} {value}  /* {meaning} */" for key, value, meaning in numbers),
         "",
-        *([_UNCONTRACTED, ""] if machine.fixed is None else []),
+        *([UNCONTRACTED, ""] if machine.fixed is None else []),
         f"typedef {body.force} {name}_force;  /* {upper}_FORCE_PER_UNIT each; out of a wall is positive */",
         "",
         "typedef struct {",
@@ -123,7 +123,7 @@ def header(
         f"    {name}_init(s, s->{seen});",
         "}",
         "",
-        *([_AS_BEFORE, ""] if machine.fixed is None else []),
+        *([AS_BEFORE, ""] if machine.fixed is None else []),
         "#endif",
     ]
     return "\n".join(lines) + "\n"
@@ -166,7 +166,7 @@ def _binary(machine: Machine, name: str) -> _Body:
     given = "int32_t counts" if law.resolution > 0 else f"{real} position"
     library = any(isinstance(s, Operation) and s.operator in _OF_MATH for s in law.program.statements())
     return _Body(
-        guards=[_GUARD, *([_DOUBLE] if real == "double" else [])],
+        guards=[GUARD, *([DOUBLE] if real == "double" else [])],
         includes=[*(["#include <math.h>"] if library else []), "#include <stdint.h>"],
         force=real,
         given=given,

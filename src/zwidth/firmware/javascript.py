@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from zwidth.firmware.c99 import real_text
 from zwidth.firmware.printer import Printer
-from zwidth.firmware.program import Cells, Constant, Table, Variable
+from zwidth.firmware.program import Call, Cells, Constant, Table, Variable
 
 KEYWORDS = frozenset(
     [
@@ -121,6 +121,21 @@ class JavaScript(Printer):
     def place(self, source: Cells | Table, name: str, index: str) -> str:
         return f"s.{name}[{index}]" if isinstance(source, Cells) else f"{name}[{index}]"
 
+    def called(self, call: Call, names: list[str], given: list[str]) -> list[str]:
+        text = f"{call.name}({', '.join([*(['s'] if call.program.cells else []), *given])});"
+        if not any(map(self.is_read, call.results)):
+            return [text]
+        return [f"const {_one_or_list(names)} = {text}"]
+
+    def whole_function(self) -> list[str]:
+        program = self.program
+        given = [*(["s"] if program.cells else []), *(self.name(v) for v in program.parameters)]
+        body = [*(f"    {line}" for line in self.changing()), *self.block(program.body, 1)]
+        results = [self.read(r, alone=True) for r in program.results]
+        if results:
+            body.append(f"    return {_one_or_list(results)};")
+        return [*self.table_lines(), f"function {self.function}({', '.join(given)}) {{", *body, "}"]
+
     def counter(self) -> str:
         return "let"
 
@@ -134,3 +149,7 @@ class JavaScript(Printer):
             f"const {name} = [{', '.join(real_text(v, 'double') for v in table.values)}];"
             for table, name in self.tables().items()
         ]
+
+
+def _one_or_list(texts: list[str]) -> str:
+    return texts[0] if len(texts) == 1 else f"[{', '.join(texts)}]"

@@ -3,6 +3,9 @@
 A force that is off by e_k, |e_k| ≤ ε, gives Σ e_k Δx_k ≤ ε Σ |Δx_k| ≤ ε ∫ |v| dt more than the law's own.
 Coulomb friction takes f_c ∫ |v| dt.  So if no hand gains from the law with f_c − ε, none gains from the
 machine with f_c; whatever the delay is, since the force that is off is held as the law's is.
+
+A chain of laws that ends in force bounding needs no ε: that law pays for its own rounding, of 53 or 24 bits,
+and for the converter, and whatever is commanded before it may be off by anything.
 """
 
 from __future__ import annotations
@@ -14,6 +17,7 @@ from fractions import Fraction
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.firmware.machine import Machine
+from zwidth.passivity.bounding import check_bounding, is_bounded
 from zwidth.passivity.check import check
 from zwidth.passivity.parameter_limits import has_stiffness, max_stiffness
 from zwidth.passivity.verdict import Verdict
@@ -48,6 +52,8 @@ class Judged:
         Whether the machine's numbers are in the verdict.
     reason
         Why they are not, or why nothing is proved of them.
+    bounded
+        Whether force bounding at the end pays for the rounding.
     """
 
     machine: Machine
@@ -55,6 +61,7 @@ class Judged:
     verdict: Verdict
     counted: bool
     reason: str = ""
+    bounded: bool = False
 
     @property
     def proved(self) -> bool:
@@ -73,6 +80,8 @@ class Judged:
         """What the numbers of the machine do to the verdict, in a sentence or two."""
         m = self.machine
         what, unit = _NUMBERS[m.number], quantity_unit("coulomb_friction", self.verdict.device.motion)
+        if self.bounded:
+            return f"Force bounding pays for {what} and the converter's steps; what comes before may be off."
         if m.error is None:
             return f"{what} is not in the verdict: {m.reason}."
         off = f"The force is off by {m.error:.4g} {unit} at most: {m.half_step:.4g} by half a step of the "
@@ -101,6 +110,9 @@ def judged(device: Device, environment: Environment, machine: Machine, decide: D
     decide
         In the place of `zwidth.check`.
     """
+    bounded = _bounded(device, environment, machine)
+    if bounded is not None:
+        return bounded
     ideal = decide(device, environment)
     if machine.error is None:
         return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=False, reason=machine.reason)
@@ -118,3 +130,14 @@ def judged(device: Device, environment: Environment, machine: Machine, decide: D
         return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=True)
     left = device.replace(coulomb_friction=Exact(friction - off))
     return Judged(machine=machine, ideal=ideal, verdict=decide(left, environment), counted=True)
+
+
+def _bounded(device: Device, environment: Environment, machine: Machine) -> Judged | None:
+    """Of a chain that ends in force bounding, with the roundings that the machine has; None of any other."""
+    if machine.number == "fixed" or not is_bounded(environment):
+        return None
+    found = check_bounding(device, environment, single=machine.number == "float")
+    if found.certificate is None:
+        return None
+    verdict = Verdict("passive", found.scope, device, environment, certificate=found.certificate)
+    return Judged(machine=machine, ideal=verdict, verdict=verdict, counted=True, bounded=True)

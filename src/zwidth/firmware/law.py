@@ -14,11 +14,12 @@ from zwidth.errors import InputError
 from zwidth.firmware.program import Cells, Program, Variable
 from zwidth.firmware.specialise import specialised
 from zwidth.loop.law import LIMIT, STEP, sampled_force, sampled_force_at
+from zwidth.passivity.bounding import is_bounded
 from zwidth.servo.packing import pack
 
 MEMORY = "memory"
 
-_SMALL = 1e300
+_SMALL = 1e100
 """Any force may be given where a law begins: the machine begins where it is."""
 
 
@@ -36,12 +37,15 @@ class LawProgram:
         What it remembers at rest at 0, and per metre or radian away from it; 2 × n.
     resolution
         Δ, metres or radians per count; 0 where the position is given.
+    pays
+        Whether force bounding at its end pays for the roundings of its operations as they stand.
     """
 
     program: Program
     law: Array
     rest: Array
     resolution: float
+    pays: bool
 
     @property
     def step(self) -> float:
@@ -54,8 +58,16 @@ class LawProgram:
         return float(self.law[LIMIT])
 
 
-def law_program(device: Device, environment: Environment | object) -> LawProgram:
+def law_program(device: Device, environment: Environment | object, *, single: bool = False) -> LawProgram:
     """The program of a law.
+
+    Parameters
+    ----------
+    device, environment
+        The loop.
+    single
+        True where the machine keeps numbers in 24 bits: a law that reckons with its own rounding then
+        sets more aside.
 
     Raises
     ------
@@ -68,11 +80,14 @@ def law_program(device: Device, environment: Environment | object) -> LawProgram
             "a machine runs one law with one period: give single values for the intervals, those that "
             "you take"
         )
-    packed = pack(device, as_environment(environment), 0.0, _SMALL)
+    law = as_environment(environment)
+    packed = pack(device, law, 0.0, _SMALL, single=single)
     resolution = float(device.exact("resolution"))
     cells = Cells(MEMORY, packed.rest.shape[1])
     if resolution > 0.0:
         program = specialised(sampled_force, (packed.law, cells, Variable("integer", "counts")))
     else:
         program = specialised(sampled_force_at, (packed.law, cells, Variable("real", "position")))
-    return LawProgram(program, packed.law, np.asarray(packed.rest, dtype=np.float64), resolution)
+    return LawProgram(
+        program, packed.law, np.asarray(packed.rest, dtype=np.float64), resolution, is_bounded(law)
+    )

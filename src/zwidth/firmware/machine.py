@@ -9,7 +9,7 @@ Coulomb friction of ε takes: so a loop that is passive with f_c − ε is passi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import floor, isfinite, log2
 from typing import Literal
 
@@ -21,6 +21,7 @@ from zwidth.firmware.fixed import Fixed, TooLarge, lowered
 from zwidth.firmware.invariant import Invariant, Places, invariant
 from zwidth.firmware.law import LawProgram
 from zwidth.firmware.program import Operation, Variable
+from zwidth.firmware.simplified import simplified
 from zwidth.firmware.units import Scale, Unit
 
 Number = Literal["double", "float", "fixed"]
@@ -73,7 +74,11 @@ class Machine:
 
 
 def machine(
-    law: LawProgram, number: Number, counts: tuple[float, float], force_unit: float | None = None
+    law: LawProgram,
+    number: Number,
+    counts: tuple[float, float],
+    force_unit: float | None = None,
+    enough: float | None = None,
 ) -> Machine:
     """A law in the numbers of a machine, with the bound of their error.
 
@@ -87,12 +92,16 @@ def machine(
         See `Machine`.
     force_unit
         In fixed point, where the device's converter has no known step: the unit of the force [N; N·m].
+    enough
+        In fixed point: a rounding that needs no wider numbers [N; N·m]; by default a 1000th of the force.
 
     Raises
     ------
     InputError
         If the law has no form in fixed point; and why.
     """
+    if number != "double" and not law.pays:
+        law = replace(law, program=simplified(law.program))
     converter = _converter(law)
     if number != "fixed":
         arithmetic: Arithmetic = DOUBLE if number == "double" else FLOAT
@@ -106,7 +115,7 @@ def machine(
             "fixed point counts encoder steps, and the device has no resolution: give it one, or take float"
         )
     try:
-        return _fixed(law, counts, converter, force_unit)
+        return _fixed(law, counts, converter, force_unit, enough)
     except NoBound as reason:
         raise InputError(
             f'the law cannot be written in fixed point: {reason}; take number="double" or "float" (on '
@@ -160,7 +169,11 @@ def _bounded(
 
 
 def _fixed(
-    law: LawProgram, counts: tuple[float, float], converter: Operation | None, force_unit: float | None
+    law: LawProgram,
+    counts: tuple[float, float],
+    converter: Operation | None,
+    force_unit: float | None,
+    enough: float | None,
 ) -> Machine:
     """The finest unit of force with which nothing leaves its word; a wider word where that is too coarse."""
     exact = _bounded(law, counts, Exact(), converter)
@@ -177,7 +190,8 @@ def _fixed(
                 continue
             if best is None or (made.error or 0.0) < (best.error or 0.0):
                 best = made
-            if word == 64 or (made.rounding or 0.0) <= _WIDE * (made.largest_force or 0.0):
+            wanted = _WIDE * (made.largest_force or 0.0) if enough is None else enough
+            if word == 64 or (made.rounding or 0.0) <= wanted:
                 return best
             break
     if best is None:

@@ -14,6 +14,7 @@ from collections.abc import Callable
 from math import floor, inf
 
 from zwidth.firmware.program import (
+    Call,
     Constant,
     Count,
     Load,
@@ -36,7 +37,8 @@ _ROUNDS = 8
 
 def bounds_of(program: Program) -> dict[Variable, Bounds]:
     """Between which numbers each whole number of a program lies."""
-    found: dict[Variable, Bounds] = {v: _ANY for v in program.parameters if v.kind == "integer"}
+    called = (v for s in program.statements() if isinstance(s, Call) for v in s.results)
+    found: dict[Variable, Bounds] = {v: _ANY for v in (*program.parameters, *called) if v.kind == "integer"}
     grows, rounds = True, 0
     while grows:
         grows, rounds = False, rounds + 1

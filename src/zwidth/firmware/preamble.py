@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hashlib import sha256
+from math import ceil, floor, inf
 from textwrap import wrap
 
 from zwidth.device.device import Device
@@ -10,6 +11,13 @@ from zwidth.environment.environment import Environment
 from zwidth.firmware.judged import PROVED, Judged
 from zwidth.firmware.law import LawProgram
 from zwidth.firmware.machine import Machine
+from zwidth.loop.start import unloaded_range
+
+_START = 0.01
+"""Of the force limit: up to which a main program lets a law begin."""
+
+Define = tuple[str, str, str]
+"""Name, value and meaning of a constant."""
 
 
 def digest(text: str) -> str:
@@ -39,8 +47,8 @@ def about(name: str, device: Device, environment: Environment, found: Judged) ->
 
 
 def defines(
-    device: Device, law: LawProgram, numbers: Machine, certificate: str
-) -> list[tuple[str, str, str]]:
+    device: Device, environment: Environment, law: LawProgram, numbers: Machine, certificate: str
+) -> list[Define]:
     """Name, value and meaning of the constants of a text."""
     linear = device.motion == "linear"
     force, length = ("N", "m") if linear else ("N*m", "rad")
@@ -63,7 +71,20 @@ def defines(
             ("POSITION_MIN", f"({low!r})", f"{length}; readings below are taken as this"),
             ("POSITION_MAX", repr(high), f"{length}; readings above are taken as this"),
         ]
+    rows += _begins(law, environment, numbers.counts)
     rows.append(("FORCE_PER_UNIT", repr(unit), f"{force} per unit of the force"))
     if law.limit > 0:
         rows.append(("FORCE_LIMIT", repr(law.limit), force))
     return [*rows, ("CERTIFICATE_SHA256", f'"{digest(certificate)}"', "of the certificate beside this")]
+
+
+def _begins(law: LawProgram, environment: Environment, counts: tuple[float, float]) -> list[Define]:
+    """Where the law may begin, if not everywhere: on the top of a detent it would give what it holds."""
+    low, high = unloaded_range(environment, _START * law.limit, 0.0)
+    if law.resolution == 0.0 or (low, high) == (-inf, inf):
+        return []
+    least, most = max(low / law.resolution, counts[0]), min(high / law.resolution, counts[1])
+    return [
+        ("BEGINS_MIN", f"({ceil(least)})", "a main program lets the law begin from this reading"),
+        ("BEGINS_MAX", f"({floor(most)})", "to this one"),
+    ]

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from zwidth.firmware.program import (
     Branch,
+    Call,
     Cells,
     Constant,
     Count,
@@ -52,6 +53,8 @@ class Printer(ABC):
 
     program: Program
     reserved: frozenset[str] = frozenset()
+    function: str = ""
+    """The name of the function, where it stands apart."""
     helpers: set[str] = field(default_factory=set)
     """Functions that the text calls besides those of the language."""
 
@@ -64,8 +67,9 @@ class Printer(ABC):
         self._inside: dict[Variable, Statement] = {}
         reads = [o for s in self.program.statements() for o in operands(s)]
         self._reads = Counter(o for o in [*reads, *self.program.results] if isinstance(o, Variable))
-        self._tables = {t: f"table_{k}" if k else "table" for k, t in enumerate(self.program.tables())}
-        self._taken |= set(self._tables.values())
+        table = f"{self.function}_table" if self.function else "table"
+        self._tables = {t: f"{table}_{k}" if k else table for k, t in enumerate(self.program.tables())}
+        self._taken |= {*self._tables.values(), *self.program.functions()}
         _find_inside(self.program.body, self._reads, self._inside, ())
         self._chosen = _chosen(self.program.body, self._reads, self._inside)
 
@@ -88,6 +92,23 @@ class Printer(ABC):
         """A result that never changes."""
 
     @abstractmethod
+    def called(self, call: Call, names: list[str], given: list[str]) -> list[str]:
+        """The lines that give the results of a function that stands apart their names."""
+
+    @abstractmethod
+    def whole_function(self) -> list[str]:
+        """The program as a function that stands apart, with its tables."""
+
+    def function_lines(self) -> list[str]:
+        """The functions that stand apart, in the order in which they may stand."""
+        lines: list[str] = []
+        for name, program in self.program.functions().items():
+            one = replace(self, program=program, function=name, helpers=set())
+            lines += [*one.whole_function(), ""]
+            self.helpers |= one.helpers
+        return lines
+
+    @abstractmethod
     def place(self, source: Cells | Table, name: str, index: str) -> str:
         """One number of an array."""
 
@@ -105,6 +126,10 @@ class Printer(ABC):
             self._taken.add(name)
             self._names[variable] = name
         return self._names[variable]
+
+    def is_read(self, variable: Variable) -> bool:
+        """Whether anything reads it."""
+        return self._reads[variable] > 0
 
     def tables(self) -> dict[Table, str]:
         """The tables and their names."""
@@ -172,6 +197,9 @@ class Printer(ABC):
                 lines.append(f"{pad}{place} = {self.read(s.value, alone=True)};")
             elif isinstance(s, Set):
                 lines.append(f"{pad}{self.name(s.variable)} = {self.read(s.value, alone=True)};")
+            elif isinstance(s, Call):
+                given = [self.read(a, alone=True) for a in s.arguments]
+                lines += [pad + line for line in self.called(s, [self.name(r) for r in s.results], given)]
             elif isinstance(s, Leave):
                 lines.append(f"{pad}break;")
             elif isinstance(s, Branch):
@@ -275,6 +303,8 @@ def _find_inside(
         for inner in blocks(s):
             test = isinstance(s, While) and inner is s.before
             _find_inside(inner, reads, inside, operands(s) if test else ())
+        if isinstance(s, Call) and not s.program.cells:
+            continue
         if not isinstance(s, Operation | Load):
             open_loads.clear()  # what was read before may be changed behind
             continue

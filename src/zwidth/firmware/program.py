@@ -3,7 +3,7 @@
     operation    v = a ∘ b            every result is given once and never changes
     load, store  v = s[i],  s[i] = v  what is remembered from sample to sample
     set          w = v                the few variables that branches and loops change
-    branch, loop, leave               as in any language
+    branch, loop, leave, call         as in any language
 
 No operation hides another, so the order of rounding is the order of the text, in whatever language it
 is printed.
@@ -133,7 +133,17 @@ class Leave:
     """Out of the innermost loop."""
 
 
-Statement = Operation | Load | Store | Set | Branch | Count | While | Leave
+@dataclass(eq=False)
+class Call:
+    """results = a function that stands apart, because it is called at several places; of no law."""
+
+    results: tuple[Variable, ...]
+    name: str
+    program: Program
+    arguments: tuple[Operand, ...]
+
+
+Statement = Operation | Load | Store | Set | Branch | Count | While | Leave | Call
 
 
 @dataclass(eq=False)
@@ -165,6 +175,13 @@ class Program:
         """The tables that are read, each once."""
         read = (s.source for s in self.statements() if isinstance(s, Load))
         return tuple(dict.fromkeys(t for t in read if isinstance(t, Table)))
+
+    def functions(self) -> dict[str, Program]:
+        """The functions that stand apart, by name; what one calls comes before it."""
+        found: dict[str, Program] = {}
+        for call in (s for s in self.statements() if isinstance(s, Call)):
+            found |= call.program.functions() | {call.name: call.program}
+        return found
 
 
 def blocks(statement: Statement) -> tuple[list[Statement], ...]:
@@ -198,6 +215,8 @@ def operands(statement: Statement) -> tuple[Operand, ...]:
         return (statement.value,)
     if isinstance(statement, Count):
         return statement.start, statement.stop
+    if isinstance(statement, Call):
+        return statement.arguments
     return (statement.test,) if isinstance(statement, Branch | While) else ()
 
 
@@ -226,4 +245,6 @@ def _is_unused(statement: Statement, read: set[Variable]) -> bool:
         return statement.variable not in read
     if isinstance(statement, Branch):
         return not (statement.then or statement.other)
+    if isinstance(statement, Call):
+        return not (statement.program.cells or read & set(statement.results))
     return isinstance(statement, Count) and not statement.body

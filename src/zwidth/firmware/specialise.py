@@ -15,6 +15,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from zwidth.firmware.apart import Apart
 from zwidth.firmware.arithmetic import as_operand, converted, is_known, kind_of
 from zwidth.firmware.expressions import Expressions
 from zwidth.firmware.places import cut_tables
@@ -24,6 +25,7 @@ from zwidth.firmware.program import (
     Constant,
     Count,
     Leave,
+    Load,
     Program,
     Set,
     Statement,
@@ -40,7 +42,9 @@ MOST_WRITTEN_OUT = 32
 """Passes of a loop that are written one after the other; a longer one stays a loop."""
 
 
-def specialised(function: Callable[..., Any], arguments: Sequence[Any]) -> Program:
+def specialised(
+    function: Callable[..., Any], arguments: Sequence[Any], apart: Sequence[Callable[..., Any]] = ()
+) -> Program:
     """A program of one function.
 
     Parameters
@@ -50,6 +54,8 @@ def specialised(function: Callable[..., Any], arguments: Sequence[Any]) -> Progr
     arguments
         Of each argument: a number, an array or a tuple that is known; `Cells` for an array that is changed;
         a `Variable` for a number that is given at every call.
+    apart
+        Functions whose calls stay calls: a program that would be too long without them.
 
     Raises
     ------
@@ -58,7 +64,9 @@ def specialised(function: Callable[..., Any], arguments: Sequence[Any]) -> Progr
     """
     source = source_of(function)
     body: list[Statement] = []
-    value = _Writer(source, dict(zip(source.arguments, arguments, strict=True)), (source,)).whole(body)
+    names = dict(zip(source.arguments, arguments, strict=True))
+    standing = Apart(frozenset(source_of(f) for f in apart))
+    value = _Writer(source, names, (source,), standing).whole(body)
     results = value if isinstance(value, tuple) else (() if value is None else (value,))
     parameters = tuple(a for a in _flat(arguments) if isinstance(a, Variable))
     cells = tuple(a for a in arguments if isinstance(a, Cells))
@@ -86,8 +94,10 @@ _FELL, _OVER = False, True
 class _Writer(Expressions):
     """Writes the statements of one call."""
 
+    apart: Apart = field(default_factory=Apart)
     returned: Any = None
     nested: int = 0
+    searching: frozenset[str] = frozenset()
     exits: _Exits = field(default_factory=_Exits)
 
     def whole(self, block: list[Statement]) -> Any:
@@ -96,8 +106,14 @@ class _Writer(Expressions):
         return self.returned
 
     def written_in_place(self, called: Source, names: dict[str, Any], block: list[Statement]) -> Any:
-        """Another call, inside this one."""
-        return _Writer(called, names, (*self.calls, called)).whole(block)
+        """Another call, inside this one or apart."""
+
+        def write(given: dict[str, Any], inner: list[Statement]) -> Any:
+            return _Writer(called, given, (*self.calls, called), self.apart).whole(inner)
+
+        if called in self.apart.sources:
+            return self.apart.call(called, names, write, block)
+        return write(names, block)
 
     def give_back(self, value: Any, node: ast.AST, block: list[Statement]) -> None:
         """A `return`: at once where it is the only one, else through variables that every way sets."""
@@ -154,9 +170,7 @@ class _Writer(Expressions):
         elif isinstance(node, ast.AnnAssign) and node.value is not None:
             self.bind(node.target, self.settled(node.value, block), block)
         elif isinstance(node, ast.AugAssign):
-            before = self.settled(node.target, block)
-            after = self.operate(node, (before, self.settled(node.value, block)), node.op, block)
-            self.bind(node.target, after, block)
+            self.augment(node, block)
         elif isinstance(node, ast.Expr):
             if not isinstance(node.value, ast.Constant):
                 self.read(node.value, block)
@@ -179,15 +193,37 @@ class _Writer(Expressions):
                 value.hint = target.id
             self.names[target.id] = value
         elif isinstance(target, ast.Subscript):
-            cells = self.read(target.value, block)
-            if not isinstance(cells, Cells):
-                raise self.source.refuse(target, "only what is remembered can be changed")
-            index = self.place(target, cells.size, block)
-            if isinstance(value, tuple) or value is None or kind_of(value) == "truth":
-                raise self.source.refuse(target, "an array holds numbers")
-            block.append(Store(cells, as_operand(index), as_operand(converted(value, "real", block))))
+            self.store(target, *self.remembered(target, block), value, block)
         else:
             raise self.source.refuse(target, f"{ast.unparse(target)} cannot be given a value")
+
+    def augment(self, node: ast.AugAssign, block: list[Statement]) -> None:
+        """`a += b`: which place of an array is meant, is asked once."""
+        if not isinstance(node.target, ast.Subscript):
+            before = self.settled(node.target, block)
+            after = self.operate(node, (before, self.settled(node.value, block)), node.op, block)
+            self.bind(node.target, after, block)
+            return
+        cells, index = self.remembered(node.target, block)
+        held = Variable("real")
+        block.append(Load(held, cells, as_operand(index)))
+        after = self.operate(node, (held, self.settled(node.value, block)), node.op, block)
+        self.store(node.target, cells, index, after, block)
+
+    def remembered(self, target: ast.Subscript, block: list[Statement]) -> tuple[Cells, Any]:
+        """A place of an array that is changed."""
+        cells = self.read(target.value, block)
+        if not isinstance(cells, Cells):
+            raise self.source.refuse(target, "only what is remembered can be changed")
+        return cells, self.place(target, cells.size, block)
+
+    def store(
+        self, target: ast.Subscript, cells: Cells, index: Any, value: Any, block: list[Statement]
+    ) -> None:
+        """Give a place of an array its number."""
+        if isinstance(value, tuple) or value is None or kind_of(value) == "truth":
+            raise self.source.refuse(target, "an array holds numbers")
+        block.append(Store(cells, as_operand(index), as_operand(converted(value, "real", block))))
 
     def change(self, held: Changing, value: Any, node: ast.AST, block: list[Statement]) -> None:
         """Set a variable that a loop changes."""
@@ -204,14 +240,19 @@ class _Writer(Expressions):
             return None
         # what follows goes into the branch where one of its ways leaves
         leaves = may_leave(node.body) or may_leave(node.orelse)
-        rest = list(todo) if leaves else []
-        over = self.both(
-            test,
-            lambda b: self.run([*node.body, *rest], b),
-            lambda b: self.run([*node.orelse, *rest], b),
-            node,
-            block,
-        )
+        # so it does in a search that is written out: on each way the place is known
+        leaves = leaves or not self.searching.isdisjoint(assigned([node]))
+        rest, searching = list(todo) if leaves else [], self.searching
+
+        def way(body: list[ast.stmt]) -> Callable[[list[Statement]], bool]:
+            def write(inner: list[Statement]) -> bool:
+                self.searching = searching
+                return self.run([*body, *rest], inner)
+
+            return write
+
+        over = self.both(test, way(node.body), way(node.orelse), node, block)
+        self.searching = searching
         return over if leaves else None
 
     def both(
@@ -255,35 +296,61 @@ class _Writer(Expressions):
         if node.orelse:
             raise self.source.refuse(node.orelse[0], "else of a loop cannot be emitted")
         if isinstance(node, ast.While):
+            if self.search(node, todo, block):
+                return False
             self.while_loop(node, block)
         else:
-            written = self.written_out(node, block)
-            if written is not None:
-                todo[:0] = written
+            if not isinstance(node.target, ast.Name):
+                raise self.source.refuse(node, "a loop has one counter")
+            passes = self.passes(node, block)
+            if isinstance(passes, list):
+                todo[:0] = [
+                    *(n for value in passes for n in (NextPass(node.target, value), *node.body)),
+                    EndOfLoop(),
+                ]
                 return False
-            self.count(node, block)
+            self.count(node, node.target.id, passes, block)
         if self.exits.depth and returns(node.body):  # out of the loop around it as well
             assert self.exits.done is not None, "a loop that may return has it"
             block.append(Branch(self.exits.done, [Leave()]))
         return returns(node.body)
 
-    def written_out(self, node: ast.For, block: list[Statement]) -> list[ast.stmt] | None:
-        """The passes of a short loop with a known count, one after the other; None of any other."""
-        if not isinstance(node.target, ast.Name):
-            raise self.source.refuse(node, "a loop has one counter")
-        if isinstance(node.iter, ast.Tuple):
-            values = [self.settled(e, block) for e in node.iter.elts]
-        else:
-            bounds = self.bounds(node, block)
-            if not all(is_known(b) for b in bounds):
-                return None
-            values = list(range(*bounds))
-            if len(values) > MOST_WRITTEN_OUT or (may_leave(node.body) and len(values) > 2):
-                return None
-        passes = ([NextPass(node.target, value), *node.body] for value in values)
-        return [*(statement for one in passes for statement in one), EndOfLoop()]
+    def search(self, node: ast.While, todo: list[ast.stmt], block: list[Statement]) -> bool:
+        """A search in a short table, step by step; False of any other loop.
 
-    def bounds(self, node: ast.For, block: list[Statement]) -> tuple[Any, Any, Any]:
+        Its ends are known, and each step takes one of two that are known too.
+        """
+        changed = assigned(node.body)
+        held = [self.names[name] for name in changed if name in self.names]
+        ends = [h for h in held if is_known(h) and kind_of(h) == "integer"]
+        short = ends and max(ends) - min(ends) <= MOST_WRITTEN_OUT
+        if len(ends) != len(held) or not short or self.exits.depth or may_leave(node.body):
+            return False
+        if any(isinstance(n, ast.Call | ast.Subscript) for n in ast.walk(node.test)):
+            return False  # it is read once in each pass, and may change what is remembered
+        aside: list[Statement] = []
+        test = self.read(node.test, aside)
+        if aside or not is_known(test):
+            return False
+        if test:
+            self.searching = frozenset(changed)
+            todo[:0] = [*node.body, node]
+        else:
+            self.searching = frozenset()
+        return True
+
+    def passes(self, node: ast.For, block: list[Statement]) -> list[Any] | tuple[Any, Any, int]:
+        """What the counter of a short loop is in turn; of any other the start, the stop and the step."""
+        if isinstance(node.iter, ast.Tuple):
+            return [self.settled(e, block) for e in node.iter.elts]
+        bounds = self.bounds(node, block)
+        if not all(is_known(b) for b in bounds):
+            return bounds
+        values = list(range(*bounds))
+        stays = len(values) > MOST_WRITTEN_OUT or (may_leave(node.body) and len(values) > 2)
+        return bounds if stays else values
+
+    def bounds(self, node: ast.For, block: list[Statement]) -> tuple[Any, Any, int]:
         """Start, stop and step of a range."""
         call = node.iter
         if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "range"):
@@ -297,16 +364,15 @@ class _Writer(Expressions):
             raise self.source.refuse(node, "the step of a range is known and not 0")
         return start, stop, step
 
-    def count(self, node: ast.For, block: list[Statement]) -> None:
+    def count(self, node: ast.For, name: str, bounds: tuple[Any, Any, int], block: list[Statement]) -> None:
         """A loop over a range that stays one."""
-        start, stop, step = self.bounds(node, block)
-        assert isinstance(node.target, ast.Name), "a loop has one counter"
+        start, stop, step = bounds
         held = self.hold(node, node.body, block)
-        counter = Variable("integer", node.target.id)
+        counter = Variable("integer", name)
         made = Count(counter, as_operand(start), as_operand(stop), int(step))
-        self.names[node.target.id] = counter
+        self.names[name] = counter
         self.inside(node, made.body, held, block)
-        self.names[node.target.id] = Unknown()
+        self.names[name] = Unknown()
         block.append(made)
 
     def while_loop(self, node: ast.While, block: list[Statement]) -> None:

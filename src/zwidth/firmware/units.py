@@ -17,6 +17,9 @@ from typing import Any
 from zwidth.firmware.evaluation import NoBound
 from zwidth.firmware.program import Constant, Load, Operand, Operation, Program, Set, Store, Table, Variable
 
+_FINE = 6
+"""Parts of a count, as a power of two, in which a place between two counts is kept."""
+
 SAME = 1e-12
 """Relative: two units, or a number and a whole one, that differ by less are the same but for rounding."""
 
@@ -104,6 +107,14 @@ class Units:
         n = number / self.scale.size(unit)
         return abs(n - round(n)) <= SAME * max(abs(n), 1.0)
 
+    def fine_enough(self, number: float, unit: Unit) -> Unit:
+        """A unit of which a known number is a whole multiple, or nearly."""
+        if self.whole(number, unit):
+            return unit
+        if (unit.counts, unit.steps) == (1, 0):
+            return Unit(1, 0, max(unit.fraction, _FINE))
+        return self.scale.force
+
     def common(self, a: Unit, b: Unit) -> Unit:
         """A unit for both."""
         if (a.counts, a.steps) == (b.counts, b.steps):
@@ -117,7 +128,7 @@ class Units:
             return self.common(one, two)
         for unit, other in ((one, b), (two, a)):
             if unit is not None and isinstance(other, Constant):
-                return unit if self.whole(float(other.value), unit) else self.scale.force
+                return self.fine_enough(float(other.value), unit)
             if unit is not None:
                 return unit  # the other is not found yet
         return None

@@ -99,12 +99,13 @@ def prepare(
     timing: Timing | None = None,
     points_per_sample: int = 1,
     known: dict[Any, Any] | None = None,
+    single: bool = False,
 ) -> Setup:
     """Check everything and lay it out; arguments as of `simulate`.
 
     `known` keeps what belongs to a device and a hand, so that many loops with the
     same two, and the same amplifier, timing and duration, compute it once. Both
-    must live as long as it.
+    must live as long as it.  `single` is of the `LoopContext`.
 
     Raises
     ------
@@ -133,7 +134,7 @@ def prepare(
     kinds, body = _body(met, frame.period)
     reading = laws.measured(state[POSITION], frame.resolution, phase)
     memory = at_rest(np.array([*header, *kinds, 0.0, 0.0, 0.0, *body]), reading)
-    numbers, remembered = _row(row, LoopContext(device, met), reading)
+    numbers, remembered = _row(row, LoopContext(device, met, single), reading)
     begins = [float(len(row)), float(laws.HEADER + len(body)), float(len(memory))]
     packed = np.array([*header, *kinds, *begins, *body, *numbers])
     return Setup(

@@ -28,8 +28,8 @@ from zwidth.quantity.text import exact_text
 from zwidth.rendering.rendered import laws_of
 from zwidth.rendering.rendering_law import LoopContext
 
-ROUNDOFF = Fraction(1, 2**53)
-"""u: relative error of one operation on doubles, at most."""
+ROUNDOFF, SINGLE_ROUNDOFF = Fraction(1, 2**53), Fraction(1, 2**24)
+"""u: relative error of one operation on doubles, on floats, at most."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -57,7 +57,7 @@ class Bounding(PassivityAnswer):
     certificate: Certificate | None
 
 
-def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
+def check_bounding(device: Device, environment: Environment | Any, *, single: bool = False) -> Bounding:
     """Decide whether force bounding, the last law in a chain, makes a loop passive.
 
     Nothing is asked of the environment and of the laws before it: what they command may be anything.  Where
@@ -69,6 +69,8 @@ def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
         Every number certain.
     environment
         ``zw.render(…, ForceBounding())``.
+    single
+        True for a machine that computes the law in float, not in double.
 
     Raises
     ------
@@ -76,14 +78,14 @@ def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
         If the last law is another one, or a number of the device is an interval or missing.
     """
     law = as_environment(environment)
-    numbers = _numbers(device, law)
+    numbers = _numbers(device, law, single)
     if numbers is None:
         raise InputError(
             f"a chain of laws is proved here if ForceBounding() is the last of them, got {law.describe()}"
         )
-    document = _document(device, numbers)
+    document = _document(device, numbers, SINGLE_ROUNDOFF if single else ROUNDOFF)
     found = verify(document)
-    scope = _scope(device, law)
+    scope = _scope(device, law, single)
     if found.scope is None:
         return Bounding("undecided", f"Not proved: {found.reason}.", scope, None)
     rise = current_rise(device)
@@ -103,18 +105,18 @@ def is_bounded(environment: Environment) -> bool:
     return bool(chain) and chain[-1].bounds_the_force
 
 
-def _numbers(device: Device, law: Environment) -> dict[str, Fraction] | None:
+def _numbers(device: Device, law: Environment, single: bool) -> dict[str, Fraction] | None:
     """What the compiled law reckons with, each double as the rational that it is."""
     if not is_bounded(law):
         return None
-    from zwidth.rendering.energy.force_bounding import HAIR  # numba takes its time
+    credit, friction, count, half_step, _, hair = laws_of(law)[-1].numbers(
+        LoopContext(device, law.met, single)
+    )
+    kept = {"credit": credit, "friction": friction, "count": count, "half_step": half_step, "hair": hair}
+    return {name: Fraction(value) for name, value in kept.items()}
 
-    credit, friction, count, half_step, _ = laws_of(law)[-1].numbers(LoopContext(device, law.met))
-    doubles = {"credit": credit, "friction": friction, "count": count, "half_step": half_step, "hair": HAIR}
-    return {name: Fraction(value) for name, value in doubles.items()}
 
-
-def _document(device: Device, numbers: dict[str, Fraction]) -> dict[str, Any]:
+def _document(device: Device, numbers: dict[str, Fraction], roundoff: Fraction) -> dict[str, Any]:
     keys = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
     loop = {key: device.exact(key) for key in keys}
     known = device.force_resolution is not None
@@ -131,15 +133,15 @@ def _document(device: Device, numbers: dict[str, Fraction]) -> dict[str, Any]:
         "format": FORMAT,
         "kind": "force bounding",
         "loop": {unit_key(name, device.motion): exact_text(value) for name, value in loop.items()},
-        "law": {**law, "roundoff": exact_text(ROUNDOFF)},
+        "law": {**law, "roundoff": exact_text(roundoff)},
     }
 
 
-def _scope(device: Device, law: Environment) -> Scope:
+def _scope(device: Device, law: Environment, single: bool) -> Scope:
     """Nothing is asked of what is rendered: whatever is commanded before the last law is paid for."""
     return scope_of(device, law).replace(
         contact="made and broken",
         force_limit=True,
         force_steps=device.force_resolution is not None,
-        law=("any before the last", "doubles"),
+        law=("any before the last", "floats" if single else "doubles"),
     )

@@ -40,6 +40,7 @@ Law = Literal[
     "rounded power",
     "table",
     "doubles",
+    "floats",
     "any before the last",
     "behind a coupling",
     "covered by a wall",

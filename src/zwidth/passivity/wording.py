@@ -42,6 +42,7 @@ _LAW = {
         "parameters"
     ),
     "doubles": "the law computes with doubles: every rounding is paid for, numbers below 1e-300 aside",
+    "floats": "the law computes with floats: every rounding is paid for, numbers below 1e-36 aside",
     "behind a coupling": (
         "the scene gives out no energy of its own, by the way it is stepped, its rounding aside; "
         "the coupling is proved passive before every such environment; "

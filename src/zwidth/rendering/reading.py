@@ -6,6 +6,8 @@ from fractions import Fraction
 from math import inf, nextafter
 from typing import Any
 
+import numpy as np
+
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import PLAIN, part
@@ -50,21 +52,24 @@ def damping_per_sample(at: LoopContext, law: str) -> float:
             f"{law} pays for the force with the device's damping, and {at.device.name} has none: "
             "give the damping that was measured, or another law"
         )
-    return below(damping / at.device.exact("sample_period"))
+    return below(damping / at.device.exact("sample_period"), at.single)
 
 
 def half_step(at: LoopContext) -> float:
     """What the device's converter can add to a force at most, ΔF/2; 0 where its step is unknown [N; N·m]."""
     step = at.device.force_resolution
-    return 0.0 if step is None else above(at.device.exact("force_resolution")) / 2
+    return 0.0 if step is None else above(at.device.exact("force_resolution"), at.single) / 2
 
 
-def below(value: Fraction) -> float:
-    """The largest double that is no more than a rational."""
+def below(value: Fraction, single: bool = False) -> float:
+    """The largest double, or float of 24 bits, that is no more than a rational."""
+    if single:
+        short = np.float32(float(value))
+        return float(short if Fraction(float(short)) <= value else np.nextafter(short, np.float32(-inf)))
     nearest = float(value)
     return nearest if nearest <= value else nextafter(nearest, -inf)
 
 
-def above(value: Fraction) -> float:
-    """The smallest double that is no less than a rational."""
-    return -below(-value)
+def above(value: Fraction, single: bool = False) -> float:
+    """The smallest double, or float of 24 bits, that is no less than a rational."""
+    return -below(-value, single)

@@ -30,10 +30,13 @@ class LoopContext(NamedTuple):
         What the hand holds.
     environment
         What it meets.
+    single
+        True where the machine keeps its numbers in 24 bits, not in 53.
     """
 
     device: Device
     environment: Environment
+    single: bool = False
 
     @property
     def period(self) -> float:

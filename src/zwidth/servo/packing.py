@@ -29,7 +29,9 @@ class Packed(NamedTuple):
     """Between which positions it holds little where it pushes little, see `loop.start.unloaded_range`."""
 
 
-def pack(device: Device, environment: Environment, here: float, force: float) -> Packed:
+def pack(
+    device: Device, environment: Environment, here: float, force: float, *, single: bool = False
+) -> Packed:
     """Lay out a law.
 
     Parameters
@@ -43,6 +45,8 @@ def pack(device: Device, environment: Environment, here: float, force: float) ->
         begins with the memory that belongs to this one.
     force
         Up to which it may begin [N; N·m].
+    single
+        True where the machine keeps numbers in 24 bits.
 
     Raises
     ------
@@ -56,7 +60,7 @@ def pack(device: Device, environment: Environment, here: float, force: float) ->
             "holds where it begins; let it push back at both ends"
         )
     still = PrescribedMotion([0.0, 0.0])
-    setup = prepare(device, environment, still, device.exact("sample_period"))
+    setup = prepare(device, environment, still, device.exact("sample_period"), single=single)
     # one that sees max(x, 0) begins outside: what it remembers inside is another line
     places = (0.0, -1.0, -2.0) if setup.law[GATE] == PENETRATION else (0.0, 1.0, -1.0)
     rest, one, two = (resting_memory(setup, x) for x in places)

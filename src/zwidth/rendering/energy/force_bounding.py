@@ -36,12 +36,10 @@ from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
 FORCE_BOUNDING = 20.0
 
-HAIR = 2.0**-48
-"""ε, relative: 32 roundings of a double."""
+HAIR, SINGLE_HAIR = 2.0**-48, 2.0**-19
+"""ε, relative: 32 roundings of a double, of a float."""
 
-_LESS, _MORE = 1.0 - HAIR, 1.0 + HAIR
-
-_PAID, _FRICTION, _COUNT, _HALF_STEP, _RESETS = range(5)
+_PAID, _FRICTION, _COUNT, _HALF_STEP, _RESETS, _HAIR = range(6)
 _BEFORE, _ENERGY, _SLOPE = range(3)
 
 
@@ -89,10 +87,12 @@ class ForceBounding(RenderingLaw):
             If the device has no damping.
         """
         friction, size = 0.0, 0.0
+        hair = SINGLE_HAIR if at.single else HAIR
         if self.encoder == "counted":
-            friction = below(at.device.exact("coulomb_friction") * (1 - Fraction(HAIR)))
-            size = above(at.device.exact("resolution"))
-        return [damping_per_sample(at, "force bounding"), friction, size, half_step(at), float(self.resets)]
+            friction = below(at.device.exact("coulomb_friction") * (1 - Fraction(hair)), at.single)
+            size = above(at.device.exact("resolution"), at.single)
+        paid = damping_per_sample(at, "force bounding")
+        return [paid, friction, size, half_step(at), float(self.resets), hair]
 
     def describe(self, motion: str = "linear") -> str:
         """The law in a few words."""
@@ -103,6 +103,8 @@ class ForceBounding(RenderingLaw):
 def step(p: Array, i: int, s: Array, j: int, x: float, force: float, applied: float) -> float:
     """One sample; p from i and s from j on are this law's, `applied` is the force that was held."""
     paid, friction, half = p[i + _PAID], p[i + _FRICTION], p[i + _COUNT] / 2
+    hair = p[i + _HAIR]
+    less, more = 1.0 - hair, 1.0 + hair
     energy, slope = s[j + _ENERGY], s[j + _SLOPE]
     if p[i + _RESETS] > 0.0 and applied == 0.0:
         energy, slope = 0.0, 0.0
@@ -120,11 +122,11 @@ def step(p: Array, i: int, s: Array, j: int, x: float, force: float, applied: fl
     if moved != 0.0 or new != slope or beyond > 0.0:
         reach, turn = swing + friction, abs(new - slope) * half
         size = abs(energy) + abs(new) * (abs(x) + abs(before)) + reach * reach / (4 * paid) + turn
-        energy = energy + new * moved - beyond * beyond / (4 * paid) - turn - HAIR * size
-    spare = _LESS * energy - _MORE * abs(new) * half
+        energy = energy + new * moved - beyond * beyond / (4 * paid) - turn - hair * size
+    spare = less * energy - more * abs(new) * half
     if spare < 0.0:  # it was proved to be at least 0: V = 0 is as true, and better
         energy, new, spare = 0.0, 0.0, 0.0
     s[j + _BEFORE], s[j + _ENERGY], s[j + _SLOPE] = x, energy, new
-    room = max(_LESS * (friction + 2 * sqrt(paid * spare)) - p[i + _HALF_STEP], 0.0)
+    room = max(less * (friction + 2 * sqrt(paid * spare)) - p[i + _HALF_STEP], 0.0)
     bounded: float = min(max(force, -room), room)
     return bounded

@@ -1,0 +1,76 @@
+"""Plants of every kind, what moves them, and how they are run in C and JavaScript."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.firmware.plant import Hand, plant_header
+from zwidth.firmware.program import Program
+from zwidth.loop.plant import STATE_SIZE, Plant
+from zwidth.loop.series import WORK
+
+PERIOD = 0.001
+
+PLANTS: dict[str, tuple[Plant, Hand]] = {
+    "free": (Plant(0.05, 0.01, 0.1, 0.02, 0.03, 0.0, 0.0, 0.0, 0.0), "free"),
+    "undamped": (Plant(0.05, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), "free"),
+    "heavy_damping": (Plant(0.002, 0.0, 5.0, 0.02, 0.02, 0.0, 0.0, 0.0, 0.0), "free"),
+    "lagging": (Plant(0.05, 0.0, 0.1, 0.02, 0.03, 0.0, 0.0, 0.002, 0.0), "free"),
+    "slewing": (Plant(0.05, 0.0, 0.1, 0.02, 0.03, 0.0, 0.0, 0.0, 200.0), "free"),
+    "held": (Plant(0.05, 0.01, 0.1, 0.02, 0.03, 300.0, 1.0, 0.0, 0.0), "anchored"),
+    "held_lagging": (Plant(0.05, 0.01, 0.1, 0.02, 0.03, 300.0, 1.0, 0.0005, 0.0), "anchored"),
+    "damped_alone": (Plant(0.05, 0.01, 0.1, 0.02, 0.03, 0.0, 1.0, 0.0, 0.0), "anchored"),
+}
+
+Array = NDArray[np.float64]
+
+CELLS = np.zeros(STATE_SIZE + WORK)
+"""At rest at 0."""
+
+
+def hand_and_law(hand: Hand, rows: int, seed: int) -> Array:
+    """Forces that hold it, let it slide and turn it round; an anchor that rests and moves."""
+    random = np.random.default_rng(seed)
+    size = random.choice([0.0, 0.01, 0.1, 3.0], rows // 20 + 1).repeat(20)[:rows]
+    force, push = (
+        size * random.normal(size=rows),
+        random.choice([0.0, 0.02, 0.5], rows) * random.normal(size=rows),
+    )
+    speed = random.choice([0.0, 0.0, 0.2, -0.2], rows // 40 + 1).repeat(40)[:rows]
+    anchor = np.concatenate([[0.0], np.cumsum(speed * PERIOD)[:-1]])
+    return np.stack([force, push] + ([anchor, speed] if hand == "anchored" else []), 1)
+
+
+def plant_in_c(program: Program, name: str) -> str:
+    """A function for `machines.run_c`."""
+    count = len(program.parameters)
+    given = "".join(f", in[k * {count} + {i}]" for i in range(count))
+    return f"""{plant_header(program, name=name, about=[name])}
+void {name}_rows(const double *in, int rows, double *cells, double *out)
+{{
+    {name}_state s;
+    {name}_init(&s, 0.0);
+    for (int k = 0; k < rows; k += 1) {{
+        {name}_step(&s{given});
+        for (int i = 0; i < {STATE_SIZE}; i += 1) {{ out[k * {STATE_SIZE} + i] = s.state[i]; }}
+    }}
+    for (int i = 0; i < {STATE_SIZE}; i += 1) {{ cells[i] = s.state[i]; }}
+    for (int i = 0; i < {WORK}; i += 1) {{ cells[{STATE_SIZE} + i] = s.work[i]; }}
+}}
+"""
+
+
+def plant_in_javascript(name: str) -> str:
+    """A function for `machines.run_node` of the plant whose module is beside it as NAME.mjs."""
+    return f"""import * as of_{name} from "./{name}.mjs";
+export const {name} = (() => {{
+    const s = of_{name}.init(0);
+    return (row, cells) => {{
+        of_{name}.step(s, ...row);
+        cells.set(s.state);
+        cells.set(s.work, {STATE_SIZE});
+        return s.state;
+    }};
+}})();
+"""

@@ -1,0 +1,246 @@
+"""Functions of the subset have the same bits in C and JavaScript; others are refused by their lines."""
+
+from __future__ import annotations
+
+import inspect
+import math
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from random import Random
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+import random_functions
+from machines import (
+    INCLUDES,
+    compiled_c,
+    needs_c,
+    needs_node,
+    program_in_c,
+    program_in_javascript,
+    run_c,
+    run_node,
+    same_bits,
+)
+from numpy.typing import NDArray
+from refused_functions import REFUSED
+from small_functions import FUNCTIONS, NUMPY
+from strategies import seeds
+
+import zwidth as zw
+from zwidth.firmware.program import Cells, Load, Program, Set, Table, Variable
+from zwidth.firmware.specialise import specialised
+
+Array = NDArray[np.float64]
+
+
+def _program(function: Callable[..., Any], size: int = 4, *known: Any) -> Program:
+    given = [Variable("real", "x"), Variable("integer", "k")]
+    return specialised(function, (Cells("m", size), *known, *given))
+
+
+def _assert_same(
+    programs: Mapping[str, Program],
+    python: Mapping[str, Callable[..., Any]],
+    rows: Array,
+    cells: Array,
+    folder: Path,
+) -> None:
+    """`python` takes the cells and the numbers of a row."""
+    wide = {name: len(p.results) for name, p in programs.items()}
+    expected = {}
+    for name, function in python.items():
+        held = np.array(cells)
+        given = [[*map(float, row[:-1]), int(row[-1])] for row in rows]
+        with np.errstate(all="ignore"):
+            expected[name] = (
+                np.array([function(held, *row) for row in given], dtype=float).reshape(len(rows), -1),
+                held,
+            )
+    library = compiled_c(INCLUDES + "".join(program_in_c(p, n) for n, p in programs.items()), folder)
+    text = "".join(program_in_javascript(p, n) for n, p in programs.items())
+    in_node = run_node(text, folder, {n: (rows, cells, wide[n]) for n in programs})
+    wrong = []
+    for name, (outputs, held) in expected.items():
+        for ran in (run_c(library, name, rows, cells, wide[name]), in_node[name]):
+            if not (same_bits(outputs, ran.outputs) and same_bits(held, ran.cells)):
+                wrong.append(name)
+    assert not wrong
+
+
+def _over_zero(function: Callable[..., Any]) -> Callable[..., Any]:
+    """With numbers of numpy, which divide by 0."""
+    return lambda m, x, k: function(m, np.float64(x), np.int64(k))
+
+
+@needs_c
+@needs_node
+def test_small_functions_have_the_same_bits_in_every_language(tmp_path: Path) -> None:
+    """Returns in nested branches, loops that are left, swaps, merges, whole and real, known and not."""
+    functions = {f.__name__: f for f in FUNCTIONS} | {f.__name__: _over_zero(f) for f in NUMPY}
+    programs = {f.__name__: _program(f) for f in (*FUNCTIONS, *NUMPY)}
+    random = np.random.default_rng(1)
+    x = random.choice([0.0, -0.0, 0.5, 1.0, -2.5, 7.25], 200) * random.choice([1.0, 1e-3, -1.0], 200)
+    rows = np.stack([x, random.integers(0, 10, 200)], 1)
+    _assert_same(programs, functions, rows, np.array([1.0, -2.0, 0.25, 3.5]), tmp_path)
+
+
+def _module(text: str, folder: Path, name: str) -> ModuleType:
+    path = folder / f"{name}.py"
+    path.write_text(text, encoding="utf-8")
+    spec = spec_from_file_location(name, path)
+    assert spec is not None
+    assert spec.loader is not None
+    made = module_from_spec(spec)
+    spec.loader.exec_module(made)
+    return made
+
+
+def _quotient(a: float, b: float) -> float:
+    with np.errstate(all="ignore"):
+        return float(np.float64(a) / np.float64(b))
+
+
+@needs_c
+@needs_node
+@seeds(4)
+def test_random_functions_have_the_same_bits_in_every_language(
+    seed: int, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """Whatever is put together of the subset: C and JavaScript do as Python does, also with ∞ and NaN.
+
+    Functions that they call are written in place in one, and stand apart in the next.
+    """
+    random, folder = Random(seed), tmp_path_factory.mktemp("random")
+    names = [f"f{k}" for k in range(25)]
+    text = (
+        random_functions.HEAD + "\n\n" + "".join(random_functions.random_function(random, n) for n in names)
+    )
+    made = _module(text, folder, f"made_{seed}")
+    p = tuple(random.uniform(-3, 3) for _ in range(random_functions.KNOWN))
+    given = (Variable("real", "x"), Variable("real", "y"), Variable("integer", "k"))
+    cells = Cells("m", random_functions.CELLS)
+    apart = [made.searched, made.twice, made.kept]
+    programs = {
+        n: specialised(getattr(made, n), (cells, p, 4, *given), apart if k % 2 else ())
+        for k, n in enumerate(names)
+    }
+    made.over = _quotient  # type: ignore[attr-defined]  # Python raises where a number is divided by 0
+    draw = np.random.default_rng(seed)
+    rows = np.stack(
+        [
+            draw.choice([0.0, -0.0, 1.5, -2.25, 3.0, 1e3, -1e-3, math.inf], 40),
+            3.0 * draw.normal(size=40),
+            draw.integers(0, 10, 40),
+        ],
+        1,
+    )
+    functions = {n: _of_lists(getattr(made, n), p) for n in names}
+    _assert_same(programs, functions, rows, draw.normal(size=cells.size), folder)
+
+
+def _of_lists(function: Callable[..., Any], p: tuple[float, ...]) -> Callable[..., Any]:
+    """With numbers of Python in the array, which are quiet about ∞."""
+
+    def run(m: Array, x: float, y: float, k: int) -> Any:
+        held = [float(v) for v in m]
+        result = function(held, p, 4, x, y, k)
+        m[:] = held
+        return result
+
+    return run
+
+
+@pytest.mark.parametrize("function", REFUSED, ids=lambda f: f.__name__)
+def test_what_cannot_be_emitted_is_refused_by_its_line(function: Callable[..., Any]) -> None:
+    """The message names the file, the line, and what stands there."""
+    lines, first = inspect.getsourcelines(function)
+    number, what = next(
+        (first + k, line.split("# here: ")[1].strip()) for k, line in enumerate(lines) if "# here" in line
+    )
+    with pytest.raises(zw.InputError, match=re.escape(f"refused_functions.py:{number}: ")) as refused:
+        _program(function)
+    assert what in str(refused.value)
+
+
+def test_what_has_no_source_is_refused() -> None:
+    """A function of a library in C cannot be read."""
+    with pytest.raises(zw.InputError, match="cannot be emitted"):
+        specialised(math.hypot, (1.0, 2.0))
+
+
+def _searched(p: Array, x: float) -> float:
+    low, high = 3, 63
+    while high - low > 1:
+        middle = (low + high) // 2
+        if p[middle] <= x:
+            low = middle
+        else:
+            high = middle
+    return p[low] + p[low + 100]
+
+
+def _searched_shortly(p: Array, x: float) -> float:
+    low, high = 3, 6
+    while high - low > 1:
+        middle = (low + high) // 2
+        if p[middle] <= x:
+            low = middle
+        else:
+            high = middle
+    return p[low] + p[low + 10]
+
+
+def test_a_short_search_is_written_out() -> None:
+    """No table is left: on each way the place is known, and so is the sum."""
+    program = specialised(_searched_shortly, (np.arange(20.0), Variable("real", "x")))
+    assert not program.tables()
+    given = {float(s.value.value) for s in program.statements() if isinstance(s, Set)}
+    assert given == {16.0, 18.0, 20.0}
+
+
+def test_a_table_has_what_can_be_read_alone() -> None:
+    """Of 200 known numbers, of which a search reads 3 to 62, and a hundred further, those are kept."""
+    numbers = np.arange(200.0)
+    program = specialised(_searched, (numbers, Variable("real", "x")))
+    kept = {
+        s.source.values for s in program.statements() if isinstance(s, Load) and isinstance(s.source, Table)
+    }
+    assert kept == {tuple(map(float, range(3, 63))), tuple(map(float, range(103, 163)))}
+
+
+_EMITTED = """
+import zwidth as zw
+from zwidth.firmware.header import header
+from zwidth.firmware.law import law_program
+from zwidth.firmware.machine import Machine
+from zwidth.firmware.module import module
+law = law_program(
+    zw.catalogue.device("haptic-paddle"),
+    zw.render(zw.Wall(300, "0.2"), zw.rendering.PassivityController(), zw.rendering.EventTransient()),
+)
+wide = Machine(law, "double", (-1.0, 1.0), None)
+print(header(wide, name="law", about=["a"], numbers=[]) + module(law, about=["a"], numbers=[]))
+"""
+
+
+def test_the_same_law_has_the_same_bytes_in_every_process() -> None:
+    """Two processes that order sets otherwise print the same header and the same module."""
+    texts = [
+        subprocess.run(
+            [sys.executable, "-c", _EMITTED],
+            env=os.environ | {"PYTHONHASHSEED": seed},
+            capture_output=True,
+            check=True,
+        ).stdout
+        for seed in ("1", "2")
+    ]
+    assert texts[0] == texts[1]
+    assert b"law_step" in texts[0]
