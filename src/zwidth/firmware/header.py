@@ -201,7 +201,10 @@ def _whole(machine: Machine, name: str) -> _Body:
         program, KEYWORDS | {name, _READING}, prefix=name, word=word, narrow=fixed.narrow, short=short
     )
     step = [*c.changing(), *c.block(program.body, 1)]
-    result = c.read(program.results[0], alone=True)
+    force = _force_word(machine, word)
+    result = c.read(program.results[0], alone=force == word)
+    if force != word:
+        result = f"(int{force}_t){result}"
     rest = []
     for k in range(machine.law.rest.shape[1]):
         start, per, shift = rest_numbers(machine.law, fixed, k)
@@ -216,7 +219,7 @@ def _whole(machine: Machine, name: str) -> _Body:
     return _Body(
         guards=[SHIFTS],
         includes=["#include <stdint.h>"],
-        force=c.integer,
+        force=f"int{force}_t",
         given="int32_t counts",
         memory=c.integer,
         before=c.helper_lines(),
@@ -224,3 +227,11 @@ def _whole(machine: Machine, name: str) -> _Body:
         step=step,
         result=result,
     )
+
+
+def _force_word(machine: Machine, word: int) -> int:
+    """The bits that hold the largest force: few, whatever the numbers in between have."""
+    fixed, most = machine.fixed, machine.largest_force
+    assert fixed is not None, "asked of fixed point"
+    fits = most is not None and most < _WHOLE * fixed.units.scale.size(fixed.result)
+    return 32 if fits else word
