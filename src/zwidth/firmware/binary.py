@@ -8,7 +8,8 @@ from math import inf
 import numpy as np
 
 from zwidth.firmware.bound import Bound
-from zwidth.firmware.program import Constant, Operation, Statement, Store
+from zwidth.firmware.evaluation import Rounded
+from zwidth.firmware.program import Constant, Operation, Statement
 from zwidth.firmware.simplified import FOLDED
 
 _ROUNDED = {"+", "-", "*", "/", "sqrt", "real"}
@@ -41,13 +42,16 @@ class Binary:
     def constant(self, value: float, statement: Statement | None) -> float:
         """A number of the law is the double nearest to the exact one."""
         own = (FOLDED if self.single else _DOUBLE) * abs(value)
-        if not self.single or abs(value) > self.largest:
+        if not self.single:
             return own
-        return own + abs(float(np.float32(value)) - value)
+        if abs(value) > self.largest:  # endless: it can be compared with, no more
+            computes = isinstance(statement, Operation) and statement.operator in _ROUNDED
+            return inf if computes else own
+        return own + max(abs(float(np.float32(value)) - value), min(abs(value), self.least))
 
-    def rounding(self, statement: Operation | Store, of: tuple[Bound, ...], result: Bound) -> float:
+    def rounding(self, statement: Rounded, of: tuple[Bound, ...], result: Bound) -> float:
         """u of the computed result, where there is a rounding."""
-        if isinstance(statement, Store) or statement.operator not in _ROUNDED:
+        if not isinstance(statement, Operation) or statement.operator not in _ROUNDED:
             return 0.0
         if statement.result.kind != "real":
             return 0.0
@@ -60,12 +64,14 @@ class Binary:
             return 0.0
         return self.unit * size * (1 + 2 * self.unit) + self.least
 
-    def keeps_sign(self, statement: Operation | Store) -> bool:
-        """Of products with numbers that are not tiny."""
-        if isinstance(statement, Store) or statement.operator not in ("*", "/", "real"):
+    def keeps_sign(self, statement: Rounded) -> bool:
+        """Of products with known numbers that are not tiny."""
+        if not isinstance(statement, Operation) or statement.operator not in ("*", "/", "real"):
             return False
-        known = (abs(float(o.value)) for o in statement.operands if isinstance(o, Constant))
-        return all(k == 0.0 or k > _TINY for k in known)
+        known = [abs(float(o.value)) for o in statement.operands if isinstance(o, Constant)]
+        if statement.operator == "/":  # the divisor
+            return isinstance(statement.operands[1], Constant) and 0.0 < known[-1] < 1 / _TINY
+        return statement.operator == "real" or any(k == 0.0 or k > _TINY for k in known)
 
 
 DOUBLE = Binary(_DOUBLE, 2.0**-1074, 1.7e308, False)

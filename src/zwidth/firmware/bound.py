@@ -147,9 +147,11 @@ def divided(a: Bound, b: Bound) -> Bound:
 
 def rooted(a: Bound) -> Bound:
     """A square root."""
-    low, high = sqrt(max(a.low, 0.0)), sqrt(max(a.high, 0.0))
     left = a.low - a.error
-    error = a.error / (2 * sqrt(left)) if left > 0 else sqrt(2 * a.error)
+    if a.low < 0.0 or (left < 0.0 and not a.signed):  # of a negative number a machine gives none
+        return bent(0.0, inf, inf, (a,))
+    low, high = sqrt(a.low), sqrt(a.high)
+    error = a.error / (2 * sqrt(left)) if left > 0 else sqrt(a.error)
     return bent(_less(low), _more(high), _more(error), (a,), a.signed)
 
 
@@ -169,8 +171,7 @@ def _chosen(low: float, high: float, a: Bound, b: Bound, first: bool, second: bo
         return a
     if second and a.error == b.error == 0.0:
         return b
-    zero = (b.signed and a.low == a.high == 0.0) or (a.signed and b.low == b.high == 0.0)
-    return bent(low, high, max(a.error, b.error), (a, b), zero or (a.signed and b.signed))
+    return bent(low, high, max(a.error, b.error), (a, b), a.signed and b.signed)
 
 
 def absolute(a: Bound) -> Bound:

@@ -41,6 +41,8 @@ from zwidth.firmware.program import (
     Variable,
 )
 
+Rounded = Operation | Store | Set
+
 
 class NoBound(Exception):
     """Nothing can be said of a number, and why."""
@@ -52,10 +54,10 @@ class Arithmetic(Protocol):
     def constant(self, value: float, statement: Statement | None) -> float:
         """How far a number of the law, 0 apart, is off as a statement has it."""
 
-    def rounding(self, statement: Operation | Store, of: tuple[Bound, ...], result: Bound) -> float:
-        """How far a result is off its operands' exact result."""
+    def rounding(self, statement: Rounded, of: tuple[Bound, ...], result: Bound) -> float:
+        """How far a result is off its operands' exact result; of a comparison, its two sides together."""
 
-    def keeps_sign(self, statement: Operation | Store) -> bool:
+    def keeps_sign(self, statement: Rounded) -> bool:
         """Whether a result that is off still has the exact one's sign, and is 0 only where that is."""
 
 
@@ -65,20 +67,21 @@ class Exact:
     def constant(self, value: float, statement: Statement | None) -> float:
         return 0.0
 
-    def rounding(self, statement: Operation | Store, of: tuple[Bound, ...], result: Bound) -> float:
+    def rounding(self, statement: Rounded, of: tuple[Bound, ...], result: Bound) -> float:
         return 0.0
 
-    def keeps_sign(self, statement: Operation | Store) -> bool:
+    def keeps_sign(self, statement: Rounded) -> bool:
         return True
 
 
 @dataclass(frozen=True)
 class Test:
-    """A comparison, as far as it narrows what it compares."""
+    """A comparison, as far as it narrows what it compares; and by how much that is rounded for it."""
 
     operator: str
     left: Operand
     right: Operand
+    rounding: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -156,7 +159,8 @@ class Evaluation:
         if s.variable.kind == "truth":
             way.truths[s.variable] = replace(self.truth(s.value, way), test=None)
             return
-        way.values[s.variable] = self.value(s.value, way, s)
+        value = self.value(s.value, way, s)
+        way.values[s.variable] = self.rounded(s, (value,), value)
         self.keep(s.variable, way.values[s.variable], keep)
 
     def keep(self, variable: Variable, value: Bound, keep: bool) -> None:
@@ -197,7 +201,7 @@ class Evaluation:
         way.values[s.result] = value
         self.keep(s.result, value, keep)
 
-    def rounded(self, s: Operation | Store, of: tuple[Bound, ...], exact: Bound) -> Bound:
+    def rounded(self, s: Rounded, of: tuple[Bound, ...], exact: Bound) -> Bound:
         """A result as the machine has it."""
         error = self.arithmetic.rounding(s, of, exact)
         signed = exact.signed and (error == 0.0 or self.arithmetic.keeps_sign(s))
@@ -215,8 +219,7 @@ class Evaluation:
         """The truth of a comparison, or of several."""
         if s.operator == "not":
             one = self.truth(s.operands[0], way)
-            test = one.test and Test(_OPPOSITE[one.test.operator], one.test.left, one.test.right)
-            return Truth(one.false, one.true, one.sure, test)
+            return Truth(one.false, one.true, one.sure, _not(one.test))
         if s.operator in ("and", "or"):
             p, q = (self.truth(o, way) for o in s.operands)
             if s.operator == "and":
@@ -226,10 +229,11 @@ class Evaluation:
             return self.truth(s.operands[0], way)
         a, b = (self.value(o, way, s) for o in s.operands)
         true, false = _can(s.operator, a, b), _can(_OPPOSITE[s.operator], a, b)
-        doubt = a.error + b.error
-        exact = doubt == 0.0 or (b.low == b.high == b.error == 0.0 and a.signed)
+        rounding = self.arithmetic.rounding(s, (a, b), added(a, b, -1.0))
+        doubt = a.error + b.error + rounding
+        exact = doubt == 0.0 or (b.low == b.high == b.error == rounding == 0.0 and a.signed)
         away = a.low - b.high > doubt or b.low - a.high > doubt
-        return Truth(true, false, exact or away, Test(s.operator, *s.operands))
+        return Truth(true, false, exact or away, Test(s.operator, s.operands[0], s.operands[1], rounding))
 
     def branch(self, s: Branch, way: _Way, keep: bool) -> None:
         """Both ways of a branch, as far as they can be taken, joined."""
@@ -265,7 +269,8 @@ class Evaluation:
         """Where the computed program may decide otherwise than the exact one."""
         if test is None:
             return self.narrowed(way, None, 0.0)
-        doubt = self.value(test.left, way).error + self.value(test.right, way).error
+        sides = self.value(test.left, way), self.value(test.right, way)
+        doubt = sides[0].error + sides[1].error + test.rounding
         return self.narrowed(way, replace(test, operator="=="), doubt)
 
 
@@ -320,7 +325,7 @@ def _either(a: Truth | None, b: Truth | None, old: _Way) -> Truth:
 
 
 def _not(test: Test | None) -> Test | None:
-    return test and Test(_OPPOSITE[test.operator], test.left, test.right)
+    return test and replace(test, operator=_OPPOSITE[test.operator])
 
 
 def _can(operator: str, a: Bound, b: Bound) -> bool:

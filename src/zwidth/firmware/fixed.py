@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import ceil, floor
 
 from zwidth.firmware.bound import Bound
-from zwidth.firmware.evaluation import NoBound
+from zwidth.firmware.evaluation import NoBound, Rounded
 from zwidth.firmware.program import (
     Branch,
     Cells,
@@ -22,7 +22,6 @@ from zwidth.firmware.program import (
     Store,
     Variable,
 )
-from zwidth.firmware.simplified import FOLDED
 from zwidth.firmware.units import SAME, Scale, Unit, Units, units_of
 
 _ROOM = 1.01
@@ -51,6 +50,8 @@ class Fixed:
         The whole numbers that 16 bits hold.
     result
         The unit of what it gives back.
+    to_zero
+        Products that may be rounded to 0.
     """
 
     program: Program
@@ -60,19 +61,21 @@ class Fixed:
     most: dict[Variable, float]
     narrow: frozenset[Variable]
     result: Unit
+    to_zero: frozenset[Statement] = frozenset()
 
     def constant(self, value: float, statement: Statement | None) -> float:
         """Its rounding to whole units, and that of the double that it comes from."""
         more = self.constants.get(statement, 0.0) if statement is not None else 0.0
-        return more + FOLDED * abs(value)
+        return more + SAME * abs(value)  # what differs by less than that from a unit is taken for it
 
-    def rounding(self, statement: Operation | Store, of: tuple[Bound, ...], result: Bound) -> float:
+    def rounding(self, statement: Rounded, of: tuple[Bound, ...], result: Bound) -> float:
         """As it was collected."""
         return self.roundings.get(statement, 0.0)
 
-    def keeps_sign(self, statement: Operation | Store) -> bool:
+    def keeps_sign(self, statement: Rounded) -> bool:
         """Of products with whole numbers."""
-        return isinstance(statement, Operation) and statement.operator == "*"
+        is_product = isinstance(statement, Operation) and statement.operator == "*"
+        return is_product and statement not in self.to_zero
 
 
 def lowered(program: Program, scale: Scale, sizes: Mapping[Variable, Bound], cells: list[float]) -> Fixed:
@@ -109,6 +112,7 @@ class _Lowering:
     roundings: dict[Statement, float] = field(default_factory=dict)
     most: dict[Variable, float] = field(default_factory=dict)
     count: dict[Variable, int] = field(default_factory=dict)
+    to_zero: set[Statement] = field(default_factory=set)
 
     @property
     def scale(self) -> Scale:
@@ -121,10 +125,21 @@ class _Lowering:
         body: list[Statement] = []
         self.block(program.body, body)
         (result,) = program.results
+        if isinstance(result, Constant):
+            raise NoBound("its force is the same everywhere")
         out = self.read(result, self.unit(result), None, body)
         made = Program(program.parameters, program.cells, body, (out,))
         narrow = frozenset(self.names[v] for v, n in self.count.items() if n <= _NARROW and v in self.names)
-        return Fixed(made, self.units, self.constants, self.roundings, self.most, narrow, self.unit(result))
+        return Fixed(
+            made,
+            self.units,
+            self.constants,
+            self.roundings,
+            self.most,
+            narrow,
+            self.unit(result),
+            frozenset(self.to_zero),
+        )
 
     def unit(self, operand: Operand) -> Unit:
         """The unit of an operand; of a known number, and where nothing tells, that of a force."""
@@ -229,13 +244,16 @@ class _Lowering:
                 raise TooLarge
             self.off(self.roundings, s, abs(factor - m * size) * n)
             return self.made("product", (value, Constant(m, "integer")), out)
-        shift = self.scale.word - 2 - max(ceil(abs(ratio)).bit_length(), 0)
+        # the product is kept in 64 bits, with the half that rounds it
+        shift = min(self.scale.word - 2, 62 - n.bit_length()) - ceil(abs(ratio)).bit_length()
         shift = next((k for k in _BYTES if k < shift and n <= 2**k), shift)
         m = round(ratio * 2.0**shift)
         if abs(ratio) * n + 1 > self.scale.largest or shift < 1:
             raise TooLarge
         error = abs(factor - m * 2.0**-shift * size) * n + 0.5 * size
         self.off(self.roundings, s, error)
+        if s is not None:
+            self.to_zero.add(s)
         return self.made("scaled", (value, Constant(m, "integer"), Constant(shift, "integer")), out)
 
     def made(self, operator: str, operands: tuple[Operand, ...], out: list[Statement]) -> Variable:
@@ -333,6 +351,8 @@ class _Lowering:
                 if operator in ("==", "!="):
                     raise NoBound("it compares with a number that no reading can be")
                 operator, near = ("<=", floor(level)) if operator in ("<", "<=") else (">=", ceil(level))
+            else:
+                self.off(self.constants, s, abs(level - near) * self.scale.size(unit))
             near = max(min(near, self.scale.largest), -self.scale.largest)
             out.append(Operation(result, operator, (self.names[a], Constant(near, "integer"))))
             return

@@ -1,13 +1,16 @@
 """What a program can remember, after any number of calls with any input in its range.
 
-What is a sum of what was remembered before, m ← A m + r, stays within Σ |Aᵏ| |r|, and its error within
-Σ |Aᵏ| δ; anything else is followed from rest until it grows no more.
+What is a sum of what was remembered before, m ← A m + r with |r| ≤ R, stays within Σ |Aᵏ| R, and its error
+within Σ |Aᵏ| δ; anything else is followed from rest until it grows no more.
+
+It begins at some m₀, which is what an endless r = (I − A) m₀ would have left.  So R is made no less than that.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +24,33 @@ _MOST_POWERS = 200_000
 _SETTLED = 1e-9
 """Relative: what grows by less has settled, and is widened by as much."""
 
+_BETWEEN = 1e-12
+"""Relative: what the coefficients of a sum are off, and each of the products that make their powers."""
+
 Places = list[tuple[float, float, float]]
 """Low, high and error of every place of the memory."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """What a program remembers at first: anything on a straight line between two ends.
+
+    Parameters
+    ----------
+    ends
+        2 × n.
+    error
+        By how much the computed one is off, place by place.
+    """
+
+    ends: NDArray[np.float64]
+    error: tuple[float, ...]
+
+    @property
+    def places(self) -> Places:
+        """The same, place by place."""
+        low, high = self.ends.min(axis=0), self.ends.max(axis=0)
+        return [(float(a), float(b), e) for a, b, e in zip(low, high, self.error, strict=True)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +75,7 @@ class Invariant:
 def invariant(
     program: Program,
     given: Mapping[Variable, Bound],
-    rest: Places,
+    rest: Rest,
     arithmetic: Arithmetic,
     converter: Operation | None = None,
 ) -> Invariant:
@@ -71,7 +99,7 @@ def invariant(
     NoBound
         If there is no bound, or none was found; and why.
     """
-    memory = list(rest)
+    memory = rest.places
     for _ in range(_MOST_PASSES):
         evaluation = Evaluation(arithmetic, converter)
         after, results = evaluation.run(program, given, memory)
@@ -96,7 +124,7 @@ def _widened(new: tuple[float, float, float], old: tuple[float, float, float]) -
     return low, high, error
 
 
-def _grown(rest: Places, memory: Places, after: list[Bound]) -> Places:
+def _grown(rest: Rest, memory: Places, after: list[Bound]) -> Places:
     """What is remembered after one more call at least, and for ever where it is a sum."""
     sums = [k for k, b in enumerate(after) if b.coefficients and not _is_kept(k, b)]
     found = [
@@ -111,14 +139,19 @@ def _grown(rest: Places, memory: Places, after: list[Bound]) -> Places:
         others = [(c, found[j]) for j, c in (b.coefficients or {}).items() if j not in sums]
         size[row] = max(abs(b.rest_low), abs(b.rest_high)) + sum(abs(c) * max(-m[0], m[1]) for c, m in others)
         error[row] = b.own + sum(abs(c) * m[2] for c, m in others)
-    # at rest at x it holds what an endless x would have left: that is within the sums but for its rounding
-    first = np.array([rest[k][2] for k in sums])
-    total = _gains(a)
-    size, error = total @ size, total @ (error + first)
+    first = np.array([rest.error[k] for k in sums])
+    total = _gains(a.tobytes(), len(a))
+    size, error = total @ np.maximum(size, _endless(a, rest.ends[:, sums])), total @ (error + first)
     for row, k in enumerate(sums):
-        most = max(float(size[row]), -rest[k][0], rest[k][1])
-        found[k] = (-most, most, float(error[row]))
+        found[k] = (-float(size[row]), float(size[row]), float(error[row]))
     return found
+
+
+def _endless(a: NDArray[np.float64], ends: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The largest |(I − A) m₀|, which is at an end."""
+    size = np.abs(ends) + np.abs(ends) @ np.abs(a).T
+    most: NDArray[np.float64] = (np.abs(ends - ends @ a.T) + 1e-15 * len(a) * size).max(axis=0)
+    return most
 
 
 def _is_kept(place: int, after: Bound) -> bool:
@@ -126,16 +159,29 @@ def _is_kept(place: int, after: Bound) -> bool:
     return after.coefficients == {place: 1.0} and after.rest_low == after.rest_high == after.own == 0.0
 
 
-def _gains(a: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Σ |Aᵏ|, not less than it is."""
-    total, power = np.zeros_like(a), np.eye(len(a))
+@lru_cache(maxsize=64)
+def _gains(of: bytes, n: int) -> NDArray[np.float64]:
+    """G ≥ Σ |Aᵏ|: of the computed powers' sum S and what rounding did to each, G ≥ S + S |δA| G."""
+    a = np.frombuffer(of).reshape(n, n)
+    total, power = np.zeros_like(a), np.eye(n)
     for count in range(_MOST_POWERS):
         norm = float(np.abs(power).sum(axis=1).max())
         if count and norm < 1e-9:
             rows = float(total.sum(axis=1).max())
-            return (total + norm / (1 - norm) * rows) * (1 + 1e-9)
+            return _above((total + norm / (1 - norm) * rows) * (1 + 1e-9), _BETWEEN * np.abs(a))
         total += np.abs(power)
         power = power @ a
         if not np.isfinite(norm) or norm > 1e12:
             break
     raise NoBound("it forgets nothing of what it has seen, so that its errors add up without end")
+
+
+def _above(total: NDArray[np.float64], off: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A G with G ≥ S + S |δA| G: it is above all such sums of a matrix that is off by so much."""
+    gain, turned = total * (1 + 1e-9), total @ off
+    for _ in range(_MOST_PASSES):
+        more = total + turned @ gain
+        if (more <= gain).all():
+            return gain
+        gain = np.maximum(gain, more) * (1 + 1e-9)
+    raise NoBound("it forgets so slowly that nothing can be said of its errors")

@@ -9,16 +9,19 @@ Coulomb friction of ε takes: so a loop that is passive with f_c − ε is passi
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import floor, isfinite, log2
 from typing import Literal
 
+import numpy as np
+
 from zwidth.errors import InputError
-from zwidth.firmware.binary import DOUBLE, FLOAT
+from zwidth.firmware.binary import DOUBLE, FLOAT, Binary
 from zwidth.firmware.bound import Bound, plain
 from zwidth.firmware.evaluation import Arithmetic, Exact, NoBound
 from zwidth.firmware.fixed import Fixed, TooLarge, lowered
-from zwidth.firmware.invariant import Invariant, Places, invariant
+from zwidth.firmware.invariant import Invariant, Rest, invariant
 from zwidth.firmware.law import LawProgram
 from zwidth.firmware.program import Operation, Variable
 from zwidth.firmware.simplified import simplified
@@ -104,9 +107,9 @@ def machine(
         law = replace(law, program=simplified(law.program))
     converter = _converter(law)
     if number != "fixed":
-        arithmetic: Arithmetic = DOUBLE if number == "double" else FLOAT
+        arithmetic = DOUBLE if number == "double" else FLOAT
         try:
-            found = _bounded(law, counts, arithmetic, converter)
+            found = _bounded(law, counts, arithmetic, converter, _binary_errors(law, counts, arithmetic))
         except NoBound as reason:
             return Machine(law, number, counts, None, str(reason))
         return _machine(law, number, counts, found, None)
@@ -146,22 +149,25 @@ def _given(law: LawProgram, counts: tuple[float, float]) -> dict[Variable, Bound
     return {law.program.parameters[0]: plain(float(low), float(high), 0.0, signed=True)}
 
 
-def _rest(law: LawProgram, counts: tuple[float, float]) -> Places:
-    """What it remembers at first, at rest anywhere."""
-    unit = law.resolution or 1.0
-    places = []
-    for at, slope in zip(*law.rest, strict=True):
-        ends = [float(at + slope * unit * x) for x in counts]
-        places.append((min(ends), max(ends), 4e-16 * max(map(abs, ends))))
-    return places
+def _binary_errors(law: LawProgram, counts: tuple[float, float], arithmetic: Binary) -> list[float]:
+    """How far what it remembers at first is off: at + slope (Δ n), of rounded numbers, is rounded thrice."""
+    most = (law.resolution or 1.0) * max(map(abs, counts))
+    return [
+        8 * arithmetic.unit * (abs(float(at)) + abs(float(slope)) * most) + arithmetic.least
+        for at, slope in zip(*law.rest, strict=True)
+    ]
 
 
 def _bounded(
-    law: LawProgram, counts: tuple[float, float], arithmetic: Arithmetic, converter: Operation | None
+    law: LawProgram,
+    counts: tuple[float, float],
+    arithmetic: Arithmetic,
+    converter: Operation | None,
+    errors: Sequence[float],
 ) -> Invariant:
-    rest = _rest(law, counts)
-    if arithmetic is FLOAT:
-        rest = [(low, high, max(abs(low), abs(high)) * 2.0**-22) for low, high, _ in rest]
+    """From rest anywhere."""
+    unit = law.resolution or 1.0
+    rest = Rest(np.array([law.rest[0] + law.rest[1] * unit * x for x in counts]), tuple(errors))
     return invariant(law.program, _given(law, counts), rest, arithmetic, converter)
 
 
@@ -176,7 +182,7 @@ def _fixed(
     enough: float | None,
 ) -> Machine:
     """The finest unit of force with which nothing leaves its word; a wider word where that is too coarse."""
-    exact = _bounded(law, counts, Exact(), converter)
+    exact = _bounded(law, counts, Exact(), converter, [0.0] * law.rest.shape[1])
     sizes = exact.values
     cells = [max(-low, high) for low, high, _ in exact.memory]
     best: Machine | None = None
@@ -212,11 +218,9 @@ def _proved(
     law: LawProgram, counts: tuple[float, float], converter: Operation | None, fixed: Fixed
 ) -> Machine:
     """The bound of the error, and that no number is larger than it was written for."""
-    rest = [
-        (low, high, fixed_rest_error(law, fixed, k, max(abs(c) for c in counts)))
-        for k, (low, high, _) in enumerate(_rest(law, counts))
-    ]
-    found = invariant(law.program, _given(law, counts), rest, fixed, converter)
+    most = max(map(abs, counts))
+    errors = [fixed_rest_error(law, fixed, k, most) for k in range(law.rest.shape[1])]
+    found = _bounded(law, counts, fixed, converter, errors)
     for variable, size in fixed.most.items():
         if variable in found.values and found.values[variable].computed_size > size:
             raise TooLarge

@@ -13,12 +13,6 @@ from zwidth.firmware.law import LawProgram
 from zwidth.firmware.machine import Machine
 from zwidth.loop.start import unloaded_range
 
-_START = 0.01
-"""Of the force limit: up to which a main program lets a law begin."""
-
-Define = tuple[str, str, str]
-"""Name, value and meaning of a constant."""
-
 
 def digest(text: str) -> str:
     """SHA-256 of a file with this text."""
@@ -46,6 +40,26 @@ def about(name: str, device: Device, environment: Environment, found: Judged) ->
     return [line for part in parts for line in (*wrap(part, 96), "")][:-1]
 
 
+Define = tuple[str, str, str]
+"""Name, value and meaning of a constant."""
+
+_START = 0.01
+"""Of the force limit: up to which a main program lets a law begin."""
+
+
+def begins(environment: Environment, numbers: Machine) -> list[Define]:
+    """Where the law may begin, if not everywhere: on the top of a detent it would give what it holds."""
+    law, (lowest, highest) = numbers.law, numbers.counts
+    low, high = unloaded_range(environment, _START * law.limit, 0.0)
+    if law.resolution == 0.0 or (low, high) == (-inf, inf):
+        return []
+    least, most = ceil(max(low / law.resolution, lowest)), floor(min(high / law.resolution, highest))
+    return [
+        ("BEGINS_MIN", f"({least})", "a main program lets the law begin from this reading"),
+        ("BEGINS_MAX", f"({most})", "to this one"),
+    ]
+
+
 def defines(
     device: Device, environment: Environment, law: LawProgram, numbers: Machine, certificate: str
 ) -> list[Define]:
@@ -57,6 +71,7 @@ def defines(
     low, high = numbers.counts
     rows = [
         ("SAMPLE_PERIOD_S", repr(period), "s"),
+        ("DELAY_S", repr(float(device.exact("delay"))), "s, from reading to force, that the proof counts"),
         ("RATE_HZ", f"{1 / period:.10g}", "Hz"),
         ("ROTARY", str(int(not linear)), "1 where positions are in rad and forces in N*m"),
         ("RESOLUTION", repr(law.resolution), f"{length} per count"),
@@ -71,7 +86,7 @@ def defines(
             ("POSITION_MIN", f"({low!r})", f"{length}; readings below are taken as this"),
             ("POSITION_MAX", repr(high), f"{length}; readings above are taken as this"),
         ]
-    rows += _begins(law, environment, numbers.counts)
+    rows += begins(environment, numbers)
     rows.append(("FORCE_PER_UNIT", repr(unit), f"{force} per unit of the force"))
     if law.limit > 0:
         rows.append(("FORCE_LIMIT", repr(law.limit), force))

@@ -1,0 +1,231 @@
+"""Bounds of single operations and of branches, against points drawn inside of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import isfinite, sqrt
+from random import Random
+
+import pytest
+from strategies import seeds
+
+from zwidth.firmware.binary import FLOAT
+from zwidth.firmware.bound import (
+    Bound,
+    absolute,
+    added,
+    apart,
+    bent,
+    divided,
+    floored,
+    hull,
+    least,
+    most,
+    multiplied,
+    plain,
+    rooted,
+    scaled,
+)
+from zwidth.firmware.evaluation import Evaluation, Exact
+from zwidth.firmware.program import Branch, Cells, Constant, Load, Operation, Program, Set, Store, Variable
+
+
+@dataclass
+class Point:
+    """An exact number, and a computed one."""
+
+    exact: float
+    computed: float
+
+
+def drawn(random: Random) -> tuple[Bound, list[Point]]:
+    """A bound, and points in it, at its ends and about 0 as well."""
+    ends = sorted(random.choice([0.0, -1.0, 2.0, random.uniform(-9, 9)]) for _ in range(2))
+    error = random.choice([0.0, 1.0, random.uniform(0, 2)])
+    signed = random.random() < 0.5
+    points = []
+    for _ in range(40):
+        v = random.choice([*ends, random.uniform(*ends), min(max(0.0, ends[0]), ends[1])])
+        w = v + error * random.choice([-1, 1, random.uniform(-1, 1)])
+        if signed and (v > 0) - (v < 0) != (w > 0) - (w < 0):
+            w = v
+        points.append(Point(v, w))
+    return bent(*ends, error, (plain(*ends),), signed), points
+
+
+def holds(b: Bound, exact: float, computed: float) -> None:
+    """What a bound says is so, to within the rounding of this test."""
+    slack = 1e-9 * (1 + abs(exact) + abs(computed))
+    assert b.low - slack <= exact <= b.high + slack
+    assert abs(computed - exact) <= b.error + slack
+    if b.signed:
+        assert (exact > 0) - (exact < 0) == (computed > 0) - (computed < 0)
+
+
+TWO: dict[str, tuple[Callable, Callable]] = {
+    "added": (lambda a, b: added(a, b, 1.0), lambda a, b: a + b),
+    "less": (lambda a, b: added(a, b, -1.0), lambda a, b: a - b),
+    "multiplied": (multiplied, lambda a, b: a * b),
+    "divided": (divided, lambda a, b: a / b),
+    "least": (least, min),
+    "most": (most, max),
+}
+ONE: dict[str, tuple[Callable, Callable]] = {
+    "absolute": (absolute, abs),
+    "floored": (floored, lambda a: a // 1.0),
+    "rooted": (rooted, sqrt),
+    "scaled": (lambda a: scaled(a, -1.7), lambda a: -1.7 * a),
+    "scaled by 0": (lambda a: scaled(a, 0.0), lambda a: 0.0),
+}
+
+
+@pytest.mark.parametrize("name", TWO)
+@seeds(60)
+def test_two_operands(name: str, seed: int) -> None:
+    """Range, error and sign of a result hold for all numbers that theirs hold for."""
+    bounds, compute = TWO[name]
+    random = Random(seed)
+    (a, ps), (b, qs) = drawn(random), drawn(random)
+    result = bounds(a, b)
+    if not isfinite(result.error):
+        return
+    for p in ps:
+        for q in qs:
+            holds(result, compute(p.exact, q.exact), compute(p.computed, q.computed))
+
+
+@pytest.mark.parametrize("name", ONE)
+@seeds(100)
+def test_one_operand(name: str, seed: int) -> None:
+    """The same of one."""
+    bounds, compute = ONE[name]
+    a, points = drawn(Random(seed))
+    result = bounds(a)
+    if not isfinite(result.error):
+        return
+    for p in points:
+        holds(result, compute(p.exact), compute(p.computed))
+
+
+def test_a_root_of_what_may_be_negative_has_no_bound() -> None:
+    """A machine gives no number there."""
+    assert not isfinite(rooted(bent(0.0, 1.0, 0.1, (plain(0, 1),))).error)
+    assert isfinite(rooted(bent(0.0, 1.0, 0.1, (plain(0, 1),), signed=True)).error)
+
+
+@seeds(100)
+def test_one_or_the_other(seed: int) -> None:
+    """The hull holds for the points of both; what is apart is the most that they differ by."""
+    random = Random(seed)
+    (a, ps), (b, qs) = drawn(random), drawn(random)
+    both = hull(a, b)
+    for p in (*ps, *qs):
+        holds(both, p.exact, p.computed)
+    for p in ps:
+        assert all(abs(p.computed - q.exact) <= max(apart(a, b), apart(b, a)) + 1e-9 for q in qs)
+
+
+@seeds(100)
+def test_narrowing_loses_no_point(seed: int) -> None:
+    """A number in both ranges is in the narrower one."""
+    random = Random(seed)
+    a, points = drawn(random)
+    low, high = sorted((random.uniform(-9, 9), random.uniform(-9, 9)))
+    narrow = a.within(low, high)
+    assert all(narrow.low <= p.exact <= narrow.high for p in points if low <= p.exact <= high)
+
+
+@dataclass
+class Shaken(Exact):
+    """An arithmetic that is off by anything up to half of a unit, everywhere."""
+
+    off: float = 0.3
+    signs: dict[object, bool] = field(default_factory=dict)
+
+    def rounding(self, statement: object, of: tuple[Bound, ...], result: Bound) -> float:
+        return self.off
+
+    def keeps_sign(self, statement: object) -> bool:
+        return False
+
+
+def branching(random: Random) -> Program:
+    """y = one or the other affine function of x and of what is remembered; it is remembered."""
+    cells, x, m = Cells("memory", 1), Variable("real", "x"), Variable("real", "m")
+    y, test = Variable("real", "y", True), Variable("truth")
+    side = random.choice([Constant(random.choice([0.0, 1.0, random.uniform(-3, 3)]), "real"), m])
+    body: list = [Load(m, cells, Constant(0, "integer"))]
+    u = Variable("real", "u")
+    body.append(Operation(u, "*", (Constant(random.uniform(-2, 2), "real"), x)))
+    body.append(Operation(test, random.choice(["<", "<=", ">", ">="]), (random.choice([u, m]), side)))
+    ways = []
+    for _ in range(2):
+        v, w = Variable("real", "v"), Variable("real", "w")
+        given = Operation(v, "*", (Constant(random.uniform(-0.8, 0.8), "real"), random.choice([m, u])))
+        add = random.choice([u, Constant(random.uniform(-4, 4), "real")])
+        ways.append([given, Operation(w, random.choice(["+", "-", "min", "max"]), (v, add)), Set(y, w)])
+    body.append(Branch(test, *ways))
+    body.append(Store(cells, Constant(0, "integer"), y))
+    return Program((x,), (cells,), body, (y,))
+
+
+def ran(program: Program, x: float, m: float, off: Callable[[], float]) -> tuple[float, float]:
+    """Result and memory, with an error at every operation, store and set."""
+    values, held = {program.parameters[0]: x}, [m]
+    do = {"*": lambda a, b: a * b, "+": lambda a, b: a + b, "-": lambda a, b: a - b, "min": min, "max": max}
+    tests = {"<": float.__lt__, "<=": float.__le__, ">": float.__gt__, ">=": float.__ge__}
+
+    def value(o: object) -> float:
+        return o.value if isinstance(o, Constant) else values[o]
+
+    def block(body: list) -> None:
+        for s in body:
+            if isinstance(s, Load):
+                values[s.result] = held[0]
+            elif isinstance(s, Operation) and s.operator in tests:
+                values[s.result] = tests[s.operator](value(s.operands[0]) + off(), value(s.operands[1]))
+            elif isinstance(s, Operation):
+                values[s.result] = do[s.operator](*map(value, s.operands)) + off()
+            elif isinstance(s, Set):
+                values[s.variable] = value(s.value) + off()
+            elif isinstance(s, Store):
+                held[0] = value(s.value) + off()
+            else:
+                block(s.then if value(s.test) else s.other)
+
+    block(program.body)
+    return value(program.results[0]), held[0]
+
+
+@seeds(150)
+def test_branches_whose_test_is_in_doubt(seed: int) -> None:
+    """Where the two go different ways, the error counts what they differ by; a test is rounded too."""
+    random = Random(seed)
+    program, arithmetic = branching(random), Shaken(off=random.choice([0.01, 0.3]))
+    low, high, error = -random.uniform(0, 4), random.uniform(0, 4), random.choice([0.0, 0.4])
+    given = {program.parameters[0]: plain(-3.0, 3.0)}
+    after, (result,) = Evaluation(arithmetic).run(program, given, [(low, high, error)])
+    for _ in range(300):
+        x, m = random.choice([-3.0, 0.0, 3.0, random.uniform(-3, 3)]), random.uniform(low, high)
+        exact = ran(program, x, m, lambda: 0.0)
+        off = arithmetic.off
+        computed = ran(
+            program,
+            x,
+            m + error * random.uniform(-1, 1),
+            lambda: random.choice([off, -off, random.uniform(-off, off)]),
+        )
+        for bound, e, c in zip((result, after[0]), exact, computed, strict=True):
+            holds(bound, e, c)
+
+
+def test_a_float_too_large_has_no_bound() -> None:
+    """A factor that no float holds makes the error endless; it may still be compared with."""
+    x, y = Variable("real", "x"), Variable("real", "y")
+    for operator, endless in (("*", True), ("min", False)):
+        body = [Operation(y, operator, (Constant(1e39, "real"), x))]
+        _, (result,) = Evaluation(FLOAT).run(Program((x,), (), body, (y,)), {x: plain(0.0, 1e-5)}, [])
+        assert isfinite(result.error) != endless
+    assert Fraction(FLOAT.unit) == Fraction(1, 2**24)
