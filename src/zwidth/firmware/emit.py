@@ -142,6 +142,7 @@ class Emitted(Result):
     @property
     def beside(self) -> tuple[str, ...]:
         """What the machine must do that no verdict counts."""
+        late = float(self.device.exact("delay"))
         low, high = self.machine.counts
         actuator = "force limit, current rise and filters are not counted"
         if self.judged.counted and self.machine.law.step > 0:
@@ -150,8 +151,7 @@ class Emitted(Result):
         return (
             actuator,
             f"readings from {low:.10g} to {high:.10g} {unit}; beyond them nothing is claimed",
-            "a force at every sample, held to the next; from reading to force it takes the device's delay, "
-            f"{float(self.device.exact('delay')):g} s",
+            f"a force at each sample, {late:g} s after its reading (the delay), held to the next",
         )
 
     def to_dict(self) -> dict[str, Any]:

@@ -1,0 +1,93 @@
+"""What fixed point does for small chips: the same whole numbers from fewer and smaller operations."""
+
+from __future__ import annotations
+
+import ctypes
+import random
+from pathlib import Path
+
+import numpy as np
+import pytest
+from firmware.chip_laws import DEVICE
+from firmware.emulated.built import STRICT, called
+from firmware.emulated.host import HostLaw
+from firmware.emulated.required import require
+
+import zwidth as zw
+from zwidth.firmware.emit import emit
+from zwidth.firmware.fixed_text import HELPERS, NARROW
+from zwidth.firmware.program import Branch, Cells, Constant, Load, Operation, Program, Set, Store, Variable
+from zwidth.firmware.tidy import tidied
+
+
+def test_a_narrow_product_is_the_wide_one(tmp_path: Path) -> None:
+    """Two products of 16 bits give what one of 64 bits gives, at the ends of their ranges too."""
+    require("host")
+    words = {"word": "int32_t", "prefix": "law"}
+    text = "#include <stdint.h>\n" + "".join(
+        HELPERS[k].format(**words) + "\n" for k in ("scaled", "scaled_narrow")
+    )
+    text += "int32_t wide(int32_t n, int32_t m) { return law_scaled(n, m, 16); }\n"
+    text += "int32_t narrow(int32_t n, int32_t h, int32_t l)\n"
+    text += "{ return law_scaled_narrow((int16_t)n, (int16_t)h, (int16_t)l); }\n"
+    (tmp_path / "a.c").write_text(text, encoding="utf-8")
+    called(["gcc", *STRICT, "-shared", "-fPIC", str(tmp_path / "a.c"), "-o", str(tmp_path / "a.so")])
+    library = ctypes.CDLL(str(tmp_path / "a.so"))
+    draw = random.Random(5)
+    most = (NARROW << 16) - 1
+    for _ in range(20_000):
+        n = draw.choice([-NARROW, NARROW, 0, draw.randint(-NARROW, NARROW)])
+        m = draw.choice([-most, most, 32768, -32768, draw.randint(-most, most)])
+        high = (m + NARROW + 1) >> 16
+        assert abs(high) <= NARROW + 1
+        got = library.narrow(n, high, m - (high << 16))
+        assert got == library.wide(n, m) == (n * m + 2**15) >> 16
+
+
+@pytest.mark.parametrize("travel", [None, "-60 .. 60 mm", "-3 .. 200 mm"])
+def test_every_reading_of_a_travel(tmp_path: Path, travel: str | None) -> None:
+    """A damped wall in fixed point is off from K x + B v by what was proved at most, and beyond the travel
+    gives what it gives at its end."""
+    require("host")
+    found = emit(DEVICE, zw.Wall(150, 0.05), number="fixed", travel=travel)
+    low, high = map(int, found.machine.counts)
+    law = HostLaw(found.text, tmp_path)
+    counts = np.arange(low - 5, high + 6, dtype=np.int32)
+    order = np.random.default_rng(2).permutation(counts)[:50_000]
+    law.init(int(order[0]))
+    forces = law.run(order) * law.force_per_unit
+    x = 22.4e-6 * np.clip(order, low, high)
+    wall = np.where(x > 0, 150 * x + 0.05 * np.diff(x, prepend=x[0]) / 1e-3, 0.0)
+    assert found.machine.error is not None
+    assert np.abs(forces - np.clip(wall, -16.5, 16.5)).max() <= found.machine.error + 1e-12
+
+
+def test_what_changes_nothing_is_left_out() -> None:
+    """Copies and sums with 0 are; what copies a number that changes later is not."""
+    given, changing = Variable("integer", "n"), Variable("integer", "w", changes=True)
+    a, b, c, d = (Variable("integer", name) for name in "abcd")
+    memory, zero = Cells("memory", 1), Constant(0, "integer")
+    body = [
+        Operation(a, "copy", (given,)),
+        Load(b, memory, zero),
+        Operation(c, "-", (b, zero)),
+        Set(changing, a),
+        Operation(d, "copy", (changing,)),
+        Branch(Constant(True, "truth"), [Set(changing, c)], [Set(changing, zero)]),
+        Store(memory, zero, d),
+    ]
+    program = tidied(Program((given,), (memory,), list(body), (changing,)))
+    made = [s.operator for s in program.statements() if isinstance(s, Operation)]
+    assert made == ["copy"]
+    sets = [s.value for s in program.statements() if isinstance(s, Set)]
+    assert sets == [given, b, zero]
+    assert len(body) == 7
+    assert body[3].value is a
+
+
+def test_a_coefficient_that_is_a_unit_by_chance() -> None:
+    """K + B/T is 200 N/m, which is 2 per unit of force of 0.01 N: a product as any other."""
+    device = DEVICE.replace(force_resolution="0.01 N")
+    found = emit(device, zw.Wall(150, 0.05), number="fixed", travel="-60 .. 60 mm")
+    assert found.machine.rounding is not None
+    assert found.machine.rounding < 0.002
