@@ -49,13 +49,7 @@ def compiled_c(text: str, folder: Path, options: Sequence[str] = ("-std=c99", "-
     """A text in C as a library; warnings are errors."""
     source, library = folder / "emitted.c", folder / f"emitted{''.join(options)}.so".replace("=", "")
     source.write_text(text, encoding="utf-8")
-    strict = [
-        "-Wall",
-        "-Werror",
-        "-Wno-unused-function",
-        "-Wno-unused-but-set-variable",
-        "-Wno-tautological-compare",
-    ]
+    strict = ["-Wall", "-Werror", "-Wno-unused-function", "-Wno-unused-but-set-variable", "-Wno-tautological-compare"]
     command = ["cc", *options, *strict, "-fPIC", "-shared", "-o", str(library), str(source), "-lm"]
     made = subprocess.run(command, capture_output=True, text=True)
     assert made.returncode == 0, made.stderr
@@ -73,10 +67,7 @@ def run_c(library: ctypes.CDLL, name: str, inputs: Array, cells: Array, outputs:
 
 
 def run_node(
-    module: str,
-    folder: Path,
-    given: Mapping[str, tuple[Array, Array, int]],
-    files: Mapping[str, str] | None = None,
+    module: str, folder: Path, given: Mapping[str, tuple[Array, Array, int]], files: Mapping[str, str] | None = None
 ) -> dict[str, Ran]:
     """The functions `NAME(row, cells) → outputs` that a module exports, all in one process.
 

@@ -10,7 +10,7 @@ from random import Random
 
 CELLS, KNOWN = 6, 5
 
-HEAD = """\
+HEAD = '''\
 from math import ceil, fabs, floor, sqrt
 
 
@@ -49,7 +49,7 @@ def kept(m, i, a):
     m[i] = a + m[i]
     return m[i] > 0.0
 
-"""
+'''
 
 
 class _Function:

@@ -3,7 +3,7 @@
 What is a sum of what was remembered before, m ← A m + r with |r| ≤ R, stays within Σ |Aᵏ| R, and its error
 within Σ |Aᵏ| δ; anything else is followed from rest until it grows no more.
 
-It begins at some m₀, which is what an endless r = (I − A) m₀ would have left.  So R is made no less than that.
+It begins at some m₀, which is what an endless r = (I − A) m₀ would have left; so R is made no less.
 """
 
 from __future__ import annotations
