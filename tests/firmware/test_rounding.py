@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from firmware.adversary import text
 from firmware.emulated.host import HostLaw, watched
 from firmware.emulated.required import require
 from firmware.exact_law import ExactProgram, linear_forces
@@ -15,26 +16,13 @@ from firmware.random_laws import LIMITED, PADDLE, STEPPED, hardest, laws, motion
 
 import zwidth as zw
 from zwidth.firmware.bound import plain
-from zwidth.firmware.evaluation import Exact
-from zwidth.firmware.header import header
+from zwidth.firmware.evaluation import Exact, NoBound
 from zwidth.firmware.invariant import Rest, invariant
 from zwidth.firmware.law import law_program
 from zwidth.firmware.machine import Machine, machine
 
 MOST = 3000
 DEVICES = {"bare": PADDLE, "stepped": STEPPED, "limited": LIMITED}
-
-
-def text(m: Machine) -> str:
-    """The header of a machine."""
-    unit = 1.0 if m.fixed is None else m.fixed.units.scale.size(m.fixed.result)
-    ends = (f"({int(m.counts[0])})", str(int(m.counts[1])))
-    numbers = [
-        ("COUNTS_MIN", ends[0], "n"),
-        ("COUNTS_MAX", ends[1], "n"),
-        ("FORCE_PER_UNIT", repr(unit), "N"),
-    ]
-    return header(m, name="law", about=["a law"], numbers=numbers)
 
 
 def made(device: zw.Device, name: str, number: str) -> Machine | None:
@@ -114,7 +102,10 @@ def test_every_number_stays_within_its_bound(name: str) -> None:
     exact, random = ExactProgram(law), np.random.default_rng(5)
     ends = np.array([law.rest[0] + law.rest[1] * law.resolution * n for n in (-MOST, MOST)])
     given = {law.program.parameters[0]: plain(-MOST, MOST)}
-    found = invariant(law.program, given, Rest(ends, (0.0,) * ends.shape[1]), Exact())
+    try:
+        found = invariant(law.program, given, Rest(ends, (0.0,) * ends.shape[1]), Exact())
+    except NoBound:
+        pytest.skip("no bound is claimed of it")
     for counts in tried(exact, random):
         exact.init(int(random.integers(-MOST, MOST)))
         for n in counts:

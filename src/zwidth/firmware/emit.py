@@ -285,7 +285,10 @@ def _why_not(found: Judged) -> str:
     number, verdict = found.machine.number, found.verdict
     if verdict.outcome in PROVED:
         said = f"this is not emitted: it is proved in real numbers, not in {number}. {found.statement}"
-        return f'{said} Take number="double" (on the command line --number double), or another law'
+        other = "a device with more Coulomb friction or a finer converter"
+        if number != "double":
+            other = 'number="double" (on the command line --number double)'
+        return f"{said} Take {other}, another law, or say anyway"
     lost = found.counted and found.ideal.outcome in PROVED
     where = f", in {number}" if lost else ""
     said = f"this is not emitted, it is {verdict.outcome}{where}: {verdict.claim}"

@@ -201,10 +201,7 @@ def _whole(machine: Machine, name: str) -> _Body:
         program, KEYWORDS | {name, _READING}, prefix=name, word=word, narrow=fixed.narrow, short=short
     )
     step = [*c.changing(), *c.block(program.body, 1)]
-    force = _force_word(machine, word)
-    result = c.read(program.results[0], alone=force == word)
-    if force != word:
-        result = f"(int{force}_t){result}"
+    result = c.read(program.results[0], alone=True)
     rest = []
     for k in range(machine.law.rest.shape[1]):
         start, per, shift = rest_numbers(machine.law, fixed, k)

@@ -23,6 +23,8 @@ from zwidth.passivity.parameter_limits import has_stiffness, max_stiffness
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import quantity_unit
+from zwidth.rendering.rendered import laws_of
+from zwidth.rendering.rendering_law import LoopContext
 
 Decide = Callable[[Device, Environment], Verdict]
 
@@ -65,13 +67,33 @@ class Judged:
 
     @property
     def proved(self) -> bool:
-        """Whether no hand can take energy out of the loop with this machine in it."""
-        return self.verdict.outcome in PROVED and (self.counted or self.machine.number == "double")
+        """Whether no hand can take energy out of the loop with this machine in it.
+
+        The rounding of double alone is left out where it cannot be counted; the converter's is not, unless a
+        theorem counts it.
+        """
+        if self.verdict.outcome not in PROVED:
+            return False
+        return self.counted or (self.machine.number == "double" and self._steps_are_counted)
+
+    @property
+    def _steps_are_counted(self) -> bool:
+        """Whether the converter has no steps, or the proof of the law itself counts them."""
+        if self.machine.half_step == 0.0 or self.verdict.outcome != "theorem":
+            return self.machine.half_step == 0.0
+        law, device = self.verdict.environment, self.verdict.device
+        theorem = laws_of(law)[-1].theorem(LoopContext(device, law.met))
+        if theorem is None or not theorem.counts_force_steps:
+            return False
+        return device.exact("coulomb_friction") >= theorem.coulomb_friction
 
     @property
     def outcome(self) -> str:
-        """Of the law in the machine's numbers: what is proved of the law alone is not proved of them."""
-        if self.verdict.outcome in PROVED and not self.proved:
+        """Of the law in the machine's numbers: what is proved of the law alone is not proved of them.
+
+        Nor is it known that a hand gains where one gains with ε less of friction only.
+        """
+        if self.ideal.outcome in PROVED and not self.proved:
             return "undecided"
         return self.verdict.outcome
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _REAL = {4: np.dtype(np.float32), 8: np.dtype(np.float64)}
+_WHOLE = {4: np.dtype(np.int32), 8: np.dtype(np.int64)}
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Answers:
 
 def force_type(whole: int, size: int) -> np.dtype[Any]:
     """Of a force that has so many bytes."""
-    return np.dtype(np.int32) if whole else _REAL[size]
+    return _WHOLE[size] if whole else _REAL[size]
 
 
 def as_counts(counts: object) -> NDArray[np.int32]:
