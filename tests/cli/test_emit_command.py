@@ -121,7 +121,8 @@ def test_the_report_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         (["--prefix", "9walls"], "prefix begins names in C"),
         (["--target", "arduino", "--prefix", "guard"], "guard.h is a file of the main program"),
         (["--number", "fixed", "--resolution", "unknown"], "resolution"),
-        (["--damping", "0.14 .. 0.16"], "interval"),
+        (["--rate", "990 .. 1010 Hz"], "interval"),
+        (["--delay", "0 .. 0.2 ms", "--law", "passivity-controller"], "give one number"),
         (["--force-unit", "-1"], "force_unit must be > 0"),
     ],
 )

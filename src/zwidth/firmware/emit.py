@@ -27,6 +27,8 @@ from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Interval, RealLike, ends
 from zwidth.quantity.text import quantity_unit
 from zwidth.quantity.units import parse, parse_number
+from zwidth.rendering.rendered import laws_of
+from zwidth.servo.proving import least_friction
 from zwidth.showing import Headline
 from zwidth.writing import check_target, writing_whole
 
@@ -142,7 +144,7 @@ class Emitted(Result):
     @property
     def beside(self) -> tuple[str, ...]:
         """What the machine must do that no verdict counts."""
-        late = float(self.device.exact("delay"))
+        late = float(ends(self.device.delay)[1])
         low, high = self.machine.counts
         actuator = "force limit, current rise and filters are not counted"
         if self.judged.counted and self.machine.law.step > 0:
@@ -226,7 +228,7 @@ def emit(
     Parameters
     ----------
     device
-        The device, without intervals.
+        The device; damping, Coulomb friction and delay may be intervals, which the verdict covers.
     environment
         What it renders, with the laws in its chain.
     target
@@ -257,13 +259,14 @@ def emit(
     _check_prefix(prefix, kind)
     law = as_environment(environment)
     chosen = _number(number, kind)
-    made = law_program(device, law, single=chosen == "float")
+    certain = _certain(device, law)
+    made = law_program(certain, law, single=chosen == "float")
     numbers = machine(
         made,
         chosen,
-        _counts(device, made, chosen, travel),
-        _force_unit(device, force_unit),
-        float(device.exact("coulomb_friction")) * _OF_FRICTION,
+        _counts(certain, made, chosen, travel),
+        _force_unit(certain, force_unit),
+        float(certain.exact("coulomb_friction")) * _OF_FRICTION,
     )
     found = judged(device, law, numbers, decide)
     if not (found.proved or anyway):
@@ -278,6 +281,15 @@ def emit(
         files[f"{prefix}.h"] = header(numbers, name=prefix, about=head, numbers=constants)
         files |= kind.mains(prefix)
     return Emitted(prefix, target, device, law, found, files)
+
+
+def _certain(device: Device, law: Environment) -> Device:
+    """The device that the law is packed for; what the law does not depend on may be an interval."""
+    if laws_of(law) and isinstance(device.delay, Interval):
+        raise InputError(
+            f"the delay is the interval {device.delay}, and laws in a chain reckon with it: give one number"
+        )
+    return least_friction(device)
 
 
 def _why_not(found: Judged) -> str:

@@ -21,10 +21,11 @@ from zwidth.passivity.bounding import check_bounding, is_bounded
 from zwidth.passivity.check import check
 from zwidth.passivity.parameter_limits import has_stiffness, max_stiffness
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.exact import Exact
+from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.text import quantity_unit
 from zwidth.rendering.rendered import laws_of
 from zwidth.rendering.rendering_law import LoopContext
+from zwidth.servo.proving import least_friction
 
 Decide = Callable[[Device, Environment], Verdict]
 
@@ -85,7 +86,7 @@ class Judged:
         theorem = laws_of(law)[-1].theorem(LoopContext(device, law.met))
         if theorem is None or not theorem.counts_force_steps:
             return False
-        return device.exact("coulomb_friction") >= theorem.coulomb_friction
+        return ends(device.coulomb_friction)[0] >= theorem.coulomb_friction
 
     @property
     def outcome(self) -> str:
@@ -113,8 +114,8 @@ class Judged:
         return f"{off} As much Coulomb friction is set aside for it, and the proof holds with what is left."
 
     def cost(self, device: Device, environment: Environment) -> float | None:
-        """By how much the largest passive stiffness is less [N/m; N·m/rad]; None where it has none."""
-        if not (self.counted and has_stiffness(environment)):
+        """By how much the largest passive stiffness is less [N/m; N·m/rad]; None where that is no number."""
+        if not (self.counted and device.is_certain and has_stiffness(environment)):
             return None
         before, after = (max_stiffness(d, environment, True) for d in (device, self.verdict.device))
         return None if before is None or after is None else before - after
@@ -138,7 +139,7 @@ def judged(device: Device, environment: Environment, machine: Machine, decide: D
     ideal = decide(device, environment)
     if machine.error is None:
         return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=False, reason=machine.reason)
-    friction, off = device.exact("coulomb_friction"), Fraction(machine.error)
+    (friction, most), off = ends(device.coulomb_friction), Fraction(machine.error)
     if friction < off:
         unit = quantity_unit("coulomb_friction", device.motion)
         return Judged(
@@ -150,7 +151,8 @@ def judged(device: Device, environment: Environment, machine: Machine, decide: D
         )
     if ideal.outcome not in PROVED:
         return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=True)
-    left = device.replace(coulomb_friction=Exact(friction - off))
+    spent = Exact(friction - off) if most == friction else Interval(friction - off, most - off)
+    left = device.replace(coulomb_friction=spent)
     return Judged(machine=machine, ideal=ideal, verdict=decide(left, environment), counted=True)
 
 
@@ -158,7 +160,7 @@ def _bounded(device: Device, environment: Environment, machine: Machine) -> Judg
     """Of a chain that ends in force bounding, with the roundings that the machine has; None of any other."""
     if machine.number == "fixed" or not is_bounded(environment):
         return None
-    found = check_bounding(device, environment, single=machine.number == "float")
+    found = check_bounding(least_friction(device), environment, single=machine.number == "float")
     if found.certificate is None:
         return None
     verdict = Verdict("passive", found.scope, device, environment, certificate=found.certificate)

@@ -12,6 +12,7 @@ from zwidth.firmware.judged import PROVED, Judged
 from zwidth.firmware.law import LawProgram
 from zwidth.firmware.machine import Machine
 from zwidth.loop.start import unloaded_range
+from zwidth.quantity.exact import ends
 
 
 def digest(text: str) -> str:
@@ -71,7 +72,7 @@ def defines(
     low, high = numbers.counts
     rows = [
         ("SAMPLE_PERIOD_S", repr(period), "s"),
-        ("DELAY_S", repr(float(device.exact("delay"))), "s, from reading to force, that the proof counts"),
+        ("DELAY_S", repr(float(ends(device.delay)[1])), "s from reading to force, at most"),
         ("RATE_HZ", f"{1 / period:.10g}", "Hz"),
         ("ROTARY", str(int(not linear)), "1 where positions are in rad and forces in N*m"),
         ("RESOLUTION", repr(law.resolution), f"{length} per count"),

@@ -50,6 +50,14 @@ constexpr int DIVISION = CLOCKS <= 65536.0 ? 1 : CLOCKS <= 8 * 65536.0 ? 8 : 64;
 constexpr uint32_t TICKS = (uint32_t)(CLOCKS / DIVISION + 0.5);
 constexpr double PERIOD_ERROR = TICKS * (double)DIVISION / CLOCKS - 1.0;
 static_assert(TICKS >= 1 && TICKS <= 65536, "timer 1 cannot count this period");
+
+// From the tick to the force; 0 where the law was proved for none, and then it is not looked at.
+#ifdef LAW_DELAY_S
+static_assert(LAW_DELAY_S < LAW_SAMPLE_PERIOD_S, "this sketch gives the force within the period: emit for such a delay");
+constexpr uint16_t DELAY_TICKS = (uint16_t)(LAW_DELAY_S * F_CPU / DIVISION);
+#else
+constexpr uint16_t DELAY_TICKS = 0;
+#endif
 static_assert(PERIOD_ERROR < 1e-4 && PERIOD_ERROR > -1e-4, "timer 1 misses the period by more than 1 in 10 000");
 static_assert(LAW_SAMPLE_PERIOD_S <= 0.0075, "the watchdog of 16 ms needs two samples in its time");
 
@@ -155,6 +163,10 @@ void count_time() {
 ISR(TIMER1_COMPA_vect) {
   law_force force = guard_step(&guarded, position_counts());
   apply_force(force);
+  if (DELAY_TICKS > 0 && TCNT1 > DELAY_TICKS) {  // later than the proof counts
+    guard_end(&guarded, GUARD_LATE);
+    apply_force(0);
+  }
   mark = guarded.phase == GUARD_SERVING ? SERVING : 0;
   telemetry_sample(&told, now, guarded.counts, force, guard_status(&guarded));
   count_time();
