@@ -103,6 +103,21 @@ def test_a_hapkit_alone_gives_the_force_that_was_proved(tmp_path: Path, number: 
     force(data, found.machine.error)
 
 
+@pytest.mark.parametrize(("delay", "in_time"), [("0.25 ms", True), ("0.02 ms", False)])
+def test_a_force_later_than_the_proof_counts_ends_it(tmp_path: Path, delay: str, in_time: bool) -> None:
+    """The sensor alone takes the chip 26 us: a law that was proved for a force within 20 us is not served."""
+    device = HAPKIT.replace(delay=zw.Interval(0, zw.Exact(float(delay.split()[0]) / 1000)))
+    emit(device, zw.Wall(150), target="arduino").write(tmp_path / "wall")
+    program = sketch(tmp_path / "wall")
+    needed_header("simavr/sim_avr.h")
+    chip = tmp_path / "chip"
+    run(tool("cc"), "-std=gnu99", "-O2", DATA / "chip.c", "-o", chip, "-lsimavr", "-lm")
+    run(chip, program, "400", tmp_path / "line.bin")
+    phases = read_telemetry(tmp_path / "line.bin").phase.values
+    assert ((phases == 1).sum() > 100) == in_time
+    assert (phases[-1] == 2) != in_time
+
+
 @pytest.mark.parametrize("number", ["float", "fixed", "double"])
 def test_a_cortex_m_links(tmp_path: Path, number: str) -> None:
     """By its own Makefile, without a library of a vendor."""

@@ -13,6 +13,7 @@
 #define LAW_FORCE_LIMIT 5.0
 #ifndef LAW_ROTARY
 #define LAW_ROTARY 0
+#define LAW_DELAY_S 0.0
 #endif
 #define LAW_CERTIFICATE_SHA256 "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08"
 
