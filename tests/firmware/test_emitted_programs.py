@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from firmware.emulated import node
 from firmware.emulated.built import STRICT, called
 from firmware.emulated.built import WARNED as PEDANTIC
 from firmware.emulated.required import require
@@ -180,6 +181,15 @@ def test_the_header_names_its_proof(tmp_path: Path, target: str) -> None:
     assert named[1] == sha256(bytes_).hexdigest() == found.certificate_sha256
     assert sha256(bytes_.replace(b"1", b"2", 1)).hexdigest() != named[1]
     assert main(["verify", str(certificate)]) == 0
+
+
+def test_a_module_takes_a_reading_beyond_as_the_nearest() -> None:
+    """As the header does, and as its constants say."""
+    require("node")
+    found = emit(HAPKIT, WALL, target="javascript", travel="-3 .. 3 mm")
+    most = int(found.machine.counts[1])
+    forces = node.run(found.text, [most, 10 * most, most], most)
+    assert forces[0] == forces[1] == forces[2] > 0.0
 
 
 def test_what_is_emitted_is_the_same_everywhere(tmp_path: Path) -> None:

@@ -147,10 +147,14 @@ class Emitted(Result):
         late = float(ends(self.device.delay)[1])
         low, high = self.machine.counts
         actuator = "force limit, current rise and filters are not counted"
-        if self.judged.counted and self.machine.law.step > 0:
+        if self.judged.bounded:
+            actuator = "current rise and filters are not counted; force limit and converter steps are"
+        elif self.judged.counted and self.machine.law.step > 0:
             actuator += "; converter steps are"
         unit = "counts" if self.machine.law.resolution > 0 else quantity_unit("position", self.device.motion)
+        uncounted = () if self.judged.counted else (self.judged.statement,)
         return (
+            *uncounted,
             actuator,
             f"readings from {low:.10g} to {high:.10g} {unit}; beyond them nothing is claimed",
             f"a force at each sample, {late:g} s after its reading (the delay), held to the next",
@@ -188,7 +192,7 @@ class Emitted(Result):
         Raises
         ------
         InputError
-            If a file exists, or cannot be written; nothing is written then.
+            If a file exists, and nothing is written then; or if one cannot be written.
         """
         folder = Path(directory)
         if folder.exists() and not folder.is_dir():
@@ -235,7 +239,8 @@ def emit(
         "c99": one header.  "javascript": one ES module.  "arduino", "cortex-m", "posix", "simplefoc",
         "moteus": the header with a main program.
     number
-        "double", "float" or "fixed"; by default "fixed" for arduino, "float" for cortex-m, else "double".
+        "double", "float" or "fixed"; by default "fixed" for arduino, "float" for cortex-m and simplefoc, else
+        "double".
     travel
         The lowest and the highest position [m; rad], such as "-50 .. 50 mm"; by default 32767 counts to each
         side where numbers are narrow.
@@ -276,7 +281,9 @@ def emit(
     head = about(prefix, device, law, found)
     constants = defines(device, law, made, numbers, certificate)
     if kind.language == "javascript":
-        files[f"{prefix}.mjs"] = module(made, about=head, numbers=constants)
+        files[f"{prefix}.mjs"] = module(
+            made, about=head, numbers=constants, cuts_readings=numbers.cuts_readings
+        )
     else:
         files[f"{prefix}.h"] = header(numbers, name=prefix, about=head, numbers=constants)
         files |= kind.mains(prefix)

@@ -131,13 +131,9 @@ def header(
 
 def _nearest(machine: Machine, name: str, seen: str) -> list[str]:
     """A reading outside of what is claimed is taken as the nearest inside."""
-    law, upper = machine.law, name.upper()
-    if law.resolution > 0.0:
-        low, high = f"{upper}_COUNTS_MIN", f"{upper}_COUNTS_MAX"
-        if max(map(abs, machine.counts)) >= _WHOLE:
-            return []
-    else:
-        low, high = f"{upper}_POSITION_MIN", f"{upper}_POSITION_MAX"
+    if not machine.cuts_readings:
+        return []
+    low, high = (f"{name.upper()}_{seen.upper()}_{end}" for end in ("MIN", "MAX"))
     if _is_short(machine):  # what is computed of 16 bits is quick where the compiler sees that it has no more
         return [
             f"    const int16_t {_READING} =",
@@ -153,7 +149,6 @@ def _is_short(machine: Machine) -> bool:
 
 
 _READING = "reading"
-_WHOLE = 2**31 - 1
 
 
 def _binary(machine: Machine, name: str) -> _Body:

@@ -158,7 +158,7 @@ def judged(device: Device, environment: Environment, machine: Machine, decide: D
 
 def _bounded(device: Device, environment: Environment, machine: Machine) -> Judged | None:
     """Of a chain that ends in force bounding, with the roundings that the machine has; None of any other."""
-    if machine.number == "fixed" or not is_bounded(environment):
+    if machine.number == "fixed" or not is_bounded(environment) or isinstance(device.delay, Interval):
         return None
     found = check_bounding(least_friction(device), environment, single=machine.number == "float")
     if found.certificate is None:

@@ -31,6 +31,8 @@ Number = Literal["double", "float", "fixed"]
 
 _FRACTIONS = {32: (24, 16, 8, 4, 1), 64: (40, 32, 24, 16, 8, 1)}
 """Parts of a force unit that are tried, as powers of two, by word: whole bytes are shifted in no time."""
+_ANY = 2**31 - 1
+"""Counts to each side that 32 bits hold."""
 _WIDE = 2.0**-10
 """Of the force: an error beyond this is worth a wider word."""
 
@@ -64,6 +66,11 @@ class Machine:
     reason: str = ""
     fixed: Fixed | None = None
     largest_force: float | None = None
+
+    @property
+    def cuts_readings(self) -> bool:
+        """Whether a reading can lie outside of what is claimed: it is then taken as the nearest inside."""
+        return self.law.resolution == 0.0 or max(map(abs, self.counts)) < _ANY
 
     @property
     def half_step(self) -> float:

@@ -8,8 +8,16 @@ from zwidth.firmware.c99 import real_text
 from zwidth.firmware.javascript import KEYWORDS, JavaScript
 from zwidth.firmware.law import LawProgram
 
+_NEAREST = "    {seen} = Math.min(Math.max({seen}, {upper}_MIN), {upper}_MAX);"
 
-def module(law: LawProgram, *, about: Sequence[str], numbers: Iterable[tuple[str, str, str]]) -> str:
+
+def module(
+    law: LawProgram,
+    *,
+    about: Sequence[str],
+    numbers: Iterable[tuple[str, str, str]],
+    cuts_readings: bool = False,
+) -> str:
     """The text of the module.
 
     Parameters
@@ -20,9 +28,12 @@ def module(law: LawProgram, *, about: Sequence[str], numbers: Iterable[tuple[str
         Lines of the comment at its head.
     numbers
         Name, value and meaning of each constant that is exported.
+    cuts_readings
+        True where a reading beyond those that `numbers` names is taken as the nearest of them.
     """
     js = JavaScript(law.program, KEYWORDS)
     seen = "counts" if law.resolution > 0 else "position"
+    near = [_NEAREST.format(seen=seen, upper=seen.upper())] if cuts_readings else []
     body = [*(f"    {line}" for line in js.changing()), *js.block(law.program.body, 1)]
     result = js.read(law.program.results[0], alone=True)
     lines = [
@@ -43,6 +54,7 @@ def module(law: LawProgram, *, about: Sequence[str], numbers: Iterable[tuple[str
         "",
         "/* One sample: the force to be given from now on [N; N*m], out of a wall is positive. */",
         f"export function step(s, {seen}) {{",
+        *near,
         f"    s.{seen} = {seen};",
         *body,
         f"    return {result};",
@@ -50,6 +62,7 @@ def module(law: LawProgram, *, about: Sequence[str], numbers: Iterable[tuple[str
         "",
         "/* Forget what was, at rest where the handle was seen last. */",
         f"export function reset(s, {seen} = s.{seen}) {{",
+        *near,
         *_rest(law, seen),
         f"    s.{seen} = {seen};",
         "}",

@@ -92,15 +92,3 @@ def defines(
     if law.limit > 0:
         rows.append(("FORCE_LIMIT", repr(law.limit), force))
     return [*rows, ("CERTIFICATE_SHA256", f'"{digest(certificate)}"', "of the certificate beside this")]
-
-
-def _begins(law: LawProgram, environment: Environment, counts: tuple[float, float]) -> list[Define]:
-    """Where the law may begin, if not everywhere: on the top of a detent it would give what it holds."""
-    low, high = unloaded_range(environment, _START * law.limit, 0.0)
-    if law.resolution == 0.0 or (low, high) == (-inf, inf):
-        return []
-    least, most = max(low / law.resolution, counts[0]), min(high / law.resolution, counts[1])
-    return [
-        ("BEGINS_MIN", f"({ceil(least)})", "a main program lets the law begin from this reading"),
-        ("BEGINS_MAX", f"({floor(most)})", "to this one"),
-    ]
