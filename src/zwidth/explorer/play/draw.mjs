@@ -1,7 +1,7 @@
 /* The pictures: the handle with hand and wall, or the wheel, or two arms; and what was in the last seconds. */
 
 export const SECONDS = 8;
-const BINS = 480;
+const BINS = 320;
 
 /* The last seconds, in bins: of each quantity the lowest, the highest and the last of its samples. */
 export class History {
@@ -65,7 +65,7 @@ export function stage(canvas, look, colours) {
     const lane = height / (look.arms.length + 1);
     if (look.rotary && look.arms.length === 1) wheel(pen, look, width, height, colours);
     look.arms.forEach((arm, i) => {
-        const y = look.rotary && look.arms.length === 1 ? height - 26 : lane * (i + 1);
+        const y = look.rotary && look.arms.length === 1 ? height - 48 : lane * (i + 1);
         line(pen, [[0, y], [width, y]], colours.faint, 1);
         handle(pen, place(arm.position), y, width, colours);
         push(pen, place(arm.position), y, arm.force / look.full, colours);
@@ -76,11 +76,9 @@ export function stage(canvas, look, colours) {
 }
 
 function shade(pen, look, width, height, colours) {
-    const wide = width / Math.max(look.profile.length, 1);
-    pen.fillStyle = colours.wall;
     look.profile.forEach((force, i) => {
-        pen.globalAlpha = Math.min(0.75, Math.abs(force) / look.full);
-        pen.fillRect(i * wide, 0, wide + 0.5, height);
+        pen.globalAlpha = Math.min(0.45, 0.45 * Math.abs(force) / look.full);
+        column(pen, i, look.profile.length, width, 0, height, colours.wall);
     });
     pen.globalAlpha = 1;
     if (look.oneSided) line(pen, [[width / 2, 0], [width / 2, height]], colours.wall, 3);
@@ -125,7 +123,7 @@ function hand(pen, anchor, x, y, held, colours) {
 }
 
 function wheel(pen, look, width, height, colours) {
-    const r = Math.max(20, height / 2 - 44), x = width / 2, y = height / 2 - 24, turn = look.arms[0].position;
+    const r = Math.max(20, height / 2 - 52), x = width / 2, y = height / 2 - 42, turn = look.arms[0].position;
     pen.strokeStyle = colours.ink;
     pen.lineWidth = 9;
     pen.beginPath();
@@ -149,36 +147,38 @@ function ruler(pen, look, width, height, colours) {
 export function trace(canvas, history, name, label, colour, colours) {
     const { pen, width, height } = fitted(canvas), i = history.names.indexOf(name);
     const most = Math.max(1e-12, ...history.bins.map((b) => Math.max(-b[i][0], b[i][1]))) * 1.1;
-    const y = (v) => height / 2 - (v / most) * (height / 2), wide = width / BINS;
+    const y = (v) => height / 2 - (v / most) * (height / 2 - 8) + 8;
     line(pen, [[0, y(0)], [width, y(0)]], colours.faint, 1);
-    pen.fillStyle = colour;
     history.bins.forEach((b, k) => {
-        const high = y(b[i][1]), low = y(b[i][0]);
-        pen.fillRect(k * wide, high - 0.75, wide + 0.5, low - high + 1.5);
+        const before = history.bins[Math.max(0, k - 1)][i][2];
+        const high = Math.max(b[i][1], before), low = Math.min(b[i][0], before);
+        column(pen, k, BINS, width, y(high) - 0.75, y(low) + 0.75, colour);
     });
     text(pen, label(most / 1.1), 6, 14, colours.ink);
 }
 
-/* What the hand put in, filled, red below 0 where it got out more; and behind it what friction took. */
+/* What the hand put in, filled, red below 0 where it got out more; and before it what friction took. */
 export function energy(canvas, history, label, colours) {
-    const { pen, width, height } = fitted(canvas), wide = width / BINS;
+    const { pen, width, height } = fitted(canvas);
     const [work, loss] = ["work", "loss"].map((name) => history.names.indexOf(name));
     const values = history.bins.flatMap((b) => [b[work][2], b[loss][2]]);
-    const high = Math.max(1e-9, ...values) * 1.15, low = Math.min(0, ...values) * 1.15;
-    const y = (v) => ((high - v) / (high - low)) * height;
+    const high = Math.max(1e-9, ...values) * 1.3, low = Math.min(0, ...values) * 1.15;
+    const y = (v) => ((high - v) / (high - low)) * (height - 1);
     history.bins.forEach((b, k) => {
-        bar(pen, k * wide, wide, y(0), y(b[loss][2]), colours.loss);
-        pen.globalAlpha = 0.8;
-        bar(pen, k * wide, wide, y(0), y(b[work][2]), b[work][2] < 0 ? colours.bad : colours.good);
+        column(pen, k, BINS, width, y(0), y(b[work][2]), b[work][2] < 0 ? colours.bad : colours.good);
+        pen.globalAlpha = 0.75;
+        column(pen, k, BINS, width, y(0), y(b[loss][2]), colours.loss);
         pen.globalAlpha = 1;
     });
     line(pen, [[0, y(0)], [width, y(0)]], colours.ink, 1);
-    text(pen, label(high / 1.15, low / 1.15), 6, 14, colours.ink);
+    text(pen, label(high / 1.3), 6, 14, colours.ink);
 }
 
-function bar(pen, x, wide, from, to, colour) {
+/* The k-th of so many columns side by side, in whole pixels: without seams, and none over another. */
+function column(pen, k, many, width, from, to, colour) {
+    const left = Math.round((k * width) / many), right = Math.round(((k + 1) * width) / many);
     pen.fillStyle = colour;
-    pen.fillRect(x, Math.min(from, to), wide + 0.5, Math.abs(to - from));
+    pen.fillRect(left, Math.min(from, to), right - left, Math.abs(to - from));
 }
 
 function line(pen, points, colour, wide) {

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from importlib.resources import files
 
 from zwidth.errors import InputError
-from zwidth.explorer.play.loop import Played
+from zwidth.explorer.play.played import Played
 from zwidth.firmware.plant import given_plant, plant_module, plant_program
 from zwidth.showing import Html, element
 

@@ -61,22 +61,23 @@ export class Player {
     }
 
     note(engine, hear) {
-        const [arm] = engine.arms, [work, , loss] = arm.energies;
+        const [arm] = engine.arms, { work, loss } = this.sums;
         this.recording.note(engine);
         this.history.push([arm.force, arm.position, work, loss]);
         this.most = Math.max(this.most, -work);
         hear(arm.force);
     }
 
-    /* Put in by the hand, got out by it at most, put in by the actuators, taken by friction [J]. */
+    /* Put in by hands, got out by them at most, put in by actuators, taken by friction [J]; of all arms. */
     get sums() {
-        const all = this.engine.arms.map((arm) => arm.energies);
-        return {
-            work: all[0][0],
-            out: this.most,
-            motor: all.reduce((sum, [, motor]) => sum + motor, 0),
-            loss: all.reduce((sum, [, , loss]) => sum + loss, 0),
-        };
+        let work = 0, motor = 0, loss = 0;
+        for (const arm of this.engine.arms) {
+            const own = arm.energies;
+            work += own[0];
+            motor += own[1];
+            loss += own[2];
+        }
+        return { work, motor, loss, out: this.most };
     }
 }
 

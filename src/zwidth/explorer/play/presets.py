@@ -1,4 +1,4 @@
-"""Loops to begin with: what each shows is known from its verdict, which is asked for where the page is made."""
+"""Loops to begin with; the verdict on each is asked for where the page is made."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from zwidth.device.device import Device
 from zwidth.device.rotary import rotary
 from zwidth.environment import PulseTransferFunction, StandardLinearSolid, Wall
 from zwidth.environment.nonlinear_spring import NonlinearSpring
-from zwidth.explorer.play.loop import Played, played, played_pair
+from zwidth.explorer.play.loop import played, played_pair
+from zwidth.explorer.play.played import Played
 from zwidth.operator import LinearHand
 from zwidth.pairs import Pair
 from zwidth.rendering import render
@@ -63,7 +64,7 @@ def _passive() -> Played:
 def _buzz() -> Played:
     return played(
         _smooth(resolution="0.3 mm"),
-        Wall(600, 6),
+        Wall(1500, 10),
         name="Buzz: a coarse encoder",
         hand=LIGHT,
         do=_PRESS,
@@ -99,7 +100,7 @@ def _wobble() -> Played:
         name="Death wobble: a wheel, hands off",
         reach=3.0,
         do="Turn the wheel a little, then let go and keep your hands off.",
-        notice="Held, it is calm. Hands off it swings further and further: the motor gives what friction takes.",
+        notice="Held, it is calm. Hands off it swings on and on: the motor gives what friction takes.",
     )
 
 
@@ -174,6 +175,6 @@ def _arms() -> list[Played]:
             hand=LIGHT,
             follower=_SPRING,
             do="Lead one arm quickly to and fro, then let go.",
-            notice="Each arm is told where the other was 20 ms ago: they swing against each other, and go on.",
+            notice="Each arm is told where the other was 20 ms ago: they swing, and go on.",
         ),
     ]

@@ -57,6 +57,7 @@ class View {
         this.again();
         [...this.at("loops").children].forEach((b, k) => b.setAttribute("aria-pressed", String(k === i)));
         for (const key of ["name", "outcome", "claim", "do", "notice"]) this.at(key).textContent = facts[key];
+        for (const who of this.root.querySelectorAll(".who")) who.textContent = facts.arms.length > 1 ? "Hand and spring" : "The hand";
         this.at("outcome").style.background = facts.colour;
         this.at("numbers").replaceChildren(...facts.numbers.map(numbers));
         this.at("assumptions").replaceChildren(...facts.assumptions.map((line) => made("li", line)));
@@ -95,7 +96,7 @@ class View {
         this.charted = true;
         trace(this.at("force"), history, "force", (most) => `force, up to ${this.size(most)}`, colours.force, colours);
         trace(this.at("position"), history, "position", (most) => `position, up to ${this.length(most, 1)}`, colours.hand, colours);
-        energy(this.at("energy"), history, (high) => `energy put in by the hand, taken by friction; up to ${joules(high)}`, colours);
+        energy(this.at("energy"), history, (high) => `energy put in by hand, taken by friction; up to ${joules(high)}`, colours);
     }
 
     /* Numbers in words, and now and then for those who listen to the page. */
