@@ -1,4 +1,4 @@
-"""From a device and what it renders to a loop that a page plays: the law emitted, the plant's numbers laid out.
+"""From a device and what it renders to a loop that a page plays: law emitted, plant laid out.
 
 The page's engine moves the plant by the module of `firmware.plant` and asks the law by that of
 `firmware.module`: with the same hand, what is played has the bits of `zwidth.simulate`.
@@ -133,9 +133,16 @@ def played_pair(
     if any(pair.compensations):
         raise InputError("a page plays pairs without compensation of friction: leave compensation out")
     holding, other = hand or _default_hand(pair.leader), follower or LinearHand()
-    hands = [Tracking([0.0], mass=h.mass, stiffness=h.stiffness, damping=h.damping) for h in (holding, other)]
     tick = pair.sample_period / pair.own_readings
-    setup = prepare_pair(pair, *hands, tick, encoder_phase=(0.0, 0.0), amplifier=None, points_per_sample=1)
+    setup = prepare_pair(
+        pair,
+        _still(holding),
+        _still(other),
+        tick,
+        encoder_phase=(0.0, 0.0),
+        amplifier=None,
+        points_per_sample=1,
+    )
     devices = (pair.leader, pair.follower)
     return Played(
         name=name or pair.describe(),

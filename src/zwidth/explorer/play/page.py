@@ -15,7 +15,7 @@ from zwidth.showing import Html, element
 _EXPORTED = re.compile(r"^export (?:const|function|class) (\w+)", re.MULTILINE)
 _IMPORT = re.compile(r'^import (\{[^}]*\}) from "\./(\w+)\.mjs";$', re.MULTILINE)
 
-MODULES = ("engine", "sound", "draw", "player", "view")
+MODULES = ("engine", "recording", "sound", "draw", "player", "view")
 """The page's own, each after those that it imports."""
 
 

@@ -1,7 +1,8 @@
 /* A loop in time with a clock: as many samples as have become due, the hand on its way to where it is asked to. */
 
-import { Engine, Recording } from "./engine.mjs";
+import { Engine } from "./engine.mjs";
 import { History } from "./draw.mjs";
+import { Recording } from "./recording.mjs";
 
 const LONGEST_S = 0.1;
 /* Of a pause, such as that of a hidden page: the rest of it has not been. */
