@@ -36,9 +36,8 @@ def play_page(loops: Sequence[Played], *, title: str = "Play with a loop") -> st
     """
     if not loops:
         raise InputError("a page plays one loop at least; got none")
-    plant = plant_module(plant_program(given_plant(amplified=False), None, "anchored"))
     modules = [
-        f"const plant = {_as_function(plant)};",
+        f"const plant = {_as_function(plant_text())};",
         f"const laws = [{', '.join(_as_function(loop.law) if loop.law else 'null' for loop in loops)}];",
         *(f"const {name} = {_as_function(_file(f'{name}.mjs'))};" for name in MODULES),
         'view.start(document.getElementById("play"), plant, laws);',
@@ -52,6 +51,11 @@ def play_page(loops: Sequence[Played], *, title: str = "Play with a loop") -> st
         "script": Html("\n".join(modules).replace("</", "<\\/")),
     }
     return re.sub(r"<!-- (\w+) -->", lambda found: parts[found[1]], _file("page.html"))
+
+
+def plant_text() -> str:
+    """The module that moves every device and hand: it is told their numbers, and how long."""
+    return plant_module(plant_program(given_plant(amplified=False), None, "anchored"))
 
 
 def _file(name: str) -> str:
