@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.plots.style import BLUE, GREY, LOOK, OUTCOME, RED, label, new_figure, number
+from zwidth.plots.style import BLUE, GREY, LOOK, OUTCOME, RED, heading, label, new_figure, number
 from zwidth.quantity.text import quantity_unit
 
 _NEAR = 120
@@ -63,7 +63,7 @@ def draw_criterion(axes: Axes, verdict: LinearVerdict, log_frequency: bool = Fal
     _mark(axes, verdict, needs, (low, high))
     axes.set_xlabel(label("frequency"))
     axes.set_ylabel(label("damping", motion, "required damping"))
-    axes.set_title(f"{verdict.outcome}: {verdict.limit}", color=OUTCOME[verdict.outcome])
+    heading(axes, f"{verdict.outcome}: {verdict.limit}", color=OUTCOME[verdict.outcome])
     axes.legend(loc="upper left")
 
 
