@@ -51,6 +51,7 @@ sphinx_gallery_conf = {
     "show_memory": False,
     "plot_gallery": not tags.has("undrawn"),  # type: ignore[name-defined]  # noqa: F821
     "abort_on_example_error": True,
+    "capture_repr": (),  # a page prints what its script prints
     "copyfile_regex": r".*\.toml",
 }
 suppress_warnings = ["config.cache"]  # sphinx-gallery's sort key cannot be pickled

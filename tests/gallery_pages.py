@@ -14,7 +14,7 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 
 
 def figures(name: str) -> Iterator[Figure]:
-    """Runs the script; yields each figure at the end of the block that drew it, and closes it, as the page does."""
+    """Runs the script; yields each figure when the block that drew it ends, and then closes it."""
     space: dict[str, Any] = {"__name__": "__main__", "__file__": str(EXAMPLES / f"{name}.py")}
     for block in _blocks((EXAMPLES / f"{name}.py").read_text(encoding="utf-8")):
         exec(compile(block, f"{name}.py", "exec"), space)
@@ -31,6 +31,6 @@ def _blocks(source: str) -> Iterator[str]:
         begin = cut
 
 
-def drawn(figure: Figure) -> int:
+def artists(figure: Figure) -> int:
     """How many artists it has: what is drawn after the end of the block is never seen."""
     return sum(len(axes.get_children()) for axes in figure.axes)
