@@ -21,8 +21,8 @@ _HEIGHTS = {"plane": 5.0, "motion": 5.0, "budget": 3.6}
 """Inches; the others are 3.8 high."""
 
 _CAPTIONS = {
-    "criterion": "The damping that the loop asks for, and what the device has. The loop is passive against every "
-    "sustained motion where the curve stays at or below the line, at every frequency up to half the rate.",
+    "criterion": "The damping that the loop asks for, and what the device has. The loop is passive against "
+    "every sustained motion where the curve stays at or below the line, up to half the sample rate.",
     "plane": "Where the loop lies: viscous friction against sampling, Coulomb friction against the encoder. "
     "Passive at and beyond ½ on both axes.",
     "budget": "What feeds energy in, against what the device takes out.",

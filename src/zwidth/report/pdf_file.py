@@ -110,7 +110,8 @@ def _part(part: Part) -> Iterator[Any]:
     if isinstance(part, str):
         yield _paragraph(part, _TEXT)
     elif isinstance(part, Headline):
-        badge = f'<font name="{_BOLD}" color="white" backColor="{part.colour}">&nbsp;{_text(part.word.upper())}&nbsp;</font>'
+        word = f"&nbsp;{_text(part.word.upper())}&nbsp;"
+        badge = f'<font name="{_BOLD}" color="white" backColor="{part.colour}">{word}</font>'
         yield Paragraph(f"{badge} {_text(part.claim)}", _CLAIM)
     elif isinstance(part, Lines):
         items = [_paragraph(str(item), _TEXT) for item in part.items]
