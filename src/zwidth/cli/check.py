@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from zwidth.cli.decision import decided, exit_status
+from zwidth.cli.decision import asked, decided, exit_status
 from zwidth.cli.options import (
     Once,
     add_contact_option,
@@ -13,7 +13,6 @@ from zwidth.cli.options import (
     add_output,
     add_parameters,
     contact,
-    overrides,
 )
 from zwidth.cli.output import print_json, say_written, targets, writing
 
@@ -54,7 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth check`: the status says the outcome."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
-    loop = _loop(arguments)
+    loop = asked(arguments).loop
     active = _tolerated(loop, arguments.active_below)
     verdict = decided(loop, contact(arguments))
     if save is not None:
@@ -71,17 +70,6 @@ def run(arguments: argparse.Namespace) -> int:
         print_verdict(verdict, replayed, active)
         say_written(save, plot)
     return exit_status(verdict.outcome)
-
-
-def _loop(arguments: argparse.Namespace) -> Specification:
-    """The device, and the environment behind its laws."""
-    from zwidth.specification.laws import with_laws
-    from zwidth.specification.read import WITH_LAWS, Specification, read_tables, specified
-
-    tables = read_tables(arguments.sources, WITH_LAWS)
-    given = specified(tables, overrides(arguments))
-    rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
-    return Specification(given.device, rendered)
 
 
 def _replayed(verdict: Verdict) -> FiniteStiffnessReplay:

@@ -6,6 +6,7 @@ Plain words first, then the numbers, then what to do; the small print last.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from rich.padding import Padding
@@ -17,24 +18,19 @@ from zwidth.cli.description import device_line, environment_line
 from zwidth.cli.motion import joules, motion_lines
 from zwidth.cli.output import encodes
 from zwidth.cli.page import below, grid, headline, items, page, section
-from zwidth.passivity.advice import Advice
+from zwidth.passivity.advice import Advice, in_lines
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.wording import intervals
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import in_words, shown
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     from zwidth.passivity.finite_stiffness import FiniteStiffnessReplay
     from zwidth.stability.active_hand import ToleratedActivity
 
 _LONGEST_BAR = 34
-_ORDER = (
-    "stiffness", "virtual_damping", "local_damping", "velocity_filter", "time_constant", "link_delay", "rate",
-    "delay", "damping", "resolution", "coulomb_friction",
-)  # fmt: skip
-"""What is changed most easily comes first: the law, then the loop, then the machine."""
 
 
 def print_verdict(
@@ -155,29 +151,8 @@ def _balance(
 
 def advice_section(advice: Iterable[Advice], passive: bool) -> tuple[str, Iterator[Text]]:
     """The title and the lines of what to change, or of what is left."""
-    return "slack" if passive else "what to change, any one of", _advice_lines(advice)
-
-
-def _advice_lines(advice: Iterable[Advice]) -> Iterator[Text]:
-    ordered = sorted(advice, key=lambda a: _ORDER.index(a.parameter) if a.parameter in _ORDER else 99)
-    useless = [a for a in ordered if a.to is None and a.current != 0]
-    at_limit = [a for a in ordered if a.kind == "slack" and a.to is not None and a.to == a.current]
-    yield from items(item.text for item in ordered if item.to is not None and item not in at_limit)
-    if at_limit:
-        yield from items([f"exactly at the limit: {_names(at_limit)}"])
-    if useless:
-        slack = useless[0].kind == "slack"
-        yield from items([f"{'no slack' if slack else 'no change alone would do'}: {_names(useless)}"], "dim")
-
-
-def _names(advice: Iterable[Advice]) -> str:
-    return ", ".join(_name(a.parameter) for a in advice)
-
-
-def _name(parameter: str) -> str:
-    """In words; "leader.damping" is that of one arm of a pair."""
-    arm, _, key = parameter.rpartition(".")
-    return in_words(key) + (f" of the {arm}" if arm else "")
+    title, useful, useless = in_lines(advice, passive)
+    return title, chain(items(useful), items([useless] if useless else [], "dim"))
 
 
 def _actuator(verdict: LinearVerdict) -> Iterator[Text]:
