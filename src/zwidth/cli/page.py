@@ -17,16 +17,24 @@ from rich.table import Table
 from rich.text import Text
 
 from zwidth.cli.description import GLUE
-from zwidth.cli.output import quiet_pipe
+from zwidth.cli.output import quiet_pipe, spelled
+from zwidth.cli.width import columns
 from zwidth.showing import printable
 
-_WIDEST = 100
+_ANY = 100
+"""Lines of a page: it is not cut, and with a number the console does not look for a terminal's."""
 
 
 class _Shown(Console):
-    """A console of which only its own colours are obeyed, never what stands in a text."""
+    """A console of which only its own colours are obeyed, never what stands in a text.
+
+    A text is spelled out for a terminal that lacks its characters before it is broken into lines.
+    """
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
+        if isinstance(renderable, Text) and (plain := spelled(renderable.plain)) != renderable.plain:
+            renderable = renderable.copy()
+            renderable.plain = plain
         for part in super().render(renderable, options):
             yield part if part.control else Segment(printable(part.text), part.style)
 
@@ -36,9 +44,14 @@ def page() -> Iterator[Console]:
     """A console that prints text as it is, at a width that reads well, without blanks at line ends."""
     terminal = sys.stdout is not None and sys.stdout.isatty()
     console = _Shown(
-        file=StringIO(), force_terminal=terminal or None, markup=False, highlight=False, emoji=False
+        file=StringIO(),
+        force_terminal=terminal or None,
+        width=columns(),
+        height=_ANY,
+        markup=False,
+        highlight=False,
+        emoji=False,
     )
-    console.width = min(console.width, _WIDEST)
     yield console
     text = console.file.getvalue()  # type: ignore[attr-defined]  # it is the StringIO above
     with quiet_pipe():
