@@ -21,6 +21,9 @@ from zwidth.cli.output import quiet_pipe, spelled
 from zwidth.cli.width import columns
 from zwidth.showing import printable
 
+Row = tuple[str, str | Text]
+"""A name, and what stands beside it."""
+
 _ANY = 100
 """Lines of a page: it is not cut, and with a number the console does not look for a terminal's."""
 
@@ -65,17 +68,37 @@ def headline(word: str, colour: str, claim: str) -> Padding:
     return below(line)
 
 
-def grid(rows: Iterable[tuple[str, str | Text]]) -> Table:
-    """Names, and beside each its text."""
+def grid(rows: Iterable[Row], width: int = 0) -> Table:
+    """Names, in a column of at least some width, and beside each its text."""
     table = Table.grid(padding=(0, 2))
+    table.add_column(min_width=width or None)
+    table.add_column()
     for name, text in rows:
         table.add_row(Text(name, style="dim"), text if isinstance(text, Text) else Text(text))
     return table
 
 
+def blocks(out: Console, *groups: Iterable[Row]) -> None:
+    """Groups of names with their texts, one column of names for all, a blank line after each group."""
+    filled = [rows for rows in map(list, groups) if rows]
+    widest = max((len(name) for rows in filled for name, _ in rows), default=0)
+    for rows in filled:
+        out.print(below(grid(rows, widest)))
+
+
 def below(table: Table) -> Padding:
     """A table with a blank line after it."""
     return Padding(table, (0, 0, 1, 0))
+
+
+def small_print(*parts: str) -> Text:
+    """What is assumed, in one paragraph; no line ends between a name and its number."""
+    return Text("; ".join(parts).replace(" = ", f"{GLUE}={GLUE}"), style="dim")
+
+
+def more_with_all(out: Console, what: str) -> None:
+    """The line below a short report: what --all shows too."""
+    out.print(Text(f"--all shows the rest: {what}", style="dim"))
 
 
 def section(out: Console, title: str, parts: Iterable[Text | Table]) -> None:

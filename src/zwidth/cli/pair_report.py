@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from rich.text import Text
 
+from zwidth.cli.advice_lines import advice_section
 from zwidth.cli.bars import PICTURE, levels
 from zwidth.cli.description import device_line
 from zwidth.cli.output import encodes
 from zwidth.cli.page import below, grid, headline, items, page, section
-from zwidth.cli.report import advice_section
 from zwidth.device import Device
 from zwidth.pairs import Pair
 from zwidth.passivity.outcome import TOLD

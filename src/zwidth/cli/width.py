@@ -19,7 +19,7 @@ _MARK = re.compile(r"\s*([·*✓✗-]|\d+\.) ")
 
 
 def columns() -> int:
-    """The columns of a report: those of the terminal or of COLUMNS, at most 100; 80 where neither is known."""
+    """The columns of a report: those of COLUMNS or of the terminal, at most 100; 80 without either."""
     return min(max(_there(), NARROWEST), WIDEST)
 
 
@@ -141,7 +141,9 @@ def _stacked(table: Table, sizes: Sequence[int], width: int) -> Iterator[str]:
             yield from _one_by_one(table, taken[0], width)
         else:
             lefts = sum(place < (len(sizes) if table.lefts is None else table.lefts) for place in places)
-            heads, rows = ([[cells[p] for p in places] for cells in part] for part in (table.heads, table.rows))
+            heads, rows = (
+                [[cells[p] for p in places] for cells in part] for part in (table.heads, table.rows)
+            )
             yield from _set(Table(rows=rows, heads=heads, lefts=lefts), [sizes[p] for p in places])
         if rest:
             yield ""
