@@ -55,17 +55,21 @@ _SAMPLING: dict[Sampling, str] = {
 }
 
 
-def in_short(scope: Scope, outcome: str | None = None) -> str:
-    """What a result takes for granted, in one paragraph; of a motion what it does."""
-    return "; ".join(part for part in _parts(scope, active=outcome == "active") if part)
+def in_short(scope: Scope, outcome: str | None = None, hands: bool = True) -> str:
+    """What a result takes for granted, in one paragraph; of a motion what it does.
+
+    `hands` is False where the hands stand elsewhere in the report.
+    """
+    return "; ".join(part for part in _parts(scope, outcome == "active", hands) if part)
 
 
-def _parts(scope: Scope, active: bool) -> Iterator[str]:
+def _parts(scope: Scope, active: bool, hands: bool) -> Iterator[str]:
     yield (_OF_A_MOTION if active else _CONTACT)[scope.contact]
     yield f"the law fed with the {scope.fed_with}" if scope.fed_with else ""
     yield "the law never pulls" if scope.clamped else ""
     yield f"the arm in its region, {scope.region}" if scope.region is not None else ""
-    yield from _hands(scope, active)
+    if hands:
+        yield from _hands(scope, active)
     yield _losses(scope)
     yield _actuator(scope)
     yield _TORQUE[scope.torque]
