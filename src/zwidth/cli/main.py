@@ -15,6 +15,7 @@ from typing import NoReturn
 from zwidth.cli.commands import COMMANDS, configure, run
 from zwidth.cli.options import joined
 from zwidth.cli.output import quiet_pipe, tolerate_encoding
+from zwidth.cli.welcome import WELCOME
 from zwidth.errors import InputError
 from zwidth.specification.table import plain, quoted, suggestion
 
@@ -69,7 +70,9 @@ def _run(argv: list[str]) -> int:
     if unknown:
         raise InputError(_unknown(unknown, parser, arguments))
     if arguments.command is None:
-        raise InputError(f"which command? One of {', '.join(COMMANDS)}; zwidth --help says what they do")
+        with quiet_pipe():
+            print(WELCOME)
+        return 0
     return run(arguments.command, arguments)
 
 
