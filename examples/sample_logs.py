@@ -1,7 +1,7 @@
 """The two logs that ship as samples: strokes of a hand on a simulated paddle, and a relaxation test.
 
-Run it as `python examples/sample_logs.py FOLDER`; it writes session.csv and relaxation.csv there, the same bytes
-each time.  Nothing in them was measured.
+Run it as `python examples/sample_logs.py FOLDER`; it writes session.csv and relaxation.csv there, the same
+bytes each time.  Nothing in them was measured.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ STEP = 2e-5
 
 
 def session(path: Path) -> None:
-    """Ten seconds of strokes, slow and quick; a load cell with 0.03 N of noise and a zero that is 0.02 N off."""
+    """Ten seconds of strokes, slow and quick; a load cell with 0.03 N of noise, its zero 0.02 N off."""
     rng = np.random.default_rng(4)
     paddle = zw.Device(mass="36 g", damping=0.15, coulomb_friction=0.12, resolution=STEP, rate="1 kHz")
-    hand = np.concatenate([_strokes(0.8, 4, rng), _strokes(0.25, 24, rng)])[:10_001] - 1  # the wall is 1 m away
+    hand = np.concatenate([_strokes(0.8, 4, rng), _strokes(0.25, 24, rng)])[:10_001] - 1  # 1 m from the wall
     operator = zw.operators.Tracking(hand, stiffness=600, damping=3)
     trace = zw.simulate(paddle, zw.Wall(1), operator, 10, initial_position=hand[0])
     position = np.rint((trace["measured_position"].values + 1) / STEP) * STEP
@@ -37,7 +37,8 @@ def relaxation(path: Path) -> None:
     position = 2.5e-3 * (1 - np.cos(np.pi * np.clip(time / 0.05, 0, 1)))
     tissue = zw.StandardLinearSolid(310, 145, 60)
     force = zw.tissue.force_response(tissue, time, position) + rng.normal(0, 0.01, time.size)
-    _write(path, np.column_stack([time, 1e3 * position, force]), "time_s,position_mm,force_N", ("%.3f", "%.4f", "%.3f"))
+    table = np.column_stack([time, 1e3 * position, force])
+    _write(path, table, "time_s,position_mm,force_N", ("%.3f", "%.4f", "%.3f"))
 
 
 def _strokes(duration: float, many: int, rng: np.random.Generator) -> np.ndarray:

@@ -35,8 +35,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
     {
         "tour": Command(
             "a wall that gives out energy, why, and what mends it: in a minute",
-            "Go through the questions of this program on one device, a paddle: the commands that ask them are\n"
-            "run, and what they find is shown in short. Nothing is written.",
+            "Go through the questions of this program on one device, a paddle: the commands that ask\n"
+            "them are run, and what they find is shown in short. Nothing is written.",
             "In a terminal every step waits for Enter; q ends the tour.\n\n"
             "examples:\n"
             "  zwidth tour\n"
@@ -270,7 +270,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "let the shell complete commands, options, devices and files",
             "Print what makes bash, zsh or fish complete the words of zwidth.",
             "Put the line into the file that your shell reads when it starts:\n"
-            "  bash, zsh  eval \"$(zwidth completion bash)\"    (or zsh, after compinit)\n"
+            '  bash, zsh  eval "$(zwidth completion bash)"    (or zsh, after compinit)\n'
             "  fish       zwidth completion fish | source",
         ),
         "verify": Command(

@@ -7,6 +7,7 @@ goes wrong is a mistake of this program and is not hidden.
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import textwrap
 from collections.abc import Sequence
@@ -46,6 +47,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         The exit status: of `check` 0 passive, 1 active, 3 undecided; 2 for bad input.
     """
     tolerate_encoding()
+    if argv is None and "_ARGCOMPLETE" in os.environ:  # the shell asks how its line may go on
+        from zwidth.cli.completion import answer
+
+        answer(_parser)
     try:
         return _run(list(sys.argv[1:] if argv is None else argv))
     except InputError as error:

@@ -25,7 +25,7 @@ _MOVING = 1e-9
 def print_trace(trace: xr.Dataset) -> None:
     """Print the report of one trace."""
     with page() as out:
-        out.print(_headline(trace))
+        out.print(trace_headline(trace))
         out.print(below(grid(_about(trace))))
         out.print(below(grid(_measures(trace))))
         out.print(Text("energy", style="bold"))
@@ -45,7 +45,8 @@ def print_comparison(comparison: Comparison) -> None:
         out.print(table)
 
 
-def _headline(trace: xr.Dataset) -> Padding:
+def trace_headline(trace: xr.Dataset) -> Padding:
+    """Whether this hand got energy out, and what that shows."""
     book = trace.zwidth.energy
     got, held = shown(book.got_out, "J"), book.held_at_start
     significant = book.got_out > ROUNDING * book.moved

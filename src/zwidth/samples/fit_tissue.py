@@ -1,4 +1,4 @@
-"""What tissue was it?  Reads relaxation.csv, fits four models, and asks whether a device may render the best known."""
+"""What tissue was it?  Reads relaxation.csv, fits four models, asks whether a device may render one."""
 
 import zwidth as zw
 
