@@ -38,6 +38,36 @@ def _module(name: str) -> Any:
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(
     {
+        "tour": Command(
+            "a wall that gives out energy, why, and what mends it: in a minute",
+            "Go through the questions of this program on one device, a paddle: the commands that ask\n"
+            "them are run, and what they find is shown in short. Nothing is written.",
+            "In a terminal every step waits for Enter; q ends the tour.\n\n"
+            "examples:\n"
+            "  zwidth tour\n"
+            "  zwidth tour --no-pause",
+        ),
+        "examples": Command(
+            "sample files for every command, and lessons for a class",
+            "List the sample files with a command for each, or copy them into a folder.",
+            "exit status: 0, or 2 where a file exists or cannot be written\n\n"
+            "examples:\n"
+            "  zwidth examples\n"
+            "  zwidth examples .\n"
+            "  zwidth examples my-first-walls",
+        ),
+        "new": Command(
+            "write the file of your device, question by question",
+            "Ask what you know of a device or of what it renders, say why it matters, and write it as TOML.",
+            "In a terminal, and from a pipe, what no option gives is asked, line by line: a value with its\n"
+            "unit, or Enter where you do not know. With --no-questions only the options count.\n\n"
+            "exit status: 0 written, 2 bad input\n\n"
+            "examples:\n"
+            "  zwidth new device\n"
+            "  zwidth new environment --type wall --stiffness '200 N/m' --no-questions\n"
+            "  zwidth new device my-knob.toml --motion rotary --damping '2e-4 N*m*s/rad' --rate '2 kHz' "
+            "--no-questions",
+        ),
         "check": Command(
             "is this device, rendering this environment, passive?",
             "Prove that the sampled loop is passive, or find the hand motion that takes energy out of it;\n"
@@ -254,6 +284,13 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "the catalogue of real devices, each value with its source",
             "The catalogue of real devices, each value with its source; what none gives is unknown.",
             "",
+        ),
+        "completion": Command(
+            "let the shell complete commands, options, devices and files",
+            "Print what makes bash, zsh or fish complete the words of zwidth.",
+            "Put the line into the file that your shell reads when it starts:\n"
+            '  bash, zsh  eval "$(zwidth completion bash)"    (or zsh, after compinit)\n'
+            "  fish       zwidth completion fish | source",
         ),
         "verify": Command(
             "re-check a saved proof or motion, independently of what made it",

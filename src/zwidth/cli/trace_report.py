@@ -29,7 +29,7 @@ _FEW = ("deepest position", "largest actuator force", "contacts made", "at the e
 def print_trace(trace: xr.Dataset, in_full: bool = False) -> None:
     """Print the report of one trace."""
     with page() as out:
-        out.print(_headline(trace))
+        out.print(trace_headline(trace))
         if not in_full:
             blocks(out, [row for row in _measures(trace) if row[0] in _FEW], _about(trace))
             more_with_all(out, "every measure, where each joule went")
@@ -53,7 +53,8 @@ def print_comparison(comparison: Comparison) -> None:
         out.print(table)
 
 
-def _headline(trace: xr.Dataset) -> Padding:
+def trace_headline(trace: xr.Dataset) -> Padding:
+    """Whether this hand got energy out, and what that shows."""
     book = trace.zwidth.energy
     got, held = shown(book.got_out, "J"), book.held_at_start
     significant = book.got_out > ROUNDING * book.moved
