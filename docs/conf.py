@@ -27,6 +27,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx_gallery.gen_gallery",
     "sphinx-mathjax-offline",  # formulas are drawn without a network
+    "shown",  # commands that are run where the page is built
 ]
 exclude_patterns = ["_build", "_generated", "gallery/GALLERY_HEADER.rst"]
 
