@@ -147,6 +147,17 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth map haptic-paddle --stiffness 0:3000 --virtual-damping 0:5 -o map.zarr "
             "--address tcp://cluster:8786",
         ),
+        "play": Command(
+            "a page on which a loop is held, pushed and heard",
+            "Write a page of HTML on which a person holds the handle and pushes into the wall: device, hand\n"
+            "and law run in it sample by sample, force is drawn and heard, energy is counted.",
+            "The page asks nothing of a network and holds the verdict on each loop.\n\n"
+            "exit status: 0, or 2 on bad input\n\n"
+            "examples:\n"
+            "  zwidth play\n"
+            "  zwidth play haptic-paddle --stiffness 770\n"
+            "  zwidth play my-wheel.toml my-bumpstop.toml -o play.html",
+        ),
         "simulate": Command(
             "what happens when a hand touches the wall?",
             "Simulate a hand on the device, without time-step error: positions, forces, every joule.",
