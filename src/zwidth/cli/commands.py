@@ -107,6 +107,16 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth limit haptic-paddle --stiffness 100 --virtual-damping 0.05 --speed '0.5 m/s'\n"
             "  zwidth limit my-wheel.toml my-wall.toml --parameter rate -o limit.json",
         ),
+        "explore": Command(
+            "move every parameter on a page, and see the verdict follow",
+            "Open a page in the browser: the device and the wall on sliders, the verdict beside them, pictures of\n"
+            "both. The address keeps the loop. It answers this machine alone, unless --address says otherwise,\n"
+            "and then asks for a token.",
+            "examples:\n"
+            "  zwidth explore\n"
+            "  zwidth explore haptic-paddle\n"
+            "  zwidth explore my-wheel.toml my-bumpstop.toml --no-browser --port 5100",
+        ),
         "pair": Command(
             "are two arms that follow each other passive?",
             "Two arms, leader and follower, joined by a spring and a damper over a link: prove that no two\n"
