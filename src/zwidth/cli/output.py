@@ -11,8 +11,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TextIO
 
+from zwidth.cli.width import columns, fitted, wrapped
 from zwidth.errors import InputError
-from zwidth.showing import OBEYED, printable
+from zwidth.showing import OBEYED, Shown, printable
 from zwidth.specification.table import plain
 
 PICTURES = (".png", ".svg", ".pdf")
@@ -27,12 +28,30 @@ _ASCII = {
 
 
 def tolerate_encoding() -> None:
-    """Let standard output and error spell out what their encoding lacks, instead of failing."""
+    """Let standard output and error spell out what their encoding lacks, instead of failing.
+
+    A terminal of a session that asks for the locale C has ASCII, whatever Python writes to it.
+    """
     codecs.register_error("zwidth", _spelled)
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
-            reconfigure(errors="zwidth")
+            only_ascii = _asks_for_c() and stream.isatty()
+            reconfigure(errors="zwidth", **({"encoding": "ascii"} if only_ascii else {}))
+
+
+def _asks_for_c() -> bool:
+    """True where the environment sets the locale of characters to C."""
+    asked = next((v for name in ("LC_ALL", "LC_CTYPE", "LANG") if (v := os.environ.get(name))), "")
+    return asked in ("C", "POSIX")
+
+
+def spelled(text: str) -> str:
+    """The text as standard output will show it: what its encoding lacks is spelled out."""
+    if encodes(text):
+        return text
+    encoding = sys.stdout.encoding
+    return text.encode(encoding, "zwidth").decode(encoding)
 
 
 def _spelled(error: UnicodeError) -> tuple[str | bytes, int]:
@@ -81,9 +100,17 @@ def quiet_pipe(stream: TextIO | None = None) -> Iterator[None]:
 
 
 def print_text(text: object) -> None:
-    """Print what may hold text of others; the terminal obeys none of it."""
+    """Print what may hold text of others, in lines that fit the terminal, which obeys none of it."""
     with quiet_pipe():
-        print(printable(str(text)))
+        for line in wrapped(spelled(printable(str(text))), columns()):
+            print(line.rstrip())
+
+
+def print_report(found: Shown) -> None:
+    """Print what a result says of itself, in lines that fit the terminal, which obeys none of it."""
+    with quiet_pipe():
+        for line in fitted(found, columns(), lambda text: spelled(printable(text))):
+            print(line.rstrip())
 
 
 def print_json(text: str) -> None:
@@ -157,7 +184,7 @@ def say_written(*paths: Path | None) -> None:
 
 
 def give_out(found: Any, save: Path | None, plot: Path | None, as_json: bool) -> None:
-    """Save a result and its picture where that was asked for, and print it."""
+    """Save a result and its picture where that was asked for, print it, and say what was written."""
     if save is not None:
         found.save(save)
     if plot is not None:
@@ -166,7 +193,7 @@ def give_out(found: Any, save: Path | None, plot: Path | None, as_json: bool) ->
     if as_json:
         print_json(found.to_json())
     else:
-        print_text(found)
+        print_report(found)
         say_written(save, plot)
 
 

@@ -5,7 +5,7 @@ Every value given was itself proved passive, all else as it was.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor, inf, isinf, log10
@@ -32,6 +32,12 @@ _NEVER_NOTHING = ("stiffness", "resolution", "link_delay")
 """What nobody can set to 0 and keep what it is there for."""
 
 _WINDOWS = (2, 3, 4, 5, 6, 8, 10, 15, 20)
+
+_EASIEST_FIRST = (
+    "stiffness", "virtual_damping", "local_damping", "velocity_filter", "time_constant", "link_delay", "rate",
+    "delay", "damping", "resolution", "coulomb_friction",
+)  # fmt: skip
+"""The law, then the loop, then the machine."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +67,61 @@ class Advice:
             "kind": self.kind,
             "text": self.text,
         }
+
+
+@dataclass(frozen=True)
+class InLines:
+    """Advice as a report says it.
+
+    Parameters
+    ----------
+    title
+        What the lines are.
+    changes
+        A line for what may be turned, what is changed most easily first.
+    at_limit
+        What may not be turned by anything, in one line; "" where there is nothing.
+    useless
+        What it is no use to turn, in one line; "" where there is nothing.
+    """
+
+    title: str
+    changes: tuple[str, ...]
+    at_limit: str
+    useless: str
+
+    @property
+    def useful(self) -> tuple[str, ...]:
+        """All but the useless."""
+        return (*self.changes, self.at_limit) if self.at_limit else self.changes
+
+
+def in_lines(advice: Iterable[Advice], passive: bool) -> InLines:
+    """What to change, or what is left, as a report says it."""
+    ordered = sorted(advice, key=_rank)
+    useless = [a for a in ordered if a.to is None and a.current != 0]
+    at_limit = [a for a in ordered if a.kind == "slack" and a.to is not None and a.to == a.current]
+    return InLines(
+        "slack" if passive else "what to change, any one of",
+        tuple(item.text for item in ordered if item.to is not None and item not in at_limit),
+        f"exactly at the limit: {_names(at_limit)}" if at_limit else "",
+        f"{'no slack' if passive else 'no change alone would do'}: {_names(useless)}" if useless else "",
+    )
+
+
+def _rank(advice: Advice) -> int:
+    name = advice.parameter
+    return _EASIEST_FIRST.index(name) if name in _EASIEST_FIRST else len(_EASIEST_FIRST)
+
+
+def _names(advice: Iterable[Advice]) -> str:
+    return ", ".join(_name(a.parameter) for a in advice)
+
+
+def _name(parameter: str) -> str:
+    """In words; "leader.damping" is that of one arm of a pair."""
+    arm, _, key = parameter.rpartition(".")
+    return in_words(key) + (f" of the {arm}" if arm else "")
 
 
 @dataclass(frozen=True)
