@@ -26,6 +26,7 @@ extensions = [
     "sphinx.ext.mathjax",
     "sphinx.ext.napoleon",
     "sphinx_gallery.gen_gallery",
+    "playpage",  # of _ext
     "sphinx-mathjax-offline",  # formulas are drawn without a network
     "shown",  # commands that are run where the page is built
 ]
