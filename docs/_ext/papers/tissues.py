@@ -12,11 +12,11 @@ from zwidth.passivity.formulas.closed_forms import kelvin_voigt_damping, standar
 
 TITLE = "A passivity criterion for real-time haptic simulation of viscoelastic soft tissues"
 
-SOURCE = """m0, m1, h1 and v stand for μ0, μ1, η1 and ω. Slips: the second denominator of (11) is
-T/(η1(1 − e^{−jωT})); the imaginary part of (13) lacks 2μ1η1(cos ωT − 1); in (15) the second term is subtracted,
-as in (16); 2m1 of (21) is 2η1; the denominator of a1 in appendix 2 is μ1T + 2η1; the first exponent of (36) is −jωT;
-the last bracket of (37) is (2η1 − μ1T); the sine in (38) is squared; the first entry of (42) is μ0T/2 − η1;
-damping is in N·s/m, and sufficiency of (1) needs a stable H."""
+SOURCE = """m0, m1, h1 and v stand for μ0, μ1, η1 and ω. Slips: the second denominator of (11) is T/(η1(1 −
+e^{−jωT})); the imaginary part of (13) lacks 2μ1η1(cos ωT − 1); in (15) the second term is subtracted, as in
+(16); 2m1 of (21) is 2η1; the denominator of a1 in appendix 2 is μ1T + 2η1; the first exponent of (36) is
+−jωT; the last bracket of (37) is (2η1 − μ1T); the sine in (38) is squared; the first entry of (42) is μ0T/2
+− η1; damping is in N·s/m, and sufficiency of (1) needs a stable H."""
 
 PHANTOM = zw.catalogue.device("phantom")
 T, B = 1e-3, 0.27
