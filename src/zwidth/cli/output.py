@@ -101,16 +101,18 @@ def quiet_pipe(stream: TextIO | None = None) -> Iterator[None]:
 
 def print_text(text: object) -> None:
     """Print what may hold text of others, in lines that fit the terminal, which obeys none of it."""
-    with quiet_pipe():
-        for line in wrapped(spelled(printable(str(text))), columns()):
-            print(line.rstrip())
+    _print_lines(wrapped(spelled(printable(str(text))), columns()))
 
 
 def print_report(parts: Iterable[Part]) -> None:
     """Print what a result says of itself, in lines that fit the terminal, which obeys none of it."""
+    _print_lines(fitted(parts, columns(), lambda text: spelled(printable(text))))
+
+
+def _print_lines(lines: Iterable[str]) -> None:
+    """All at once: several processes may write to one terminal."""
     with quiet_pipe():
-        for line in fitted(parts, columns(), lambda text: spelled(printable(text))):
-            print(line.rstrip())
+        print("\n".join(line.rstrip() for line in lines))
 
 
 def print_json(text: str) -> None:
