@@ -47,6 +47,11 @@ EXAMPLES = (
         "python fit_tissue.py",
     ),
     Example(
+        ("hapkit.toml",),
+        "a Hapkit and its wall, as C for the board",
+        "zwidth emit hapkit.toml --target arduino --travel '-60 .. 60 mm' -o hapkit",
+    ),
+    Example(
         ("arm.urdf",),
         "an arm of three joints: where does it render a wall?",
         "zwidth workspace arm.urdf --stiffness 500",
@@ -71,6 +76,11 @@ EXAMPLES = (
         ("room.toml",),
         "a scene cut into two processes and a device",
         "zwidth network room.toml --plan",
+    ),
+    Example(
+        ("lesson-1-sampling.ipynb", "lesson-2-encoder-and-friction.ipynb", "lesson-3-laws-and-a-board.ipynb"),
+        "three lessons for a class, with pip install jupyterlab",
+        "jupyter lab lesson-1-sampling.ipynb",
     ),
 )
 """In the order of a first hour."""
