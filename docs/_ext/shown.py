@@ -31,7 +31,9 @@ BAD_INPUT = 2
 
 def files_of(page: str) -> dict[str, str]:
     """Name and text of every file that a page shows."""
-    return {name: text for text, name in re.findall(r"^```toml\n(# ([\w.-]+\.toml)\n.*?)^```", page, re.M | re.S)}
+    return {
+        name: text for text, name in re.findall(r"^```toml\n(# ([\w.-]+\.toml)\n.*?)^```", page, re.M | re.S)
+    }
 
 
 def commands_of(page: str) -> Iterator[tuple[str, list[str]]]:

@@ -82,7 +82,8 @@ def test_what_is_computed_says_what_the_text_relies_on(page: str, tmp_path: Path
 
 def test_calls_and_files_are_found() -> None:
     """Prompts, chains, comments, a page's files; what is no call of zwidth is none."""
-    page = "```toml\n# a.toml\n[device]\n```\n```console\n$ zwidth check a.toml && zwidth verify b.json  # so\nok\n$ ls\n```\n"
+    line = "$ zwidth check a.toml && zwidth verify b.json  # so"
+    page = f"```toml\n# a.toml\n[device]\n```\n```console\n{line}\nok\n$ ls\n```\n"
     assert [call for _, call in shown.commands_of(page)] == [["check", "a.toml"], ["verify", "b.json"]]
     assert shown.files_of(page) == {"a.toml": "# a.toml\n[device]\n"}
     assert shown.not_said("ACTIVE; 500 Hz; 300 N", " ACTIVE  at\n500   Hz") == ["300 N"]
