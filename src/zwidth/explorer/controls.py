@@ -75,6 +75,12 @@ class Control:
         assert self.scale is not None
         return f"{self.scale.value(share):.12g} {self.unit}".strip()
 
+    def place_of(self, other: Control) -> float:
+        """Where the number of another control stands on the slider of this one."""
+        if self.scale is None or other.scale is None:
+            return other.place
+        return self.scale.share(other.scale.value(other.place))
+
 
 def device_controls(state: State, device: Device) -> tuple[Control, ...]:
     """Those of a device; the sample period as a rate."""

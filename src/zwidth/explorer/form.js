@@ -150,10 +150,13 @@ export function render({ model, el }) {
     }
   };
 
+  if (model.views) window.addEventListener("zwidth-view", (event) => tell("view", event.detail, null));
+
   model.on("groups", draw);
   model.on("told", heed);
   draw();
   heed();
+  if (model.views) setTimeout(() => window.dispatchEvent(new Event("zwidth-drawn")));
   return form;
 }
 
