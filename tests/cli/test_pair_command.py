@@ -84,7 +84,7 @@ def test_friction_is_compensated_on_both_sides_unless_told(files, capsys):
     )
     assert told == json.loads(zw.check(pair).to_json())
     assert told["largest_compensation"] > 0
-    main(["pair", files["leader"], files["follower"], *argv])
+    main(["pair", files["leader"], files["follower"], *argv, "--all"])
     said = capsys.readouterr().out
     for part in ("compensated in the leader", "largest compensation", "of friction is computed once"):
         assert part in said
@@ -92,7 +92,7 @@ def test_friction_is_compensated_on_both_sides_unless_told(files, capsys):
 
 def test_one_device_is_both_arms(files, capsys):
     """And the report says so; without delay K T/2 is the sum of both dampings in series, b/2."""
-    assert main(["pair", files["leader"], "--stiffness", "200"]) == 0
+    assert main(["pair", files["leader"], "--stiffness", "200", "--all"]) == 0
     said = capsys.readouterr().out
     assert "both arms  leader: b = 0.2 N·s/m" in said
     assert "200 N/m with all else as it is" in said
@@ -101,7 +101,7 @@ def test_one_device_is_both_arms(files, capsys):
 
 def test_the_report_of_an_active_pair(files, capsys):
     """The limit, what each arm needs, the frequency, the motion of both hands, and what to change."""
-    assert main(["pair", files["leader"], files["follower"], "--stiffness", "300"]) == 1
+    assert main(["pair", files["leader"], files["follower"], "--stiffness", "300", "--all"]) == 1
     said = capsys.readouterr().out
     for part in (" ACTIVE ", "leader    b = 0.2", "follower  b = 0.4", "damping of the arms",
                  "largest stiffness", "some motion of both hands gains", "the motion", "extracts",
