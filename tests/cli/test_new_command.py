@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import pty
 import subprocess
 import sys
 from collections.abc import Callable
@@ -212,6 +211,7 @@ def test_a_file_is_kept_unless_force_is_given(refused: Answered) -> None:
 
 def test_in_a_terminal_a_wrong_answer_is_asked_again(tmp_path: Path) -> None:
     """Each question with why it matters; what is wrong with an answer at once, then the question stays."""
+    pty = pytest.importorskip("pty")
     here, there = pty.openpty()
     answers = b"rotary\n0.006 kg\n0.006 kg*m^2\n?\n\n1 kHz\n\n0.02\n0.05 N*m\n2 N*m\n"
     os.write(here, answers)
