@@ -9,26 +9,31 @@ import argparse
 from collections.abc import Mapping
 from importlib import import_module
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 
 class Command(NamedTuple):
-    """A subcommand: what it does."""
+    """A subcommand: what it does, and the name of its file where that is another one."""
 
     meaning: str
     description: str
     epilog: str
+    file: str = ""
 
 
 def configure(name: str, parser: argparse.ArgumentParser) -> None:
     """Set up the arguments of a command."""
-    import_module(f"zwidth.cli.{name}").configure(parser)
+    _module(name).configure(parser)
 
 
 def run(name: str, arguments: argparse.Namespace) -> int:
     """Run a command; its exit status."""
-    status: int = import_module(f"zwidth.cli.{name}").run(arguments)
+    status: int = _module(name).run(arguments)
     return status
+
+
+def _module(name: str) -> Any:
+    return import_module(f"zwidth.cli.{COMMANDS[name].file or name}")
 
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(
@@ -76,6 +81,20 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth check my-wheel.toml my-bumpstop.toml --json\n"
             "  zwidth check --damping 0.2 --rate '2 kHz' --stiffness 500 --virtual-damping 0.05",
         ),
+        "report": Command(
+            "the verdict as one file to hand on: HTML or PDF",
+            "Decide as zwidth check does, and write verdict, scope, proof, figures, what to change, and\n"
+            "where each number comes from into one file that needs nothing else. The same input gives the\n"
+            "same bytes.",
+            "A file that ends in .html is a page without script and without addresses abroad; one that ends\n"
+            "in .pdf takes ReportLab: pip install 'zwidth[report]'.\n\n"
+            "exit status: as of zwidth check: 0 passive, 1 active, 2 bad input, 3 undecided, 4 passive\n"
+            "while contact is kept\n\n"
+            "examples:\n"
+            "  zwidth report haptic-paddle --stiffness 300 -o report.html\n"
+            "  zwidth report my-wheel.toml my-bumpstop.toml -o report.pdf",
+            file="write_report",
+        ),
         "limit": Command(
             "how far may a parameter go?",
             "Bracket a limit: the last value that is proved passive, and the first at which a motion of the\n"
@@ -87,6 +106,16 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth limit haptic-paddle --stiffness 100 --virtual-damping 0.05\n"
             "  zwidth limit haptic-paddle --stiffness 100 --virtual-damping 0.05 --speed '0.5 m/s'\n"
             "  zwidth limit my-wheel.toml my-wall.toml --parameter rate -o limit.json",
+        ),
+        "explore": Command(
+            "move every parameter on a page, and see the verdict follow",
+            "Open a page in the browser: the device and the wall on sliders, the verdict beside them, pictures of\n"
+            "both. The address keeps the loop. It answers this machine alone, unless --address says otherwise,\n"
+            "and then asks for a token.",
+            "examples:\n"
+            "  zwidth explore\n"
+            "  zwidth explore haptic-paddle\n"
+            "  zwidth explore my-wheel.toml my-bumpstop.toml --no-browser --port 5100",
         ),
         "pair": Command(
             "are two arms that follow each other passive?",
@@ -127,6 +156,17 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "--cells 1000x1000 -o map.zarr\n"
             "  zwidth map haptic-paddle --stiffness 0:3000 --virtual-damping 0:5 -o map.zarr "
             "--address tcp://cluster:8786",
+        ),
+        "play": Command(
+            "a page on which a loop is held, pushed and heard",
+            "Write a page of HTML on which a person holds the handle and pushes into the wall: device, hand\n"
+            "and law run in it sample by sample, force is drawn and heard, energy is counted.",
+            "The page asks nothing of a network and holds the verdict on each loop.\n\n"
+            "exit status: 0, or 2 on bad input\n\n"
+            "examples:\n"
+            "  zwidth play\n"
+            "  zwidth play haptic-paddle --stiffness 770\n"
+            "  zwidth play my-wheel.toml my-bumpstop.toml -o play.html",
         ),
         "simulate": Command(
             "what happens when a hand touches the wall?",
