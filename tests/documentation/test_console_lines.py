@@ -19,6 +19,7 @@ NOT_RUN = {
     "links": "it simulates minutes; run in tests/links",
     "map": "it computes thousands of walls; run in tests/cli/test_map.py",
     "network": "it starts processes",
+    "play": "it opens a browser; run in tests/cli/test_play_command.py",
     "serve": "it runs until it is ended",
     "workspace": "it covers an arm; run in tests/cli/test_workspace_command.py",
 }

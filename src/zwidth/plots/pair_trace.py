@@ -19,6 +19,7 @@ from zwidth.plots.style import (
     ORANGE,
     PURPLE,
     RED,
+    heading,
     new_figure,
     number,
     scale,
@@ -51,7 +52,7 @@ def pair_trace_figure(trace: xr.Dataset) -> Figure:
     draw_pair_energies(below, trace)
     about = trace.attrs
     held = f"leader: {about['leader_holder']}\nfollower: {about['follower_holder']}"
-    above.set_title(verbatim(f"{about['coupling']}\n{held}"))
+    heading(above, verbatim(f"{about['coupling']}\n{held}"))
     below.set_xlabel(f"time [{scale([float(trace['time'].values[-1])], 's')[1]}]")
     return figure
 
@@ -88,7 +89,8 @@ def draw_pair_energies(axes: Axes, trace: xr.Dataset) -> None:
     _legend(axes)
     if book.active:
         f, u = scale([book.extracted], "J")
-        axes.set_title(
+        heading(
+            axes,
             f"{number(book.extracted * f)} {u} came out beyond what was in it: this pair is active",
             color=RED,
         )

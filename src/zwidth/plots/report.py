@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import ceil
-from textwrap import fill
 from typing import Any
 
 from matplotlib import rc_context
@@ -19,21 +17,18 @@ from zwidth.plots.criterion import draw_criterion
 from zwidth.plots.plane import draw_plane, has_plane
 from zwidth.plots.scene import draw_scene
 from zwidth.plots.storage import draw_storage
-from zwidth.plots.style import LOOK, OUTCOME, new_figure, shown_name
+from zwidth.plots.style import LOOK, OUTCOME, new_figure, page_heading, shown_name
 from zwidth.plots.witness import draw_witness
 from zwidth.rendering import VirtualCoupling
 from zwidth.scene import Scene
 
-_WIDTH = 125
-"""Characters of the heading on one line."""
-
-_Draw = Callable[[Figure, SubplotSpec, Any], None]
+Draw = Callable[[Figure, SubplotSpec, Any], None]
 
 
 @rc_context(LOOK)
 def check_figure(verdict: Verdict) -> Figure:
     """The criterion, the budget, and where they apply the plane, the witness and the scene, in one figure."""
-    panels = _panels(verdict)
+    panels = list(panels_of(verdict).values())
     if not panels:
         raise InputError("there is nothing to draw of this verdict: it has neither H(z) nor a motion")
     rows = (len(panels) + 1) // 2
@@ -42,35 +37,38 @@ def check_figure(verdict: Verdict) -> Figure:
     for k, draw in enumerate(panels):
         last_alone = k == len(panels) - 1 and k % 2 == 0
         draw(figure, grid[k // 2, :] if last_alone else grid[k // 2, k % 2], verdict)
-    figure.suptitle(
-        _lines(f"{shown_name(verdict.device)}: {verdict.outcome}. {verdict.claim}"),
-        x=0.01, ha="left", fontsize=11, color=OUTCOME[verdict.outcome], parse_math=False,
-    )  # fmt: skip
+    text = f"{shown_name(verdict.device)}: {verdict.outcome}. {verdict.claim}"
+    page_heading(figure, text, color=OUTCOME[verdict.outcome])
     figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.08, hspace=0.06, wspace=0.05)
     return figure
 
 
-def _lines(text: str) -> str:
-    """Text on as few lines as the page allows, of about the same length."""
-    return fill(text, len(text) // ceil(len(text) / _WIDTH) + 12)
+@rc_context(LOOK)
+def panel_figure(draw: Draw, verdict: Verdict, width: float, height: float) -> Figure:
+    """One of `panels_of` by itself; sizes in inches."""
+    figure = new_figure(width, height)
+    draw(figure, figure.add_gridspec(1, 1)[0], verdict)
+    return figure
 
 
-def _panels(verdict: Verdict) -> list[_Draw]:
-    panels: list[_Draw] = []
+def panels_of(verdict: Verdict) -> dict[str, Draw]:
+    """What draws each picture that there is of a verdict, by name."""
+    panels: dict[str, Draw] = {}
     if isinstance(verdict, LinearVerdict):
-        loop = verdict.decision.loop
-        has_place = verdict.decision.is_spring and has_plane(verdict.device) and loop.numerator[0]
-        panels += [_criterion, _plane, _budget] if has_place else [_criterion, _budget]
+        panels["criterion"] = _criterion
+        if verdict.decision.is_spring and has_plane(verdict.device) and verdict.decision.loop.numerator[0]:
+            panels["plane"] = _plane
+        panels["budget"] = _budget
     if verdict.witness is not None:
-        panels.append(_witness)
+        panels["motion"] = _witness
     elif verdict.available_storage is not None and verdict.available_storage.storage is not None:
-        panels.append(_storage)
-    if _scene_of(verdict) is not None:
-        panels.append(_scene)
+        panels["storage"] = _storage
+    if scene_of(verdict) is not None:
+        panels["scene"] = _scene
     return panels
 
 
-def _scene_of(verdict: Verdict) -> Scene | None:
+def scene_of(verdict: Verdict) -> Scene | None:
     """The scene that is rendered, behind whatever couplings, if it is one."""
     met = verdict.environment.met
     while isinstance(met, VirtualCoupling):
@@ -79,7 +77,7 @@ def _scene_of(verdict: Verdict) -> Scene | None:
 
 
 def _scene(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
-    scene = _scene_of(verdict)
+    scene = scene_of(verdict)
     assert scene is not None
     draw_scene(figure.add_subplot(place), scene, verdict.device.motion)
 
