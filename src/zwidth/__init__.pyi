@@ -8,6 +8,7 @@ from zwidth import network as network
 from zwidth import operator as operators
 from zwidth import plots as plots
 from zwidth import rendering as rendering
+from zwidth import report as report
 from zwidth import samples as samples
 from zwidth import scene as scene
 from zwidth import servo as servo
