@@ -29,6 +29,7 @@ from zwidth.environment import PulseTransferFunction as PulseTransferFunction
 from zwidth.environment import StandardLinearSolid as StandardLinearSolid
 from zwidth.environment import Wall as Wall
 from zwidth.errors import InputError as InputError
+from zwidth.explorer.notebook import explore as explore
 from zwidth.firmware.emit import emit as emit
 from zwidth.gains import check_gains as check_gains
 from zwidth.gains import read_gains as read_gains
