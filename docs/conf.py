@@ -36,6 +36,7 @@ myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 
 autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True  # as they are written: a function has no other words
 autodoc_typehints = "none"  # the docstrings say units, which types cannot
 autoclass_content = "class"
 napoleon_google_docstring = False

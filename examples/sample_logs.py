@@ -22,7 +22,7 @@ def session(path: Path) -> None:
     rng = np.random.default_rng(4)
     paddle = zw.Device(mass="36 g", damping=0.15, coulomb_friction=0.12, resolution=STEP, rate="1 kHz")
     hand = np.concatenate([_strokes(0.8, 4, rng), _strokes(0.25, 24, rng)])[:10_001] - 1  # 1 m from the wall
-    operator = zw.operators.Tracking(hand, stiffness=600, damping=3)
+    operator = zw.operators.Tracking(hand, stiffness=300, damping=0)
     trace = zw.simulate(paddle, zw.Wall(1), operator, 10, initial_position=hand[0])
     position = np.rint((trace["measured_position"].values + 1) / STEP) * STEP
     force = trace["hand_force"].values + 0.02 + rng.normal(0, 0.03, position.size)

@@ -337,6 +337,7 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
     "command",
     [
         "check",
+        "report",
         "limit",
         "pair",
         "links",

@@ -13,14 +13,18 @@ from zwidth.cli import main as command_line
 NOT_RUN = {
     "compare": "it simulates every law; run in tests/bench",
     "doctor": "it measures for seconds",
+    "explore": "it serves a page until it is ended; run in tests/explorer",
     "emit": "run in tests/firmware",
     "identify": "it needs a recording",
     "limit": "it searches for up to a minute; run in tests/cli/test_limit.py",
     "links": "it simulates minutes; run in tests/links",
     "map": "it computes thousands of walls; run in tests/cli/test_map.py",
+    "new": "it asks questions",
     "network": "it starts processes",
     "play": "it opens a browser; run in tests/cli/test_play_command.py",
+    "play": "it opens a page",
     "serve": "it runs until it is ended",
+    "tour": "it waits for a key after each step",
     "workspace": "it covers an arm; run in tests/cli/test_workspace_command.py",
 }
 """Commands whose lines are read and not run, and why; so are those of files that no page shows."""
@@ -82,7 +86,8 @@ def test_what_is_computed_says_what_the_text_relies_on(page: str, tmp_path: Path
 
 def test_calls_and_files_are_found() -> None:
     """Prompts, chains, comments, a page's files; what is no call of zwidth is none."""
-    page = "```toml\n# a.toml\n[device]\n```\n```console\n$ zwidth check a.toml && zwidth verify b.json  # so\nok\n$ ls\n```\n"
+    line = "$ zwidth check a.toml && zwidth verify b.json  # so"
+    page = f"```toml\n# a.toml\n[device]\n```\n```console\n{line}\nok\n$ ls\n```\n"
     assert [call for _, call in shown.commands_of(page)] == [["check", "a.toml"], ["verify", "b.json"]]
     assert shown.files_of(page) == {"a.toml": "# a.toml\n[device]\n"}
     assert shown.not_said("ACTIVE; 500 Hz; 300 N", " ACTIVE  at\n500   Hz") == ["300 N"]

@@ -22,11 +22,14 @@ class Asked(NamedTuple):
         The device, and the environment behind its laws.
     device_table, environment_table
         Of which it was made, the parameters of the command line in them.
+    law_table
+        The laws of a file; None where it has none.
     """
 
     loop: Specification
     device_table: Table
     environment_table: Table
+    law_table: Table | None
 
 
 def asked(arguments: argparse.Namespace) -> Asked:
@@ -44,7 +47,7 @@ def asked(arguments: argparse.Namespace) -> Asked:
     device_table, environment_table = merged(tables, overrides(arguments))
     given = built(device_table, environment_table)
     rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
-    return Asked(Specification(given.device, rendered), device_table, environment_table)
+    return Asked(Specification(given.device, rendered), device_table, environment_table, tables.get("law"))
 
 
 def exit_status(outcome: str) -> int:

@@ -6,14 +6,14 @@ import codecs
 import json
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TextIO
 
 from zwidth.cli.width import columns, fitted, wrapped
 from zwidth.errors import InputError
-from zwidth.showing import OBEYED, Shown, printable
+from zwidth.showing import OBEYED, Part, printable
 from zwidth.specification.table import plain
 
 PICTURES = (".png", ".svg", ".pdf")
@@ -50,7 +50,7 @@ def spelled(text: str) -> str:
     """The text as standard output will show it: what its encoding lacks is spelled out."""
     if encodes(text):
         return text
-    encoding = sys.stdout.encoding
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     return text.encode(encoding, "zwidth").decode(encoding)
 
 
@@ -101,16 +101,18 @@ def quiet_pipe(stream: TextIO | None = None) -> Iterator[None]:
 
 def print_text(text: object) -> None:
     """Print what may hold text of others, in lines that fit the terminal, which obeys none of it."""
-    with quiet_pipe():
-        for line in wrapped(spelled(printable(str(text))), columns()):
-            print(line.rstrip())
+    _print_lines(wrapped(spelled(printable(str(text))), columns()))
 
 
-def print_report(found: Shown) -> None:
+def print_report(parts: Iterable[Part]) -> None:
     """Print what a result says of itself, in lines that fit the terminal, which obeys none of it."""
+    _print_lines(fitted(parts, columns(), lambda text: spelled(printable(text))))
+
+
+def _print_lines(lines: Iterable[str]) -> None:
+    """All at once: several processes may write to one terminal."""
     with quiet_pipe():
-        for line in fitted(found, columns(), lambda text: spelled(printable(text))):
-            print(line.rstrip())
+        print("\n".join(line.rstrip() for line in lines))
 
 
 def print_json(text: str) -> None:
@@ -183,8 +185,17 @@ def say_written(*paths: Path | None) -> None:
                 print(f"written: {plain(str(path), 200)}")
 
 
-def give_out(found: Any, save: Path | None, plot: Path | None, as_json: bool) -> None:
-    """Save a result and its picture where that was asked for, print it, and say what was written."""
+def give_out(
+    found: Any,
+    save: Path | None,
+    plot: Path | None,
+    as_json: bool,
+    in_short: Iterable[Part] | None = None,
+) -> None:
+    """Save a result and its picture where that was asked for, print it, and say what was written.
+
+    `in_short` is what is printed in the place of its whole report.
+    """
     if save is not None:
         found.save(save)
     if plot is not None:
@@ -193,7 +204,7 @@ def give_out(found: Any, save: Path | None, plot: Path | None, as_json: bool) ->
     if as_json:
         print_json(found.to_json())
     else:
-        print_report(found)
+        print_report(found.report() if in_short is None else in_short)
         say_written(save, plot)
 
 

@@ -35,9 +35,11 @@ class _Shown(Console):
     """
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
-        if isinstance(renderable, Text) and (plain := spelled(renderable.plain)) != renderable.plain:
-            renderable = renderable.copy()
-            renderable.plain = plain
+        if isinstance(renderable, Text):
+            plain = GLUE.join(map(spelled, renderable.plain.split(GLUE)))
+            if plain != renderable.plain:
+                renderable = renderable.copy()
+                renderable.plain = plain
         for part in super().render(renderable, options):
             yield part if part.control else Segment(printable(part.text), part.style)
 
@@ -62,9 +64,11 @@ def page() -> Iterator[Console]:
 
 
 def headline(word: str, colour: str, claim: str) -> Padding:
-    """The outcome as a badge, and the claim beside it."""
+    """The outcome as a badge, and the claim beside it; below it where too little room is left."""
+    badge, told = Text(f" {word.upper()} ", style=f"bold white on {colour}"), Text(claim, style="bold")
     line = Table.grid(padding=(0, 1))
-    line.add_row(Text(f" {word.upper()} ", style=f"bold white on {colour}"), Text(claim, style="bold"))
+    for row in [(badge, told)] if len(badge) <= columns() // 3 else [(badge,), (told,)]:
+        line.add_row(*row)
     return below(line)
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from unicodedata import combining, east_asian_width
 
-from zwidth.showing import Lines, Shown, Table
+from zwidth.showing import Lines, Part, Table
 
 PIPED, WIDEST, NARROWEST = 80, 100, 20
 """Columns without a terminal; the most that read well; the fewest into which words are put."""
@@ -78,9 +78,9 @@ def _as_much_as_fits(text: str, width: int) -> str:
     return text[: max(length, len(text) - len(text.lstrip()) + 1)]
 
 
-def fitted(shown: Shown, width: int, spelled: Callable[[str], str] = str) -> Iterator[str]:
-    """What a result says of itself, line by line, in so many columns; each text as it will be shown."""
-    for part in shown.report():
+def fitted(parts: Iterable[Part], width: int, spelled: Callable[[str], str] = str) -> Iterator[str]:
+    """The parts of a report, line by line, in so many columns; each text as it will be shown."""
+    for part in parts:
         if isinstance(part, Table):
             if part.caption:
                 yield from (*wrapped(spelled(part.caption), width), "")

@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 import shlex
 from pathlib import Path, PurePath
+from typing import TYPE_CHECKING
 
-from zwidth.cli.decision import asked, decided, exit_status
+from zwidth.cli.decision import Asked, asked, decided, exit_status
 from zwidth.cli.options import (
     Once,
     add_contact_option,
@@ -16,6 +17,9 @@ from zwidth.cli.options import (
     overrides,
 )
 from zwidth.cli.output import check_new, print_text, say_written
+
+if TYPE_CHECKING:
+    from zwidth.report import Provenance
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -42,21 +46,29 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth report`: the status says the outcome."""
     from zwidth import report
-    from zwidth.report.provenance import of_tables
 
     target = Path(arguments.save)
     report.check_ending(target)
     check_new(target, arguments.force)
-    loop, *tables = asked(arguments)
-    verdict = decided(loop, contact(arguments))
-    told = of_tables(*tables, loop.device, loop.environment, _command(arguments, target.suffix.lower()))
-    report.save(verdict, target, told, overwrite=arguments.force)
+    given = asked(arguments)
+    verdict = decided(given.loop, contact(arguments))
+    report.save(verdict, target, _provenance(given, arguments), overwrite=arguments.force)
     print_text(f"{verdict.outcome}: {verdict.claim}")
     say_written(target)
     return exit_status(verdict.outcome)
 
 
-def _command(arguments: argparse.Namespace, ending: str) -> str:
+def _provenance(given: Asked, arguments: argparse.Namespace) -> Provenance:
+    """Of every number of the loop, and the command."""
+    from zwidth.report.provenance import Provenance, of_device, of_environment
+
+    device, environment, typed = given.loop.device, given.loop.environment, arguments.law or ()
+    device_rows = of_device(given.device_table, device)
+    law_rows = of_environment(given.environment_table, environment, device.motion, given.law_table, typed)
+    return Provenance((*device_rows, *law_rows), _command(arguments))
+
+
+def _command(arguments: argparse.Namespace) -> str:
     """What makes the report again, wherever its files lie: they stand there by their names alone."""
     words = ["zwidth", "report", *(PurePath(source).name for source in arguments.sources)]
     for names in arguments.law or ():
@@ -68,4 +80,4 @@ def _command(arguments: argparse.Namespace, ending: str) -> str:
             f"--{key.replace('_', '-')}={value}" if value.startswith("-") else f"--{key.replace('_', '-')}"
         )
         words += [] if value.startswith("-") else [value]
-    return shlex.join([*words, "-o", f"report{ending}"])
+    return shlex.join([*words, "-o", f"report{Path(arguments.save).suffix.lower()}"])

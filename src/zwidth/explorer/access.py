@@ -9,6 +9,7 @@ from __future__ import annotations
 import secrets
 import socket
 from collections.abc import Callable
+from contextlib import suppress
 from hmac import compare_digest
 from ipaddress import ip_address
 from typing import Any
@@ -59,10 +60,8 @@ def hosts(address: str) -> list[str]:
         return sorted({address, "127.0.0.1", "localhost"})
     names = {address, socket.gethostname(), socket.getfqdn(), "127.0.0.1", "localhost"}
     if address in ("0.0.0.0", "::"):
-        try:
+        with suppress(OSError):
             names.update(socket.gethostbyname_ex(socket.gethostname())[2])
-        except OSError:
-            pass
     return sorted(names - {"0.0.0.0", "::"})
 
 

@@ -75,6 +75,12 @@ class Control:
         assert self.scale is not None
         return f"{self.scale.value(share):.12g} {self.unit}".strip()
 
+    def place_of(self, other: Control) -> float:
+        """Where the number of another control stands on the slider of this one."""
+        if self.scale is None or other.scale is None:
+            return other.place
+        return self.scale.share(other.scale.value(other.place))
+
 
 def device_controls(state: State, device: Device) -> tuple[Control, ...]:
     """Those of a device; the sample period as a rate."""
@@ -119,8 +125,8 @@ def _of_table(
 
 
 def _label(key: str, own: Parameter) -> str:
-    name = own.quantity.name if own.quantity.name in GLOSSARY else key
-    return in_words(name)
+    """A key as words; of an environment `damping` is virtual, as on the command line."""
+    return in_words(own.quantity.name if key == "damping" and own.quantity.name in GLOSSARY else key)
 
 
 def number_control(path: str, own: Parameter, value: Any, motion: str, label: str = "") -> Control:

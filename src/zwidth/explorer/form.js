@@ -144,16 +144,19 @@ export function render({ model, el }) {
     }
     if (told.query) window.history.replaceState(null, "", `?${told.query}${window.location.hash}`);
     if (told.file) save(told.file);
-    if (told.heard >= number) {
+    if (told.heard >= number && busy) {
       busy = false;
       send();
     }
   };
 
+  if (model.views) window.addEventListener("zwidth-view", (event) => tell("view", event.detail, null));
+
   model.on("groups", draw);
   model.on("told", heed);
   draw();
   heed();
+  if (model.views) setTimeout(() => window.dispatchEvent(new Event("zwidth-drawn")));
   return form;
 }
 

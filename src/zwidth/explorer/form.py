@@ -13,6 +13,7 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
+from zwidth.errors import InputError
 from zwidth.explorer.controls import Control
 from zwidth.explorer.state import LARGEST_FILE
 from zwidth.showing import Html
@@ -34,6 +35,7 @@ class Form(JSComponent):  # type: ignore[misc]  # Panel has no types
 
     groups = param.List(default=[])
     event = param.Dict(default={})
+    views = param.Boolean(default=False)
     told = param.Dict(default={"heard": 0})
 
     _esm = _read("form.js")
@@ -43,12 +45,16 @@ class Form(JSComponent):  # type: ignore[misc]  # Panel has no types
     def listen(self, hear: Callable[[Event], Mapping[str, Any]], soon: Soon) -> None:
         """Have each event answered: `hear` returns what is told to the page; `soon` has it done in its turn."""
 
-        def answer(event: Event) -> None:
-            self.told = {"heard": event["number"], **hear(event)}
+        def heed(event: Event) -> None:
+            try:
+                answer = hear(event)
+            except InputError as error:
+                answer = {"error": str(error)}
+            self.told = {"heard": event["number"], **answer}
 
         def on_event(change: Any) -> None:
             if isinstance(change.new.get("number"), int):
-                soon(partial(answer, change.new))
+                soon(partial(heed, change.new))
 
         self.param.watch(on_event, "event")
 

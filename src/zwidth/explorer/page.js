@@ -10,6 +10,7 @@
     }
     if (focus) tab.focus();
     window.dispatchEvent(new Event("resize"));
+    window.dispatchEvent(new CustomEvent("zwidth-view", { detail: tab.id.slice(4) }));
   };
   const named = () => tabs.find((tab) => `#${tab.id.slice(4)}` === window.location.hash);
   for (const [at, tab] of tabs.entries()) {
@@ -28,4 +29,6 @@
   }
   window.addEventListener("hashchange", () => named() && open(named(), false));
   open(named() || tabs[0], false);
+  // what listens is drawn after this has run: it asks which one is open
+  window.addEventListener("zwidth-drawn", () => open(tabs.find((tab) => tab.tabIndex === 0), false));
 })();

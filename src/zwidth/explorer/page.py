@@ -3,38 +3,27 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import panel as pn
 
-from zwidth.explorer.criterion import NAME as CRITERION
 from zwidth.explorer.session import Session
 
 _HERE = Path(__file__).parent
 
 
-def views(session: Session) -> list[tuple[str, str, list[Any]]]:
-    """Key, name and parts of each picture, in the order of the tabs."""
-    return [("criterion", CRITERION, [session.criterion.figure, session.criterion_caption])]
-
-
 def page_of(session: Session) -> pn.Template:
     """The page as a template that can be served."""
-    shown = views(session)
-    template = pn.Template(_template())
-    template.add_variable("views", [(key, name) for key, name, _ in shown])
+    template = pn.Template(_read("page.html"))
+    template.add_variable("views", [(key, name) for key, name, *_ in session.views])
     for name in ("page.css", "page.js"):
         template.add_variable(name.replace(".", "_"), _read(name))
     template.add_panel("form", session.form)
-    template.add_panel("card", session.card)
+    template.add_panel("head", session.head)
+    template.add_panel("details", session.details)
     template.add_panel("badge", session.badge)
-    for key, _, parts in shown:
-        template.add_panel(key, pn.Column(*parts, sizing_mode="stretch_width"))
+    for view in session.views:
+        template.add_panel(view.key, pn.Column(*view.parts, sizing_mode="stretch_width"))
     return template
-
-
-def _template() -> Any:
-    return _read("page.html")
 
 
 def _read(name: str) -> str:

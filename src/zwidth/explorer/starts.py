@@ -6,6 +6,7 @@ Numbers that the one before had too are kept; a usual one of their unit stands f
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from types import MappingProxyType
 
 from zwidth.device import Device
@@ -93,7 +94,7 @@ def with_device(state: State, device: Device) -> State:
     """The same environment on another device; of one that moves otherwise, a wall."""
     before = state.loop()
     if device.motion == before.device.motion:
-        return State(State.of(device, before.environment).device, state.environment, state.laws, state.extras)
+        return replace(state, device=State.of(device, before.environment).device)
     return State.of(device, Wall(stiffness=_stiffness(device)))
 
 
@@ -104,7 +105,7 @@ def _stiffness(device: Device) -> str:
 
 def with_environment(state: State, name: str) -> State:
     """Another environment on the same device, with the numbers that it shares with the one before."""
-    motion = str(state.device.get("motion", "linear"))
+    motion = state.motion
     had = TYPES[str(state.environment["type"])].keys
     shared = {
         key: value
@@ -113,18 +114,17 @@ def with_environment(state: State, name: str) -> State:
         if had[key].unit_for(motion) == TYPES[name].keys[key].unit_for(motion)
     }
     values = _begun(TYPES[name], _SHAPES.get(name, {}), motion, shared)
-    return State(state.device, {"type": name, **values}, state.laws, state.extras).settled()
+    return replace(state, environment={"type": name, **values}).settled()
 
 
 def with_law(state: State, name: str, on: bool) -> State:
     """With a law at its place in the chain, or without it; laws keep the order of the registry."""
     kept = [law for law in state.laws if law["type"] != name]
     if on:
-        motion = str(state.device.get("motion", "linear"))
-        kept.append({"type": name, **_begun(LAWS[name], _FORCES.get(name, {}), motion, {})})
+        kept.append({"type": name, **_begun(LAWS[name], _FORCES.get(name, {}), state.motion, {})})
     order = list(LAWS)
     kept.sort(key=lambda law: order.index(str(law["type"])))
-    return State(state.device, state.environment, tuple(kept), state.extras).settled()
+    return replace(state, laws=tuple(kept)).settled()
 
 
 def _begun(kind: Kind, shape: Values, motion: str, before: Values) -> dict[str, object]:

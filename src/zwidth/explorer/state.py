@@ -89,6 +89,15 @@ class State:
         loop = self.loop()
         return replace(State.of(loop.device, loop.environment), extras=self.extras)
 
+    @property
+    def motion(self) -> str:
+        """ "linear" or "rotary"."""
+        return str(self.device.get("motion", "linear"))
+
+    def with_extra(self, name: str, values: Values) -> State:
+        """With another table beside those of the loop."""
+        return replace(self, extras={**self.extras, name: values})
+
     def changed(self, path: str, value: object) -> State:
         """With one value in the place of another; None takes it out.
 

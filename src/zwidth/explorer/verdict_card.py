@@ -23,20 +23,25 @@ def headline(answer: Any) -> Html:
     return join(element("p", badge), element("p", answer.claim, **{"class": "claim"}))
 
 
-def card(verdict: Verdict | None, note: str = "") -> Html:
-    """All of a verdict; None while it is being worked out.
+def head(verdict: Verdict | None, note: str = "") -> Html:
+    """Outcome and claim; None while it is being worked out.
 
     Parameters
     ----------
     verdict
         What `zwidth.check` said.
     note
-        A line below the claim, such as that more is being worked out.
+        A line below, such as that more is being worked out.
     """
     quiet = element("p", note, **{"class": "quiet"}) if note else Html("")
+    return (quiet or element("p", WAITING)) if verdict is None else join(headline(verdict), quiet)
+
+
+def details(verdict: Verdict | None) -> Html:
+    """The numbers, what to change, and what the claim covers."""
     if verdict is None:
-        return quiet or element("p", WAITING, **{"class": "quiet"})
-    return join(headline(verdict), quiet, _numbers(verdict), _advice(verdict), _scope(verdict))
+        return Html("")
+    return join(_numbers(verdict), _advice(verdict), _scope(verdict))
 
 
 def _numbers(verdict: Verdict) -> Html:

@@ -26,7 +26,7 @@ from zwidth.passivity.linear.boundary import (
 from zwidth.passivity.parameter_limits import Change, has_stiffness, is_of_high_degree, provable, stiffness_of
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import in_words, unit_text
+from zwidth.quantity.text import in_words, readable, unit_text
 
 _NEVER_NOTHING = ("stiffness", "resolution", "link_delay")
 """What nobody can set to 0 and keep what it is there for."""
@@ -229,18 +229,18 @@ def outward(value: float, knob: Knob) -> float:
 
 
 def _text(knob: Knob, to: float | None, unit: str, kind: str) -> str:
-    now = f"{knob.current:.4g} {unit}"
+    now = readable(knob.current, unit)
     if kind == "change":
         if to is None:
             return f"no value of {knob.name} alone would do"
         verb = "raise" if knob.more else "lower"
-        return f"{verb} the {knob.name} from {now} to {to:.6g} {unit}"
+        return f"{verb} the {knob.name} from {now} to {readable(to, unit, 6)}"
     if to is None or to == inf:
         return f"{knob.name} may take any value" if to == inf else f"{knob.name} has no slack"
     if to == knob.current:
         return f"{knob.name} is exactly at its limit, {now}"
     bound = "as low as" if knob.more else "up to"
-    return f"{knob.name} may go {bound} {to:.6g} {unit} (now {now})"
+    return f"{knob.name} may go {bound} {readable(to, unit, 6)} (now {now})"
 
 
 def _estimators(device: Device, wall: Wall, contact: bool) -> Iterator[Advice]:
@@ -259,7 +259,7 @@ def _estimators(device: Device, wall: Wall, contact: bool) -> Iterator[Advice]:
         tau = _first_scanned(knob, device)
         if tau is not None:
             shown = outward(tau, knob)
-            to = f"one-pole filter of {shown:.4g} s"
+            to = f"one-pole filter of {readable(shown, 's')}"
             text = f"estimate velocity with a {to} (time constant) instead of the {now}"
             yield Advice("velocity_filter", now, to, "", "change", text)
 

@@ -86,7 +86,7 @@ def _title(verdict: Answer) -> str:
 
 def _before(verdict: Answer) -> Iterator[Section]:
     """What the verdict is, what to change, what it covers, and what it stands on."""
-    rows = [(name, text) for name, text in verdict.rows() if name != "motion"]
+    rows = [(name, text) for name, text in verdict.rows() if name not in _TOLD_BELOW]
     yield Section("In numbers", [Table(rows=rows)] if rows else [])
     yield _advice(verdict)
     yield Section("What the claim covers and takes for granted", [Lines(verdict.small_print())])
@@ -95,6 +95,8 @@ def _before(verdict: Answer) -> Iterator[Section]:
     if motion is not None:
         yield Section("The first steps of the motion", list(first_steps(motion)))
 
+
+_TOLD_BELOW = ("motion", "decided by")
 
 _EVIDENCE = dict.fromkeys(COLOUR, "The proof") | {
     "active": "The evidence",
@@ -106,8 +108,7 @@ _EVIDENCE = dict.fromkeys(COLOUR, "The proof") | {
 def _after(verdict: Answer, provenance: Provenance) -> Iterator[Section]:
     """What stands beside the claim, and where everything comes from."""
     if isinstance(verdict, LinearVerdict):
-        marks = {True: "enough", False: "not enough", None: "not known"}
-        checks = [f"{check.name}, {marks[check.ok]}: {check.text}" for check in verdict.actuator]
+        checks = [f"{check.name}: {check.text}" for check in verdict.actuator]
         yield Section("The actuator, beside the claim", [Lines(checks)] if checks else [])
     yield Section("What is not covered", [Lines(list(beyond(verdict)))])
     heads = [("quantity", "value", "where it comes from")]

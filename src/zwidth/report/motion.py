@@ -54,12 +54,13 @@ def _table(steps: _Steps) -> Table:
     from zwidth.plots.style import number, scale
 
     units = ("s", *(GLOSSARY[name].unit_for(steps.motion) for name in ("position", "force")), "J")
+    begin = next((max(0, k - 1) for k, force in enumerate(steps.forces) if force), 0)
     columns = []
     for values, unit in zip(steps[:4], units, strict=True):
-        listed = values[:_STEPS]
+        listed = values[begin : begin + _STEPS]
         factor, name = scale(listed, unit)
         columns.append((name, [number(factor * value) for value in listed]))
-    many = len(steps.times) > _STEPS
+    many = len(steps.times) > begin + _STEPS
     heads = [
         ("time", "position", "force from then on", "energy out so far"),
         tuple(name for name, _ in columns),
@@ -67,4 +68,5 @@ def _table(steps: _Steps) -> Table:
     texts = [texts for _, texts in columns]
     texts[2] += [""] * (len(texts[0]) - len(texts[2]))
     rows = [tuple(row) for row in zip(*texts, strict=True)]
-    return Table(heads=heads, rows=[*rows, ("…",) * 4] if many else rows, lefts=0)
+    caption = "from the first force on" if begin else ""
+    return Table(heads=heads, rows=[*rows, ("…",) * 4] if many else rows, lefts=0, caption=caption)

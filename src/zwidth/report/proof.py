@@ -20,6 +20,9 @@ _REFEREE = (
     "The independent checker, which shares no code with what found it, computes in exact arithmetic and"
 )
 
+_LONGEST = 40
+"""Characters of one of them that are shown; the document has all."""
+
 _MOST_ROWS = 24
 """Numbers that entered the proof up to which each is shown."""
 
@@ -54,5 +57,11 @@ def _pieces(verdict: Answer) -> Iterator[tuple[str, Evidence]]:
 
 def _rows(found: Verified) -> tuple[tuple[str, str], ...]:
     return tuple(
-        (in_words(row.name), f"{row.text} {row.unit}".rstrip()) for row in found.rows if not row.told
+        (in_words(row.name), f"{_shortened(row.text)} {row.unit}".rstrip())
+        for row in found.rows
+        if not row.told
     )
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"

@@ -15,7 +15,7 @@ from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.kind import name_of
 from zwidth.quantity.parameter import Parameter
-from zwidth.quantity.text import in_words, shown
+from zwidth.quantity.text import in_words, shown, unit_text
 from zwidth.specification.environments import TYPES
 from zwidth.specification.table import COMMAND_LINE, Table
 
@@ -27,7 +27,11 @@ _WRITTEN_AS = {
 """The keys under which a number of a device may stand, where there are several."""
 
 _IN_PYTHON = "given in Python"
+_DEFAULT = "not given: the default"
 _DIGITS = 6
+
+Row = tuple[str, str, str]
+"""What, its value with unit, where it comes from."""
 
 
 @dataclass(frozen=True)
@@ -42,70 +46,67 @@ class Provenance:
         What makes the report again; "" where it was made in Python.
     """
 
-    numbers: tuple[tuple[str, str, str], ...]
+    numbers: tuple[Row, ...] = ()
     command: str = ""
 
 
 def of_verdict(verdict: Verdict) -> Provenance:
     """Of a loop made in Python: what the catalogue has too is told with its source."""
-    device, asked = verdict.device, verdict.scope
+    device, scope = verdict.device, verdict.scope
     known = catalogue.entry(device.name).values if device.name in catalogue.names() else {}
-    numbers = []
+    numbers: list[Row] = []
     for key, value in device.parameters().items():
-        where = "the worst corner of what was given in Python" if key in asked.intervals else _IN_PYTHON
-        origin = _published(key, value, known) or _unless_assumed(key, asked.assumed, where)
+        where = f"the worst of the interval {_IN_PYTHON}" if key in scope.intervals else _IN_PYTHON
+        origin = _published(key, value, known) or _unless_assumed(key, scope.assumed, where)
         numbers.append((*_named(key, value, device.motion), origin))
     law = ("law", verdict.environment.describe(device.motion), _IN_PYTHON)
     return Provenance((*numbers, law))
 
 
-def of_tables(
-    device_table: Table, environment_table: Table, device: Device, environment: Environment, command: str
-) -> Provenance:
-    """Of a loop made of two tables.
-
-    Parameters
-    ----------
-    device_table, environment_table
-        With the parameters of the command line in them, as they were read.
-    device, environment
-        What was made of them; the environment may stand behind laws in a chain.
-    command
-        As `Provenance` has it.
-    """
-    rows = [
-        *_of_device(device_table, device),
-        *_of_environment(environment_table, environment, device.motion),
-    ]
-    return Provenance(tuple(rows), command)
-
-
-def _of_device(table: Table, device: Device) -> Iterator[tuple[str, str, str]]:
+def of_device(table: Table, device: Device) -> Iterator[Row]:
+    """Of a device made of a table, the parameters of the command line in it."""
     name = table.values.get("catalogue")
     known = {} if name is None else catalogue.entry(str(name)).values
     for key, value in device.parameters().items():
-        where = next((_place(table, k) for k in _WRITTEN_AS.get(key, (key,)) if k in table.values), "")
+        written = next((k for k in _WRITTEN_AS.get(key, (key,)) if k in table.values), None)
+        where = _published(key, value, known) if written is None else _place(table, written, key)
         yield (
             *_named(key, value, device.motion),
-            where or _published(key, value, known) or _unless_assumed(key, device.assumed, "not given"),
+            where or _unless_assumed(key, device.assumed, "not given"),
         )
     for key, own in ROTARY.items():
         if key in table.values:
-            yield in_words(key), f"{table.values[key]} {own.unit}".rstrip(" 1"), _place(table, key)
+            yield in_words(key), _as_written(table.values[key], own.unit), _place(table, key, key)
 
 
-def _of_environment(table: Table, environment: Environment, motion: str) -> Iterator[tuple[str, str, str]]:
+def of_environment(
+    table: Table, environment: Environment, motion: str, laws: Table | None = None, typed: Sequence[str] = ()
+) -> Iterator[Row]:
+    """Of an environment made of a table.
+
+    Parameters
+    ----------
+    table
+        With the parameters of the command line in it, as it was read.
+    environment
+        What was made of it; it may stand behind laws in a chain.
+    motion
+        "linear" or "rotary".
+    laws, typed
+        The [[law]] tables of a file, and what stood behind each `--law`, which takes their place.
+    """
     chain = getattr(environment, "laws", ())
     inner: Any = environment.environment if chain else environment  # type: ignore[attr-defined]
     kind = name_of(inner, TYPES)
-    yield "law", (kind or inner.describe(motion)).replace("-", " "), _place(table, "type")
+    yield "law", (kind or inner.describe(motion)).replace("-", " "), _place(table, "type", "type")
     for name, key in TYPES[kind].keys.items() if kind else ():
         value = getattr(inner, name)
         if value is not None:
-            where = _place(table, name) if name in table.values else "not given: the default"
+            where = _place(table, name, name) if name in table.values else _DEFAULT
             yield (*_of_a_key(name, key, value, motion), where)
+    behind = f"typed: --law {','.join(typed)}" if typed or laws is None else _file(laws.label)
     for law in chain:
-        yield "law in the chain behind it", law.describe(motion), "[[law]] in a file, or --law"
+        yield "law behind it", law.describe(motion), behind
 
 
 def _of_a_key(name: str, key: Parameter, value: Any, motion: str) -> tuple[str, str]:
@@ -113,17 +114,24 @@ def _of_a_key(name: str, key: Parameter, value: Any, motion: str) -> tuple[str, 
         return _named(key.quantity.name, value, motion)
     if isinstance(value, bool):
         return in_words(name), "yes" if value else "no"
-    said = (
-        value.describe(motion)
-        if isinstance(value, Environment)
-        else getattr(value, "describe", value.__str__)()
-    )
-    return in_words(name), str(said)
+    if isinstance(value, Environment):
+        return in_words(name), value.describe(motion)
+    if hasattr(value, "describe"):
+        return in_words(name), value.describe()
+    if isinstance(value, (tuple, list)) and len(str(value)) > 60:
+        return in_words(name), f"{len(value)} of them"
+    return in_words(name), str(value)
 
 
 def _named(key: str, value: Exact | Interval, motion: str) -> tuple[str, str]:
     own = GLOSSARY[key]
-    return f"{in_words(key)} {own.symbol}", shown(value, own.unit_for(motion), _DIGITS)
+    return f"{in_words(key)} {own.symbol}".rstrip(), shown(value, own.unit_for(motion), _DIGITS)
+
+
+def _as_written(value: object, unit: str) -> str:
+    """As it stands in a file, with the unit where it has none there."""
+    text = str(value)
+    return text if any(map(str.isalpha, text)) else f"{text} {unit_text(unit)}".rstrip()
 
 
 def _published(key: str, value: Exact | Interval, known: Mapping[str, catalogue.Datum]) -> str:
@@ -142,17 +150,17 @@ def _unless_assumed(key: str, assumed: Sequence[str], otherwise: str) -> str:
     return "not given: taken as 0" if key in assumed else otherwise
 
 
-def _place(table: Table, key: str) -> str:
-    """Where a key was written, a file by its name alone."""
-    where = table.where(key)
-    if where == COMMAND_LINE:
-        return _typed(table, key)
-    file, found, name = where.rpartition(": [")
-    return f"{PurePath(file).name}, [{name}" if found else where
+def _place(table: Table, key: str, asked: str) -> str:
+    """Where a key was written, and under which name where that is another one."""
+    if table.is_typed(key):
+        option = "virtual-damping" if key == "damping" and "type" in table.values else key.replace("_", "-")
+        return f"typed: --{option} {table.values[key]}"
+    if table.label == COMMAND_LINE:
+        return _DEFAULT
+    return _file(table.label) + ("" if key == asked else f": {key}")
 
 
-def _typed(table: Table, key: str) -> str:
-    own = "virtual_damping" if key == "damping" and "type" in table.values else key
-    if key not in table.values or isinstance(table.values[key], dict):
-        return "command line"
-    return f"typed: --{own.replace('_', '-')} {table.values[key]}"
+def _file(label: str) -> str:
+    """A table of a file, which is called by its name alone."""
+    file, found, name = label.rpartition(": [")
+    return f"{PurePath(file.removesuffix(': [')).name}, [{name}" if found else label
