@@ -66,7 +66,8 @@ def test_what_is_said_once_is_shown_in_both_places() -> None:
 def test_rows_without_headings_have_a_name_first() -> None:
     """The first cell says what the others are."""
     assert Table(rows=[["K", "1 N/m"]]).html == (
-        '<table><tbody><tr><th align="left">K</th><td align="left">1 N/m</td></tr></tbody></table>'
+        '<table><tbody><tr><th scope="row" style="text-align:left">K</th>'
+        '<td style="text-align:left">1 N/m</td></tr></tbody></table>'
     )
 
 

@@ -8,7 +8,8 @@ its reader did not ask for.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from base64 import b64encode
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
@@ -29,8 +30,16 @@ def printable(text: str) -> str:
 
 def element(tag: str, *inside: object, **attributes: str) -> Html:
     """What is inside in a tag; what is no `Html` is escaped, and so are the attributes."""
-    given = "".join(f' {name}="{escape(value)}"' for name, value in attributes.items())
-    return Html(f"<{tag}{given}>{join(*inside)}</{tag}>")
+    return Html(f"<{tag}{_given(attributes)}>{join(*inside)}</{tag}>")
+
+
+def void(tag: str, **attributes: str) -> Html:
+    """A tag that has nothing inside and no end, such as `meta` and `img`; XML too."""
+    return Html(f"<{tag}{_given(attributes)}/>")
+
+
+def _given(attributes: Mapping[str, str]) -> str:
+    return "".join(f' {name}="{escape(printable(value))}"' for name, value in attributes.items())
 
 
 def join(*parts: object) -> Html:
@@ -84,8 +93,16 @@ class Table:
 
 def _named(cells: Sequence[str]) -> Html:
     """A row whose first cell says what it is."""
-    tags = ("th", *["td"] * (len(cells) - 1))
-    return element("tr", *(element(tag, c, align="left") for tag, c in zip(tags, cells, strict=True)))
+    name, *rest = cells
+    return element("tr", element("th", name, scope="row", style=_LEFT), *(_left(cell) for cell in rest))
+
+
+def _left(cell: str) -> Html:
+    return element("td", cell, style=_LEFT)
+
+
+_LEFT = "text-align:left"
+"""A notebook sets cells right."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +140,45 @@ class Headline:
         return f"{self.word}: {self.claim}"
 
 
-Part = str | Table | Lines | Headline
+@dataclass(frozen=True)
+class Picture:
+    """A picture as it stands in a file.
+
+    Parameters
+    ----------
+    data, kind
+        The file and what it is: "svg+xml" or "png".
+    says
+        What can be seen in it, for those who cannot see it.
+    caption
+        A line below.
+    """
+
+    data: bytes
+    kind: str
+    says: str
+    caption: str = ""
+
+    @property
+    def html(self) -> Html:
+        """The picture for a notebook: within the page, where nothing in it can be obeyed."""
+        shown = void("img", src=data_uri(self.data, f"image/{self.kind}"), alt=self.says, style=_WIDTH)
+        below = [element("figcaption", self.caption)] if self.caption else []
+        return element("figure", shown, *below)
+
+    def __str__(self) -> str:
+        return self.says
+
+
+_WIDTH = "max-width:100%;height:auto"
+
+
+def data_uri(data: bytes, kind: str) -> str:
+    """A file within an address."""
+    return f"data:{kind};base64,{b64encode(data).decode()}"
+
+
+Part = str | Table | Lines | Headline | Picture
 
 
 class Shown:
@@ -133,9 +188,14 @@ class Shown:
         """What it says of itself, from the top down."""
         raise NotImplementedError
 
+    def pictures(self) -> Iterable[Picture]:
+        """What a notebook shows below that."""
+        return ()
+
     def __repr__(self) -> str:
         return printable("\n".join(map(str, self.report())))
 
     def _repr_html_(self) -> Html:
-        parts = [element("p", part) if isinstance(part, str) else part.html for part in self.report() if part]
+        said = [*self.report(), *self.pictures()]
+        parts = [element("p", part) if isinstance(part, str) else part.html for part in said if part]
         return parts[0] if len(parts) == 1 else element("div", *parts)

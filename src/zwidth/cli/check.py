@@ -5,15 +5,15 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from zwidth.cli.decision import decided, exit_status
+from zwidth.cli.decision import asked, decided, exit_status
 from zwidth.cli.options import (
     Once,
     add_contact_option,
+    add_in_full,
     add_law_option,
     add_output,
     add_parameters,
     contact,
-    overrides,
 )
 from zwidth.cli.output import print_json, say_written, targets, writing
 
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth check`."""
     parser.usage = (
-        "%(prog)s [SOURCE ...] [--law NAMES] [--PARAMETER VALUE ...] [--json] [--plot FILE] [--replay] "
-        "[--active-below FREQUENCY] [--contact KIND] [-o FILE] [--force]"
+        "%(prog)s [SOURCE ...] [--law NAMES] [--PARAMETER VALUE ...] [--all] [--json] [--plot FILE] "
+        "[--replay] [--active-below FREQUENCY] [--contact KIND] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -39,6 +39,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_law_option(parser)
     add_contact_option(parser)
     output = add_output(parser, "the verdict", "the plots", "verdict and evidence as JSON, for zwidth verify")
+    add_in_full(output)
     output.add_argument(
         "--replay", action="store_true", help="replay the motion by hands of finite stiffness; needs a mass"
     )
@@ -54,7 +55,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth check`: the status says the outcome."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
-    loop = _loop(arguments)
+    loop = asked(arguments).loop
     active = _tolerated(loop, arguments.active_below)
     verdict = decided(loop, contact(arguments))
     if save is not None:
@@ -68,20 +69,9 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         from zwidth.cli.report import print_verdict
 
-        print_verdict(verdict, replayed, active)
+        print_verdict(verdict, replayed, active, arguments.in_full)
         say_written(save, plot)
     return exit_status(verdict.outcome)
-
-
-def _loop(arguments: argparse.Namespace) -> Specification:
-    """The device, and the environment behind its laws."""
-    from zwidth.specification.laws import with_laws
-    from zwidth.specification.read import WITH_LAWS, Specification, read_tables, specified
-
-    tables = read_tables(arguments.sources, WITH_LAWS)
-    given = specified(tables, overrides(arguments))
-    rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
-    return Specification(given.device, rendered)
 
 
 def _replayed(verdict: Verdict) -> FiniteStiffnessReplay:

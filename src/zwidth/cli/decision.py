@@ -2,11 +2,52 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import argparse
+from typing import TYPE_CHECKING, NamedTuple
+
+from zwidth.cli.options import overrides
 
 if TYPE_CHECKING:
     from zwidth.passivity.verdict import Verdict
     from zwidth.specification.read import Specification
+    from zwidth.specification.table import Table
+
+
+class Asked(NamedTuple):
+    """What a command was asked about.
+
+    Parameters
+    ----------
+    loop
+        The device, and the environment behind its laws.
+    device_table, environment_table
+        Of which it was made, the parameters of the command line in them.
+    law_table
+        The laws of a file; None where it has none.
+    """
+
+    loop: Specification
+    device_table: Table
+    environment_table: Table
+    law_table: Table | None
+
+
+def asked(arguments: argparse.Namespace) -> Asked:
+    """The loop of the sources, the parameters and the laws of a command line.
+
+    Raises
+    ------
+    InputError
+        If anything cannot be used: it says where it stands and what is allowed.
+    """
+    from zwidth.specification.laws import with_laws
+    from zwidth.specification.read import WITH_LAWS, Specification, built, merged, read_tables
+
+    tables = read_tables(arguments.sources, WITH_LAWS)
+    device_table, environment_table = merged(tables, overrides(arguments))
+    given = built(device_table, environment_table)
+    rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
+    return Asked(Specification(given.device, rendered), device_table, environment_table, tables.get("law"))
 
 
 def exit_status(outcome: str) -> int:

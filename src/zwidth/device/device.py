@@ -29,12 +29,14 @@ from zwidth.quantity.parameter import (
     parameters_of,
     read_number,
 )
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import in_words, shown
 from zwidth.showing import Html, Table
 
 Motion = Literal["linear", "rotary"]
 
 _ZERO_IF_UNKNOWN = ("coulomb_friction", "resolution", "delay")
+_DIGITS = 6
+"""Of a number in a notebook."""
 _ZeroIfUnknown = Reads[Exact | Interval, Given | None]
 
 
@@ -254,7 +256,7 @@ class Device(Parametric):
 
     def _repr_html_(self) -> Html:
         known = self.parameters().items()
-        rows = [(GLOSSARY[k].symbol, k, _shown(v), quantity_unit(k, self.motion)) for k, v in known]
+        rows = [(GLOSSARY[k].symbol, in_words(k), shown(v, self.unit(k), _DIGITS)) for k, v in known]
         return Table(caption=self.name, rows=rows).html
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from zwidth.quantity.exact import Exact, Interval
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import quantity_unit
 
 _SUPERSCRIPT = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 _LONGEST = 6
@@ -14,7 +14,7 @@ _LONGEST = 6
 def with_unit(key: str, value: Exact | Interval, motion: str) -> str:
     """A value and the unit its glossary entry has for the motion."""
     number = str(value) if isinstance(value, Interval) else f"{float(value):.6g}"
-    return f"{number} {GLOSSARY[key].unit_for(motion)}"
+    return f"{number} {quantity_unit(key, motion)}"
 
 
 def never_pulls(clamped: bool) -> str:

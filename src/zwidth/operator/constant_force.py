@@ -11,6 +11,7 @@ from zwidth.operator.operator import Signals
 from zwidth.operator.parameter import ParametricOperator
 from zwidth.operator.quantities import FORCE
 from zwidth.quantity.parameter import parameter
+from zwidth.quantity.text import unit_text
 
 if TYPE_CHECKING:
     from zwidth.operator.operator import Signal
@@ -42,4 +43,4 @@ class ConstantForce(ParametricOperator):
 
     def describe(self, motion: str = "linear") -> str:
         """The push on one line."""
-        return f"constant force, {self.force:.6g} {FORCE.unit_for(motion)}"
+        return f"constant force, {self.force:.6g} {unit_text(FORCE.unit_for(motion))}"

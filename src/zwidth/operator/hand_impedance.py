@@ -13,8 +13,8 @@ from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Interval, ends
-from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Parametric, Uncertain, parameter
+from zwidth.quantity.text import quantity_unit
 
 _DRIVES = "a passive hand has no energy of its own to give; 0 where it has none"
 
@@ -51,7 +51,7 @@ class HandImpedance(Parametric):
         """The hand with its numbers, on one line, in linear or rotary units."""
         parts = [
             f"{symbol} = {value if isinstance(value, Interval) else f'{float(value):.6g}'} "
-            f"{GLOSSARY[name].unit_for(motion)}"
+            f"{quantity_unit(name, motion)}"
             for symbol, name, value in (
                 ("m_h", "mass", self.mass),
                 ("k", "stiffness", self.stiffness),

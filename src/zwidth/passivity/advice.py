@@ -5,7 +5,7 @@ Every value given was itself proved passive, all else as it was.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor, inf, isinf, log10
@@ -26,12 +26,18 @@ from zwidth.passivity.linear.boundary import (
 from zwidth.passivity.parameter_limits import Change, has_stiffness, is_of_high_degree, provable, stiffness_of
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import in_words, unit_text
+from zwidth.quantity.text import in_words, readable, unit_text
 
 _NEVER_NOTHING = ("stiffness", "resolution", "link_delay")
 """What nobody can set to 0 and keep what it is there for."""
 
 _WINDOWS = (2, 3, 4, 5, 6, 8, 10, 15, 20)
+
+_EASIEST_FIRST = (
+    "stiffness", "virtual_damping", "local_damping", "velocity_filter", "time_constant", "link_delay", "rate",
+    "delay", "damping", "resolution", "coulomb_friction",
+)  # fmt: skip
+"""The law, then the loop, then the machine."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +67,61 @@ class Advice:
             "kind": self.kind,
             "text": self.text,
         }
+
+
+@dataclass(frozen=True)
+class InLines:
+    """Advice as a report says it.
+
+    Parameters
+    ----------
+    title
+        What the lines are.
+    changes
+        A line for what may be turned, what is changed most easily first.
+    at_limit
+        What may not be turned by anything, in one line; "" where there is nothing.
+    useless
+        What it is no use to turn, in one line; "" where there is nothing.
+    """
+
+    title: str
+    changes: tuple[str, ...]
+    at_limit: str
+    useless: str
+
+    @property
+    def useful(self) -> tuple[str, ...]:
+        """All but the useless."""
+        return (*self.changes, self.at_limit) if self.at_limit else self.changes
+
+
+def in_lines(advice: Iterable[Advice], passive: bool) -> InLines:
+    """What to change, or what is left, as a report says it."""
+    ordered = sorted(advice, key=_rank)
+    useless = [a for a in ordered if a.to is None and a.current != 0]
+    at_limit = [a for a in ordered if a.kind == "slack" and a.to is not None and a.to == a.current]
+    return InLines(
+        "slack" if passive else "what to change, any one of",
+        tuple(item.text for item in ordered if item.to is not None and item not in at_limit),
+        f"exactly at the limit: {_names(at_limit)}" if at_limit else "",
+        f"{'no slack' if passive else 'no change alone would do'}: {_names(useless)}" if useless else "",
+    )
+
+
+def _rank(advice: Advice) -> int:
+    name = advice.parameter
+    return _EASIEST_FIRST.index(name) if name in _EASIEST_FIRST else len(_EASIEST_FIRST)
+
+
+def _names(advice: Iterable[Advice]) -> str:
+    return ", ".join(_name(a.parameter) for a in advice)
+
+
+def _name(parameter: str) -> str:
+    """In words; "leader.damping" is that of one arm of a pair."""
+    arm, _, key = parameter.rpartition(".")
+    return in_words(key) + (f" of the {arm}" if arm else "")
 
 
 @dataclass(frozen=True)
@@ -168,18 +229,18 @@ def outward(value: float, knob: Knob) -> float:
 
 
 def _text(knob: Knob, to: float | None, unit: str, kind: str) -> str:
-    now = f"{knob.current:.4g} {unit}"
+    now = readable(knob.current, unit)
     if kind == "change":
         if to is None:
             return f"no value of {knob.name} alone would do"
         verb = "raise" if knob.more else "lower"
-        return f"{verb} the {knob.name} from {now} to {to:.6g} {unit}"
+        return f"{verb} the {knob.name} from {now} to {readable(to, unit, 6)}"
     if to is None or to == inf:
         return f"{knob.name} may take any value" if to == inf else f"{knob.name} has no slack"
     if to == knob.current:
         return f"{knob.name} is exactly at its limit, {now}"
     bound = "as low as" if knob.more else "up to"
-    return f"{knob.name} may go {bound} {to:.6g} {unit} (now {now})"
+    return f"{knob.name} may go {bound} {readable(to, unit, 6)} (now {now})"
 
 
 def _estimators(device: Device, wall: Wall, contact: bool) -> Iterator[Advice]:
@@ -198,7 +259,7 @@ def _estimators(device: Device, wall: Wall, contact: bool) -> Iterator[Advice]:
         tau = _first_scanned(knob, device)
         if tau is not None:
             shown = outward(tau, knob)
-            to = f"one-pole filter of {shown:.4g} s"
+            to = f"one-pole filter of {readable(shown, 's')}"
             text = f"estimate velocity with a {to} (time constant) instead of the {now}"
             yield Advice("velocity_filter", now, to, "", "change", text)
 

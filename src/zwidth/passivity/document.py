@@ -58,7 +58,12 @@ def save_json(path: str | Path, document: object) -> None:
         If the file cannot be written.
     """
     with writing_whole(Path(path)) as file:
-        file.write(f"{to_json(document)}\n".encode())
+        file.write(json_file(document))
+
+
+def json_file(document: object) -> bytes:
+    """A document as `save_json` writes it."""
+    return f"{to_json(document)}\n".encode()
 
 
 def to_json(document: object, indent: int | None = 2) -> str:

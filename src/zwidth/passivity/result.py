@@ -13,7 +13,7 @@ from zwidth.passivity.document import save_json, to_json
 from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.wording import lines
-from zwidth.showing import Headline, Lines, Part, Shown, Table
+from zwidth.showing import Headline, Lines, Part, Picture, Shown, Table
 
 EVIDENCE = ("certificate", "violation", "witness")
 """Where a result, and a document, holds what the checker can check."""
@@ -74,11 +74,30 @@ class Documented(Shown):
             import_module("zwidth.plots.files").save_figure(lambda: figure, path, overwrite=True)
         return figure
 
+    def pictures(self) -> Iterable[Picture]:
+        """Its picture for a notebook, small; none where there is nothing to draw."""
+        if not self.PICTURE:
+            return ()
+        try:
+            figure = self.figure()
+        except InputError:
+            return ()
+        data = import_module("zwidth.plots.files").encoded(figure, "png", dpi=_SMALL)
+        return (Picture(data, "png", self.says()),)
+
+    def says(self) -> str:
+        """What its picture shows, for those who cannot see it."""
+        return type(self).__name__
+
     def figure(self) -> Any:
         """What `plot` returns."""
         if not self.PICTURE:
             raise InputError(f"there is no picture of this {type(self).__name__}")
         return getattr(import_module("zwidth.plots"), self.PICTURE)(self)
+
+
+_SMALL = 80
+"""Dots in an inch of a picture in a notebook."""
 
 
 class Result(Documented):
@@ -93,16 +112,25 @@ class Result(Documented):
         """It in a sentence."""
         raise NotImplementedError
 
+    def says(self) -> str:
+        """It in a sentence."""
+        return self.describe()
+
     def rows(self) -> Iterable[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
         return ()
 
+    def advised(self) -> Iterable[Part]:
+        """What to change, or what is left."""
+        return ()
+
     def report(self) -> Iterable[Part]:
-        """The sentence, the numbers, and what is taken for granted."""
+        """The sentence, the numbers, what to change, and what is taken for granted."""
         yield self._headline()
         rows = list(self.rows())
         if rows:
             yield Table(rows=rows)
+        yield from self.advised()
         assumed = self.small_print()
         if assumed:
             yield Lines(assumed, "assumptions")

@@ -86,12 +86,15 @@ class Verdict(Found):
         hand = {} if self.available_storage is None else {"worst_hand": self.available_storage.stated()}
         return {**super().evidence(), **hand}
 
+    def saved(self) -> dict[str, Any]:
+        """What `save` writes: the proof of bounded hands too."""
+        if self.available_storage is None or self.witness is not None:
+            return self.to_dict()
+        return {**self.to_dict(), "worst_hand": self.available_storage.to_dict()}
+
     def save(self, path: str | Path, reports: Mapping[str, Any] | None = None) -> None:
         """Write verdict and evidence as JSON for `zwidth verify`, and `reports` under their names."""
-        document = {**self.to_dict(), **(reports or {})}
-        if self.available_storage is not None and self.witness is None:
-            document["worst_hand"] = self.available_storage.to_dict()
-        save_json(path, document)
+        save_json(path, {**self.saved(), **(reports or {})})
 
     def __repr__(self) -> str:
         return f"<Verdict {self.describe()}>"

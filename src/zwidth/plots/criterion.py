@@ -44,7 +44,7 @@ def draw_criterion(axes: Axes, verdict: LinearVerdict, log_frequency: bool = Fal
     """The same on given axes."""
     frequencies, needs = refined_curve(verdict)
     b, motion = float(verdict.decision.loop.damping), verdict.device.motion
-    low, high = _range(needs, b)
+    low, high = damping_range(needs, b)
     wanting = [n > b for n in needs]
     if any(wanting):
         axes.fill_between(
@@ -83,7 +83,7 @@ def refined_curve(verdict: LinearVerdict, points: int = 400) -> tuple[list[float
     return frequencies, [known[f] for f in frequencies]
 
 
-def _range(needs: list[float], b: float) -> tuple[float, float]:
+def damping_range(needs: list[float], b: float) -> tuple[float, float]:
     """Ends of the vertical axis: all of the curve, unless it has no end."""
     finite = [n for n in needs if isfinite(n)]
     top = max([b, *finite])

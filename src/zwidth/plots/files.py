@@ -40,13 +40,19 @@ def save_figure(draw: Callable[[], Figure], path: str | Path, overwrite: bool = 
         raise InputError(
             f"a picture is written as .png, .svg or .pdf, got {target.name!r}; for example check.png"
         )
-    picture = BytesIO()
-    with rc_context({"svg.hashsalt": "zwidth"}):
-        _printable(draw()).savefig(picture, format=ending, dpi=160, metadata=_METADATA[ending])
+    picture = encoded(draw(), ending)
     if os.path.lexists(target) and not overwrite:
         raise InputError(f"{target} exists already and is not replaced; give another name or remove it first")
     with writing_whole(target) as file:
-        file.write(picture.getvalue())
+        file.write(picture)
+
+
+def encoded(figure: Figure, ending: str, dpi: float = 160) -> bytes:
+    """The figure as a file of one of `ENDINGS`."""
+    picture = BytesIO()
+    with rc_context({"svg.hashsalt": "zwidth"}):
+        _printable(figure).savefig(picture, format=ending, dpi=dpi, metadata=_METADATA[ending])
+    return picture.getvalue()
 
 
 def _printable(figure: Figure) -> Figure:

@@ -22,13 +22,13 @@ from zwidth.plots.witness import draw_witness
 from zwidth.rendering import VirtualCoupling
 from zwidth.scene import Scene
 
-_Draw = Callable[[Figure, SubplotSpec, Any], None]
+Draw = Callable[[Figure, SubplotSpec, Any], None]
 
 
 @rc_context(LOOK)
 def check_figure(verdict: Verdict) -> Figure:
     """The criterion, the budget, and where they apply the plane, the witness and the scene, in one figure."""
-    panels = _panels(verdict)
+    panels = list(panels_of(verdict).values())
     if not panels:
         raise InputError("there is nothing to draw of this verdict: it has neither H(z) nor a motion")
     rows = (len(panels) + 1) // 2
@@ -43,22 +43,32 @@ def check_figure(verdict: Verdict) -> Figure:
     return figure
 
 
-def _panels(verdict: Verdict) -> list[_Draw]:
-    panels: list[_Draw] = []
+@rc_context(LOOK)
+def panel_figure(draw: Draw, verdict: Verdict, width: float, height: float) -> Figure:
+    """One of `panels_of` by itself; sizes in inches."""
+    figure = new_figure(width, height)
+    draw(figure, figure.add_gridspec(1, 1)[0], verdict)
+    return figure
+
+
+def panels_of(verdict: Verdict) -> dict[str, Draw]:
+    """What draws each picture that there is of a verdict, by name."""
+    panels: dict[str, Draw] = {}
     if isinstance(verdict, LinearVerdict):
-        loop = verdict.decision.loop
-        has_place = verdict.decision.is_spring and has_plane(verdict.device) and loop.numerator[0]
-        panels += [_criterion, _plane, _budget] if has_place else [_criterion, _budget]
+        panels["criterion"] = _criterion
+        if verdict.decision.is_spring and has_plane(verdict.device) and verdict.decision.loop.numerator[0]:
+            panels["plane"] = _plane
+        panels["budget"] = _budget
     if verdict.witness is not None:
-        panels.append(_witness)
+        panels["motion"] = _witness
     elif verdict.available_storage is not None and verdict.available_storage.storage is not None:
-        panels.append(_storage)
-    if _scene_of(verdict) is not None:
-        panels.append(_scene)
+        panels["storage"] = _storage
+    if scene_of(verdict) is not None:
+        panels["scene"] = _scene
     return panels
 
 
-def _scene_of(verdict: Verdict) -> Scene | None:
+def scene_of(verdict: Verdict) -> Scene | None:
     """The scene that is rendered, behind whatever couplings, if it is one."""
     met = verdict.environment.met
     while isinstance(met, VirtualCoupling):
@@ -67,7 +77,7 @@ def _scene_of(verdict: Verdict) -> Scene | None:
 
 
 def _scene(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
-    scene = _scene_of(verdict)
+    scene = scene_of(verdict)
     assert scene is not None
     draw_scene(figure.add_subplot(place), scene, verdict.device.motion)
 

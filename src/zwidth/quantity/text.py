@@ -56,6 +56,16 @@ def _prefix(number: float, unit: str, digits: int) -> tuple[int, str]:
     return power, PREFIXES[power] + unit
 
 
+def readable(value: float, unit: str, digits: int = 4) -> str:
+    """A value with its unit; a prefix takes the place of an exponent: "0.0015 J", and "2.03 µJ"."""
+    text = f"{value:.{digits}g}"
+    prefixed = (*_PREFIXED, "rad", "N*m", "N·m", "rad/s")
+    power = 3 * floor(log10(abs(value)) / 3) if "e" in text and unit in prefixed else 0
+    if power not in PREFIXES or not power:
+        return f"{text} {unit_text(unit)}".rstrip()
+    return f"{value / 10.0**power:.{digits}g} {PREFIXES[power]}{unit_text(unit)}"
+
+
 def in_unit(value: float | None, unit: str) -> str:
     """A value of six digits in this very unit; "none" and "any" for what is no number."""
     if value is None:

@@ -87,11 +87,31 @@ def specified(tables: Mapping[str, Table], overrides: Mapping[str, str] | None =
     InputError
         As `load`.
     """
+    return built(*merged(tables, overrides))
+
+
+def merged(tables: Mapping[str, Table], overrides: Mapping[str, str] | None = None) -> tuple[Table, Table]:
+    """The tables of device and environment, with the command line's parameters in them.
+
+    Raises
+    ------
+    InputError
+        As `load`.
+    """
     names = {key.replace("-", "_"): value for key, value in (overrides or {}).items()}
     device_names = {key: value for key, value in names.items() if key in DEVICE_KEYS}
     environment_names = {key: value for key, value in names.items() if key not in DEVICE_KEYS}
-    device_table = _device_table(tables, device_names)
-    environment = environment_table(tables, environment_names)
+    return _device_table(tables, device_names), environment_table(tables, environment_names)
+
+
+def built(device_table: Table, environment: Table) -> Specification:
+    """The device and the environment that two tables describe.
+
+    Raises
+    ------
+    InputError
+        As `load`.
+    """
     device = build_device(device_table)
     return Specification(device, build_environment(environment, device.motion))
 

@@ -40,6 +40,10 @@ class Table:
         self.values[key] = value
         self._overridden.add(key)
 
+    def is_typed(self, key: str) -> bool:
+        """True for a value of the command line."""
+        return key in self._overridden
+
     def where(self, key: str) -> str:
         """The place where a key was written."""
         return COMMAND_LINE if key in self._overridden else self.label

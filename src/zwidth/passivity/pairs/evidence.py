@@ -17,7 +17,7 @@ from zwidth.passivity.linear.positivity import Positivity
 from zwidth.passivity.linear.supremum import frequency
 from zwidth.passivity.result import Evidence
 from zwidth.passivity.witness.motion import Motion, Repeat
-from zwidth.quantity.text import exact_text, quantity_unit
+from zwidth.quantity.text import exact_text, quantity_unit, readable
 
 CERTIFICATE = "zwidth certificate 1"
 VIOLATION = "zwidth violation 1"
@@ -225,9 +225,10 @@ class PairWitness(Evidence):
         far = quantity_unit("position", self.pair.motion)
         spans = [float(max(m.positions) - min(m.positions)) for m in (self.leader, self.follower)]
         rounds = f", {self.leader.rounds} rounds" if self.leader.rounds > 1 else ""
+        leader, follower = (readable(span, far, 3) for span in spans)
         return (
-            f"a motion of {self.samples} samples{rounds} takes {self.energy:.4g} J out, the leader over "
-            f"{spans[0]:.3g} {far}, the follower over {spans[1]:.3g} {far} in a round"
+            f"a motion of {self.samples} samples{rounds} takes {readable(self.energy, 'J')} out, the "
+            f"leader over {leader}, the follower over {follower} in a round"
         )
 
 

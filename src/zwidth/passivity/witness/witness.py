@@ -17,7 +17,7 @@ from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import Contact
 from zwidth.passivity.witness.motion import Motion
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import quantity_unit, readable
 
 FORMAT = "zwidth witness 1"
 
@@ -174,8 +174,8 @@ class Witness(Evidence):
         times = self.motion.rounds
         rounds = f", its cycle {times:.6g} times" if times > 1 and len(self.motion.repeats) == 1 else ""
         return (
-            f"{self.motion.samples:.6g} samples{rounds}, to {self.depth:.4g} {self.unit} at up to "
-            f"{self.peak_speed:.4g} {self.unit}/s, extracts {self.energy:.4g} J"
+            f"{self.motion.samples:.6g} samples{rounds}, to {readable(self.depth, self.unit)} at up to "
+            f"{readable(self.peak_speed, f'{self.unit}/s')}, extracts {readable(self.energy, 'J')}"
         )
 
 

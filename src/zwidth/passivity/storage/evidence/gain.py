@@ -20,6 +20,7 @@ from zwidth.passivity.storage.losses import Losses
 from zwidth.passivity.storage.solve.value_iteration import ValueIteration
 from zwidth.passivity.witness.motion import Motion, Repeat
 from zwidth.passivity.witness.witness import FORMAT, rounded_energy
+from zwidth.quantity.text import readable
 
 _NEAREST = 40
 """Halvings of a count by which a hand on the upper edge of a cell may have to stay below it."""
@@ -103,8 +104,9 @@ class Gain(Evidence):
         """The motion in a sentence."""
         part = self.motion.repeats[0]
         return (
-            f"a cycle of {part.last - part.first} samples, to {self.depth:.4g} {self.unit} at up to "
-            f"{self.peak_speed:.4g} {self.unit}/s, extracts {self.energy_per_cycle:.4g} J in each round"
+            f"a cycle of {part.last - part.first} samples, to {readable(self.depth, self.unit)} at up to "
+            f"{readable(self.peak_speed, f'{self.unit}/s')}, extracts "
+            f"{readable(self.energy_per_cycle, 'J')} in each round"
         )
 
 

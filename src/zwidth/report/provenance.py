@@ -1,0 +1,166 @@
+"""Where each number of a loop comes from: typed, read from a file, published, or not given at all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import Any
+
+from zwidth.device import Device, catalogue
+from zwidth.device.rotary import ROTARY
+from zwidth.environment.environment import Environment
+from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.kind import name_of
+from zwidth.quantity.parameter import Parameter
+from zwidth.quantity.text import in_words, shown, unit_text
+from zwidth.specification.environments import TYPES
+from zwidth.specification.table import COMMAND_LINE, Table
+
+_WRITTEN_AS = {
+    "sample_period": ("sample_period", "rate"),
+    "mass": ("mass", "inertia"),
+    "resolution": ("resolution", "counts_per_turn"),
+}
+"""The keys under which a number of a device may stand, where there are several."""
+
+_IN_PYTHON = "given in Python"
+_DEFAULT = "not given: the default"
+_DIGITS = 6
+
+Row = tuple[str, str, str]
+"""What, its value with unit, where it comes from."""
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a loop comes from.
+
+    Parameters
+    ----------
+    numbers
+        (what, value with unit, where it comes from), in the order of the report.
+    command
+        What makes the report again; "" where it was made in Python.
+    """
+
+    numbers: tuple[Row, ...] = ()
+    command: str = ""
+
+
+def of_verdict(verdict: Verdict) -> Provenance:
+    """Of a loop made in Python: what the catalogue has too is told with its source."""
+    device, scope = verdict.device, verdict.scope
+    known = catalogue.entry(device.name).values if device.name in catalogue.names() else {}
+    numbers: list[Row] = []
+    for key, value in device.parameters().items():
+        where = f"the worst of the interval {_IN_PYTHON}" if key in scope.intervals else _IN_PYTHON
+        origin = _published(key, value, known) or _unless_assumed(key, scope.assumed, where)
+        numbers.append((*_named(key, value, device.motion), origin))
+    law = ("law", verdict.environment.describe(device.motion), _IN_PYTHON)
+    return Provenance((*numbers, law))
+
+
+def of_device(table: Table, device: Device) -> Iterator[Row]:
+    """Of a device made of a table, the parameters of the command line in it."""
+    name = table.values.get("catalogue")
+    known = {} if name is None else catalogue.entry(str(name)).values
+    for key, value in device.parameters().items():
+        written = next((k for k in _WRITTEN_AS.get(key, (key,)) if k in table.values), None)
+        where = _published(key, value, known) if written is None else _place(table, written, key)
+        yield (
+            *_named(key, value, device.motion),
+            where or _unless_assumed(key, device.assumed, "not given"),
+        )
+    for key, own in ROTARY.items():
+        if key in table.values:
+            yield in_words(key), _as_written(table.values[key], own.unit), _place(table, key, key)
+
+
+def of_environment(
+    table: Table, environment: Environment, motion: str, laws: Table | None = None, typed: Sequence[str] = ()
+) -> Iterator[Row]:
+    """Of an environment made of a table.
+
+    Parameters
+    ----------
+    table
+        With the parameters of the command line in it, as it was read.
+    environment
+        What was made of it; it may stand behind laws in a chain.
+    motion
+        "linear" or "rotary".
+    laws, typed
+        The [[law]] tables of a file, and what stood behind each `--law`, which takes their place.
+    """
+    chain = getattr(environment, "laws", ())
+    inner: Any = environment.environment if chain else environment  # type: ignore[attr-defined]
+    kind = name_of(inner, TYPES)
+    yield "law", (kind or inner.describe(motion)).replace("-", " "), _place(table, "type", "type")
+    for name, key in TYPES[kind].keys.items() if kind else ():
+        value = getattr(inner, name)
+        if value is not None:
+            where = _place(table, name, name) if name in table.values else _DEFAULT
+            yield (*_of_a_key(name, key, value, motion), where)
+    behind = f"typed: --law {','.join(typed)}" if typed or laws is None else _file(laws.label)
+    for law in chain:
+        yield "law behind it", law.describe(motion), behind
+
+
+def _of_a_key(name: str, key: Parameter, value: Any, motion: str) -> tuple[str, str]:
+    if key.is_number and key.quantity.name in GLOSSARY:
+        return _named(key.quantity.name, value, motion)
+    if isinstance(value, bool):
+        return in_words(name), "yes" if value else "no"
+    if isinstance(value, Environment):
+        return in_words(name), value.describe(motion)
+    if hasattr(value, "describe"):
+        return in_words(name), value.describe()
+    if isinstance(value, (tuple, list)) and len(str(value)) > 60:
+        return in_words(name), f"{len(value)} of them"
+    return in_words(name), str(value)
+
+
+def _named(key: str, value: Exact | Interval, motion: str) -> tuple[str, str]:
+    own = GLOSSARY[key]
+    return f"{in_words(key)} {own.symbol}".rstrip(), shown(value, own.unit_for(motion), _DIGITS)
+
+
+def _as_written(value: object, unit: str) -> str:
+    """As it stands in a file, with the unit where it has none there."""
+    text = str(value)
+    return text if any(map(str.isalpha, text)) else f"{text} {unit_text(unit)}".rstrip()
+
+
+def _published(key: str, value: Exact | Interval, known: Mapping[str, catalogue.Datum]) -> str:
+    """The source in the catalogue of a number that is the one there."""
+    for name in ("rate", key) if key == "sample_period" else (key,):
+        datum = known.get(name)
+        if datum is None or datum.value is None or not isinstance(value, Exact):
+            continue
+        told = 1 / value.fraction if name == "rate" else value.fraction
+        if datum.value.fraction == told:
+            return f"catalogue: {datum.source}"
+    return ""
+
+
+def _unless_assumed(key: str, assumed: Sequence[str], otherwise: str) -> str:
+    return "not given: taken as 0" if key in assumed else otherwise
+
+
+def _place(table: Table, key: str, asked: str) -> str:
+    """Where a key was written, and under which name where that is another one."""
+    if table.is_typed(key):
+        option = "virtual-damping" if key == "damping" and "type" in table.values else key.replace("_", "-")
+        return f"typed: --{option} {table.values[key]}"
+    if table.label == COMMAND_LINE:
+        return _DEFAULT
+    return _file(table.label) + ("" if key == asked else f": {key}")
+
+
+def _file(label: str) -> str:
+    """A table of a file, which is called by its name alone."""
+    file, found, name = label.rpartition(": [")
+    return f"{PurePath(file.removesuffix(': [')).name}, [{name}" if found else label
