@@ -73,11 +73,16 @@ def not_said(relied_on: str, printed: str) -> list[str]:
 class Computed(SphinxDirective):
     """Commands of zwidth with what they print.
 
-    `:lines: 12` shows the first twelve lines of each, `:says: ACTIVE; 500 Hz` is what the text relies on.
+    `:lines: 12` shows the first twelve lines of each, `:only: limit; required` the lines that begin so;
+    `:says: ACTIVE; 500 Hz` is what the text relies on.
     """
 
     has_content = True
-    option_spec = {"lines": directives.positive_int, "says": directives.unchanged}  # noqa: RUF012
+    option_spec = {  # noqa: RUF012
+        "lines": directives.positive_int,
+        "only": directives.unchanged,
+        "says": directives.unchanged,
+    }
 
     def run(self) -> list[nodes.Node]:
         """One block, as a terminal would show it."""
@@ -103,6 +108,9 @@ class Computed(SphinxDirective):
 
     def _cut(self, printed: str) -> str:
         lines = printed.strip("\n").splitlines()
+        if "only" in self.options:
+            begin = tuple(part.strip() for part in self.options["only"].split(";"))
+            return "\n".join(line for line in lines if line.strip().startswith(begin))
         kept = self.options.get("lines", len(lines))
         return "\n".join([*lines[:kept], *(["…"] if kept < len(lines) else [])])
 

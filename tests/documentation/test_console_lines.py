@@ -13,16 +13,20 @@ from zwidth.cli import main as command_line
 NOT_RUN = {
     "compare": "it simulates every law; run in tests/bench",
     "doctor": "it measures for seconds",
+    "explore": "it serves a page until it is ended; run in tests/explorer",
     "emit": "run in tests/firmware",
     "examples": "beside its files a page takes minutes; run in tests/cli and tests/test_readme_commands.py",
     "identify": "it needs a recording",
     "limit": "it searches for up to a minute; run in tests/cli/test_limit.py",
     "links": "it simulates minutes; run in tests/links",
     "map": "it computes thousands of walls; run in tests/cli/test_map.py",
+    "new": "it asks questions",
     "network": "it starts processes",
     "new": "it asks; run in tests/cli/test_new_command.py",
     "play": "it opens a browser; run in tests/cli/test_play_command.py",
+    "play": "it opens a page",
     "serve": "it runs until it is ended",
+    "tour": "it waits for a key after each step",
     "workspace": "it covers an arm; run in tests/cli/test_workspace_command.py",
 }
 """Commands whose lines are read and not run, and why; so are those of files that no page shows."""

@@ -170,7 +170,9 @@ def _line(
 def _others(device: Device) -> list[Device]:
     """The devices of the catalogue that have a line of their own in the plane."""
     mine = place_at_limit(device), largest_spring_of(device)
-    return [other for other in complete_devices() if (place_at_limit(other), largest_spring_of(other)) != mine]
+    return [
+        other for other in complete_devices() if (place_at_limit(other), largest_spring_of(other)) != mine
+    ]
 
 
 def _mark_others(axes: Axes, others: list[Device]) -> None:
