@@ -123,7 +123,7 @@ def test_version_is_the_one_of_the_distribution() -> None:
 
 
 def test_what_is_shipped_beside_the_code() -> None:
-    """Type checkers find the marker; the catalogue its data; other checkers the schemas; laws their mains; pages their modules."""
+    """Type checkers find the marker, the catalogue its data; checkers schemas, laws mains, pages modules."""
     assert (SOURCE / "py.typed").exists()
     assert (SOURCE / "device" / "catalogue.toml").exists()
     assert (SOURCE / "gains" / "families.toml").exists()
@@ -337,6 +337,7 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
     "command",
     [
         "check",
+        "report",
         "limit",
         "pair",
         "links",

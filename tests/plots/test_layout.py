@@ -1,4 +1,4 @@
-"""Every picture is on its page: words are whole, axes are filled, whatever the device and the page around it."""
+"""Words are whole and axes are filled in every picture, whatever the device and the page around it."""
 
 from __future__ import annotations
 

@@ -56,5 +56,5 @@ def copy_to(folder: Path, force: bool) -> None:
 
 
 def _told(example: samples.Example) -> str:
-    """Files and meaning on a line, the command below."""
-    return f"{', '.join(example.files)}: {example.meaning}\n  {example.command}"
+    """The meaning, the files, the command."""
+    return f"{example.meaning}\n  {', '.join(example.files)}\n  {example.command}"

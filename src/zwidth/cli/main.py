@@ -16,6 +16,7 @@ from typing import NoReturn
 from zwidth.cli.commands import COMMANDS, configure, run
 from zwidth.cli.options import joined
 from zwidth.cli.output import quiet_pipe, tolerate_encoding
+from zwidth.cli.typed import as_typed
 from zwidth.cli.welcome import WELCOME
 from zwidth.errors import InputError
 from zwidth.specification.table import plain, quoted, suggestion
@@ -51,11 +52,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         from zwidth.cli.completion import answer
 
         answer(_parser)
+    typed = list(sys.argv[1:] if argv is None else argv)
     try:
-        return _run(list(sys.argv[1:] if argv is None else argv))
+        return _run(typed)
     except InputError as error:
         with quiet_pipe(sys.stderr):
-            print(f"zwidth: {plain(str(error), _LONGEST_MESSAGE)}", file=sys.stderr)
+            print(f"zwidth: {plain(as_typed(str(error), typed), _LONGEST_MESSAGE)}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
         with quiet_pipe(sys.stderr):

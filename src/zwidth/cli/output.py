@@ -50,7 +50,7 @@ def spelled(text: str) -> str:
     """The text as standard output will show it: what its encoding lacks is spelled out."""
     if encodes(text):
         return text
-    encoding = sys.stdout.encoding
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     return text.encode(encoding, "zwidth").decode(encoding)
 
 

@@ -35,9 +35,11 @@ class _Shown(Console):
     """
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
-        if isinstance(renderable, Text) and (plain := spelled(renderable.plain)) != renderable.plain:
-            renderable = renderable.copy()
-            renderable.plain = plain
+        if isinstance(renderable, Text):
+            plain = GLUE.join(map(spelled, renderable.plain.split(GLUE)))
+            if plain != renderable.plain:
+                renderable = renderable.copy()
+                renderable.plain = plain
         for part in super().render(renderable, options):
             yield part if part.control else Segment(printable(part.text), part.style)
 

@@ -37,7 +37,11 @@ if TYPE_CHECKING:
 _SAMPLES_SHOWN = 48
 
 _NOTHING = "nothing is violated"
-_ABOUT = ("coupling", "on the leader", "on the follower")
+_ABOUT = (
+    "coupling",
+    *(f"on the {arm}" for arm in ("leader", "follower")),
+    *(f"compensated in the {arm}" for arm in ("leader", "follower")),
+)
 """Of the numbers: what a short report has."""
 
 
@@ -58,6 +62,8 @@ def _few(out: Console, verdict: PairVerdict | HeldVerdict, witness: PairWitness 
     do += advice_rows(verdict.advice, verdict.passive)
     if not verdict.advice and "largest stiffness" in rows:
         do.append(("stiffness", f"largest: {rows['largest stiffness']}"))
+    if "largest compensation" in rows:
+        do.append(("compensation", f"largest: {rows['largest compensation']}"))
     pair: list[Row] = [(name, rows[name]) for name in _ABOUT if name in rows]
     blocks(out, do, (*_arms(verdict.pair), *pair, ("assumes", small_print(pair_in_short(verdict)))))
     more_with_all(out, "numbers, motion, every change, assumptions in full")

@@ -6,9 +6,9 @@ WELCOME = """\
 zwidth says which virtual walls your device can render without giving energy
 to the hand: with a proof, or with the motion that takes energy out.
 
-  zwidth tour                                   the story on one device, in a minute
-  zwidth check haptic-paddle --stiffness 300    your first proof
-  zwidth new device                             the file of your own device, question by question
-  zwidth examples .                             sample files for every command, put here
+  zwidth tour                                   the story, in a minute
+  zwidth check haptic-paddle --stiffness 300    a first proof
+  zwidth new device                             the file of your own device
+  zwidth examples .                             sample files, put here
 
 zwidth --help lists all commands."""

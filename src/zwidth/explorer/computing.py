@@ -225,3 +225,20 @@ def advised(state: State) -> list[str]:
     """What to change of two arms, or how far each parameter may go."""
     verdict = check(pair_of(pair_tables(state)))
     return [one.text for one in verdict.advice if one.to is not None]
+
+
+def reported(state: State) -> str:
+    """The report on the loop as one page of HTML."""
+    from zwidth.report import html
+
+    loop = state.loop()
+    return html(check(loop.device, loop.environment, progress=lambda _: None))
+
+
+def played_page(state: State) -> str:
+    """A page on which a person plays the loop: the same law, at its rate."""
+    from zwidth.explorer.play import play_page, played
+
+    loop = state.loop()
+    verdict = check(loop.device, loop.environment, progress=lambda _: None)
+    return play_page([played(loop.device, loop.environment, verdict)])

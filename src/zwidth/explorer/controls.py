@@ -125,8 +125,8 @@ def _of_table(
 
 
 def _label(key: str, own: Parameter) -> str:
-    name = own.quantity.name if own.quantity.name in GLOSSARY else key
-    return in_words(name)
+    """A key as words; of an environment `damping` is virtual, as on the command line."""
+    return in_words(own.quantity.name if key == "damping" and own.quantity.name in GLOSSARY else key)
 
 
 def number_control(path: str, own: Parameter, value: Any, motion: str, label: str = "") -> Control:

@@ -144,7 +144,7 @@ export function render({ model, el }) {
     }
     if (told.query) window.history.replaceState(null, "", `?${told.query}${window.location.hash}`);
     if (told.file) save(told.file);
-    if (told.heard >= number) {
+    if (told.heard >= number && busy) {
       busy = false;
       send();
     }

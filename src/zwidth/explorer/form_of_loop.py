@@ -14,7 +14,7 @@ from zwidth.rendering import LAWS
 from zwidth.specification.environments import TYPES
 from zwidth.specification.read import Specification
 
-DOWNLOADS = {"toml": "The loop as TOML", "json": "The verdict as JSON"}
+DOWNLOADS = {"toml": "The loop as TOML", "json": "The verdict as JSON", "report": "The report as a page"}
 
 
 def controls_of(state: State, loop: Specification) -> Iterator[Control]:

@@ -64,8 +64,9 @@ class PlanePicture:
             self._line.data = {"beta": [], "sigma": []}
             return _NO_PLACE
         assert isinstance(verdict, LinearVerdict)
-        device, stiffness = verdict.device, Exact(verdict.decision.loop.static_stiffness)
-        point = plane_point(device, stiffness)
+        device, stiffness = verdict.device, verdict.decision.loop.static_stiffness
+        assert stiffness is not None
+        point = plane_point(device, Exact(stiffness))
         beta, sigma = float(point.viscous), float(point.dry)
         x = ends_around(beta, *(place[0] for place in self._others.values()))
         y = ends_around(sigma, *(place[1] for place in self._others.values()))

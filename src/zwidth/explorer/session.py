@@ -14,6 +14,7 @@ from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.explorer import starts
+from zwidth.explorer.computing import reported
 from zwidth.explorer.controls import Control
 from zwidth.explorer.form import Event, Form, Soon, words
 from zwidth.explorer.form_of_loop import controls_of, groups_of
@@ -23,6 +24,7 @@ from zwidth.explorer.verdict_card import WAITING, badge, details, head
 from zwidth.explorer.view import View, given
 from zwidth.explorer.views import views_of
 from zwidth.explorer.working import Answer, Workers
+from zwidth.passivity.document import to_json
 from zwidth.passivity.verdict import Verdict
 from zwidth.rendering import LAWS
 from zwidth.showing import element
@@ -48,14 +50,18 @@ class Session:
         Has something done in the thread of the page.
     message
         Said at the top, such as what of the address could not be used.
+    in_page
+        True where the page has an address that holds the loop, and tabs of its own.
     """
 
-    def __init__(self, state: State, workers: Workers, soon: Soon, message: str = "") -> None:
+    def __init__(
+        self, state: State, workers: Workers, soon: Soon, message: str = "", *, in_page: bool = True
+    ) -> None:
         self.state = state
         self.verdict: Verdict | None = None
         self._workers, self._soon, self._asker = workers, soon, next(_askers)
         self._controls: dict[str, Control] = {}
-        self.form = Form(sizing_mode="stretch_width", views=True)
+        self.form = Form(sizing_mode="stretch_width", views=in_page)
         self.head, self.details = words(element("p"), live=True), words(element("p"))
         self.badge = words(element("p"))
         loop = state.loop()
@@ -64,7 +70,11 @@ class Session:
         self._draw_form(loop)
         self._show(judged_at_once(loop))
         self._follow()
-        self.form.told = {"heard": 0, "error": message, "query": "" if message else state.query()}
+        self.form.told = {
+            "heard": 0,
+            "error": message,
+            "query": "" if message or not in_page else state.query(),
+        }
         self.listen(self.form, self.hear)
 
     def close(self) -> None:
@@ -80,7 +90,11 @@ class Session:
     def keep(self, state: State) -> Mapping[str, Any]:
         """Take another state whose loop is the same; what is told to the page."""
         self.state = state
-        return {"error": "", "query": state.query()}
+        return {"error": "", "query": self._address}
+
+    @property
+    def _address(self) -> str:
+        return self.state.query() if self.form.views else ""
 
     def compute(self, kind: str, work: Callable[..., Any], then: Callable[[Answer], None]) -> None:
         """Have something computed of the state beside the page; of an older state nothing is shown."""
@@ -100,9 +114,9 @@ class Session:
         """Answer one event of the form."""
         kind, path, value = str(event.get("kind")), str(event.get("path")), event.get("value")
         if kind == "press":
-            return {"file": self._file(path)}
+            return self._file(path)
         if kind == "view":
-            self._see(path)
+            self.see(path)
             return {}
         if kind == "release":
             self._open.released()
@@ -115,7 +129,7 @@ class Session:
             self._become(starts.with_law(self.state, name, value == "true"), redraw=True)
         else:
             return self._set(event)
-        return {"error": "", "query": self.state.query()}
+        return {"error": "", "query": self._address}
 
     def _set(self, event: Event) -> Mapping[str, Any]:
         """One parameter, by its slider or as it was typed or chosen."""
@@ -126,7 +140,7 @@ class Session:
         if event.get("kind") == "move":
             return told
         self._open.released()
-        return {**told, "query": self.state.query()}
+        return {**told, "query": self._address}
 
     def _become(self, state: State, redraw: bool) -> None:
         """Another loop, if it is one: what cannot be used changes nothing."""
@@ -147,7 +161,7 @@ class Session:
         self._controls = {one.path: one for one in made}
         self.form.groups = groups_of(self.state, loop.device.name, made)
 
-    def _see(self, key: str) -> None:
+    def see(self, key: str) -> None:
         """Another picture is open."""
         found: View | None = next((view for view in self.views if view.key == key), None)
         if found is None:
@@ -198,17 +212,36 @@ class Session:
             else replace(state, extras=self.state.extras)
         )
 
-    def _file(self, name: str) -> dict[str, str]:
+    def _file(self, name: str) -> Mapping[str, Any]:
+        """A file to keep; a report takes longer, and comes when it is done."""
         loop = self.state.loop()
         if name == "toml":
-            return {
-                "name": "loop.toml",
-                "kind": "application/toml",
-                "text": written(loop.device, loop.environment),
-            }
+            return _download("loop.toml", "application/toml", written(loop.device, loop.environment))
+        if name == "report":
+            self.compute("report", reported, self._reported)
+            return {"error": "The report is being written …"}
         if name == "json" and self.verdict is not None:
-            return {"name": "verdict.json", "kind": "application/json", "text": self.verdict.to_json()}
+            return _download("verdict.json", "application/json", to_json(_in_full(self.verdict)))
         raise InputError("there is nothing to download yet: the verdict is being worked out")
+
+    def _reported(self, answer: Answer) -> None:
+        told = (
+            {"error": answer.message}
+            if answer.value is None
+            else _download("report.html", "text/html", answer.value)
+        )
+        self.form.told = {"heard": 0, **told}
+
+
+def _download(name: str, kind: str, text: str) -> dict[str, Any]:
+    return {"error": "", "file": {"name": name, "kind": kind, "text": text}}
+
+
+def _in_full(verdict: Verdict) -> dict[str, Any]:
+    """What `zwidth check -o` writes, so that `zwidth verify` reads it."""
+    found = verdict.available_storage
+    more = {} if found is None or verdict.witness is not None else {"worst_hand": found.to_dict()}
+    return {**verdict.to_dict(), **more}
 
 
 def _kept(fresh: Control, before: Mapping[str, Control]) -> Control:

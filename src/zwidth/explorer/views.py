@@ -11,6 +11,7 @@ from zwidth.environment import Wall
 from zwidth.explorer import computing, criterion, laws, motion, plane, region
 from zwidth.explorer.arms_view import Arms
 from zwidth.explorer.form import words
+from zwidth.explorer.play_view import play_view
 from zwidth.explorer.touch_view import Touches
 from zwidth.explorer.verdict_card import WAITING
 from zwidth.explorer.view import Asked, View, said, wide
@@ -30,6 +31,7 @@ def views_of(page: Asked) -> list[View]:
         _motion(page),
         _laws(page),
         Arms(page).view,
+        play_view(page),
     ]
 
 

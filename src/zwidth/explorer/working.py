@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 
 from zwidth.errors import InputError
 
-LONGEST = 20.0
-"""A job may take [s]."""
+LONGEST = 60.0
+"""A job may take [s]: it is seconds, but for the first of its kind on a machine, which compiles."""
 
 PATIENCE = 1.0
 """For a job that nobody waits for any more [s]: a new process takes about as long."""

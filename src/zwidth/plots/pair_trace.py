@@ -19,6 +19,7 @@ from zwidth.plots.style import (
     ORANGE,
     PURPLE,
     RED,
+    as_written,
     heading,
     new_figure,
     number,
@@ -51,7 +52,7 @@ def pair_trace_figure(trace: xr.Dataset) -> Figure:
     draw_both(middle, trace, "hand_force", "force on the arm\nby what holds it")
     draw_pair_energies(below, trace)
     about = trace.attrs
-    held = f"leader: {about['leader_holder']}\nfollower: {about['follower_holder']}"
+    held = as_written(f"leader: {about['leader_holder']}\nfollower: {about['follower_holder']}")
     heading(above, verbatim(f"{about['coupling']}\n{held}"))
     below.set_xlabel(f"time [{scale([float(trace['time'].values[-1])], 's')[1]}]")
     return figure

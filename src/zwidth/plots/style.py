@@ -156,6 +156,11 @@ def _long(text: str, size: float) -> float:
     return float(wide)
 
 
+def as_written(text: object) -> str:
+    """A description with its units as people write them: "30 N*m" with a point, "kg*m^2" with a raised 2."""
+    return str(text).replace("*", "·").replace("^2", "²")
+
+
 def note(axes: Axes, text: str) -> None:
     """A small line under the picture: what is left out, and why."""
     axes.annotate(

@@ -22,6 +22,7 @@ from zwidth.plots.style import (
     PURPLE,
     RED,
     SKY,
+    as_written,
     heading,
     new_figure,
     number,
@@ -173,8 +174,7 @@ def _time(trace: xr.Dataset) -> tuple[Array, str]:
 
 def _title(trace: xr.Dataset) -> str:
     about = trace.attrs
-    law, hand = (str(about[key]).replace("*", "·").replace("^2", "²") for key in ("environment", "operator"))
-    return verbatim(f"{about['device']}, {law}\n{hand}")
+    return verbatim(f"{about['device']}, {as_written(about['environment'])}\n{as_written(about['operator'])}")
 
 
 def _cycle(count: int) -> list[str]:

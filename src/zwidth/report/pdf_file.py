@@ -143,7 +143,7 @@ def _columns(count: int) -> list[float]:
 
 def _picture(part: Picture) -> Iterator[Any]:
     image = Image(BytesIO(part.data), lazy=0)
-    scale = min(1.0, 0.8 * _WIDTH / image.imageWidth)
+    scale = min(1.0, 0.68 * _WIDTH / image.imageWidth)
     image.drawWidth, image.drawHeight = scale * image.imageWidth, scale * image.imageHeight
     image.hAlign = "LEFT"
     yield image

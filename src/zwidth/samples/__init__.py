@@ -28,13 +28,13 @@ EXAMPLES = (
     ),
     Example(
         ("paddle.toml", "wall.toml"),
-        "a paddle and a wall too stiff for it: the motion, and what to change",
+        "a paddle and a wall that is too stiff: the motion, and what to change",
         "zwidth check paddle.toml wall.toml",
     ),
     Example(
-        ("knob.toml", "detents.toml"),
-        "a knob with three detents: what a finger feels",
-        "zwidth simulate knob.toml detents.toml --operator finger --duration 1",
+        ("knob.toml", "detents.toml", "turn.toml"),
+        "a knob with three detents, and two fingers that turn it",
+        "zwidth simulate knob.toml detents.toml turn.toml --plot turn.png",
     ),
     Example(
         ("session.csv",),
@@ -63,9 +63,8 @@ EXAMPLES = (
     ),
     Example(
         ("arms.toml",),
-        "the same in one file: a finger on one, a wall at the other",
-        "zwidth simulate arms.toml --operator finger --follower-operator wall "
-        "--follower-operator.stiffness 2000 --duration 1",
+        "the same two arms and what joins them, in one file",
+        'zwidth pair arms.toml --link-delay "5 ms"',
     ),
     Example(
         ("leader.yaml", "follower.yaml"),
@@ -78,7 +77,7 @@ EXAMPLES = (
         "zwidth network room.toml --plan",
     ),
     Example(
-        ("lesson-1-sampling.ipynb", "lesson-2-encoder-and-friction.ipynb", "lesson-3-laws-and-a-board.ipynb"),
+        ("lesson-1-sampling.ipynb", "lesson-2-friction.ipynb", "lesson-3-laws.ipynb"),
         "three lessons for a class, with pip install jupyterlab",
         "jupyter lab lesson-1-sampling.ipynb",
     ),

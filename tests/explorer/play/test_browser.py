@@ -74,7 +74,7 @@ def _recording(page: Page) -> tuple[list[str], Array]:
 def test_what_a_person_did_is_simulated_to_the_bit(
     page: Page, address: str, loops: list[Played], number: int
 ) -> None:
-    """The recorded pointer, given to `zw.simulate` as the path of the same hand: the same motion and energies."""
+    """The recorded pointer, as the path of the same hand of `zw.simulate`: the same motion and energies."""
     page.goto(address)
     page.locator("#loops button").nth(number).click()
     _stroke(page, [0.5, 0.4, 0.35, 0.5, 0.6, 0.62, 0.7, 0.71, 0.55, 0.66, 0.75, 0.75])
@@ -93,7 +93,7 @@ def test_a_person_without_a_pointer_plays(page: Page, address: str) -> None:
     page.goto(address)
     stage = page.get_by_role("slider", name="The hand on the handle")
     stage.focus()
-    for _ in range(12):
+    for _ in range(28):
         page.keyboard.press("ArrowRight")
     page.wait_for_function("document.querySelector('#stage').ariaValueNow === '30'")
     page.wait_for_function("/force [1-9.]/.test(document.querySelector('#stage').ariaValueText)")

@@ -60,7 +60,7 @@ def _same(one: Array, other: Array) -> bool:
 
 
 def test_the_engine_moves_as_the_simulator_does(tmp_path: Path) -> None:
-    """Positions, velocities, forces and energies at every sample, whatever the delay, the encoder, the arms."""
+    """Positions, velocities, forces, energies at every sample, whatever delay, encoder and arms."""
     loops = _loops()
     jobs = [Job(loop, moved(loop, 2.0, seed)) for seed, loop in enumerate(loops.values())]
     for name, job, rows in zip(loops, jobs, played(jobs, tmp_path), strict=True):
@@ -78,7 +78,7 @@ def test_every_preset_moves_as_the_simulator_does(tmp_path: Path) -> None:
 
 
 def test_a_hand_that_lets_go(tmp_path: Path) -> None:
-    """Spring, damper and mass of the hand go while it does not hold: the kernel run in three parts says the same."""
+    """The hand's spring, damper and mass go while it does not hold: as the kernel, run in three parts."""
     loop = play(_device(delay=0.001), zw.Wall(800), zw.check(_device(), zw.Wall(100)), hand=HAND)
     pointer = moved(loop, 1.5, 5)
     held = np.ones(len(pointer))

@@ -35,6 +35,9 @@ LONGEST_DELAY = 10
 """[s]: nobody plays with more."""
 
 _REACH = {"linear": 0.02, "rotary": 1.0}
+_OUTSIDE = -0.4
+"""Of the reach: where a touch of a wall begins."""
+
 _DO = "Take the handle, go to the wall and press; then let go."
 _NOTICE = "Whether it comes to rest, and whether the hand gets out more energy than it put in."
 
@@ -46,7 +49,7 @@ def played(
     *,
     name: str = "",
     hand: LinearHand | None = None,
-    start: float = 0.0,
+    start: float | None = None,
     reach: float | None = None,
     do: str = _DO,
     notice: str = _NOTICE,
@@ -67,7 +70,7 @@ def played(
     hand
         By default a finger, or a hand of 8 Hz on a wheel.
     start
-        Where handle and hand begin [m; rad].
+        Where handle and hand begin [m; rad]; by default outside a wall, or at 0.
     reach
         The page shows positions from −reach to reach [m; rad]; by default 20 mm, or 1 rad.
     do, notice
@@ -84,18 +87,20 @@ def played(
     text = module(law_program(device, law), about=["The law that is played."], numbers=())
     holding = hand or _default_hand(device)
     period = device.exact("sample_period")
+    shown = _REACH[device.motion] if reach is None else reach
+    begin = (_OUTSIDE * shown if law.unilateral else 0.0) if start is None else start
     frame = frame_of(device, _still(holding), period, None, None, 1)
-    arm = _arm(device, period, frame.plant, holding, start)
+    arm = _arm(device, period, frame.plant, holding, begin)
     return Played(
         name=name or law.describe(device.motion),
         loop=(device, law),
         hand=holding,
-        start=start,
+        start=begin,
         follower=LinearHand(),
         verdict=decide(device, law) if verdict is None else verdict,
         law=text,
         arms=[arm],
-        reach=_REACH[device.motion] if reach is None else reach,
+        reach=shown,
         do=do,
         notice=notice,
     )

@@ -252,7 +252,7 @@ def _numbers(axes: Axes, identified: IdentifiedNumbers) -> None:
         way = row.name.strip() if row.name.startswith(" ") else ""
         axes.text(0.0, y, f"{low_index(row.symbol)} {way}", va="top", color=BLACK)
         axes.text(0.2, y, f"{row.value} {row.unit}", va="top", color=BLACK, fontweight="bold")
-        axes.text(0.56, y, row.interval, va="top", color=GREY)
+        axes.text(0.64, y, row.interval, va="top", color=GREY)
     below = 0.97 - 0.085 * len(table) - 0.04
     milliseconds = 1e3 * identified.pulse_length
     text = [

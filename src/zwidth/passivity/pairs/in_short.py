@@ -53,7 +53,8 @@ def _of_the_held(verdict: HeldVerdict, free: str, held: str) -> Iterator[str]:
 
 def _of_both(criterion: PairCriterion, any_age: bool) -> Iterator[str]:
     pair = criterion.pair
-    often = "" if pair.readings == (1, 1) else f", each its own {' and '.join(map(str, pair.readings))} times"
+    times = " and ".join(map(str, dict.fromkeys(pair.readings)))
+    often = "" if pair.readings == (1, 1) else f", each itself {times} times a period"
     yield f"both arms read at the same instants{often}"
     ages = " and ".join(str(age) for age in dict.fromkeys(arm.age for arm in criterion.arms))
     if any_age and criterion.ages_may_vary:

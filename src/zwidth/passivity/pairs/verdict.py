@@ -30,7 +30,7 @@ from zwidth.passivity.pairs.slow import refute_compensation
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
 from zwidth.quantity.text import shown
-from zwidth.showing import Lines, Part, Table
+from zwidth.showing import Lines, Part
 
 _DIGITS = (2, 3, 4, 6, 9, 13)
 """Of what a move inside a sample loses at least, where more make a proof too long."""
@@ -256,15 +256,13 @@ class PairVerdict(PassivityAnswer):
         if evidence is not None:
             yield "motion", evidence.describe()
 
-    def report(self) -> Iterator[Part]:
-        """The sentence, the numbers, what to change or what is left, and what is taken for granted."""
-        yield self._headline()
-        yield Table(rows=list(self.rows()))
+    def advised(self) -> Iterator[Part]:
+        """What to change, or what is left."""
         found = [advice.text for advice in self.advice if advice.to is not None]
         found += [other.text for other in self.stiffness_elsewhere]
         if found:
-            yield Lines(found, "slack" if self.passive else "what to change, any one of")
-        yield Lines(self.small_print(), "assumptions")
+            yield "slack:" if self.passive else "what to change, any one of:"
+            yield Lines(found)
 
     def numbers(self) -> dict[str, Any]:
         """The main numbers as plain data, a unit in every key of a physical quantity."""

@@ -1,0 +1,98 @@
+"""Where each number comes from: typed, of a file, published, or not given."""
+
+from __future__ import annotations
+
+import pytest
+
+import zwidth as zw
+from zwidth.report.provenance import of_device, of_environment, of_verdict
+from zwidth.specification.laws import with_laws
+from zwidth.specification.read import WITH_LAWS, built, merged, tables_of
+
+WHEEL = """
+[device]
+inertia = "0.02 kg*m^2"
+damping = 0.05
+counts_per_turn = 2400
+rate = "1 kHz"
+
+[environment]
+type = "wall"
+stiffness = "80 N*m/rad"
+damping = 0.001
+
+[[law]]
+type = "saturation"
+limit = 2
+"""
+
+
+def _origins(text: str, **typed: str) -> dict[str, tuple[str, str]]:
+    tables = tables_of(text, "somewhere/else/wheel.toml", WITH_LAWS)
+    device_table, environment_table = merged(tables, typed)
+    loop = built(device_table, environment_table)
+    law = with_laws(loop.environment, tables.get("law"), None, loop.device.motion)
+    rows = [
+        *of_device(device_table, loop.device),
+        *of_environment(environment_table, law, loop.device.motion, tables.get("law")),
+    ]
+    return {what: (value, where) for what, value, where in rows}
+
+
+def test_a_file_is_called_by_its_name_and_the_table() -> None:
+    """And by the key where a number stands there in another way."""
+    told = _origins(WHEEL)
+    assert told["damping b"] == ("0.05 N·m·s/rad", "wheel.toml, [device]")
+    assert told["mass m"] == ("0.02 kg·m²", "wheel.toml, [device]: inertia")
+    assert told["resolution Δ"] == ("0.00261799 rad", "wheel.toml, [device]: counts_per_turn")
+    assert told["sample period T"] == ("1 ms", "wheel.toml, [device]: rate")
+    assert told["counts per turn"] == ("2400", "wheel.toml, [device]")
+    assert told["stiffness K"] == ("80 N·m/rad", "wheel.toml, [environment]")
+    assert told["virtual damping B"] == ("0.001 N·m·s/rad", "wheel.toml, [environment]")
+    assert told["law behind it"] == ("saturation at 2 N·m", "wheel.toml, [[law]]")
+
+
+def test_what_was_typed_is_told_as_it_was_typed() -> None:
+    """It goes before the file."""
+    told = _origins(WHEEL, damping="60 mN*m*s/rad", virtual_damping="0.002")
+    assert told["damping b"] == ("0.06 N·m·s/rad", "typed: --damping 60 mN*m*s/rad")
+    assert told["virtual damping B"][1] == "typed: --virtual-damping 0.002"
+
+
+def test_what_was_not_given_is_told_as_such() -> None:
+    """0 for the device, the default for the law."""
+    told = _origins(WHEEL)
+    assert told["Coulomb friction f_c"] == ("0 N·m", "not given: taken as 0")
+    assert told["delay τ"] == ("0 s", "not given: taken as 0")
+    assert told["velocity filter"] == ("backward difference", "not given: the default")
+    assert told["clamped"] == ("no", "not given: the default")
+
+
+def test_the_catalogue_is_told_with_its_source() -> None:
+    """Of the numbers that are still those of the catalogue, from a command or in Python."""
+    told = _origins('[device]\ncatalogue = "haptic-paddle"\nrate = "2 kHz"\n', stiffness="100")
+    assert told["damping b"][1] == "catalogue: Abbott & Okamura 2005, section IV-B"
+    assert told["sample period T"][1] == "wheel.toml, [device]: rate"
+    assert told["law"] == ("wall", "not given: the default")
+    paddle = zw.catalogue.device("haptic-paddle", rate=2000)
+    in_python = {what: where for what, _, where in of_verdict(zw.check(paddle, zw.Wall(100))).numbers}
+    assert in_python["damping b"] == told["damping b"][1]
+    assert in_python["sample period T"] == "given in Python"
+    assert in_python["delay τ"] == "not given: taken as 0"
+    assert in_python["law"] == "given in Python"
+
+
+def test_of_an_interval_its_worst_end_is_told_as_that() -> None:
+    """Made in Python the verdict speaks of the worst corner; a file's interval is told whole."""
+    uncertain = zw.check(zw.Device(damping=(0.2, 0.3), rate=1000), zw.Wall(100))
+    rows = {what: (value, where) for what, value, where in of_verdict(uncertain).numbers}
+    assert rows["damping b"] == ("0.2 N·s/m", "the worst of the interval given in Python")
+    told = _origins(WHEEL.replace("damping = 0.05", "damping = [0.05, 0.07]"))
+    assert told["damping b"] == ("0.05 … 0.07 N·m·s/rad", "wheel.toml, [device]")
+
+
+@pytest.mark.parametrize("law", [zw.Maxwell(100, 2), zw.PulseTransferFunction([100, -50], [1, 0])])
+def test_of_every_law_something_is_told(law: zw.Maxwell) -> None:
+    """Its line at least."""
+    rows = of_verdict(zw.check(zw.Device(damping=1, rate=1000), law)).numbers
+    assert rows[-1] == ("law", law.describe(), "given in Python")
