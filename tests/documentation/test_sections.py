@@ -1,4 +1,4 @@
-"""Every page stands in one section, where a line says what it is; no section is longer than one can look over."""
+"""Every page stands in one section, where a line says what it is; no section is longer than a glance."""
 
 from __future__ import annotations
 
