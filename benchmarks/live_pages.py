@@ -23,11 +23,14 @@ import struct
 import sys
 import threading
 import time
+from io import BytesIO
 from typing import Any
 
 import numpy as np
 from bokeh.document import Document
 from bokeh.models import Div
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 from playwright.sync_api import Page, sync_playwright
 from websockets.sync.client import connect
 
@@ -252,8 +255,14 @@ def picture(path: str) -> int:
         browser.goto(page.address)
         while rows.count < 12 * RATE:
             browser.wait_for_timeout(100)
-        browser.screenshot(path=path)
+        seen = browser.screenshot()
         chromium.close()
+    about = PngInfo()
+    about.add_text("Command", "python benchmarks/live_pages.py --picture docs/_static/live.png")
+    about.add_text(
+        "Words", json.dumps(CURVES)
+    )  # by which `docs/pictures.py --check` knows whether it is stale
+    Image.open(BytesIO(seen)).save(path, pnginfo=about)
     return 0
 
 

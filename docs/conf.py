@@ -26,7 +26,9 @@ extensions = [
     "sphinx.ext.mathjax",
     "sphinx.ext.napoleon",
     "sphinx_gallery.gen_gallery",
+    "playpage",  # of _ext
     "sphinx-mathjax-offline",  # formulas are drawn without a network
+    "shown",  # commands that are run where the page is built
 ]
 exclude_patterns = ["_build", "_generated", "gallery/GALLERY_HEADER.rst"]
 
@@ -34,6 +36,7 @@ myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 
 autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True  # as they are written: a function has no other words
 autodoc_typehints = "none"  # the docstrings say units, which types cannot
 autoclass_content = "class"
 napoleon_google_docstring = False
@@ -51,6 +54,7 @@ sphinx_gallery_conf = {
     "show_memory": False,
     "plot_gallery": not tags.has("undrawn"),  # type: ignore[name-defined]  # noqa: F821
     "abort_on_example_error": True,
+    "capture_repr": (),  # a page prints what its script prints
     "copyfile_regex": r".*\.toml",
 }
 suppress_warnings = ["config.cache"]  # sphinx-gallery's sort key cannot be pickled

@@ -40,5 +40,5 @@ if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         record(Path("paddle.csv"))
-        command = "identify paddle.csv --resolution 22.4um --stiffness 250 --force --plot"
+        command = "identify paddle.csv --resolution 22.4um --stiffness 250 --all --force --plot"
         main((*command.split(), str(picture)))

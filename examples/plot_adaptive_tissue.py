@@ -66,7 +66,7 @@ axes[1].set(ylabel="force [N]")
 axes[2].axhline(0, color="0.4", lw=0.8)
 axes[2].set(ylabel="put in [mJ]", xlabel="time [s]")
 for row in axes[:2]:
-    row.legend(loc="upper right")
+    row.legend(loc="upper left", bbox_to_anchor=(1, 1))
 
 # %%
 # The number: what five strokes take out.

@@ -41,9 +41,25 @@ def bracket(depth, counts):
 
 
 # %%
-# Speeds are whole counts per sample, from 1 to 134, which is 0.022 to 3 m/s.  At 10 mm
-# the brackets hold the formula, which is then the limit itself.  Where a hand could cross all of
+# Speeds are whole counts per sample, from 1 to 134, which is 0.022 to 3 m/s.
+
+DEPTHS = {
+    "0.0002": ("D", "#009E73"),
+    "0.0005": ("s", "#D55E00"),
+    "0.002": ("o", "#0072B2"),
+    "0.01": ("+", "#222222"),
+}
+counts = (1, 2, 4, 8, 23, 45, 134)
+brackets = {(depth, n): bracket(depth, n) for depth in DEPTHS for n in counts}
+winner = brackets["0.0002", 4]
+
+# %%
+# At 10 mm the brackets hold the formula, which is then the limit itself.  Where a hand could cross all of
 # its depth in one sample the limit levels off: being faster helps it no more.
+#
+# On the right, what the hand must do just above the limit, here at 4 counts per sample and 0.2 mm: in,
+# it stops each time just short of an edge of the encoder (dotted), so that little force is held; out, it
+# stops each time on an edge, so that much is.  Friction takes the same from every move.
 
 figure, axes = plt.subplot_mosaic(
     [["limit", "position"], ["limit", "force"], ["limit", "energy"]],
@@ -52,29 +68,14 @@ figure, axes = plt.subplot_mosaic(
     layout="constrained",
 )
 left = axes["limit"]
-counts = (1, 2, 4, 8, 16, 23, 45, 89, 134)
-brackets = {}
-for depth, marker, colour in (
-    ("0.0002", "D", "#009E73"),
-    ("0.0005", "s", "#D55E00"),
-    ("0.002", "o", "#0072B2"),
-    ("0.01", "+", "#222222"),
-):
-    for n in counts:
-        found = brackets[depth, n] = bracket(depth, n)
-        speed = float(n * count / period)
-        left.plot([speed, speed], [found.proved_passive, found.proved_active], color=colour, lw=1.2)
-        left.plot(
-            speed, (found.proved_passive + found.proved_active) / 2, marker, color=colour, mfc="white", ms=5.5
-        )
-    left.plot(
-        [],
-        [],
-        marker,
-        color=colour,
-        mfc="white",
-        label=f"value iteration: up to {1000 * float(depth):g} mm deep",
-    )
+for (depth, n), found in brackets.items():
+    marker, colour = DEPTHS[depth]
+    speed, ends = float(n * count / period), (found.proved_passive, found.proved_active)
+    left.plot([speed, speed], ends, color=colour, lw=1.2)
+    left.plot(speed, sum(ends) / 2, marker, color=colour, mfc="white", ms=5.5)
+for depth, (marker, colour) in DEPTHS.items():
+    text = f"value iteration: up to {1000 * float(depth):g} mm deep"
+    left.plot([], [], marker, color=colour, mfc="white", label=text)
 speeds = [Fraction(2 * 10 ** (k / 40)).limit_denominator(10**6) / 100 for k in range(89)]
 left.plot(speeds, [formula(v) for v in speeds], color="#777777", lw=1.2, zorder=1, label="formula: any depth")
 for limit, text in ((sampling, "2b/T: every hand"), (encoder, "2f$_c$/Δ: hands that creep")):
@@ -88,13 +89,6 @@ left.minorticks_off()
 left.set(xlabel="largest speed of the hand [m/s]", ylabel="largest passive stiffness K [N/m]")
 left.set_title("Haptic Paddle: how stiff, for whom")
 left.legend(loc="upper right", bbox_to_anchor=(1, 0.9))
-
-# %%
-# What the hand must do just above the limit, here at 4 counts per sample and 0.2 mm: in, it stops
-# each time just short of an edge of the encoder (dotted), so that little force is held; out, it
-# stops each time on an edge, so that much is.  Friction takes the same from every move.
-
-winner = brackets["0.0002", 4]
 plots.draw_cycle([axes[name] for name in ("position", "force", "energy")], winner.witness)
 for name in ("position", "force"):
     axes[name].sharex(axes["energy"])

@@ -64,7 +64,7 @@ between = (700, "0.1")
 stable = zw.coupling.two_port.impedance_display(paddle, *between).unconditionally_stable
 motion = zw.coupling.coupling_condition(paddle, *between).counterexample.witness
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 4), layout="constrained")
+figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 5), layout="constrained")
 left.fill(*np.hstack((edge(llewellyn), [[0], [0]])), color="#E69F00", alpha=0.25)
 left.plot(*edge(llewellyn), "--", color="#E69F00", label="two-port, averaging hold")
 left.fill(*np.hstack((edge(every(paddle)), [[0], [0]])), color="#009E73", alpha=0.5)
@@ -81,7 +81,7 @@ for axes, device in ((left, paddle), (right, late)):
             design.stiffness, design.damping, mark, color="#0072B2", label=name, clip_on=False, zorder=5
         )
     axes.set(xlim=(0, None), ylim=(0, None), xlabel="coupling stiffness $K_c$ [N/m]")
-    axes.legend(loc="upper right")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16))
 left.set(ylabel="coupling damping $B_c$ [N·s/m]", title="Paddle, without delay")
 right.set(title="Paddle, one sample of delay")
 

@@ -62,25 +62,14 @@ def draw_bracket(axes, x, bracket, marker, colour):
 # right a soft wall that never pulls is a clamp and little else, as deep as these hands reach.
 
 DEPTH = REACH = 40
-figure, ((plane, friction), (reaches, windows)) = plt.subplots(2, 2, figsize=(9.6, 8), layout="constrained")
+RHOS = {Fraction(1, 2): RED, Fraction(2): BLUE}
 plane_brackets = []
-for rho, colour in ((Fraction(1, 2), RED), (Fraction(2), BLUE)):
+for rho in RHOS:
     limit = min(1, rho)
-    plane.fill([0, limit, 0], [0, 0, limit], color=colour, alpha=0.13, lw=0)
-    plane.plot([0, limit], [limit, 0], color=colour, label=f"every hand, ρ = {float(rho):g}")
-    for k in range(8):
-        x = limit * (2 * k + 1) / 16
-        for clamped, marker in ((False, "o"), (True, "+")):
+    for x in (limit * (2 * k + 1) / 16 for k in range(8)):
+        for clamped in (False, True):
             bracket = largest_stiffness(rho, x, limit - x, DEPTH, REACH, clamped=clamped)
-            draw_bracket(plane, float(x), bracket, marker, colour)
-            plane_brackets.append((rho, clamped, float(limit - x), bracket))
-bounded = (2 + REACH) / (1 + REACH)
-plane.plot([0, bounded], [bounded, 0], ":", color=BLUE, lw=1.2, label=f"ρ = 2, {REACH} counts per sample")
-plane.plot([], [], "o", color=GREY, mfc="white", label="value iteration: the wall may pull")
-plane.plot([], [], "+", color=GREY, label="value iteration: never pulls")
-plane.set(xlim=(0, 1.05), ylim=(0, 1.05), xlabel="virtual damping B/b", ylabel="stiffness KT/(2b)")
-plane.set_title("(a) passive: x + y ≤ min(1, ρ)")
-plane.legend()
+            plane_brackets.append((rho, clamped, x, bracket))
 
 # %%
 # **(b) Friction.**  The smallest σ that value iteration proves, with b just large enough.  Moves
@@ -94,8 +83,58 @@ for beta_v in (Fraction(k, 4) for k in (0, 1, 2, 4, 6, 8, 12, 16)):
     found = zw.limit(
         device(enough, enough), wall, "coulomb_friction", penetration=24, speed=2, tolerance=0.005
     )
-    friction_brackets.append((float(enough), (found.proved_active, found.proved_passive)))
-    draw_bracket(friction, float(beta_v), friction_brackets[-1][1], "o", RED)
+    friction_brackets.append((float(beta_v), (found.proved_active, found.proved_passive)))
+
+# %%
+# **(c) Many counts per sample.**  A device with friction to spare, ρ = 2.  The more counts the
+# hand may cross in a sample, the less friction and encoder matter, and the limit falls to the
+# linear criterion b = KT/2 + B.  The curves are the (ρ + R)/(1 + R) of (a), which is enough for
+# any depth; with virtual damping and moves of a few counts value iteration finds that more is allowed.
+
+SHARES = {Fraction(0): ("s", GREEN), Fraction(1, 4): ("o", BLUE), Fraction(1, 2): ("D", RED)}
+reach_brackets = []
+for x in SHARES:
+    for reach in (2, 4, 8, 16, 32, 64):
+        start = Fraction(2 + reach, 1 + reach) - x
+        bracket = [y / float(1 - x) for y in largest_stiffness(2, x, start, 64, reach)]
+        reach_brackets.append((reach, x, bracket))
+
+# %%
+# **(d) A window of two samples.**  Here two conditions differ.  What is proved for every hand is
+# x + y ≤ 1; beyond the linear criterion y + 9x/16 ≤ 1 a hand that stays inside wins.  Between the
+# two there is neither a proof for every hand nor a motion that wins.  Hands of at most 8 counts
+# per sample do not win there: their limits lie on the linear criterion or above it, the closer
+# the farther they may move.
+
+REACHES = {2: ("D", RED), 8: ("o", BLUE)}
+window_brackets = []
+for reach in REACHES:
+    for x in (Fraction(k, 5) for k in range(1, 5)):
+        linear = 1 - window_damping(0, x, 2, 1).fraction
+        law = zw.rendering.Window(2)
+        bracket = largest_stiffness(1, x, linear, 16, reach, velocity_filter=law)
+        window_brackets.append((reach, x, float(linear), bracket))
+
+# %%
+# All four.
+
+figure, ((plane, friction), (reaches, windows)) = plt.subplots(2, 2, figsize=(9.6, 8), layout="constrained")
+for rho, colour in RHOS.items():
+    limit = min(1, rho)
+    plane.fill([0, limit, 0], [0, 0, limit], color=colour, alpha=0.13, lw=0)
+    plane.plot([0, limit], [limit, 0], color=colour, label=f"every hand, ρ = {float(rho):g}")
+for rho, clamped, x, bracket in plane_brackets:
+    draw_bracket(plane, float(x), bracket, "+" if clamped else "o", RHOS[rho])
+bounded = (2 + REACH) / (1 + REACH)
+plane.plot([0, bounded], [bounded, 0], ":", color=BLUE, lw=1.2, label=f"ρ = 2, {REACH} counts per sample")
+plane.plot([], [], "o", color=GREY, mfc="white", label="value iteration: the wall may pull")
+plane.plot([], [], "+", color=GREY, label="value iteration: never pulls")
+plane.set(xlim=(0, 1.05), ylim=(0, 1.05), xlabel="virtual damping B/b", ylabel="stiffness KT/(2b)")
+plane.set_title("(a) passive: x + y ≤ min(1, ρ)")
+plane.legend(loc="upper right")
+
+for beta_v, bracket in friction_brackets:
+    draw_bracket(friction, beta_v, bracket, "o", RED)
 friction.fill_between([0, 4.2], [0.5, 4.7], 5, color=GREEN, alpha=0.15, lw=0)
 friction.plot([0, 4.2], [0.5, 4.7], color=RED, label="every hand: σ = ½ + β$_v$")
 friction.plot([], [], "o", color=RED, mfc="white", label="value iteration: 24 counts deep, 2 per sample")
@@ -106,54 +145,31 @@ friction.set(
 friction.set_title("(b) friction that virtual damping asks for")
 friction.legend(loc="lower right")
 
-# %%
-# **(c) Many counts per sample.**  A device with friction to spare, ρ = 2.  The more counts the
-# hand may cross in a sample, the less friction and encoder matter, and the limit falls to the
-# linear criterion b = KT/2 + B.  The curves are the (ρ + R)/(1 + R) of (a), which is enough for
-# any depth; with virtual damping and moves of a few counts value iteration finds that more is allowed.
-
-reach_brackets = []
-for x, marker, colour in ((Fraction(0), "s", GREEN), (Fraction(1, 4), "o", BLUE), (Fraction(1, 2), "D", RED)):
-    linear = 1 - x
+for x, (marker, colour) in SHARES.items():
     curve = [2 ** (1 + k / 20) for k in range(101)]
-    reaches.plot(curve, [((2 + r) / (1 + r) - float(x)) / float(linear) for r in curve], color=colour, lw=1.2)
-    for reach in (2, 4, 8, 16, 32, 64):
-        start = Fraction(2 + reach, 1 + reach) - x
-        bracket = [y / float(linear) for y in largest_stiffness(2, x, start, 64, reach)]
-        reach_brackets.append((reach, float(x), bracket))
-        draw_bracket(reaches, reach, bracket, marker, colour)
+    formula = [((2 + r) / (1 + r) - float(x)) / float(1 - x) for r in curve]
+    reaches.plot(curve, formula, color=colour, lw=1.2)
     reaches.plot([], [], marker, color=colour, mfc="white", label=f"B/b = {float(x):g}")
+for reach, x, bracket in reach_brackets:
+    draw_bracket(reaches, reach, bracket, *SHARES[x])
 reaches.axhline(1, color=GREY, lw=1.2, ls="--")
 reaches.text(2, 0.985, "linear criterion", color=GREY, va="top")
 reaches.set(xscale="log", xticks=(2, 4, 8, 16, 32, 64), xticklabels=(2, 4, 8, 16, 32, 64), ylim=(0.9, 2.1))
 reaches.minorticks_off()
 reaches.set(xlabel="counts per sample R that the hand may cross", ylabel="K / K of the linear criterion")
 reaches.set_title("(c) ρ = 2, hands up to 64 counts deep")
-reaches.legend()
+reaches.legend(loc="upper right")
 
-# %%
-# **(d) A window of two samples.**  Here two conditions differ.  What is proved for every hand is
-# x + y ≤ 1; beyond the linear criterion y + 9x/16 ≤ 1 a hand that stays inside wins.  Between the
-# two there is neither a proof for every hand nor a motion that wins.  Hands of at most 8 counts
-# per sample do not win there: their limits lie on the linear criterion or above it, the closer
-# the farther they may move.
-
-window_brackets = []
 ends = (0, 1)
 needed = [1 - float(window_damping(0, x, 2, 1)) for x in ends]
 windows.fill_between(ends, 0, (1, 0), color=GREEN, alpha=0.15, lw=0)
 windows.plot(ends, (1, 0), color=GREEN, label="proved for every hand below")
 windows.plot(ends, needed, "--", color=GREY, label="linear criterion: active above")
-for reach, marker, colour in ((2, "D", RED), (8, "o", BLUE)):
-    for x in (Fraction(k, 5) for k in range(1, 5)):
-        linear = 1 - window_damping(0, x, 2, 1).fraction
-        law = zw.rendering.Window(2)
-        bracket = largest_stiffness(1, x, linear, 16, reach, velocity_filter=law)
-        window_brackets.append((reach, float(linear), bracket))
-        draw_bracket(windows, float(x), bracket, marker, colour)
-    windows.plot(
-        [], [], marker, color=colour, mfc="white", label=f"value iteration: {reach} counts per sample"
-    )
+for reach, x, _, bracket in window_brackets:
+    draw_bracket(windows, float(x), bracket, *REACHES[reach])
+for reach, (marker, colour) in REACHES.items():
+    text = f"value iteration: {reach} counts per sample"
+    windows.plot([], [], marker, color=colour, mfc="white", label=text)
 windows.set(xlim=(0, 1), ylim=(0, 1.05), xlabel="virtual damping B/b", ylabel="stiffness KT/(2b)")
 windows.set_title("(d) window of 2 samples, ρ = 1, 16 counts deep")
 windows.legend(loc="lower left")
@@ -170,20 +186,20 @@ def off(line, bracket):
 print("bounded hands, proved and refuted by value iteration:")
 for rho in (Fraction(1, 2), Fraction(2)):
     for clamped in (False, True):
-        rows = [(y, bracket) for r, c, y, bracket in plane_brackets if (r, c) == (rho, clamped)]
+        rows = [(float(min(1, r) - x), ends) for r, c, x, ends in plane_brackets if (r, c) == (rho, clamped)]
         above = [sum(bracket) / 2 - y for y, bracket in rows]
         law = "never pulls" if clamped else "may pull"
         print(
             f"(a) ρ = {float(rho):g}, {law}: KT/(2b) above the line by {min(above):.3f} to {max(above):.3f}"
         )
-worst = max(off(line, bracket) for line, bracket in friction_brackets)
+worst = max(off(0.5 + beta_v, bracket) for beta_v, bracket in friction_brackets)
 print(f"(b) largest distance of σ from ½ + β_v, ends of the brackets: {worst:.2%}")
 for reach in (2, 8, 64):
     rows = [f"{bracket[0]:.3f} to {bracket[1]:.3f}" for r, _, bracket in reach_brackets if r == reach]
     print(f"(c) R = {reach}: K over that of the linear criterion, B/b = 0, 1/4, 1/2: {'; '.join(rows)}")
 for reach in (2, 8):
-    above = [end / line - 1 for r, line, bracket in window_brackets if r == reach for end in bracket]
+    above = [end / line - 1 for r, _, line, bracket in window_brackets if r == reach for end in bracket]
     print(f"(d) R = {reach}: above the linear criterion by {min(above):.2%} to {max(above):.2%}")
-near = sum(off(line, bracket) < 0.01 for line, bracket in friction_brackets)
+near = sum(off(0.5 + beta_v, bracket) < 0.01 for beta_v, bracket in friction_brackets)
 print(f"friction: {near} of {len(friction_brackets)} brackets lie within 1 % of σ = ½ + β_v")
 plt.show()

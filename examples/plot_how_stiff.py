@@ -33,12 +33,12 @@ axes.fill_between(rates, 50, passive, color="#009E73", alpha=0.15, lw=0)
 axes.plot(rates, [limit.sampling for limit in limits], color="#0072B2", label="2b/T: sampling")
 axes.plot(rates, [limit.quantization for limit in limits], "--", color="#D55E00", label="2f$_c$/Δ: encoder")
 axes.plot(proved_at, proved, "o", color="black", mfc="white", label="proved by the exact engine")
-axes.text(8000, 120, "passive", color="#00664A")
+axes.text(1200, 120, "passive", color="#00664A")
 axes.set(xscale="log", yscale="log", xlim=(rates[0], rates[-1]), ylim=(50, 40_000))
 axes.set(
     xlabel="sample rate 1/T [Hz]", ylabel="stiffness K [N/m]", title="Haptic Paddle: safe below both lines"
 )
-axes.legend(loc="upper left")
+axes.legend(loc="lower right")
 
 # %%
 # The number: what this paddle renders at its 1 kHz.

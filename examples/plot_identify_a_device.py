@@ -54,7 +54,7 @@ figure, axis = plt.subplots(figsize=(7.5, 4.4), layout="constrained")
 axis.axhspan(low, high, color="#0072B2", alpha=0.25, label="means over pulses, 95 %")
 axis.axhline(0.15, color="0.4", lw=1, label="the truth")
 axis.plot(passes, [one.damping for one in published], "o-", color="#D55E00", ms=4, label="differentiated")
-axis.plot(passes, [one.damping for one in viscous], "s--", color="#E69F00", ms=4, label="without f_c")
+axis.plot(passes, [one.damping for one in viscous], "s--", color="#E69F00", ms=4, label="without $f_c$")
 axis.set(xscale="log", ylim=(0, 0.55), xlabel="passes of the moving average", ylabel="damping b [N·s/m]")
 axis.legend(loc="upper left", ncols=2)
 

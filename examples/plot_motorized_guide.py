@@ -121,8 +121,8 @@ for row, x, rows, label in (
         row.plot(x, rows[0][wall], "o", color=colour, label=f"{name}: measured")
         row.plot(x, rows[1][wall], "-", color=colour, label="simulated")
         row.plot(x, rows[2][wall], ":", color=colour, label="passive")
-    row.set(xlabel=label, ylim=(0, None))
-axes[0].set_ylabel("largest stiffness [N/m]")
+    row.set_xlabel(label)
+axes[0].set(ylabel="largest stiffness [N/m]", ylim=(0, None))
 figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
 
 # %%

@@ -34,7 +34,7 @@ for name, indices in found.items():
 # %%
 # The real part of each, with the least value marked; and a burst by which the second gives out energy.
 
-figure, axes = plt.subplots(1, 3, figsize=(11, 3.4), layout="constrained")
+figure, axes = plt.subplots(1, 3, figsize=(12, 3.4), layout="constrained")
 for axis, (name, indices) in zip(axes, found.items(), strict=False):
     plots.draw_index(axis, indices.input)
     axis.set_title(name)
@@ -45,7 +45,7 @@ t, u, y = burst.signals(4000)
 axes[2].plot(t, u, color="#777777", lw=1, label="force [N]")
 axes[2].plot(t, [100 * v for v in y], color="#0072B2", label="velocity [cm/s]")
 axes[2].set(title=f"burst of {burst.frequency:.1f} Hz", xlabel="time [s]")
-axes[2].legend(loc="upper right")
+axes[2].legend(loc="upper left", bbox_to_anchor=(1, 1))
 
 # %%
 # The certificate is of the number itself: with that much of the force fed through, the port is passive.

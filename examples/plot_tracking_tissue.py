@@ -54,7 +54,7 @@ for row, name, truth in zip(axes, ("stiffness", "branch_damping"), truths, stric
         row.plot(time[::20], getattr(track, name)[::20], color=colour, lw=1.2, label=f"three, {method}")
 axes[0].set(ylim=(-600, 900), ylabel="μ0 [N/m]")
 axes[1].set(ylim=(-5, 30), ylabel="η1 [N·s/m]", xlabel="time [s]")
-axes[0].legend(loc="lower right", ncols=2)
+figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=2)
 
 
 # %%

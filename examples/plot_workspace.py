@@ -32,7 +32,7 @@ print(after.claim)
 # %%
 # Strokes show the direction in which the margin is smallest; black is where it ends.
 
-figure, axes = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
+figure, axes = plt.subplots(1, 2, figsize=(10, 3.3), layout="constrained")
 plots.draw_workspace(axes[0], before)
 plots.draw_workspace(axes[1], after)
 axes[0].set_title(f"as it is: {before.outcome}")

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 import chips
+import papers
 import trust
 
 from zwidth import catalogue
@@ -228,6 +229,11 @@ def chip_costs() -> str:
     return chips.costs(markdown)
 
 
+def papers_by_figure() -> str:
+    """Every figure and table of the founding papers, beside what is computed now."""
+    return papers.page(markdown)
+
+
 TABLES: dict[str, Callable[[], str]] = {
     "chip_costs": chip_costs,
     "connection_keys": connection_keys,
@@ -245,6 +251,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "lines_to_trust": lines_to_trust,
     "link_options": link_options,
     "operator_options": operator_options,
+    "papers_by_figure": papers_by_figure,
     "plants": plants,
     "follower_options": follower_options,
     "simulation_options": simulation_options,

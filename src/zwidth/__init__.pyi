@@ -9,6 +9,7 @@ from zwidth import operator as operators
 from zwidth import plots as plots
 from zwidth import rendering as rendering
 from zwidth import report as report
+from zwidth import samples as samples
 from zwidth import scene as scene
 from zwidth import servo as servo
 from zwidth import stability as stability
@@ -28,6 +29,7 @@ from zwidth.environment import PulseTransferFunction as PulseTransferFunction
 from zwidth.environment import StandardLinearSolid as StandardLinearSolid
 from zwidth.environment import Wall as Wall
 from zwidth.errors import InputError as InputError
+from zwidth.explorer.notebook import explore as explore
 from zwidth.firmware.emit import emit as emit
 from zwidth.gains import check_gains as check_gains
 from zwidth.gains import read_gains as read_gains

@@ -123,7 +123,7 @@ def test_the_report_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         (["--number", "fixed", "--resolution", "unknown"], "resolution"),
         (["--rate", "990 .. 1010 Hz"], "interval"),
         (["--delay", "0 .. 0.2 ms", "--law", "passivity-controller"], "give one number"),
-        (["--force-unit", "-1"], "force_unit must be > 0"),
+        (["--force-unit", "-1"], "--force-unit must be > 0"),
     ],
 )
 def test_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str], more: list[str], said: str) -> None:

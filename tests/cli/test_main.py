@@ -113,7 +113,7 @@ def test_report_fits_80_columns_without_colour_when_piped(
 
 
 def test_report_of_the_paddle_at_its_limit(run: Run) -> None:
-    out = run(*PASSIVE).out
+    out = run(*PASSIVE, "--all").out
     for part in (
         "equality included",
         "haptic-paddle: b = 0.15 N·s/m",
@@ -126,7 +126,7 @@ def test_report_of_the_paddle_at_its_limit(run: Run) -> None:
 
 
 def test_report_of_an_active_paddle(run: Run) -> None:
-    out = run(*ACTIVE).out
+    out = run(*ACTIVE, "--all").out
     assert "takes 1.427 mJ out" in out
     assert "2 samples in 2 ms" in out
     assert out.index("lower the stiffness from 770 N/m to 300 N/m") < out.index("no change alone would do")

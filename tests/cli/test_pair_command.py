@@ -84,7 +84,7 @@ def test_friction_is_compensated_on_both_sides_unless_told(files, capsys):
     )
     assert told == json.loads(zw.check(pair).to_json())
     assert told["largest_compensation"] > 0
-    main(["pair", files["leader"], files["follower"], *argv])
+    main(["pair", files["leader"], files["follower"], *argv, "--all"])
     said = capsys.readouterr().out
     for part in ("compensated in the leader", "largest compensation", "of friction is computed once"):
         assert part in said
@@ -92,7 +92,7 @@ def test_friction_is_compensated_on_both_sides_unless_told(files, capsys):
 
 def test_one_device_is_both_arms(files, capsys):
     """And the report says so; without delay K T/2 is the sum of both dampings in series, b/2."""
-    assert main(["pair", files["leader"], "--stiffness", "200"]) == 0
+    assert main(["pair", files["leader"], "--stiffness", "200", "--all"]) == 0
     said = capsys.readouterr().out
     assert "both arms  leader: b = 0.2 N·s/m" in said
     assert "200 N/m with all else as it is" in said
@@ -101,7 +101,7 @@ def test_one_device_is_both_arms(files, capsys):
 
 def test_the_report_of_an_active_pair(files, capsys):
     """The limit, what each arm needs, the frequency, the motion of both hands, and what to change."""
-    assert main(["pair", files["leader"], files["follower"], "--stiffness", "300"]) == 1
+    assert main(["pair", files["leader"], files["follower"], "--stiffness", "300", "--all"]) == 1
     said = capsys.readouterr().out
     for part in (" ACTIVE ", "leader    b = 0.2", "follower  b = 0.4", "damping of the arms",
                  "largest stiffness", "some motion of both hands gains", "the motion", "extracts",
@@ -210,10 +210,10 @@ def test_every_key_of_the_json_is_on_its_page(files, capsys):
         (["leader", "--stiffness", "3 N*m/rad"], ("stiffness is in N/m",)),
         (["leader", "--stiffness", "10 .. 20"], ("stiffness",)),
         (["leader", "--stiffness", "9", "--link-delay", "3"], ("without a unit", '"3 ms"')),
-        (["leader", "--stiffness", "9", "--link-delay", "-1 ms"], ("link_delay must be ≥ 0", "is sent")),
+        (["leader", "--stiffness", "9", "--link-delay", "-1 ms"], ("--link-delay must be ≥ 0", "is sent")),
         (["leader", "--stiffness", "9", "--link-delay", "0.49"], ("490 samples", "at most 400")),
         (["leader", "--stiffness", "9", "--damping", "1"], ("no option --damping",)),
-        (["leader", "--stiffness", "9", "--compensation-coulomb", "-1"], ("compensation_coulomb must",)),
+        (["leader", "--stiffness", "9", "--compensation-coulomb", "-1"], ("--compensation-coulomb must",)),
         (["leader", "--stiffness", "9", "--plot", "a.txt"], (".png",)),
         (["leader", "--stiffness", "9", "-o", "no/such/a.json"], ("no directory",)),
         (["no-such-arm", "--stiffness", "9"], ("neither a file nor a device",)),

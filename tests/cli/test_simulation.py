@@ -160,7 +160,7 @@ BAD = [
     (("--duration", "1e9"), ("GiB",)),
     (("--duration", "3 m"), ("duration",)),
     (("--mass", "0"), ("mass must be > 0",)),
-    (("--sample-period", "0"), ("sample_period must be > 0",)),
+    (("--sample-period", "0"), ("--sample-period must be > 0",)),
     (("--amplifier", "valve"), ("no amplifier",)),
     (("--amplifier", "lag"), ("amplifier_time_constant",)),
     (("--amplifier-time-constant", "1 ms"), ("belong together",)),

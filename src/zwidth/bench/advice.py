@@ -16,7 +16,12 @@ QUIET = 0.02
 
 
 def advice(scores: xr.Dataset, device: Device, wall: Wall) -> str:
-    """What the wall needs, which law is safest, which feels stiffest, and what none of them can do.
+    """`answer`, and which promises do not hold; the same parameters."""
+    return " ".join([answer(scores, device, wall), *_promises(scores)])
+
+
+def answer(scores: xr.Dataset, device: Device, wall: Wall) -> str:
+    """What the wall needs, which law is safest and which feels stiffest.
 
     Parameters
     ----------
@@ -39,14 +44,10 @@ def advice(scores: xr.Dataset, device: Device, wall: Wall) -> str:
         else "The device alone renders no wall passively."
     ]
     words += _proved(scores)
-    quiet = scores.where(scores["tap_chatter"] <= QUIET * scores["peak_force"], drop=True)
-    if quiet.sizes["law"]:
-        best = min(
-            (str(name) for name in quiet["law"].values),
-            key=lambda name: abs(float(quiet["static_stiffness"].sel(law=name)) - wanted),
-        )
-        felt = float(quiet["static_stiffness"].sel(law=best))
-        status = str(quiet["status"].sel(law=best).item())
+    best = _quiet(scores, wanted)
+    if best is not None:
+        felt = float(scores["static_stiffness"].sel(law=best))
+        status = str(scores["status"].sel(law=best).item())
         words.append(
             f"Quiet under a fast finger and closest to what is wanted is {best!r} with {felt:.4g} N/m"
             + (
@@ -62,14 +63,36 @@ def advice(scores: xr.Dataset, device: Device, wall: Wall) -> str:
         )
     else:
         words.append("All of them chatter under a fast finger.")
+    return " ".join(words)
+
+
+def told_of(scores: xr.Dataset, wall: Wall) -> list[str]:
+    """The laws that the answer names: the stiffest of each kind of proof, and the quiet one."""
+    proved = (scores.where(scores["status"] == status, drop=True) for status in ("passive", "theorem"))
+    quiet = _quiet(scores, float(wall.stiffness))  # type: ignore[arg-type]
+    return [*(_stiffest(some) for some in proved if some.sizes["law"]), *([] if quiet is None else [quiet])]
+
+
+def _quiet(scores: xr.Dataset, wanted: float) -> str | None:
+    """The law that is felt closest to what is wanted, of those that do not chatter under a fast finger."""
+    quiet = scores.where(scores["tap_chatter"] <= QUIET * scores["peak_force"], drop=True)
+    return min(
+        map(str, quiet["law"].values),
+        key=lambda name: abs(float(quiet["static_stiffness"].sel(law=name)) - wanted),
+        default=None,
+    )
+
+
+def _promises(scores: xr.Dataset) -> list[str]:
+    """Which passivity controllers a motion takes energy out of."""
     broken = [
         str(name)
         for name in scores["law"].values
         if "controller" in str(name) and str(scores["status"].sel(law=name).item()) == "active"
     ]
-    if broken:
-        words.append(f"The promise of {_listed(broken)} does not hold: a motion takes energy out.")
-    return " ".join(words)
+    if not broken:
+        return []
+    return [f"The promise of {_listed(broken)} does not hold: a motion takes energy out."]
 
 
 def _proved(scores: xr.Dataset) -> list[str]:

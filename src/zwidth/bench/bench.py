@@ -12,13 +12,13 @@ import numpy as np
 
 from zwidth.bench import scores
 from zwidth.bench.adversary import FASTEST, Attack, attack
-from zwidth.bench.advice import advice
+from zwidth.bench.advice import advice, answer, told_of
 from zwidth.bench.laws import standard_laws, wall_to_render
 from zwidth.bench.motions import found_motions
 from zwidth.bench.pairs import PairComparison, compare_pairs
 from zwidth.bench.perceived import SOURCE, WEBER, noticeable_differences
 from zwidth.bench.standing import Standing, standing
-from zwidth.bench.table import legend, table
+from zwidth.bench.table import legend, on_paper, short_table, table
 from zwidth.bench.touches import Touch, standard_touches
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
@@ -108,15 +108,22 @@ class LawComparison(Documented):
         """What to do, in a paragraph."""
         return advice(self.scores, self.device, self.environment)
 
+    def in_short(self, most: int = 6) -> Iterable[Part]:
+        """What to do, and the table of a few laws."""
+        what = answer(self.scores, self.device, self.environment)
+        yield f"{self.environment.describe()} on {self.device.name or 'the device'}: {what}"
+        yield ""
+        yield short_table(self.scores, told_of(self.scores, self.environment), most)
+        yield ""
+        yield from on_paper(self.scores)
+
     def report(self) -> Iterable[Part]:
-        """The table under its title, what its words mean, and what to do about it."""
-        yield f"{self.environment.describe()} on {self.device.name or 'the device'}"
+        """What to do, the table, and what its words mean."""
+        yield f"{self.environment.describe()} on {self.device.name or 'the device'}: {self.advice}"
         yield ""
         yield table(self.scores)
         yield ""
         yield legend(self.scores)
-        if self.advice:
-            yield self.advice
 
     def to_dict(self) -> dict[str, Any]:
         """The scores of each law, a unit in every key, what is known of it, and the advice."""

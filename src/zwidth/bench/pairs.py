@@ -77,7 +77,10 @@ class PairComparison(Documented):
         return {"format": self.FORMAT, "schemes": schemes}
 
     def report(self) -> Iterable[Part]:
-        """A table, a row for each."""
+        """Which are passive, and a table, a row for each."""
+        passive = [name for name, verdict in self.verdicts.items() if verdict.passive]
+        yield f"passive with every two hands: {', '.join(passive) or 'none'}"
+        yield ""
         told = [self.scores[key].attrs for key in _SCORES]
         heads = [
             ("", "two hands", *(about["long_name"] for about in told), "the worst hands take"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import isfinite, isinf
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -45,22 +46,52 @@ ON_PAPER = "on paper"
 
 def table(scores: xr.Dataset) -> Table:
     """Headings, units, and a row for each law."""
-    heads = [["law", "status", *(c.heading for c in COLUMNS)], ["", "", *(c.unit for c in COLUMNS)]]
-    return Table(heads=heads, rows=[_row(scores.sel(law=name)) for name in scores["law"].values], lefts=2)
+    return Table(
+        heads=_heads(COLUMNS), rows=[_row(scores.sel(law=name)) for name in scores["law"].values], lefts=2
+    )
 
 
-def _row(one: xr.Dataset) -> list[str]:
+def _row(one: xr.Dataset, columns: Sequence[Column] = COLUMNS) -> list[str]:
     status = str(one["status"].item())
-    cells = (_number(float(one[c.variable]) * c.factor) for c in COLUMNS)
+    cells = (_number(float(one[c.variable]) * c.factor) for c in columns)
     return [str(one["law"].item()), ON_PAPER if status == "theorem" else status, *cells]
+
+
+_KEYS = ("static_stiffness", "generated_energy", "gain")
+"""What is felt, what is given out, and what the worst motion takes: the columns of a short table."""
+
+_RANK = ("passive", "theorem", "undecided", "active")
+
+
+def short_table(scores: xr.Dataset, first: Sequence[str], most: int) -> Table:
+    """At most so many laws with three numbers each: the first, those proved, those that give out least."""
+    columns = [c for c in COLUMNS if c.variable in _KEYS]
+
+    def rank(name: str) -> tuple[bool, int, float]:
+        one = scores.sel(law=name)
+        return name not in first, _RANK.index(str(one["status"].item())), float(one["generated_energy"])
+
+    chosen = sorted(map(str, scores["law"].values), key=rank)[:most]
+    rows = [_row(scores.sel(law=name), columns) for name in chosen]
+    return Table(heads=_heads(columns), rows=rows, lefts=2)
+
+
+def _heads(columns: Sequence[Column]) -> list[list[str]]:
+    return [["law", "status", *(c.heading for c in columns)], ["", "", *(c.unit for c in columns)]]
 
 
 def legend(scores: xr.Dataset) -> str:
     """What the words of the table mean that are not clear by themselves."""
-    on_paper = (scores["status"] == "theorem").any()
-    paper = f"{ON_PAPER}: a theorem, by a proof on paper, no certificate; " if on_paper else ""
     steps = f"just-noticeable differences of {WEBER:.0%} ({SOURCE})"
-    return f"{paper}JNDs: felt against the stiffness that is wanted, in {steps}; below 0 it is softer"
+    jnds = f"JNDs: felt against the stiffness that is wanted, in {steps}; below 0 it is softer"
+    return "; ".join([*on_paper(scores), jnds])
+
+
+def on_paper(scores: xr.Dataset) -> list[str]:
+    """What is meant by the proofs without a certificate, where there are some."""
+    if not (scores["status"] == "theorem").any():
+        return []
+    return [f"{ON_PAPER}: a theorem, by a proof on paper, no certificate"]
 
 
 def _number(value: float) -> str:

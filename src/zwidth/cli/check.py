@@ -9,6 +9,7 @@ from zwidth.cli.decision import asked, decided, exit_status
 from zwidth.cli.options import (
     Once,
     add_contact_option,
+    add_in_full,
     add_law_option,
     add_output,
     add_parameters,
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth check`."""
     parser.usage = (
-        "%(prog)s [SOURCE ...] [--law NAMES] [--PARAMETER VALUE ...] [--json] [--plot FILE] [--replay] "
-        "[--active-below FREQUENCY] [--contact KIND] [-o FILE] [--force]"
+        "%(prog)s [SOURCE ...] [--law NAMES] [--PARAMETER VALUE ...] [--all] [--json] [--plot FILE] "
+        "[--replay] [--active-below FREQUENCY] [--contact KIND] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -38,6 +39,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_law_option(parser)
     add_contact_option(parser)
     output = add_output(parser, "the verdict", "the plots", "verdict and evidence as JSON, for zwidth verify")
+    add_in_full(output)
     output.add_argument(
         "--replay", action="store_true", help="replay the motion by hands of finite stiffness; needs a mass"
     )
@@ -67,7 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         from zwidth.cli.report import print_verdict
 
-        print_verdict(verdict, replayed, active)
+        print_verdict(verdict, replayed, active, arguments.in_full)
         say_written(save, plot)
     return exit_status(verdict.outcome)
 

@@ -38,6 +38,36 @@ def _module(name: str) -> Any:
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(
     {
+        "tour": Command(
+            "a wall that gives out energy, why, and what mends it: in a minute",
+            "Go through the questions of this program on one device, a paddle: the commands that ask\n"
+            "them are run, and what they find is shown in short. Nothing is written.",
+            "In a terminal every step waits for Enter; q ends the tour.\n\n"
+            "examples:\n"
+            "  zwidth tour\n"
+            "  zwidth tour --no-pause",
+        ),
+        "examples": Command(
+            "sample files for every command, and lessons for a class",
+            "List the sample files with a command for each, or copy them into a folder.",
+            "exit status: 0, or 2 where a file exists or cannot be written\n\n"
+            "examples:\n"
+            "  zwidth examples\n"
+            "  zwidth examples .\n"
+            "  zwidth examples my-first-walls",
+        ),
+        "new": Command(
+            "write the file of your device, question by question",
+            "Ask what you know of a device or of what it renders, say why it matters, and write it as TOML.",
+            "In a terminal, and from a pipe, what no option gives is asked, line by line: a value with its\n"
+            "unit, or Enter where you do not know. With --no-questions only the options count.\n\n"
+            "exit status: 0 written, 2 bad input\n\n"
+            "examples:\n"
+            "  zwidth new device\n"
+            "  zwidth new environment --type wall --stiffness '200 N/m' --no-questions\n"
+            "  zwidth new device my-knob.toml --motion rotary --damping '2e-4 N*m*s/rad' --rate '2 kHz' "
+            "--no-questions",
+        ),
         "check": Command(
             "is this device, rendering this environment, passive?",
             "Prove that the sampled loop is passive, or find the hand motion that takes energy out of it;\n"
@@ -76,6 +106,16 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth limit haptic-paddle --stiffness 100 --virtual-damping 0.05\n"
             "  zwidth limit haptic-paddle --stiffness 100 --virtual-damping 0.05 --speed '0.5 m/s'\n"
             "  zwidth limit my-wheel.toml my-wall.toml --parameter rate -o limit.json",
+        ),
+        "explore": Command(
+            "move every parameter on a page, and see the verdict follow",
+            "Open a page in the browser: the device and the wall on sliders, the verdict beside them, pictures of\n"
+            "both. The address keeps the loop. It answers this machine alone, unless --address says otherwise,\n"
+            "and then asks for a token.",
+            "examples:\n"
+            "  zwidth explore\n"
+            "  zwidth explore haptic-paddle\n"
+            "  zwidth explore my-wheel.toml my-bumpstop.toml --no-browser --port 5100",
         ),
         "pair": Command(
             "are two arms that follow each other passive?",
@@ -116,6 +156,17 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "--cells 1000x1000 -o map.zarr\n"
             "  zwidth map haptic-paddle --stiffness 0:3000 --virtual-damping 0:5 -o map.zarr "
             "--address tcp://cluster:8786",
+        ),
+        "play": Command(
+            "a page on which a loop is held, pushed and heard",
+            "Write a page of HTML on which a person holds the handle and pushes into the wall: device, hand\n"
+            "and law run in it sample by sample, force is drawn and heard, energy is counted.",
+            "The page asks nothing of a network and holds the verdict on each loop.\n\n"
+            "exit status: 0, or 2 on bad input\n\n"
+            "examples:\n"
+            "  zwidth play\n"
+            "  zwidth play haptic-paddle --stiffness 770\n"
+            "  zwidth play my-wheel.toml my-bumpstop.toml -o play.html",
         ),
         "simulate": Command(
             "what happens when a hand touches the wall?",
@@ -254,6 +305,13 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "the catalogue of real devices, each value with its source",
             "The catalogue of real devices, each value with its source; what none gives is unknown.",
             "",
+        ),
+        "completion": Command(
+            "let the shell complete commands, options, devices and files",
+            "Print what makes bash, zsh or fish complete the words of zwidth.",
+            "Put the line into the file that your shell reads when it starts:\n"
+            '  bash, zsh  eval "$(zwidth completion bash)"    (or zsh, after compinit)\n'
+            "  fish       zwidth completion fish | source",
         ),
         "verify": Command(
             "re-check a saved proof or motion, independently of what made it",

@@ -3,29 +3,34 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from zwidth.cli.options import Once, add_law_option, add_output, add_parameters, overrides
-from zwidth.cli.output import give_out, print_json, print_text, say_written, targets
+from zwidth.cli.options import Once, add_in_full, add_law_option, add_output, add_parameters, overrides
+from zwidth.cli.output import give_out, targets
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
+from zwidth.showing import Part
 from zwidth.specification.laws import with_laws
 from zwidth.specification.table import Table, quoted, suggestion
 
 if TYPE_CHECKING:
+    from zwidth.bench.bench import LawComparison
     from zwidth.environment import Environment
 
 YOURS = "yours"
 """What the row of laws of a specification is called on the bench."""
+
+_MOST = 6
+"""Laws in a short report."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth compare`."""
     parser.usage = (
         "%(prog)s [SOURCE ...] [--laws NAMES] [--law NAMES] [--fastest SPEED] [--PARAMETER VALUE ...] "
-        "[--json] [--plot FILE] [-o FILE] [--force]"
+        "[--all] [--json] [--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -47,7 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action=Once,
         help="of the fastest hand that tries to take energy out [m/s] (default: 10)",
     )
-    add_output(parser, "the scores", "the plot", "the scores as JSON")
+    add_in_full(add_output(parser, "the scores", "the plot", "the scores as JSON"))
     add_parameters(parser)
 
 
@@ -69,8 +74,16 @@ def run(arguments: argparse.Namespace) -> int:
     yours = {} if own is loop.environment else {YOURS: own}
     laws = _chosen(arguments.laws, standard_laws(loop.device, loop.environment), yours)
     found = compare(loop.device, loop.environment, laws, fastest=_speed(arguments.fastest))
-    give_out(found, save, plot, arguments.json)
+    give_out(found, save, plot, arguments.json, None if arguments.in_full else _few(found))
     return 0
+
+
+def _few(found: LawComparison) -> Iterator[Part]:
+    """What to do, some laws with three numbers each, and where the rest is."""
+    yield from found.in_short(_MOST)
+    laws = found.scores.sizes["law"]
+    all_laws = f"all {laws} laws, " if laws > _MOST else ""
+    yield f"--all shows the rest: {all_laws}every score, which promises do not hold"
 
 
 def _pairs(arguments: argparse.Namespace, tables: Mapping[str, Table], save: Path | None) -> int:
@@ -87,13 +100,7 @@ def _pairs(arguments: argparse.Namespace, tables: Mapping[str, Table], save: Pat
     pair = pair_with_options(arguments, tables)
     warn_of_compiling()
     found = compare(schemes(pair))
-    if save is not None:
-        found.save(save)
-    if arguments.json:
-        print_json(found.to_json())
-    else:
-        print_text(found)
-        say_written(save)
+    give_out(found, save, None, arguments.json)
     return 0
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from zwidth.cli.decision import exit_status
-from zwidth.cli.options import Once
+from zwidth.cli.options import Once, add_in_full
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
@@ -29,6 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="gain file of both arms, or of leader and follower: YAML, JSON or TOML",
     )
     output = parser.add_argument_group("output")
+    add_in_full(output)
     output.add_argument("--json", action="store_true", help="print the verdicts as JSON, units in the keys")
     output.add_argument(
         "-o",
@@ -109,7 +110,7 @@ def run(arguments: argparse.Namespace) -> int:
         compensated=not arguments.no_compensation,
     )
     if arguments.joint is not None:
-        return _of_one(verdict, arguments.joint, arguments.json, plot, save)
+        return _of_one(verdict, arguments, plot, save)
     if save is not None:
         with writing(save):
             verdict.save(save)
@@ -118,27 +119,29 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         from zwidth.cli.gains_report import print_gains
 
-        print_gains(verdict)
+        print_gains(verdict, arguments.in_full)
         say_written(save)
     return exit_status(verdict.outcome)
 
 
-def _of_one(verdict: GainsVerdict, name: str, as_json: bool, plot: Path | None, save: Path | None) -> int:
+def _of_one(
+    verdict: GainsVerdict, arguments: argparse.Namespace, plot: Path | None, save: Path | None
+) -> int:
     """One joint, with the notes on the gains."""
     from zwidth.passivity.document import save_json, to_json
 
-    pair, notes = verdict.joint(name).verdict, {"notes": list(verdict.notes)}
+    pair, notes = verdict.joint(arguments.joint).verdict, {"notes": list(verdict.notes)}
     if save is not None:
         with writing(save):
             save_json(save, {**pair.saved(), **notes})
     if plot is not None:
         pair.plot(plot)
-    if as_json:
+    if arguments.json:
         print_json(to_json({**pair.to_dict(), **notes}))
     else:
         from zwidth.cli.gains_report import print_joint
 
-        print_joint(pair, verdict.notes)
+        print_joint(pair, verdict.notes, arguments.in_full)
         say_written(save, plot)
     return exit_status(pair.outcome)
 

@@ -7,15 +7,16 @@ from collections.abc import Iterable
 from rich.table import Table as Lines
 from rich.text import Text
 
-from zwidth.cli.page import headline, items, page, section
+from zwidth.cli.page import headline, items, more_with_all, page, section
 from zwidth.cli.pair_report import print_pair
 from zwidth.gains import ArmGains, GainsVerdict
 from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.pairs import PairVerdict
+from zwidth.passivity.pairs.in_short import pair_in_short
 from zwidth.showing import Table
 
 
-def print_gains(verdict: GainsVerdict) -> None:
+def print_gains(verdict: GainsVerdict, in_full: bool = False) -> None:
     """Print the verdicts on standard output."""
     decided, better = verdict.tables()
     with page() as out:
@@ -24,12 +25,21 @@ def print_gains(verdict: GainsVerdict) -> None:
         section(
             out, "what is passive, each proved: with the kd of the file, and with the best", [_set(better)]
         )
-        section(out, "assumes", items(verdict.notes, "dim"))
+        section(out, "assumes", items(verdict.notes if in_full else _in_short(verdict), "dim"))
+        if not in_full:
+            more_with_all(out, "what is assumed of two arms in full")
 
 
-def print_joint(verdict: PairVerdict, notes: Iterable[str]) -> None:
+def _in_short(verdict: GainsVerdict) -> list[str]:
+    """What is known of the gains as it stands, and of every two arms in a few words."""
+    of_two_arms = {line for joint in verdict.joints for line in joint.verdict.small_print()}
+    own = [note for note in verdict.notes if note not in of_two_arms]
+    return [*own, *dict.fromkeys(pair_in_short(joint.verdict) for joint in verdict.joints)]
+
+
+def print_joint(verdict: PairVerdict, notes: Iterable[str], in_full: bool = False) -> None:
     """Print the verdict on one joint, and what its gains are."""
-    print_pair(verdict)
+    print_pair(verdict, in_full)
     said = set(verdict.small_print())
     with page() as out:
         section(out, "\nof the gains", items((note for note in notes if note not in said), "dim"))

@@ -10,7 +10,7 @@ from rich.text import Text
 
 from zwidth.cli.description import environment_line
 from zwidth.cli.identification_result import Result
-from zwidth.cli.page import below, grid, headline, items, page, section
+from zwidth.cli.page import below, grid, headline, items, more_with_all, page, section
 from zwidth.environment import Wall
 from zwidth.identification.device.estimate import MOST_CONFIDENCE
 from zwidth.identification.device.limits import advice, percent
@@ -27,17 +27,30 @@ _WARNINGS = ("wrong model", "bent friction", "no damping", "no coulomb friction"
 """Kinds of findings that are coloured."""
 
 
-def print_identified(found: Result) -> None:
+_FEW = 2
+"""Ways to know it better in a short report."""
+
+
+def print_identified(found: Result, in_full: bool = False) -> None:
     """Print the report on standard output."""
     own = found.identified.findings[len(found.log.findings) :]
+    better = advice(found.identified, found.confidence)
     with page() as out:
         out.print(_headline(found))
+        if not in_full:
+            section(out, "the device", list(_numbers(found))[:1])
+            section(out, "what the data show", _findings([f for f in own if f.kind in _WARNINGS]))
+            if found.verdict is not None:
+                section(out, "the environment", _checked(found, found.verdict))
+            section(out, "to know it better", items(list(better)[:_FEW]))
+            more_with_all(out, "the log, what the numbers rest on, what the data show")
+            return
         out.print(_log(found))
         section(out, "the device", _numbers(found))
         section(out, "what the data show", _findings(own))
         if found.verdict is not None:
             section(out, "the environment", _checked(found, found.verdict))
-        section(out, "to know it better", items(advice(found.identified, found.confidence)))
+        section(out, "to know it better", items(better))
         section(out, "the log", items(str(finding) for finding in found.log.findings))
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from zwidth.cli.decision import decided, exit_status
 from zwidth.cli.identification_result import Result
-from zwidth.cli.options import BEHIND, Once, add_all, add_output, environment_parameters, given
+from zwidth.cli.options import BEHIND, Once, add_all, add_in_full, add_output, environment_parameters, given
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
 from zwidth.specification.table import quoted, suggestion
@@ -43,7 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth identify`."""
     parser.usage = (
         "%(prog)s LOG [LOG ...] [SOURCE] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] "
-        "[--PARAMETER VALUE ...] [--json] [--plot FILE] [-o FILE] [--force]"
+        "[--PARAMETER VALUE ...] [--all] [--json] [--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument("log", metavar="LOG", help="what the device recorded, in a file of any format")
     parser.add_argument(
@@ -72,7 +72,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         ("--confidence", "RATIO", "of the intervals that are checked and saved (default: 99%)"),
     ):
         device.add_argument(option, metavar=metavar, action=Once, help=meaning.replace("%", "%%"))
-    add_output(parser, "the numbers", "the plot", "the device as TOML, for zwidth check")
+    add_in_full(add_output(parser, "the numbers", "the plot", "the device as TOML, for zwidth check"))
     environment = parser.add_argument_group("environment", "what to check the device with, at once")
     for parameter in environment_parameters():
         add_all(environment, (parameter, _behind(parameter)))
@@ -101,7 +101,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         from zwidth.cli.identification_report import print_identified
 
-        print_identified(found)
+        print_identified(found, arguments.in_full)
         say_written(save, plot)
     if found.environment is None:
         return 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.options import Once, add_law_option, add_output, add_parameters, overrides
+from zwidth.cli.options import Once, add_in_full, add_law_option, add_output, add_parameters, overrides
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.device.catalogue import PROPERTIES
 from zwidth.errors import InputError
@@ -26,7 +26,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth limit`."""
     parser.usage = (
         "%(prog)s [SOURCE ...] [--law NAMES] [--parameter NAME] [--penetration LENGTH] [--speed SPEED] "
-        "[--PARAMETER VALUE ...] [--json] [--plot FILE] [-o FILE] [--force]"
+        "[--PARAMETER VALUE ...] [--all] [--json] [--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -50,7 +50,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         ("--count-force-resolution", "count in the steps of its D/A converter"),
     ):
         search.add_argument(option, action="store_true", help=meaning)
-    add_output(parser, "the bracket", "the plots", "bracket and evidence, for zwidth verify")
+    add_in_full(add_output(parser, "the bracket", "the plots", "bracket and evidence, for zwidth verify"))
     add_parameters(parser)
 
 
@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         from zwidth.cli.limit_report import print_bracket
 
-        print_bracket(bracket, loop)
+        print_bracket(bracket, loop, arguments.in_full)
         say_written(save, plot)
     return BOTH if bracket.proved_passive is not None and bracket.proved_active is not None else ONE_OR_NONE
 

@@ -2,32 +2,69 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from rich.padding import Padding
 from rich.table import Table
 
 from zwidth.cli.bars import PICTURE
-from zwidth.cli.description import device_line, environment_line
-from zwidth.cli.motion import motion_lines
+from zwidth.cli.description import GLUE, device_line, environment_line
+from zwidth.cli.motion import motion_in_short, motion_lines
 from zwidth.cli.output import encodes
-from zwidth.cli.page import below, grid, headline, items, page, section
+from zwidth.cli.page import (
+    Row,
+    below,
+    blocks,
+    grid,
+    headline,
+    items,
+    more_with_all,
+    page,
+    section,
+    small_print,
+)
 from zwidth.passivity.bracket import Bracket
+from zwidth.passivity.in_short import in_short
 from zwidth.quantity.text import in_words, shown
 from zwidth.specification.read import Specification
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 _DIGITS = 6
 
 
-def print_bracket(bracket: Bracket, loop: Specification) -> None:
+def print_bracket(bracket: Bracket, loop: Specification, in_full: bool = False) -> None:
     """Print the report on standard output."""
-    fancy = encodes(PICTURE)
     with page() as out:
         out.print(_headline(bracket))
-        out.print(below(_loop(bracket, loop)))
-        out.print(below(_values(bracket)))
-        if bracket.witness is not None:
-            at = _shown(bracket, bracket.proved_active)
-            section(out, f"the motion, at {at}", motion_lines(bracket.witness, fancy))
-        section(out, "assumes", items(bracket.assumptions, "dim"))
+        if in_full:
+            _all(out, bracket, loop)
+            return
+        motion = [] if bracket.witness is None else [("the motion", motion_in_short(bracket.witness))]
+        device, environment, hand, _ = _loop(bracket, loop)
+        assumed = ("assumes", small_print(in_short(bracket.scope, hands=False)))
+        blocks(out, [hand, *_of_every_hand(bracket), *motion], [device, environment, assumed])
+        more_with_all(out, "the motion, how long it took, assumptions in full")
+
+
+def _all(out: Console, bracket: Bracket, loop: Specification) -> None:
+    """Everything, the small print last."""
+    fancy = encodes(PICTURE)
+    out.print(below(grid(_loop(bracket, loop))))
+    out.print(below(_values(bracket)))
+    if bracket.witness is not None:
+        at = _shown(bracket, bracket.proved_active)
+        section(out, f"the motion, at {at}", motion_lines(bracket.witness, fancy))
+    section(out, "assumes", items(bracket.assumptions, "dim"))
+
+
+def _of_every_hand(bracket: Bracket) -> list[Row]:
+    """The two values of every hand, where the bracket is about bounded ones."""
+    if bracket.hand == "every hand":
+        return []
+    passive, active = (_shown(bracket, side) for side in bracket.every_hand)
+    return [("every hand", f"{passive} is proved passive, {active} is active")]
 
 
 def _headline(bracket: Bracket) -> Padding:
@@ -50,19 +87,17 @@ def _claim(bracket: Bracket) -> str:
         return f"{name}: {passive} is proved passive; no value was found at which a hand gains."
     if bracket.proved_passive is None:
         return f"{name}: {active} is active; no value was found that is proved passive."
-    apart = f"{100 * bracket.relative_width:.2g} % apart"
+    apart = f"{100 * bracket.relative_width:.2g}{GLUE}% apart"
     return f"{name}: {passive} is proved passive, {active} is active, {apart}."
 
 
-def _loop(bracket: Bracket, loop: Specification) -> Table:
-    return grid(
-        [
-            ("device", device_line(loop.device)),
-            ("environment", environment_line(loop.environment, loop.device.motion)),
-            ("hand", bracket.hand),
-            ("decided", f"{bracket.evaluations} loops in {shown(bracket.seconds, 's', 3)}"),
-        ]
-    )
+def _loop(bracket: Bracket, loop: Specification) -> list[Row]:
+    return [
+        ("device", device_line(loop.device)),
+        ("environment", environment_line(loop.environment, loop.device.motion)),
+        ("hand", bracket.hand),
+        ("decided", f"{bracket.evaluations} loops in {shown(bracket.seconds, 's', 3)}"),
+    ]
 
 
 def _values(bracket: Bracket) -> Table:

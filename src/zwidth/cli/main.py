@@ -7,6 +7,7 @@ goes wrong is a mistake of this program and is not hidden.
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import textwrap
 from collections.abc import Sequence
@@ -15,6 +16,8 @@ from typing import NoReturn
 from zwidth.cli.commands import COMMANDS, configure, run
 from zwidth.cli.options import joined
 from zwidth.cli.output import quiet_pipe, tolerate_encoding
+from zwidth.cli.typed import as_typed
+from zwidth.cli.welcome import WELCOME
 from zwidth.errors import InputError
 from zwidth.specification.table import plain, quoted, suggestion
 
@@ -45,11 +48,16 @@ def main(argv: Sequence[str] | None = None) -> int:
         The exit status: of `check` 0 passive, 1 active, 3 undecided; 2 for bad input.
     """
     tolerate_encoding()
+    if argv is None and "_ARGCOMPLETE" in os.environ:  # the shell asks how its line may go on
+        from zwidth.cli.completion import answer
+
+        answer(_parser)
+    typed = list(sys.argv[1:] if argv is None else argv)
     try:
-        return _run(list(sys.argv[1:] if argv is None else argv))
+        return _run(typed)
     except InputError as error:
         with quiet_pipe(sys.stderr):
-            print(f"zwidth: {plain(str(error), _LONGEST_MESSAGE)}", file=sys.stderr)
+            print(f"zwidth: {plain(as_typed(str(error), typed), _LONGEST_MESSAGE)}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
         with quiet_pipe(sys.stderr):
@@ -69,7 +77,9 @@ def _run(argv: list[str]) -> int:
     if unknown:
         raise InputError(_unknown(unknown, parser, arguments))
     if arguments.command is None:
-        raise InputError(f"which command? One of {', '.join(COMMANDS)}; zwidth --help says what they do")
+        with quiet_pipe():
+            print(WELCOME)
+        return 0
     return run(arguments.command, arguments)
 
 

@@ -25,13 +25,18 @@ def joules(witness: Witness | Gain) -> str:
     return total
 
 
-def motion_lines(witness: Witness | Gain, fancy: bool) -> Iterator[Text]:
-    """The motion, line by line."""
-    yield Text(
+def motion_in_short(witness: Witness | Gain) -> str:
+    """How long, how deep and how fast it is."""
+    return (
         f"{witness.motion.samples:.6g} samples in "
         f"{shown(witness.motion.samples * witness.sample_period, 's')}, to "
         f"{shown(witness.depth, witness.unit)} at up to {shown(witness.peak_speed, witness.unit + '/s')}"
     )
+
+
+def motion_lines(witness: Witness | Gain, fancy: bool) -> Iterator[Text]:
+    """The motion, line by line."""
+    yield Text(motion_in_short(witness))
     for part in witness.motion.repeats:
         if part.times > 1:
             yield Text(f"samples {part.first} to {part.last} are a cycle, done {part.times:.6g} times")

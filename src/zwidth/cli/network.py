@@ -14,11 +14,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from zwidth.cli.options import Once
-from zwidth.cli.output import print_json, print_text
+from zwidth.cli.output import print_json, print_report
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import read_number
+from zwidth.showing import Part
 
 if TYPE_CHECKING:
     from zwidth.cli.network_plan import Plan
@@ -61,17 +62,17 @@ def run(arguments: argparse.Namespace) -> int:
     typed = arguments.duration or _DURATION
     duration = read_number(typed, GLOSSARY["sample_period"], "--duration", bound="> 0", why="0 has no step")
     if arguments.plan:
-        print_text(_described(plan))
+        print_report(_described(plan))
         return 0
     if arguments.run:
         return _one(plan, arguments.run, duration, arguments.json)
     return _all(plan, arguments.file, typed, arguments.json)
 
 
-def _described(plan: Plan) -> str:
+def _described(plan: Plan) -> list[Part]:
     devices = (f"{name}: {held.describe()}" for name, held in plan.devices.items())
     lines = (f"{name}: {line.channel}" for name, line in plan.lines.items())
-    return "\n".join([repr(plan.cut), "", *devices, *lines])
+    return [*plan.cut.report(), "", *devices, *lines]
 
 
 def _one(plan: Plan, name: str, duration: Exact, as_json: bool) -> int:
@@ -108,7 +109,8 @@ def _one(plan: Plan, name: str, duration: Exact, as_json: bool) -> int:
         seen = report.to_dict() | ({} if real is None else {"device": real.report().to_dict()})
         print_json(json.dumps({"format": FORMAT, "processes": {name: seen}}, allow_nan=False))
     else:
-        print_text("\n".join([f"{name}: {report!r}", *([] if real is None else [repr(real.report())])]))
+        first, *rest = report.report()
+        print_report([f"{name}: {first}", *rest, *([] if real is None else real.report().report())])
     return int(failed)
 
 

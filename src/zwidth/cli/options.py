@@ -99,6 +99,13 @@ def add_output(
     return output
 
 
+def add_in_full(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
+    """The option --all of a command whose report is short without it."""
+    parser.add_argument(
+        "--all", action="store_true", dest="in_full", help="print the report in full, not the short one"
+    )
+
+
 def add_parameters(parser: argparse.ArgumentParser) -> None:
     """Give a command every parameter of a device and of an environment."""
     device = parser.add_argument_group("device", "override what SOURCE says, or replace it")

@@ -6,13 +6,14 @@ import codecs
 import json
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TextIO
 
+from zwidth.cli.width import columns, fitted, wrapped
 from zwidth.errors import InputError
-from zwidth.showing import OBEYED, printable
+from zwidth.showing import OBEYED, Part, printable
 from zwidth.specification.table import plain
 
 PICTURES = (".png", ".svg", ".pdf")
@@ -27,12 +28,30 @@ _ASCII = {
 
 
 def tolerate_encoding() -> None:
-    """Let standard output and error spell out what their encoding lacks, instead of failing."""
+    """Let standard output and error spell out what their encoding lacks, instead of failing.
+
+    A terminal of a session that asks for the locale C has ASCII, whatever Python writes to it.
+    """
     codecs.register_error("zwidth", _spelled)
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
-            reconfigure(errors="zwidth")
+            only_ascii = _asks_for_c() and stream.isatty()
+            reconfigure(errors="zwidth", **({"encoding": "ascii"} if only_ascii else {}))
+
+
+def _asks_for_c() -> bool:
+    """True where the environment sets the locale of characters to C."""
+    asked = next((v for name in ("LC_ALL", "LC_CTYPE", "LANG") if (v := os.environ.get(name))), "")
+    return asked in ("C", "POSIX")
+
+
+def spelled(text: str) -> str:
+    """The text as standard output will show it: what its encoding lacks is spelled out."""
+    if encodes(text):
+        return text
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    return text.encode(encoding, "zwidth").decode(encoding)
 
 
 def _spelled(error: UnicodeError) -> tuple[str | bytes, int]:
@@ -81,9 +100,19 @@ def quiet_pipe(stream: TextIO | None = None) -> Iterator[None]:
 
 
 def print_text(text: object) -> None:
-    """Print what may hold text of others; the terminal obeys none of it."""
+    """Print what may hold text of others, in lines that fit the terminal, which obeys none of it."""
+    _print_lines(wrapped(spelled(printable(str(text))), columns()))
+
+
+def print_report(parts: Iterable[Part]) -> None:
+    """Print what a result says of itself, in lines that fit the terminal, which obeys none of it."""
+    _print_lines(fitted(parts, columns(), lambda text: spelled(printable(text))))
+
+
+def _print_lines(lines: Iterable[str]) -> None:
+    """All at once: several processes may write to one terminal."""
     with quiet_pipe():
-        print(printable(str(text)))
+        print("\n".join(line.rstrip() for line in lines))
 
 
 def print_json(text: str) -> None:
@@ -156,8 +185,17 @@ def say_written(*paths: Path | None) -> None:
                 print(f"written: {plain(str(path), 200)}")
 
 
-def give_out(found: Any, save: Path | None, plot: Path | None, as_json: bool) -> None:
-    """Save a result and its picture where that was asked for, and print it."""
+def give_out(
+    found: Any,
+    save: Path | None,
+    plot: Path | None,
+    as_json: bool,
+    in_short: Iterable[Part] | None = None,
+) -> None:
+    """Save a result and its picture where that was asked for, print it, and say what was written.
+
+    `in_short` is what is printed in the place of its whole report.
+    """
     if save is not None:
         found.save(save)
     if plot is not None:
@@ -166,7 +204,7 @@ def give_out(found: Any, save: Path | None, plot: Path | None, as_json: bool) ->
     if as_json:
         print_json(found.to_json())
     else:
-        print_text(found)
+        print_report(found.report() if in_short is None else in_short)
         say_written(save, plot)
 
 

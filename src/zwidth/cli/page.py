@@ -17,16 +17,29 @@ from rich.table import Table
 from rich.text import Text
 
 from zwidth.cli.description import GLUE
-from zwidth.cli.output import quiet_pipe
+from zwidth.cli.output import quiet_pipe, spelled
+from zwidth.cli.width import columns
 from zwidth.showing import printable
 
-_WIDEST = 100
+Row = tuple[str, str | Text]
+"""A name, and what stands beside it."""
+
+_ANY = 100
+"""Lines of a page: it is not cut, and with a number the console does not look for a terminal's."""
 
 
 class _Shown(Console):
-    """A console of which only its own colours are obeyed, never what stands in a text."""
+    """A console of which only its own colours are obeyed, never what stands in a text.
+
+    A text is spelled out for a terminal that lacks its characters before it is broken into lines.
+    """
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
+        if isinstance(renderable, Text):
+            plain = GLUE.join(map(spelled, renderable.plain.split(GLUE)))
+            if plain != renderable.plain:
+                renderable = renderable.copy()
+                renderable.plain = plain
         for part in super().render(renderable, options):
             yield part if part.control else Segment(printable(part.text), part.style)
 
@@ -36,9 +49,14 @@ def page() -> Iterator[Console]:
     """A console that prints text as it is, at a width that reads well, without blanks at line ends."""
     terminal = sys.stdout is not None and sys.stdout.isatty()
     console = _Shown(
-        file=StringIO(), force_terminal=terminal or None, markup=False, highlight=False, emoji=False
+        file=StringIO(),
+        force_terminal=terminal or None,
+        width=columns(),
+        height=_ANY,
+        markup=False,
+        highlight=False,
+        emoji=False,
     )
-    console.width = min(console.width, _WIDEST)
     yield console
     text = console.file.getvalue()  # type: ignore[attr-defined]  # it is the StringIO above
     with quiet_pipe():
@@ -46,23 +64,45 @@ def page() -> Iterator[Console]:
 
 
 def headline(word: str, colour: str, claim: str) -> Padding:
-    """The outcome as a badge, and the claim beside it."""
+    """The outcome as a badge, and the claim beside it; below it where too little room is left."""
+    badge, told = Text(f" {word.upper()} ", style=f"bold white on {colour}"), Text(claim, style="bold")
     line = Table.grid(padding=(0, 1))
-    line.add_row(Text(f" {word.upper()} ", style=f"bold white on {colour}"), Text(claim, style="bold"))
+    for row in [(badge, told)] if len(badge) <= columns() // 3 else [(badge,), (told,)]:
+        line.add_row(*row)
     return below(line)
 
 
-def grid(rows: Iterable[tuple[str, str | Text]]) -> Table:
-    """Names, and beside each its text."""
+def grid(rows: Iterable[Row], width: int = 0) -> Table:
+    """Names, in a column of at least some width, and beside each its text."""
     table = Table.grid(padding=(0, 2))
+    table.add_column(min_width=width or None)
+    table.add_column()
     for name, text in rows:
         table.add_row(Text(name, style="dim"), text if isinstance(text, Text) else Text(text))
     return table
 
 
+def blocks(out: Console, *groups: Iterable[Row]) -> None:
+    """Groups of names with their texts, one column of names for all, a blank line after each group."""
+    filled = [rows for rows in map(list, groups) if rows]
+    widest = max((len(name) for rows in filled for name, _ in rows), default=0)
+    for rows in filled:
+        out.print(below(grid(rows, widest)))
+
+
 def below(table: Table) -> Padding:
     """A table with a blank line after it."""
     return Padding(table, (0, 0, 1, 0))
+
+
+def small_print(*parts: str) -> Text:
+    """What is assumed, in one paragraph; no line ends between a name and its number."""
+    return Text("; ".join(parts).replace(" = ", f"{GLUE}={GLUE}"), style="dim")
+
+
+def more_with_all(out: Console, what: str) -> None:
+    """The line below a short report: what --all shows too."""
+    out.print(Text(f"--all shows the rest: {what}", style="dim"))
 
 
 def section(out: Console, title: str, parts: Iterable[Text | Table]) -> None:

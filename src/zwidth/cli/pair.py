@@ -6,7 +6,7 @@ import argparse
 
 from zwidth.cli.decision import exit_status
 from zwidth.cli.known_hands import hand_parameters, known_hands
-from zwidth.cli.options import add_all, add_output, coupling_parameters, given
+from zwidth.cli.options import add_all, add_in_full, add_output, coupling_parameters, given
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.specification.pairs import load_pair
 
@@ -14,7 +14,7 @@ from zwidth.specification.pairs import load_pair
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth pair`."""
     parser.usage = (
-        "%(prog)s [SOURCE ...] --stiffness K [--link-delay TIME] [--PARAMETER VALUE ...] [--json] "
+        "%(prog)s [SOURCE ...] --stiffness K [--link-delay TIME] [--PARAMETER VALUE ...] [--all] [--json] "
         "[--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
@@ -24,7 +24,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="one device for both arms, or leader and follower: each of the catalogue, or a TOML file with a "
         "[device] table; or one file with [leader], [follower] and [coupling]",
     )
-    add_output(parser, "the verdict", "the plots", "verdict and evidence as JSON, for zwidth verify")
+    add_in_full(
+        add_output(parser, "the verdict", "the plots", "verdict and evidence as JSON, for zwidth verify")
+    )
     coupling = parser.add_argument_group("coupling", "override what [coupling] says, or replace it")
     add_all(coupling, coupling_parameters())
     hands = parser.add_argument_group("hands", "leave out what any hand may hold")
@@ -48,6 +50,6 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         from zwidth.cli.pair_report import print_pair
 
-        print_pair(verdict)
+        print_pair(verdict, arguments.in_full)
         say_written(save, plot)
     return exit_status(verdict.outcome)

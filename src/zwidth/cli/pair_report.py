@@ -3,37 +3,82 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from rich.text import Text
 
+from zwidth.cli.advice_lines import advice_rows, advice_section
 from zwidth.cli.bars import PICTURE, levels
 from zwidth.cli.description import device_line
 from zwidth.cli.output import encodes
-from zwidth.cli.page import below, grid, headline, items, page, section
-from zwidth.cli.report import advice_section
+from zwidth.cli.page import (
+    Row,
+    below,
+    blocks,
+    grid,
+    headline,
+    items,
+    more_with_all,
+    page,
+    section,
+    small_print,
+)
 from zwidth.device import Device
 from zwidth.pairs import Pair
 from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.pairs import PairVerdict, PairWitness
 from zwidth.passivity.pairs.held import HeldVerdict, HeldWitness
+from zwidth.passivity.pairs.in_short import pair_in_short
 from zwidth.quantity.text import quantity_unit, shown
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 _SAMPLES_SHOWN = 48
 
+_NOTHING = "nothing is violated"
+_ABOUT = (
+    "coupling",
+    *(f"on the {arm}" for arm in ("leader", "follower")),
+    *(f"compensated in the {arm}" for arm in ("leader", "follower")),
+)
+"""Of the numbers: what a short report has."""
 
-def print_pair(verdict: PairVerdict | HeldVerdict) -> None:
+
+def print_pair(verdict: PairVerdict | HeldVerdict, in_full: bool = False) -> None:
     """Print the report on standard output."""
     witness = verdict.witness if verdict.outcome == "active" else None
     with page() as out:
         out.print(headline(verdict.outcome, TOLD[verdict.outcome].terminal, _claim(verdict, witness)))
-        out.print(below(grid(_arms(verdict.pair))))
-        out.print(below(grid(_numbers(verdict))))
-        if witness is not None:
-            section(out, "the motion", _motion(witness))
-        title, lines = advice_section(verdict.advice, verdict.passive)
-        section(out, title, lines)
-        section(out, "with something else changed", items(at.text for at in verdict.stiffness_elsewhere))
-        section(out, "assumes", items(verdict.small_print(), "dim"))
+        (_all if in_full else _few)(out, verdict, witness)
+
+
+def _few(out: Console, verdict: PairVerdict | HeldVerdict, witness: PairWitness | HeldWitness | None) -> None:
+    """What binds and what to change; the pair, and what is assumed of it."""
+    rows = dict(verdict.rows())
+    do: list[Row] = [("limit", rows["limit"])] if rows["limit"] != _NOTHING else []
+    if witness is not None:
+        do.append(("the motion", _motion_in_short(witness)))
+    do += advice_rows(verdict.advice, verdict.passive)
+    if not verdict.advice and "largest stiffness" in rows:
+        do.append(("stiffness", f"largest: {rows['largest stiffness']}"))
+    if "largest compensation" in rows:
+        do.append(("compensation", f"largest: {rows['largest compensation']}"))
+    pair: list[Row] = [(name, rows[name]) for name in _ABOUT if name in rows]
+    blocks(out, do, (*_arms(verdict.pair), *pair, ("assumes", small_print(pair_in_short(verdict)))))
+    more_with_all(out, "numbers, motion, every change, assumptions in full")
+
+
+def _all(out: Console, verdict: PairVerdict | HeldVerdict, witness: PairWitness | HeldWitness | None) -> None:
+    """Everything, the small print last."""
+    out.print(below(grid(_arms(verdict.pair))))
+    out.print(below(grid(_numbers(verdict))))
+    if witness is not None:
+        section(out, "the motion", _motion(witness))
+    title, lines = advice_section(verdict.advice, verdict.passive)
+    section(out, title, lines)
+    section(out, "with something else changed", items(at.text for at in verdict.stiffness_elsewhere))
+    section(out, "assumes", items(verdict.small_print(), "dim"))
 
 
 def _claim(verdict: PairVerdict | HeldVerdict, witness: PairWitness | HeldWitness | None) -> str:
@@ -62,10 +107,19 @@ def _numbers(verdict: PairVerdict | HeldVerdict) -> Iterator[tuple[str, str | Te
             yield name, Text(text, style="bold" if name == "limit" else "")
 
 
+def _motion_in_short(witness: PairWitness | HeldWitness) -> str:
+    """How long it is, and what comes out."""
+    return f"{_how_long(witness)} takes {shown(witness.energy, 'J')} out"
+
+
+def _how_long(witness: PairWitness | HeldWitness) -> str:
+    hands = "both hands" if len(witness.paths) > 1 else "one hand"
+    return f"{witness.samples:.6g} samples in {shown(witness.duration, 's')}, of {hands} from rest at 0"
+
+
 def _motion(witness: PairWitness | HeldWitness) -> Iterator[Text]:
     length, fancy = quantity_unit("position", witness.pair.motion), encodes(PICTURE)
-    hands = "both hands" if len(witness.paths) > 1 else "one hand"
-    yield Text(f"{witness.samples:.6g} samples in {shown(witness.duration, 's')}, of {hands} from rest at 0")
+    yield Text(_how_long(witness))
     for part in witness.repeats:
         yield Text(f"samples {part.first} to {part.last} are a round, done {part.times:.6g} times")
     yield Text(f"extracts {shown(witness.energy, 'J')}", style="bold")

@@ -10,7 +10,7 @@ import numpy as np
 from rich.padding import Padding
 from rich.text import Text
 
-from zwidth.cli.page import below, grid, headline, page
+from zwidth.cli.page import below, blocks, grid, headline, more_with_all, page
 from zwidth.cli.trace_report import how_long
 from zwidth.energy import PairLedger
 from zwidth.energy.ledger import ROUNDING
@@ -22,11 +22,19 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def print_pair_trace(trace: xr.Dataset) -> None:
+_FEW = ("stiffness felt at the leader", "leader and follower apart, rms")
+"""Of the measures: what a short report has."""
+
+
+def print_pair_trace(trace: xr.Dataset, in_full: bool = False) -> None:
     """Print the report of one trace of a pair."""
     book = PairLedger(trace)
     with page() as out:
         out.print(_headline(book))
+        if not in_full:
+            blocks(out, [row for row in _measures(trace) if row[0] in _FEW], _about(trace))
+            more_with_all(out, "every measure, where each joule went")
+            return
         out.print(below(grid(_about(trace))))
         out.print(below(grid(_measures(trace))))
         out.print(Text("energy", style="bold"))

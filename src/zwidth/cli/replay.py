@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import add_output
-from zwidth.cli.output import print_json, print_text, say_written, targets
+from zwidth.cli.output import print_json, print_report, print_text, say_written, targets
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
@@ -46,9 +46,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print_json(json.dumps({**recording.to_dict(), "replays": laws}, indent=2, ensure_ascii=False))
     else:
-        print_text(recording)
         for law in laws:
             print_text(f"law {law['law']}: {law['found']}")
+        print_report(recording.report())
         say_written(save, plot)
     return 1 if any(law["different_samples"] for law in laws) else 0
 

@@ -20,7 +20,7 @@ from zwidth.cli.options import (
     given,
     overrides,
 )
-from zwidth.cli.output import check_new, print_json, print_text, quiet_pipe
+from zwidth.cli.output import check_new, print_json, print_report, quiet_pipe, say_written
 from zwidth.cli.serve_tables import (
     CONNECTION,
     OPERATOR,
@@ -131,7 +131,7 @@ def run(arguments: argparse.Namespace) -> int:
         with quiet_pipe(sys.stderr):
             print(f"zwidth: {refused}", file=sys.stderr)
         return exit_status(refused.verdict.outcome)
-    return _give_out(report, arguments.json)
+    return _give_out(report, arguments.json, save)
 
 
 def _serve_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> int:
@@ -150,12 +150,13 @@ def _serve_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> i
     return _give_out(report, arguments.json)
 
 
-def _give_out(report: Any, as_json: bool) -> int:
-    """Print what a servo did; 5 where it failed."""
+def _give_out(report: Any, as_json: bool, save: Path | None = None) -> int:
+    """Print what a servo did, and where it is recorded; 5 where it failed."""
     if as_json:
         print_json(json.dumps(report.to_dict(), indent=2, ensure_ascii=False, allow_nan=False))
     else:
-        print_text(report)
+        print_report(report.report())
+        say_written(save)
     return FAULT if report.failed else 0
 
 

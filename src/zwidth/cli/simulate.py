@@ -8,7 +8,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.options import Once, add_all, add_law_option, add_output, add_parameters, given, overrides
+from zwidth.cli.options import (
+    Once,
+    add_all,
+    add_in_full,
+    add_law_option,
+    add_output,
+    add_parameters,
+    given,
+    overrides,
+)
 from zwidth.cli.output import check_new, print_json, say_written, writing
 from zwidth.cli.simulate_pair import pair_measures, simulated_pair
 from zwidth.errors import InputError
@@ -31,7 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
     parser.usage = (
         "%(prog)s [SOURCE ...] --operator TYPE --duration TIME [--law NAMES] [--PARAMETER VALUE ...] "
-        "[--json] [--plot FILE] [--sound FILE] [-o FILE] [--force]"
+        "[--all] [--json] [--plot FILE] [--sound FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -43,6 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_law_option(parser)
     output = add_output(parser, "the summary", "the plot", "the trace: .nc, .parquet, .csv")
+    add_in_full(output)
     output.add_argument("--sound", metavar="FILE", action=Once, help="save the actuator force as sound: .wav")
     hand = parser.add_argument_group("hand", "a key of the hand is written --operator.force, …")
     add_all(hand, operator_parameters())
@@ -73,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
         from zwidth.cli.pair_trace_report import print_pair_trace
         from zwidth.cli.trace_report import print_trace
 
-        (print_pair_trace if pair else print_trace)(trace)
+        (print_pair_trace if pair else print_trace)(trace, arguments.in_full)
         say_written(save, plot, sound)
     return INTERRUPTED if "interrupted_at_s" in trace.attrs else 0
 

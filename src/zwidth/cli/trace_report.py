@@ -9,7 +9,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from zwidth.cli.page import below, grid, headline, page
+from zwidth.cli.page import below, blocks, grid, headline, more_with_all, page
 from zwidth.energy.ledger import ROUNDING
 from zwidth.loop.trace import UNITS
 from zwidth.quantity.text import shown
@@ -22,10 +22,18 @@ if TYPE_CHECKING:
 _MOVING = 1e-9
 
 
-def print_trace(trace: xr.Dataset) -> None:
+_FEW = ("deepest position", "largest actuator force", "contacts made", "at the end")
+"""Of the measures: what a short report has."""
+
+
+def print_trace(trace: xr.Dataset, in_full: bool = False) -> None:
     """Print the report of one trace."""
     with page() as out:
-        out.print(_headline(trace))
+        out.print(trace_headline(trace))
+        if not in_full:
+            blocks(out, [row for row in _measures(trace) if row[0] in _FEW], _about(trace))
+            more_with_all(out, "every measure, where each joule went")
+            return
         out.print(below(grid(_about(trace))))
         out.print(below(grid(_measures(trace))))
         out.print(Text("energy", style="bold"))
@@ -45,7 +53,8 @@ def print_comparison(comparison: Comparison) -> None:
         out.print(table)
 
 
-def _headline(trace: xr.Dataset) -> Padding:
+def trace_headline(trace: xr.Dataset) -> Padding:
+    """Whether this hand got energy out, and what that shows."""
     book = trace.zwidth.energy
     got, held = shown(book.got_out, "J"), book.held_at_start
     significant = book.got_out > ROUNDING * book.moved

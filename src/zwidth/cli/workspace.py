@@ -7,8 +7,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from zwidth.cli.options import Once, add_output
-from zwidth.cli.output import print_json, targets, writing
+from zwidth.cli.options import Once, add_in_full, add_output
+from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.cli.workspace_arm import arm_of
 from zwidth.cli.workspace_joints import add_joint_options
 from zwidth.cli.workspace_report import print_workspace
@@ -28,8 +28,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.usage = (
         "%(prog)s ARM --stiffness K [--pose --rotational-stiffness K] [--wall FILE] [--joint-damping B] "
         "[--joint-friction F] [--joint-resolution STEP] [--joints FILE] [--largest-force FORCE] "
-        "[--rate RATE] [--virtual-damping B] [--delay TIME] [--points N] [--json] [--plot FILE] [-o FILE] "
-        "[--force]"
+        "[--rate RATE] [--virtual-damping B] [--delay TIME] [--points N] [--all] [--json] [--plot FILE] "
+        "[-o FILE] [--force]"
     )
     parser.add_argument(
         "arm", metavar="ARM", help="hapkit, two-link, haply-2diy, falcon, or a .urdf, .xml or .mjcf file"
@@ -66,7 +66,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="the hand turns with the end, and the wall resists that too",
     )
     saved = "the verdict with its certificate, for zwidth verify (.json), or the map as NetCDF (.nc)"
-    add_output(parser, "the verdict", "the map", saved)
+    add_in_full(add_output(parser, "the verdict", "the map", saved))
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -87,7 +87,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print_json(json.dumps(space.to_dict(), indent=2, ensure_ascii=False))
     else:
-        print_workspace(space)
+        print_workspace(space, arguments.in_full)
+        say_written(save, plot)
     return TOLD[space.outcome].status
 
 

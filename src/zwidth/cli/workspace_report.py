@@ -14,20 +14,35 @@ if TYPE_CHECKING:
     from zwidth.arms import ArmMotion, EncoderSteps
     from zwidth.passivity.workspace import Workspace
 
+_FIRST = ("largest stiffness", "stiffness", "encoder steps")
+_IN_SCOPE = ("region",)
+_FEW = 3
+"""What a short report has of the numbers; what it says in what is assumed; how many changes."""
+
 _SHOWN = 1e-6
 """Of the sum: what one joint gets less than this is the room for rounding."""
 
 
-def print_workspace(space: Workspace) -> None:
+def print_workspace(space: Workspace, in_full: bool = False) -> None:
     """Print the verdict and what to change on standard output."""
-    from zwidth.cli.page import below, grid, headline, page, section
+    from zwidth.cli.page import blocks, grid, headline, items, more_with_all, page, section, small_print
+    from zwidth.passivity.in_short import in_short
     from zwidth.passivity.outcome import TOLD
 
     with page() as out:
         out.print(headline(space.outcome, TOLD[space.outcome].terminal, space.claim))
-        out.print(below(grid(_numbers(space))))
         changes = list(_changes(space))
-        section(out, "what to change", [grid(changes)] if changes else [])
+        if in_full:
+            blocks(out, _numbers(space))
+            section(out, "what to change", [grid(changes)] if changes else [])
+            section(out, "assumes", items(space.assumptions, "dim"))
+            return
+        first = [row for row in _numbers(space) if row[0] in _FIRST]
+        do = [("or" if place else "change", f"{name}: {text}") for place, (name, text) in enumerate(changes)]
+        arm = [row for row in _asked(space) if row[0] not in _IN_SCOPE]
+        assumed = ("assumes", small_print(in_short(space.scope, space.outcome)))
+        blocks(out, [*first, *do[:_FEW]], [*arm, assumed])
+        more_with_all(out, "margin, motion, encoder steps, every change, assumptions in full")
 
 
 def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:

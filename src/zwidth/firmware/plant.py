@@ -82,15 +82,21 @@ def one_period(
     advance(state, plant, push, anchor, anchor_speed, period, work)
 
 
-def plant_program(plant: Plant | None, period: float, hand: Hand) -> Program:
+def given_plant(*, amplified: bool) -> Plant:
+    """A plant whose numbers are given at every call; without those of an amplifier where there is none."""
+    numbers = Plant(*(Variable("real", name) for name in Plant._fields))  # type: ignore[arg-type]
+    return numbers if amplified else numbers._replace(lag=0.0, slew=0.0)
+
+
+def plant_program(plant: Plant | None, period: float | None, hand: Hand) -> Program:
     """The program of one period.
 
     Parameters
     ----------
     plant
-        Its numbers; None for numbers that are given at every call.
+        Its numbers, some of which may be a `given_plant`'s; None for numbers that are given at every call.
     period
-        T > 0 [s].
+        T > 0 [s]; None for one that is given at every call, last.
     hand
         "free" or "anchored".
 
@@ -99,11 +105,11 @@ def plant_program(plant: Plant | None, period: float, hand: Hand) -> Program:
     InputError
         If T is not positive, or a free hand has a spring or a damper.
     """
-    if not period > 0.0:
+    if period is not None and not period > 0.0:
         raise InputError(f"the plant is moved from sample to sample: a period is > 0 s, got {period!r}")
     if hand == "free" and plant is not None and (plant.stiffness != 0.0 or plant.hand_damping != 0.0):
         raise InputError("this hand has a spring or a damper: they need an anchor, take hand='anchored'")
-    numbers = plant or Plant(*(Variable("real", name) for name in Plant._fields))  # type: ignore[arg-type]
+    numbers = plant or given_plant(amplified=True)
     if plant is None and hand == "free":
         numbers = numbers._replace(stiffness=0.0, hand_damping=0.0)
     anchor = (
@@ -111,7 +117,8 @@ def plant_program(plant: Plant | None, period: float, hand: Hand) -> Program:
     )
     cells = Cells("state", STATE_SIZE), Cells("work", series.WORK)
     given = Variable("real", "force"), Variable("real", "push")
-    return specialised(one_period, (*cells, numbers, *given, *anchor, float(period)), _APART)
+    length = Variable("real", "period") if period is None else float(period)
+    return specialised(one_period, (*cells, numbers, *given, *anchor, length), _APART)
 
 
 def plant_header(program: Program, *, name: str = "plant", about: Sequence[str] = ()) -> str:

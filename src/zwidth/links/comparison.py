@@ -86,7 +86,7 @@ class LinkComparison(Documented):
         return {"format": self.FORMAT, "link": self.schedule.describe(), "ports": ports}
 
     def report(self) -> Iterable[Part]:
-        """The link, and a table with a row for each port."""
+        """Which ports are passive over every such link, the link, and a table with a row for each port."""
         told = [self.scores[key].attrs for key in _SCORES]
         heads = [
             ("", "any link", *(about["long_name"] for about in told)),
@@ -97,7 +97,10 @@ class LinkComparison(Documented):
             numbers = [self._number(key, name) for key in _SCORES]
             cells = ["–" if number is None else f"{number:.3g}" for number in numbers]
             rows.append((str(name), str(self.scores["outcome"].sel(port=name).item()), *cells))
-        yield self.schedule.describe()
+        passive = [cells[0] for cells in rows if cells[1] == "passive"]
+        yield f"passive over every link that makes up no packets: {', '.join(passive) or 'none'}"
+        yield f"the link of these numbers: {self.schedule.describe()}"
+        yield ""
         yield Table(heads=heads, rows=rows, lefts=2)
 
     def _number(self, key: str, name: object) -> float | None:

@@ -74,7 +74,7 @@ def z_width(
     path
         Directory of a zarr store, written chunk by chunk; one that was begun is gone on with.
     address
-        Of a Dask scheduler whose workers compute the chunks, "tcp://…". Default: threads of this process.
+        Of a Dask scheduler whose workers compute the chunks, ``tcp://…``. Default: threads of this process.
     workers
         How many threads. Default: one for each processor.
     progress

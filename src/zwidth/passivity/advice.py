@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor, inf, isinf, log10
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from zwidth.device import Device
 from zwidth.environment import OnePole, Wall, Window
@@ -69,22 +69,31 @@ class Advice:
         }
 
 
-class InLines(NamedTuple):
+@dataclass(frozen=True)
+class InLines:
     """Advice as a report says it.
 
     Parameters
     ----------
     title
         What the lines are.
-    useful
+    changes
         A line for what may be turned, what is changed most easily first.
+    at_limit
+        What may not be turned by anything, in one line; "" where there is nothing.
     useless
         What it is no use to turn, in one line; "" where there is nothing.
     """
 
     title: str
-    useful: tuple[str, ...]
+    changes: tuple[str, ...]
+    at_limit: str
     useless: str
+
+    @property
+    def useful(self) -> tuple[str, ...]:
+        """All but the useless."""
+        return (*self.changes, self.at_limit) if self.at_limit else self.changes
 
 
 def in_lines(advice: Iterable[Advice], passive: bool) -> InLines:
@@ -92,11 +101,12 @@ def in_lines(advice: Iterable[Advice], passive: bool) -> InLines:
     ordered = sorted(advice, key=_rank)
     useless = [a for a in ordered if a.to is None and a.current != 0]
     at_limit = [a for a in ordered if a.kind == "slack" and a.to is not None and a.to == a.current]
-    useful = [item.text for item in ordered if item.to is not None and item not in at_limit]
-    if at_limit:
-        useful.append(f"exactly at the limit: {_names(at_limit)}")
-    none = f"{'no slack' if passive else 'no change alone would do'}: {_names(useless)}" if useless else ""
-    return InLines("slack" if passive else "what to change, any one of", tuple(useful), none)
+    return InLines(
+        "slack" if passive else "what to change, any one of",
+        tuple(item.text for item in ordered if item.to is not None and item not in at_limit),
+        f"exactly at the limit: {_names(at_limit)}" if at_limit else "",
+        f"{'no slack' if passive else 'no change alone would do'}: {_names(useless)}" if useless else "",
+    )
 
 
 def _rank(advice: Advice) -> int:

@@ -166,9 +166,9 @@ class LinearVerdict(Verdict):
 
     def advised(self) -> Iterator[Part]:
         """What to change, or how far each number may go."""
-        title, useful, useless = in_lines(self.advice, self.is_proved)
-        yield f"{title}:"
-        yield Lines([*useful, *([useless] if useless else [])])
+        told = in_lines(self.advice, self.is_proved)
+        yield f"{told.title}:"
+        yield Lines([*told.useful, *([told.useless] if told.useless else [])])
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""

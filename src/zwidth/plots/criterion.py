@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.plots.style import BLUE, GREY, LOOK, OUTCOME, RED, label, new_figure, number
+from zwidth.plots.style import BLUE, GREY, LOOK, OUTCOME, RED, heading, label, new_figure, number
 from zwidth.quantity.text import quantity_unit
 
 _NEAR = 120
@@ -44,7 +44,7 @@ def draw_criterion(axes: Axes, verdict: LinearVerdict, log_frequency: bool = Fal
     """The same on given axes."""
     frequencies, needs = refined_curve(verdict)
     b, motion = float(verdict.decision.loop.damping), verdict.device.motion
-    low, high = _range(needs, b)
+    low, high = damping_range(needs, b)
     wanting = [n > b for n in needs]
     if any(wanting):
         axes.fill_between(
@@ -63,7 +63,7 @@ def draw_criterion(axes: Axes, verdict: LinearVerdict, log_frequency: bool = Fal
     _mark(axes, verdict, needs, (low, high))
     axes.set_xlabel(label("frequency"))
     axes.set_ylabel(label("damping", motion, "required damping"))
-    axes.set_title(f"{verdict.outcome}: {verdict.limit}", color=OUTCOME[verdict.outcome])
+    heading(axes, f"{verdict.outcome}: {verdict.limit}", color=OUTCOME[verdict.outcome])
     axes.legend(loc="upper left")
 
 
@@ -83,7 +83,7 @@ def refined_curve(verdict: LinearVerdict, points: int = 400) -> tuple[list[float
     return frequencies, [known[f] for f in frequencies]
 
 
-def _range(needs: list[float], b: float) -> tuple[float, float]:
+def damping_range(needs: list[float], b: float) -> tuple[float, float]:
     """Ends of the vertical axis: all of the curve, unless it has no end."""
     finite = [n for n in needs if isfinite(n)]
     top = max([b, *finite])

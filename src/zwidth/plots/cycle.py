@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from zwidth.plots.style import BLUE, GREY, LOOK, PURPLE, RED, label, new_figure, quantity_text, scale
+from zwidth.plots.style import BLUE, GREY, LOOK, PURPLE, RED, heading, label, new_figure, quantity_text, scale
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def draw_cycle(rows: Sequence[Axes], gain: Gain) -> None:
     rows[2].set_xlim(0, times[-1])
     rows[2].xaxis.set_major_locator(MaxNLocator(integer=True))
     energy = quantity_text(gain.energy_per_cycle, "energy")
-    rows[0].set_title(f"{energy} out in every round of {samples} samples", color=RED)
+    heading(rows[0], f"{energy} out in every round of {samples} samples", color=RED)
 
 
 def _positions(

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from zwidth.passivity.pairs.held import HeldVerdict
 from zwidth.passivity.pairs.held.criterion import HeldCriterion
-from zwidth.plots.style import BLUE, GREEN, GREY, LOOK, OUTCOME, RED, label, new_figure, number
+from zwidth.plots.style import BLUE, GREEN, GREY, LOOK, OUTCOME, RED, label, new_figure, number, page_heading
 from zwidth.quantity.text import quantity_unit
 
 _POINTS = 400
@@ -35,8 +35,7 @@ def plot_held_pair(verdict: HeldVerdict) -> Figure:
     if linear:
         draw_held_damping(figure.add_subplot(1, 2, 1), verdict, criterion)
     draw_held_stiffness(figure.add_subplot(1, 2 if linear else 1, 2 if linear else 1), verdict)
-    title = f"{verdict.outcome}: {verdict.limit}"
-    figure.suptitle(title, x=0.01, ha="left", fontsize=10, color=OUTCOME[verdict.outcome], parse_math=False)
+    page_heading(figure, f"{verdict.outcome}: {verdict.limit}", 10, OUTCOME[verdict.outcome])
     return figure
 
 

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from zwidth.passivity.ports.index import PassivityIndex
 from zwidth.passivity.ports.indices import PassivityIndices
-from zwidth.plots.style import BLUE, GREY, LOOK, RED, label, new_figure, number
+from zwidth.plots.style import BLUE, GREY, LOOK, RED, heading, label, new_figure, number
 
 _POINTS = 800
 _NAMES = {
@@ -45,7 +45,7 @@ def draw_index(axes: Axes, index: PassivityIndex) -> None:
     """One of them on given axes."""
     several = index.port.axes > 1
     symbol, name = _NAMES[index.name][0], _NAMES[index.name][1 + several]
-    axes.set_title(f"{index.name} index: {_title(index, symbol)}")
+    heading(axes, f"{index.name} index: {_title(index, symbol)}")
     axes.set_xlabel(label("frequency"))
     axes.set_ylabel(name)
     if index.found is None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from textwrap import fill
 from typing import TYPE_CHECKING
 
 from matplotlib import rc_context
@@ -11,15 +10,12 @@ from matplotlib.gridspec import SubplotSpec
 
 from zwidth.errors import InputError
 from zwidth.plots.storage import draw_storage
-from zwidth.plots.style import LOOK, OUTCOME, new_figure, number
+from zwidth.plots.style import LOOK, OUTCOME, heading, new_figure, number, page_heading
 from zwidth.plots.witness import draw_motion
 from zwidth.quantity.text import unit_text
 
 if TYPE_CHECKING:
     from zwidth.passivity.bracket import Bracket
-
-_WIDTH = 120
-"""Characters of the heading on one line."""
 
 
 @rc_context(LOOK)
@@ -48,8 +44,7 @@ def limit_figure(bracket: Bracket) -> Figure:
     grid = figure.add_gridspec(1, len(sides))
     for k, draw in enumerate(sides):
         draw(figure, grid[k], bracket)
-    text = fill(bracket.describe(), _WIDTH)
-    figure.suptitle(text, x=0.01, ha="left", fontsize=11, parse_math=False)
+    page_heading(figure, bracket.describe())
     figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.08, hspace=0.06, wspace=0.05)
     return figure
 
@@ -58,9 +53,8 @@ def _proved(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
     assert bracket.storage is not None
     axes = figure.add_subplot(place)
     draw_storage(axes, bracket.storage)
-    axes.set_title(
-        f"{_value(bracket, bracket.proved_passive)}\n{axes.get_title(loc='left')}", color=OUTCOME["passive"]
-    )
+    text = f"{_value(bracket, bracket.proved_passive)}\n{axes.get_title(loc='left')}"
+    heading(axes, text, color=OUTCOME["passive"])
 
 
 def _refuted(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
@@ -71,9 +65,8 @@ def _refuted(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
     for upper in axes[:-1]:
         upper.tick_params(labelbottom=False)
     draw_motion(axes, bracket.witness)
-    top.set_title(
-        f"{_value(bracket, bracket.proved_active)}\n{top.get_title(loc='left')}", color=OUTCOME["active"]
-    )
+    text = f"{_value(bracket, bracket.proved_active)}\n{top.get_title(loc='left')}"
+    heading(top, text, color=OUTCOME["active"])
 
 
 def _value(bracket: Bracket, value: float | None) -> str:

@@ -9,7 +9,8 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from zwidth.plots.style import BLACK, BLUE, GREY, LOOK, ORANGE, OUTCOME, RED, new_figure, scale, verbatim
+from zwidth.plots.style import BLACK, BLUE, GREY, LOOK, ORANGE, OUTCOME, RED, new_figure, page_heading, scale
+from zwidth.showing import printable
 
 _FOOT = 1e-6
 """Energy that is drawn at the foot of its axis, with all below it [J]."""
@@ -55,7 +56,7 @@ def draw_links(figure: Figure, comparison: Any) -> None:
             paths.set_xlabel(f"time [s]; positions [{unit}],\nleader black, follower blue")
             energy.set_xlabel("time [s]; put in by both\nhands [mJ], below 0 red")
     _worst(worst, comparison.scores, names)
-    figure.suptitle(verbatim(comparison.schedule.describe()), x=0.01, ha="left", fontsize=10)
+    page_heading(figure, printable(comparison.schedule.describe()), 10)
 
 
 def _length(comparison: Any) -> tuple[float, str]:

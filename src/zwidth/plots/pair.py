@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import partial
-from textwrap import fill
 
 import numpy as np
 from matplotlib import rc_context
@@ -22,7 +21,7 @@ from zwidth.passivity.pairs.advice import MOST_SAMPLES
 from zwidth.passivity.pairs.criterion import spending
 from zwidth.passivity.pairs.limits import largest_stiffness, samples_around
 from zwidth.plots.pair_motion import draw_pair_energy, draw_pair_motion
-from zwidth.plots.style import GREEN, LOOK, OUTCOME, new_figure, scale
+from zwidth.plots.style import GREEN, LOOK, OUTCOME, new_figure, page_heading, scale
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import quantity_unit
 
@@ -52,10 +51,7 @@ def plot_pair(verdict: PairVerdict) -> Figure:
     if moved:
         draw_pair_motion(figure.add_subplot(grid[1, :]), verdict)
         draw_pair_energy(figure.add_subplot(grid[2, :]), verdict)
-    figure.suptitle(
-        fill(f"{verdict.outcome}: {verdict.claim}", 92),
-        x=0.01, ha="left", fontsize=10, color=OUTCOME[verdict.outcome], parse_math=False,
-    )  # fmt: skip
+    page_heading(figure, f"{verdict.outcome}: {verdict.claim}", 10, OUTCOME[verdict.outcome])
     return figure
 
 

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 
 from zwidth.passivity.pairs import PairVerdict
 from zwidth.passivity.pairs.course import energy_in_time
-from zwidth.plots.style import BLUE, GREY, PURPLE, RED, number, scale
+from zwidth.plots.style import BLUE, GREY, PURPLE, RED, heading, number, scale
 from zwidth.quantity.text import quantity_unit
 
 
@@ -36,7 +36,7 @@ def draw_pair_motion(axes: Axes, verdict: PairVerdict) -> None:
     rounds = [
         f"samples {p.first} to {p.last}: {p.times:.6g} times" for p in found.leader.repeats if p.times > 1
     ]
-    axes.set_title("; ".join(["a motion of both hands", *rounds]), color=GREY)
+    heading(axes, "; ".join(["a motion of both hands", *rounds]), color=GREY)
     axes.set_xlabel(f"time [{unit}]")
     axes.set_ylabel(f"position [{far}]")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
@@ -63,6 +63,6 @@ def draw_pair_energy(axes: Axes, verdict: PairVerdict) -> None:
     axes.plot(
         [time * float(t) for t in instants], [size * float(e) for e in energies], color=PURPLE, gid="energy"
     )
-    axes.set_title(f"{number(size * found.energy)} {joule} have come out at the end", color=GREY)
+    heading(axes, f"{number(size * found.energy)} {joule} have come out at the end", color=GREY)
     axes.set_xlabel(f"time, every round [{unit}]")
     axes.set_ylabel(f"energy out [{joule}]")

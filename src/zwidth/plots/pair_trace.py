@@ -19,6 +19,8 @@ from zwidth.plots.style import (
     ORANGE,
     PURPLE,
     RED,
+    as_written,
+    heading,
     new_figure,
     number,
     scale,
@@ -50,8 +52,8 @@ def pair_trace_figure(trace: xr.Dataset) -> Figure:
     draw_both(middle, trace, "hand_force", "force on the arm\nby what holds it")
     draw_pair_energies(below, trace)
     about = trace.attrs
-    held = f"leader: {about['leader_holder']}\nfollower: {about['follower_holder']}"
-    above.set_title(verbatim(f"{about['coupling']}\n{held}"))
+    held = as_written(f"leader: {about['leader_holder']}\nfollower: {about['follower_holder']}")
+    heading(above, verbatim(f"{about['coupling']}\n{held}"))
     below.set_xlabel(f"time [{scale([float(trace['time'].values[-1])], 's')[1]}]")
     return figure
 
@@ -88,7 +90,8 @@ def draw_pair_energies(axes: Axes, trace: xr.Dataset) -> None:
     _legend(axes)
     if book.active:
         f, u = scale([book.extracted], "J")
-        axes.set_title(
+        heading(
+            axes,
             f"{number(book.extracted * f)} {u} came out beyond what was in it: this pair is active",
             color=RED,
         )

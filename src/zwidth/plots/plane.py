@@ -74,12 +74,12 @@ def draw_plane(
             "the plane has logarithmic axes b/(K T) and f_c/(K Δ): it needs damping, coulomb_friction "
             "and resolution > 0 and a device without delay"
         )
-    given = _limit(device) if stiffness is None else Exact(stiffness)
-    point, at_limit = plane_point(device, given), _corner(device)
+    given = largest_spring_of(device) if stiffness is None else Exact(stiffness)
+    point, at_limit = plane_point(device, given), place_at_limit(device)
     k, beta, sigma = float(given), float(point.viscous), float(point.dry)
     others = _others(device) if with_catalogue else []
-    x = _span(beta, at_limit[0], *(_corner(other)[0] for other in others))
-    y = _span(sigma, at_limit[1], *(_corner(other)[1] for other in others))
+    x = ends_around(beta, at_limit[0], *(place_at_limit(other)[0] for other in others))
+    y = ends_around(sigma, at_limit[1], *(place_at_limit(other)[1] for other in others))
     _regions(axes, x, y, sigma > beta)
     _mark_others(axes, others)
     if with_catalogue:
@@ -96,20 +96,20 @@ def draw_plane(
     axes.set_title("a stiffer wall lies further down and to the left")
 
 
-def _limit(device: Device) -> Exact:
+def largest_spring_of(device: Device) -> Exact:
     """The largest passive stiffness, exactly: there the smaller of β and σ is ½."""
     point = plane_point(device, 1)
     assert isinstance(point.dry, Exact)
     return Exact(2 * min(point.viscous.fraction, point.dry.fraction))
 
 
-def _corner(device: Device) -> tuple[float, float]:
+def place_at_limit(device: Device) -> tuple[float, float]:
     """(β, σ) at the largest passive stiffness."""
-    point = plane_point(device, _limit(device))
+    point = plane_point(device, largest_spring_of(device))
     return float(point.viscous), float(point.dry)
 
 
-def _span(*values: float) -> tuple[float, float]:
+def ends_around(*values: float) -> tuple[float, float]:
     """Ends of an axis around ½ and these values."""
     low, high = min(0.5, *values), max(0.5, *values)
     return min(low / 6, 0.05), max(high * 8, 5.0)
@@ -169,29 +169,31 @@ def _line(
 
 def _others(device: Device) -> list[Device]:
     """The devices of the catalogue that have a line of their own in the plane."""
-    mine = _corner(device), _limit(device)
-    return [other for other in _complete() if (_corner(other), _limit(other)) != mine]
+    mine = place_at_limit(device), largest_spring_of(device)
+    return [
+        other for other in complete_devices() if (place_at_limit(other), largest_spring_of(other)) != mine
+    ]
 
 
 def _mark_others(axes: Axes, others: list[Device]) -> None:
     """Where they are at their largest passive stiffness."""
     for other in others:
-        k = number(float(_limit(other)))
-        axes.plot(*([v] for v in _corner(other)), "s", color=GREY, ms=5, gid="catalogue")
+        k = number(float(largest_spring_of(other)))
+        axes.plot(*([v] for v in place_at_limit(other)), "s", color=GREY, ms=5, gid="catalogue")
         axes.annotate(
             f"{other.name} at {k} {quantity_unit('stiffness', other.motion)}",
-            _corner(other), (7, 5), textcoords="offset points", fontsize=7.5, color=GREY,
+            place_at_limit(other), (7, 5), textcoords="offset points", fontsize=7.5, color=GREY,
         )  # fmt: skip
 
 
 def _count_unknown(axes: Axes) -> None:
-    left_out = len(catalogue.names()) - len(list(_complete()))
+    left_out = len(catalogue.names()) - len(list(complete_devices()))
     if left_out:
         unknown = low_index("b, T, f_c or Δ is unpublished")
         note(axes, f"{left_out} devices of the catalogue have no place here: {unknown}.")
 
 
-def _complete() -> Iterator[Device]:
+def complete_devices() -> Iterator[Device]:
     """The catalogue's devices whose b, T, f_c and Δ are all published."""
     for name in catalogue.names():
         known = catalogue.entry(name).known()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from zwidth.loop.trace import UNITS
-from zwidth.plots.style import BLUE, GREY, LOOK, ORANGE, PURPLE, RED, new_figure, scale, verbatim
+from zwidth.plots.style import BLUE, GREY, LOOK, ORANGE, PURPLE, RED, heading, new_figure, scale, verbatim
 from zwidth.plots.trace import thinned
 
 if TYPE_CHECKING:
@@ -38,7 +37,7 @@ def recording_figure(data: xr.Dataset) -> Figure:
     draw_read_position(above, data)
     draw_given_force(middle, data)
     draw_recorded_lateness(below, data)
-    above.set_title(verbatim("\n".join(wrap(str(data.attrs["title"]), 100)[:2])))
+    heading(above, verbatim(str(data.attrs["title"])))
     below.set_xlabel(f"time [{_time(data)[1]}]")
     return figure
 

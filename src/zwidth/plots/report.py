@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import ceil
-from textwrap import fill
 from typing import Any
 
 from matplotlib import rc_context
@@ -19,13 +17,10 @@ from zwidth.plots.criterion import draw_criterion
 from zwidth.plots.plane import draw_plane, has_plane
 from zwidth.plots.scene import draw_scene
 from zwidth.plots.storage import draw_storage
-from zwidth.plots.style import LOOK, OUTCOME, new_figure, shown_name
+from zwidth.plots.style import LOOK, OUTCOME, new_figure, page_heading, shown_name
 from zwidth.plots.witness import draw_witness
 from zwidth.rendering import VirtualCoupling
 from zwidth.scene import Scene
-
-_WIDTH = 125
-"""Characters of the heading on one line."""
 
 Draw = Callable[[Figure, SubplotSpec, Any], None]
 
@@ -42,17 +37,10 @@ def check_figure(verdict: Verdict) -> Figure:
     for k, draw in enumerate(panels):
         last_alone = k == len(panels) - 1 and k % 2 == 0
         draw(figure, grid[k // 2, :] if last_alone else grid[k // 2, k % 2], verdict)
-    figure.suptitle(
-        _lines(f"{shown_name(verdict.device)}: {verdict.outcome}. {verdict.claim}"),
-        x=0.01, ha="left", fontsize=11, color=OUTCOME[verdict.outcome], parse_math=False,
-    )  # fmt: skip
+    text = f"{shown_name(verdict.device)}: {verdict.outcome}. {verdict.claim}"
+    page_heading(figure, text, color=OUTCOME[verdict.outcome])
     figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.08, hspace=0.06, wspace=0.05)
     return figure
-
-
-def _lines(text: str) -> str:
-    """Text on as few lines as the page allows, of about the same length."""
-    return fill(text, len(text) // ceil(len(text) / _WIDTH) + 12)
 
 
 @rc_context(LOOK)

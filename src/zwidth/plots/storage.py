@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator
 
 from zwidth.errors import InputError
-from zwidth.plots.style import BLUE, LOOK, OUTCOME, SKY, label, new_figure, number, scale
+from zwidth.plots.style import BLUE, LOOK, OUTCOME, SKY, heading, label, new_figure, number, scale
 
 if TYPE_CHECKING:
     from zwidth.passivity.storage import AvailableStorage
@@ -79,5 +79,5 @@ def draw_storage(axes: Axes, found: StorageFunction) -> None:
     axes.set_xlabel(f"{label('position', found.motion, unit=length_unit)}, a tick for each count")
     axes.set_ylabel(f"can be taken out, at most V [{energy_unit}]")
     most = f"{number(float(joules * high.max()))} {energy_unit}"
-    axes.set_title(f"never more than {most} can be taken out", color=OUTCOME["passive"])
+    heading(axes, f"never more than {most} can be taken out", color=OUTCOME["passive"])
     axes.legend(loc="upper left")

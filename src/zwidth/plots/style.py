@@ -7,12 +7,15 @@ no meaning hangs on a colour alone.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import floor, isfinite, log10
+from math import ceil, floor, isfinite, log10
 from re import sub
+from textwrap import fill
 from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import text_to_path
 
 from zwidth.device import Device
 from zwidth.passivity.outcome import TOLD
@@ -28,6 +31,16 @@ OUTCOME = {outcome: told.colour for outcome, told in TOLD.items()}
 """Colour of each outcome; the word always stands beside it."""
 
 LOOK: Any = {
+    "figure.facecolor": "white",  # a page of its own, also where everything around it is dark
+    "savefig.facecolor": "auto",
+    "axes.facecolor": "white",
+    "axes.edgecolor": BLACK,
+    "axes.titlecolor": BLACK,
+    "text.color": BLACK,
+    "legend.labelcolor": BLACK,
+    "xtick.color": BLACK,
+    "ytick.color": BLACK,
+    "axes.formatter.useoffset": False,
     "font.size": 9,
     "axes.titlesize": 10,
     "axes.titlelocation": "left",
@@ -107,6 +120,45 @@ def shown_name(device: Device) -> str:
 def verbatim(text: str) -> str:
     """Text of others as it is drawn: nothing in it is mathematics, and nothing obeyed."""
     return printable(text).replace("$", r"\$")
+
+
+def heading(axes: Axes, text: str, size: float = 10.0, **style: Any) -> None:
+    """A title that ends where its place in the figure does, on as many lines as that takes."""
+    figure: Any = axes.figure
+    place = axes.get_subplotspec()
+    box = axes.get_position() if place is None else place.get_position(figure)
+    axes.set_title(broken(text, box.width * figure.bbox.width / figure.dpi, size), fontsize=size, **style)
+
+
+def page_heading(figure: Figure, text: str, size: float = 11.0, color: str = BLACK) -> None:
+    """A title over all of a figure, as it is written, on as many lines as the width takes."""
+    lines = broken(text, 0.97 * figure.get_figwidth(), size)
+    figure.suptitle(lines, x=0.01, ha="left", fontsize=size, color=color, parse_math=False)
+
+
+def broken(text: str, width: float, size: float = 10.0) -> str:
+    """Text on as few lines as a width [inches] allows at a size [points]; its own breaks stay."""
+    return "\n".join(_broken(line, 72 * width, size) for line in text.splitlines())
+
+
+def _broken(line: str, room: float, size: float) -> str:
+    lines = max(1, ceil(_long(line, size) / room))
+    for count in range(lines, lines + 3):
+        split = fill(line, max(1, ceil(len(line) / count) + 8)) if count > 1 else line
+        if all(_long(part, size) <= room for part in split.splitlines()):
+            break
+    return split
+
+
+def _long(text: str, size: float) -> float:
+    """How wide it is drawn [points]."""
+    wide, _, _ = text_to_path.get_text_width_height_descent(text, FontProperties(size=size), False)
+    return float(wide)
+
+
+def as_written(text: object) -> str:
+    """A description with its units as people write them: "30 N*m" with a point, "kg*m^2" with a raised 2."""
+    return str(text).replace("*", "·").replace("^2", "²")
 
 
 def note(axes: Axes, text: str) -> None:

@@ -22,6 +22,8 @@ from zwidth.plots.style import (
     PURPLE,
     RED,
     SKY,
+    as_written,
+    heading,
     new_figure,
     number,
     scale,
@@ -57,7 +59,7 @@ def trace_figure(trace: xr.Dataset) -> Figure:
     draw_position(above, trace)
     draw_forces(middle, trace)
     draw_energies(below, trace)
-    above.set_title(_title(trace))
+    heading(above, _title(trace))
     below.set_xlabel(f"time [{_time(trace)[1]}]")
     return figure
 
@@ -142,7 +144,7 @@ def draw_energies(axes: Axes, trace: xr.Dataset) -> None:
     if book.active:
         out = book.extracted
         f, u = scale([out], "J")
-        axes.set_title(f"the hand got out {number(out * f)} {u}: this loop is active", color=RED)
+        heading(axes, f"the hand got out {number(out * f)} {u}: this loop is active", color=RED)
 
 
 def _legend(axes: Axes) -> None:
@@ -172,7 +174,7 @@ def _time(trace: xr.Dataset) -> tuple[Array, str]:
 
 def _title(trace: xr.Dataset) -> str:
     about = trace.attrs
-    return verbatim(f"{about['device']}, {about['environment']}\n{about['operator']}")
+    return verbatim(f"{about['device']}, {as_written(about['environment'])}\n{as_written(about['operator'])}")
 
 
 def _cycle(count: int) -> list[str]:

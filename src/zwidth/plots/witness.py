@@ -19,7 +19,7 @@ from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
 from zwidth.plots.cycle import draw_cycle
 from zwidth.plots.replay import WHOLE, Replay, replay
-from zwidth.plots.style import BLUE, GREY, LOOK, PURPLE, RED, label, new_figure, quantity_text, scale
+from zwidth.plots.style import BLUE, GREY, LOOK, PURPLE, RED, heading, label, new_figure, quantity_text, scale
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def draw_motion(rows: Sequence[Axes], found: Witness | Gain) -> None:
     _positions(rows[0], found, played, times)
     _forces(rows[1], found, played, times)
     _energy(rows[2], played, times)
-    rows[0].set_title(_title(found, played.caption), color=RED)
+    heading(rows[0], _title(found, played.caption), color=RED)
     rows[2].set_xlabel(f"time t [{unit}]")
     rows[0].set_xlim(times[0], times[-1])
 

@@ -15,7 +15,7 @@ from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from zwidth.arms.held import in_words
 from zwidth.errors import InputError
 from zwidth.passivity.workspace import Workspace
-from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, RED, new_figure, note, verbatim
+from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, RED, new_figure, note, page_heading, verbatim
 from zwidth.quantity.text import unit_text
 
 _ARROWS = 14
@@ -40,10 +40,7 @@ def workspace_figure(space: Workspace, variable: str | None = None) -> Figure:
     figure = new_figure(6.4, 5.0)
     axes = figure.add_subplot()
     draw_workspace(axes, space, variable)
-    figure.suptitle(
-        f"{space.arm.name}: {space.outcome}", x=0.01, ha="left", fontsize=11, color=OUTCOME[space.outcome],
-        parse_math=False,
-    )  # fmt: skip
+    page_heading(figure, f"{space.arm.name}: {space.outcome}", color=OUTCOME[space.outcome])
     figure.supxlabel(
         shorten(_covers(space), _LONGEST, placeholder=" …"), x=0.01, ha="left", fontsize=8, color=GREY,
         parse_math=False,

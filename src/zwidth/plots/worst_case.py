@@ -24,6 +24,7 @@ from zwidth.plots.style import (
     GREY,
     LOOK,
     ORANGE,
+    heading,
     label,
     new_figure,
     number,
@@ -82,9 +83,8 @@ def draw_worst_case(axes: Axes, device: Device, stiffness: RealLike, span: RealL
     axes.set_xlabel(f"way out in one sample λ [{metres}]")
     axes.set_ylabel(label("energy", text="beyond an ideal spring,", unit=joules).replace(" W ", " J* "))
     unit = quantity_unit("stiffness", device.motion)
-    axes.set_title(
-        f"{shown_name(device)}, K = {number(float(Exact(stiffness)))} {unit}: {region}", parse_math=False
-    )
+    text = f"{shown_name(device)}, K = {number(float(Exact(stiffness)))} {unit}: {region}"
+    heading(axes, text, parse_math=False)
     axes.margins(y=0.12)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2)
 

@@ -29,6 +29,7 @@ from zwidth.plots.style import (
     PURPLE,
     RED,
     SKY,
+    heading,
     label,
     new_figure,
     note,
@@ -95,15 +96,16 @@ def z_width_figure(found: xr.Dataset) -> Figure:
     figure = new_figure(12.4 if near is not None else 8.0, 4.6)
     axes = figure.subplots(1, 2 if near is not None else 1, squeeze=False)[0]
     draw_z_width(axes[0], found)
-    axes[0].set_title(f"{found.attrs['device']}: stable with a known hand", parse_math=False)
+    heading(axes[0], f"{found.attrs['device']}: stable with a known hand", parse_math=False)
     note(axes[0], _free(found))
     if near is not None:
         draw_z_width(axes[1], near)
         drawn = _speeds(axes[1], near)
-        axes[1].set_title(
+        heading(
+            axes[1],
             "close-up: how fast a hand may be before it gains energy"
             if drawn
-            else "close-up of what is passive"
+            else "close-up of what is passive",
         )
     _legend_beside(figure)
     return figure

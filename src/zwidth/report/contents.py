@@ -120,7 +120,8 @@ def _advice(verdict: Answer) -> Section:
     """The smallest changes that would do, or how much of each number is to spare."""
     advice = getattr(verdict, "advice", ())
     slack = any(one.kind == "slack" for one in advice)
-    _, useful, useless = in_lines(advice, slack)
+    told = in_lines(advice, slack)
+    useful, useless = told.useful, told.useless
     elsewhere = [one.text for one in getattr(verdict, "stiffness_elsewhere", ())]
     lines = [*useful, *elsewhere, *([useless] if useless else [])]
     title = "How far each number may go" if slack else "What to change, any one of"

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from zwidth.device import Device
 from zwidth.environment import BackwardDifference, Environment, OnePole, VelocityFilter, Window
@@ -27,6 +27,28 @@ from zwidth.specification.read import WITH_LAWS, Specification, specified, table
 from zwidth.specification.scenes import ELEMENTS
 
 
+class Tables(NamedTuple):
+    """The tables of a loop: texts with units, words, flags, lists and tables in tables."""
+
+    device: dict[str, object]
+    environment: dict[str, object]
+    laws: tuple[dict[str, object], ...]
+
+
+def tables(device: Device, environment: Environment) -> Tables:
+    """The loop as the tables that `written` writes, each quantity a text with its unit.
+
+    Raises
+    ------
+    InputError
+        If a specification has no words for the environment or a law.
+    """
+    chain = getattr(environment, "laws", ())
+    inner = environment.environment if chain else environment  # type: ignore[attr-defined]
+    laws = tuple(_law(link, LAWS, device.motion) for link in chain)
+    return Tables(_device(device), _environment(inner, device.motion), laws)
+
+
 def written(device: Device, environment: Environment) -> str:
     """The loop as a specification in TOML.
 
@@ -40,11 +62,10 @@ def written(device: Device, environment: Environment) -> str:
     InputError
         If a specification has no words for it: an environment or a law of one's own.
     """
-    chain = getattr(environment, "laws", ())
-    inner = environment.environment if chain else environment  # type: ignore[attr-defined]
-    tables = [("[device]", _device(device)), ("[environment]", _environment(inner, device.motion))]
-    tables += [("[[law]]", _law(link, LAWS, device.motion)) for link in chain]
-    text = "\n".join(line for head, values in tables for line in (head, *_lines(values), ""))
+    values = tables(device, environment)
+    rows = [("[device]", values.device), ("[environment]", values.environment)]
+    rows += [("[[law]]", law) for law in values.laws]
+    text = "\n".join(line for head, row in rows for line in (head, *_lines(row), ""))
     again = parsed(text)
     if (again.device.replace(name=device.name), again.environment) != (device, environment):
         raise InputError(f"a specification cannot say all of this: {environment.describe(device.motion)}")
@@ -59,9 +80,9 @@ def parsed(text: str, name: str = "specification") -> Specification:
     InputError
         If it is no specification of a loop, or anything in it cannot be used.
     """
-    tables = tables_of(text, name, WITH_LAWS)
-    loop = specified({kind: table for kind, table in tables.items() if kind != "law"})
-    row = tables.get("law")
+    found = tables_of(text, name, WITH_LAWS)
+    loop = specified({kind: table for kind, table in found.items() if kind != "law"})
+    row = found.get("law")
     return Specification(loop.device, with_laws(loop.environment, row, None, loop.device.motion))
 
 

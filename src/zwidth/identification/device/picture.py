@@ -18,7 +18,7 @@ from zwidth.identification.device.numbers import BINS, IdentifiedNumbers
 from zwidth.identification.device.pulses import PIECES, pulse
 from zwidth.identification.device.table import rows, title
 from zwidth.plots.files import save_figure
-from zwidth.plots.style import BLACK, BLUE, GREY, LOOK, ORANGE, RED, low_index, new_figure
+from zwidth.plots.style import BLACK, BLUE, GREY, LOOK, ORANGE, RED, low_index, new_figure, page_heading
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import quantity_unit
 
@@ -65,7 +65,7 @@ def identification_figure(identified: IdentifiedNumbers) -> Figure:
     left = figure.add_subplot(lower[1])
     _left(left, identified)
     _histogram(figure.add_subplot(lower[2], sharey=left), identified)
-    figure.suptitle(title(identified), x=0.01, ha="left", fontsize=11, parse_math=False)
+    page_heading(figure, title(identified))
     figure.set_layout_engine("constrained", w_pad=0.06, h_pad=0.08, hspace=0.05, wspace=0.04)
     return figure
 
@@ -252,7 +252,7 @@ def _numbers(axes: Axes, identified: IdentifiedNumbers) -> None:
         way = row.name.strip() if row.name.startswith(" ") else ""
         axes.text(0.0, y, f"{low_index(row.symbol)} {way}", va="top", color=BLACK)
         axes.text(0.2, y, f"{row.value} {row.unit}", va="top", color=BLACK, fontweight="bold")
-        axes.text(0.56, y, row.interval, va="top", color=GREY)
+        axes.text(0.64, y, row.interval, va="top", color=GREY)
     below = 0.97 - 0.085 * len(table) - 0.04
     milliseconds = 1e3 * identified.pulse_length
     text = [

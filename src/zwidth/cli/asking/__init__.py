@@ -1,0 +1,1 @@
+"""What `zwidth new` asks, and the files that it makes of the answers."""

@@ -1,0 +1,108 @@
+"""The file of a device, made of what a person knows of it, and of what the motor's data sheet says."""
+
+from __future__ import annotations
+
+import shlex
+from math import floor, inf, log10
+from pathlib import Path
+
+from zwidth.cli.asking import motor
+from zwidth.cli.asking.device_questions import (
+    MOTION,
+    NEEDED,
+    QUESTIONS,
+    RADIUS,
+    encoder,
+    forces,
+    inertia,
+    loop,
+    motion_of,
+)
+from zwidth.cli.asking.encoder import read_encoder
+from zwidth.cli.asking.questions import Asker, Question
+from zwidth.cli.asking.written import Row, Written, table
+from zwidth.device import Device
+from zwidth.environment import Wall
+from zwidth.errors import InputError
+from zwidth.passivity.check import check
+from zwidth.specification.read import build_device, tables_of
+
+__all__ = ["QUESTIONS", "described"]
+
+_HEAD = "As zwidth new device was told. What was not measured is an estimate: zwidth identify measures it."
+
+
+def described(ask: Asker, path: Path) -> Written:
+    """Ask about a device; its file, and what to do next.
+
+    Raises
+    ------
+    InputError
+        If an answer cannot be used, or one is missing that must be given.
+    """
+    motion = _motion(ask)
+    rows = [Row("motion", motion), _row(ask, inertia(motion)), _encoder(ask, motion)]
+    if motion == "rotary" and (radius := ask(RADIUS)) is not None:
+        rows.append(Row(RADIUS.key, radius))
+    rows += [_row(ask, question) for question in loop(motion)]
+    measured = {question.key: _row(ask, question) for question in forces(motion)}
+    sheet = motor.derived(ask, motion, [key for key, row in measured.items() if row.value is None])
+    rows += [sheet.get(key, row) for key, row in measured.items()]
+    ask.finish("a device")
+    text = table("device", _HEAD, rows)
+    return Written(text, _next(text, [row.key for row in rows if row.value is None], path))
+
+
+def _motion(ask: Asker) -> str:
+    turning = [key for key in ("inertia", "handle_radius", "gear_ratio") if key in ask]
+    sliding = [key for key in ("mass", "drum_radius") if key in ask]
+    if "motion" not in ask and bool(turning) != bool(sliding):
+        return "rotary" if turning else "linear"
+    while True:
+        answer = ask(MOTION)
+        if answer is not None:
+            return motion_of(answer)
+        if not ask.in_terminal:
+            raise InputError("whether it turns or slides must be known: --motion rotary, or --motion linear")
+
+
+def _row(ask: Asker, question: Question) -> Row:
+    answer = ask(question)
+    return Row(question.key, answer, question.unknown if answer is None else "")
+
+
+def _encoder(ask: Asker, motion: str) -> Row:
+    question = encoder(motion)
+    answer = ask(question)
+    return Row("resolution", None, question.unknown) if answer is None else read_encoder(answer, motion)
+
+
+def _next(text: str, unknown: list[str], path: Path) -> list[str]:
+    """What to type now: a check, or what must be measured before it."""
+    name = shlex.quote(str(path))
+    missing = [key for key in NEEDED if key in unknown]
+    if missing:
+        guesses = {"rate": '--rate "1 kHz"', "damping": "--damping 0.1"}
+        given = " ".join(guesses[key] for key in missing)
+        return [
+            *(f"measure: {_MEASURE[key]}" for key in missing),
+            f"to try what if, with a guess: zwidth check {name} {given} --stiffness 100",
+        ]
+    device = build_device(tables_of(text, path.name, ("device",))["device"])
+    return [f"next: zwidth check {name} --stiffness {_stiffness(device)}"]
+
+
+_MEASURE = {
+    "rate": "the rate of your loop; zwidth doctor says what this machine can keep",
+    "damping": "log position and force while a hand moves the device; zwidth plan says how, and\n"
+    "  zwidth identify session.csv -o my-device.toml finds the friction in it",
+}
+
+
+def _stiffness(device: Device) -> str:
+    """A stiffness to begin with: near the largest passive one, cut to two digits."""
+    largest = getattr(check(device, Wall(1)), "max_stiffness", None)
+    if largest is None or not 0 < largest < inf:
+        return "100"
+    unit = 10.0 ** (floor(log10(largest)) - 1)
+    return f"{floor(largest / unit) * unit:g}"

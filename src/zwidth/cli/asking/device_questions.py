@@ -1,0 +1,163 @@
+"""What `zwidth new device` asks: what a person knows of a device, and why it matters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from zwidth.cli.asking import motor
+from zwidth.cli.asking.encoder import read_encoder
+from zwidth.cli.asking.questions import Question
+from zwidth.device import Device
+from zwidth.device.rotary import ROTARY
+from zwidth.errors import InputError
+from zwidth.quantity.parameter import parameters_of, read_number
+from zwidth.specification.read import question_time
+
+NEEDED = ("rate", "damping")
+"""Without them nothing is proved: who leaves them out must say so."""
+
+
+def motion_of(answer: str) -> str:
+    """ "rotary" or "linear", in these words or in others.
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
+    words = {"rotary": "rotary", "turns": "rotary", "linear": "linear", "slides": "linear"}
+    if answer.lower() not in words:
+        raise InputError(f'it turns or slides: write rotary or linear, got "{answer[:40]}"')
+    return words[answer.lower()]
+
+
+MOTION = Question(
+    "motion",
+    "Does the handle turn, like a wheel or a knob, or slide? rotary or linear",
+    "It decides the units: torque and angle, or force and way. A short lever, seen at the hand, slides.",
+    motion_of,
+    "It must be known: move the handle.",
+    needed=True,
+)
+
+
+def _check(key: str, motion: str) -> Callable[[str], object]:
+    """Reads an answer as the device itself would."""
+
+    def check(answer: str) -> object:
+        if key in ROTARY:
+            why = "leave it out if unknown"
+            return read_number(answer, ROTARY[key], key, uncertain=True, bound="> 0", why=why, motion=motion)
+        if key == "rate":
+            return Device(damping=0, rate=answer)
+        own = parameters_of(Device)[key]
+        number = read_number(
+            answer, own.quantity, key, uncertain=True, bound=own.bound, why=own.why, motion=motion
+        )
+        if key == "delay":
+            question_time(answer, number, key)
+        return number
+
+    return check
+
+
+def _question(motion: str, key: str, ask: str, why: str, unknown: str) -> Question:
+    return Question(key, ask, why, _check(key, motion), unknown, key in NEEDED)
+
+
+RADIUS = _question(
+    "rotary",
+    "handle_radius",
+    "From the axis to the hand? such as 7 cm; Enter to keep torque and angle, as for a wheel",
+    "With it walls are in newtons and metres at the hand; without it in torque and angle.",
+    "Left out: torque and angle, at the axis.",
+)
+
+
+def encoder(motion: str) -> Question:
+    """What one count of the encoder is."""
+    ask = (
+        "Encoder, at the axis of the handle? such as 65536 counts/turn, 2000 lines, 14 bit or 0.09 deg"
+        if motion == "rotary"
+        else "One step of the encoder, at the handle? such as 22.4 um"
+    )
+    return Question(
+        "encoder",
+        ask,
+        "Each step of the reading is a step of the force, and dry friction must pay for it.",
+        lambda answer: read_encoder(answer, motion),
+        "Left out: a verdict takes it as 0, an ideal encoder, and says so; see its data sheet.",
+    )
+
+
+def inertia(motion: str) -> Question:
+    """How heavy it is."""
+    key, ask = (
+        ("inertia", "Moment of inertia about the axis? such as 0.006 kg*m^2")
+        if motion == "rotary"
+        else ("mass", "Mass that the hand feels at the handle? such as 36 g")
+    )
+    return _question(
+        motion,
+        key,
+        ask,
+        "No proof depends on it; zwidth simulate needs it to move the device.",
+        "Left out: zwidth identify finds it in a log.",
+    )
+
+
+def loop(motion: str) -> tuple[Question, ...]:
+    """How often, how late, and what friction pays for it."""
+    unit = "N*m*s/rad" if motion == "rotary" else "N*s/m"
+    return (
+        _question(
+            motion,
+            "rate",
+            "Samples per second of the force loop? such as 1 kHz",
+            "The force is held from one sample to the next; the longer, the more energy it gives out.",
+            "Nothing is proved without it: zwidth doctor says what rate this machine can keep.",
+        ),
+        _question(
+            motion,
+            "delay",
+            "Time from reading the position to giving the force? such as 0.3 ms",
+            "A late force gives out energy, as a low rate does.",
+            "Left out: a verdict takes it as 0, and says so; zwidth serve measures it.",
+        ),
+        _question(
+            motion,
+            "damping",
+            f"Viscous friction of the device, measured? such as 0.1 {unit}",
+            "It pays for the wall: without delay a spring may be as stiff as 2 b/T.",
+            "Nothing is proved without it: zwidth identify finds it in a log of the device moved by hand.",
+        ),
+    )
+
+
+def forces(motion: str) -> tuple[Question, ...]:
+    """What else may be known; else the motor's data sheet is asked for."""
+    turns = motion == "rotary"
+    return (
+        _question(
+            motion,
+            "coulomb_friction",
+            f"Dry friction, measured: what keeps it moving slowly? such as 0.1 {'N*m' if turns else 'N'}",
+            "It pays for the steps of the encoder: it must be K Δ/2 or more.",
+            "Not measured.",
+        ),
+        _question(
+            motion,
+            "force_limit",
+            f"Largest {'torque' if turns else 'force'} at the handle? such as {'2 N*m' if turns else '5 N'}",
+            "It says how hard a wall can be at all; no proof depends on it.",
+            "Not known.",
+        ),
+    )
+
+
+def _all(motion: str) -> tuple[Question, ...]:
+    return MOTION, inertia(motion), encoder(motion), *loop(motion), *forces(motion)
+
+
+QUESTIONS = (*_all("rotary"), RADIUS, *_all("linear"), *motor.QUESTIONS)
+"""Everything that may be asked; those of either motion twice."""

@@ -1,0 +1,59 @@
+"""One count of an encoder, as data sheets say it: counts, lines, bits, or an angle or a length."""
+
+from __future__ import annotations
+
+import re
+
+from zwidth.cli.asking.written import Row
+from zwidth.device import Device
+from zwidth.device.rotary import rotary
+from zwidth.errors import InputError
+from zwidth.quantity.units import parse_number
+
+LINES = 4
+"""Counts that quadrature decoding makes of one line."""
+
+_LARGEST_BITS = 40
+
+_COUNTED = re.compile(
+    r"(?P<number>[^a-z]+?)\s*(?P<unit>counts?|cpr|lines?|ppr|bits?)?(\s*(/|per)\s*(turn|rev))?", re.IGNORECASE
+)
+
+
+def read_encoder(answer: str, motion: str) -> Row:
+    """The row of the file that says the size of one count.
+
+    Raises
+    ------
+    InputError
+        If the answer is no such size.
+    """
+    if motion == "linear":
+        if re.search(r"count|cpr|line|ppr|bit", answer, re.IGNORECASE):
+            raise InputError(
+                f'of a device that slides the step is a length, got "{answer[:40]}"; with N counts in a turn '
+                "of a drum of radius r it is 2 π r/N, of 10 mm and 2000 counts 31.4 um"
+            )
+        Device(damping=0, rate=1, resolution=parse_number(answer, "m", "resolution"))
+        return Row("resolution", answer)
+    counted = _COUNTED.fullmatch(answer)
+    if counted is None:
+        rotary(damping=0, rate=1, resolution=parse_number(answer, "rad", "resolution"))
+        return Row("resolution", answer)
+    counts, remark = _counts(counted["number"], (counted["unit"] or "counts").lower(), answer)
+    rotary(damping=0, rate=1, counts_per_turn=counts)
+    return Row("counts_per_turn", counts, remark)
+
+
+def _counts(number: str, unit: str, answer: str) -> tuple[str, str]:
+    """Counts in a turn, and what was made of the answer."""
+    value = parse_number(number, "1", "encoder").fraction
+    if unit.startswith("bit"):
+        if value.denominator != 1 or not 0 < value <= _LARGEST_BITS:
+            raise InputError(
+                f'an encoder has a whole number of bits, at most {_LARGEST_BITS}, got "{answer[:40]}"'
+            )
+        return str(2 ** int(value)), f"{value} bits: 2 to the power of {value} counts in a turn"
+    if unit.startswith(("line", "ppr")):
+        return f"{float(LINES * value):.12g}", f"{number.strip()} lines in a turn, {LINES} counts each"
+    return f"{float(value):.12g}", ""

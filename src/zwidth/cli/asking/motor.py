@@ -1,0 +1,124 @@
+"""Friction and largest force at the handle, from the data sheet of the motor:
+
+    τ_c = n k_t I_0,  F_max = n k_t I_max   of a handle that turns, n turns of the motor in one of its own
+    f_c = k_t I_0/r,  F_max = k_t I_max/r   of one that slides, pulled from a drum of radius r
+
+with the torque constant k_t, which is 1/k_v of a speed constant k_v in rad/(V s), the no-load current I_0 and
+the largest current I_max.  k_t I_0 is all friction at the no-load speed, viscous friction too: an estimate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from fractions import Fraction
+from typing import NamedTuple
+
+from zwidth.cli.asking.questions import Asker, Question
+from zwidth.cli.asking.written import Row
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.units import parse_number
+
+_UNITS = {"torque_constant": ("N*m/A", "rad/V/s"), "gear_ratio": ("1",), "drum_radius": ("m",)}
+_CURRENT_OR_TORQUE = ("A", "N*m")
+
+_MEASURE = (
+    "A verdict takes it as 0, the careful side, and says so: hang weights on the handle until it just "
+    "keeps moving."
+)
+_LIMIT = "Nothing but the largest force depends on it."
+
+
+class _Read(NamedTuple):
+    """A positive number, and which of the units it was given in."""
+
+    value: Fraction
+    unit: str
+
+
+def _read(key: str, answer: str) -> _Read:
+    units = _UNITS.get(key, _CURRENT_OR_TORQUE)
+    if not any(map(str.isalpha, answer)) and len(units) > 1:
+        raise InputError(f"{key} needs its unit, {' or '.join(units)}, got {answer[:40]}")
+    for unit in units:
+        try:
+            number = parse_number(answer, unit, key)
+            break
+        except InputError:
+            if unit == units[-1]:
+                parse_number(answer, units[0], key)  # says what was wrong
+    if number.fraction <= 0:
+        raise InputError(f"{key} must be > 0, got {number:g}; leave it out if unknown")
+    return _Read(number.fraction, unit)
+
+
+def _question(key: str, ask: str, why: str, unknown: str) -> Question:
+    return Question(key, ask, why, lambda answer: _read(key, answer), unknown)
+
+
+FRICTION = _question(
+    "motor_friction",
+    "Motor's data sheet: no-load current, or friction torque? such as 0.2 A or 5 mN*m",
+    "Friction at the handle is estimated of it: torque constant x no-load current x gear ratio.",
+    f"Left out. {_MEASURE}",
+)
+PEAK = _question(
+    "motor_peak",
+    "Motor's data sheet: largest current, or peak torque? such as 3.3 A or 0.2 N*m",
+    "The largest force follows: torque constant x current x gear ratio.",
+    f"Left out. {_LIMIT}",
+)
+CONSTANT = _question(
+    "torque_constant",
+    "Torque constant of the motor, or its speed constant? such as 0.06 N*m/A or 270 rpm/V",
+    "It makes a torque of the current.",
+    "Left out, and with it what follows from a current.",
+)
+RATIO = _question(
+    "gear_ratio",
+    "Turns of the motor in one turn of the handle? 1 where it is driven directly",
+    "Torque and friction at the handle are so many times those of the motor.",
+    "Not known, so nothing is taken from the motor's data sheet.",
+)
+RADIUS = _question(
+    "drum_radius",
+    "Radius of the drum or pulley on the motor's axis? such as 10 mm",
+    "The force at the handle is torque over radius.",
+    "Not known, so nothing is taken from the motor's data sheet.",
+)
+
+QUESTIONS = (FRICTION, PEAK, CONSTANT, RATIO, RADIUS)
+
+_OF = {"coulomb_friction": (FRICTION, _MEASURE), "force_limit": (PEAK, _LIMIT)}
+
+
+def derived(ask: Asker, motion: str, wanted: Collection[str]) -> dict[str, Row]:
+    """Of the keys that were not measured what the data sheet says, each as a row of the file."""
+    answers = {key: ask(_OF[key][0]) for key in wanted}
+    known = {key: _read(_OF[key][0].key, answer) for key, answer in answers.items() if answer is not None}
+    constant = ask(CONSTANT) if any(read.unit == "A" for read in known.values()) else None
+    if constant is None:
+        known = {key: read for key, read in known.items() if read.unit != "A"}
+    way = RATIO if motion == "rotary" else RADIUS
+    gear = ask(way) if known else None
+    rows = {key: Row(key, None, _OF[key][1]) for key in wanted}
+    if gear is not None:
+        for key, read in known.items():
+            rows[key] = _at_handle(key, read, answers[key] or "", constant or "", gear, motion)
+    return rows
+
+
+def _at_handle(key: str, read: _Read, answer: str, constant: str, gear: str, motion: str) -> Row:
+    factors = [answer]
+    torque = read.value
+    if read.unit == "A":
+        k = _read("torque_constant", constant)
+        torque *= k.value if k.unit == "N*m/A" else 1 / k.value
+        factors.insert(0, constant if k.unit == "N*m/A" else f"1/({constant})")
+    ratio = _read("gear_ratio" if motion == "rotary" else "drum_radius", gear).value
+    value, unit = (torque * ratio, "N*m") if motion == "rotary" else (torque / ratio, "N")
+    formula = f"{' x '.join(factors)} {'x' if motion == 'rotary' else '/'} {gear}"
+    estimate = (
+        ", at the no-load speed, part of it viscous: an estimate, measure it" if key != "force_limit" else ""
+    )
+    return Row(key, f"{float(Exact(value)):.6g} {unit}", f"{formula}, of the motor's data sheet{estimate}")

@@ -1,0 +1,60 @@
+"""The command `examples`: the sample files with a command for each, listed or copied into a folder."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from zwidth import samples
+from zwidth.cli.output import check_new, quiet_pipe
+from zwidth.errors import InputError
+from zwidth.specification.table import plain
+from zwidth.writing import writing_whole
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth examples`."""
+    parser.add_argument(
+        "folder", metavar="FOLDER", nargs="?", help="where to copy them to; made where it is missing"
+    )
+    parser.add_argument("--force", action="store_true", help="replace files that exist")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth examples`: 0."""
+    if arguments.folder is None:
+        with quiet_pipe():
+            print("\n\n".join(map(_told, samples.EXAMPLES)))
+            print("\nCopy them into a folder:\n  zwidth examples FOLDER")
+        return 0
+    folder = Path(arguments.folder)
+    copy_to(folder, arguments.force)
+    with quiet_pipe():
+        print(f"written: {len(samples.names())} files in {plain(str(folder), 100)}")
+        print(f"next: {'' if folder == Path() else 'there, '}{samples.EXAMPLES[0].command}")
+    return 0
+
+
+def copy_to(folder: Path, force: bool) -> None:
+    """Copy every sample into a folder, all of them or none.
+
+    Raises
+    ------
+    InputError
+        If one exists and `force` is False, or the folder cannot be made.
+    """
+    try:
+        folder.mkdir(exist_ok=True)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(f"{plain(str(folder), 100)} is no folder and cannot be made one: {reason}") from None
+    for name in samples.names():
+        check_new(folder / name, force)
+    for name in samples.names():
+        with writing_whole(folder / name) as file:
+            file.write(samples.path(name).read_bytes())
+
+
+def _told(example: samples.Example) -> str:
+    """The meaning, the files, the command."""
+    return f"{example.meaning}\n  {', '.join(example.files)}\n  {example.command}"

@@ -1,0 +1,78 @@
+"""The command `explore`: a loop on a page, every parameter on a slider, the verdict beside it."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import webbrowser
+from threading import Event
+
+from zwidth.cli.options import Once
+from zwidth.cli.output import quiet_pipe
+from zwidth.errors import InputError
+from zwidth.specification.table import quoted
+
+HOST = "127.0.0.1"
+USUAL_PORT = 5007
+"""Where the page is if nothing else is there."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth explore`."""
+    parser.usage = (
+        "%(prog)s [DEVICE] [ENVIRONMENT] [--port N] [--address ADDRESS] [--token TOKEN] [--no-browser]"
+    )
+    parser.add_argument(
+        "sources",
+        metavar="SOURCE",
+        nargs="*",
+        help="device of the catalogue, or TOML file with tables [device], [environment], [[law]]",
+    )
+    page = parser.add_argument_group("page")
+    page.add_argument(
+        "--port", metavar="N", action=Once, help="port of the page (default: 5007, or a free one)"
+    )
+    page.add_argument(
+        "--address",
+        metavar="ADDRESS",
+        action=Once,
+        help="address to listen to (default: 127.0.0.1, this machine alone); 0.0.0.0 is every one, with a token",
+    )
+    page.add_argument(
+        "--token", metavar="TOKEN", action=Once, help="that a browser must have, 16 characters or more"
+    )
+    page.add_argument("--no-browser", action="store_true", help="say the address, and open no browser")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth explore`: until Ctrl-C."""
+    from zwidth.explorer.library import need_libraries
+
+    port = _port(arguments.port)
+    need_libraries()
+    from zwidth.explorer.serving import serve_explorer
+    from zwidth.explorer.starts import from_sources
+
+    state = from_sources(arguments.sources)
+    given = {"address": arguments.address or HOST, "token": arguments.token}
+    try:
+        page = serve_explorer(state, USUAL_PORT if port is None else port, **given)
+    except InputError:
+        if port is not None:
+            raise
+        page = serve_explorer(state, 0, **given)
+    with page:
+        with quiet_pipe(sys.stderr):
+            print(f"exploring at {page.address} ; Ctrl-C ends it", file=sys.stderr, flush=True)
+        if not arguments.no_browser:
+            webbrowser.open(page.address)
+        Event().wait()
+    return 0
+
+
+def _port(typed: str | None) -> int | None:
+    if typed is None:
+        return None
+    if not typed.isdecimal() or not 0 <= int(typed) < 65536:
+        raise InputError(f"--port is a port from 1 to 65535, or 0 for any that is free, got {quoted(typed)}")
+    return int(typed)

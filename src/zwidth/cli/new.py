@@ -1,0 +1,56 @@
+"""The command `new`: the file of a device, or of what it renders, question by question."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from zwidth.cli.asking import device, environment
+from zwidth.cli.asking.questions import Asker
+from zwidth.cli.options import Once
+from zwidth.cli.output import check_new, print_text, say_written
+from zwidth.errors import InputError
+from zwidth.specification.table import quoted, suggestion
+from zwidth.writing import writing_whole
+
+_KINDS = {"device": device, "environment": environment}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth new`."""
+    parser.usage = "%(prog)s device|environment [FILE] [--KEY VALUE ...] [--no-questions] [--force]"
+    parser.add_argument("kind", metavar="KIND", help="device or environment")
+    parser.add_argument(
+        "file", metavar="FILE", nargs="?", help="what to write (default: my-device.toml, my-environment.toml)"
+    )
+    parser.add_argument(
+        "--no-questions", action="store_true", help="ask nothing: what no option gives is not known"
+    )
+    parser.add_argument("--force", action="store_true", help="replace a file that exists")
+    seen: set[str] = set()
+    for name, kind in _KINDS.items():
+        group = parser.add_argument_group(name, "an answer in advance; unknown where it is not known")
+        for question in kind.QUESTIONS:
+            if question.key not in seen:  # both ask for the motion
+                help_text = question.ask.partition("?")[0].replace("%", "%%")
+                group.add_argument(question.option, metavar="VALUE", action=Once, help=help_text)
+            seen.add(question.key)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth new`: 0."""
+    if arguments.kind not in _KINDS:
+        raise InputError(f"there is no new {quoted(arguments.kind)}; {suggestion(arguments.kind, _KINDS)}")
+    kind = _KINDS[arguments.kind]
+    path = Path(arguments.file or f"my-{arguments.kind}.toml")
+    if path.suffix != ".toml":
+        raise InputError(f"the file must end in .toml, got {quoted(str(path))}")
+    check_new(path, arguments.force)
+    every = {question.key for one in _KINDS.values() for question in one.QUESTIONS}
+    given = {key: value for key, value in vars(arguments).items() if key in every and value is not None}
+    written = kind.described(Asker(given, not arguments.no_questions), path)
+    with writing_whole(path) as file:
+        file.write(written.text.encode())
+    say_written(path)
+    print_text("\n".join(written.then))
+    return 0

@@ -1,0 +1,94 @@
+"""The command `play`: a page on which a loop is held, pushed and heard."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import tempfile
+import webbrowser
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
+from zwidth.cli.output import check_new, print_text, say_written
+from zwidth.errors import InputError
+from zwidth.writing import writing_whole
+
+if TYPE_CHECKING:
+    from zwidth.explorer.play import Played
+
+SUFFIXES = (".html", ".htm")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth play`."""
+    parser.usage = "%(prog)s [SOURCE ...] [--law NAMES] [--PARAMETER VALUE ...] [-o FILE] [--force]"
+    parser.add_argument(
+        "sources",
+        metavar="SOURCE",
+        nargs="*",
+        help="device of the catalogue, or TOML file with a [device] table, an [environment] table or both; "
+        "without any, the page has eleven loops to begin with",
+    )
+    add_law_option(parser)
+    output = parser.add_argument_group("output")
+    output.add_argument(
+        "-o",
+        "--save",
+        metavar="FILE",
+        action=Once,
+        help="save the page: .html; else a browser opens it",
+    )
+    output.add_argument("--force", action="store_true", help="replace files that exist")
+    add_parameters(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth play`: 0."""
+    from zwidth.explorer.play import play_page
+
+    save = _target(arguments)
+    loops = _loops(arguments)
+    page = play_page(loops).encode()
+    place = save or _temporary()
+    with writing_whole(place) as file:
+        file.write(page)
+    for loop in loops:
+        print_text(f"{loop.verdict.outcome.upper()}: {loop.name}")
+    say_written(place)
+    if save is None and not webbrowser.open(place.as_uri()):
+        print_text("no browser was found: open that file in one")
+    return 0
+
+
+def _target(arguments: argparse.Namespace) -> Path | None:
+    """The file to write, checked before anything is computed."""
+    if arguments.save is None:
+        return None
+    path = Path(arguments.save)
+    if path.suffix.lower() not in SUFFIXES:
+        raise InputError(f"--save: the file must end in {' or '.join(SUFFIXES)}, got {arguments.save!r}")
+    check_new(path, arguments.force)
+    return path
+
+
+def _temporary() -> Path:
+    handle, name = tempfile.mkstemp(prefix="zwidth-play-", suffix=".html")
+    os.close(handle)
+    return Path(name)
+
+
+def _loops(arguments: argparse.Namespace) -> list[Played]:
+    """The loop that was asked for; those to begin with where none was."""
+    from zwidth.cli.decision import decided
+    from zwidth.explorer.play import played, presets
+    from zwidth.specification.laws import with_laws
+    from zwidth.specification.read import WITH_LAWS, Specification, read_tables, specified
+
+    typed = overrides(arguments)
+    if not (arguments.sources or typed or arguments.law):
+        return presets()
+    tables = read_tables(arguments.sources, WITH_LAWS)
+    given = specified(tables, typed)
+    law = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
+    return [played(given.device, law, decide=lambda device, law: decided(Specification(device, law)))]

@@ -1,0 +1,175 @@
+// The controls of a loop, made from what Python says of each; what is changed is told to Python, one event at a
+// time: while one is being answered the newest of each control waits, so that a slow machine gets fewer moves
+// and never a queue of old ones.
+
+const STEPS = 1000;
+
+export function render({ model, el }) {
+  const form = document.createElement("form");
+  form.noValidate = true;
+  form.addEventListener("submit", (event) => event.preventDefault());
+  const alert = make("p", { className: "problem", role: "alert" });
+  const body = make("div", { className: "groups" });
+  form.append(alert, body);
+
+  const waiting = new Map();
+  let busy = false;
+  let number = model.told.heard || 0;
+  let dragged = null;
+
+  const send = () => {
+    if (busy || waiting.size === 0) return;
+    const [key, event] = waiting.entries().next().value;
+    waiting.delete(key);
+    busy = true;
+    number += 1;
+    model.event = { ...event, number };
+  };
+  const tell = (kind, path, value) => {
+    waiting.set(`${kind} ${path}`, { kind, path, value });
+    send();
+  };
+
+  const slider = (one) => {
+    const input = make("input", { type: "range", min: 0, max: STEPS, step: 1, value: Math.round(STEPS * one.place) });
+    input.setAttribute("aria-label", one.label);
+    input.setAttribute("aria-valuetext", one.text || "not given");
+    input.addEventListener("input", () => {
+      dragged = one.path;
+      tell("move", one.path, input.value / STEPS);
+    });
+    input.addEventListener("change", () => {
+      dragged = null;
+      tell("release", one.path, null);
+    });
+    return input;
+  };
+  const entry = (one) => {
+    const input = make("input", { type: "text", value: one.text, spellcheck: false, autocomplete: "off" });
+    input.placeholder = one.required ? "" : "not given";
+    input.setAttribute("aria-label", `${one.label}, typed with its unit`);
+    input.addEventListener("change", () => tell("typed", one.path, input.value));
+    return input;
+  };
+  const choice = (one) => {
+    const input = make("select", {});
+    for (const [value, text] of one.words) input.append(new Option(text, value, false, value === one.text));
+    input.setAttribute("aria-label", one.label);
+    input.addEventListener("change", () => tell("choose", one.path, input.value));
+    return input;
+  };
+  const box = (one) => {
+    const input = make("input", { type: "checkbox", checked: one.text === "true" });
+    input.addEventListener("change", () => tell("choose", one.path, String(input.checked)));
+    return input;
+  };
+  const button = (one) => {
+    const input = make("button", { type: "button", textContent: one.label });
+    input.addEventListener("click", () => tell("press", one.path, null));
+    return input;
+  };
+  const file = (one) => {
+    const input = make("input", { type: "file", accept: ".toml" });
+    input.setAttribute("aria-label", one.label);
+    input.addEventListener("change", async () => {
+      const [given] = input.files;
+      if (!given) return;
+      if (given.size > one.largest) {
+        alert.textContent = `${given.name} is larger than ${Math.floor(one.largest / 1024)} kB; a specification is a page of text`;
+      } else {
+        tell("upload", given.name, await given.text());
+      }
+      input.value = "";
+    });
+    return input;
+  };
+
+  const shown = (one) => {
+    const row = make("div", { className: `row ${one.sort}` });
+    row.dataset.path = one.path;
+    if (one.sort === "button") {
+      row.append(button(one));
+      return row;
+    }
+    const label = make("label", {});
+    label.title = one.meaning || "";
+    if (one.sort === "flag") {
+      label.append(box(one), make("span", { textContent: one.label }));
+      row.append(label);
+      if (one.meaning) row.append(make("small", { textContent: one.meaning }));
+      return row;
+    }
+    label.append(make("span", { textContent: one.label }));
+    label.append(one.sort === "number" || one.sort === "text" ? entry(one) : one.sort === "file" ? file(one) : choice(one));
+    row.append(label);
+    if (one.sort === "number") row.append(slider(one));
+    if (one.sort === "number" && !one.text) row.classList.add("unknown");
+    return row;
+  };
+
+  const draw = () => {
+    const focused = el_active(form)?.closest(".row")?.dataset.path;
+    const kind = el_active(form)?.type;
+    const open = new Set([...body.querySelectorAll("details[open]")].map((one) => one.dataset.title));
+    body.replaceChildren(
+      ...model.groups.map((group) => {
+        const rows = group.controls.map(shown);
+        const set = make("fieldset", {});
+        set.append(make("legend", { textContent: group.title }), ...rows);
+        if (!group.folded) return set;
+        const details = make("details", { open: open.has(group.title) });
+        details.dataset.title = group.title;
+        set.firstChild.className = "hidden";
+        details.append(make("summary", { textContent: group.title }), set);
+        return details;
+      }),
+    );
+    if (focused !== undefined) {
+      const row = body.querySelector(`[data-path="${CSS.escape(focused)}"]`);
+      (row?.querySelector(`[type="${kind}"]`) || row?.querySelector("select, input, button"))?.focus();
+    }
+  };
+
+  const heed = () => {
+    const told = model.told;
+    alert.textContent = told.error || "";
+    for (const [path, [text, place]] of Object.entries(told.values || {})) {
+      const row = body.querySelector(`[data-path="${CSS.escape(path)}"]`);
+      if (!row) continue;
+      const [typed, range] = [row.querySelector("[type=text]"), row.querySelector("[type=range]")];
+      if (typed) typed.value = text;
+      if (range && dragged !== path) range.value = Math.round(STEPS * place);
+      if (range) range.setAttribute("aria-valuetext", text || "not given");
+      row.classList.toggle("unknown", Boolean(range) && !text);
+    }
+    if (told.query) window.history.replaceState(null, "", `?${told.query}${window.location.hash}`);
+    if (told.file) save(told.file);
+    if (told.heard >= number && busy) {
+      busy = false;
+      send();
+    }
+  };
+
+  if (model.views) window.addEventListener("zwidth-view", (event) => tell("view", event.detail, null));
+
+  model.on("groups", draw);
+  model.on("told", heed);
+  draw();
+  heed();
+  if (model.views) setTimeout(() => window.dispatchEvent(new Event("zwidth-drawn")));
+  return form;
+}
+
+function el_active(form) {
+  return form.getRootNode().activeElement;
+}
+
+function make(tag, properties) {
+  return Object.assign(document.createElement(tag), properties);
+}
+
+function save({ name, kind, text }) {
+  const link = make("a", { href: URL.createObjectURL(new Blob([text], { type: kind })), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}

@@ -1,0 +1,195 @@
+/* The pictures: the handle with hand and wall, or the wheel, or two arms; and what was in the last seconds. */
+
+export const SECONDS = 8;
+const BINS = 320;
+
+/* The last seconds, in bins: of each quantity the lowest, the highest and the last of its samples. */
+export class History {
+    constructor(period, names) {
+        this.names = names;
+        this.many = Math.max(1, Math.round(SECONDS / BINS / period));
+        this.clear();
+    }
+
+    clear() {
+        this.bins = [];
+        this.inside = 0;
+    }
+
+    push(values) {
+        if (this.inside === 0) {
+            this.bins.push(values.map((v) => [v, v, v]));
+            if (this.bins.length > BINS) this.bins.shift();
+        }
+        const bin = this.bins[this.bins.length - 1];
+        values.forEach((v, i) => {
+            const own = bin[i];
+            if (v < own[0]) own[0] = v;
+            if (v > own[1]) own[1] = v;
+            own[2] = v;
+        });
+        this.inside = (this.inside + 1) % this.many;
+    }
+
+    /* Half of what a quantity went up and down in the last part of a second. */
+    swing(name, seconds) {
+        const i = this.names.indexOf(name), last = this.bins.slice(-Math.ceil((BINS * seconds) / SECONDS));
+        return last.length ? (Math.max(...last.map((b) => b[i][1])) - Math.min(...last.map((b) => b[i][0]))) / 2 : 0;
+    }
+}
+
+/* A canvas as large as its place, in its own pixels; returns what draws and its size. */
+export function fitted(canvas) {
+    const ratio = globalThis.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
+    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+        canvas.width = Math.round(width * ratio);
+        canvas.height = Math.round(height * ratio);
+    }
+    const pen = canvas.getContext("2d");
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.clearRect(0, 0, width, height);
+    pen.font = "12px system-ui, sans-serif";
+    return { pen, width, height };
+}
+
+/* Where a position stands on a stage of this width. */
+export function across(position, reach, width) {
+    return width / 2 + (position / reach) * (width / 2);
+}
+
+/* The handle or the arms, the law's force as a shade, and the hand. */
+export function stage(canvas, look, colours) {
+    const { pen, width, height } = fitted(canvas);
+    const place = (x) => across(x, look.reach, width);
+    shade(pen, look, width, height, colours);
+    const lane = height / (look.arms.length + 1);
+    if (look.rotary && look.arms.length === 1) wheel(pen, look, width, height, colours);
+    look.arms.forEach((arm, i) => {
+        const y = look.rotary && look.arms.length === 1 ? height - 48 : lane * (i + 1);
+        line(pen, [[0, y], [width, y]], colours.faint, 1);
+        handle(pen, place(arm.position), y, width, colours);
+        push(pen, place(arm.position), y, arm.force / look.full, colours);
+        if (arm.name) text(pen, arm.name, 8, y - 8, colours.soft);
+        if (i === 0) hand(pen, place(look.anchor), place(arm.position), y, look.held, colours);
+    });
+    ruler(pen, look, width, height, colours);
+}
+
+function shade(pen, look, width, height, colours) {
+    look.profile.forEach((force, i) => {
+        pen.globalAlpha = Math.min(0.45, 0.45 * Math.abs(force) / look.full);
+        column(pen, i, look.profile.length, width, 0, height, colours.wall);
+    });
+    pen.globalAlpha = 1;
+    if (look.oneSided) line(pen, [[width / 2, 0], [width / 2, height]], colours.wall, 3);
+}
+
+function handle(pen, x, y, width, colours) {
+    const inside = Math.min(width - 10, Math.max(10, x));
+    pen.fillStyle = colours.ink;
+    pen.beginPath();
+    if (inside === x) pen.roundRect(x - 9, y - 16, 18, 32, 5);
+    else {
+        const side = x > inside ? 1 : -1;
+        pen.moveTo(inside + 8 * side, y);
+        pen.lineTo(inside - 8 * side, y - 9);
+        pen.lineTo(inside - 8 * side, y + 9);
+    }
+    pen.fill();
+}
+
+/* The actuator's force on the handle, an arrow; positive out of the wall. */
+function push(pen, x, y, part, colours) {
+    const long = -Math.max(-1, Math.min(1, part)) * 90, tip = x + long, back = Math.sign(long) * -6;
+    if (Math.abs(long) < 1) return;
+    line(pen, [[x, y + 24], [tip, y + 24]], colours.force, 4);
+    line(pen, [[tip + back, y + 18], [tip, y + 24], [tip + back, y + 30]], colours.force, 4);
+}
+
+function hand(pen, anchor, x, y, held, colours) {
+    const top = y - 34;
+    if (held) {
+        const points = [[anchor, top]];
+        for (let i = 1; i < 12; i += 1) points.push([anchor + ((x - anchor) * i) / 12, top + 18 * (i / 12) + (i % 2 ? 4 : -4)]);
+        line(pen, [...points, [x, y - 16]], colours.hand, 2);
+    }
+    pen.fillStyle = held ? colours.hand : "transparent";
+    pen.strokeStyle = colours.hand;
+    pen.lineWidth = 2;
+    pen.beginPath();
+    pen.arc(held ? anchor : x, top, 8, 0, 2 * Math.PI);
+    pen.fill();
+    pen.stroke();
+}
+
+function wheel(pen, look, width, height, colours) {
+    const r = Math.max(20, height / 2 - 52), x = width / 2, y = height / 2 - 42, turn = look.arms[0].position;
+    pen.strokeStyle = colours.ink;
+    pen.lineWidth = 9;
+    pen.beginPath();
+    pen.arc(x, y, r, 0, 2 * Math.PI);
+    pen.stroke();
+    for (const spoke of [0, 1, 2]) {
+        const angle = turn - Math.PI / 2 + (spoke * 2 * Math.PI) / 3;
+        line(pen, [[x, y], [x + r * Math.cos(angle), y + r * Math.sin(angle)]], spoke ? colours.ink : colours.force, 6);
+    }
+}
+
+function ruler(pen, look, width, height, colours) {
+    for (const part of [-0.5, 0, 0.5]) {
+        const x = across(part * look.reach, look.reach, width);
+        line(pen, [[x, height - 6], [x, height]], colours.soft, 1);
+        text(pen, look.mark(part * look.reach), x + 4, height - 3, colours.soft);
+    }
+}
+
+/* A quantity of the last seconds: the band between its lowest and its highest, around 0. */
+export function trace(canvas, history, name, label, colour, colours) {
+    const { pen, width, height } = fitted(canvas), i = history.names.indexOf(name);
+    const most = Math.max(1e-12, ...history.bins.map((b) => Math.max(-b[i][0], b[i][1]))) * 1.1;
+    const y = (v) => height / 2 - (v / most) * (height / 2 - 8) + 8;
+    line(pen, [[0, y(0)], [width, y(0)]], colours.faint, 1);
+    history.bins.forEach((b, k) => {
+        const before = history.bins[Math.max(0, k - 1)][i][2];
+        const high = Math.max(b[i][1], before), low = Math.min(b[i][0], before);
+        column(pen, k, BINS, width, y(high) - 0.75, y(low) + 0.75, colour);
+    });
+    text(pen, label(most / 1.1), 6, 14, colours.ink);
+}
+
+/* What the hand put in, filled, red below 0 where it got out more; and before it what friction took. */
+export function energy(canvas, history, label, colours) {
+    const { pen, width, height } = fitted(canvas);
+    const [work, loss] = ["work", "loss"].map((name) => history.names.indexOf(name));
+    const values = history.bins.flatMap((b) => [b[work][2], b[loss][2]]);
+    const high = Math.max(1e-9, ...values) * 1.3, low = Math.min(0, ...values) * 1.15;
+    const y = (v) => ((high - v) / (high - low)) * (height - 1);
+    history.bins.forEach((b, k) => {
+        column(pen, k, BINS, width, y(0), y(b[work][2]), b[work][2] < 0 ? colours.bad : colours.good);
+        pen.globalAlpha = 0.75;
+        column(pen, k, BINS, width, y(0), y(b[loss][2]), colours.loss);
+        pen.globalAlpha = 1;
+    });
+    line(pen, [[0, y(0)], [width, y(0)]], colours.ink, 1);
+    text(pen, label(high / 1.3), 6, 14, colours.ink);
+}
+
+/* The k-th of so many columns side by side, in whole pixels: without seams, and none over another. */
+function column(pen, k, many, width, from, to, colour) {
+    const left = Math.round((k * width) / many), right = Math.round(((k + 1) * width) / many);
+    pen.fillStyle = colour;
+    pen.fillRect(left, Math.min(from, to), right - left, Math.abs(to - from));
+}
+
+function line(pen, points, colour, wide) {
+    pen.strokeStyle = colour;
+    pen.lineWidth = wide;
+    pen.beginPath();
+    points.forEach(([x, y], i) => (i ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+    pen.stroke();
+}
+
+function text(pen, words, x, y, colour) {
+    pen.fillStyle = colour;
+    pen.fillText(words, x, y);
+}

@@ -1,0 +1,55 @@
+"""The loop to play with, under its tab: a page of its own in a frame that may run its scripts and nothing else."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import param
+from panel.custom import JSComponent
+
+from zwidth.explorer import computing
+from zwidth.explorer.form import words
+from zwidth.explorer.verdict_card import WAITING
+from zwidth.explorer.view import Asked, View, said
+from zwidth.explorer.working import Answer
+from zwidth.showing import element
+
+NAME = "Play"
+
+
+class Frame(JSComponent):  # type: ignore[misc]  # Panel has no types
+    """A page in a page, apart from it."""
+
+    html = param.String(default="")
+
+    _esm = """
+export function render({ model }) {
+  const frame = document.createElement("iframe");
+  frame.title = "play with this loop";
+  frame.setAttribute("sandbox", "allow-scripts");
+  const draw = () => { frame.hidden = !model.html; frame.srcdoc = model.html; };
+  model.on("html", draw);
+  draw();
+  return frame;
+}
+"""
+    _stylesheets = [  # noqa: RUF012  # as Panel has it
+        ":host { display: block; width: 100%; } iframe[hidden] { display: none; }"
+        "iframe { border: 0; width: 100%; height: 46rem; border-radius: 6px; background: var(--paper, Canvas); }"
+    ]
+
+
+def play_view(page: Asked) -> View:
+    """The tab."""
+    frame: Any = Frame(sizing_mode="stretch_width")
+    caption = words(element("p"))
+
+    def come(answer: Answer) -> None:
+        frame.html = answer.value or ""
+        said(caption, answer.message)
+
+    def released() -> None:
+        said(caption, WAITING)
+        page.compute("play", computing.played_page, come)
+
+    return View("play", NAME, [caption, frame], lambda: None, released)

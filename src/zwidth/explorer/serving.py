@@ -1,0 +1,172 @@
+"""The explorer page, served by this machine: to itself, or over the network to who has the token.
+
+Every browser has a session of its own; there are so many at most, and what is sent to them is bounded.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from threading import Event, Thread
+from typing import Any
+
+from bokeh.document import Document
+from bokeh.server.auth_provider import NullAuth
+from bokeh.server.server import BaseServer
+from bokeh.server.tornado import BokehTornado
+from bokeh.server.util import bind_sockets
+from panel import Template
+from panel import state as panel_state
+from panel.io.application import build_applications
+from tornado.httpserver import HTTPServer
+from tornado.ioloop import IOLoop
+
+from zwidth.errors import InputError
+from zwidth.explorer.access import TOKEN, TokenAccess, hosts, token_for
+from zwidth.explorer.page import full_page, page_of
+from zwidth.explorer.session import Session
+from zwidth.explorer.starts import first
+from zwidth.explorer.state import State, from_query
+from zwidth.explorer.working import Workers
+from zwidth.servo.live.page import HOST, Page, checked_port
+
+MOST_SESSIONS = 16
+"""Pages that are open at once."""
+
+LARGEST_MESSAGE = 256 * 1024
+"""Bytes that a browser may send at once: a file and what is around it."""
+
+_UNUSED = 15_000
+"""After so long a page that nobody looks at is forgotten [ms]."""
+
+
+def serve_explorer(
+    state: State | None = None,
+    port: int = 0,
+    *,
+    address: str = HOST,
+    token: str | None = None,
+    most: int = MOST_SESSIONS,
+) -> Page:
+    """Serve the page until it is closed.
+
+    Parameters
+    ----------
+    state
+        The loop that a page begins with whose address holds none; None: a device of the catalogue and a wall.
+    port
+        1 to 65535, or 0 for one that is free.
+    address
+        To which it listens: 127.0.0.1 answers this machine alone.
+    token
+        That a browser must have; None: none on this machine, and one that is made over the network.
+    most
+        Pages that are open at once.
+
+    Raises
+    ------
+    InputError
+        If the port or the address cannot be served, or the token is none.
+    """
+    server = _Server(state or first(), checked_port(port), address, token_for(address, token), most)
+    return Page(server.address, server.close)
+
+
+class _Server:
+    """The thread that serves, and the processes that compute."""
+
+    def __init__(self, state: State, port: int, address: str, token: str | None, most: int) -> None:
+        try:
+            self._sockets, self._port = bind_sockets(address, port)
+        except OSError as error:
+            raise InputError(
+                f"{address} port {port} cannot be served here: {error.strerror}; give another one, or port 0 "
+                "for a free one"
+            ) from None
+        self._state, self._hosts, self._token, self._most = state, hosts(address), token, most
+        shown = "127.0.0.1" if address == "0.0.0.0" else f"[{address}]" if ":" in address else address
+        secret = "" if token is None else f"?{TOKEN}={token}"
+        self.address = f"http://{shown}:{self._port}/{secret}"
+        self._open = 0
+        self._workers = Workers()
+        self._ready = Event()
+        self._failure: BaseException | None = None
+        self._loop = asyncio.new_event_loop()
+        self._ended = asyncio.Event()
+        self._thread = Thread(target=self._run, name="zwidth explorer", daemon=True)
+        self._thread.start()
+        self._ready.wait()
+        if self._failure is not None:
+            raise self._failure
+
+    def _run(self) -> None:
+        asyncio.set_event_loop(self._loop)
+        try:
+            self._loop.run_until_complete(self._serve())
+        except BaseException as error:
+            self._failure = error
+        finally:
+            self._ready.set()
+            self._loop.close()
+
+    async def _serve(self) -> None:
+        """Until it is closed."""
+        for name in ("bokeh.server.views.ws", "tornado.access"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)  # what a browser does is not worth a line
+        server, http = self._made()
+        server.start()
+        http.add_sockets(self._sockets)
+        self._ready.set()
+        await self._ended.wait()
+        server.stop()
+        await http.close_all_connections()
+
+    def _made(self) -> tuple[Any, Any]:
+        access = NullAuth() if self._token is None else TokenAccess(self._token, f"zwidth_{self._port}")
+        tornado = BokehTornado(
+            build_applications({"/": self._make}, title="zwidth: explore a loop", location=False),
+            extra_websocket_origins=[f"{host}:{self._port}" for host in self._hosts],
+            auth_provider=access,
+            websocket_max_message_size_bytes=LARGEST_MESSAGE,
+            check_unused_sessions_milliseconds=_UNUSED // 3,
+            unused_session_lifetime_milliseconds=_UNUSED,
+        )
+        http = HTTPServer(tornado, max_body_size=LARGEST_MESSAGE)
+        return BaseServer(IOLoop.current(), tornado, http), http
+
+    def _make(self) -> Template:
+        """The page of a new browser."""
+        if self._open >= self._most:
+            return full_page(self._most)
+        document = panel_state.curdoc
+        self._open += 1
+        state, message = self._asked(document)
+        session = Session(state, self._workers, document.add_next_tick_callback, message)
+        document.on_session_destroyed(lambda _: self._left(session))
+        return page_of(session)
+
+    def _asked(self, document: Document) -> tuple[State, str]:
+        """The loop of the address, or that to begin with and what is wrong with the address."""
+        given = document.session_context.request.arguments
+        pairs = [(key, _text(one)) for key, values in given.items() for one in values if key != TOKEN]
+        if not pairs:
+            return self._state, ""
+        try:
+            return from_query(pairs), ""
+        except InputError as error:
+            return self._state, f"What the address asks for cannot be used: {error}"
+
+    def _left(self, session: Session) -> None:
+        self._open -= 1
+        session.close()
+
+    def close(self) -> None:
+        """End the thread, then the processes."""
+        if self._thread.is_alive():
+            self._loop.call_soon_threadsafe(self._ended.set)
+        self._thread.join()
+        self._workers.close()
+
+
+def _text(value: bytes | str) -> str:
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else value

@@ -1,0 +1,278 @@
+"""The loop on the page as plain tables, which a URL can hold: every move is a new one.
+
+    ?device.damping=0.15 N*s/m&device.sample_period=0.001 s&environment.type=wall&environment.stiffness=300 N/m
+
+The keys are those of a specification with the name of their table before them, the values its texts with
+their units; a list or a table is written as TOML.  Whatever is read is read by the specification's own reader.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass, field, replace
+from decimal import Decimal
+from typing import Any
+from urllib.parse import quote_plus, urlencode
+
+from zwidth.device import Device, catalogue
+from zwidth.environment import Environment
+from zwidth.errors import InputError
+from zwidth.specification.environments import build_environment
+from zwidth.specification.laws import ROW, with_laws
+from zwidth.specification.read import WITH_LAWS, Specification, build_device, tables_of
+from zwidth.specification.table import Table, plain, quoted
+from zwidth.specification.write import tables, toml
+
+LONGEST_QUERY = 12_000
+"""Characters of a URL's query: a page of parameters is a tenth of it."""
+
+LARGEST_FILE = 64 * 1024
+"""Bytes of a file that is given to the page."""
+
+EXTRAS = ("coupling", "operator")
+"""Tables beside those of the loop: what joins two of its arms, and the hand that touches it."""
+
+Values = Mapping[str, object]
+
+
+@dataclass(frozen=True)
+class State:
+    """A loop in tables, each quantity a text with its unit.
+
+    Parameters
+    ----------
+    device, environment, laws
+        As of a specification; the laws in a chain from the environment to the actuator.
+    extras
+        What the page is asked beside the loop, by the name of its table: one of `EXTRAS`.
+    """
+
+    device: Values
+    environment: Values
+    laws: tuple[Values, ...] = ()
+    extras: Mapping[str, Values] = field(default_factory=dict)
+
+    @staticmethod
+    def of(device: Device, environment: Environment) -> State:
+        """The tables of a loop.
+
+        Raises
+        ------
+        InputError
+            If a specification has no words for the environment or a law: one of one's own.
+        """
+        return State(*tables(device, environment))
+
+    def loop(self) -> Specification:
+        """Device, and environment behind its laws.
+
+        Raises
+        ------
+        InputError
+            If a key or a value cannot be used: it says which, and what is allowed.
+        """
+        device = build_device(Table("device", deepcopy(dict(self.device))))
+        environment = build_environment(Table("environment", deepcopy(dict(self.environment))), device.motion)
+        row = Table("law", {ROW: deepcopy([*map(dict, self.laws)])}) if self.laws else None
+        return Specification(device, with_laws(environment, row, None, device.motion))
+
+    def settled(self) -> State:
+        """The same loop with every parameter that it has, in the words of `tables`.
+
+        Raises
+        ------
+        InputError
+            As `loop`.
+        """
+        loop = self.loop()
+        return replace(State.of(loop.device, loop.environment), extras=self.extras)
+
+    @property
+    def motion(self) -> str:
+        """ "linear" or "rotary"."""
+        return str(self.device.get("motion", "linear"))
+
+    def with_extra(self, name: str, values: Values) -> State:
+        """With another table beside those of the loop."""
+        return replace(self, extras={**self.extras, name: values})
+
+    def changed(self, path: str, value: object) -> State:
+        """With one value in the place of another; None takes it out.
+
+        Parameters
+        ----------
+        path
+            "device.damping", "environment.environment.stiffness", "law.1.samples", "coupling.link_delay".
+        value
+            As a specification has it: a text with its unit, a flag, a list or a table.
+        """
+        kind, *keys = path.split(".")
+        if kind == "device":
+            device = _put(self.device, keys, value)
+            if keys == ["rate"]:
+                device.pop("sample_period", None)
+            return replace(self, device=device)
+        if kind == "environment":
+            return replace(self, environment=_put(self.environment, keys, value))
+        if kind == "law":
+            laws = list(self.laws)
+            at = _place(keys, len(laws))
+            laws[at] = _put(laws[at], keys[1:], value)
+            return replace(self, laws=tuple(laws))
+        if kind in EXTRAS:
+            extra = _put(self.extras.get(kind, {}), keys, value)
+            return replace(self, extras={**self.extras, kind: extra})
+        raise InputError(f"there is no parameter {quoted(path)} on this page")
+
+    def query(self) -> str:
+        """The state as the query of a URL, without the question mark."""
+        return urlencode([*self._pairs()], quote_via=lambda text, *_: quote_plus(text, safe='*/[]{},"= ·'))
+
+    def _pairs(self) -> Iterator[tuple[str, str]]:
+        numbered = [(f"law.{n}", law) for n, law in enumerate(self.laws, 1)]
+        for table, values in (
+            ("device", self.device), ("environment", self.environment), *numbered, *self.extras.items()
+        ):  # fmt: skip
+            for key, value in values.items():
+                yield f"{table}.{key}", value if isinstance(value, str) else toml(value)
+
+
+def _put(values: Values, keys: Sequence[str], value: object) -> dict[str, Any]:
+    if not keys:
+        raise InputError("a parameter has a name behind the name of its table")
+    changed = dict(values)
+    key, *inner = keys
+    if inner:
+        within = changed.get(key, {})
+        if not isinstance(within, Mapping):
+            raise InputError(f"{plain(key)} is no table with a {plain(inner[0])} in it")
+        changed[key] = _put(within, inner, value)
+    elif value is None:
+        changed.pop(key, None)
+    else:
+        changed[key] = value
+    return changed
+
+
+def _place(keys: Sequence[str], count: int) -> int:
+    number = keys[0] if keys else ""
+    if not number.isdecimal() or len(number) > 2 or not 1 <= int(number) <= count:
+        raise InputError(f"there is no law {quoted(number)} in this chain of {count}")
+    return int(number) - 1
+
+
+def from_query(query: Sequence[tuple[str, str]]) -> State:
+    """The state that a URL holds.
+
+    Parameters
+    ----------
+    query
+        Its keys and values, decoded, in order.
+
+    Raises
+    ------
+    InputError
+        If it is too long, or a key or a value cannot be used.
+    """
+    if sum(len(key) + len(value) for key, value in query) > LONGEST_QUERY:
+        raise InputError(
+            f"the address is longer than {LONGEST_QUERY} characters; download the loop as a file and give that"
+        )
+    found: dict[str, dict[str, object]] = {}
+    for key, text in query:
+        head, dot, name = key.rpartition(".")
+        if not dot or not name or not _is_table(head):
+            raise InputError(
+                f"the address has {quoted(key)}, which is no parameter; parameters are written as in "
+                "device.damping, environment.stiffness, law.1.type, coupling.link_delay or operator.type"
+            )
+        if name in found.setdefault(head, {}):
+            raise InputError(f"the address has {quoted(key)} twice; which one is meant?")
+        found[head][name] = _value(key, text)
+    laws = _numbered({head: values for head, values in found.items() if head.startswith("law.")})
+    extras = {name: found[name] for name in EXTRAS if name in found}
+    for name in ("device", "environment"):
+        if name not in found:
+            raise InputError(f"the address has no {name}: give a {name}.… as well")
+    return State(found["device"], found["environment"], laws, extras).settled()
+
+
+def _is_table(head: str) -> bool:
+    kind, _, number = head.partition(".")
+    if kind == "law":
+        return number.isdecimal() and len(number) <= 2
+    return head in ("device", "environment", *EXTRAS)
+
+
+def _numbered(found: Mapping[str, Values]) -> tuple[Values, ...]:
+    numbers = sorted(int(head.removeprefix("law.")) for head in found)
+    if numbers != list(range(1, len(numbers) + 1)):
+        raise InputError("the laws in the address are numbered law.1, law.2, … without a gap")
+    return tuple(found[f"law.{n}"] for n in numbers)
+
+
+def _value(key: str, text: str) -> object:
+    """A text as it stands; what begins like a list, a table or a flag is TOML."""
+    if text in ("true", "false"):
+        return text == "true"
+    if not text.startswith(("[", "{")):
+        return text
+    try:
+        return tomllib.loads(f"value = {text}", parse_float=Decimal)["value"]
+    except (ValueError, ArithmeticError, RecursionError):
+        raise InputError(f"{plain(key)}: {quoted(text)} is no list and no table as TOML has them") from None
+
+
+def from_file(text: str, name: str) -> tuple[State | None, Device]:
+    """The loop of a specification, or None and its device where it has no environment.
+
+    Parameters
+    ----------
+    text
+        What is in the file.
+    name
+        Of the file, for messages.
+
+    Raises
+    ------
+    InputError
+        If it is too large, or no specification of a loop.
+    """
+    if len(text.encode("utf-8", "replace")) > LARGEST_FILE:
+        raise InputError(
+            f"{quoted(name)} is larger than {LARGEST_FILE // 1024} kB; a specification is a page of text"
+        )
+    found = tables_of(text, plain(name), WITH_LAWS)
+    if "device" not in found:
+        raise InputError(f"{quoted(name)} has no [device] table")
+    if not {"name", "catalogue"} & set(found["device"].values):
+        found["device"].values["name"] = plain(name).removesuffix(".toml")
+    device = build_device(found["device"])
+    if "environment" not in found:
+        return None, device
+    row = found.get("law")
+    environment = build_environment(found["environment"], device.motion)
+    return State.of(device, with_laws(environment, row, None, device.motion)), device
+
+
+def catalogued(name: str) -> Device:
+    """A device of the catalogue; where no source gives damping or rate, with one to begin with.
+
+    Raises
+    ------
+    InputError
+        If there is none of this name.
+    """
+    known = catalogue.entry(name).known()
+    lacking: dict[str, Any] = {}
+    if "damping" not in known:
+        lacking["damping"] = UNKNOWN_DAMPING
+    if "rate" not in known and "sample_period" not in known:
+        lacking["rate"] = UNKNOWN_RATE
+    return catalogue.device(name, **lacking)
+
+
+UNKNOWN_DAMPING, UNKNOWN_RATE = "0.1 N*s/m", "1 kHz"
+"""Where a slider begins whose number no source gives; the page says that it is nobody's measurement."""

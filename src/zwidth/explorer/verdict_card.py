@@ -1,0 +1,76 @@
+"""The verdict in words: the outcome, what is claimed and of what, the limit, and what to change.
+
+Every sentence is the verdict's own.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.outcome import COLOUR
+from zwidth.passivity.verdict import Verdict
+from zwidth.showing import Html, Lines, Table, element, join
+
+WAITING = "Working it out …"
+
+
+def headline(answer: Any) -> Html:
+    """Outcome and claim of anything that has both."""
+    badge = element(
+        "span", answer.outcome, style=f"background:{COLOUR[answer.outcome]}", **{"class": "badge"}
+    )
+    return join(element("p", badge), element("p", answer.claim, **{"class": "claim"}))
+
+
+def head(verdict: Verdict | None, note: str = "") -> Html:
+    """Outcome and claim; None while it is being worked out.
+
+    Parameters
+    ----------
+    verdict
+        What `zwidth.check` said.
+    note
+        A line below, such as that more is being worked out.
+    """
+    quiet = element("p", note, **{"class": "quiet"}) if note else Html("")
+    return (quiet or element("p", WAITING)) if verdict is None else join(headline(verdict), quiet)
+
+
+def details(verdict: Verdict | None) -> Html:
+    """The numbers, what to change, and what the claim covers."""
+    if verdict is None:
+        return Html("")
+    return join(_numbers(verdict), _advice(verdict), _scope(verdict))
+
+
+def _numbers(verdict: Verdict) -> Html:
+    return element("div", Table(rows=verdict.rows()).html, **{"class": "numbers"})
+
+
+def _advice(verdict: Verdict) -> Html:
+    if not isinstance(verdict, LinearVerdict) or not verdict.advice:
+        return Html("")
+    title = "Slack of each parameter alone" if verdict.is_proved else "Any one of these changes is enough"
+    if verdict.is_proved:
+        return join(element("h3", title), Lines([one.text for one in verdict.advice]).html)
+    useful = [one.text for one in verdict.advice if one.to is not None]
+    if not useful:
+        return join(element("h3", "Advice"), element("p", "No single change is enough."))
+    return join(element("h3", title), Lines(useful).html)
+
+
+def _scope(verdict: Verdict) -> Html:
+    """What the claim covers and takes for granted."""
+    return Lines(verdict.small_print(), "What this covers").html
+
+
+def badge(verdict: Verdict | None, note: str = "") -> Html:
+    """The outcome in a line, for where there is little room."""
+    if verdict is None:
+        return element("p", note or WAITING, **{"class": "quiet"})
+    word = element(
+        "span", verdict.outcome, style=f"background:{COLOUR[verdict.outcome]}", **{"class": "badge"}
+    )
+    limit = f" {verdict.limit}" if isinstance(verdict, LinearVerdict) else ""
+    return element("p", word, limit)

@@ -1,0 +1,298 @@
+"""`zwidth new`: what a person knows becomes a file; what nobody knows is said, and never filled in."""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from io import StringIO
+from pathlib import Path
+
+import pytest
+
+import zwidth as zw
+from zwidth.cli.main import main
+from zwidth.specification.read import load_device
+
+Answered = Callable[..., str]
+
+WHEEL = {
+    "--motion": "rotary",
+    "--inertia": "0.006 kg*m^2",
+    "--encoder": "65536 counts/turn",
+    "--rate": "1 kHz",
+    "--delay": "0.3 ms",
+    "--damping": "0.02 N*m*s/rad",
+    "--coulomb-friction": "0.05 N*m",
+    "--force-limit": "2 N*m",
+}
+
+
+def options(answers: dict[str, str]) -> list[str]:
+    """Answers as options."""
+    return [word for pair in answers.items() for word in pair]
+
+
+@pytest.fixture(autouse=True)
+def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def refused(capsys: pytest.CaptureFixture[str]) -> Answered:
+    """Runs a command line that cannot be used; its one message."""
+
+    def runner(*argv: str) -> str:
+        assert main(["new", *argv]) == 2
+        told = capsys.readouterr()
+        assert told.err.count("\n") == 1
+        return told.err
+
+    return runner
+
+
+def piped(monkeypatch: pytest.MonkeyPatch, *lines: str) -> None:
+    """Answers from a pipe."""
+    monkeypatch.setattr("sys.stdin", StringIO("".join(f"{line}\n" for line in lines)))
+
+
+# --- a device ----------------------------------------------------------------
+
+
+def test_options_make_the_device_that_they_say(capsys: pytest.CaptureFixture[str]) -> None:
+    """And the next command is one that can be typed."""
+    assert main(["new", "device", "my-wheel.toml", *options(WHEEL), "--no-questions"]) == 0
+    out = capsys.readouterr().out
+    device = load_device(["my-wheel.toml"], {})
+    same = zw.rotary(
+        inertia=0.006,
+        damping=0.02,
+        coulomb_friction=0.05,
+        counts_per_turn=65536,
+        rate=1000,
+        delay=0.0003,
+        force_limit=2,
+    )
+    assert device.replace(name="device") == same
+    assert device.assumed == ()
+    command = out.splitlines()[-1].removeprefix("next: zwidth ").split()
+    assert main(command) == 0  # a stiffness at which it is passive
+
+
+def test_answers_from_a_pipe_are_those_of_the_options(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In the order of the questions; an empty line where nobody knows, here the handle's radius."""
+    assert main(["new", "device", "a.toml", *options(WHEEL), "--no-questions"]) == 0
+    answers = [*WHEEL.values()]
+    piped(monkeypatch, *answers[:3], "", *answers[3:])
+    assert main(["new", "device", "b.toml"]) == 0
+    assert Path("a.toml").read_text() == Path("b.toml").read_text()
+
+
+@pytest.mark.parametrize(
+    ("answer", "counts"),
+    [("2000 lines", 8000), ("14 bit", 16384), ("4096", 4096), ("1024 cpr", 1024), ("500 ppr", 2000)],
+)
+def test_an_encoder_as_data_sheets_say_it(answer: str, counts: int) -> None:
+    """Four counts a line, 2ⁿ of n bits: 2π/N of a turn."""
+    assert main(["new", "device", *options({**WHEEL, "--encoder": answer}), "--no-questions"]) == 0
+    assert float(load_device(["my-device.toml"], {}).resolution) == 2 * math.pi / counts
+
+
+def test_an_encoder_in_degrees(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "device", *options({**WHEEL, "--encoder": "0.09 deg"}), "--no-questions"]) == 0
+    assert float(load_device(["my-device.toml"], {}).resolution) == pytest.approx(math.radians(0.09))
+
+
+def test_the_data_sheet_of_a_motor_gives_friction_and_largest_torque() -> None:
+    """τ = n I/k_v: 270 rpm/V, 0.2 A without load, 10 A at most, a gear of 3."""
+    known = {key: value for key, value in WHEEL.items() if key not in ("--coulomb-friction", "--force-limit")}
+    sheet = {
+        "--motor-friction": "0.2 A",
+        "--motor-peak": "10 A",
+        "--torque-constant": "270 rpm/V",
+        "--gear-ratio": "3",
+    }
+    assert main(["new", "device", *options({**known, **sheet}), "--no-questions"]) == 0
+    device = load_device(["my-device.toml"], {})
+    constant = 60 / (2 * math.pi * 270)
+    assert float(device.coulomb_friction) == pytest.approx(3 * constant * 0.2, rel=1e-5)
+    assert float(device.force_limit) == pytest.approx(3 * constant * 10, rel=1e-5)
+    assert "1/(270 rpm/V) x 0.2 A x 3" in Path("my-device.toml").read_text()
+    assert "estimate" in Path("my-device.toml").read_text()
+
+
+def test_a_motor_that_pulls_from_a_drum() -> None:
+    """f = τ/r: 5 mN·m of friction at 10 mm are 0.5 N."""
+    answers = {
+        "--mass": "36 g",
+        "--rate": "1 kHz",
+        "--damping": "0.1",
+        "--motor-friction": "5 mN*m",
+        "--drum-radius": "10 mm",
+    }
+    assert main(["new", "device", *options(answers), "--no-questions"]) == 0
+    assert float(load_device(["my-device.toml"], {}).coulomb_friction) == 0.5
+
+
+def test_a_handle_on_a_lever_is_seen_at_the_hand() -> None:
+    """With a radius of 0.1 m, b/r²."""
+    answers = {**WHEEL, "--handle-radius": "10 cm"}
+    assert main(["new", "device", *options(answers), "--no-questions"]) == 0
+    device = load_device(["my-device.toml"], {})
+    assert (device.motion, float(device.damping)) == ("linear", pytest.approx(2))
+
+
+def test_what_is_unknown_is_left_out_and_said(capsys: pytest.CaptureFixture[str]) -> None:
+    """No default: without damping there is no verdict, and it is said what to measure first."""
+    answers = {"--motion": "linear", "--rate": "1 kHz", "--damping": "don't know"}
+    assert main(["new", "device", *options(answers), "--no-questions"]) == 0
+    out = capsys.readouterr().out
+    text = Path("my-device.toml").read_text(encoding="utf-8")
+    keys = [line.partition(" =")[0] for line in text.splitlines() if " = " in line and line[0] != "#"]
+    assert keys == ["motion", "rate"]
+    assert "# damping is not known. Nothing is proved without it" in text
+    assert "zwidth identify" in out
+    assert main(["check", "my-device.toml", "--stiffness", "100"]) == 2
+    assert main(["check", "my-device.toml", "--damping", "0.1", "--stiffness", "100"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("answers", "part"),
+    [
+        ({"--rate": "1 ms"}, "rate is in Hz"),
+        ({"--damping": "-1 N*m*s/rad"}, "negative friction"),
+        ({"--delay": "3"}, '"3 ms"'),
+        ({"--encoder": "2.5 bit"}, "whole number of bits"),
+        ({"--encoder": "22.4 um"}, "resolution is in rad"),
+        ({"--inertia": "0,006"}, '"0.006"'),
+        ({"--motion": "sideways"}, "rotary or linear"),
+        ({"--drum-radius": "1 cm"}, "--drum-radius"),
+        ({"--damping": "unknown", "--motion": "unknown"}, "--motion rotary"),
+    ],
+)
+def test_an_answer_that_cannot_be_used_is_one_message(
+    refused: Answered, answers: dict[str, str], part: str
+) -> None:
+    """Of the device's own words, and no file."""
+    assert part in refused("device", *options({**WHEEL, **answers}), "--no-questions")
+    assert not Path("my-device.toml").exists()
+
+
+def test_a_line_in_counts_of_a_device_that_slides_says_how_to_reckon(refused: Answered) -> None:
+    answers = {"--motion": "linear", "--encoder": "2000 lines", "--rate": "1 kHz", "--damping": "1"}
+    assert "2 π r/N" in refused("device", *options(answers), "--no-questions")
+
+
+def test_answers_that_end_too_early_are_one_message(
+    refused: Answered, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A script that did not say everything learns what is missing."""
+    piped(monkeypatch)
+    assert "--damping" in refused("device", "--motion", "rotary", "--rate", "1 kHz")
+    piped(monkeypatch, "rotary", "6")
+    assert "--rate, --damping" in refused("device")
+
+
+def test_a_wrong_line_of_a_pipe_is_named(refused: Answered, monkeypatch: pytest.MonkeyPatch) -> None:
+    piped(monkeypatch, "rotary", "0.006 kg*m^2", "many")
+    assert "line 3 of the answers" in refused("device")
+
+
+def test_a_file_is_kept_unless_force_is_given(refused: Answered) -> None:
+    Path("my-device.toml").write_text("mine", encoding="utf-8")
+    assert "--force" in refused("device", *options(WHEEL), "--no-questions")
+    assert Path("my-device.toml").read_text(encoding="utf-8") == "mine"
+    assert main(["new", "device", *options(WHEEL), "--no-questions", "--force"]) == 0
+    assert ".toml" in refused("device", "my-device.txt", *options(WHEEL), "--no-questions")
+    assert "device" in refused("devise")
+
+
+def test_in_a_terminal_a_wrong_answer_is_asked_again(tmp_path: Path) -> None:
+    """Each question with why it matters; what is wrong with an answer at once, then the question stays."""
+    pty = pytest.importorskip("pty")
+    here, there = pty.openpty()
+    answers = b"rotary\n0.006 kg\n0.006 kg*m^2\n?\n\n1 kHz\n\n0.02\n0.05 N*m\n2 N*m\n"
+    os.write(here, answers)
+    done = subprocess.run(
+        [sys.executable, "-m", "zwidth", "new", "device"],
+        stdin=there,
+        capture_output=True,
+        encoding="utf-8",
+        timeout=120,
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONIOENCODING": "utf-8"},
+    )
+    os.close(here)
+    os.close(there)
+    assert done.returncode == 0, done.stderr
+    for part in (
+        "Does the handle turn",
+        "No proof depends on it",
+        "a mass (kg)",
+        "an ideal encoder",
+        "next: zwidth check my-device.toml",
+    ):
+        assert part in done.stdout
+    assert done.stdout.count("Moment of inertia") == 1
+    assert load_device([tmp_path / "my-device.toml"], {}).motion == "rotary"
+
+
+# --- an environment ----------------------------------------------------------
+
+
+def test_a_wall(capsys: pytest.CaptureFixture[str]) -> None:
+    answers = {"--type": "wall", "--motion": "linear", "--stiffness": "200 N/m", "--virtual-damping": "0.05"}
+    assert main(["new", "environment", *options(answers), "--no-questions"]) == 0
+    assert "my-environment.toml" in capsys.readouterr().out
+    loaded = zw.load(zw.samples.path("paddle.toml"), "my-environment.toml")
+    assert loaded.environment == zw.Wall(200, 0.05)
+
+
+def test_detents_and_a_bump_stop_are_those_of_the_library() -> None:
+    """To nine digits."""
+    row = {
+        "--type": "detents",
+        "--motion": "rotary",
+        "--count": "3",
+        "--pitch": "30 deg",
+        "--peak": "20 mN*m",
+    }
+    stop = {
+        "--type": "bump-stop",
+        "--motion": "rotary",
+        "--start": "1 rad",
+        "--stiffness": "20 N*m/rad",
+        "--hardening": "1000 N*m/rad^3",
+        "--depth": "0.1 rad",
+    }
+    for answers, same in (
+        (row, zw.NonlinearSpring.detents(3, math.pi / 6, 0.02)),
+        (stop, zw.NonlinearSpring.bump_stop(1, 20, 1000, 0.1, 26)),
+    ):
+        assert main(["new", "environment", *options(answers), "--no-questions", "--force"]) == 0
+        spring = zw.load(zw.samples.path("knob.toml"), "my-environment.toml").environment
+        assert [float(x) for x in spring.positions] == pytest.approx([float(x) for x in same.positions])
+        assert [float(f) for f in spring.forces] == pytest.approx([float(f) for f in same.forces])
+
+
+@pytest.mark.parametrize(
+    ("answers", "part"),
+    [
+        ({"--type": "wall", "--motion": "linear"}, "--stiffness"),
+        ({"--type": "wal", "--motion": "linear"}, 'did you mean "wall"'),
+        ({"--type": "wall", "--motion": "linear", "--stiffness": "20 N*m/rad"}, "stiffness is in N/m"),
+        ({"--type": "wall", "--motion": "linear", "--stiffness": "1", "--count": "3"}, "--count"),
+        (
+            {"--type": "detents", "--motion": "rotary", "--count": "2.5", "--pitch": "1", "--peak": "1"},
+            "whole",
+        ),
+        ({"--type": "wall", "--motion": "linear", "--stiffness": "-3"}, "≥ 0"),
+    ],
+)
+def test_an_environment_that_cannot_be_is_one_message(
+    refused: Answered, answers: dict[str, str], part: str
+) -> None:
+    assert part in refused("environment", *options(answers), "--no-questions")
+    assert not Path("my-environment.toml").exists()

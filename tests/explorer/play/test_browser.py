@@ -1,0 +1,191 @@
+"""The page in a browser: held by a pointer and by keys, heard, recorded, read by those who do not see it."""
+
+from __future__ import annotations
+
+import csv
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from explorer.play.engines import Array, simulated
+from playwright.sync_api import Browser, Page
+
+import zwidth as zw
+from zwidth.explorer.play import Played, play_page
+from zwidth.explorer.play import played as play
+from zwidth.explorer.play import played_pair as play_pair
+from zwidth.explorer.play.presets import LIGHT
+
+_LISTEN = """
+window.heard = [];
+const start = AudioBufferSourceNode.prototype.start;
+AudioBufferSourceNode.prototype.start = function (...given) {
+    window.heard.push(...this.buffer.getChannelData(0));
+    return start.apply(this, given);
+};
+"""
+
+
+@pytest.fixture(scope="module")
+def loops() -> list[Played]:
+    """A calm wall, one that buzzes, and two arms."""
+    calm = zw.Device(mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, rate=1000)
+    rough = calm.replace(damping=0.1, coulomb_friction=0.01, resolution=3e-4, force_limit=5)
+    return [
+        play(calm, zw.Wall(300), name="calm"),
+        play(rough, zw.Wall(1500, 10), name="rough", hand=LIGHT),
+        play_pair(zw.Pair(calm, calm, stiffness=60, delay=0.004), name="arms", hand=LIGHT),
+    ]
+
+
+@pytest.fixture(scope="module")
+def address(loops: list[Played], tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Of the page, as a file."""
+    place = tmp_path_factory.mktemp("page") / "play.html"
+    place.write_text(play_page(loops), encoding="utf-8")
+    return place.as_uri()
+
+
+def _stroke(page: Page, parts: list[float], release: bool = False) -> None:
+    """Press the pointer on the stage and go through these parts of its width."""
+    box: Any = page.locator("#stage").bounding_box()
+    page.mouse.move(box["x"] + parts[0] * box["width"], box["y"] + 0.5 * box["height"])
+    page.mouse.down()
+    for part in parts:
+        page.mouse.move(box["x"] + part * box["width"], box["y"] + 0.5 * box["height"])
+        page.wait_for_timeout(25)
+    if release:
+        page.mouse.up()
+
+
+def _recording(page: Page) -> tuple[list[str], Array]:
+    """The heads and the rows of what the page hands out."""
+    with page.expect_download() as download:
+        page.locator("#download").evaluate("button => button.click()")  # the pointer may hold the handle
+    with Path(download.value.path()).open(encoding="utf-8", newline="") as file:
+        heads, *rows = csv.reader(file)
+    return heads, np.array(rows, dtype=np.float64)
+
+
+@pytest.mark.parametrize("number", [1, 2], ids=["rough", "arms"])
+def test_what_a_person_did_is_simulated_to_the_bit(
+    page: Page, address: str, loops: list[Played], number: int
+) -> None:
+    """The recorded pointer, as the path of the same hand of `zw.simulate`: the same motion and energies."""
+    page.goto(address)
+    page.locator("#loops button").nth(number).click()
+    _stroke(page, [0.5, 0.4, 0.35, 0.5, 0.6, 0.62, 0.7, 0.71, 0.55, 0.66, 0.75, 0.75])
+    heads, rows = _recording(page)
+    assert heads[:3] == ["time_s", "pointer_m", "held"]
+    assert len(heads) == (15 if number == 2 else 9) == rows.shape[1]
+    assert len(rows) > 250
+    assert rows[:, 2].all()
+    assert np.unique(rows[:, 1]).size > 50
+    assert np.abs(rows[:, 5]).max() > 0.05
+    assert (rows[:, 3:] == simulated(loops[number], rows[:, 1])).all()
+
+
+def test_a_person_without_a_pointer_plays(page: Page, address: str) -> None:
+    """Arrows move the hand, Space lets go and grips; who listens is told where the handle is."""
+    page.goto(address)
+    stage = page.get_by_role("slider", name="The hand on the handle")
+    stage.focus()
+    for _ in range(28):
+        page.keyboard.press("ArrowRight")
+    page.wait_for_function("document.querySelector('#stage').ariaValueNow === '30'")
+    page.wait_for_function("/force [1-9.]/.test(document.querySelector('#stage').ariaValueText)")
+    assert "held" in (stage.get_attribute("aria-valuetext") or "")
+    hold = page.get_by_role("button", name="Hold")
+    page.keyboard.press("Space")
+    assert hold.get_attribute("aria-pressed") == "false"
+    page.wait_for_function("/let go/.test(document.querySelector('#stage').ariaValueText)")
+    page.keyboard.press("Space")
+    assert hold.get_attribute("aria-pressed") == "true"
+    page.wait_for_function("/handle at .* friction took/.test(document.querySelector('#live').textContent)")
+
+
+def test_letting_go_frees_the_handle(page: Page, address: str) -> None:
+    """The wall pushes it out where the hand had held it; the recording says when it was held."""
+    page.goto(address)
+    _stroke(page, [0.5, 0.6, 0.7, 0.75, 0.75], release=True)
+    page.wait_for_timeout(300)
+    _, rows = _recording(page)
+    held = rows[:, 2] > 0
+    last = int(np.flatnonzero(held).max())
+    assert rows[last, 3] > 0.001
+    assert rows[-1, 3] < 0.0
+    assert rows[-1, 6] == rows[last + 1, 6]
+
+
+def test_it_is_silent_until_asked_and_a_buzz_is_loud(browser: Browser, address: str) -> None:
+    """What is handed to the sound card of a buzz has many times the power of a calm press."""
+    page = browser.new_page()
+    page.add_init_script(_LISTEN)
+    page.goto(address)
+    _stroke(page, [0.5, 0.7, 0.75])
+    assert page.evaluate("window.heard.length") == 0
+    page.mouse.up()
+    page.get_by_role("button", name="Sound").click()
+    loud = []
+    for number in (0, 1):
+        page.locator("#loops button").nth(number).click()
+        _stroke(page, [0.5, 0.6, 0.7, 0.74])
+        page.wait_for_timeout(400)
+        page.evaluate("window.heard.length = 0")
+        for part in (0.76, 0.75, 0.77, 0.76, 0.75, 0.76):
+            _stroke(page, [part])
+        page.wait_for_function("window.heard.length > 10000")
+        loud.append(float(np.std(page.evaluate("window.heard"))))
+        page.mouse.up()
+    page.close()
+    assert 0.0 < loud[0] < 0.2 * loud[1]
+
+
+def test_nobody_is_left_out(page: Page, address: str) -> None:
+    """No serious violation that axe finds, in light and in dark; nothing is wider than the page."""
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+        page.goto(address)
+        found = Axe().run(page).response["violations"]
+        assert not [v["id"] for v in found if v["impact"] in ("serious", "critical")], scheme
+        wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+        assert wide <= 0
+
+
+def test_it_works_in_a_frame_that_asks_for_nothing(page: Page, loops: list[Played]) -> None:
+    """As the text of a frame without an address, with a policy that lets nothing be fetched."""
+    policy = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'"
+    inside = play_page(loops[:1]).replace(
+        "<head>", f'<head><meta http-equiv="Content-Security-Policy" content="{policy}">'
+    )
+    page.set_content(
+        f'<iframe sandbox="allow-scripts" width="380" height="800" srcdoc="{escape(inside)}"></iframe>'
+    )
+    frame = page.frame_locator("iframe")
+    frame.get_by_role("heading", name="calm").wait_for()
+    stage = frame.get_by_role("slider", name="The hand on the handle")
+    stage.focus()
+    for _ in range(12):
+        page.keyboard.press("ArrowRight")
+    frame.locator("#work", has_text="mJ").wait_for()
+    assert frame.locator("#loops").is_hidden()
+
+
+def test_a_page_that_was_hidden_does_not_catch_up(page: Page, address: str) -> None:
+    """A frame that comes two seconds late moves the loop by a tenth of a second."""
+    page.add_init_script(
+        """
+        const frame = window.requestAnimationFrame.bind(window);
+        window.skip = 0;
+        window.requestAnimationFrame = (told) => frame((now) => told(now + window.skip));
+        """
+    )
+    page.goto(address)
+    page.wait_for_timeout(200)
+    page.evaluate("window.skip = 2000")
+    page.wait_for_timeout(100)
+    _, rows = _recording(page)
+    assert rows[-1, 0] < 1.9
