@@ -14,6 +14,7 @@ NOT_RUN = {
     "compare": "it simulates every law; run in tests/bench",
     "doctor": "it measures for seconds",
     "emit": "run in tests/firmware",
+    "explore": "it serves until it is ended; run in tests/explorer",
     "identify": "it needs a recording",
     "limit": "it searches for up to a minute; run in tests/cli/test_limit.py",
     "links": "it simulates minutes; run in tests/links",

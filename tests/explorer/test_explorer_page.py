@@ -15,7 +15,7 @@ import zwidth as zw
 from zwidth.explorer.serving import serve_explorer
 from zwidth.specification.write import parsed
 
-WAIT = 60_000
+WAIT = 25_000
 """For a machine that has much else to do [ms]."""
 
 expect.set_options(timeout=WAIT)
@@ -57,7 +57,7 @@ def held(page: Page) -> dict[str, str]:
 
 
 def test_a_device_is_chosen_a_slider_moved_and_the_address_keeps_it(page: Page, address: str) -> None:
-    """The verdict is that of `zwidth.check` for the numbers that are shown; so it is after it is loaded again."""
+    """The verdict is that of `zwidth.check` for the numbers shown, and again after a reload."""
     opened(page, address)
     expect(verdict(page)).to_contain_text("passive")
     page.locator("#loop").get_by_role("combobox", name="device").select_option("own-linear")
@@ -127,7 +127,9 @@ def parsed_parts(text: str) -> tuple[zw.Device, object]:
 
 def test_what_the_address_cannot_say_is_a_message(page: Page, address: str) -> None:
     """And the page begins with its own loop."""
-    opened(page, f"{address}?device.damping=-1&device.rate=1+kHz&environment.type=wall&environment.stiffness=3")
+    opened(
+        page, f"{address}?device.damping=-1&device.rate=1+kHz&environment.type=wall&environment.stiffness=3"
+    )
     expect(page.get_by_role("alert").first).to_contain_text("damping must be ≥ 0")
 
 

@@ -62,7 +62,7 @@ def test_only_this_machine_is_answered() -> None:
 
 
 def test_a_token_opens_the_page_and_nothing_else_does() -> None:
-    """With it a cookie that no script reads; without it, or with another, the form; the same for the WebSocket."""
+    """With it a cookie that no script reads; without it, or with another, the form; so of the WebSocket."""
     with serve_explorer(token=TOKEN) as page:
         assert TOKEN in page.address
         origin = page.address.partition("/?")[0]
