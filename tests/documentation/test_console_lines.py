@@ -20,7 +20,6 @@ NOT_RUN = {
     "limit": "it searches for up to a minute; run in tests/cli/test_limit.py",
     "links": "it simulates minutes; run in tests/links",
     "map": "it computes thousands of walls; run in tests/cli/test_map.py",
-    "new": "it asks questions",
     "network": "it starts processes",
     "new": "it asks; run in tests/cli/test_new_command.py",
     "play": "it opens a browser; run in tests/cli/test_play_command.py",
