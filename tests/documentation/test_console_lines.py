@@ -22,7 +22,6 @@ NOT_RUN = {
     "new": "it asks questions",
     "network": "it starts processes",
     "play": "it opens a browser; run in tests/cli/test_play_command.py",
-    "play": "it opens a page",
     "serve": "it runs until it is ended",
     "tour": "it waits for a key after each step",
     "workspace": "it covers an arm; run in tests/cli/test_workspace_command.py",
