@@ -36,6 +36,7 @@ NOT_RUN = {
     "docs/doctor.md": "it measures for seconds; tests/servo runs such",
     "docs/serve.md 1": "two seconds of real time, in which a busy machine may be late",
     "docs/arms.md 4": "it reads a robot description of one's own",
+    "docs/play.md 1": RECORDING,
     "docs/json.md 1": "it reads documents that were written before",
     "docs/json.md 2": ELSEWHERE,
     "docs/map.md 2": "two maps in full size take a minute",
