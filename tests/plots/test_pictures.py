@@ -11,6 +11,9 @@ import zwidth as zw
 
 ROOT = Path(__file__).parents[2]
 
+SCREENS = ("live", "report")
+"""Pages as a browser shows them."""
+
 PADDLE = zw.catalogue.device("haptic-paddle")
 
 
@@ -29,7 +32,7 @@ def pictures():
 def test_every_picture_is_made_by_a_command(pictures):
     """None lies there that nobody can draw again, and none is drawn that no page shows."""
     files = {path.stem for path in (ROOT / "docs" / "_static").glob("*.png")}
-    assert files == {*pictures.PICTURES, "live"}
+    assert files == {*pictures.PICTURES, *SCREENS}
     pages = "".join(
         path.read_text(encoding="utf-8") for path in [ROOT / "README.md", *ROOT.glob("docs/*.md")]
     )
