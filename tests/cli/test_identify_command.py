@@ -73,7 +73,7 @@ def words(result: Result) -> str:
 
 def test_the_report(run: Run) -> None:
     """What the log is, the numbers with intervals, the stiffest wall, what to do next."""
-    result = run("plain.csv")
+    result = run("plain.csv", "--all")
     assert (result.status, result.err) == (0, "")
     assert result.out.startswith(" IDENTIFIED  Spring walls up to ")
     text = words(result)

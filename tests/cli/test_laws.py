@@ -158,7 +158,7 @@ def test_check_decides_laws_in_a_row_and_a_map_names_who_takes_them(tmp_path, mo
     """From a file and from the command line; one line where they have no place."""
     monkeypatch.chdir(tmp_path)
     Path("loop.toml").write_text(LOOP + '[[law]]\ntype = "force-bounding"\n', encoding="utf-8")
-    assert main(["check", "loop.toml"]) == 0
+    assert main(["check", "loop.toml", "--all"]) == 0
     assert "force bounding, the last law in the row" in " ".join(capsys.readouterr().out.split())
     assert main(["check", "haptic-paddle", "--stiffness", "770", "--law", "force-bounding"]) == 0
     capsys.readouterr()

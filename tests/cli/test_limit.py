@@ -61,7 +61,7 @@ def test_the_closed_limit_of_every_hand(run: Run) -> None:
 
 def test_a_bounded_hand_stands_beside_every_hand(run: Run) -> None:
     """Slow hands allow stiffer walls; the report says how slow, and what every hand allows."""
-    text = words(run(*BOUNDED))
+    text = words(run(*BOUNDED, "--all"))
     assert "this hand every hand" in text
     assert "0.3 m/s over one sample (13.39 counts a sample), up to 0.0005152 m (23 counts)" in text
     assert "per cycle" in text
@@ -132,7 +132,8 @@ def test_a_parameter_is_named_as_its_option(run: Run, parameter: str, low: float
 
 def test_one_side_is_status_three(run: Run) -> None:
     """Before no wall at all every damping of the device is passive."""
-    result = run("limit", "haptic-paddle", "--stiffness", "0", "--parameter", "damping", "--seconds", "0.5")
+    loop = ("limit", "haptic-paddle", "--stiffness", "0", "--parameter", "damping")
+    result = run(*loop, "--seconds", "0.5", "--all")
     assert result.status == 3
     assert result.out.startswith(" ONE SIDE ")
     assert "none known" in result.out

@@ -64,7 +64,7 @@ def _of_every_hand(bracket: Bracket) -> list[Row]:
     if bracket.hand == "every hand":
         return []
     passive, active = (_shown(bracket, side) for side in bracket.every_hand)
-    return [("every hand", f"{passive} is proved passive, {active} is active")]
+    return [("every hand", f"proved passive: {passive}; active: {active}")]
 
 
 def _headline(bracket: Bracket) -> Padding:

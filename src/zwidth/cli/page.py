@@ -66,17 +66,17 @@ def page() -> Iterator[Console]:
 def headline(word: str, colour: str, claim: str) -> Padding:
     """The outcome as a badge, and the claim beside it; below it where too little room is left."""
     badge, told = Text(f" {word.upper()} ", style=f"bold white on {colour}"), Text(claim, style="bold")
-    line = Table.grid(padding=(0, 1))
-    for row in [(badge, told)] if len(badge) <= columns() // 3 else [(badge,), (told,)]:
+    rows = [(badge, told)] if len(badge) <= columns() // 3 else [(badge,), (told,)]
+    line = _folding(len(rows[0]), (0, 1))
+    for row in rows:
         line.add_row(*row)
     return below(line)
 
 
 def grid(rows: Iterable[Row], width: int = 0) -> Table:
     """Names, in a column of at least some width, and beside each its text."""
-    table = Table.grid(padding=(0, 2))
-    table.add_column(min_width=width or None)
-    table.add_column()
+    table = _folding(2, (0, 2))
+    table.columns[0].min_width = width or None
     for name, text in rows:
         table.add_row(Text(name, style="dim"), text if isinstance(text, Text) else Text(text))
     return table
@@ -124,11 +124,20 @@ def items(texts: Iterable[object], style: str = "") -> Iterator[Text]:
 
 def _hanging(text: Text) -> Table:
     """A line that, where it breaks, goes on under its own beginning."""
-    line = Table.grid()
+    line = _folding(3)
     mark, _, rest = text.plain.partition(" ")
     if len(mark) == 1:
         style = text.spans[0].style if text.spans else text.style
         line.add_row("  ", Text(f"{mark} ", style), Text(rest, text.style))
     else:
+        line = _folding(2)
         line.add_row("  ", text)
     return line
+
+
+def _folding(count: int, padding: tuple[int, int] = (0, 0)) -> Table:
+    """Columns in which a word that is too long is broken, not cut."""
+    table = Table.grid(padding=padding)
+    for _ in range(count):
+        table.add_column(overflow="fold")
+    return table

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from zwidth.arms import ArmMotion, EncoderSteps
     from zwidth.passivity.workspace import Workspace
 
-_FIRST = ("largest stiffness", "stiffness", "encoder steps")
+_FIRST = ("motion", "largest stiffness", "stiffness", "encoder steps")
 _IN_SCOPE = ("region",)
 _FEW = 3
 """What a short report has of the numbers; what it says in what is assumed; how many changes."""
@@ -42,7 +42,7 @@ def print_workspace(space: Workspace, in_full: bool = False) -> None:
         arm = [row for row in _asked(space) if row[0] not in _IN_SCOPE]
         assumed = ("assumes", small_print(in_short(space.scope, space.outcome)))
         blocks(out, [*first, *do[:_FEW]], [*arm, assumed])
-        more_with_all(out, "margin, motion, encoder steps, every change, assumptions in full")
+        more_with_all(out, "margin, encoder, every change, assumptions in full")
 
 
 def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
