@@ -166,6 +166,7 @@ def test_what_is_unknown_is_left_out_and_said(capsys: pytest.CaptureFixture[str]
         ({"--damping": "-1 N*m*s/rad"}, "negative friction"),
         ({"--delay": "3"}, '"3 ms"'),
         ({"--encoder": "2.5 bit"}, "whole number of bits"),
+        ({"--encoder": "0.09"}, "write the unit"),
         ({"--encoder": "22.4 um"}, "resolution is in rad"),
         ({"--inertia": "0,006"}, '"0.006"'),
         ({"--motion": "sideways"}, "rotary or linear"),

@@ -310,8 +310,9 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "let the shell complete commands, options, devices and files",
             "Print what makes bash, zsh or fish complete the words of zwidth.",
             "Put the line into the file that your shell reads when it starts:\n"
-            '  bash, zsh  eval "$(zwidth completion bash)"    (or zsh, after compinit)\n'
-            "  fish       zwidth completion fish | source",
+            '  bash  eval "$(zwidth completion bash)"\n'
+            '  zsh   eval "$(zwidth completion zsh)"    after compinit\n'
+            "  fish  zwidth completion fish | source",
         ),
         "verify": Command(
             "re-check a saved proof or motion, independently of what made it",

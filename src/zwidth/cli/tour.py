@@ -145,9 +145,12 @@ Now yours:
   zwidth new device       the file of your device, question by question
   zwidth examples .       sample files for every command
 
-hold a wall yourself, in the browser, in a terminal or on your device; or take
-the proved law to a board, as C:
+In the browser:
 
-  zwidth play
+  zwidth play             hold a handle, push it into a wall
+  zwidth explore          every parameter on a slider, and the verdict beside it
+
+In real time, simulated or on your device; and the proved law as C for a board:
+
   zwidth serve haptic-paddle --stiffness 250 --watch terminal
   zwidth emit haptic-paddle --stiffness 250 --target arduino -o wall"""

@@ -41,6 +41,10 @@ def read_encoder(answer: str, motion: str) -> Row:
         rotary(damping=0, rate=1, resolution=parse_number(answer, "rad", "resolution"))
         return Row("resolution", answer)
     counts, remark = _counts(counted["number"], (counted["unit"] or "counts").lower(), answer)
+    if float(counts) < 1:
+        raise InputError(
+            f'an encoder has 1 count in a turn or more, got "{answer[:40]}"; of an angle write the unit'
+        )
     rotary(damping=0, rate=1, counts_per_turn=counts)
     return Row("counts_per_turn", counts, remark)
 
