@@ -60,7 +60,7 @@ def test_a_hand_against_a_wall_through_two_arms(files, capsys, tmp_path):
     assert main(["simulate", *files, "-o", saved, "--plot", plot]) == 0
     out = capsys.readouterr().out
     assert "stiffness felt at the leader" in out
-    assert "a real wall, 500 N/m, 2 N*s/m" in out
+    assert "a real wall, 500 N/m, 2 N·s/m" in out
     trace = load_trace(saved)
     assert trace["hand_force"].values[1, -1] == pytest.approx(-1, rel=0.1)
     assert Path(plot).stat().st_size > 10_000

@@ -65,8 +65,8 @@ def test_what_it_is_and_says() -> None:
     assert not contact.linear
     assert not contact.spring
     assert contact.describe() == "Hunt–Crossley contact, 20000 N/m^1.5, exponent 1.5, 2 s/m, never pulls"
-    assert zw.HuntCrossley(300, 2, clamped=False).describe() == "Hunt–Crossley contact, 300 N/m^2, exponent 2"
-    assert "300 N*m/rad, exponent 1, 2 s/rad" in zw.HuntCrossley(300, 1, 2).describe("rotary")
+    assert zw.HuntCrossley(300, 2, clamped=False).describe() == "Hunt–Crossley contact, 300 N/m², exponent 2"
+    assert "300 N·m/rad, exponent 1, 2 s/rad" in zw.HuntCrossley(300, 1, 2).describe("rotary")
     assert eval(repr(contact), vars(zw) | {"HuntCrossley": zw.HuntCrossley}) == contact
     assert pickle.loads(pickle.dumps(contact)) == contact
     assert contact.replace(exponent=2).stiffness == 2e4

@@ -81,8 +81,8 @@ def test_it_is_bilateral_nonlinear_and_says_its_numbers() -> None:
     assert spring.describe() == (
         "nonlinear spring, 3 points from -0.01 m to 0.02 m, force -1 N to 4 N, slope up to 200 N/m"
     )
-    assert spring.describe("rotary").endswith("from -0.01 rad to 0.02 rad, force -1 N*m to 4 N*m, "
-                                              "slope up to 200 N*m/rad")  # fmt: skip
+    assert spring.describe("rotary").endswith("from -0.01 rad to 0.02 rad, force -1 N·m to 4 N·m, "
+                                              "slope up to 200 N·m/rad")  # fmt: skip
     assert eval(repr(spring), vars(zw) | {"NonlinearSpring": zw.NonlinearSpring}) == spring
     assert pickle.loads(pickle.dumps(spring)) == spring
     assert spring.replace(forces=[0, 0, 0]).largest_slope == 0

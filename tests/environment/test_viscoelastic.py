@@ -164,12 +164,12 @@ def test_numbers_are_read_in_one_line_with_units():
     """describe() for a person, linear or rotary; repr() to type again."""
     solid = zw.StandardLinearSolid(290, (731, 740), 0.5)
     assert solid.describe() == (
-        "standard linear solid, 290 N/m beside (731 … 740 N/m in series with 0.5 N*s/m), "
+        "standard linear solid, 290 N/m beside (731 … 740 N/m in series with 0.5 N·s/m), "
         "discretization backward"
     )
-    assert "N*m/rad" in solid.describe("rotary")
+    assert "N·m/rad" in solid.describe("rotary")
     assert (
-        zw.Maxwell(7, 2).describe() == "Maxwell body, (7 N/m in series with 2 N*s/m), discretization backward"
+        zw.Maxwell(7, 2).describe() == "Maxwell body, (7 N/m in series with 2 N·s/m), discretization backward"
     )
     series = zw.GeneralizedMaxwell(290, [(731, 40)])
     assert series.describe().startswith("generalized Maxwell, 290 N/m beside (731 N/m")

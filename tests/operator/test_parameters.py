@@ -14,6 +14,7 @@ from zwidth import operator as operators
 from zwidth.errors import InputError
 from zwidth.operator import OPERATORS, ParametricOperator
 from zwidth.quantity.parameter import parameters_of
+from zwidth.quantity.text import unit_text
 from zwidth.quantity.units import parse_number
 
 TIMES = np.arange(801) * 0.0025
@@ -85,7 +86,7 @@ def test_describes_itself_with_every_number(kind: type[ParametricOperator]) -> N
         line = hand.describe(motion)
         assert "\n" not in line
         for name, quantity in kind.parameters().items():
-            assert f"{getattr(hand, name):.6g} {quantity.unit_for(motion)}" in line
+            assert f"{getattr(hand, name):.6g} {unit_text(quantity.unit_for(motion))}" in line
 
 
 @EACH

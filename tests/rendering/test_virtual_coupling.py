@@ -93,7 +93,7 @@ def test_nested_couplings_and_text():
     """Couplings in series; describe() from the outside in; repr() can be typed again."""
     law = zw.VirtualCoupling(820, 2, zw.VirtualCoupling(700, 1, zw.Maxwell(3, 4)))
     assert law.describe().startswith(
-        "virtual coupling, 820 N/m and 2 N*s/m, before virtual coupling, 700 N/m and 1 N*s/m, before Maxwell"
+        "virtual coupling, 820 N/m and 2 N·s/m, before virtual coupling, 700 N/m and 1 N·s/m, before Maxwell"
     )
     assert eval(repr(law), vars(zw)) == law
     assert law.replace(stiffness=5).stiffness == 5

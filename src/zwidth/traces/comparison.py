@@ -13,6 +13,7 @@ from zwidth.energy import ledger
 from zwidth.errors import InputError
 from zwidth.loop.trace import UNITS
 from zwidth.passivity.result import Documented
+from zwidth.quantity.text import unit_text
 from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ class Comparison(Documented):
         units = self.units()
         head = [
             "trace",
-            *(f"{c.heading} [{units[n]}]" if units[n] else c.heading for n, c in COLUMNS.items()),
+            *(f"{c.heading} [{unit_text(units[n])}]" if units[n] else c.heading for n, c in COLUMNS.items()),
         ]
         lines = [[label, *(_written(row[name]) for name in COLUMNS)] for label, row in self.rows.items()]
         return [head, *lines]

@@ -232,7 +232,7 @@ def test_the_verdict_as_data_and_as_text() -> None:
     told = found.to_dict()
     assert told["format"] == "zwidth held pair 1"
     assert told["certificate"]["kind"] == "held pair"
-    assert told["held"] == {"arm": "follower", "hand": "m_h = 0.05 kg, k = 100 N/m, c = 2 N*s/m"}
+    assert told["held"] == {"arm": "follower", "hand": "m_h = 0.05 kg, k = 100 N/m, c = 2 N·s/m"}
     assert told["largest_stiffness_N_per_m"] > told["largest_stiffness_N_per_m_with_any_such_hand"]
     said = "\n".join(found.assumptions)
     for phrase in ("both arms start at rest", "no Coulomb friction in the follower", "just those given"):

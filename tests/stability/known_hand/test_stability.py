@@ -302,5 +302,5 @@ def test_a_hand_that_turns_says_its_numbers_in_rotary_units() -> None:
     knob = zw.rotary(damping="0.001", inertia="1e-5", rate=1000)
     hand = zw.stability.HandImpedance(mass="2e-5", stiffness=(0, 3), damping="0.02")
     said = zw.stability.coupled_stability(knob, zw.Wall(1), hand).scope.hands.impedance
-    assert said == "m_h = 2e-05 kg*m^2, k = 0 … 3 N*m/rad, c = 0.02 N*m*s/rad"
-    assert "c = 0.02 N*s/m" in hand.describe()
+    assert said == "m_h = 2e-05 kg·m², k = 0 … 3 N·m/rad, c = 0.02 N·m·s/rad"
+    assert "c = 0.02 N·s/m" in hand.describe()

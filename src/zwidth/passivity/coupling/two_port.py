@@ -249,7 +249,7 @@ def _dataset(
             "needed_damping": ("frequency", np.asarray(need, dtype=np.float64)),
             "holds": ("frequency", holds),
         },
-        coords={"frequency": ("frequency", hertz, {"unit": "Hz"})},
+        coords={"frequency": ("frequency", hertz, {"units": "Hz"})},
     )
     data.attrs = {
         "unconditionally_stable": bool(np.all(holds)),

@@ -106,10 +106,10 @@ def _dataset(
 
     return xr.Dataset(
         {
-            "device": ("frequency", device, {"unit": "m/(N·s)"}),
-            "environment": ("frequency", environment, {"unit": "N·s/m"}),
-            "excess": ("frequency", (1 / device).real, {"unit": "N·s/m"}),
-            "shortage": ("frequency", -environment.real, {"unit": "N·s/m"}),
+            "device": ("frequency", device, {"units": "m/(N·s)"}),
+            "environment": ("frequency", environment, {"units": "N·s/m"}),
+            "excess": ("frequency", (1 / device).real, {"units": "N·s/m"}),
+            "shortage": ("frequency", -environment.real, {"units": "N·s/m"}),
         },
-        coords={"frequency": ("frequency", hertz, {"unit": "Hz"})},
+        coords={"frequency": ("frequency", hertz, {"units": "Hz"})},
     )

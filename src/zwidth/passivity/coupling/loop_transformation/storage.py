@@ -124,7 +124,7 @@ def _matrix(damping: ArrayLike, joints: int) -> Floats:
 def _dataset(storage: Floats, supply: Floats, loss: Floats, hand: Floats) -> xr.Dataset:
     import xarray as xr
 
-    unit = {"unit": "W"}
+    unit = {"units": "W"}
     return xr.Dataset(
         {
             "storage": ("edge", storage, unit),
