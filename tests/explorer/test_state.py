@@ -73,10 +73,14 @@ def test_what_cannot_be_used_is_said(pairs: list[tuple[str, str]], says: str) ->
 
 
 HEADS = st.sampled_from(["device", "environment", "law.1", "law.99", "operator", "coupling", "x", "", "law."])
-NAMES = st.sampled_from(["damping", "rate", "type", "stiffness", "environment", "elements", "catalogue", "", "a.b"])
+NAMES = st.sampled_from(
+    ["damping", "rate", "type", "stiffness", "environment", "elements", "catalogue", "", "a.b"]
+)
 VALUES = st.one_of(
     st.text(max_size=30),
-    st.sampled_from(["0.1", "1 kHz", "wall", "scene", "nan", "1e999", "[", "{ type = 3 }", "[[1,2]]", "true", "inf N/m"]),
+    st.sampled_from(
+        ["0.1", "1 kHz", "wall", "scene", "nan", "1e999", "[", "{ type = 3 }", "[[1,2]]", "true", "inf N/m"]
+    ),
 )
 
 
