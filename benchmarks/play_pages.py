@@ -3,7 +3,8 @@
     python benchmarks/play_pages.py [--seconds S]
 
 Every loop of the page is played in Chromium for so long, by a pointer that goes to and fro, at the sizes of a
-notebook and of a telephone; pictures are counted while it does.  What the page recorded is simulated again.
+notebook and of a telephone; pictures are counted while it does, and the time
+that the page works at each.  What the page recorded is simulated again.
 """
 
 from __future__ import annotations
@@ -39,6 +40,17 @@ COUNT = """seconds => new Promise(done => {
     requestAnimationFrame(next);
 })"""
 """Pictures a second."""
+
+WORK = """
+window.work = [];
+const later = window.requestAnimationFrame.bind(window);
+window.requestAnimationFrame = told => later(now => {
+    const began = performance.now();
+    told(now);
+    window.work.push(performance.now() - began);
+});
+"""
+"""How long the page works at each picture [ms]."""
 
 RATE = """number => {
     const facts = JSON.parse(document.getElementById("facts").textContent)[number];
@@ -119,7 +131,9 @@ def main() -> int:
         path = os.environ.get("CHROMIUM", "/usr/bin/chromium")
         chromium = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
         pages = [chromium.new_page(viewport=size) for size in SIZES]
-        heads = ("samples/s", "wide, 1/s", "narrow, 1/s", "samples", "differ by")
+        for page in pages:
+            page.add_init_script(WORK)
+        heads = ("samples/s", "wide, 1/s", "narrow, 1/s", "work, ms", "samples", "differ by")
         print(f"{'loop':36}" + "".join(f" {head:>11}" for head in heads))
         for number, loop in enumerate(loops):
             shown = []
@@ -129,10 +143,12 @@ def main() -> int:
                 pictures, rows = played(page, number, seconds)
                 worst = max(worst, difference(loop, rows))
                 shown.append(pictures)
+            work = float(np.median([row for page in pages for row in page.evaluate("window.work")]))
             rate = pages[0].evaluate(RATE, number)
             figures = (
                 f"{rate:.0f}",
                 *(f"{pictures:.1f}" for pictures in shown),
+                f"{work:.1f}",
                 str(len(rows)),
                 f"{worst:.2g}",
             )

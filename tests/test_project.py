@@ -355,6 +355,10 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
         "traces",
         "devices",
         "verify",
+        "completion",
+        "examples",
+        "new",
+        "tour",
     ],
 )
 def test_every_option_in_the_help_is_on_the_command_line_page(command: str) -> None:

@@ -58,7 +58,7 @@ def test_saved_and_verified(capsys: pytest.CaptureFixture[str], tmp_path: Path) 
 
 
 @pytest.mark.parametrize(
-    ("typed", "words"), [("700 Hz", "half the rate"), ("soon", "active_below"), ("10 m", "active_below")]
+    ("typed", "words"), [("700 Hz", "half the rate"), ("soon", "--active-below"), ("10 m", "--active-below")]
 )
 def test_bad_input(typed: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
     """One line that says what was given and what is possible."""

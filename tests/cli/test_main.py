@@ -177,15 +177,6 @@ def test_a_name_is_text_and_never_markup(run: Run) -> None:
 @pytest.mark.parametrize(
     ("argv", "parts"),
     [
-        (
-            (),
-            (
-                "which command",
-                "check, limit, pair, gains, map, simulate, serve, emit, replay, doctor, network, traces, "
-                "compare, links, workspace, "
-                "identify, plan, devices, verify",
-            ),
-        ),
         (("chek",), ("no command", "check")),
         (("check", "haptic-paddle", "--stifness", "3"), ("--stifness", "did you mean --stiffness")),
         (("check", "haptic-paddle", "--coulomb_friction=3"), ("did you mean --coulomb-friction",)),

@@ -77,7 +77,8 @@ def test_options_make_the_device_that_they_say(capsys: pytest.CaptureFixture[str
     )
     assert device.replace(name="device") == same
     assert device.assumed == ()
-    command = out.splitlines()[-1].removeprefix("next: zwidth ").split()
+    program, *command = out.splitlines()[-1].split()
+    assert program == "zwidth"
     assert main(command) == 0  # a stiffness at which it is passive
 
 
@@ -232,7 +233,7 @@ def test_in_a_terminal_a_wrong_answer_is_asked_again(tmp_path: Path) -> None:
         "No proof depends on it",
         "a mass (kg)",
         "an ideal encoder",
-        "next: zwidth check my-device.toml",
+        "zwidth check my-device.toml --stiffness",
     ):
         assert part in done.stdout
     assert done.stdout.count("Moment of inertia") == 1

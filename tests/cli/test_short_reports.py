@@ -60,7 +60,7 @@ OTHERS = {
     ),
     "plan": (("plan", "haptic-paddle", "--force-noise", "0.1 N"), "To know b"),
     "devices": (("devices",), "haptic-paddle"),
-    "doctor": (("doctor", "haptic-paddle", "--duration", "0.2 s"), "a loop at 1 kHz"),
+    "doctor": (("doctor", "haptic-paddle", "--duration", "1 s"), "a loop at 1 kHz"),
     "emit": (("emit", *PADDLE, "150", "--travel", "-9 .. 9 mm", "-o", "out"), "PASSIVE"),
 }
 """Those that are as long as they have to be."""

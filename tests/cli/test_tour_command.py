@@ -40,7 +40,7 @@ def test_the_tour_tells_its_story_and_writes_nothing(
     ]
     for part in ("300 N/m, limited by", "extracts 1.427 mJ", "raise the rate from 1000 Hz to 2567 Hz"):
         assert part in said
-    assert max(map(len, said.splitlines())) <= 82
+    assert max(map(len, said.splitlines())) <= 80
     assert list(tmp_path.iterdir()) == []
 
 

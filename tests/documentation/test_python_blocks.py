@@ -29,6 +29,7 @@ NOT_RUN = {
     "docs/finger.md": RECORDING,
     "docs/identification.md": RECORDING,
     "docs/logs.md": RECORDING,
+    "docs/play.md 1": RECORDING,
     "docs/recording.md": RECORDING,
     "docs/firmware.md": HARDWARE,
     "docs/live.md": HARDWARE,

@@ -10,8 +10,10 @@ from zwidth.rendering import BrakingPulse
 
 TITLE = "Guaranteed stability in haptic display (thesis, Northwestern University, chapters 1 and 2)"
 
-SOURCE = "Most likely J.-C. Tsai, 1996. Slips: (2.1) has lost the braces of Re{·}; B > 0 is written, and "
-"abs(B) used in (2.4)."
+SOURCE = (
+    "Most likely J.-C. Tsai, 1996. Slips: (2.1) has lost the braces of Re{·}; B > 0 is written, and abs(B) "
+    "used in (2.4)."
+)
 
 PADDLE = zw.catalogue.device("haptic-paddle", resolution=0, coulomb_friction=0)
 

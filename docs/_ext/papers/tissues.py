@@ -131,13 +131,13 @@ def _experiment() -> list[Row]:
     return [
         row("Fig. 5, Table 1", "a motorized guide pushes a PHANToM into the wall; damping 0 to 14 N·s/m, "
         "0.5 to 5 ms",
-            f"{guide}: with 8 g and a guide of 5000 N/m limits of that size", None,
+            f"{guide}, with the mass and the stiffness that come nearest to both tables", None,
             "mass and stiffness of the guide are not printed"),
         row("Fig. 6(a), Table 2", "the largest stiffness of the solid hardly depends on damping, that of "
         "the Kelvin–Voigt "
             "wall falls to 0 at 14 N·s/m", f"largest passive: {min(solid):.0f} to {max(solid):.0f} N/m of "
             "the solid; "
-            f"{kelvin[0]:.0f} falling to {kelvin[-1]:.0f} N/m of the wall",
+            f"{kelvin[0]:.0f} falling to {kelvin[-1]:.0f} N/m of the wall ({guide})",
             max(solid) < 1.1 * min(solid) and kelvin[-1] == 0,
             f"in shape; what was measured is {two[1][0] / solid[0]:.1f} times what is passive: a guide is "
             "one hand"),

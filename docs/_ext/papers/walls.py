@@ -84,7 +84,7 @@ def _counterexamples() -> list[Row]:
     return [
         row("section III-C, first example", "K > 2b/T: some n encoder counts in one sample and back take "
         "energy out",
-            f"301 N/m: n = {counts}, at {press.peak_speed:.0f} m/s; {float(press.energy):.2g} J, "
+            f"301 N/m: n = {counts}, at {press.peak_speed:.0f} m/s; {1e6 * float(press.energy):.2g} µJ, "
             f"{replayed[0]:.6f} of it by simulation", replayed[0] > 0.999 and counts > 10_714,
             "n must exceed f_c/(Δ (K/2 − b/T))"),
         row("section III-C, second example", "K > 2f_c/Δ: a small step over an edge and back takes energy "

@@ -109,9 +109,9 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
         ),
         "explore": Command(
             "move every parameter on a page, and see the verdict follow",
-            "Open a page in the browser: the device and the wall on sliders, the verdict beside them, pictures of\n"
-            "both. The address keeps the loop. It answers this machine alone, unless --address says otherwise,\n"
-            "and then asks for a token.",
+            "Open a page in the browser: the device and the wall on sliders, the verdict beside them, and\n"
+            "pictures of both. The address keeps the loop. It answers this machine alone, unless --address\n"
+            "says otherwise, and then asks for a token.",
             "examples:\n"
             "  zwidth explore\n"
             "  zwidth explore haptic-paddle\n"

@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from zwidth.cli.options import Once, add_law_option, add_output, add_parameters, overrides
+from zwidth.cli.options import Once, add_in_full, add_law_option, add_output, add_parameters, overrides
 from zwidth.cli.output import give_out, targets
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact
@@ -26,8 +26,8 @@ _TIMING = ("rate", "sample_period")
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth doctor`."""
     parser.usage = (
-        "%(prog)s [SOURCE ...] [--law NAMES] [--duration TIME] [--core N] [--PARAMETER VALUE ...] [--json] "
-        "[--plot FILE] [-o FILE] [--force]"
+        "%(prog)s [SOURCE ...] [--law NAMES] [--duration TIME] [--core N] [--PARAMETER VALUE ...] [--all] "
+        "[--json] [--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -43,7 +43,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         ("--core", "N", "number of the core that the loop keeps to (default: any)"),
     ):
         loop.add_argument(option, metavar=metavar, action=Once, help=meaning)
-    add_output(parser, "what was found", "a histogram of the lateness", "the same as --json prints")
+    add_in_full(
+        add_output(parser, "what was found", "a histogram of the lateness", "the same as --json prints")
+    )
     add_parameters(parser)
 
 
@@ -57,7 +59,8 @@ def run(arguments: argparse.Namespace) -> int:
     duration = parse_number(arguments.duration or _DURATION, "s", "duration")
     device, environment, period = _loop(arguments)
     found = doctor(device, environment, duration=duration, sample_period=period, core=core)
-    give_out(found, save, plot, arguments.json)
+    few = [*found.in_short(), "", "--all shows the rest: what was looked at, finding by finding"]
+    give_out(found, save, plot, arguments.json, None if arguments.in_full else few)
     return 0
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 from pathlib import Path
 
 from zwidth import samples
@@ -31,7 +32,8 @@ def run(arguments: argparse.Namespace) -> int:
     copy_to(folder, arguments.force)
     with quiet_pipe():
         print(f"written: {len(samples.names())} files in {plain(str(folder), 100)}")
-        print(f"next: {'' if folder == Path() else 'there, '}{samples.EXAMPLES[0].command}")
+        print("next:" if folder == Path() else f"next:\n  cd {shlex.quote(str(folder))}")
+        print(f"  {samples.EXAMPLES[0].command}")
     return 0
 
 

@@ -36,7 +36,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--address",
         metavar="ADDRESS",
         action=Once,
-        help="address to listen to (default: 127.0.0.1, this machine alone); 0.0.0.0 is every one, with a token",
+        help="address to listen to (default: 127.0.0.1, this machine alone); another asks for a token",
     )
     page.add_argument(
         "--token", metavar="TOKEN", action=Once, help="that a browser must have, 16 characters or more"

@@ -5,15 +5,17 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import Once, add_all, device_parameters, given
-from zwidth.cli.output import print_json, print_text, say_written, targets, writing
+from zwidth.cli.output import print_json, print_report, say_written, targets, writing
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import shown, unit_text
 from zwidth.quantity.units import parse_number
+from zwidth.showing import Part, Table
 from zwidth.specification.read import read_tables, specified_device
 from zwidth.specification.table import plain, quoted, suggestion
 
@@ -95,7 +97,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print_json(_json(found))
     else:
-        print_text(_report(found))
+        print_report(_report(found))
         kept = None if arguments.save is None else Path(arguments.save)
         say_written(kept, plot, proof)
     return 0
@@ -175,21 +177,14 @@ def _whole(typed: str, option: str) -> int:
         raise InputError(f"{option} takes whole numbers, got {quoted(typed)}") from None
 
 
-def _report(found: xr.Dataset) -> str:
+def _report(found: xr.Dataset) -> Iterator[Part]:
     """The regions, widest claim first, and what is felt in free air."""
     unit = unit_text(found["largest_stiffness"].attrs["units"])
-    lines = [f"{'region':<28}{'largest K [' + unit + ']':>24}{'area of the map':>18}"]
-    cells = found["passive"].size
-    for name in found["region"].values:
-        count = int(found[str(name)].values.sum())
-        largest = f"{float(found['largest_stiffness'].sel(region=name)):.6g}" if count else "none"
-        if not count and name in _BROKEN and found.attrs["not_covered"]:
-            lines.append(f"{_region(str(name), found):<28}{'not covered':>24}{'':>18}")
-            continue
-        lines.append(f"{_region(str(name), found):<28}{largest:>24}{count / cells:>18.1%}")
+    heads = [("region", f"largest K [{unit}]", "area of the map")]
+    yield Table(heads=heads, rows=[_row(str(name), found) for name in found["region"].values], lefts=1)
     if found.attrs["not_covered"]:
         spring = shown(float(found["spring_limit"]), found["spring_limit"].attrs["units"])
-        lines.append(
+        yield (
             f"not covered, contact made and broken: {found.attrs['not_covered']}; "
             f"a spring alone, B = 0, is passive up to {spring}"
         )
@@ -197,8 +192,16 @@ def _report(found: xr.Dataset) -> str:
         shown(float(found[key]), found[key].attrs["units"])
         for key in ("free_mass", "free_damping", "free_friction")
     ]
-    lines.append(f"free air: {', '.join(free)}")
-    return "\n".join(lines)
+    yield f"free air: {', '.join(free)}"
+
+
+def _row(name: str, found: xr.Dataset) -> tuple[str, str, str]:
+    """A region, its stiffest wall, and how much of the map it is."""
+    count = int(found[name].values.sum())
+    if not count and name in _BROKEN and found.attrs["not_covered"]:
+        return _region(name, found), "not covered", ""
+    largest = f"{float(found['largest_stiffness'].sel(region=name)):.6g}" if count else "none"
+    return _region(name, found), largest, f"{count / found['passive'].size:.1%}"
 
 
 _BROKEN = ("passive", "quiet")

@@ -8,8 +8,9 @@ from pathlib import Path
 from zwidth.cli.asking import device, environment
 from zwidth.cli.asking.questions import Asker
 from zwidth.cli.options import Once
-from zwidth.cli.output import check_new, print_text, say_written
+from zwidth.cli.output import check_new, quiet_pipe, say_written
 from zwidth.errors import InputError
+from zwidth.showing import printable
 from zwidth.specification.table import quoted, suggestion
 from zwidth.writing import writing_whole
 
@@ -52,5 +53,6 @@ def run(arguments: argparse.Namespace) -> int:
     with writing_whole(path) as file:
         file.write(written.text.encode())
     say_written(path)
-    print_text("\n".join(written.then))
+    with quiet_pipe():
+        print(printable("\n".join(written.then)))  # commands are not broken into lines
     return 0

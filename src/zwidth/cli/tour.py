@@ -120,8 +120,8 @@ STEPS = (
         _active,
     ),
     Step(
-        "You would feel it as buzzing. It takes no skill: a wooden dowel that leans on the\n"
-        "wall bounces higher each time.",
+        "You would feel it as buzzing. It takes no skill: a wooden dowel that leans on\n"
+        "the wall bounces higher each time.",
         f"zwidth simulate haptic-paddle --stiffness {_STIFF} --operator dowel --duration 2",
         _touched,
     ),
@@ -145,7 +145,9 @@ Now yours:
   zwidth new device       the file of your device, question by question
   zwidth examples .       sample files for every command
 
-and touch it, simulated or on your device; or take the law to a board, as C:
+hold a wall yourself, in the browser, in a terminal or on your device; or take
+the proved law to a board, as C:
 
+  zwidth play
   zwidth serve haptic-paddle --stiffness 250 --watch terminal
   zwidth emit haptic-paddle --stiffness 250 --target arduino -o wall"""

@@ -48,8 +48,8 @@ def token_for(address: str, given: str | None) -> str | None:
         return None if is_loopback(address) else secrets.token_urlsafe(24)
     if len(given) < SHORTEST or not all(c.isascii() and (c.isalnum() or c in "-_") for c in given):
         raise InputError(
-            f"the token has {SHORTEST} characters or more, of letters, digits, - and _: anybody who guesses it "
-            "may look; leave it out, and one is made"
+            f"the token has {SHORTEST} characters or more, of letters, digits, - and _: anybody who "
+            "guesses it may look; leave it out, and one is made"
         )
     return given
 
@@ -134,7 +134,8 @@ class TokenAccess(AuthProvider):  # type: ignore[misc]  # Bokeh's has no types
 
 
 _FORM = """<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>zwidth: token</title>
-<meta name="viewport" content="width=device-width, initial-scale=1"><meta name="color-scheme" content="light dark">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
 </head><body><main><h1>zwidth</h1>{message}<form method="post"><p><label>Token, as the terminal shows it:
 <input name="token" type="password" autocomplete="off" required></label> <button>Enter</button></p></form>
 </main></body></html>"""

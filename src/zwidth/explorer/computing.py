@@ -50,7 +50,7 @@ class Touch(NamedTuple):
 
 
 class Region(NamedTuple):
-    """A plane of walls: 3 passive, 2 passive while contact is kept, 1 quiet up to `speed`, 0 none of these."""
+    """Walls: 3 passive, 2 passive while contact is kept, 1 quiet up to `speed`, 0 none of these."""
 
     stiffest: float
     most_damping: float

@@ -130,7 +130,7 @@ def _label(key: str, own: Parameter) -> str:
 
 
 def number_control(path: str, own: Parameter, value: Any, motion: str, label: str = "") -> Control:
-    """A number that stands alone, such as one of a hand or of a coupling; `value` None where it is not given."""
+    """A number that stands alone, such as one of a hand; `value` None where it is not given."""
     return _number(path, label or _label(path.rpartition(".")[2], own), own, value, motion, own.bound)
 
 

@@ -138,7 +138,7 @@ export function render({ model, el }) {
       if (!row) continue;
       const [typed, range] = [row.querySelector("[type=text]"), row.querySelector("[type=range]")];
       if (typed) typed.value = text;
-      if (range && dragged !== path) range.value = Math.round(STEPS * place);
+      if (range && dragged !== path && !waiting.has(`move ${path}`)) range.value = Math.round(STEPS * place);
       if (range) range.setAttribute("aria-valuetext", text || "not given");
       row.classList.toggle("unknown", Boolean(range) && !text);
     }

@@ -43,7 +43,7 @@ class Form(JSComponent):  # type: ignore[misc]  # Panel has no types
     _stylesheets = [_read("form.css")]  # noqa: RUF012  # as Panel has it
 
     def listen(self, hear: Callable[[Event], Mapping[str, Any]], soon: Soon) -> None:
-        """Have each event answered: `hear` returns what is told to the page; `soon` has it done in its turn."""
+        """Have each event answered, in its turn: `hear` returns what is told to the page."""
 
         def heed(event: Event) -> None:
             try:

@@ -12,7 +12,7 @@ from zwidth.showing import Html, element, join, row
 
 NAME = "Laws"
 
-NONE = "Switch laws on under “Laws in the chain”; each is added to the one before it, from the wall to the actuator."
+NONE = "Switch laws on under “Laws in the chain”; each acts on what the one before it gives."
 
 
 def compared_table(rows: Sequence[Row], motion: str) -> Html:

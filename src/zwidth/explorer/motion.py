@@ -68,7 +68,8 @@ class MotionPictures:
         self.energy.yaxis[0].axis_label = f"energy out [{w_unit}]"
         for made in (self.position, self.force, self.energy):
             made.xaxis[0].axis_label = f"time [{time}]"
-        return f"{played.caption[:1].upper()}{played.caption[1:]}: {number(energies[-1])} {w_unit} come out of what is shown."
+        shown = f"{played.caption[:1].upper()}{played.caption[1:]}"
+        return f"{shown}: {number(energies[-1])} {w_unit} come out of what is shown."
 
     def clear(self) -> None:
         """Nothing to draw."""

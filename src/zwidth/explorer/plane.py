@@ -19,8 +19,8 @@ from zwidth.quantity.text import quantity_unit
 NAME = "Stability plane"
 
 _NO_PLACE = (
-    "The plane is of springs alone, B = 0, on a device with damping, Coulomb friction and resolution above 0 and "
-    "without delay; this loop has no place in it."
+    "The plane is of springs alone, B = 0, on a device with damping, Coulomb friction and resolution above 0 "
+    "and without delay; this loop has no place in it."
 )
 
 
@@ -30,7 +30,7 @@ class PlanePicture:
     def __init__(self) -> None:
         self._others = {d.name: place_at_limit(d) for d in complete_devices()}
         texts = {
-            d.name: f"{d.name} at {number(float(largest_spring_of(d)))} {quantity_unit('stiffness', d.motion)}"
+            d.name: f"{d.name} at {_stiffness(float(largest_spring_of(d)), d.motion)}"
             for d in complete_devices()
         }
         self._here = ColumnDataSource({"beta": [], "sigma": [], "colour": [], "text": []})
@@ -75,18 +75,18 @@ class PlanePicture:
         shares = (max(x[0] / beta, y[0] / sigma), min(x[1] / beta, y[1] / sigma))
         self._line.data = {"beta": [beta * s for s in shares], "sigma": [sigma * s for s in shares]}
         passive = point.region == "globally stable"
-        text = f"K = {number(float(stiffness))} {quantity_unit('stiffness', device.motion)}"
-        self._here.data = {
-            "beta": [beta],
-            "sigma": [sigma],
-            "colour": [GREEN if passive else RED],
-            "text": [text],
-        }
+        text = f"K = {_stiffness(float(stiffness), device.motion)}"
+        colour = GREEN if passive else RED
+        self._here.data = {"beta": [beta], "sigma": [sigma], "colour": [colour], "text": [text]}
         return (
-            f"This loop is at β = {number(beta)}, σ = {number(sigma)}: {point.region}. Green, both at least ½: passive. "
-            "A stiffer wall lies further down and to the left. Squares: devices of the catalogue, each at its "
-            "largest passive stiffness."
+            f"This loop is at β = {number(beta)}, σ = {number(sigma)}: {point.region}. Green, both at least "
+            "½: passive. A stiffer wall lies further down and to the left. Squares: devices of the catalogue, "
+            "each at its largest passive stiffness."
         )
+
+
+def _stiffness(value: float, motion: str) -> str:
+    return f"{number(value)} {quantity_unit('stiffness', motion)}"
 
 
 def _names(source: ColumnDataSource, colour: str) -> LabelSet:

@@ -1,4 +1,4 @@
-"""The loop to play with, under its tab: a page of its own in a frame that may run its scripts and nothing else."""
+"""The loop to play with, under its tab: a page in a frame that may run scripts and nothing else."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ export function render({ model }) {
 """
     _stylesheets = [  # noqa: RUF012  # as Panel has it
         ":host { display: block; width: 100%; } iframe[hidden] { display: none; }"
-        "iframe { border: 0; width: 100%; height: 46rem; border-radius: 6px; background: var(--paper, Canvas); }"
+        "iframe { border: 0; width: 100%; height: 60rem; border-radius: 6px; }"
     ]
 
 

@@ -1,9 +1,9 @@
 """The loop on the page as plain tables, which a URL can hold: every move is a new one.
 
-    ?device.damping=0.15 N*s/m&device.sample_period=0.001 s&environment.type=wall&environment.stiffness=300 N/m
+    ?device.damping=0.15 N*s/m&device.rate=1 kHz&environment.type=wall&environment.stiffness=300 N/m
 
 The keys are those of a specification with the name of their table before them, the values its texts with
-their units; a list or a table is written as TOML.  Whatever is read is read by the specification's own reader.
+their units; a list or a table is written as TOML.  All of it is read by the specification's own reader.
 """
 
 from __future__ import annotations
@@ -177,9 +177,7 @@ def from_query(query: Sequence[tuple[str, str]]) -> State:
         If it is too long, or a key or a value cannot be used.
     """
     if sum(len(key) + len(value) for key, value in query) > LONGEST_QUERY:
-        raise InputError(
-            f"the address is longer than {LONGEST_QUERY} characters; download the loop as a file and give that"
-        )
+        raise InputError(f"the address is longer than {LONGEST_QUERY} characters; give the loop as a file")
     found: dict[str, dict[str, object]] = {}
     for key, text in query:
         head, dot, name = key.rpartition(".")

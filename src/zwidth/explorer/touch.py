@@ -62,7 +62,8 @@ class TouchPictures:
         self.force.yaxis[0].axis_label = f"force [{f_unit}]"
         self.energy.yaxis[0].axis_label = f"work of the hand [{w_unit}]"
         peak, peak_unit = scale([touch.peak_force], force)
-        said = f"{touch.operator}. Shaded: inside the wall. Largest force {number(touch.peak_force * peak)} {peak_unit}."
+        most = f"{number(touch.peak_force * peak)} {peak_unit}"
+        said = f"{touch.operator}. Shaded: inside the wall. Largest force {most}."
         out, unit = scale([touch.extracted], "J")
         if touch.extracted > 0:
             energy = f"The hand got out {number(touch.extracted * out)} {unit} more than it had put in."

@@ -142,8 +142,8 @@ class Workers:
                 process.end()
                 return Answer(
                     None,
-                    f"this took more than {self._longest:g} s, the most that the page spends; the command line "
-                    "has no such limit",
+                    f"this took more than {self._longest:g} s, the most that the page spends; the command "
+                    "line has no such limit",
                 )
         return process.answer()
 
@@ -157,7 +157,9 @@ class _Process:
         self._process = context.Process(target=_serve, args=(there,), daemon=True)
         self._process.start()
         there.close()
-        self.alive = True
+        self.alive = (
+            self._here.recv() if self._here.poll(None) else False
+        )  # it is ready: its time counts from now
 
     def send(self, compute: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
         self._here.send((compute, arguments))
@@ -186,6 +188,7 @@ def _serve(there: Connection) -> None:
     import signal
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the page, which then ends this
+    there.send(True)
     while True:
         try:
             compute, arguments = there.recv()

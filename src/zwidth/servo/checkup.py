@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -71,6 +71,16 @@ class Checkup(Documented):
 
     def report(self) -> Iterable[Part]:
         """The lateness of both kinds of turns, what it costs, what was found, what to change."""
+        yield from self._late()
+        yield Lines([f"{one.about}: {one.told}" for one in self.findings])
+        yield from self._to_change()
+
+    def in_short(self) -> Iterable[Part]:
+        """The same without what was found."""
+        yield from self._late()
+        yield from self._to_change()
+
+    def _late(self) -> Iterator[Part]:
         kinds = {"ordinary thread": self.ordinary}
         if self.real_time is not None:
             kinds["real-time priority"] = self.real_time
@@ -83,7 +93,8 @@ class Checkup(Documented):
         if self.cost is not None:
             yield f"what the 99.9 % cost {self.device}:"
             yield self.cost.table()
-        yield Lines([f"{one.about}: {one.told}" for one in self.findings])
+
+    def _to_change(self) -> Iterator[Part]:
         advice = [f"{one.about}: {one.advice}" for one in self.findings if one.advice]
         yield f"what to change: {'nothing that was found' if not advice else ''}".rstrip()
         yield Lines(advice)

@@ -85,17 +85,20 @@ def _next(text: str, unknown: list[str], path: Path) -> list[str]:
         guesses = {"rate": '--rate "1 kHz"', "damping": "--damping 0.1"}
         given = " ".join(guesses[key] for key in missing)
         return [
-            *(f"measure: {_MEASURE[key]}" for key in missing),
-            f"to try what if, with a guess: zwidth check {name} {given} --stiffness 100",
+            *(line for key in missing for line in _MEASURE[key]),
+            "to try what if, with a guess:",
+            f"  zwidth check {name} {given} --stiffness 100",
         ]
     device = build_device(tables_of(text, path.name, ("device",))["device"])
-    return [f"next: zwidth check {name} --stiffness {_stiffness(device)}"]
+    return ["next:", f"  zwidth check {name} --stiffness {_stiffness(device)}"]
 
 
 _MEASURE = {
-    "rate": "the rate of your loop; zwidth doctor says what this machine can keep",
-    "damping": "log position and force while a hand moves the device; zwidth plan says how, and\n"
-    "  zwidth identify session.csv -o my-device.toml finds the friction in it",
+    "rate": ("measure the rate of your loop; what this machine can keep says", "  zwidth doctor"),
+    "damping": (
+        "measure the damping: log position and force while a hand moves the device, then",
+        "  zwidth identify session.csv -o identified.toml",
+    ),
 }
 
 

@@ -105,7 +105,7 @@ def described(ask: Asker, path: Path) -> Written:
     text = _FILES[kind](ask, _questions(motion), motion)
     does = "check" if kind == "wall" else "limit"
     more = "" if kind == "wall" else " --parameter rate"
-    return Written(text, [f"next: zwidth {does} my-device.toml {shlex.quote(str(path))}{more}"])
+    return Written(text, ["next:", f"  zwidth {does} my-device.toml {shlex.quote(str(path))}{more}"])
 
 
 def _sure(ask: Asker, question: Question) -> str:

@@ -76,8 +76,9 @@ export function stage(canvas, look, colours) {
 }
 
 function shade(pen, look, width, height, colours) {
+    const most = Math.min(look.full, Math.max(1e-12, ...look.profile.map(Math.abs)));
     look.profile.forEach((force, i) => {
-        pen.globalAlpha = Math.min(0.45, 0.45 * Math.abs(force) / look.full);
+        pen.globalAlpha = Math.min(0.45, (0.45 * Math.abs(force)) / most);
         column(pen, i, look.profile.length, width, 0, height, colours.wall);
     });
     pen.globalAlpha = 1;

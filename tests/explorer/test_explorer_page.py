@@ -1,0 +1,175 @@
+"""The page in a browser: what is moved, the verdict that follows, the address that keeps it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import parse_qsl, urlsplit
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Browser, Locator, Page, expect
+
+import zwidth as zw
+from zwidth.explorer.serving import serve_explorer
+from zwidth.specification.write import parsed
+
+WAIT = 25_000
+"""For a machine that has much else to do [ms]."""
+
+expect.set_options(timeout=WAIT)
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    """Of a server in this process."""
+    with serve_explorer() as page:
+        yield page.address
+
+
+def opened(page: Page, address: str) -> Page:
+    """The page, once it answers."""
+    page.set_default_timeout(WAIT)
+    page.goto(address)
+    expect(verdict(page).locator("table")).to_be_visible()
+    return page
+
+
+def verdict(page: Page) -> Locator:
+    """What the page says of the loop."""
+    return page.locator("#verdict")
+
+
+def slider(page: Page, name: str) -> Locator:
+    """Of the loop."""
+    return page.locator("#loop").get_by_role("slider", name=name, exact=True)
+
+
+def entry(page: Page, name: str) -> Locator:
+    """Beside a slider."""
+    return page.locator("#loop").get_by_role("textbox", name=f"{name}, typed with its unit", exact=True)
+
+
+def held(page: Page) -> dict[str, str]:
+    """What the address holds."""
+    return dict(parse_qsl(urlsplit(page.url).query))
+
+
+def test_a_device_is_chosen_a_slider_moved_and_the_address_keeps_it(page: Page, address: str) -> None:
+    """The verdict is that of `zwidth.check` for the numbers shown, and again after a reload."""
+    opened(page, address)
+    expect(verdict(page)).to_contain_text("passive")
+    page.locator("#loop").get_by_role("combobox", name="device").select_option("own-linear")
+    expect(entry(page, "damping")).to_have_value("0.1 N·s/m")
+    moved = slider(page, "stiffness")
+    moved.focus()
+    for _ in range(5):
+        moved.press("PageUp")
+    expect(verdict(page).locator(".badge")).to_have_text("active")
+    stiffness = "6000 N/m"  # the very right: thirty times what the slider began with
+    expect(entry(page, "stiffness")).to_have_value(stiffness)
+    page.wait_for_function("location.search.includes('stiffness=6000')")
+    assert held(page)["environment.stiffness"] == stiffness
+    device = zw.Device(mass=0.1, damping=0.1, coulomb_friction=0.1, resolution=20e-6, rate=1000)
+    said = zw.check(device, zw.Wall(stiffness=stiffness))
+    expect(verdict(page)).to_contain_text(said.claim)
+    for advice in said.advice:
+        if advice.to is not None:
+            expect(verdict(page)).to_contain_text(advice.text)
+    page.reload()
+    expect(verdict(page)).to_contain_text(said.claim)
+    expect(entry(page, "stiffness")).to_have_value(stiffness)
+
+
+def test_a_typed_number_is_exact_and_a_wrong_one_is_a_message(page: Page, address: str) -> None:
+    """What cannot be used changes nothing."""
+    opened(page, address)
+    typed = entry(page, "stiffness")
+    typed.fill("0.3 N/mm")
+    typed.press("Enter")
+    expect(verdict(page)).to_contain_text("exactly at its limit")
+    typed.fill("300 bananas")
+    typed.press("Enter")
+    expect(page.get_by_role("alert").first).to_contain_text("bananas")
+    expect(verdict(page)).to_contain_text("exactly at its limit")
+    assert held(page)["environment.stiffness"] == "300 N/m"
+
+
+def test_a_file_is_read_and_what_is_downloaded_is_the_loop(page: Page, address: str, tmp_path: Path) -> None:
+    """Its name is shown and not obeyed; the files are those that the command line writes."""
+    opened(page, address)
+    text = (
+        '[device]\nname = "<img src=x onerror=alert(1)>"\ndamping = "0.2 N*s/m"\nrate = "2 kHz"\n'
+        '[environment]\ntype = "maxwell"\nstiffness = "300 N/m"\ndamping = "2 N*s/m"\n'
+    )
+    given = tmp_path / "mine.toml"
+    given.write_text(text)
+    page.locator("#loop input[type=file]").set_input_files(given)
+    expect(entry(page, "rate")).to_have_value("2 kHz")
+    expect(page.locator("#loop option", has_text="<img")).to_have_count(1)
+    with page.expect_download() as toml:
+        page.get_by_role("button", name="The loop as TOML").click()
+    loop = parsed(Path(toml.value.path()).read_text(encoding="utf-8"))
+    assert loop.environment == parsed(text).environment
+    assert loop.device == parsed(text).device
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="The verdict as JSON").click()
+    document = Path(saved.value.path()).read_text(encoding="utf-8")
+    assert json.loads(document)["outcome"] == zw.check(*parsed_parts(text)).outcome
+    assert zw.verify(document).valid
+
+
+def parsed_parts(text: str) -> tuple[zw.Device, object]:
+    loop = parsed(text)
+    return loop.device, loop.environment
+
+
+def test_what_the_address_cannot_say_is_a_message(page: Page, address: str) -> None:
+    """And the page begins with its own loop."""
+    opened(
+        page, f"{address}?device.damping=-1&device.rate=1+kHz&environment.type=wall&environment.stiffness=3"
+    )
+    expect(page.get_by_role("alert").first).to_contain_text("damping must be ≥ 0")
+
+
+def test_two_people_do_not_disturb_each_other(browser: Browser, address: str) -> None:
+    """What one moves the other does not see."""
+    first, second = (opened(browser.new_page(), address) for _ in range(2))
+    typed = entry(first, "stiffness")
+    typed.fill("770 N/m")
+    typed.press("Enter")
+    expect(verdict(first).locator(".badge")).to_have_text("active")
+    expect(verdict(second).locator(".badge")).to_have_text("passive")
+    assert entry(second, "stiffness").input_value() == "200 N/m"
+    for page in (first, second):
+        page.close()
+
+
+def test_nothing_is_wider_than_the_screen_and_everybody_can_use_it(page: Page, address: str) -> None:
+    """No horizontal scrolling, and no serious finding of axe under any tab, in light and in dark."""
+    opened(page, address)
+    for tab in page.get_by_role("tab").all():
+        if tab.text_content() == "Play":
+            continue  # a page of its own, with tests of its own
+        tab.click()
+        expect(tab).to_have_attribute("aria-selected", "true")
+        assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+        found = Axe().run(page).response["violations"]
+        bad = [v for v in found if v["impact"] in ("serious", "critical")]
+        assert not bad, [(v["id"], [n["html"] for n in v["nodes"]]) for v in bad]
+
+
+def test_tabs_go_by_arrows(page: Page, address: str) -> None:
+    """To the next, around the end, and the address says which is open."""
+    opened(page, address)
+    tab = page.get_by_role("tab", name="Criterion")
+    tab.focus()
+    tab.press("ArrowRight")
+    expect(page.get_by_role("tab", name="Stability plane")).to_be_focused()
+    expect(page.get_by_role("tabpanel", name="Stability plane")).to_be_visible()
+    assert page.url.endswith("#plane")
+    page.get_by_role("tab", name="Stability plane").press("End")
+    expect(page.get_by_role("tab", name="Play")).to_be_focused()

@@ -1,0 +1,136 @@
+"""Who is answered: this machine's own pages, and over the network who has the token."""
+
+from __future__ import annotations
+
+import http.client
+import socket
+import urllib.error
+import urllib.request
+from urllib.parse import urlsplit
+
+import pytest
+
+from zwidth.errors import InputError
+from zwidth.explorer import access
+from zwidth.explorer.serving import serve_explorer
+
+TOKEN = "a-token-of-a-test-0123456789"
+
+_UPGRADE = {
+    "Connection": "Upgrade",
+    "Upgrade": "websocket",
+    "Sec-WebSocket-Version": "13",
+    "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
+    "Sec-WebSocket-Protocol": "bokeh, none",
+}
+
+
+def status(address: str, path: str = "/", **headers: str) -> tuple[int, str]:
+    """What a request is answered with, redirections not followed, and its cookie."""
+    host = urlsplit(address).netloc
+    connection = http.client.HTTPConnection(host, timeout=20)
+    connection.request("GET", path, headers=headers)
+    answer = connection.getresponse()
+    answer.read()
+    connection.close()
+    return answer.status, answer.headers.get("Set-Cookie", "")
+
+
+def upgrade(address: str, origin: str, **more: str) -> int:
+    """What a page of this origin is answered that asks for a WebSocket."""
+    host = urlsplit(address).netloc
+    connection = http.client.HTTPConnection(host, timeout=20)
+    connection.request("GET", "/ws", headers={**_UPGRADE, "Origin": origin, **more})
+    answer = connection.getresponse()
+    connection.close()
+    return answer.status
+
+
+def test_only_pages_of_this_server_get_a_websocket() -> None:
+    """A page of another site is refused, also where it comes from another port of this machine."""
+    with serve_explorer() as page:
+        port = urlsplit(page.address).port
+        assert upgrade(page.address, f"http://127.0.0.1:{port}") == 101
+        for foreign in ("http://evil.example", "http://127.0.0.1:1", f"http://evil.example:{port}", "null"):
+            assert upgrade(page.address, foreign) == 403
+
+
+def test_only_this_machine_is_answered() -> None:
+    """By default it listens to 127.0.0.1."""
+    with serve_explorer() as page:
+        assert page.address.startswith("http://127.0.0.1:")
+
+
+def test_a_token_opens_the_page_and_nothing_else_does() -> None:
+    """With it a cookie that no script reads; without it, or with another, the form; so of the WebSocket."""
+    with serve_explorer(token=TOKEN) as page:
+        assert TOKEN in page.address
+        origin = page.address.partition("/?")[0]
+        assert status(page.address)[0] == 302
+        assert status(page.address, "/?token=another-token-0123456789")[0] == 302
+        assert status(page.address, "/enter")[0] == 401
+        assert upgrade(page.address, origin) in (302, 401, 403)
+        code, cookie = status(page.address, f"/?token={TOKEN}")
+        assert code == 200
+        assert "HttpOnly" in cookie
+        assert "SameSite=Strict" in cookie
+        kept = cookie.partition(";")[0]
+        assert status(page.address, Cookie=kept)[0] == 200
+        assert upgrade(page.address, origin, Cookie=kept) == 101
+
+
+def test_a_form_takes_the_token() -> None:
+    """A wrong one is refused."""
+    with serve_explorer(token=TOKEN) as page:
+        enter = page.address.partition("?")[0] + "enter"
+        with pytest.raises(urllib.error.HTTPError, match="401"):
+            urllib.request.urlopen(enter, data=b"token=wrong")
+        request = urllib.request.Request(enter, data=f"token={TOKEN}".encode())
+        opener = urllib.request.build_opener(urllib.request.HTTPCookieProcessor())
+        assert opener.open(request).status == 200
+
+
+def test_over_the_network_there_is_always_a_token() -> None:
+    """Where none is given one is made; on this machine none is needed."""
+    assert access.token_for("127.0.0.1", None) is None
+    assert access.token_for("::1", None) is None
+    made = access.token_for("0.0.0.0", None)
+    assert made is not None
+    assert len(made) >= access.SHORTEST
+    assert made != access.token_for("0.0.0.0", None)
+
+
+@pytest.mark.parametrize("token", ["short", "with a blank in it, long", "späte-umlaute-0123456789", ""])
+def test_a_token_that_can_be_guessed_is_refused(token: str) -> None:
+    """Or one that an address does not carry."""
+    with pytest.raises(InputError, match="16 characters"):
+        access.token_for("127.0.0.1", token)
+
+
+def test_a_port_in_use_is_said() -> None:
+    """And one that is none."""
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        with pytest.raises(InputError, match="cannot be served"):
+            serve_explorer(port=taken.getsockname()[1])
+    with pytest.raises(InputError, match="no port"):
+        serve_explorer(port=70000)
+
+
+def test_so_many_pages_and_no_more() -> None:
+    """The next one is told so."""
+    with serve_explorer(most=1) as page:
+        first = urllib.request.urlopen(page.address).read().decode()
+        second = urllib.request.urlopen(page.address).read().decode()
+    assert "Device and wall" in first
+    assert "pages are open" in second
+    assert "Device and wall" not in second
+
+
+def test_text_in_the_address_is_shown_and_not_obeyed() -> None:
+    """Markup in a name or a key comes escaped, whether it can be used or not."""
+    with serve_explorer() as page:
+        for query in ("device.name=%3Cscript%3Ealert(1)%3C/script%3E", "%3Cscript%3Ealert(1)%3C/script%3E=1"):
+            text = urllib.request.urlopen(f"{page.address}?{query}").read().decode()
+            assert "<script>alert(1)" not in text

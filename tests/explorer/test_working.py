@@ -1,0 +1,90 @@
+"""What is computed beside the pages ends: when it is done, when it takes too long, when nobody waits."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator
+from queue import Queue
+from typing import Any
+
+import pytest
+
+from zwidth.errors import InputError
+from zwidth.explorer.working import Answer, Workers
+
+
+def doubled(value: int) -> int:
+    """Something quick."""
+    return 2 * value
+
+
+def refused(value: int) -> int:
+    """Something that cannot be."""
+    raise InputError(f"{value} cannot be")
+
+
+def failed(value: int) -> int:
+    """A mistake."""
+    raise ZeroDivisionError(value)
+
+
+def ended(value: int) -> int:
+    """A process that dies."""
+    os._exit(value)
+
+
+def endless(value: int) -> int:
+    """Something that never ends."""
+    time.sleep(3600)
+    return value
+
+
+@pytest.fixture
+def workers() -> Iterator[Workers]:
+    """One process; a job may take three seconds, so that the wait is short."""
+    made = Workers(1, longest=3.0)
+    yield made
+    made.close()
+
+
+def asked(workers: Workers, compute: Any, value: int) -> Answer:
+    """What comes of it."""
+    answers: Queue[Answer] = Queue()
+    workers.submit(1, "job", compute, (value,), answers.put)
+    return answers.get(timeout=60)
+
+
+def test_an_answer_a_message_and_a_mistake(workers: Workers) -> None:
+    """The process goes on after each."""
+    assert asked(workers, doubled, 21) == Answer(42)
+    assert asked(workers, refused, 3) == Answer(None, "3 cannot be")
+    assert "ZeroDivisionError" in asked(workers, failed, 1).message
+    assert asked(workers, doubled, 4) == Answer(8)
+
+
+def test_what_dies_or_takes_too_long_is_said_and_replaced(workers: Workers) -> None:
+    """Another process does the next job."""
+    assert "without an answer" in asked(workers, ended, 1).message
+    assert "took more than" in asked(workers, endless, 1).message
+    assert asked(workers, doubled, 4) == Answer(8)
+
+
+def test_the_newest_job_alone_is_done() -> None:
+    """Of one asker and one kind; of others each; nothing is told to who has left."""
+    workers = Workers(1)
+    answers: Queue[Answer] = Queue()
+    try:
+        workers.submit(1, "job", endless, (0,), answers.put)
+        for value in range(5):
+            workers.submit(1, "job", doubled, (value,), answers.put)
+        workers.submit(2, "job", doubled, (50,), answers.put)
+        found = {answers.get(timeout=60).value for _ in range(2)}
+        assert found == {8, 100}
+        workers.submit(3, "job", doubled, (1,), answers.put)
+        workers.forget(3)
+        workers.submit(4, "job", doubled, (7,), answers.put)
+        assert answers.get(timeout=60).value == 14
+        assert answers.empty()
+    finally:
+        workers.close()
