@@ -14,7 +14,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.showing import OBEYED, Headline, Html, Lines, Shown, Table, element, printable
+from zwidth.showing import OBEYED, Headline, Html, Lines, Picture, Shown, Table, element, printable, void
 
 SCRIPT = "<script>alert(1)</script>"
 HOSTILE = f"{SCRIPT} $\\frac{{$ & \x1b[2J\x9b31m \u202e\"'"
@@ -30,6 +30,17 @@ def test_only_html_becomes_a_part_of_html() -> None:
     assert Table(heads=[["<"]], rows=[["1"]]).html == (
         "<table><thead><tr><th>&lt;</th></tr></thead><tbody><tr><td>1</td></tr></tbody></table>"
     )
+
+
+def test_a_picture_stands_within_the_page() -> None:
+    """Its file in the address, what it shows as text; of its own markup nothing is a part of the page."""
+    drawn = Picture(b"<svg/>", "svg+xml", 'a "curve" <b>', "below it")
+    assert drawn.html == (
+        '<figure><img src="data:image/svg+xml;base64,PHN2Zy8+" alt="a &quot;curve&quot; &lt;b&gt;" '
+        'style="max-width:100%;height:auto"/><figcaption>below it</figcaption></figure>'
+    )
+    assert str(drawn) == 'a "curve" <b>'
+    assert void("meta", name="a\x1b&") == '<meta name="a?&amp;"/>'
 
 
 class Shows(Shown):

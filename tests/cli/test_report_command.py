@@ -29,9 +29,9 @@ def test_the_status_is_that_of_check(
     """One line says the outcome, the next which file was written."""
     path = tmp_path / "report.html"
     assert main(["report", *PADDLE, "--stiffness", stiffness, "-o", str(path)]) == status
-    said, written = capsys.readouterr().out.splitlines()
+    *said, written = capsys.readouterr().out.splitlines()
     verdict = zw.check(zw.catalogue.device("haptic-paddle", damping="0.16"), zw.Wall(int(stiffness)))
-    assert said == f"{verdict.outcome}: {verdict.claim}"
+    assert " ".join(said) == f"{verdict.outcome}: {verdict.claim}"
     assert written == f"written: {path}"
     page = path.read_text(encoding="utf-8")
     assert f"zwidth report haptic-paddle --damping 0.16 --stiffness {stiffness} -o report.html" in page
@@ -89,3 +89,24 @@ def test_bad_input_is_one_line_and_writes_nothing(
     assert said.count("\n") == 1
     assert [path.name for path in tmp_path.iterdir()] == ["there.html"]
     assert Path("there.html").read_text(encoding="utf-8") == "kept"
+
+
+PAIR = """
+[device]
+catalogue = "haptic-paddle"
+[coupling]
+stiffness = 100
+"""
+
+
+def test_a_file_of_two_arms_has_a_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Its numbers stand in it; one beside it would be ignored, and is refused."""
+    (tmp_path / "arms.toml").write_text(PAIR, encoding="utf-8")
+    asked = ["report", str(tmp_path / "arms.toml"), "-o", str(tmp_path / "report.html")]
+    assert main(asked) == 0
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "No motion of two hands" in page
+    assert "zwidth report arms.toml -o report.html" in page
+    capsys.readouterr()
+    assert main([*asked, "--force", "--stiffness", "50"]) == 2
+    assert "stand in their file" in capsys.readouterr().err

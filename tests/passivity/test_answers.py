@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import cache
+from html import escape
 from math import isfinite
 from pathlib import Path
 
@@ -110,6 +111,33 @@ def test_an_answer_is_drawn(name: str, tmp_path: Path) -> None:
     path = tmp_path / "picture.png"
     assert answers()[name].plot(path).axes
     assert path.stat().st_size > 1000
+
+
+@pytest.mark.parametrize("name", ["active", "worst hand", "arm", "port"])
+def test_a_notebook_shows_the_picture(name: str) -> None:
+    """Small, within the page, and said in words; in a line there is none."""
+    answer = answers()[name]
+    page = answer._repr_html_()
+    assert page.count('<img src="data:image/png;base64,') == 1
+    assert escape(answer.describe()) in page
+    assert len(page) < 200_000
+    assert "<img" not in repr(answer)
+
+
+@pytest.mark.parametrize("name", ["spring", "bounding", "coupling"])
+def test_where_there_is_nothing_to_draw_a_notebook_shows_the_rest(name: str) -> None:
+    """The claim all the same."""
+    page = answers()[name]._repr_html_()
+    assert "<img" not in page
+    assert escape(answers()[name].claim) in page
+
+
+def test_a_notebook_shows_what_to_change() -> None:
+    """Beside the claim, and not folded away."""
+    page, folded = answers()["active"]._repr_html_().split("<details>", 1)
+    for text in ("what to change, any one of:", "lower the stiffness from 770 N/m to 300 N/m"):
+        assert text in page
+        assert text not in folded
 
 
 def test_what_has_no_picture_says_so() -> None:

@@ -6,7 +6,7 @@ from math import inf
 
 import pytest
 
-from zwidth.quantity.text import in_a_table, in_unit, in_words, quantity_unit, shown, unit_text
+from zwidth.quantity.text import in_a_table, in_unit, in_words, quantity_unit, readable, shown, unit_text
 
 
 @pytest.mark.parametrize(
@@ -51,3 +51,24 @@ def test_a_number_in_a_table() -> None:
     numbers = (1234567.0, 12345.6, 999.96, 0.00012345)
     assert [in_a_table(number) for number in numbers] == ["1.235e+06", "12346", "1000", "0.0001234"]
     assert in_a_table(0.98765, 3) == "0.988"
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.001427, "J", "0.001427 J"),
+        (2.03254e-6, "J", "2.033 µJ"),
+        (-22.4e-6, "m", "-22.4 µm"),
+        (2.5e-5, "rad", "25 µrad"),
+        (54190, "m/s", "54.19 km/s"),
+        (1e-5, "N*m", "10 µN·m"),
+        (1e-5, "N*s/m", "1e-05 N·s/m"),
+        (1e-30, "m", "1e-30 m"),
+        (0, "m", "0 m"),
+        (300, "N/m", "300 N/m"),
+        (5e-5, "1", "5e-05"),
+    ],
+)
+def test_a_prefix_takes_the_place_of_an_exponent(value: float, unit: str, text: str) -> None:
+    """Where the unit has prefixes; a number that is read without an exponent stays as it is."""
+    assert readable(value, unit) == text

@@ -5,9 +5,11 @@ from __future__ import annotations
 import pytest
 
 import zwidth as zw
+from zwidth.report.pair_provenance import of_pair
 from zwidth.report.provenance import of_device, of_environment, of_verdict
 from zwidth.specification.laws import with_laws
-from zwidth.specification.read import WITH_LAWS, built, merged, tables_of
+from zwidth.specification.pairs import pair_of
+from zwidth.specification.read import PAIR_TABLES, WITH_LAWS, built, merged, tables_of
 
 WHEEL = """
 [device]
@@ -96,3 +98,27 @@ def test_of_every_law_something_is_told(law: zw.Maxwell) -> None:
     """Its line at least."""
     rows = of_verdict(zw.check(zw.Device(damping=1, rate=1000), law)).numbers
     assert rows[-1] == ("law", law.describe(), "given in Python")
+
+
+PAIR = """
+[leader]
+catalogue = "haptic-paddle"
+[follower]
+damping = 0.3
+rate = "1 kHz"
+[coupling]
+stiffness = "100 N/m"
+virtual_damping = "0.01 N*s/m"
+link_delay = 0.002
+"""
+
+
+def test_of_two_arms_each_number_is_told() -> None:
+    """Of which arm it is, or of the coupling, with units as people write them."""
+    tables = tables_of(PAIR, "arms.toml", PAIR_TABLES)
+    told = {what: (value, where) for what, value, where in of_pair(tables, pair_of(tables))}
+    assert told["leader: damping b"] == ("0.15 N·s/m", "catalogue: Abbott & Okamura 2005, section IV-B")
+    assert told["follower: damping b"] == ("0.3 N·s/m", "arms.toml, [follower]")
+    assert told["follower: resolution Δ"][1] == "not given: taken as 0"
+    assert told["coupling: damping"] == ("0.01 N·s/m", "arms.toml, [coupling]")
+    assert told["coupling: link delay"][0] == "0.002 s"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 import zlib
+from pathlib import Path
 
 import pytest
 
@@ -60,3 +61,5 @@ def test_without_reportlab_one_sentence_says_what_to_do(
         monkeypatch.setitem(sys.modules, name, None)
     with pytest.raises(zw.InputError, match=r"needs ReportLab: pip install 'zwidth\[report\]'.*\.html"):
         zw.report.pdf(active)
+    with pytest.raises(zw.InputError, match="needs ReportLab"):
+        zw.report.check_ending(Path("report.pdf"))

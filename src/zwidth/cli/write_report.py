@@ -7,7 +7,7 @@ import shlex
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
-from zwidth.cli.decision import Asked, asked, decided, exit_status
+from zwidth.cli.decision import asked, decided, exit_status
 from zwidth.cli.options import (
     Once,
     add_contact_option,
@@ -17,9 +17,14 @@ from zwidth.cli.options import (
     overrides,
 )
 from zwidth.cli.output import check_new, print_text, say_written
+from zwidth.errors import InputError
 
 if TYPE_CHECKING:
-    from zwidth.report import Provenance
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from zwidth.passivity.result import Answer
+    from zwidth.report.provenance import Row
+    from zwidth.specification.table import Table
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -31,7 +36,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "sources",
         metavar="SOURCE",
         nargs="*",
-        help="device of the catalogue, or TOML file with a [device] table, an [environment] table or both",
+        help="device of the catalogue, or TOML file with a [device] table, an [environment] table or both; "
+        "or one file of two arms, with [leader], [follower] and [coupling]",
     )
     add_law_option(parser)
     add_contact_option(parser)
@@ -50,22 +56,49 @@ def run(arguments: argparse.Namespace) -> int:
     target = Path(arguments.save)
     report.check_ending(target)
     check_new(target, arguments.force)
-    given = asked(arguments)
-    verdict = decided(given.loop, contact(arguments))
-    report.save(verdict, target, _provenance(given, arguments), overwrite=arguments.force)
+    tables = _of_a_pair(arguments.sources)
+    verdict, numbers = _loop(arguments) if tables is None else _pair(tables, arguments)
+    told = report.Provenance(tuple(numbers), _command(arguments))
+    report.save(verdict, target, told, overwrite=arguments.force)
     print_text(f"{verdict.outcome}: {verdict.claim}")
     say_written(target)
     return exit_status(verdict.outcome)
 
 
-def _provenance(given: Asked, arguments: argparse.Namespace) -> Provenance:
-    """Of every number of the loop, and the command."""
-    from zwidth.report.provenance import Provenance, of_device, of_environment
+def _loop(arguments: argparse.Namespace) -> tuple[Answer, Iterable[Row]]:
+    """The verdict on a device and a law, and where their numbers come from."""
+    from zwidth.report.provenance import of_device, of_environment
 
+    given = asked(arguments)
     device, environment, typed = given.loop.device, given.loop.environment, arguments.law or ()
-    device_rows = of_device(given.device_table, device)
-    law_rows = of_environment(given.environment_table, environment, device.motion, given.law_table, typed)
-    return Provenance((*device_rows, *law_rows), _command(arguments))
+    verdict = decided(given.loop, contact(arguments))
+    rows = of_environment(given.environment_table, environment, device.motion, given.law_table, typed)
+    return verdict, (*of_device(given.device_table, device), *rows)
+
+
+def _of_a_pair(sources: Sequence[str]) -> Mapping[str, Table] | None:
+    """The tables of the one source, where it is a file of two arms."""
+    from zwidth.specification.read import PAIR_TABLES, WITH_LAWS, read_tables
+
+    if len(sources) != 1:
+        return None
+    tables = read_tables(sources, (*WITH_LAWS, *PAIR_TABLES))
+    return tables if any(name in tables for name in PAIR_TABLES) else None
+
+
+def _pair(tables: Mapping[str, Table], arguments: argparse.Namespace) -> tuple[Answer, Iterable[Row]]:
+    """The verdict on two arms, and where their numbers come from."""
+    from zwidth.passivity.check import check
+    from zwidth.report.pair_provenance import of_pair
+    from zwidth.specification.pairs import pair_of
+
+    if overrides(arguments) or arguments.law or arguments.contact:
+        raise InputError(
+            "the numbers of two arms stand in their file: no parameter, law or contact can be given beside "
+            "it here; zwidth pair takes those of the coupling"
+        )
+    pair = pair_of(tables)
+    return check(pair), of_pair(tables, pair)
 
 
 def _command(arguments: argparse.Namespace) -> str:

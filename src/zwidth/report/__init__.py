@@ -5,6 +5,7 @@ The same verdict gives the same bytes, in every process and folder: no date, no 
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
 
 from zwidth.errors import InputError
@@ -80,12 +81,14 @@ def save(
 
 
 def check_ending(path: Path) -> None:
-    """Refuse a name that is not one of a report.
+    """Refuse a name of which no report can be made, before anything is computed.
 
     Raises
     ------
     InputError
-        If it ends otherwise than in one of `ENDINGS`.
+        If it ends otherwise than in one of `ENDINGS`, or in .pdf where ReportLab is not installed.
     """
     if path.suffix.lower() not in ENDINGS:
         raise InputError(f"a report is written as .html or .pdf, got {path.name!r}; for example report.html")
+    if path.suffix.lower() == ".pdf":
+        import_module("zwidth.report.pdf_file")

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from zwidth.passivity.result import Answer
+from zwidth.passivity.verdict import Verdict
 
 
 def beyond(verdict: Answer) -> Iterator[str]:
     """Line by line; what the claim takes for granted stands elsewhere."""
-    if verdict.outcome == "active":
+    if verdict.outcome == "active" and not isinstance(verdict, Verdict):
+        yield "Whether given hands make this motion: zwidth simulate shows what hands of your choice meet."
+    elif verdict.outcome == "active":
         yield (
             "Whether a given hand makes this motion: zwidth check --replay says how stiff a hand must be for "
             "it, and zwidth simulate shows what a hand of your choice meets."

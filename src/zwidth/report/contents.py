@@ -75,8 +75,11 @@ def contents(verdict: Answer, provenance: Provenance | None = None) -> Contents:
 
 
 def _title(verdict: Answer) -> str:
+    pair = getattr(verdict, "pair", None)
+    if pair is not None:
+        return printable(f"{pair.leader.name} and {pair.follower.name}: {pair.describe()}")
     if not isinstance(verdict, Verdict):
-        return "Two arms that follow each other"
+        return verdict.describe()
     device = verdict.device
     name = (
         " ".join(printable(device.name).split()) if device.name != "device" else f"A {device.motion} device"

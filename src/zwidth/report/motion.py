@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
+from zwidth.passivity.pairs.evidence import PairWitness
 from zwidth.passivity.storage.evidence.gain import Gain
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.glossary import GLOSSARY
@@ -32,6 +33,18 @@ def first_steps(found: Any) -> Iterator[Part]:
     elif isinstance(found, Gain):
         yield "One round of it, once the law does the same in each:"
         yield _table(_of_a_gain(found))
+    elif isinstance(found, PairWitness):
+        yield _of_both_arms(found)
+
+
+def _of_both_arms(found: PairWitness) -> Table:
+    """Where both are at the first samples."""
+    from zwidth.plots.style import number, scale
+
+    listed = [[float(x) for x in positions[:_STEPS]] for positions in found.positions]
+    factor, unit = scale([x for positions in listed for x in positions], found.pair.leader.unit("position"))
+    rows = [(str(k), *(number(factor * x) for x in both)) for k, both in enumerate(zip(*listed, strict=True))]
+    return Table(heads=[("sample", "leader", "follower"), ("", unit, unit)], rows=rows, lefts=0)
 
 
 def _of_a_witness(found: Witness) -> _Steps:

@@ -30,7 +30,7 @@ except ImportError:
     ) from None
 
 _REGULAR, _BOLD = "DejaVuSans", "DejaVuSans-Bold"
-_WIDTH = pagesizes.A4[0] - 40 * units.mm
+_WIDTH = pagesizes.A4[0] - 40 * units.mm - 12  # ReportLab leaves six points free on each side
 _SOFT, _LINE = colors.HexColor("#555555"), colors.HexColor("#cccccc")
 
 _TEXT = ParagraphStyle("text", fontName=_REGULAR, fontSize=9, leading=12.5, spaceAfter=4)

@@ -76,7 +76,7 @@ def of_device(table: Table, device: Device) -> Iterator[Row]:
         )
     for key, own in ROTARY.items():
         if key in table.values:
-            yield in_words(key), _as_written(table.values[key], own.unit), _place(table, key, key)
+            yield in_words(key), as_written(table.values[key], own.unit), _place(table, key, key)
 
 
 def of_environment(
@@ -104,7 +104,7 @@ def of_environment(
         if value is not None:
             where = _place(table, name, name) if name in table.values else _DEFAULT
             yield (*_of_a_key(name, key, value, motion), where)
-    behind = f"typed: --law {','.join(typed)}" if typed or laws is None else _file(laws.label)
+    behind = f"typed: --law {','.join(typed)}" if typed or laws is None else of_file(laws.label)
     for law in chain:
         yield "law behind it", law.describe(motion), behind
 
@@ -128,9 +128,9 @@ def _named(key: str, value: Exact | Interval, motion: str) -> tuple[str, str]:
     return f"{in_words(key)} {own.symbol}".rstrip(), shown(value, own.unit_for(motion), _DIGITS)
 
 
-def _as_written(value: object, unit: str) -> str:
+def as_written(value: object, unit: str) -> str:
     """As it stands in a file, with the unit where it has none there."""
-    text = str(value)
+    text = str(value).replace("*", "·")
     return text if any(map(str.isalpha, text)) else f"{text} {unit_text(unit)}".rstrip()
 
 
@@ -157,10 +157,10 @@ def _place(table: Table, key: str, asked: str) -> str:
         return f"typed: --{option} {table.values[key]}"
     if table.label == COMMAND_LINE:
         return _DEFAULT
-    return _file(table.label) + ("" if key == asked else f": {key}")
+    return of_file(table.label) + ("" if key == asked else f": {key}")
 
 
-def _file(label: str) -> str:
+def of_file(label: str) -> str:
     """A table of a file, which is called by its name alone."""
     file, found, name = label.rpartition(": [")
     return f"{PurePath(file.removesuffix(': [')).name}, [{name}" if found else label
