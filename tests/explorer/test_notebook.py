@@ -38,12 +38,16 @@ def test_a_law_of_one_s_own_is_refused() -> None:
         zw.explore(zw.catalogue.device("haptic-paddle"), Own(300))
 
 
-@pytest.mark.parametrize("kind", ["typed", "move", "choose", "release", "view", "upload", "press", "nonsense", None])
+@pytest.mark.parametrize(
+    "kind", ["typed", "move", "choose", "release", "view", "upload", "press", "nonsense", None]
+)
 @pytest.mark.parametrize("value", [None, "x", 3, float("nan"), [], {"a": 1}, "x" * 10_000])
 def test_whatever_a_browser_sends_is_answered(kind: object, value: object) -> None:
     """With a message at most: what it sends is not trusted."""
     shown = _one()
-    for number, path in enumerate(("environment.stiffness", "device", "with.x", "law.9.x", "__class__", None), 1):
+    for number, path in enumerate(
+        ("environment.stiffness", "device", "with.x", "law.9.x", "__class__", None), 1
+    ):
         shown._session.form.event = {"kind": kind, "path": path, "value": value, "number": number}
         assert shown._session.form.told["heard"] == number
     shown._session.form.event = {}

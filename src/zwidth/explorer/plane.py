@@ -81,7 +81,7 @@ class PlanePicture:
         return (
             f"This loop is at β = {number(beta)}, σ = {number(sigma)}: {point.region}. Green, both at least "
             "½: passive. A stiffer wall lies further down and to the left. Squares: the catalogue, "
-            "each device at its largest passive stiffness."
+            "each at its largest passive stiffness."
         )
 
 
