@@ -69,16 +69,16 @@ class LinkPicture:
     """The largest passive stiffness against the delay of the link, and where the page is."""
 
     def __init__(self) -> None:
-        self._stairs = ColumnDataSource({"delay": [], "stiffness": []})
+        self._stairs = ColumnDataSource({"left": [], "right": [], "top": []})
         self._here = ColumnDataSource({"delay": [], "stiffness": []})
         self._x, self._y = Range1d(0, 1), Range1d(0, 1)
         self.figure: Any = new_figure(
             "link delay, each way", "stiffness", height=300, x_range=self._x, y_range=self._y
         )
-        self.figure.varea_step(
-            "delay", 0, "stiffness", source=self._stairs, color=GREEN, alpha=0.25, step_mode="before"
-        )
-        self.figure.step("delay", "stiffness", source=self._stairs, color=GREEN, line_width=2, mode="before")
+        self.figure.quad(
+            left="left", right="right", top="top", bottom=0, source=self._stairs,
+            fill_color=GREEN, fill_alpha=0.3, line_color=None,
+        )  # fmt: skip
         self.figure.scatter("delay", "stiffness", source=self._here, size=12, color=RED)
 
     def show(self, found: tuple[list[float], list[float]], verdict: PairVerdict) -> str:
@@ -87,7 +87,8 @@ class LinkPicture:
         pair = verdict.pair
         here = float(pair.there), float(pair.felt_stiffness)
         factor, unit = scale([delays[-1]], "s")
-        self._stairs.data = {"delay": [factor * d for d in delays], "stiffness": stiffness}
+        ends = [factor * delay for delay in delays]
+        self._stairs.data = {"left": ends[:-1], "right": ends[1:], "top": stiffness[1:]}
         self._here.data = {"delay": [factor * here[0]], "stiffness": [here[1]]}
         self._x.update(start=0, end=factor * delays[-1])
         self._y.update(start=0, end=1.25 * max([*stiffness, here[1]]))
@@ -97,5 +98,5 @@ class LinkPicture:
 
     def clear(self) -> None:
         """Nothing to draw."""
-        self._stairs.data = {"delay": [], "stiffness": []}
+        self._stairs.data = {"left": [], "right": [], "top": []}
         self._here.data = {"delay": [], "stiffness": []}

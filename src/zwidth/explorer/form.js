@@ -26,7 +26,9 @@ export function render({ model, el }) {
     model.event = { ...event, number };
   };
   const tell = (kind, path, value) => {
-    waiting.set(`${kind} ${path}`, { kind, path, value });
+    const key = `${kind} ${path}`;
+    waiting.delete(key); // so that it comes last: letting go is told after the last move
+    waiting.set(key, { kind, path, value });
     send();
   };
 

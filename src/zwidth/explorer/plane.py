@@ -80,7 +80,7 @@ class PlanePicture:
         self._here.data = {"beta": [beta], "sigma": [sigma], "colour": [colour], "text": [text]}
         return (
             f"This loop is at β = {number(beta)}, σ = {number(sigma)}: {point.region}. Green, both at least "
-            "½: passive. A stiffer wall lies further down and to the left. Squares: devices of the catalogue, "
+            "½: passive. A stiffer wall lies further down and to the left. Squares: the catalogue, "
             "each at its largest passive stiffness."
         )
 

@@ -35,7 +35,9 @@ class RegionPicture:
             (BLUE, "passive while contact is kept"),
             (ORANGE, "quiet hands gain nothing"),
         ):
-            self.figure.scatter([], [], marker="square", size=10, color=colour, alpha=0.6, legend_label=text)
+            self.figure.scatter(
+                [-1], [-1], marker="square", size=10, color=colour, alpha=0.6, legend_label=text
+            )
         self.figure.scatter(
             "damping",
             "stiffness",

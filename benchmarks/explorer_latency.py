@@ -1,0 +1,71 @@
+"""How long after a move of a slider does the explorer page show another verdict?
+
+    python benchmarks/explorer_latency.py [MOVES]
+
+A browser moves the stiffness of a wall, a move at a time, and waits until the words of the verdict have changed:
+the outcome and its claim, and then the numbers with limit and advice.  Needs Playwright and Chromium.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import statistics
+import sys
+
+from playwright.sync_api import sync_playwright
+
+from zwidth.explorer.serving import serve_explorer
+
+MOVE = """async (moves) => {
+  const within = (root, selector) => {
+    const roots = [root];
+    while (roots.length) {
+      const one = roots.shift();
+      const found = one.querySelector(selector);
+      if (found) return found;
+      for (const element of one.querySelectorAll("*")) if (element.shadowRoot) roots.push(element.shadowRoot);
+    }
+  };
+  const slider = within(document, '[data-path="environment.stiffness"] [type=range]');
+  const verdict = document.querySelector("#verdict");
+  const parts = [within(verdict, ".claim").parentElement, within(verdict, "table").closest("div").parentElement];
+  const changed = (part) => new Promise((done) => {
+    const began = performance.now();
+    const observer = new MutationObserver(() => { observer.disconnect(); done(performance.now() - began); });
+    observer.observe(part, { childList: true, subtree: true, characterData: true });
+  });
+  const times = [];
+  for (let k = 0; k < moves; k += 1) {
+    const numbers = changed(parts[1]);
+    const other = changed(parts[0]);
+    slider.value = k % 2 ? 400 - k % 50 : 600 + k % 50;
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+    times.push([await other, await numbers]);
+    await new Promise((go) => setTimeout(go, 100));
+  }
+  return times;
+}"""
+
+
+def main() -> None:
+    """Print the median and the worst, and how busy the machine was."""
+    moves = int(sys.argv[1]) if len(sys.argv) > 1 else 200
+    chromium = shutil.which("chromium") or shutil.which("google-chrome")
+    with serve_explorer() as page, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+        opened = browser.new_page(viewport={"width": 1280, "height": 800})
+        opened.set_default_timeout(600_000)
+        opened.goto(page.address)
+        opened.locator("#verdict table").wait_for()
+        opened.wait_for_timeout(3000)
+        times = opened.evaluate(MOVE, moves)
+        browser.close()
+    for name, column in (("outcome", 0), ("limit and advice", 1)):
+        found = [one[column] for one in times]
+        print(f"{name:<18} median {statistics.median(found):6.0f} ms   worst {max(found):6.0f} ms")
+    print(f"{moves} moves; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,66 @@
+"""The explorer as an object: it shows itself, and its loop is that of the sliders."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+import zwidth as zw
+from zwidth.errors import InputError
+
+
+def test_it_shows_the_loop_that_it_was_given() -> None:
+    """Device, environment and verdict are those of the loop, and follow a move."""
+    paddle = zw.catalogue.device("haptic-paddle")
+    shown = zw.explore(paddle, zw.Wall(stiffness=770))
+    assert shown.device == paddle
+    assert shown.environment == zw.Wall(stiffness=770)
+    assert shown.verdict.outcome == "active"
+    form = shown._session.form
+    form.event = {"kind": "typed", "path": "environment.stiffness", "value": "100 N/m", "number": 1}
+    assert shown.environment == zw.Wall(stiffness=100)
+    assert shown.verdict.outcome == "passive"
+    assert form.told["error"] == ""
+    form.event = {"kind": "typed", "path": "environment.stiffness", "value": "soft", "number": 2}
+    assert "soft" in form.told["error"]
+    assert shown.environment == zw.Wall(stiffness=100)
+
+
+def test_a_law_of_one_s_own_is_refused() -> None:
+    """No slider could say it."""
+
+    class Own(zw.Wall):
+        pass
+
+    with pytest.raises(InputError, match="no Own"):
+        zw.explore(zw.catalogue.device("haptic-paddle"), Own(300))
+
+
+@pytest.mark.parametrize(
+    "kind", ["typed", "move", "choose", "release", "view", "upload", "press", "nonsense", None]
+)
+@pytest.mark.parametrize("value", [None, "x", 3, float("nan"), [], {"a": 1}, "x" * 10_000])
+def test_whatever_a_browser_sends_is_answered(kind: object, value: object) -> None:
+    """With a message at most: what it sends is not trusted."""
+    shown = _one()
+    for number, path in enumerate(
+        ("environment.stiffness", "device", "with.x", "law.9.x", "__class__", None), 1
+    ):
+        shown._session.form.event = {"kind": kind, "path": path, "value": value, "number": number}
+        assert shown._session.form.told["heard"] == number
+    shown._session.form.event = {}
+
+
+def _one(made: list[object] = []) -> object:  # noqa: B006  # one is enough for all
+    if not made:
+        made.append(zw.explore())
+    return made[0]
+
+
+def test_importing_zwidth_loads_no_panel() -> None:
+    """Only who asks for the explorer waits for it."""
+    code = "import sys, zwidth; zwidth.check; print([m for m in ('panel', 'bokeh', 'param') if m in sys.modules])"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"
