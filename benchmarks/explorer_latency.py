@@ -2,8 +2,8 @@
 
     python benchmarks/explorer_latency.py [MOVES]
 
-A browser moves the stiffness of a wall, a move at a time, and waits until the words of the verdict have changed:
-the outcome and its claim, and then the numbers with limit and advice.  Needs Playwright and Chromium.
+A browser moves the stiffness of a wall, a move at a time, and waits until the words of the verdict have
+changed: the outcome and its claim, and then the numbers with limit and advice.  It needs Chromium.
 """
 
 from __future__ import annotations
@@ -24,12 +24,13 @@ MOVE = """async (moves) => {
       const one = roots.shift();
       const found = one.querySelector(selector);
       if (found) return found;
-      for (const element of one.querySelectorAll("*")) if (element.shadowRoot) roots.push(element.shadowRoot);
+      for (const part of one.querySelectorAll("*")) if (part.shadowRoot) roots.push(part.shadowRoot);
     }
   };
   const slider = within(document, '[data-path="environment.stiffness"] [type=range]');
   const verdict = document.querySelector("#verdict");
-  const parts = [within(verdict, ".claim").parentElement, within(verdict, "table").closest("div").parentElement];
+  const words = (selector) => within(verdict, selector).getRootNode();
+  const parts = [words(".claim"), words("table")];
   const changed = (part) => new Promise((done) => {
     const began = performance.now();
     const observer = new MutationObserver(() => { observer.disconnect(); done(performance.now() - began); });

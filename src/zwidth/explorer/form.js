@@ -134,7 +134,7 @@ export function render({ model, el }) {
 
   const heed = () => {
     const told = model.told;
-    alert.textContent = told.error || "";
+    if (told.error !== undefined) alert.textContent = told.error;
     for (const [path, [text, place]] of Object.entries(told.values || {})) {
       const row = body.querySelector(`[data-path="${CSS.escape(path)}"]`);
       if (!row) continue;
