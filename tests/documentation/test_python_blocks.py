@@ -31,6 +31,7 @@ NOT_RUN = {
     "docs/logs.md": RECORDING,
     "docs/play.md 1": RECORDING,
     "docs/recording.md": RECORDING,
+    "docs/explore.md": HARDWARE,
     "docs/firmware.md": HARDWARE,
     "docs/live.md": HARDWARE,
     "docs/doctor.md": "it measures for seconds; tests/servo runs such",
