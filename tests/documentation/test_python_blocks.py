@@ -29,7 +29,6 @@ NOT_RUN = {
     "docs/finger.md": RECORDING,
     "docs/identification.md": RECORDING,
     "docs/logs.md": RECORDING,
-    "docs/play.md 1": RECORDING,
     "docs/recording.md": RECORDING,
     "docs/explore.md": HARDWARE,
     "docs/firmware.md": HARDWARE,
