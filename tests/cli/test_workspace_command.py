@@ -56,7 +56,7 @@ def test_a_wall_that_fails_says_what_to_change(run: Run) -> None:
     enough = 0.003 + found["addition_to_all_N_m_s_per_rad"]
     better = (*HAPLY[:3], str(enough), *HAPLY[4:])
     assert run(*better, "--stiffness", "800")[0] == 0
-    words = " ".join(run(*HAPLY, "--stiffness", "800")[1].split())
+    words = " ".join(run(*HAPLY, "--stiffness", "800", "--all")[1].split())
     assert "take" in words
     assert "what to change" in words
     assert "all joints" in words
@@ -69,7 +69,7 @@ def test_just_below_the_limit_is_undecided(run: Run) -> None:
     status, out, _ = run(*chain, str(0.9999 * found["largest_stiffness_N_per_m"]))
     words = " ".join(out.split())
     assert status == 3
-    assert "region q1 from 0 to 3.142 rad; q2 from" in words
+    assert "the arm in its region, q1 from 0 to 3.142 rad; q2 from" in words
     assert "N/m in every direction" in words
     assert "between the points" in words
     assert "There is no certificate: the damping is not enough at" in words
@@ -168,7 +168,7 @@ COUNTED = (
 
 def test_encoder_steps_are_counted_up_to_a_force(run: Run) -> None:
     """In words, as data, in the certificate; between what is covered and what is refuted: status 3."""
-    status, out, _ = run(*COUNTED, "-o", "proof.json")
+    status, out, _ = run(*COUNTED, "-o", "proof.json", "--all")
     words = " ".join(out.split())
     assert status == 0
     assert "for wall forces up to 28.6 N, proved. Encoder steps are counted" in words
@@ -317,9 +317,9 @@ def test_a_file_that_is_no_wall(run: Run, tmp_path: Path, text: str, words: str)
 
 def test_the_least_damping_is_shown(run: Run) -> None:
     """Which joints, how much each, and how much together."""
-    words = " ".join(run(*HAPLY, "--stiffness", "800")[1].split())
+    words = " ".join(run(*HAPLY, "--stiffness", "800", "--all")[1].split())
     assert re.search(r"least in all .* in joint 1, .* in joint 2, together", words)
-    one = run("workspace", "two-link", "--joint-damping", "0.02,0.012", "--stiffness", "800")[1]
+    one = run("workspace", "two-link", "--joint-damping", "0.02,0.012", "--stiffness", "800", "--all")[1]
     assert re.search(r"least in all +[0-9.]+ N·m·s/rad more damping in joint 1\n", one)
 
 
@@ -327,7 +327,7 @@ def test_a_wall_in_pose_is_reported_and_drawn(run: Run, tmp_path: Path) -> None:
     """A planar chain: the margin in the joints, the factor, a picture."""
     pose = ("workspace", "two-link", "--joint-damping", "0.02", "--pose", "--points", "20")
     wall = ("--stiffness", "900", "--rotational-stiffness", "0.5 N*m/rad", "--plot", "map.png")
-    status, out, _ = run(*pose, *wall)
+    status, out, _ = run(*pose, *wall, "--all")
     words = " ".join(out.split())
     assert status == 1
     assert "in the worst direction of the joints" in words
