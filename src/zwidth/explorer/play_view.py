@@ -26,7 +26,7 @@ class Frame(JSComponent):  # type: ignore[misc]  # Panel has no types
 export function render({ model }) {
   const frame = document.createElement("iframe");
   frame.title = "play with this loop";
-  frame.setAttribute("sandbox", "allow-scripts");
+  frame.setAttribute("sandbox", "allow-scripts allow-downloads");
   const draw = () => { frame.hidden = !model.html; frame.srcdoc = model.html; };
   model.on("html", draw);
   draw();

@@ -18,7 +18,7 @@ from zwidth.errors import InputError
 LONGEST = 60.0
 """A job may take [s]: it is seconds, but for the first of its kind on a machine, which compiles."""
 
-PATIENCE = 1.0
+LONGEST_WAIT = 1.0
 """For a job that nobody waits for any more [s]: a new process takes about as long."""
 
 _STEP = 0.05
@@ -136,7 +136,7 @@ class Workers:
         began = monotonic()
         while not process.answers(_STEP):
             since = monotonic() - began
-            if not self._is_wanted(job) and (since > PATIENCE or self._closed):
+            if not self._is_wanted(job) and (since > LONGEST_WAIT or self._closed):
                 return None
             if since > self._longest:
                 process.end()
