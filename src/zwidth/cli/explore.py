@@ -7,7 +7,7 @@ import sys
 import webbrowser
 from threading import Event
 
-from zwidth.cli.options import Once
+from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
 from zwidth.cli.output import quiet_pipe
 from zwidth.errors import InputError
 from zwidth.specification.table import quoted
@@ -20,7 +20,8 @@ USUAL_PORT = 5007
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth explore`."""
     parser.usage = (
-        "%(prog)s [DEVICE] [ENVIRONMENT] [--port N] [--address ADDRESS] [--token TOKEN] [--no-browser]"
+        "%(prog)s [SOURCE ...] [--law NAMES] [--PARAMETER VALUE ...] [--port N] [--address ADDRESS] "
+        "[--token TOKEN] [--no-browser]"
     )
     parser.add_argument(
         "sources",
@@ -28,6 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         nargs="*",
         help="device of the catalogue, or TOML file with tables [device], [environment], [[law]]",
     )
+    add_law_option(parser)
     page = parser.add_argument_group("page")
     page.add_argument(
         "--port", metavar="N", action=Once, help="port of the page (default: 5007, or a free one)"
@@ -42,6 +44,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--token", metavar="TOKEN", action=Once, help="that a browser must have, 16 characters or more"
     )
     page.add_argument("--no-browser", action="store_true", help="say the address, and open no browser")
+    add_parameters(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -53,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
     from zwidth.explorer.serving import serve_explorer
     from zwidth.explorer.starts import from_sources
 
-    state = from_sources(arguments.sources)
+    state = from_sources(arguments.sources, overrides(arguments), arguments.law)
     given = {"address": arguments.address or HOST, "token": arguments.token}
     try:
         page = serve_explorer(state, USUAL_PORT if port is None else port, **given)

@@ -80,15 +80,13 @@ def _temporary() -> Path:
 
 def _loops(arguments: argparse.Namespace) -> list[Played]:
     """The loop that was asked for; those to begin with where none was."""
-    from zwidth.cli.decision import decided
+    from zwidth.cli.decision import asked, decided
     from zwidth.explorer.play import played, presets
-    from zwidth.specification.laws import with_laws
-    from zwidth.specification.read import WITH_LAWS, Specification, read_tables, specified
+    from zwidth.specification.read import Specification
 
-    typed = overrides(arguments)
-    if not (arguments.sources or typed or arguments.law):
+    if not (arguments.sources or overrides(arguments) or arguments.law):
         return presets()
-    tables = read_tables(arguments.sources, WITH_LAWS)
-    given = specified(tables, typed)
-    law = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
-    return [played(given.device, law, decide=lambda device, law: decided(Specification(device, law)))]
+    loop = asked(arguments).loop
+    return [
+        played(loop.device, loop.environment, decide=lambda device, law: decided(Specification(device, law)))
+    ]

@@ -13,13 +13,20 @@ from zwidth.device import Device
 from zwidth.device.rotary import rotary
 from zwidth.environment import Wall
 from zwidth.explorer.scale import usual
-from zwidth.explorer.state import State, Values, catalogued
+from zwidth.explorer.state import State, Values, catalogued, lacking_of
 from zwidth.quantity.kind import Kind
 from zwidth.quantity.parameter import Parameter
 from zwidth.rendering import LAWS
 from zwidth.specification.environments import TYPES, build_environment
 from zwidth.specification.laws import with_laws
-from zwidth.specification.read import WITH_LAWS, read_tables, specified_device
+from zwidth.specification.read import (
+    DEVICE_KEYS,
+    WITH_LAWS,
+    environment_table,
+    read_tables,
+    specified_device,
+)
+from zwidth.specification.table import Table
 
 FIRST = "haptic-paddle"
 """The device that an empty page begins with."""
@@ -57,24 +64,42 @@ def first() -> State:
     return State.of(device, Wall(stiffness=_stiffness(device)))
 
 
-def from_sources(sources: Sequence[str]) -> State | None:
-    """The loop of files and catalogue names, as `zwidth check` reads them; None where none is given.
+def from_sources(
+    sources: Sequence[str], typed: Mapping[str, str] | None = None, laws: Sequence[str] | None = None
+) -> State | None:
+    """The loop of files, names and parameters, as `zwidth check` reads them; None where none is given.
+
+    Parameters
+    ----------
+    sources
+        TOML files, or a name in the catalogue.
+    typed
+        Parameters by name, as typed: {"rate": "2 kHz", "stiffness": "770"}.
+    laws
+        Names of laws in a chain behind the environment.
 
     Raises
     ------
     InputError
         If one cannot be read, or has no loop.
     """
-    if not sources:
+    typed = dict(typed or {})
+    if not (sources or typed or laws):
         return None
     found = read_tables(sources, WITH_LAWS)
-    device = found["device"].values if "device" in found else {}
-    known = set(device) == {"catalogue"}
-    read = catalogued(str(device["catalogue"])) if known else specified_device(found, {})
-    if "environment" not in found:
-        return State.of(read, Wall(stiffness=_stiffness(read)))
-    environment = build_environment(found["environment"], read.motion)
-    return State.of(read, with_laws(environment, found.get("law"), None, read.motion))
+    if not (found.keys() & {"device"} or typed.keys() & DEVICE_KEYS):
+        found["device"] = Table(FIRST, {"catalogue": FIRST})
+    device_table = found.get("device")
+    if device_table is not None and set(device_table.values) == {"catalogue"}:
+        lacking = lacking_of(str(device_table.values["catalogue"]))
+        device_table.values.update({key: text for key, text in lacking.items() if key not in typed})
+    device = specified_device(found, {key: text for key, text in typed.items() if key in DEVICE_KEYS})
+    of_environment = {key: text for key, text in typed.items() if key not in DEVICE_KEYS}
+    if "environment" in found or of_environment:
+        environment = build_environment(environment_table(found, of_environment), device.motion)
+    else:
+        environment = Wall(stiffness=_stiffness(device))
+    return State.of(device, with_laws(environment, found.get("law"), laws, device.motion))
 
 
 def own_device(kind: str) -> Device:

@@ -263,13 +263,22 @@ def catalogued(name: str) -> Device:
     InputError
         If there is none of this name.
     """
+    return catalogue.device(name, **lacking_of(name))
+
+
+def lacking_of(name: str) -> dict[str, str]:
+    """What no source gives of a device of the catalogue and a loop cannot do without, to begin with.
+
+    Raises
+    ------
+    InputError
+        If there is none of this name.
+    """
     known = catalogue.entry(name).known()
-    lacking: dict[str, Any] = {}
-    if "damping" not in known:
-        lacking["damping"] = UNKNOWN_DAMPING
+    lacking = {} if "damping" in known else {"damping": UNKNOWN_DAMPING}
     if "rate" not in known and "sample_period" not in known:
         lacking["rate"] = UNKNOWN_RATE
-    return catalogue.device(name, **lacking)
+    return lacking
 
 
 UNKNOWN_DAMPING, UNKNOWN_RATE = "0.1 N*s/m", "1 kHz"
