@@ -40,6 +40,17 @@ def endless(value: int) -> int:
     return value
 
 
+def prepared() -> None:
+    """What is done before anything else."""
+    time.sleep(2)
+
+
+def slow(value: int) -> int:
+    """Something that takes longer than a job may."""
+    time.sleep(1)
+    return value
+
+
 @pytest.fixture
 def workers() -> Iterator[Workers]:
     """One process; a job may take three seconds, so that the wait is short."""
@@ -68,6 +79,15 @@ def test_what_dies_or_takes_too_long_is_said_and_replaced(workers: Workers) -> N
     assert "without an answer" in asked(workers, ended, 1).message
     assert "took more than" in asked(workers, endless, 1).message
     assert asked(workers, doubled, 4) == Answer(8)
+
+
+def test_no_job_takes_too_long_before_what_comes_first_is_done() -> None:
+    """What waits for a compiler, or competes with it, is not refused for that."""
+    workers = Workers(2, longest=0.2, first=prepared)
+    try:
+        assert asked(workers, slow, 7) == Answer(7)
+    finally:
+        workers.close()
 
 
 def test_the_newest_job_alone_is_done() -> None:

@@ -128,7 +128,7 @@ def test_every_picture_says_what_is_in_it(active_page: str) -> None:
     read = Read(active_page)
     said = [str(given["alt"]) for tag, given in read.tags if tag == "img"]
     assert len(said) == len(read.inside("figcaption")) == 4
-    for words, number in zip(said, ("0.385 N·s/m", "0.1948", "0.15", "extracts 0.001427 J"), strict=True):
+    for words, number in zip(said, ("0.385 N·s/m", "0.1948", "0.15", "extracts 1.427 mJ"), strict=True):
         assert number in words
 
 

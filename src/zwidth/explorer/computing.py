@@ -11,8 +11,9 @@ import numpy as np
 
 from zwidth.environment import Environment, Wall
 from zwidth.errors import InputError
+from zwidth.explorer.starts import first
 from zwidth.explorer.state import State
-from zwidth.operator import OPERATORS, ParametricOperator
+from zwidth.operator import OPERATORS, Finger, ParametricOperator
 from zwidth.passivity.check import check
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, Interval, ends
@@ -91,6 +92,12 @@ def touched(state: State) -> Touch:
     """The loop under a hand."""
     loop = state.loop()
     return _touch(loop.device, loop.environment, operator_of(state))
+
+
+def compiled() -> None:
+    """Compile the simulator, once on a machine, before anybody asks for a touch."""
+    loop = first().loop()
+    _touch(loop.device, loop.environment, Finger())
 
 
 def _touch(device: Any, environment: Environment, hand: ParametricOperator) -> Touch:

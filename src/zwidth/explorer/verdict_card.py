@@ -51,13 +51,8 @@ def _numbers(verdict: Verdict) -> Html:
 def _advice(verdict: Verdict) -> Html:
     if not isinstance(verdict, LinearVerdict) or not verdict.advice:
         return Html("")
-    title = "Slack of each parameter alone" if verdict.is_proved else "Any one of these changes is enough"
-    if verdict.is_proved:
-        return join(element("h3", title), Lines([one.text for one in verdict.advice]).html)
-    useful = [one.text for one in verdict.advice if one.to is not None]
-    if not useful:
-        return join(element("h3", "Advice"), element("p", "No single change is enough."))
-    return join(element("h3", title), Lines(useful).html)
+    title, *lines = verdict.advised()
+    return join(element("h3", title), *(line.html for line in lines if isinstance(line, Lines)))
 
 
 def _scope(verdict: Verdict) -> Html:

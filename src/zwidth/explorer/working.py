@@ -23,6 +23,12 @@ LONGEST_WAIT = 1.0
 
 _STEP = 0.05
 
+_PREPARING = 5
+"""So many times as long as any job may what comes first take, and whatever waits for it."""
+
+_NOBODY = 0
+"""Asks for what comes first: no page has this number."""
+
 
 class Answer(NamedTuple):
     """What came of a job: a value, or a message why there is none."""
@@ -48,10 +54,15 @@ class Workers:
         How many.
     longest
         A job may take [s].
+    first
+        What is done before anything else, such as compiling; until it is done no job takes too long.
     """
 
-    def __init__(self, count: int = 2, longest: float = LONGEST) -> None:
+    def __init__(
+        self, count: int = 2, longest: float = LONGEST, first: Callable[[], object] | None = None
+    ) -> None:
         self._longest = longest
+        self._prepared = first is None
         self._changed = Condition()
         self._waiting: dict[tuple[int, str], _Job] = {}
         self._newest: dict[tuple[int, str], int] = {}
@@ -60,8 +71,13 @@ class Workers:
         self._threads = [
             Thread(target=self._work, name=f"zwidth work {n}", daemon=True) for n in range(count)
         ]
+        if first is not None:
+            self.submit(_NOBODY, "first", first, (), self._is_prepared)
         for thread in self._threads:
             thread.start()
+
+    def _is_prepared(self, answer: Answer) -> None:
+        self._prepared = True
 
     def submit(
         self,
@@ -133,12 +149,15 @@ class Workers:
     def _answer(self, process: _Process, job: _Job) -> Answer | None:
         """The answer; None where the process must be ended because nobody waits."""
         process.send(job.compute, job.arguments)
-        began = monotonic()
+        began = counted = monotonic()
         while not process.answers(_STEP):
-            since = monotonic() - began
+            now = monotonic()
+            since = now - began
             if not self._is_wanted(job) and (since > LONGEST_WAIT or self._closed):
                 return None
-            if since > self._longest:
+            if not self._prepared and since < _PREPARING * self._longest:
+                counted = now
+            elif now - counted > self._longest:
                 process.end()
                 return Answer(
                     None,

@@ -57,10 +57,11 @@ def _prefix(number: float, unit: str, digits: int) -> tuple[int, str]:
 
 
 def readable(value: float, unit: str, digits: int = 4) -> str:
-    """A value with its unit; a prefix takes the place of an exponent: "0.0015 J", and "2.03 µJ"."""
+    """A value with its unit; a prefix replaces an exponent and noughts: "0.15 J", and "1.5 mJ"."""
     text = f"{value:.{digits}g}"
     prefixed = (*_PREFIXED, "rad", "N*m", "N·m", "rad/s")
-    power = 3 * floor(log10(abs(value)) / 3) if "e" in text and unit in prefixed else 0
+    is_long = "e" in text or 0.0 < abs(value) < 0.01
+    power = 3 * floor(log10(abs(value)) / 3) if is_long and unit in prefixed else 0
     if power not in PREFIXES or not power:
         return f"{text} {unit_text(unit)}".rstrip()
     return f"{value / 10.0**power:.{digits}g} {PREFIXES[power]}{unit_text(unit)}"
