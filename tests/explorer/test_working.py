@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
 from queue import Queue
 from typing import Any
 
@@ -40,15 +42,17 @@ def endless(value: int) -> int:
     return value
 
 
-def prepared() -> None:
-    """What is done before anything else."""
-    time.sleep(2)
+def until(place: Path) -> None:
+    """What is done before anything else: it ends when the job has ended."""
+    while not place.exists():
+        time.sleep(0.05)
 
 
-def slow(value: int) -> int:
+def slow(value: Path) -> int:
     """Something that takes longer than a job may."""
     time.sleep(1)
-    return value
+    value.touch()
+    return 7
 
 
 @pytest.fixture
@@ -59,7 +63,7 @@ def workers() -> Iterator[Workers]:
     made.close()
 
 
-def asked(workers: Workers, compute: Any, value: int) -> Answer:
+def asked(workers: Workers, compute: Any, value: object) -> Answer:
     """What comes of it."""
     answers: Queue[Answer] = Queue()
     workers.submit(1, "job", compute, (value,), answers.put)
@@ -81,11 +85,12 @@ def test_what_dies_or_takes_too_long_is_said_and_replaced(workers: Workers) -> N
     assert asked(workers, doubled, 4) == Answer(8)
 
 
-def test_no_job_takes_too_long_before_what_comes_first_is_done() -> None:
+def test_no_job_takes_too_long_before_what_comes_first_is_done(tmp_path: Path) -> None:
     """What waits for a compiler, or competes with it, is not refused for that."""
-    workers = Workers(2, longest=0.2, first=prepared)
+    place = tmp_path / "done"
+    workers = Workers(2, longest=0.3, first=partial(until, place))
     try:
-        assert asked(workers, slow, 7) == Answer(7)
+        assert asked(workers, slow, place) == Answer(7)
     finally:
         workers.close()
 

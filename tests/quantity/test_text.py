@@ -56,7 +56,8 @@ def test_a_number_in_a_table() -> None:
 @pytest.mark.parametrize(
     ("value", "unit", "text"),
     [
-        (0.001427, "J", "0.001427 J"),
+        (0.1427, "J", "0.1427 J"),
+        (0.001427, "J", "1.427 mJ"),
         (2.03254e-6, "J", "2.033 µJ"),
         (-22.4e-6, "m", "-22.4 µm"),
         (2.5e-5, "rad", "25 µrad"),
@@ -70,5 +71,5 @@ def test_a_number_in_a_table() -> None:
     ],
 )
 def test_a_prefix_takes_the_place_of_an_exponent(value: float, unit: str, text: str) -> None:
-    """Where the unit has prefixes; a number that is read without an exponent stays as it is."""
+    """Where the unit has prefixes; of a number that is read easily the unit stays as it is."""
     assert readable(value, unit) == text
