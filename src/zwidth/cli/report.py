@@ -78,10 +78,11 @@ def _to_do(verdict: Verdict) -> Iterator[Row]:
         yield "limit", "; ".join(first)
     if verdict.witness is not None:
         yield "the motion", motion_in_short(verdict.witness)
+    if verdict.is_beyond_actuator:
+        yield "but", Text("; ".join(verdict.demand), style="yellow")
     if _SLOW in rows:
         yield "slow hands", f"{_SLOW.removeprefix('slower hands ')} {rows[_SLOW]}"
-    if isinstance(verdict, LinearVerdict):
-        yield from advice_rows(verdict.advice, verdict.is_proved)
+    yield from advice_rows(verdict.advice, verdict.is_proved)
 
 
 def _not_ideal(verdict: Verdict) -> Iterator[Row]:
@@ -93,7 +94,8 @@ def _not_ideal(verdict: Verdict) -> Iterator[Row]:
 
 
 def _assumed(verdict: Verdict) -> Text:
-    return small_print(in_short(verdict.scope, verdict.outcome), *verdict.demand)
+    demand = () if verdict.is_beyond_actuator else verdict.demand
+    return small_print(in_short(verdict.scope, verdict.outcome), *demand)
 
 
 def _all(out: Console, verdict: Verdict) -> None:
@@ -105,8 +107,8 @@ def _all(out: Console, verdict: Verdict) -> None:
         section(out, "budget", budget_bars(verdict, fancy))
     if verdict.witness is not None:
         section(out, "the motion", motion_lines(verdict.witness, fancy))
+    section(out, *advice_section(verdict.advice, verdict.is_proved))
     if isinstance(verdict, LinearVerdict):
-        section(out, *advice_section(verdict.advice, verdict.is_proved))
         section(out, "actuator", _actuator(verdict))
     beside_the_loop = intervals(verdict.scope, verdict.outcome)
     assumed = (line for line in verdict.assumptions if line != beside_the_loop)

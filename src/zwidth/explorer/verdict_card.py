@@ -49,7 +49,7 @@ def _numbers(verdict: Verdict) -> Html:
 
 
 def _advice(verdict: Verdict) -> Html:
-    if not isinstance(verdict, LinearVerdict) or not verdict.advice:
+    if not verdict.advice:
         return Html("")
     title, *lines = verdict.advised()
     return join(element("h3", title), *(line.html for line in lines if isinstance(line, Lines)))

@@ -17,12 +17,17 @@ def actuator_demand(device: Device, limit: Exact | Interval, witness: Witness | 
     """Whether the motion asks for more force than the limit of the device's actuator [N; N·m]."""
     unit = quantity_unit("force", device.motion)
     most, needed = float(ends(limit)[1]), _peak_force(witness)
-    if needed <= most:
+    if not is_beyond(limit, witness):
         return f"the motion stays within the actuator's {most:.6g} {unit}: it asks for {needed:.4g} {unit}"
     return (
         f"the motion asks for {needed:.4g} {unit}, more than the actuator's {most:.6g} {unit}; with that "
         "limit respected no motion is shown, and none is excluded"
     )
+
+
+def is_beyond(limit: Exact | Interval, witness: Witness | Gain) -> bool:
+    """True where the motion asks for more than the limit [N; N·m]."""
+    return _peak_force(witness) > float(ends(limit)[1])
 
 
 def _peak_force(witness: Witness | Gain) -> float:

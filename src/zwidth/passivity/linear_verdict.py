@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -11,14 +11,13 @@ from typing import Any
 
 from zwidth.device.actuator import ActuatorCheck, actuator_checks
 from zwidth.passivity import parameter_limits
-from zwidth.passivity.advice import Advice, advise, in_lines
+from zwidth.passivity.advice import Advice, advise
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.formulas.stability_plane import admissible_speed
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import in_unit, in_words
-from zwidth.showing import Lines, Part
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -160,15 +159,8 @@ class LinearVerdict(Verdict):
         document["critical_frequency_Hz"] = self.critical_frequency
         if self.admissible_speed is not None:
             document[f"admissible_speed_{unit_suffix(self.device.unit('velocity'))}"] = self.admissible_speed
-        document["advice"] = [advice.to_dict() for advice in self.advice]
         document["actuator"] = [{"name": c.name, "ok": c.ok, "text": c.text} for c in self.actuator]
         return document
-
-    def advised(self) -> Iterator[Part]:
-        """What to change, or how far each number may go."""
-        told = in_lines(self.advice, self.is_proved)
-        yield f"{told.title}:"
-        yield Lines([*told.useful, *([told.useless] if told.useless else [])])
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
@@ -10,11 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from zwidth.passivity import claims
-from zwidth.passivity.actuator_demand import actuator_demand
+from zwidth.passivity.actuator_demand import actuator_demand, is_beyond
+from zwidth.passivity.advice import Advice, in_lines
 from zwidth.passivity.document import save_json, unit_key
 from zwidth.passivity.found import Found
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_unit, in_words
+from zwidth.showing import Lines, Part
 
 
 @dataclass(frozen=True, repr=False)
@@ -81,6 +83,12 @@ class Verdict(Found):
             return ()
         return (actuator_demand(self.device, self.device.force_limit, self.witness),)
 
+    @property
+    def is_beyond_actuator(self) -> bool:
+        """True where the motion asks for more than the actuator gives: the claim takes it as ideal."""
+        limit = self.device.force_limit
+        return limit is not None and self.witness is not None and is_beyond(limit, self.witness)
+
     def evidence(self) -> dict[str, Any]:
         """Proofs and motions as plain data; of bounded hands what is said, the proof only if saved."""
         hand = {} if self.available_storage is None else {"worst_hand": self.available_storage.stated()}
@@ -106,7 +114,27 @@ class Verdict(Found):
     def numbers(self) -> dict[str, Any]:
         """What is needed and what there is, as plain data, a unit in every key of a physical quantity."""
         margins = {unit_key(name, self.device.motion): left for name, left in self.margins.items()}
-        return {"decided_by": self.decided_by, "margins": margins}
+        found: dict[str, Any] = {"decided_by": self.decided_by, "margins": margins}
+        if self.advice:
+            found["advice"] = [advice.to_dict() for advice in self.advice]
+        return found
+
+    @cached_property
+    def advice(self) -> tuple[Advice, ...]:
+        """The smallest single changes that would do, or the slack of each parameter; () if none is known."""
+        if not (self.environment.points and self.device.is_certain):
+            return ()
+        from zwidth.passivity.spring_advice import advise_on_spring
+
+        return advise_on_spring(self.device, self.environment, self.is_proved)
+
+    def advised(self) -> Iterator[Part]:
+        """What to change, or how far each number may go."""
+        told = in_lines(self.advice, self.is_proved)
+        lines = [*told.useful, *([told.useless] if told.useless else [])]
+        if lines:
+            yield f"{told.title}:"
+            yield Lines(lines)
 
     @property
     def margins(self) -> Mapping[str, float | None]:
@@ -130,6 +158,10 @@ class Verdict(Found):
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
         rows = [("decided by", self.decided_by)]
+        if self.environment.points and len(self.needs) == 2:  # with a part-sample delay one is not known
+            from zwidth.passivity.spring_advice import binding_of_spring
+
+            rows.insert(0, ("limit", binding_of_spring(self.device, self.needs)))
         for need in self.needs:
             unit = GLOSSARY[need.name].unit_for(self.device.motion)
             name = in_words(need.name)
