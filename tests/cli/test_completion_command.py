@@ -62,6 +62,18 @@ def test_other_shells_can_read_their_script(shell: str, capsys: pytest.CaptureFi
         subprocess.run([program, "-n"], input=script, text=True, check=True)
 
 
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_a_script_says_first_where_to_put_it(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """In comments; only zsh has a line before them, which it asks for."""
+    assert main(["completion", shell]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    if shell == "zsh":
+        assert lines.pop(0) == "#compdef zwidth"
+    assert lines[0].startswith(f"# Completion of zwidth for {shell}. Put this line into ~/.")
+    assert f"zwidth completion {shell}" in lines[1]
+    assert not [line for line in lines if "compdef zwidth" in line and line.startswith("#")]
+
+
 def test_another_shell_is_refused_with_those_there_are(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["completion", "powers"]) == 2
     assert "bash, zsh, fish" in capsys.readouterr().err

@@ -28,6 +28,8 @@ type = "saturation"
 limit = 2
 """
 
+WHEEL_IN_PYTHON = zw.rotary(inertia=0.02, damping=0.05, counts_per_turn=2400, rate=1000)
+
 
 def _origins(text: str, **typed: str) -> dict[str, tuple[str, str]]:
     tables = tables_of(text, "somewhere/else/wheel.toml", WITH_LAWS)
@@ -45,13 +47,27 @@ def test_a_file_is_called_by_its_name_and_the_table() -> None:
     """And by the key where a number stands there in another way."""
     told = _origins(WHEEL)
     assert told["damping b"] == ("0.05 N·m·s/rad", "wheel.toml, [device]")
-    assert told["mass m"] == ("0.02 kg·m²", "wheel.toml, [device]: inertia")
-    assert told["resolution Δ"] == ("0.00261799 rad", "wheel.toml, [device]: counts_per_turn")
+    assert told["resolution Δ"] == ("2.61799 mrad", "wheel.toml, [device]: counts_per_turn")
     assert told["sample period T"] == ("1 ms", "wheel.toml, [device]: rate")
     assert told["counts per turn"] == ("2400", "wheel.toml, [device]")
     assert told["stiffness K"] == ("80 N·m/rad", "wheel.toml, [environment]")
     assert told["virtual damping B"] == ("0.001 N·m·s/rad", "wheel.toml, [environment]")
     assert told["law behind it"] == ("saturation at 2 N·m", "wheel.toml, [[law]]")
+
+
+def test_of_a_wheel_the_inertia_is_told_once_and_as_that() -> None:
+    """No mass, and no second row; of a handle that slides the mass follows from it, and both are told."""
+    told = _origins(WHEEL)
+    assert told["inertia"] == ("0.02 kg·m²", "wheel.toml, [device]")
+    assert not [what for what in told if "mass" in what]
+    rows = [what for what, _, _ in of_verdict(zw.check(WHEEL_IN_PYTHON, zw.Wall(80))).numbers]
+    assert rows.count("inertia") == 1
+    assert not [what for what in rows if "mass" in what]
+    linear = _origins(
+        WHEEL.replace("[device]", "[device]\nhandle_radius = 0.1").replace('"80 N*m/rad"', "80")
+    )
+    assert linear["mass m"] == ("2 kg", "wheel.toml, [device]: inertia")
+    assert linear["inertia"][0] == "0.02 kg·m^2"
 
 
 def test_what_was_typed_is_told_as_it_was_typed() -> None:

@@ -71,6 +71,7 @@ def test_the_verdict_stands_first_and_the_rest_below(active: Verdict, active_pag
         "The actuator, beside the claim",
         "What is not covered",
         "Where each number comes from",
+        "What the checker read",
         "How to check it again",
     ]
     lines = [active.claim, *active.small_print(), *(a.text for a in active.advice if a.to is not None)]

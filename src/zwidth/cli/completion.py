@@ -29,11 +29,37 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(
             f"there is no completion for {quoted(arguments.shell)}; {suggestion(arguments.shell, SHELLS)}"
         )
+    with quiet_pipe():
+        print(_script(arguments.shell))
+    return 0
+
+
+def _script(shell: str) -> str:
+    """What the shell reads, and above it where to put it.
+
+    A shell of zsh takes it from a folder of completions too, where the first line has to stand first; bash
+    reads that line as a comment that says nothing.
+    """
     from argcomplete.shell_integration import shellcode
 
-    with quiet_pipe():
-        print(shellcode(["zwidth"], shell=arguments.shell))
-    return 0
+    code = shellcode(["zwidth"], shell=shell).lstrip()
+    first, _, rest = code.partition("\n")
+    if not first.startswith("#compdef"):
+        return f"{_WHERE[shell]}\n{code}"
+    return "\n".join([*([first] if shell == "zsh" else []), _WHERE[shell], rest])
+
+
+_WHERE: Mapping[str, str] = MappingProxyType(
+    {
+        "bash": "# Completion of zwidth for bash. Put this line into ~/.bashrc:\n"
+        '#   eval "$(zwidth completion bash)"',
+        "zsh": "# Completion of zwidth for zsh. Put this line into ~/.zshrc, after compinit:\n"
+        '#   eval "$(zwidth completion zsh)"',
+        "fish": "# Completion of zwidth for fish. Put this line into ~/.config/fish/config.fish:\n"
+        "#   zwidth completion fish | source",
+    }
+)
+"""By shell, where the words come from when it starts."""
 
 
 def answer(parser_of: Callable[[Sequence[str]], argparse.ArgumentParser]) -> None:

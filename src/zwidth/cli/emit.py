@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -16,7 +15,7 @@ from zwidth.cli.options import (
     contact,
     overrides,
 )
-from zwidth.cli.output import print_json, quiet_pipe
+from zwidth.cli.output import print_json, print_message
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
@@ -102,8 +101,7 @@ def run(arguments: argparse.Namespace) -> int:
             decide=partial(_decided, contact(arguments)),
         )
     except NotEmitted as refused:
-        with quiet_pipe(sys.stderr):
-            print(f"zwidth: {refused}", file=sys.stderr)
+        print_message(refused)
         return exit_status(refused.judged.outcome)
     _give_out(found, found.write(arguments.save, force=arguments.force), arguments.json)
     return 0

@@ -1,6 +1,6 @@
 """The command `zwidth`: reads the command line, runs one subcommand, returns the exit status.
 
-Bad input ends in one line on standard error and status 2.  Anything else that
+Bad input ends in one message on standard error and status 2.  Anything else that
 goes wrong is a mistake of this program and is not hidden.
 """
 
@@ -9,13 +9,13 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-import textwrap
 from collections.abc import Sequence
 from typing import NoReturn
 
 from zwidth.cli.commands import COMMANDS, configure, run
+from zwidth.cli.help import Help
 from zwidth.cli.options import joined
-from zwidth.cli.output import quiet_pipe, tolerate_encoding
+from zwidth.cli.output import print_message, quiet_pipe, tolerate_encoding
 from zwidth.cli.typed import as_typed
 from zwidth.cli.welcome import WELCOME
 from zwidth.errors import InputError
@@ -56,12 +56,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         return _run(typed)
     except InputError as error:
-        with quiet_pipe(sys.stderr):
-            print(f"zwidth: {plain(as_typed(str(error), typed), _LONGEST_MESSAGE)}", file=sys.stderr)
+        print_message(plain(as_typed(str(error), typed), _LONGEST_MESSAGE))
         return BAD_INPUT
     except KeyboardInterrupt:
-        with quiet_pipe(sys.stderr):
-            print("zwidth: interrupted", file=sys.stderr)
+        print_message("interrupted")
         return INTERRUPTED
 
 
@@ -87,6 +85,7 @@ def _parser(argv: Sequence[str]) -> Parser:
     parser = Parser(
         prog="zwidth",
         description="Which virtual walls a haptic device can render without generating energy, proved.",
+        formatter_class=Help,
         allow_abbrev=False,
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and leave")
@@ -97,7 +96,7 @@ def _parser(argv: Sequence[str]) -> Parser:
             help=command.meaning,
             description=command.description,
             epilog=command.epilog,
-            formatter_class=_Help,
+            formatter_class=Help,
             allow_abbrev=False,
         )
         if name in argv:  # the many options of the others need not be built
@@ -107,13 +106,6 @@ def _parser(argv: Sequence[str]) -> Parser:
 
 
 _CHILD = "parser of the command"
-
-
-class _Help(argparse.RawDescriptionHelpFormatter):
-    """Help that never breaks a name such as `virtual-coupling` in two."""
-
-    def _split_lines(self, text: str, width: int) -> list[str]:
-        return textwrap.wrap(text, width, break_on_hyphens=False)
 
 
 class _Version(argparse.Action):

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import Once, add_all, device_parameters, given
-from zwidth.cli.output import print_json, print_report, say_written, targets, writing
+from zwidth.cli.output import print_json, print_message, print_report, say_written, targets, writing
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import shown, unit_text
@@ -84,8 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
         found = z_width(device, **options)
     except KeyboardInterrupt:
         if arguments.save is not None and Path(arguments.save).exists():
-            name = plain(arguments.save, 200)
-            print(f"zwidth: {name} keeps what is finished; the same command goes on", file=sys.stderr)
+            print_message(f"{plain(arguments.save, 200)} keeps what is finished; the same command goes on")
         raise
     if plot is not None:
         from zwidth.plots import save_z_width  # matplotlib takes its time

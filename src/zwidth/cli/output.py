@@ -115,6 +115,17 @@ def _print_lines(lines: Iterable[str]) -> None:
         print("\n".join(line.rstrip() for line in lines))
 
 
+def print_message(message: object) -> None:
+    """A message of this program on standard error, in lines that fit the terminal."""
+    with quiet_pipe(sys.stderr):
+        print("\n".join(message_lines(f"zwidth: {message}")), file=sys.stderr)
+
+
+def message_lines(text: str) -> list[str]:
+    """A message as it is broken into lines."""
+    return [*wrapped(spelled(text), columns())]
+
+
 def print_json(text: str) -> None:
     """Print JSON; escaped is what a terminal would obey, and what the encoding lacks."""
     text = OBEYED.sub(lambda found: f"\\u{ord(found[0]):04x}", text)

@@ -20,7 +20,7 @@ from zwidth.cli.options import (
     given,
     overrides,
 )
-from zwidth.cli.output import check_new, print_json, print_report, quiet_pipe, say_written
+from zwidth.cli.output import check_new, print_json, print_message, print_report, quiet_pipe, say_written
 from zwidth.cli.serve_tables import (
     CONNECTION,
     OPERATOR,
@@ -128,8 +128,7 @@ def run(arguments: argparse.Namespace) -> int:
             watch=(_say_what_is_served, *faces, *commands),
         )
     except NotProved as refused:
-        with quiet_pipe(sys.stderr):
-            print(f"zwidth: {refused}", file=sys.stderr)
+        print_message(refused)
         return exit_status(refused.verdict.outcome)
     return _give_out(report, arguments.json, save)
 
@@ -144,8 +143,7 @@ def _serve_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> i
     try:
         report = served_pair(arguments, tables)
     except PairNotProved as refused:
-        with quiet_pipe(sys.stderr):
-            print(f"zwidth: {refused}", file=sys.stderr)
+        print_message(refused)
         return exit_status(refused.verdict.outcome)
     return _give_out(report, arguments.json)
 

@@ -41,7 +41,8 @@ def width_of(text: str) -> int:
 
 
 def wrapped(text: str, width: int) -> Iterator[str]:
-    """The text in lines of at most `width` columns, broken at blanks, inside a word only where it must be.
+    """The text in lines of at most `width` columns, broken at blanks; inside a word, or inside
+    quotes, only where it must be.
 
     What belongs to an item of a list goes on under its own beginning.
     """
@@ -57,7 +58,7 @@ def _broken(line: str, width: int) -> Iterator[str]:
     indent = line[: len(line) - len(line.lstrip())]
     mark = _MARK.match(line)
     hanging = " " * (len(mark[0]) if mark else len(indent))
-    for word in line.split():
+    for word in _words(line, width - len(hanging)):
         joined = f"{so_far}{blank}{word}" if so_far else indent + word
         if width_of(joined) <= width:
             so_far, blank = joined, " "
@@ -70,6 +71,16 @@ def _broken(line: str, width: int) -> Iterator[str]:
             yield head
             so_far = hanging + so_far[len(head) :]
     yield so_far
+
+
+_QUOTED = r"""(?<!\w)'[^'\s][^']*'(?!\w)|(?<!\w)"[^"\s][^"]*"(?!\w)"""
+_WORD = re.compile(rf"(?:{_QUOTED}|\S)+")
+
+
+def _words(line: str, width: int) -> Iterator[str]:
+    """What stands between blanks, and what is quoted in one piece where it fits into a line."""
+    for found in _WORD.finditer(line):
+        yield from [found[0]] if width_of(found[0]) <= width else found[0].split()
 
 
 def _as_much_as_fits(text: str, width: int) -> str:

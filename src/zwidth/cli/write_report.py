@@ -20,10 +20,10 @@ from zwidth.cli.output import check_new, print_text, say_written
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from zwidth.passivity.result import Answer
-    from zwidth.report.provenance import Row
+    from zwidth.report.provenance import Provenance
     from zwidth.specification.table import Table
 
 
@@ -57,23 +57,27 @@ def run(arguments: argparse.Namespace) -> int:
     report.check_ending(target)
     check_new(target, arguments.force)
     tables = _of_a_pair(arguments.sources)
-    verdict, numbers = _loop(arguments) if tables is None else _pair(tables, arguments)
-    told = report.Provenance(tuple(numbers), _command(arguments))
+    verdict, told = _loop(arguments) if tables is None else _pair(tables, arguments)
     report.save(verdict, target, told, overwrite=arguments.force)
     print_text(f"{verdict.outcome}: {verdict.claim}")
     say_written(target)
     return exit_status(verdict.outcome)
 
 
-def _loop(arguments: argparse.Namespace) -> tuple[Answer, Iterable[Row]]:
+def _loop(arguments: argparse.Namespace) -> tuple[Answer, Provenance]:
     """The verdict on a device and a law, and where their numbers come from."""
-    from zwidth.report.provenance import of_device, of_environment
+    from zwidth.report.provenance import Provenance, file_of, of_device, of_environment
 
     given = asked(arguments)
     device, environment, typed = given.loop.device, given.loop.environment, arguments.law or ()
     verdict = decided(given.loop, contact(arguments))
     rows = of_environment(given.environment_table, environment, device.motion, given.law_table, typed)
-    return verdict, (*of_device(given.device_table, device), *rows)
+    return verdict, Provenance(
+        (*of_device(given.device_table, device), *rows),
+        _command(arguments),
+        file_of(given.device_table),
+        file_of(given.environment_table),
+    )
 
 
 def _of_a_pair(sources: Sequence[str]) -> Mapping[str, Table] | None:
@@ -86,10 +90,11 @@ def _of_a_pair(sources: Sequence[str]) -> Mapping[str, Table] | None:
     return tables if any(name in tables for name in PAIR_TABLES) else None
 
 
-def _pair(tables: Mapping[str, Table], arguments: argparse.Namespace) -> tuple[Answer, Iterable[Row]]:
+def _pair(tables: Mapping[str, Table], arguments: argparse.Namespace) -> tuple[Answer, Provenance]:
     """The verdict on two arms, and where their numbers come from."""
     from zwidth.passivity.check import check
     from zwidth.report.pair_provenance import of_pair
+    from zwidth.report.provenance import Provenance
     from zwidth.specification.pairs import pair_of
 
     if overrides(arguments) or arguments.law or arguments.contact:
@@ -98,7 +103,7 @@ def _pair(tables: Mapping[str, Table], arguments: argparse.Namespace) -> tuple[A
             "it here; zwidth pair takes those of the coupling"
         )
     pair = pair_of(tables)
-    return check(pair), of_pair(tables, pair)
+    return check(pair), Provenance(tuple(of_pair(tables, pair)), _command(arguments))
 
 
 def _command(arguments: argparse.Namespace) -> str:

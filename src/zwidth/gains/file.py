@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from zwidth.errors import InputError
+from zwidth.missing import did_you_mean
 from zwidth.quantity.units import parse_number
 from zwidth.specification.table import plain, quoted
 
@@ -142,9 +143,9 @@ def _toml(text: str) -> Any:
 def _text(path: Path, name: str) -> str:
     try:
         if not path.is_file():
-            raise InputError(
-                f"{name} is a directory; give the file in it" if path.is_dir() else f"there is no file {name}"
-            )
+            if path.is_dir():
+                raise InputError(f"{name} is a directory; give the file in it")
+            raise InputError(f"there is no file {name}{did_you_mean(path)}")
         with path.open("rb") as file:
             content = file.read(LARGEST_FILE + 1)
     except (OSError, ValueError) as error:

@@ -16,6 +16,7 @@ from typing import Any
 
 from zwidth.checker import Scope, Verified, verify
 from zwidth.errors import InputError
+from zwidth.missing import did_you_mean
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.document import loop_document, unit_key
 from zwidth.passivity.linear.contact import DampedWall
@@ -244,6 +245,8 @@ def read_document(path: str | Path) -> object:
         return json.loads(
             content.decode(), parse_float=Decimal, parse_int=_integer, object_pairs_hook=_once_each
         )
+    except FileNotFoundError:
+        raise InputError(f"{path} cannot be read: there is no such file{did_you_mean(path)}") from None
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
     except InputError as error:

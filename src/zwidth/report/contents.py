@@ -17,8 +17,9 @@ from zwidth.passivity.result import Answer
 from zwidth.passivity.verdict import Verdict
 from zwidth.report.beyond import beyond
 from zwidth.report.motion import first_steps
-from zwidth.report.proof import checked
+from zwidth.report.proof import Examined, checked, examined
 from zwidth.report.provenance import Provenance, of_verdict
+from zwidth.report.what_was_read import what_was_read
 from zwidth.showing import Headline, Lines, Part, Table, printable
 
 
@@ -63,37 +64,52 @@ def contents(verdict: Answer, provenance: Provenance | None = None) -> Contents:
     """What a report of a verdict says; `provenance` by default what can be seen of the loop."""
     if provenance is None:
         provenance = of_verdict(verdict) if isinstance(verdict, Verdict) else Provenance(())
+    pieces = examined(verdict)
+    title = _title(verdict, provenance)
     return Contents(
-        _title(verdict),
+        title,
         Headline(verdict.outcome, COLOUR[verdict.outcome], verdict.claim),
-        tuple(_with_something(_before(verdict))),
-        tuple(_with_something(_after(verdict, provenance))),
+        tuple(_with_something(_before(verdict, pieces, title))),
+        tuple(_with_something(_after(verdict, pieces, provenance))),
         verdict,
         json_file(verdict.saved()),
         provenance.command,
     )
 
 
-def _title(verdict: Answer) -> str:
+def _title(verdict: Answer, provenance: Provenance) -> str:
+    """The device, and in short what it renders; the files that they are of."""
     pair = getattr(verdict, "pair", None)
     if pair is not None:
         return printable(f"{pair.leader.name} and {pair.follower.name}: {pair.describe()}")
     if not isinstance(verdict, Verdict):
         return verdict.describe()
-    device = verdict.device
-    name = (
-        " ".join(printable(device.name).split()) if device.name != "device" else f"A {device.motion} device"
-    )
-    return f"{name}: {verdict.environment.describe(device.motion)}"
+    device, of, file = verdict.device, provenance.device_file, provenance.environment_file
+    named = " ".join(device.name.split()) if device.name != "device" else of
+    name = named or f"A {device.motion} device"
+    beside = f" ({file})" if file and file != of else ""
+    return printable(f"{name}: {_law_in_short(verdict)}{beside}")
 
 
-def _before(verdict: Answer) -> Iterator[Section]:
+def _law_in_short(verdict: Verdict) -> str:
+    """The law in a few words; of a longer one what stands before its numbers."""
+    law = verdict.environment.describe(verdict.device.motion)
+    return law if len(law) <= _SHORT else law.partition(", ")[0][:_LONGEST]
+
+
+_SHORT, _LONGEST = 32, 60
+
+
+def _before(verdict: Answer, pieces: Sequence[Examined], title: str) -> Iterator[Section]:
     """What the verdict is, what to change, what it covers, and what it stands on."""
     rows = [(name, text) for name, text in verdict.rows() if name not in _TOLD_BELOW]
+    law = verdict.environment.describe(verdict.device.motion) if isinstance(verdict, Verdict) else ""
+    if law not in title:
+        rows.insert(0, ("law", law))
     yield Section("In numbers", [Table(rows=rows)] if rows else [])
     yield _advice(verdict)
     yield Section("What the claim covers and takes for granted", [Lines(verdict.small_print())])
-    yield Section(_EVIDENCE[verdict.outcome], list(checked(verdict)))
+    yield Section(_EVIDENCE[verdict.outcome], list(checked(verdict, pieces)))
     motion = getattr(verdict, "witness", None)
     if motion is not None:
         yield Section("The first steps of the motion", list(first_steps(motion)))
@@ -108,7 +124,7 @@ _EVIDENCE = dict.fromkeys(COLOUR, "The proof") | {
 }
 
 
-def _after(verdict: Answer, provenance: Provenance) -> Iterator[Section]:
+def _after(verdict: Answer, pieces: Sequence[Examined], provenance: Provenance) -> Iterator[Section]:
     """What stands beside the claim, and where everything comes from."""
     if isinstance(verdict, LinearVerdict):
         checks = [f"{check.name}: {check.text}" for check in verdict.actuator]
@@ -117,6 +133,7 @@ def _after(verdict: Answer, provenance: Provenance) -> Iterator[Section]:
     heads = [("quantity", "value", "where it comes from")]
     rows = provenance.numbers
     yield Section("Where each number comes from", [Table(heads=heads, rows=rows, lefts=3)] if rows else [])
+    yield Section("What the checker read", list(what_was_read(pieces)))
 
 
 def _advice(verdict: Answer) -> Section:

@@ -1,14 +1,14 @@
-"""The evidence in words: what each document shows, that the checker accepts it, and what it read there."""
+"""The evidence in words: what each document shows, and that the checker accepts it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from zwidth.checker import Verified, verify
 from zwidth.passivity.result import EVIDENCE, Answer, Evidence
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.text import in_words
-from zwidth.showing import Part, Table
+from zwidth.showing import Part
 
 _NAMES = {
     "certificate": "The certificate",
@@ -20,29 +20,29 @@ _REFEREE = (
     "The independent checker, which shares no code with what found it, computes in exact arithmetic and"
 )
 
-_LONGEST = 40
-"""Characters of one of them that are shown; the document has all."""
 
-_MOST_ROWS = 24
-"""Numbers that entered the proof up to which each is shown."""
+class Examined(NamedTuple):
+    """A document of the evidence: what it is called, what it shows, and what the checker found."""
+
+    name: str
+    shows: str
+    found: Verified
 
 
-def checked(verdict: Answer) -> Iterator[Part]:
-    """On what the outcome stands, piece by piece; what the checker read is told once."""
+def examined(verdict: Answer) -> list[Examined]:
+    """Every piece of the evidence, read by the checker."""
+    return [Examined(name, piece.describe(), verify(piece.to_dict())) for name, piece in _pieces(verdict)]
+
+
+def checked(verdict: Answer, pieces: Sequence[Examined]) -> Iterator[Part]:
+    """On what the outcome stands, piece by piece."""
     if isinstance(verdict, Verdict):
         yield f"Decided by: {verdict.decided_by}."
-    pieces = list(_pieces(verdict))
     if not pieces:
         yield "There is no document of it that the checker could read."
-    told: list[tuple[tuple[str, str], ...]] = []
-    for name, piece in pieces:
-        found = verify(piece.to_dict())
+    for name, shows, found in pieces:
         said = "accepts it" if found.valid else "rejects it"
-        yield f"{name}: {piece.describe()}. {_REFEREE} {said}: {found.reason}."
-        rows = _rows(found)
-        if 0 < len(rows) <= _MOST_ROWS and rows not in told:
-            told.append(rows)
-            yield Table(rows=rows, caption="What the checker read")
+        yield f"{name}: {shows}. {_REFEREE} {said}: {found.reason}."
 
 
 def _pieces(verdict: Answer) -> Iterator[tuple[str, Evidence]]:
@@ -53,15 +53,3 @@ def _pieces(verdict: Answer) -> Iterator[tuple[str, Evidence]]:
     bounded = getattr(verdict, "available_storage", None)
     if bounded is not None and bounded.certificate is not None:
         yield "The certificate for bounded hands", bounded.certificate
-
-
-def _rows(found: Verified) -> tuple[tuple[str, str], ...]:
-    return tuple(
-        (in_words(row.name), f"{_shortened(row.text)} {row.unit}".rstrip())
-        for row in found.rows
-        if not row.told
-    )
-
-
-def _shortened(text: str) -> str:
-    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"

@@ -15,7 +15,7 @@ from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.kind import name_of
 from zwidth.quantity.parameter import Parameter
-from zwidth.quantity.text import in_words, shown, unit_text
+from zwidth.quantity.text import in_words, readable, shown, unit_text
 from zwidth.specification.environments import TYPES
 from zwidth.specification.table import COMMAND_LINE, Table
 
@@ -44,10 +44,14 @@ class Provenance:
         (what, value with unit, where it comes from), in the order of the report.
     command
         What makes the report again; "" where it was made in Python.
+    device_file, environment_file
+        The names of the files that they are of; "" where they are of none.
     """
 
     numbers: tuple[Row, ...] = ()
     command: str = ""
+    device_file: str = ""
+    environment_file: str = ""
 
 
 def of_verdict(verdict: Verdict) -> Provenance:
@@ -69,13 +73,14 @@ def of_device(table: Table, device: Device) -> Iterator[Row]:
     known = {} if name is None else catalogue.entry(str(name)).values
     for key, value in device.parameters().items():
         written = next((k for k in _WRITTEN_AS.get(key, (key,)) if k in table.values), None)
-        where = _published(key, value, known) if written is None else _place(table, written, key)
+        asked = "inertia" if _is_inertia(key, device.motion) else key
+        where = _published(key, value, known) if written is None else _place(table, written, asked)
         yield (
             *_named(key, value, device.motion),
             where or _unless_assumed(key, device.assumed, "not given"),
         )
     for key, own in ROTARY.items():
-        if key in table.values:
+        if key in table.values and not (key == "inertia" and device.motion == "rotary"):  # it is told above
             yield in_words(key), as_written(table.values[key], own.unit), _place(table, key, key)
 
 
@@ -125,7 +130,19 @@ def _of_a_key(name: str, key: Parameter, value: Any, motion: str) -> tuple[str, 
 
 def _named(key: str, value: Exact | Interval, motion: str) -> tuple[str, str]:
     own = GLOSSARY[key]
-    return f"{in_words(key)} {own.symbol}".rstrip(), shown(value, own.unit_for(motion), _DIGITS)
+    name = "inertia" if _is_inertia(key, motion) else f"{in_words(key)} {own.symbol}".rstrip()
+    return name, _value(value, own.unit_for(motion))
+
+
+def _value(value: Exact | Interval, unit: str) -> str:
+    return (
+        shown(value, unit, _DIGITS) if isinstance(value, Interval) else readable(float(value), unit, _DIGITS)
+    )
+
+
+def _is_inertia(key: str, motion: str) -> bool:
+    """The mass of what turns is called so nowhere."""
+    return key == "mass" and motion == "rotary"
 
 
 def as_written(value: object, unit: str) -> str:
@@ -158,6 +175,12 @@ def _place(table: Table, key: str, asked: str) -> str:
     if table.label == COMMAND_LINE:
         return _DEFAULT
     return of_file(table.label) + ("" if key == asked else f": {key}")
+
+
+def file_of(table: Table) -> str:
+    """The name of the file of a table; "" where it is of none."""
+    path, found, _ = table.label.rpartition(": [")
+    return PurePath(path).name if found else ""
 
 
 def of_file(label: str) -> str:

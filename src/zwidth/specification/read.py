@@ -23,6 +23,7 @@ from zwidth.device import Device, catalogue
 from zwidth.device.rotary import ROTARY, rotary
 from zwidth.environment import Environment
 from zwidth.errors import InputError
+from zwidth.missing import did_you_mean, near_file
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse
@@ -299,10 +300,7 @@ def _text(source: Path | str) -> str:
         if path.is_dir():
             raise InputError(f"{name} is a directory; give the TOML file in it")
         if not path.exists():
-            if path.suffix == ".toml":
-                raise InputError(f"there is no file {name}")
-            hint = suggestion(str(source), catalogue.names())
-            raise InputError(f"{name} is neither a file nor a device of the catalogue; {hint}")
+            raise InputError(_not_there(path, name))
         if not path.is_file():
             raise InputError(f"{name} is not a regular file")
         with path.open("rb") as file:
@@ -320,6 +318,15 @@ def _text(source: Path | str) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(f"{name} is not UTF-8 text (byte {error.start}); save it as UTF-8") from None
+
+
+def _not_there(path: Path, name: str) -> str:
+    """What to say where there is no such file: one beside it, or a device of the catalogue, near in name."""
+    if path.suffix == ".toml":
+        return f"there is no file {name}{did_you_mean(path)}"
+    near = near_file(path, catalogue.names())
+    hint = suggestion(near or str(path), [near] if near else catalogue.names())
+    return f"{name} is neither a file nor a device of the catalogue; {hint}"
 
 
 def _shown(source: Path | str) -> str:

@@ -22,6 +22,7 @@ from zwidth.errors import InputError
 from zwidth.loop.pair.trace import ARMS, labelled
 from zwidth.loop.pair.trace import FORMAT as OF_A_PAIR
 from zwidth.loop.trace import FORMAT, UNITS, VARIABLES
+from zwidth.missing import did_you_mean
 from zwidth.reading import check_hdf5, check_parquet
 from zwidth.writing import check_target, first_line, writing_whole
 
@@ -94,7 +95,7 @@ def load_trace(path: str | PathLike[str]) -> xr.Dataset:
     source = Path(path)
     _, read = _format(source)
     if not source.is_file():
-        raise InputError(f"{source} cannot be read: there is no such file")
+        raise InputError(f"{source} cannot be read: there is no such file{did_you_mean(source)}")
     try:
         trace = read(source)
     except InputError:

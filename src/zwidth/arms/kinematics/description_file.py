@@ -12,6 +12,7 @@ from typing import Any
 from xml.parsers.expat import ExpatError, ParserCreate
 
 from zwidth.errors import InputError
+from zwidth.missing import did_you_mean
 
 _ENDINGS = {".urdf": "buildModelFromUrdf", ".xml": "buildModelFromMJCF", ".mjcf": "buildModelFromMJCF"}
 _STANDARD_ERROR = 2
@@ -34,7 +35,7 @@ def read_model(path: Path) -> Any:
     if build is None:
         raise InputError(f"an arm is described in a .urdf, .xml or .mjcf file, got {path.name!r}")
     if not path.is_file():
-        raise InputError(f"there is no file {path}")
+        raise InputError(f"there is no file {path}{did_you_mean(path)}")
     try:
         import pinocchio as pin
     except ImportError:

@@ -13,6 +13,7 @@ from zwidth.identification.logs.log import Log
 from zwidth.identification.logs.names import recognise
 from zwidth.identification.logs.scales import meaning_of
 from zwidth.identification.logs.table import Table, readable
+from zwidth.missing import did_you_mean
 
 
 def read_log(
@@ -81,7 +82,7 @@ def _table(path: Path) -> Table:
             "part-000000.parquet in it; name a file"
         )
     if not path.exists():
-        raise InputError(f"{path} cannot be read: there is no such file")
+        raise InputError(f"{path} cannot be read: there is no such file{did_you_mean(path)}")
     start = b"" if path.is_dir() else _first_bytes(path)
     if start[:4] == b"PAR1":
         from zwidth.identification.logs.parquet import parquet_table

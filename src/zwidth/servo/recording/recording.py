@@ -15,6 +15,7 @@ from zwidth.errors import InputError
 from zwidth.identification.logs import Log, read_log
 from zwidth.identification.logs.served.contents import FORMAT, name_and_unit, rows_lost
 from zwidth.identification.logs.served.table import head_of, parts_of
+from zwidth.missing import did_you_mean
 from zwidth.servo.ring import ENDED, SERVING
 from zwidth.showing import Lines, Part, Shown, Table
 from zwidth.specification.read import Specification
@@ -247,7 +248,7 @@ def read_recording(path: str | PathLike[str]) -> Recording:
     """
     source = Path(path)
     if not source.exists():
-        raise InputError(f"{source} cannot be read: there is no such file")
+        raise InputError(f"{source} cannot be read: there is no such file{did_you_mean(source)}")
     head = head_of(source)
     if head is None:
         raise InputError(
