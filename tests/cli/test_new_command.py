@@ -428,6 +428,13 @@ def test_a_bump_stop_in_other_words(word: str) -> None:
     assert float(spring.forces[-1]) == pytest.approx(20)
 
 
+def test_the_largest_torque_says_nothing_of_a_device_that_slides(refused: Answered) -> None:
+    """20 N*m over N/m is no depth."""
+    assert main(["new", "device", *options(WHEEL), "--no-questions"]) == 0
+    stop = {"--type": "stop", "--start": "5 mm", "--stiffness": "450 N/m", "--motion": "linear"}
+    assert "--depth must be known" in refused("environment", *options(stop), "--no-questions")
+
+
 def test_what_to_type_next_can_be_typed(capsys: pytest.CaptureFixture[str]) -> None:
     """With a guess of what the device lacks."""
     device = {"--motion": "wheel", "--rate": "1 kHz", "--damping": "unknown"}

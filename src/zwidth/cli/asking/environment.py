@@ -10,17 +10,18 @@ from typing import NamedTuple
 from zwidth.cli.asking.beside import beside, lacking
 from zwidth.cli.asking.device import guessed
 from zwidth.cli.asking.device_questions import MOTION, motion_of
-from zwidth.cli.asking.numbers import need_unit, understood, with_unit
-from zwidth.cli.asking.questions import Asker, Question
+from zwidth.cli.asking.environment_questions import QUESTIONS, TYPE, kind_of, questions_of, units_of
+from zwidth.cli.asking.numbers import with_unit
+from zwidth.cli.asking.questions import Asker
 from zwidth.cli.asking.written import Row, Written, table
 from zwidth.cli.output import print_text
 from zwidth.device import Device
 from zwidth.environment import NonlinearSpring, Wall
-from zwidth.errors import InputError
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import readable
 from zwidth.quantity.units import parse_number
-from zwidth.specification.table import quoted, suggestion
+
+__all__ = ["QUESTIONS", "described"]
 
 _DEVICE = "my-device.toml"
 """The file that zwidth new device writes, where nobody names another."""
@@ -29,106 +30,6 @@ _HEAD = "As zwidth new environment was told."
 
 _POINTS = 26
 """Of a stop that hardens: the chords are close to the curve."""
-
-_KINDS = ("wall", "detents", "bump-stop")
-
-
-_ALSO = {"stop": "bump-stop", "bumpstop": "bump-stop", "end-stop": "bump-stop", "detent": "detents"}
-
-
-def _kind(answer: str) -> str:
-    word = "-".join(answer.lower().replace("_", " ").split())
-    kind = _ALSO.get(word, word)
-    if kind not in _KINDS:
-        raise InputError(f"there is no {quoted(answer)} here; {suggestion(word, _KINDS)}")
-    return kind
-
-
-TYPE = Question(
-    "type",
-    f"What is it to be? {', '.join(_KINDS)}",
-    "A wall is a spring from x = 0 on; a bump stop begins further on; detents hold the handle at places.",
-    _kind,
-    "One of them must be chosen; zwidth check --help names what else a file may describe.",
-    needed=True,
-)
-
-
-def _of_unit(unit: str, key: str) -> Callable[[str], str]:
-    def check(answer: str) -> str:
-        number = parse_number(answer, unit, key)
-        need_unit(answer, number, unit, key)
-        if key == "count" and number.fraction.denominator != 1:
-            raise InputError(f"count is a whole number of detents, got {answer[:40]}")
-        return understood(number, unit)
-
-    return check
-
-
-def _units(motion: str) -> dict[str, str]:
-    """The unit of each answer."""
-    way, force, stiff, damped = (
-        ("rad", "N*m", "N*m/rad", "N*m*s/rad") if motion == "rotary" else ("m", "N", "N/m", "N*s/m")
-    )
-    return {
-        "stiffness": stiff,
-        "virtual_damping": damped,
-        "count": "1",
-        "pitch": way,
-        "peak": force,
-        "start": way,
-        "hardening": f"{stiff}/{way}^2",
-        "depth": way,
-    }
-
-
-def _questions(motion: str) -> dict[str, Question]:
-    """What is asked, by key, in the units of the motion."""
-    units = _units(motion)
-    stiff, damped, force, hard = (units[key] for key in ("stiffness", "virtual_damping", "peak", "hardening"))
-    many = "10 deg" if motion == "rotary" else "5 mm"
-    rows = (
-        ("stiffness", f"How stiff? such as 20 {stiff}", "The device's damping must pay for it."),
-        (
-            "virtual_damping",
-            f"With how much virtual damping? such as 0.01 {damped}; Enter for none",
-            "It takes out energy, and costs stiffness: velocity is known late and in steps.",
-        ),
-        ("count", "How many detents? such as 3", "Beyond the first and the last the handle is free."),
-        ("pitch", f"How far from one to the next? such as {many}", "Its slope is 4 peak/pitch."),
-        (
-            "peak",
-            f"What leads over the edge of one? such as 0.02 {force}",
-            "Its slope is 4 peak/pitch.",
-        ),
-        ("start", f"Where does the stop begin? such as {many}", "Up to there the handle is free."),
-        (
-            "hardening",
-            f"How does it harden, f = K u + H u^3? such as 1000 {hard}; Enter for not at all",
-            "A stop that hardens is as steep as K + 3 H u^2.",
-        ),
-        (
-            "depth",
-            f"How deep? such as {many}, or largest force/stiffness",
-            "Deeper the force is constant.",
-        ),
-    )
-    optional = ("virtual_damping", "hardening")
-    return {
-        key: Question(
-            key,
-            ask,
-            why,
-            _of_unit(units[key], key),
-            "None, then." if key in optional else "It must be known.",
-            key not in optional,
-        )
-        for key, ask, why in rows
-    }
-
-
-QUESTIONS = (TYPE, MOTION, *_questions("rotary").values())
-"""Everything that may be asked."""
 
 
 def described(ask: Asker, path: Path) -> Written:
@@ -139,14 +40,15 @@ def described(ask: Asker, path: Path) -> Written:
     InputError
         If an answer cannot be used, or one is missing.
     """
-    kind = _kind(ask.sure(TYPE))
+    kind = kind_of(ask.sure(TYPE))
     device = None if ask.piped else beside(_DEVICE)
     if "motion" in ask or device is None:
         motion = motion_of(ask.sure(MOTION))
     else:
         motion = device.motion
         print_text(f"{_DEVICE} is {motion} at the handle, so this is too; --motion says otherwise.")
-    text = _FILES[kind](_Asked(ask, motion, device))
+    same = device if device is not None and device.motion == motion else None
+    text = _FILES[kind](_Asked(ask, motion, same))
     return Written(text, _next(kind, path))
 
 
@@ -162,7 +64,7 @@ def _next(kind: str, path: Path) -> list[str]:
 
 
 class _Asked(NamedTuple):
-    """Whoever answers, in the units of a motion; the device beside the file, where there is one."""
+    """Whoever answers, in the units of a motion; the device beside the file, where there is one that moves so."""
 
     ask: Asker
     motion: str
@@ -170,15 +72,15 @@ class _Asked(NamedTuple):
 
     def unit(self, key: str) -> str:
         """The unit of an answer."""
-        return _units(self.motion)[key]
+        return units_of(self.motion)[key]
 
     def sure(self, key: str) -> str:
         """An answer that there is no file without, with its unit."""
-        return with_unit(self.ask.sure(_questions(self.motion)[key]), self.unit(key))
+        return with_unit(self.ask.sure(questions_of(self.motion)[key]), self.unit(key))
 
     def perhaps(self, key: str) -> str | None:
         """An answer that may be missing, with its unit."""
-        answer = self.ask(_questions(self.motion)[key])
+        answer = self.ask(questions_of(self.motion)[key])
         return None if answer is None else with_unit(answer, self.unit(key))
 
 
@@ -209,7 +111,7 @@ def _bump_stop(asked: _Asked) -> str:
 
 def _depth(asked: _Asked, stiffness: str, hardening: str | None) -> tuple[str, str]:
     """How deep it goes, and why so deep: where nobody says it, to the largest force of the device."""
-    question, unit = _questions(asked.motion)["depth"], asked.unit("depth")
+    question, unit = questions_of(asked.motion)["depth"], asked.unit("depth")
     stiff = parse_number(stiffness, asked.unit("stiffness"), "stiffness").fraction
     most = asked.device.force_limit if asked.device is not None else None
     if most is None or stiff <= 0 or hardening is not None:
@@ -217,7 +119,9 @@ def _depth(asked: _Asked, stiffness: str, hardening: str | None) -> tuple[str, s
     deepest = f"{float(ends(most)[0] / stiff):.9g} {unit}"
     limit = readable(float(ends(most)[0]), asked.unit("peak"))
     offered = f"{question.ask}; Enter for {deepest}, where it is {limit}, the largest of {_DEVICE}"
-    answer = asked.ask(question._replace(ask=offered, enter=deepest, needed=False))
+    answer = asked.ask(
+        question._replace(ask=offered, enter=deepest, unknown=f"{deepest}, then.", needed=False)
+    )
     if answer is not None and answer != deepest:
         return with_unit(answer, unit), ""
     return deepest, f", where the force is {limit}, the largest of {_DEVICE}"
