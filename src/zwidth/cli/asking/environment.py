@@ -64,7 +64,7 @@ def _next(kind: str, path: Path) -> list[str]:
 
 
 class _Asked(NamedTuple):
-    """Whoever answers, in the units of a motion; the device beside the file, where there is one that moves so."""
+    """Whoever answers, in the units of a motion; the device beside the file, if it moves so."""
 
     ask: Asker
     motion: str

@@ -65,7 +65,7 @@ def units_of(motion: str) -> dict[str, str]:
         "pitch": way,
         "peak": force,
         "start": way,
-        "hardening": f"{stiff}/{way}^2",
+        "hardening": f"{force}/{way}^3",
         "depth": way,
     }
 
