@@ -77,9 +77,11 @@ def test_options_make_the_device_that_they_say(capsys: pytest.CaptureFixture[str
     )
     assert device.replace(name="device") == same
     assert device.assumed == ()
-    program, *command = out.splitlines()[-1].split()
-    assert program == "zwidth"
-    assert main(command) == 0  # a stiffness at which it is passive
+    assert "zwidth new environment" in out
+    check, report = (line.split() for line in out.splitlines() if "--stiffness" in line)
+    assert check[:2] + report[:2] == ["zwidth", "check", "zwidth", "report"]
+    assert main(check[1:]) == 0  # a stiffness at which it is passive
+    assert main(report[1:]) == 0
 
 
 def test_answers_from_a_pipe_are_those_of_the_options(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -171,7 +173,7 @@ def test_what_is_unknown_is_left_out_and_said(capsys: pytest.CaptureFixture[str]
         ({"--inertia": "0,006"}, '"0.006"'),
         ({"--motion": "sideways"}, "rotary or linear"),
         ({"--drum-radius": "1 cm"}, "--drum-radius"),
-        ({"--damping": "unknown", "--motion": "unknown"}, "--motion rotary"),
+        ({"--damping": "unknown", "--motion": "unknown"}, "--motion must be known"),
     ],
 )
 def test_an_answer_that_cannot_be_used_is_one_message(
@@ -202,6 +204,94 @@ def test_a_wrong_line_of_a_pipe_is_named(refused: Answered, monkeypatch: pytest.
     assert "line 3 of the answers" in refused("device")
 
 
+def test_answers_from_a_pipe_are_shown_with_their_questions(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """And how each was understood; a wrong one is refused with its question."""
+    lines = ("wheel", "0.006 kgm²", "2^16", "", "1 kHz", "", "0.05 Nms/rad", "0.1 Nm", "20 Nm")
+    piped(monkeypatch, *lines)
+    assert main(["new", "device"]) == 0
+    out = capsys.readouterr().out
+    for part in ("Does the handle turn", "> wheel", "understood: rotary", "understood: 0.05 N·m·s/rad"):
+        assert part in out
+    piped(monkeypatch, "wheel", "0.006 kgm²", "65,536 counts")
+    assert main(["new", "device", "--force"]) == 2
+    err = capsys.readouterr().err
+    assert "Encoder, at the axis" in err
+    assert '"65536"' in err
+    assert "65.536" not in err
+
+
+@pytest.mark.parametrize(
+    ("answer", "degrees"),
+    [
+        ("2^16", 360 / 2**16),
+        ("65536 steps", 360 / 2**16),
+        ("2^14 counts/rev", 360 / 2**14),
+        ("0.0055°", 0.0055),
+        ("0.0055 degrees", 0.0055),
+    ],
+)
+def test_an_encoder_as_people_say_it(answer: str, degrees: float) -> None:
+    """Powers of two, steps, degrees by sign and by word."""
+    assert main(["new", "device", *options({**WHEEL, "--encoder": answer}), "--no-questions"]) == 0
+    assert float(load_device(["my-device.toml"], {}).resolution) == pytest.approx(math.radians(degrees))
+
+
+@pytest.mark.parametrize("word", ["turn", "wheel", "yes", "It turns", "rotary"])
+def test_that_it_turns_may_be_said_in_other_words(word: str) -> None:
+    """The question names a wheel; "wheel" is an answer."""
+    assert main(["new", "device", *options({**WHEEL, "--motion": word}), "--no-questions"]) == 0
+    assert load_device(["my-device.toml"], {}).motion == "rotary"
+
+
+@pytest.mark.parametrize(
+    ("option", "answer", "part"),
+    [
+        ("--handle-radius", "1000", 'write "1000 mm", or "1000 m"'),
+        ("--drum-radius", "10", 'write "10 mm", or "10 m"'),
+    ],
+)
+def test_a_length_needs_its_unit(refused: Answered, option: str, answer: str, part: str) -> None:
+    """A bare 1000 is hardly a kilometre."""
+    motor = {"--motor-friction": "5 mNm", "--mass": "1 kg", "--rate": "1 kHz", "--damping": "1"}
+    known = WHEEL if option == "--handle-radius" else motor
+    assert part in refused("device", *options({**known, option: answer}), "--no-questions")
+
+
+def test_a_bare_number_is_written_with_the_unit_it_is_taken_in() -> None:
+    """So that the file says what was understood."""
+    assert main(["new", "device", *options({**WHEEL, "--damping": "0.02"}), "--no-questions"]) == 0
+    assert 'damping = "0.02 N*m*s/rad"' in Path("my-device.toml").read_text(encoding="utf-8")
+
+
+def test_what_the_motors_data_sheet_says_is_not_lost_in_silence(
+    refused: Answered, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Enter at the gear ratio is 1; without the torque constant the file says what it lacks."""
+    known = {"--motion": "rotary", "--rate": "1 kHz", "--damping": "0.02"}
+    sheet = {"--torque-constant": "0.9 Nm/A", "--motor-friction": "0.2 A", "--force-limit": "20 Nm"}
+    given = options({**known, "--inertia": "unknown", "--encoder": "unknown", "--delay": "unknown", **sheet})
+    given += options({"--handle-radius": "unknown", "--coulomb-friction": "unknown"})
+    assert "--gear-ratio" in refused("device", *given, "--no-questions")
+    piped(monkeypatch, "")
+    assert main(["new", "device", *given]) == 0
+    friction = load_device(["my-device.toml"], {}).coulomb_friction
+    assert float(friction or 0) == pytest.approx(0.18)
+    current = options({**known, "--motor-friction": "0.2 A"})
+    assert main(["new", "device", *current, "--no-questions", "--force"]) == 0
+    assert "0.2 A of the motor says it with --torque-constant" in Path("my-device.toml").read_text(
+        encoding="utf-8"
+    )
+
+
+def test_a_torque_constant_alone_is_kept_as_a_remark() -> None:
+    """One of the few things a data sheet always says."""
+    known = {"--motion": "rotary", "--rate": "1 kHz", "--damping": "0.02", "--torque-constant": "0.9 Nm/A"}
+    assert main(["new", "device", *options(known), "--no-questions"]) == 0
+    assert "torque constant 0.9 Nm/A is known" in Path("my-device.toml").read_text(encoding="utf-8")
+
+
 def test_a_file_is_kept_unless_force_is_given(refused: Answered) -> None:
     Path("my-device.toml").write_text("mine", encoding="utf-8")
     assert "--force" in refused("device", *options(WHEEL), "--no-questions")
@@ -213,21 +303,8 @@ def test_a_file_is_kept_unless_force_is_given(refused: Answered) -> None:
 
 def test_in_a_terminal_a_wrong_answer_is_asked_again(tmp_path: Path) -> None:
     """Each question with why it matters; what is wrong with an answer at once, then the question stays."""
-    pty = pytest.importorskip("pty")
-    here, there = pty.openpty()
-    answers = b"rotary\n0.006 kg\n0.006 kg*m^2\n?\n\n1 kHz\n\n0.02\n0.05 N*m\n2 N*m\n"
-    os.write(here, answers)
-    done = subprocess.run(
-        [sys.executable, "-m", "zwidth", "new", "device"],
-        stdin=there,
-        capture_output=True,
-        encoding="utf-8",
-        timeout=120,
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONIOENCODING": "utf-8"},
-    )
-    os.close(here)
-    os.close(there)
+    answers = "rotary\n0.006 kg\n0.006 kg*m^2\n?\n\n1 kHz\n\n0.02\n0.05 N*m\n2 N*m\n"
+    done = in_a_terminal(tmp_path, answers, "device")
     assert done.returncode == 0, done.stderr
     for part in (
         "Does the handle turn",
@@ -239,6 +316,42 @@ def test_in_a_terminal_a_wrong_answer_is_asked_again(tmp_path: Path) -> None:
         assert part in done.stdout
     assert done.stdout.count("Moment of inertia") == 1
     assert load_device([tmp_path / "my-device.toml"], {}).motion == "rotary"
+
+
+def in_a_terminal(folder: Path, answers: str, *argv: str) -> subprocess.CompletedProcess[str]:
+    """`zwidth new` with answers that are typed."""
+    pty = pytest.importorskip("pty")
+    here, there = pty.openpty()
+    os.write(here, answers.encode())
+    done = subprocess.run(
+        [sys.executable, "-m", "zwidth", "new", *argv],
+        stdin=there,
+        capture_output=True,
+        encoding="utf-8",
+        timeout=120,
+        cwd=folder,
+        env={**os.environ, "PYTHONIOENCODING": "utf-8"},
+    )
+    os.close(here)
+    os.close(there)
+    return done
+
+
+def test_back_leads_to_the_question_before(tmp_path: Path) -> None:
+    """The answers before it are kept, its own is replaced."""
+    answers = "back\nwall\nlinear\n300\nback\nback\nrotary\n20 Nm/rad\n\n"
+    done = in_a_terminal(tmp_path, answers, "environment")
+    assert done.returncode == 0, done.stderr
+    assert "This is the first question" in done.stdout
+    assert "understood: 300 N/m" in done.stdout
+    assert 'stiffness = "20 Nm/rad"' in (tmp_path / "my-environment.toml").read_text(encoding="utf-8")
+
+
+def test_enter_at_what_must_be_known_ends(tmp_path: Path) -> None:
+    """Not asked for ever."""
+    done = in_a_terminal(tmp_path, "\n\n\n", "device")
+    assert done.returncode == 2
+    assert "must be known" in done.stderr
 
 
 # --- an environment ----------------------------------------------------------
@@ -298,3 +411,48 @@ def test_an_environment_that_cannot_be_is_one_message(
 ) -> None:
     assert part in refused("environment", *options(answers), "--no-questions")
     assert not Path("my-environment.toml").exists()
+
+
+@pytest.mark.parametrize("word", ["stop", "bump stop", "Bump-Stop", "bump_stop"])
+def test_a_bump_stop_in_other_words(word: str) -> None:
+    """And where no depth is said, to the largest torque of the device in the same folder: 20/450 rad."""
+    device = {"--motion": "wheel", "--rate": "1 kHz", "--damping": "unknown", "--force-limit": "20 Nm"}
+    assert main(["new", "device", *options(device), "--no-questions"]) == 0
+    stop = {"--type": word, "--start": "450 deg", "--stiffness": "450"}
+    assert main(["new", "environment", *options(stop), "--no-questions"]) == 0
+    text = Path("my-environment.toml").read_text(encoding="utf-8")
+    assert "f = (450 N*m/rad) u" in text
+    assert "the largest of my-device.toml" in text
+    spring = zw.load(zw.samples.path("knob.toml"), "my-environment.toml").environment
+    assert float(spring.positions[-1] - spring.positions[0]) == pytest.approx(20 / 450, abs=1e-8)
+    assert float(spring.forces[-1]) == pytest.approx(20)
+
+
+def test_the_largest_torque_says_nothing_of_a_device_that_slides(refused: Answered) -> None:
+    """20 N*m over N/m is no depth."""
+    assert main(["new", "device", *options(WHEEL), "--no-questions"]) == 0
+    stop = {"--type": "stop", "--start": "5 mm", "--stiffness": "450 N/m", "--motion": "linear"}
+    assert "--depth must be known" in refused("environment", *options(stop), "--no-questions")
+
+
+def test_what_to_type_next_can_be_typed(capsys: pytest.CaptureFixture[str]) -> None:
+    """With a guess of what the device lacks."""
+    device = {"--motion": "wheel", "--rate": "1 kHz", "--damping": "unknown"}
+    wall = {"--type": "wall", "--stiffness": "20 Nm/rad"}
+    assert main(["new", "environment", *options({**wall, "--motion": "wheel"}), "--no-questions"]) == 0
+    assert "zwidth new device" in capsys.readouterr().out
+    assert main(["new", "device", *options(device), "--no-questions"]) == 0
+    capsys.readouterr()
+    assert main(["new", "environment", *options(wall), "--no-questions", "--force"]) == 0
+    _, *command = capsys.readouterr().out.splitlines()[-1].split()
+    assert "--damping" in command
+    assert main(command) == 0
+
+
+def test_the_missing_motion_is_said_before_what_does_not_fit(refused: Answered) -> None:
+    """The motion comes first; then what a wall takes."""
+    wall = {"--type": "wall", "--stiffness": "10 N*m/deg", "--start": "450 deg"}
+    assert "--motion must be known" in refused("environment", *options(wall), "--no-questions")
+    told = refused("environment", *options({**wall, "--motion": "rotary"}), "--no-questions")
+    assert "--start: nothing asks for it" in told
+    assert "--virtual-damping" in told

@@ -49,6 +49,28 @@ EXACT = [
     ("12 V", "V", "12"),
     ("3.3 A", "A", "33/10"),
     ("5 mrad", "rad", "1/200"),
+    ("20 Nm", "N*m", "20"),
+    ("20 Nm/rad", "N*m/rad", "20"),
+    ("20 mNm", "N*m", "1/50"),
+    ("20 µNm", "N*m", "1/50000"),
+    ("20 Ncm", "N*m", "1/5"),
+    ("20 Nmm", "N*m", "1/50"),
+    ("0.05 Nms/rad", "N*m*s/rad", "1/20"),
+    ("0.05 Nms", "N*m*s/rad", "1/20"),
+    ("50 mNms/rad", "N*m*s/rad", "1/20"),
+    ("0.9 Nm/A", "N*m/A", "9/10"),
+    ("0.9 Vs/rad", "V*s/rad", "9/10"),
+    ("2 rad/Nm", "rad/N/m", "2"),
+    ("0.15 Ns/m", "N*s/m", "3/20"),
+    ("0.006 kgm²", "kg*m^2", "3/500"),
+    ("0.006 kg m2", "kg*m^2", "3/500"),
+    ("0.006 kg*m2", "kg*m^2", "3/500"),
+    ("0.006 kgm2", "kg*m^2", "3/500"),
+    ("30 gcm²", "kg*m^2", "3/1000000"),
+    ("30 gcm2", "kg*m^2", "3/1000000"),
+    ("20 nm", "m", "1/50000000"),
+    ("2 seconds", "s", "2"),
+    ("180 degrees", "deg", "180"),
     ("−3 N", "N", "-3"),
     ("1e-3", "s", "1/1000"),
     (Decimal("0.15"), "N*s/m", "3/20"),
@@ -76,7 +98,19 @@ WRONG = [
     ("0,15", "m", 'write "0.15", with a point'),
     ("300,5", "N/m", 'write "300.5", with a point'),
     ("-7,25 N/m", "N/m", 'write "-7.25 N/m", with a point'),
-    ("1,000,000", "N/m", 'write "0.15", with a point'),
+    ("1,000,000", "N/m", 'write "1000000", without a comma'),
+    ("65,536 N/m", "N/m", 'write "65536 N/m", without a comma'),
+    ("1,000.5", "N/m", 'write "1000.5", without a comma'),
+    ("0,006 kg*m^2", "kg*m^2", 'write "0.006 kg*m^2", with a point'),
+    ("1,2,3", "N/m", 'write "0.15 N/m", with a point'),
+    ("20 nm", "N*m", "a newton metre is Nm"),
+    ("20 NM", "N*m", 'did you mean "Nm"'),
+    ("20 Nm", "N*m*s/rad", "a torque or an energy"),
+    ("1 m2", "m", "in m^2"),
+    ("1 m22", "m", "not a product of units"),
+    ("1 %", "kg*m^2", "not a product of units such as kg*m^2"),
+    ("3 counts", "m", "not a known unit"),
+    ("3 counts", "1", "not a known unit"),
     ("1e999 m", "m", "magnitudes"),
     ("1e40 km", "m", "magnitudes"),
     ("1e99999999999999999999", "m", "m"),
@@ -124,6 +158,7 @@ def test_values_are_exact(given_value: object, unit: str, expected: str) -> None
     [
         ("3 deg", "rad", lambda: mpmath.pi / 60),
         ("3°", "rad", lambda: mpmath.pi / 60),
+        ("3 degrees", "rad", lambda: mpmath.pi / 60),
         ("0.25 turn", "rad", lambda: mpmath.pi / 2),
         ("2 rev", "rad", lambda: 4 * mpmath.pi),
         ("7 N*m/deg", "N*m/rad", lambda: 1260 / mpmath.pi),
@@ -134,6 +169,14 @@ def test_degrees_and_turns_are_rounded_once(text: str, unit: str, expected: Call
     with mpmath.workdps(60):
         nearest = float(expected())
     assert float(parse_number(text, unit, "angle")) == nearest
+
+
+@pytest.mark.parametrize(
+    "text", ["500", "500 counts", "500 count", "500 steps", "500 counts/turn", "500 cpr", "500 /rev"]
+)
+def test_counts_may_be_called_counts(text: str) -> None:
+    """Where counts are wanted, and nowhere else."""
+    assert parse_number(text, "1", "counts_per_turn").fraction == 500
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from pathlib import Path
 from zwidth.cli.asking import device, environment
 from zwidth.cli.asking.questions import Asker
 from zwidth.cli.options import Once
-from zwidth.cli.output import check_new, quiet_pipe, say_written
+from zwidth.cli.output import check_new, print_text, quiet_pipe, say_written
 from zwidth.errors import InputError
 from zwidth.showing import printable
 from zwidth.specification.table import quoted, suggestion
@@ -25,7 +25,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "file", metavar="FILE", nargs="?", help="what to write (default: my-device.toml, my-environment.toml)"
     )
     parser.add_argument(
-        "--no-questions", action="store_true", help="ask nothing: what no option gives is not known"
+        "--no-questions",
+        action="store_true",
+        help="ask nothing; rate and damping are needed, or unknown",
     )
     parser.add_argument("--force", action="store_true", help="replace a file that exists")
     seen: set[str] = set()
@@ -49,7 +51,10 @@ def run(arguments: argparse.Namespace) -> int:
     check_new(path, arguments.force)
     every = {question.key for one in _KINDS.values() for question in one.QUESTIONS}
     given = {key: value for key, value in vars(arguments).items() if key in every and value is not None}
-    written = kind.described(Asker(given, not arguments.no_questions), path)
+    ask = Asker(given, not arguments.no_questions)
+    if ask.in_terminal:
+        print_text('Enter where you do not know; "back" for the question before.')
+    written = ask.until_done(lambda: kind.described(ask, path))
     with writing_whole(path) as file:
         file.write(written.text.encode())
     say_written(path)

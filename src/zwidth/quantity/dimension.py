@@ -1,7 +1,8 @@
 """Units as exact scales and dimensions: "N*s/m" is 1 kg/s.
 
 A unit text is a product of SI units with prefixes, read from left to right,
-so that N*s/m is (N·s)/m.  A dimension is the exponents of kg, m, s, A and
+so that N*s/m is (N·s)/m.  Data sheets write products without a sign: Nm is N*m,
+mNms is mN*m*s, kgm2 is kg*m^2; nm stays the nanometre.  A dimension is the exponents of kg, m, s, A and
 rad; the radian is kept, so that rad/s is not taken for Hz.
 """
 
@@ -14,6 +15,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from zwidth.errors import InputError
+from zwidth.quantity.spelling import WORDS
 
 Dimension = tuple[int, int, int, int, int]
 
@@ -61,6 +63,14 @@ _UNITS = {
     "rev": Unit(Fraction(2), 1, (0, 0, 0, 0, 1)),
     "rpm": Unit(Fraction(1, 30), 1, (0, 0, -1, 0, 1)),
 }
+_JOINED = {
+    **{f"{force}N{way}": (f"{force}N", way) for force in ("", "u", "m", "k") for way in ("m", "mm", "cm")},
+    **{f"{force}N{rest}": (f"{force}N", *rest) for force in ("", "u", "m", "k") for rest in ("s", "ms")},
+    **{f"{mass}{way}": (mass, way) for mass in ("kg", "g") for way in ("m", "mm", "cm")},
+    **{f"{first}s": (first, "s") for first in ("V", "mV", "J", "mJ")},
+}
+"""Products that data sheets write as one word, each with the one meaning that it has there."""
+
 _KINDS: dict[Dimension, str] = {
     (0, 0, 0, 0, 0): "a plain number",
     (1, 0, 0, 0, 0): "a mass (kg)",
@@ -86,13 +96,20 @@ _KINDS: dict[Dimension, str] = {
 }
 
 _FACTOR = re.compile(
-    r"\s*([*/]?)\s*(?:([A-Za-z]+)(?:(?:\^|\*\*)([+-]?[0-9])(?![0-9]))?|([0-9]{1,15}))(?![0-9])"
+    r"\s*([*/]?)\s*(?:([A-Za-z]+)(?:(?:\^|\*\*)([+-]?[0-9])|([23]))?|([0-9]{1,15}))(?![0-9])"
 )
 
 
 @lru_cache(maxsize=256)
-def unit_of(text: str) -> Unit:
+def unit_of(text: str, example: str = "N*s/m") -> Unit:
     """The unit that a text such as "N*s/m" spells; "" and "1" are the plain number.
+
+    Parameters
+    ----------
+    text
+        The unit as it was typed.
+    example
+        A unit that would do, for the message.
 
     Raises
     ------
@@ -103,23 +120,28 @@ def unit_of(text: str) -> Unit:
     while position < len(text):
         factor = _FACTOR.match(text, position)
         if factor is None or (position == 0 and factor[1] == "*"):
-            raise InputError(f'"{text}" is not a product of units such as N*s/m')
-        total = _times(total, *_factor(factor, text))
+            raise InputError(f'"{text}" is not a product of units such as {example}')
+        for unit, power in _factors(factor, text):
+            total = _times(total, unit, power)
         position = factor.end()
     return total
 
 
-def _factor(match: re.Match[str], text: str) -> tuple[Unit, int]:
-    operator, name, exponent, number = match.groups()
+def _factors(match: re.Match[str], text: str) -> list[tuple[Unit, int]]:
+    """One factor, or those of a joined word, of which the last has the exponent: kgm^2 is kg*m^2."""
+    operator, name, exponent, raised, number = match.groups()
     sign = -1 if operator == "/" else 1
     if number is not None:
         # "1/3000 s" and "60 1/min" are values; "1 2 N" is a slip.
         if int(number) == 0 or (sign > 0 and number != "1"):
             raise InputError(f'the number {number} stands inside the unit "{text}"')
-        return Unit(Fraction(int(number)), 0, ONE.dimension), sign
-    if name not in _UNITS:
+        return [(Unit(Fraction(int(number)), 0, ONE.dimension), sign)]
+    name = WORDS.get(name, name)
+    if name not in _UNITS and name not in _JOINED:
         raise InputError(f'"{name}" is not a known unit{_suggestion(name)}')
-    return _UNITS[name], sign * int(exponent or 1)
+    *before, last = (name,) if name in _UNITS else _JOINED[name]
+    power = int(exponent or raised or 1)
+    return [*((_UNITS[one], sign) for one in before), (_UNITS[last], sign * power)]
 
 
 def _times(a: Unit, b: Unit, power: int) -> Unit:
@@ -128,8 +150,9 @@ def _times(a: Unit, b: Unit, power: int) -> Unit:
 
 
 def _suggestion(name: str) -> str:
-    same = [known for known in _UNITS if known.lower() == name.lower()]
-    near = same or get_close_matches(name, list(_UNITS), n=1, cutoff=0.75)
+    every = [*_JOINED, *_UNITS]
+    same = [known for known in every if known.lower() == name.lower()]
+    near = same or get_close_matches(name, every, n=1, cutoff=0.75)
     return f'; did you mean "{near[0]}"?' if near else ""
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-_ALIASES = {
+WORDS = {
     **dict.fromkeys(("sec", "secs", "second", "seconds"), "s"),
     **dict.fromkeys(("msec", "milliseconds", "millisecond"), "ms"),
     **dict.fromkeys(("usec", "microseconds", "microsecond"), "us"),
@@ -10,12 +10,20 @@ _ALIASES = {
     **dict.fromkeys(("degree", "degrees"), "deg"),
     **dict.fromkeys(("radian", "radians"), "rad"),
     **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
-    **dict.fromkeys(("newton", "newtons", "n"), "N"),
+    **dict.fromkeys(("newton", "newtons"), "N"),
     **dict.fromkeys(("turns", "revs"), "turn"),
+}
+"""Units written out, wherever a value is read."""
+
+_ALIASES = {
+    **WORDS,
+    "n": "N",
     **dict.fromkeys(("N_m", "Nm", "N.m", "N m", "N-m"), "N*m"),
     **dict.fromkeys(("mNm", "mN_m", "mN.m", "mN m"), "mN*m"),
     **dict.fromkeys(("Nmm", "N_mm", "N.mm", "N mm"), "N*mm"),
 }
+"""And those of the headers of recordings."""
+
 _SIGNS = str.maketrans({"µ": "u", "μ": "u", "·": "*", "⋅": "*", "°": "deg"})
 
 

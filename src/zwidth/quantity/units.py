@@ -2,7 +2,7 @@
 
 A value is a number and a product of units, each an SI unit with a prefix:
 
-    "1 kHz"   "22.4 µm"   "0.15 N*s/m"   "0.15 N s/m"   "10 mN·m"   "500 g"   "1/3000 s"
+    "1 kHz"   "22.4 µm"   "0.15 N*s/m"   "0.15 N s/m"   "10 mN·m"   "0.9 Nm/A"   "500 g"   "1/3000 s"
 
 read from left to right, so N*s/m is (N·s)/m.  A number without a unit is SI.
 The arithmetic is rational: the typed decimal times the exact scale.  Only
@@ -21,7 +21,7 @@ from fractions import Fraction
 from numbers import Real
 
 from zwidth.errors import InputError
-from zwidth.quantity.dimension import PI, compatible, kind_of, unit_of
+from zwidth.quantity.dimension import PI, Unit, compatible, kind_of, unit_of
 from zwidth.quantity.exact import Exact, Interval
 
 LONGEST_TEXT = 120
@@ -80,16 +80,35 @@ def _parse_text(value: str, unit: str, what: str) -> Exact:
     number, rest = _split(value, unit, what)
     try:
         fraction = Exact(number).fraction
-        given, wanted = unit_of(rest), unit_of(unit)
+        given, wanted = unit_of(_without_count(rest, unit, what), _such_as(unit)), unit_of(unit)
         if not any(map(str.isalpha, rest)):  # SI like a number; perhaps a ratio, such as 1/3000
             return Exact(fraction * given.scale)
         if not compatible(given, wanted):
-            raise InputError(f'{_is(what, unit)}; got "{_short(value)}", {kind_of(given)}')
+            raise InputError(f'{_is(what, unit)}; got "{_short(value)}", {_kind(rest, given, wanted)}')
         return _scaled(fraction * given.scale / wanted.scale, given.turns - wanted.turns)
     except InputError as error:
         if str(error).startswith(what):
             raise
         raise InputError(f'{_is(what, unit)}; got "{_short(value)}": {error}') from None
+
+
+_COUNTED = re.compile(r"(?:counts?|steps?|cpr|1)?\s*(?:(?:/|per )\s*(?:turn|rev))?")
+
+
+def _without_count(rest: str, unit: str, what: str) -> str:
+    """The unit without the word "counts" or "steps", which may stand where these are counted."""
+    return "" if unit == "1" and "count" in what and _COUNTED.fullmatch(rest) else rest
+
+
+def _such_as(unit: str) -> str:
+    return "N*s/m" if unit in ("", "1") else unit
+
+
+def _kind(rest: str, given: Unit, wanted: Unit) -> str:
+    """What was given, and for nanometres in the place of a torque what to write."""
+    torque = unit_of("N*m").dimension
+    slip = rest.startswith(("nm", "mnm")) and wanted.dimension[:2] == torque[:2]
+    return kind_of(given) + ("; nm is a nanometre, a newton metre is Nm" if slip else "")
 
 
 def _scaled(fraction: Fraction, turns: int) -> Exact:
@@ -106,23 +125,36 @@ def _split(value: str, unit: str, what: str) -> tuple[str, str]:
         raise InputError(f"{_is(what, unit)}; got an empty text")
     match = _NUMBER.match(text) if len(text) <= LONGEST_TEXT and text.isprintable() else None
     if match is None or text[match.end() :].startswith(","):
-        example = (
-            f'; write "{_pointed(text)}", with a point'
-            if "," in text
-            else f': expected a number, such as "{f"0.15 {unit}".removesuffix(" 1")}"'
-        )
+        problem = _without_comma(text, unit) or f": expected a number, such as {_example(unit)}"
         if text.lstrip("+-").lower().startswith(("nan", "inf")):
-            example = ": it must be finite"
-        raise InputError(f'{_is(what, unit)}; got "{_short(value)}"{example}')
+            problem = ": it must be finite"
+        raise InputError(f'{_is(what, unit)}; got "{_short(value)}"{problem}')
     return match[0], text[match.end() :].strip()
 
 
+_THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:,[0-9]{3})+(?![0-9,])")
 _WITH_COMMA = re.compile(r"[+-]?[0-9]+,[0-9]+(?![0-9.,])")
 
 
-def _pointed(text: str) -> str:
-    """A number with a decimal comma as it is meant; else an example."""
-    return text.replace(",", ".", 1) if len(text) <= LONGEST_TEXT and _WITH_COMMA.match(text) else "0.15"
+def _without_comma(text: str, unit: str) -> str:
+    """What to write in the place of a number with a comma; "" where there is none.
+
+    Before three digits it may part thousands: 65,536 is never said to be 65.536.
+    """
+    if "," not in text:
+        return ""
+    if len(text) > LONGEST_TEXT:
+        return f"; write a fraction with a point, such as {_example(unit)}"
+    if parted := _THOUSANDS.match(text):
+        plain = parted[0].replace(",", "") + text[parted.end() :]
+        return f'; write "{plain}", without a comma; a fraction has a point'
+    pointed = text.replace(",", ".", 1)
+    right = f'"{pointed}"' if _WITH_COMMA.match(text) else _example(unit)
+    return f"; write {right}, with a point"
+
+
+def _example(unit: str) -> str:
+    return '"0.15"' if unit in ("", "1") else f'"0.15 {unit}"'
 
 
 def _text_ends(value: str, unit: str, what: str) -> tuple[Exact, Exact]:

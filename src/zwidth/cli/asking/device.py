@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Iterable
 from math import floor, inf, log10
 from pathlib import Path
 
@@ -17,13 +18,14 @@ from zwidth.cli.asking.device_questions import (
     inertia,
     loop,
     motion_of,
+    unit_of_answer,
 )
 from zwidth.cli.asking.encoder import read_encoder
+from zwidth.cli.asking.numbers import with_unit
 from zwidth.cli.asking.questions import Asker, Question
 from zwidth.cli.asking.written import Row, Written, table
 from zwidth.device import Device
 from zwidth.environment import Wall
-from zwidth.errors import InputError
 from zwidth.passivity.check import check
 from zwidth.specification.read import build_device, tables_of
 
@@ -41,11 +43,11 @@ def described(ask: Asker, path: Path) -> Written:
         If an answer cannot be used, or one is missing that must be given.
     """
     motion = _motion(ask)
-    rows = [Row("motion", motion), _row(ask, inertia(motion)), _encoder(ask, motion)]
+    rows = [Row("motion", motion), _row(ask, inertia(motion), motion), _encoder(ask, motion)]
     if motion == "rotary" and (radius := ask(RADIUS)) is not None:
         rows.append(Row(RADIUS.key, radius))
-    rows += [_row(ask, question) for question in loop(motion)]
-    measured = {question.key: _row(ask, question) for question in forces(motion)}
+    rows += [_row(ask, question, motion) for question in loop(motion)]
+    measured = {question.key: _row(ask, question, motion) for question in forces(motion)}
     sheet = motor.derived(ask, motion, [key for key, row in measured.items() if row.value is None])
     rows += [sheet.get(key, row) for key, row in measured.items()]
     ask.finish("a device")
@@ -58,17 +60,14 @@ def _motion(ask: Asker) -> str:
     sliding = [key for key in ("mass", "drum_radius") if key in ask]
     if "motion" not in ask and bool(turning) != bool(sliding):
         return "rotary" if turning else "linear"
-    while True:
-        answer = ask(MOTION)
-        if answer is not None:
-            return motion_of(answer)
-        if not ask.in_terminal:
-            raise InputError("whether it turns or slides must be known: --motion rotary, or --motion linear")
+    return motion_of(ask.sure(MOTION))
 
 
-def _row(ask: Asker, question: Question) -> Row:
+def _row(ask: Asker, question: Question, motion: str) -> Row:
     answer = ask(question)
-    return Row(question.key, answer, question.unknown if answer is None else "")
+    if answer is None:
+        return Row(question.key, None, question.unknown)
+    return Row(question.key, with_unit(answer, unit_of_answer(question.key, motion)))
 
 
 def _encoder(ask: Asker, motion: str) -> Row:
@@ -82,15 +81,25 @@ def _next(text: str, unknown: list[str], path: Path) -> list[str]:
     name = shlex.quote(str(path))
     missing = [key for key in NEEDED if key in unknown]
     if missing:
-        guesses = {"rate": '--rate "1 kHz"', "damping": "--damping 0.1"}
-        given = " ".join(guesses[key] for key in missing)
-        return [
-            *(line for key in missing for line in _MEASURE[key]),
-            "to try what if, with a guess:",
-            f"  zwidth check {name} {given} --stiffness 100",
-        ]
-    device = build_device(tables_of(text, path.name, ("device",))["device"])
-    return ["next:", f"  zwidth check {name} --stiffness {_stiffness(device)}"]
+        tried = f"{name} {guessed(missing)} --stiffness 100"
+        first = [*(line for key in missing for line in _MEASURE[key]), "to try what if, with a guess:"]
+    else:
+        device = build_device(tables_of(text, path.name, ("device",))["device"])
+        tried, first = f"{name} --stiffness {_stiffness(device)}", ["next, a wall:"]
+    return [
+        *first,
+        f"  zwidth check {tried}",
+        "the same as a page to hand on:",
+        f"  zwidth report {tried} -o {shlex.quote(str(path.with_suffix('.html')))}",
+        "a file of what it renders, a wall, detents or a stop:",
+        "  zwidth new environment",
+    ]
+
+
+def guessed(missing: Iterable[str]) -> str:
+    """Options with a guess of what a device must have and lacks."""
+    guesses = {"rate": '--rate "1 kHz"', "damping": "--damping 0.1"}
+    return " ".join(guesses[key] for key in missing)
 
 
 _MEASURE = {

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from zwidth.cli.asking import motor
-from zwidth.cli.asking.encoder import read_encoder
+from zwidth.cli.asking.encoder import encoder_understood
+from zwidth.cli.asking.numbers import need_unit, understood
 from zwidth.cli.asking.questions import Question
 from zwidth.device import Device
 from zwidth.device.rotary import ROTARY
 from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.parameter import parameters_of, read_number
+from zwidth.quantity.units import parse
 from zwidth.specification.read import question_time
 
 NEEDED = ("rate", "damping")
@@ -25,10 +28,18 @@ def motion_of(answer: str) -> str:
     InputError
         If it is neither.
     """
-    words = {"rotary": "rotary", "turns": "rotary", "linear": "linear", "slides": "linear"}
-    if answer.lower() not in words:
+    word = answer.lower().removeprefix("it ")
+    found = next((motion for motion, words in _MOTIONS.items() if word in words), None)
+    if found is None:
         raise InputError(f'it turns or slides: write rotary or linear, got "{answer[:40]}"')
-    return words[answer.lower()]
+    return found
+
+
+_MOTIONS = {
+    "rotary": ("rotary", "turn", "turns", "rotate", "rotates", "rotation", "wheel", "knob", "yes", "y"),
+    "linear": ("linear", "slide", "slides", "slider", "no", "n"),
+}
+"""Answers to whether the handle turns."""
 
 
 MOTION = Question(
@@ -41,17 +52,32 @@ MOTION = Question(
 )
 
 
-def _check(key: str, motion: str) -> Callable[[str], object]:
-    """Reads an answer as the device itself would."""
+def unit_of_answer(key: str, motion: str) -> str:
+    """The unit that an answer without one has."""
+    return "Hz" if key == "rate" else (ROTARY.get(key) or parameters_of(Device)[key]).unit_for(motion)
 
-    def check(answer: str) -> object:
+
+def _check(key: str, motion: str) -> Callable[[str], str]:
+    """Reads an answer as the device itself would, and says how."""
+
+    def check(answer: str) -> str:
+        unit = unit_of_answer(key, motion)
+        number = read(answer)
+        need_unit(answer, number, unit, key)
+        return understood(number, unit)
+
+    def read(answer: str) -> Exact | Interval:
         if key in ROTARY:
             why = "leave it out if unknown"
-            return read_number(answer, ROTARY[key], key, uncertain=True, bound="> 0", why=why, motion=motion)
+            positive: Exact | Interval = read_number(
+                answer, ROTARY[key], key, uncertain=True, bound="> 0", why=why, motion=motion
+            )
+            return positive
         if key == "rate":
-            return Device(damping=0, rate=answer)
+            Device(damping=0, rate=answer)
+            return parse(answer, "Hz", key)
         own = parameters_of(Device)[key]
-        number = read_number(
+        number: Exact | Interval = read_number(
             answer, own.quantity, key, uncertain=True, bound=own.bound, why=own.why, motion=motion
         )
         if key == "delay":
@@ -85,7 +111,7 @@ def encoder(motion: str) -> Question:
         "encoder",
         ask,
         "Each step of the reading is a step of the force, and dry friction must pay for it.",
-        lambda answer: read_encoder(answer, motion),
+        lambda answer: encoder_understood(answer, motion),
         "Left out: a verdict takes it as 0, an ideal encoder, and says so; see its data sheet.",
     )
 
@@ -93,7 +119,7 @@ def encoder(motion: str) -> Question:
 def inertia(motion: str) -> Question:
     """How heavy it is."""
     key, ask = (
-        ("inertia", "Moment of inertia about the axis? such as 0.006 kg*m^2")
+        ("inertia", "Moment of inertia about the axis? such as 0.006 kg m2")
         if motion == "rotary"
         else ("mass", "Mass that the hand feels at the handle? such as 36 g")
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from zwidth.cli.asking.numbers import need_unit, understood
 from zwidth.cli.asking.written import Row
 from zwidth.device import Device
 from zwidth.device.rotary import rotary
@@ -16,7 +17,9 @@ LINES = 4
 _LARGEST_BITS = 40
 
 _COUNTED = re.compile(
-    r"(?P<number>[^a-z]+?)\s*(?P<unit>counts?|cpr|lines?|ppr|bits?)?(\s*(/|per)\s*(turn|rev))?", re.IGNORECASE
+    r"(?P<number>2\s*(\^|\*\*)\s*(?P<power>[0-9]{1,2})|[^a-z°^]+?)\s*"
+    r"(?P<unit>counts?|steps?|cpr|lines?|ppr|bits?)?(\s*(/|per)\s*(turn|rev(olution)?))?",
+    re.IGNORECASE,
 )
 
 
@@ -29,18 +32,21 @@ def read_encoder(answer: str, motion: str) -> Row:
         If the answer is no such size.
     """
     if motion == "linear":
-        if re.search(r"count|cpr|line|ppr|bit", answer, re.IGNORECASE):
+        if re.search(r"count|step|cpr|line|ppr|bit|\^", answer, re.IGNORECASE):
             raise InputError(
                 f'of a device that slides the step is a length, got "{answer[:40]}"; with N counts in a turn '
                 "of a drum of radius r it is 2 π r/N, of 10 mm and 2000 counts 31.4 um"
             )
-        Device(damping=0, rate=1, resolution=parse_number(answer, "m", "resolution"))
+        step = parse_number(answer, "m", "resolution")
+        need_unit(answer, step, "m", "resolution")
+        Device(damping=0, rate=1, resolution=step)
         return Row("resolution", answer)
     counted = _COUNTED.fullmatch(answer)
     if counted is None:
         rotary(damping=0, rate=1, resolution=parse_number(answer, "rad", "resolution"))
         return Row("resolution", answer)
-    counts, remark = _counts(counted["number"], (counted["unit"] or "counts").lower(), answer)
+    number = str(2 ** int(counted["power"])) if counted["power"] else counted["number"]
+    counts, remark = _counts(number, (counted["unit"] or "counts").lower(), answer)
     if float(counts) < 1:
         raise InputError(
             f'an encoder has 1 count in a turn or more, got "{answer[:40]}"; of an angle write the unit'
@@ -49,9 +55,26 @@ def read_encoder(answer: str, motion: str) -> Row:
     return Row("counts_per_turn", counts, remark)
 
 
+def encoder_understood(answer: str, motion: str) -> str:
+    """What one count is, in SI; how many there are in a turn.
+
+    Raises
+    ------
+    InputError
+        As `read_encoder`.
+    """
+    row = read_encoder(answer, motion)
+    unit = "rad" if motion == "rotary" else "m"
+    if row.key == "resolution":
+        return understood(parse_number(answer, unit, "resolution"), unit)
+    step = rotary(damping=0, rate=1, counts_per_turn=str(row.value)).resolution
+    remark = f" ({row.remark})" if row.remark else ""
+    return f"{row.value} counts in a turn{remark}, one is {understood(step, unit)}"
+
+
 def _counts(number: str, unit: str, answer: str) -> tuple[str, str]:
     """Counts in a turn, and what was made of the answer."""
-    value = parse_number(number, "1", "encoder").fraction
+    value = parse_number(number, "1", f"number of {unit.removesuffix('s')}s").fraction
     if unit.startswith("bit"):
         if value.denominator != 1 or not 0 < value <= _LARGEST_BITS:
             raise InputError(

@@ -5,92 +5,31 @@ from __future__ import annotations
 import shlex
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
+from zwidth.cli.asking.beside import beside, lacking
+from zwidth.cli.asking.device import guessed
 from zwidth.cli.asking.device_questions import MOTION, motion_of
-from zwidth.cli.asking.questions import Asker, Question
+from zwidth.cli.asking.environment_questions import QUESTIONS, TYPE, kind_of, questions_of, units_of
+from zwidth.cli.asking.numbers import with_unit
+from zwidth.cli.asking.questions import Asker
 from zwidth.cli.asking.written import Row, Written, table
+from zwidth.cli.output import print_text
+from zwidth.device import Device
 from zwidth.environment import NonlinearSpring, Wall
-from zwidth.errors import InputError
+from zwidth.quantity.exact import ends
+from zwidth.quantity.text import readable
 from zwidth.quantity.units import parse_number
-from zwidth.specification.table import quoted, suggestion
+
+__all__ = ["QUESTIONS", "described"]
+
+_DEVICE = "my-device.toml"
+"""The file that zwidth new device writes, where nobody names another."""
 
 _HEAD = "As zwidth new environment was told."
 
 _POINTS = 26
 """Of a stop that hardens: the chords are close to the curve."""
-
-_KINDS = ("wall", "detents", "bump-stop")
-
-
-def _kind(answer: str) -> str:
-    if answer not in _KINDS:
-        raise InputError(f"there is no {quoted(answer)} here; {suggestion(answer, _KINDS)}")
-    return answer
-
-
-TYPE = Question(
-    "type",
-    f"What is it to be? {', '.join(_KINDS)}",
-    "A wall is a spring from x = 0 on; a bump stop begins further on; detents hold the handle at places.",
-    _kind,
-    "One of them must be chosen; zwidth check --help names what else a file may describe.",
-    needed=True,
-)
-
-
-def _of_unit(unit: str, key: str) -> Callable[[str], object]:
-    return lambda answer: parse_number(answer, unit, key)
-
-
-def _questions(motion: str) -> dict[str, Question]:
-    """What is asked, by key, in the units of the motion."""
-    way, force, stiff, damped, many = (
-        ("rad", "N*m", "N*m/rad", "N*m*s/rad", "10 deg")
-        if motion == "rotary"
-        else ("m", "N", "N/m", "N*s/m", "5 mm")
-    )
-    hard = f"{stiff}/{way}^2"
-    rows = (
-        ("stiffness", stiff, f"How stiff? such as 20 {stiff}", "The device's damping must pay for it."),
-        (
-            "virtual_damping",
-            damped,
-            f"With how much virtual damping? such as 0.01 {damped}; Enter for none",
-            "It takes out energy, and costs stiffness: velocity is known late and in steps.",
-        ),
-        ("count", "1", "How many detents? such as 3", "Beyond the first and the last the handle is free."),
-        ("pitch", way, f"How far from one to the next? such as {many}", "Its slope is 4 peak/pitch."),
-        (
-            "peak",
-            force,
-            f"What leads over the edge of one? such as 0.02 {force}",
-            "Its slope is 4 peak/pitch.",
-        ),
-        ("start", way, f"Where does the stop begin? such as {many}", "Up to there the handle is free."),
-        (
-            "hardening",
-            hard,
-            f"How does it harden, f = K u + H u^3? such as 1000 {hard}; Enter for not at all",
-            "A stop that hardens is as steep as K + 3 H u^2.",
-        ),
-        ("depth", way, f"How deep is it at most? such as {many}", "Deeper than that the force is constant."),
-    )
-    optional = ("virtual_damping", "hardening")
-    return {
-        key: Question(
-            key,
-            ask,
-            why,
-            _of_unit(unit, key),
-            "None, then." if key in optional else "It must be known.",
-            key not in optional,
-        )
-        for key, unit, ask, why in rows
-    }
-
-
-QUESTIONS = (TYPE, MOTION, *_questions("rotary").values())
-"""Everything that may be asked."""
 
 
 def described(ask: Asker, path: Path) -> Written:
@@ -101,55 +40,98 @@ def described(ask: Asker, path: Path) -> Written:
     InputError
         If an answer cannot be used, or one is missing.
     """
-    kind, motion = _sure(ask, TYPE), motion_of(_sure(ask, MOTION))
-    text = _FILES[kind](ask, _questions(motion), motion)
-    does = "check" if kind == "wall" else "limit"
+    kind = kind_of(ask.sure(TYPE))
+    device = None if ask.piped else beside(_DEVICE)
+    if "motion" in ask or device is None:
+        motion = motion_of(ask.sure(MOTION))
+    else:
+        motion = device.motion
+        print_text(f"{_DEVICE} is {motion} at the handle, so this is too; --motion says otherwise.")
+    same = device if device is not None and device.motion == motion else None
+    text = _FILES[kind](_Asked(ask, motion, same))
+    return Written(text, _next(kind, path))
+
+
+def _next(kind: str, path: Path) -> list[str]:
+    """What to type now, with a guess of what the device lacks."""
+    missing = lacking(_DEVICE)
+    guess = f" {guessed(missing)}" if missing else ""
+    command = "check" if kind == "wall" else "limit"
     more = "" if kind == "wall" else " --parameter rate"
-    return Written(text, ["next:", f"  zwidth {does} my-device.toml {shlex.quote(str(path))}{more}"])
+    first = [] if missing is not None else ["the device first:", "  zwidth new device"]
+    head = f"next, with a guess of what {_DEVICE} lacks:" if missing else "next:"
+    return [*first, head, f"  zwidth {command} {_DEVICE} {shlex.quote(str(path))}{guess}{more}"]
 
 
-def _sure(ask: Asker, question: Question) -> str:
-    """An answer that there is no file without."""
-    while (answer := ask(question)) is None:
-        if not ask.in_terminal:
-            ask.finish("an environment")
-            raise InputError(f"{question.option} must be known: {question.ask}")
-    return answer
+class _Asked(NamedTuple):
+    """Whoever answers, in the units of a motion; the device beside the file, if it moves so."""
+
+    ask: Asker
+    motion: str
+    device: Device | None
+
+    def unit(self, key: str) -> str:
+        """The unit of an answer."""
+        return units_of(self.motion)[key]
+
+    def sure(self, key: str) -> str:
+        """An answer that there is no file without, with its unit."""
+        return with_unit(self.ask.sure(questions_of(self.motion)[key]), self.unit(key))
+
+    def perhaps(self, key: str) -> str | None:
+        """An answer that may be missing, with its unit."""
+        answer = self.ask(questions_of(self.motion)[key])
+        return None if answer is None else with_unit(answer, self.unit(key))
 
 
-def _wall(ask: Asker, questions: dict[str, Question], motion: str) -> str:
-    stiffness, damping = _sure(ask, questions["stiffness"]), ask(questions["virtual_damping"])
-    ask.finish("a wall")
+def _wall(asked: _Asked) -> str:
+    stiffness, damping = asked.sure("stiffness"), asked.perhaps("virtual_damping")
+    asked.ask.finish("a wall")
     Wall(stiffness, damping or 0)
     rows = [Row("type", "wall"), Row("stiffness", stiffness)]
     return table("environment", _HEAD, rows + ([Row("damping", damping)] if damping else []))
 
 
-def _detents(ask: Asker, questions: dict[str, Question], motion: str) -> str:
-    count, pitch, peak = (_sure(ask, questions[key]) for key in ("count", "pitch", "peak"))
-    ask.finish("a row of detents")
-    many = parse_number(count, "1", "count")
-    if many.fraction.denominator != 1:
-        raise InputError(f"count is a whole number of detents, got {count}")
-    spring = NonlinearSpring.detents(int(many), pitch, peak)
-    return _spring(spring, f"{count} detents, {pitch} apart, {peak} at most", motion)
+def _detents(asked: _Asked) -> str:
+    count, pitch, peak = (asked.sure(key) for key in ("count", "pitch", "peak"))
+    asked.ask.finish("a row of detents")
+    spring = NonlinearSpring.detents(int(parse_number(count, "1", "count")), pitch, peak)
+    return _spring(spring, f"{count} detents, {pitch} apart, {peak} at most", asked.motion)
 
 
-def _bump_stop(ask: Asker, questions: dict[str, Question], motion: str) -> str:
-    start, stiffness = _sure(ask, questions["start"]), _sure(ask, questions["stiffness"])
-    hardening, depth = ask(questions["hardening"]), _sure(ask, questions["depth"])
-    ask.finish("a bump stop")
+def _bump_stop(asked: _Asked) -> str:
+    start, stiffness = asked.sure("start"), asked.sure("stiffness")
+    hardening = asked.perhaps("hardening")
+    depth, reason = _depth(asked, stiffness, hardening)
+    asked.ask.finish("a bump stop")
     spring = NonlinearSpring.bump_stop(start, stiffness, hardening or 0, depth, _POINTS if hardening else 2)
-    return _spring(
-        spring, f"A stop from {start} on, f = {stiffness} u{_harder(hardening)}, to {depth}", motion
+    law = f"f = ({stiffness}) u{_harder(hardening)}"
+    return _spring(spring, f"A stop from {start} on, {law}, to u = {depth}{reason}", asked.motion)
+
+
+def _depth(asked: _Asked, stiffness: str, hardening: str | None) -> tuple[str, str]:
+    """How deep it goes, and why so deep: where nobody says it, to the largest force of the device."""
+    question, unit = questions_of(asked.motion)["depth"], asked.unit("depth")
+    stiff = parse_number(stiffness, asked.unit("stiffness"), "stiffness").fraction
+    most = asked.device.force_limit if asked.device is not None else None
+    if most is None or stiff <= 0 or hardening is not None:
+        return with_unit(asked.ask.sure(question), unit), ""
+    deepest = f"{float(ends(most)[0] / stiff):.9g} {unit}"
+    limit = readable(float(ends(most)[0]), asked.unit("peak"))
+    offered = f"{question.ask}; Enter for {deepest}, where it is {limit}, the largest of {_DEVICE}"
+    answer = asked.ask(
+        question._replace(ask=offered, enter=deepest, unknown=f"{deepest}, then.", needed=False)
     )
+    if answer is not None and answer != deepest:
+        return with_unit(answer, unit), ""
+    return deepest, f", where the force is {limit}, the largest of {_DEVICE}"
 
 
 def _harder(hardening: str | None) -> str:
-    return f" + {hardening} u^3" if hardening else ""
+    return f" + ({hardening}) u^3" if hardening else ""
 
 
-_FILES: dict[str, Callable[[Asker, dict[str, Question], str], str]] = {
+_FILES: dict[str, Callable[[_Asked], str]] = {
     "wall": _wall,
     "detents": _detents,
     "bump-stop": _bump_stop,

@@ -13,6 +13,7 @@ from collections.abc import Collection
 from fractions import Fraction
 from typing import NamedTuple
 
+from zwidth.cli.asking.numbers import need_unit, understood
 from zwidth.cli.asking.questions import Asker, Question
 from zwidth.cli.asking.written import Row
 from zwidth.errors import InputError
@@ -53,7 +54,14 @@ def _read(key: str, answer: str) -> _Read:
 
 
 def _question(key: str, ask: str, why: str, unknown: str) -> Question:
-    return Question(key, ask, why, lambda answer: _read(key, answer), unknown)
+    return Question(key, ask, why, lambda answer: _understood(key, answer), unknown)
+
+
+def _understood(key: str, answer: str) -> str:
+    read = _read(key, answer)
+    number = Exact(read.value)
+    need_unit(answer, number, read.unit, key)
+    return understood(number, read.unit)
 
 
 FRICTION = _question(
@@ -76,35 +84,43 @@ CONSTANT = _question(
 )
 RATIO = _question(
     "gear_ratio",
-    "Turns of the motor in one turn of the handle? 1 where it is driven directly",
+    "Turns of the motor in one turn of the handle? Enter for 1, driven directly",
     "Torque and friction at the handle are so many times those of the motor.",
     "Not known, so nothing is taken from the motor's data sheet.",
-)
+)._replace(needed=True, enter="1")
 RADIUS = _question(
     "drum_radius",
     "Radius of the drum or pulley on the motor's axis? such as 10 mm",
     "The force at the handle is torque over radius.",
     "Not known, so nothing is taken from the motor's data sheet.",
-)
+)._replace(needed=True)
 
-QUESTIONS = (FRICTION, PEAK, CONSTANT, RATIO, RADIUS)
+QUESTIONS = (CONSTANT, FRICTION, PEAK, RATIO, RADIUS)
 
 _OF = {"coulomb_friction": (FRICTION, _MEASURE), "force_limit": (PEAK, _LIMIT)}
 
 
 def derived(ask: Asker, motion: str, wanted: Collection[str]) -> dict[str, Row]:
     """Of the keys that were not measured what the data sheet says, each as a row of the file."""
+    if not wanted:
+        return {}
+    constant = ask(CONSTANT)
     answers = {key: ask(_OF[key][0]) for key in wanted}
     known = {key: _read(_OF[key][0].key, answer) for key, answer in answers.items() if answer is not None}
-    constant = ask(CONSTANT) if any(read.unit == "A" for read in known.values()) else None
-    if constant is None:
-        known = {key: read for key, read in known.items() if read.unit != "A"}
+    usable = [key for key, read in known.items() if constant is not None or read.unit != "A"]
     way = RATIO if motion == "rotary" else RADIUS
-    gear = ask(way) if known else None
-    rows = {key: Row(key, None, _OF[key][1]) for key in wanted}
-    if gear is not None:
-        for key, read in known.items():
-            rows[key] = _at_handle(key, read, answers[key] or "", constant or "", gear, motion)
+    gear = ask(way) if usable else None
+    rows = {}
+    for key in wanted:
+        answer, of = answers[key], _OF[key][1]
+        if key not in known:
+            also = f"The torque constant {constant} is known; a current is not. " if constant else ""
+            rows[key] = Row(key, None, also + of)
+        elif key in usable and gear is not None:
+            rows[key] = _at_handle(key, known[key], answer or "", constant or "", gear, motion)
+        else:
+            lacks = CONSTANT if key not in usable else way
+            rows[key] = Row(key, None, f"{answer} of the motor says it with {lacks.option}. {of}")
     return rows
 
 

@@ -8,28 +8,42 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from zwidth.cli.output import print_text, quiet_pipe
 from zwidth.errors import InputError
 from zwidth.specification.table import COMMAND_LINE, located
 
+T = TypeVar("T")
+
 _UNKNOWN = ("", "?", "unknown", "don't know", "dont know")
+
+
+_BACK = "back"
+
+_TRIES = 3
+"""How often Enter is taken for an answer where one is needed."""
+
+
+class Back(Exception):
+    """The person wants the question before."""
 
 
 class Question(NamedTuple):
     """One question: its key, what is asked, why, how the answer is checked, and what follows without one.
 
-    `needed` questions must be answered, by "unknown" if need be; others may be passed over in silence by a
-    script.
+    `check` says how the answer is understood, "" where there is nothing to say.  `needed` questions must be
+    answered, by "unknown" if need be; others may be passed over in silence by a script.  `enter` is what
+    Enter means, where that is an answer.
     """
 
     key: str
     ask: str
     why: str
-    check: Callable[[str], object]
+    check: Callable[[str], str]
     unknown: str
     needed: bool = False
+    enter: str = ""
 
     @property
     def option(self) -> str:
@@ -38,7 +52,7 @@ class Question(NamedTuple):
 
 
 class Asker:
-    """Asks, and remembers what nobody answered.
+    """Asks, and remembers what was answered, and what nobody answered.
 
     Parameters
     ----------
@@ -49,11 +63,27 @@ class Asker:
     """
 
     def __init__(self, given: Mapping[str, str], asks: bool) -> None:
-        self._given = dict(given)
-        self._asks = asks
+        self._options = dict(given)
         self.in_terminal = asks and sys.stdin is not None and sys.stdin.isatty()
+        self.piped = asks and not self.in_terminal and sys.stdin is not None
         self._line = 0
+        self._said: list[str | None] = []
+        self._begin()
+
+    def _begin(self) -> None:
+        self._given = dict(self._options)
+        self._asked: list[str] = []
         self._unanswered: list[str] = []
+        self._repeated = 0
+
+    def until_done(self, ask: Callable[[], T]) -> T:
+        """What `ask` makes of the answers; where a person goes back, once more with those before."""
+        while True:
+            try:
+                return ask()
+            except Back:
+                self._said.pop()
+                self._begin()
 
     def __contains__(self, key: str) -> bool:
         return key in self._given
@@ -66,48 +96,81 @@ class Asker:
         InputError
             If an answer that is no dialogue cannot be used.
         """
+        self._asked.append(question.option)
         if question.key in self._given:
-            return self._checked(question, self._given.pop(question.key), COMMAND_LINE)
+            return self._checked(question, self._given.pop(question.key), COMMAND_LINE)[0]
         if self.in_terminal:
-            return self._until_usable(question)
-        if self._asks and (line := sys.stdin.readline() if sys.stdin is not None else ""):
-            self._line += 1
-            return self._checked(question, line.strip(), f"line {self._line} of the answers")
+            if self._repeated == len(self._said):
+                self._said.append(self._until_usable(question))
+            self._repeated += 1
+            return self._said[self._repeated - 1]
+        if self.piped and (line := sys.stdin.readline()):
+            return self._from_pipe(question, line.strip())
         if question.needed:
             self._unanswered.append(question.option)
         return None
 
+    def sure(self, question: Question) -> str:
+        """An answer without which there is no file.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        for _ in range(_TRIES if self.in_terminal else 1):
+            if (answer := self(question)) is not None:
+                return answer
+        raise InputError(f"{question.option} must be known, and nothing was written: {question.ask}")
+
     def finish(self, what: str) -> None:
-        """Refuse options that nothing asked for, and questions that must be answered and were not."""
-        if self._given:
-            names = ", ".join("--" + key.replace("_", "-") for key in self._given)
-            raise InputError(
-                f"{COMMAND_LINE}: {names}: {what} like this one has no such thing, or has it already"
-            )
+        """Refuse questions that must be answered and were not, and options that nothing asked for."""
         if self._unanswered:
             raise InputError(
                 f"not answered: {', '.join(self._unanswered)}; give what you know as options, such as "
                 f'{self._unanswered[0]} "…", and "unknown" where you do not'
             )
+        if self._given:
+            names = ", ".join("--" + key.replace("_", "-") for key in self._given)
+            raise InputError(
+                f"{COMMAND_LINE}: {names}: nothing asks for it; {what} like this one takes "
+                + ", ".join(dict.fromkeys(self._asked))
+            )
 
-    def _checked(self, question: Question, answer: str, where: str) -> str | None:
+    def _checked(self, question: Question, answer: str, where: str) -> tuple[str | None, str]:
+        """The answer, and what to say of it."""
+        answer = answer or question.enter
         if answer.lower() in _UNKNOWN:
-            return None
+            return None, question.unknown
         with located(where):
-            question.check(answer)
-        return answer
+            meant = question.check(answer)
+        return answer, f"understood: {meant}" if meant else ""
+
+    def _from_pipe(self, question: Question, answer: str) -> str | None:
+        self._line += 1
+        print_text(f"{question.ask}\n> {answer}")
+        asked = question.ask.partition("?")[0]
+        found, said = self._checked(question, answer, f'line {self._line} of the answers, "{asked}?"')
+        if said:
+            print_text(f"  {said}")
+        return found
 
     def _until_usable(self, question: Question) -> str | None:
         print_text(f"\n{question.ask}\n  {question.why}")
         while True:
             answer = _typed()
+            if answer.lower() == _BACK:
+                if self._said:
+                    raise Back
+                print_text("  This is the first question.")
+                continue
             try:
-                found = self._checked(question, answer, "this cannot be used")
+                found, said = self._checked(question, answer, "this cannot be used")
             except InputError as error:
                 print_text(f"  {error}")
                 continue
-            if found is None:
-                print_text(f"  {question.unknown}")
+            if said:
+                print_text(f"  {said}")
             return found
 
 

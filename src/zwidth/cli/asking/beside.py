@@ -1,0 +1,36 @@
+"""The device in whose folder an environment is described: its motion, its largest force, what it lacks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from zwidth.cli.asking.device_questions import NEEDED
+from zwidth.device import Device
+from zwidth.errors import InputError
+from zwidth.specification.read import load_device, read_tables
+
+_ANY = {"rate": "1 kHz", "damping": "0"}
+"""In the place of what the file lacks: motion and largest force do not depend on it."""
+
+
+def beside(name: str) -> Device | None:
+    """The device of a file, whose rate and damping may be made up; None where there is none to read."""
+    missing = lacking(name)
+    if missing is None:
+        return None
+    try:
+        return load_device([Path(name)], {key: _ANY[key] for key in missing})
+    except InputError:
+        return None
+
+
+def lacking(name: str) -> list[str] | None:
+    """What the file of a device has to say for a proof and does not; None where there is no such file."""
+    try:
+        table = read_tables([Path(name)], ("device",)).get("device")
+    except InputError:
+        return None
+    if table is None:
+        return None
+    given = {"rate" if key == "sample_period" else key for key in table.values}
+    return [] if "catalogue" in given else [key for key in NEEDED if key not in given]
