@@ -18,7 +18,7 @@ COMMAND = [sys.executable, "-m", "zwidth", "explore", "--no-browser", "--port", 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
 def test_it_says_where_it_is_and_ends_at_ctrl_c() -> None:
-    """The page answers at the address that is said; the exit status is 130, as of other commands that serve."""
+    """The page answers at the address that is said; the status is 130, as of what else is served."""
     with subprocess.Popen(
         [*COMMAND, "haptic-paddle"],
         stderr=subprocess.PIPE,

@@ -126,7 +126,7 @@ def test_a_file_is_read_and_what_is_downloaded_is_the_loop(page: Page, address: 
 def test_a_file_without_damping_is_shown_with_a_mark_and_no_other_verdict(
     page: Page, address: str, tmp_path: Path
 ) -> None:
-    """What nobody gave is marked until it is set; nothing in a box is cut; a file that is none says what is shown."""
+    """The mark is there until a number is set; no box is cut; a file that is none changes nothing."""
     opened(page, address)
     given = tmp_path / "my-wheel.toml"
     given.write_text(
@@ -181,7 +181,7 @@ def test_two_people_do_not_disturb_each_other(browser: Browser, address: str) ->
 
 
 def test_nothing_is_wider_than_the_screen_and_everybody_can_use_it(page: Page, address: str) -> None:
-    """No horizontal scrolling under any tab, and no serious finding of axe under those that differ in kind."""
+    """No horizontal scrolling under any tab; no serious finding of axe under those that differ in kind."""
     opened(page, address)
     for tab in page.get_by_role("tab").all():
         if tab.text_content() == "Play":
