@@ -52,7 +52,7 @@ def legend_above(made: Any) -> None:
     legend.label_text_color = GREY
     legend.label_text_font_size = "12px"
     legend.padding = legend.margin = 2
-    legend.label_standoff = 4
+    legend.label_standoff, legend.glyph_width = 4, 12
     made.add_layout(legend, "above")
 
 

@@ -51,12 +51,13 @@ class PlanePicture:
                 "beta": [place[0] for place in self._others.values()],
                 "sigma": [place[1] for place in self._others.values()],
                 "text": list(texts.values()),
+                "name": list(texts),
             }
         )
         squares = self.figure.scatter("beta", "sigma", source=known, marker="square", size=8, color=GREY)
-        self.figure.add_layout(_names(known, GREY))
+        self.figure.add_layout(_names(known, "name"))
         self.figure.scatter("beta", "sigma", source=self._here, size=13, color="colour")
-        self.figure.add_layout(_names(self._here, GREY))
+        self.figure.add_layout(_names(self._here, "text"))
         self.figure.add_tools(HoverTool(renderers=[squares], tooltips=[("", "@text")]))
 
     def show(self, verdict: Verdict | None) -> str:
@@ -99,9 +100,9 @@ def _stiffness(value: float, motion: str) -> str:
     return f"{number(value)} {quantity_unit('stiffness', motion)}"
 
 
-def _names(source: ColumnDataSource, colour: str) -> LabelSet:
+def _names(source: ColumnDataSource, column: str) -> LabelSet:
     return LabelSet(
-        x="beta", y="sigma", text="text", source=source, x_offset=8, y_offset=-16, text_color=colour,
+        x="beta", y="sigma", text=column, source=source, x_offset=8, y_offset=-16, text_color=GREY,
         text_font_size="12px",
     )  # fmt: skip
 
