@@ -244,3 +244,20 @@ def test_the_python_of_the_page_says_what_comes_out(tmp_path: Path, monkeypatch:
         (found,) = re.findall(rf"^\| {re.escape(speed)} m/s \| (\d+) N/m \| (\d+) N/m \|$", PAGE, re.M)
         for told, value in zip(map(float, found), (row.proved_passive, row.proved_active), strict=True):
             assert told == pytest.approx(value, rel=0.015)  # the bracket may be one per cent wide
+
+
+def test_an_environment_without_a_stiffness_asks_which_limit(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One message that names --parameter, and what can be asked of the stop and of the device."""
+    stop = tmp_path / "stop.toml"
+    stop.write_text(
+        '[environment]\ntype = "nonlinear-spring"\npositions = [0, "1 cm"]\nforces = [0, "4 N"]\n',
+        encoding="utf-8",
+    )
+    assert main(["limit", "haptic-paddle", str(stop), "--coulomb-friction", "0.1"]) == 2
+    error = capsys.readouterr().err
+    assert "--parameter" in error
+    assert "gain" in error
+    assert "rate" in error
+    assert error.count("\n") == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from urllib.parse import unquote, urlparse
 from urllib.request import url2pathname
@@ -28,6 +29,25 @@ def test_laws_are_played(tmp_path: Path) -> None:
     page = tmp_path / "wall.html"
     assert main([*PADDLE, "--law", "force-bounding", "-o", str(page)]) == 0
     assert "force bounding" in page.read_text(encoding="utf-8")
+
+
+def test_no_browser_opens_where_none_is_wanted(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It is said where the page is."""
+    monkeypatch.setattr("webbrowser.open", lambda _: pytest.fail("a browser was opened"))
+    assert main([*PADDLE, "--no-browser"]) == 0
+    outcome, written = capsys.readouterr().out.splitlines()
+    assert outcome == "ACTIVE: wall, 770 N/m"
+    Path(written.removeprefix("written: ").partition(" (")[0]).unlink()
+
+
+def test_the_loops_to_begin_with_are_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """How many there are of each outcome, and where the page is."""
+    assert main(["play", "-o", str(tmp_path / "page.html")]) == 0
+    count, _ = capsys.readouterr().out.splitlines()
+    assert count.startswith("11 loops to play: ")
+    assert sum(map(int, re.findall(r"(\d+) \w", count.partition(":")[2]))) == 11
 
 
 @pytest.mark.parametrize("found", [True, False])

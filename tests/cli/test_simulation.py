@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
+from zwidth import operator as operators
 from zwidth.cli.main import main
 from zwidth.cli.simulation_tables import KEYS, follower_parameters, operator_parameters, simulation_parameters
 
@@ -258,3 +259,59 @@ def test_every_option_of_a_touch_has_a_unit_or_needs_none() -> None:
     for parameter in (*operator_parameters(), *follower_parameters(), *simulation_parameters()):
         assert parameter.help
         assert parameter.metavar
+
+
+STOP = """
+[device]
+motion = "rotary"
+inertia = "0.006 kg*m^2"
+damping = "0.05 N*m*s/rad"
+rate = "500 Hz"
+
+[environment]
+type = "nonlinear-spring"
+positions = ["450 deg", "460 deg"]
+forces = ["0 N*m", "20 N*m"]
+"""
+
+
+def test_a_hand_that_met_nothing_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Where the stop begins, how far the hand came, and how to start there; not that no energy came out."""
+    stop = tmp_path / "stop.toml"
+    stop.write_text(STOP, encoding="utf-8")
+    touched = ["simulate", str(stop), "--operator", "typical", "--duration", "0.2"]
+    assert main(touched) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "never reached the wall: it begins at 7.854 rad" in said
+    assert "--initial-position '7.854 rad'" in said
+    assert "contacts made" not in said
+    assert (
+        main(
+            [
+                *touched[:2],
+                "--operator",
+                "constant-force",
+                "--initial-position",
+                "450 deg",
+                "--duration",
+                "0.2",
+            ]
+        )
+        == 0
+    )
+    assert "never reached" not in capsys.readouterr().out
+    assert main([*touched, "--operator.start", "449 deg"]) == 2
+    error = capsys.readouterr().err
+    assert "got 449 deg" in error
+    assert "--initial-position" in error or "initial_position" in error
+
+
+def test_hands_are_named_with_a_word_and_one_to_begin_with(capsys: pytest.CaptureFixture[str]) -> None:
+    """Where none is given, and where there is none of that name."""
+    assert main([*DOWEL[:4], "--duration", "1"]) == 2
+    error = capsys.readouterr().err
+    assert "begin with --operator typical" in error
+    for name in operators.OPERATORS:
+        assert f"{name}, " in error
+    assert main([*DOWEL[:4], "--operator", "hand", "--duration", "1"]) == 2
+    assert "begin with typical" in capsys.readouterr().err

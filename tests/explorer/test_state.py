@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from pathlib import Path
 from urllib.parse import parse_qsl
 
 import pytest
@@ -13,6 +14,8 @@ import zwidth as zw
 from zwidth import rendering
 from zwidth.errors import InputError
 from zwidth.explorer import starts
+from zwidth.explorer.controls import read_entry
+from zwidth.explorer.form_of_loop import controls_of
 from zwidth.explorer.state import LARGEST_FILE, LONGEST_QUERY, State, from_file, from_query
 from zwidth.specification.environments import TYPES
 
@@ -108,10 +111,11 @@ def test_whatever_a_file_says_it_is_a_loop_or_a_message(text: str) -> None:
 def test_a_file_is_a_loop_or_a_device_and_not_too_large() -> None:
     """With an environment it is the loop, without it the device alone, named after the file."""
     device = '[device]\ndamping = 0.1\nrate = "1 kHz"\n'
-    state, alone = from_file(device, "mine.toml")
+    state, alone, begun = from_file(device, "mine.toml")
+    assert not begun
     assert state is None
     assert alone.name == "mine"
-    state, _ = from_file(f'{device}[environment]\ntype = "wall"\nstiffness = 300\n', "mine.toml")
+    state = from_file(f'{device}[environment]\ntype = "wall"\nstiffness = 300\n', "mine.toml").state
     assert state is not None
     assert state.loop().environment == zw.Wall(300)
     with pytest.raises(InputError, match="64 kB"):
@@ -136,3 +140,44 @@ def test_another_device_keeps_the_wall_and_another_kind_of_motion_gets_its_own()
     rotary = starts.with_device(state, starts.own_device(starts.OWN_ROTARY))
     assert rotary.loop().device.motion == "rotary"
     assert rotary.loop().environment != zw.Wall(345)
+
+
+def test_what_a_file_does_not_give_is_begun_with_and_marked_until_it_is_set() -> None:
+    """A wheel without damping and rate begins with both; a mark is in the address, and goes with a value."""
+    given = from_file('[device]\nmotion = "rotary"\ninertia = "0.006 kg*m^2"\n', "wheel.toml")
+    assert given.begun == {"damping": "0.001 N*m*s/rad", "rate": "1 kHz"}
+    state = starts.with_device(starts.first(), given.device, given.begun)
+    assert read_again(state).begun == given.begun
+    assert state.changed("device.rate", "2 kHz").settled().begun == {"damping": "0.001 N*m*s/rad"}
+    assert not starts.with_device(state, starts.own_device(starts.OWN_ROTARY)).begun
+
+
+def test_sources_without_a_damping_are_marked_unless_it_is_typed(tmp_path: Path) -> None:
+    """As files that are given to the page; of the catalogue too."""
+    mine = tmp_path / "mine.toml"
+    mine.write_text('[device]\nmass = "0.1 kg"\nrate = "1 kHz"\n', encoding="utf-8")
+    marked = starts.from_sources([str(mine)])
+    assert marked is not None
+    assert marked.begun == {"damping": "0.1 N*s/m"}
+    typed = starts.from_sources([str(mine)], {"damping": "0.3"})
+    assert typed is not None
+    assert not typed.begun
+    omega = starts.from_sources(["omega.3"])
+    assert omega is not None
+    assert "damping" in omega.begun
+
+
+def test_a_filter_of_the_velocity_is_a_word_and_its_numbers() -> None:
+    """Each can be chosen, and begins with numbers with which there is a loop."""
+    state = starts.first().changed("environment.damping", "1 N*s/m").settled()
+    for name, keys in (
+        ("window", {"samples"}),
+        ("one-pole", {"time_constant"}),
+        ("filter", {"numerator", "denominator"}),
+    ):
+        shown = {one.path: one for one in controls_of(state, state.loop())}
+        chosen = read_entry(shown["environment.velocity_filter"], name)
+        state = state.changed("environment.velocity_filter", chosen).settled()
+        shown = {one.path: one for one in controls_of(state, state.loop())}
+        assert {f"environment.velocity_filter.{key}" for key in keys} <= shown.keys()
+    assert shown["environment.velocity_filter"].text == "filter"

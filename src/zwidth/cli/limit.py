@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import fields
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import Once, add_in_full, add_law_option, add_output, add_parameters, overrides
@@ -17,6 +19,10 @@ from zwidth.specification.table import quoted, suggestion
 
 if TYPE_CHECKING:
     from zwidth.passivity.bracket import Bracket
+    from zwidth.specification.read import Specification
+
+_ON_DEVICE = ("damping", "coulomb_friction", "resolution", "delay", "rate")
+"""Parameters of a device on which an outcome depends."""
 
 BOTH, ONE_OR_NONE = 0, 3
 """Exit status by the sides that were found; 2 is bad input."""
@@ -63,6 +69,8 @@ def run(arguments: argparse.Namespace) -> int:
     given = specified(tables, overrides(arguments))
     rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
     loop = Specification(given.device, rendered)
+    if arguments.parameter is None:
+        _refuse_without_stiffness(loop)
     parameter = _parameter(arguments.parameter or "stiffness")
     options = _options(arguments, loop.device.motion)
     from zwidth.cli.compile_notice import warn_of_compiling_the_iteration
@@ -83,6 +91,30 @@ def run(arguments: argparse.Namespace) -> int:
         print_bracket(bracket, loop, arguments.in_full)
         say_written(save, plot)
     return BOTH if bracket.proved_passive is not None and bracket.proved_active is not None else ONE_OR_NONE
+
+
+def _refuse_without_stiffness(loop: Specification) -> None:
+    """Ask for the parameter where there is no stiffness to take.
+
+    Raises
+    ------
+    InputError
+        If the environment has no single stiffness: it says of what a limit can be sought.
+    """
+    met = loop.environment.met
+    if hasattr(met, "stiffness"):
+        return
+    numbers = [
+        field.name.replace("_", "-") for field in fields(met) if isinstance(getattr(met, field.name), float)
+    ]
+    if met.scaled(Fraction(1)) is not None:
+        numbers.insert(0, "gain, a factor on its force")
+    own = "; ".join(numbers)
+    known = ", ".join(key.replace("_", "-") for key in _ON_DEVICE)
+    raise InputError(
+        "this environment has no single stiffness, so say with --parameter which limit is wanted: "
+        f"{own + '; ' if own else ''}or of the device {known}"
+    )
 
 
 def _parameter(typed: str) -> str:

@@ -6,6 +6,8 @@ import argparse
 import os
 import tempfile
 import webbrowser
+from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,7 +24,9 @@ SUFFIXES = (".html", ".htm")
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth play`."""
-    parser.usage = "%(prog)s [SOURCE ...] [--law NAMES] [--PARAMETER VALUE ...] [-o FILE] [--force]"
+    parser.usage = (
+        "%(prog)s [SOURCE ...] [--law NAMES] [--PARAMETER VALUE ...] [-o FILE] [--force] [--no-browser]"
+    )
     parser.add_argument(
         "sources",
         metavar="SOURCE",
@@ -40,6 +44,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="save the page: .html; else a browser opens it",
     )
     output.add_argument("--force", action="store_true", help="replace files that exist")
+    output.add_argument(
+        "--no-browser", action="store_true", help="say where the page is, and open no browser"
+    )
     add_parameters(parser)
 
 
@@ -53,12 +60,19 @@ def run(arguments: argparse.Namespace) -> int:
     place = save or _temporary()
     with writing_whole(place) as file:
         file.write(page)
-    for loop in loops:
-        print_text(f"{loop.verdict.outcome.upper()}: {loop.name}")
+    print_text(_outcomes(loops))
     say_written(place)
-    if save is None and not webbrowser.open(place.as_uri()):
+    if save is None and not arguments.no_browser and not webbrowser.open(place.as_uri()):
         print_text("no browser was found: open that file in one")
     return 0
+
+
+def _outcomes(loops: Sequence[Played]) -> str:
+    """The outcome of one loop; of several only how many there are of each."""
+    if len(loops) == 1:
+        return f"{loops[0].verdict.outcome.upper()}: {loops[0].name}"
+    found = Counter(loop.verdict.outcome for loop in loops)
+    return f"{len(loops)} loops to play: " + ", ".join(f"{count} {name}" for name, count in found.items())
 
 
 def _target(arguments: argparse.Namespace) -> Path | None:

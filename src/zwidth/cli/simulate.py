@@ -20,7 +20,10 @@ from zwidth.cli.options import (
 )
 from zwidth.cli.output import check_new, print_json, say_written, writing
 from zwidth.cli.simulate_pair import pair_measures, simulated_pair
+from zwidth.environment import Environment, NonlinearSpring
 from zwidth.errors import InputError
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import shown
 from zwidth.specification.laws import with_laws
 from zwidth.specification.read import PAIR_TABLES, TABLES, read_tables, specified
 from zwidth.specification.table import Table
@@ -69,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
     plot, sound, save = _targets(arguments)
     tables = read_tables(arguments.sources, (*TABLES, *PAIR_TABLES, FOLLOWER))
     pair = any(name in tables for name in PAIR_TABLES)
-    trace = simulated_pair(arguments, tables) if pair else _simulated(arguments, tables)
+    trace, missed = (simulated_pair(arguments, tables), "") if pair else _simulated(arguments, tables)
     if save is not None:
         save_trace(trace, save, force=True)
     if sound is not None:
@@ -83,12 +86,16 @@ def run(arguments: argparse.Namespace) -> int:
         from zwidth.cli.pair_trace_report import print_pair_trace
         from zwidth.cli.trace_report import print_trace
 
-        (print_pair_trace if pair else print_trace)(trace, arguments.in_full)
+        if pair:
+            print_pair_trace(trace, arguments.in_full)
+        else:
+            print_trace(trace, arguments.in_full, missed)
         say_written(save, plot, sound)
     return INTERRUPTED if "interrupted_at_s" in trace.attrs else 0
 
 
-def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> xr.Dataset:
+def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tuple[xr.Dataset, str]:
+    """The touch, and what is to be said where it met nothing."""
     from zwidth.cli.compile_notice import warn_of_compiling
     from zwidth.cli.simulation_tables import (
         FOLLOWER,
@@ -113,7 +120,30 @@ def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> xr
     if duration is None:
         duration = own_duration(touch.operator, float(loop.device.exact("sample_period")))
     warn_of_compiling()
-    return simulate(loop.device, environment, touch.operator, duration, **touch.options)
+    trace = simulate(loop.device, environment, touch.operator, duration, **touch.options)
+    return trace, never_reached(trace, environment.met, loop.device.motion)
+
+
+def never_reached(trace: xr.Dataset, met: Environment, motion: str) -> str:
+    """That the hand stayed where the law gives no force, and how to start nearer; "" where it did not."""
+    begins = _surface(met)
+    deepest = float(trace["position"].max())
+    if begins is None or deepest > begins:
+        return ""
+    unit = GLOSSARY["position"].unit_for(motion)
+    starts = shown(begins, unit)
+    nearer = f", or start there: --initial-position '{starts}'" if begins else ""
+    return (
+        f"This hand never reached the wall: it begins at {starts}, and the hand came to "
+        f"{shown(deepest, unit)}. Let it push harder or longer{nearer}."
+    )
+
+
+def _surface(met: Environment) -> float | None:
+    """Where a law begins to give a force [m; rad]; None where it acts everywhere."""
+    if isinstance(met, NonlinearSpring) and met.positions[0] > 0 == met.forces[0]:
+        return float(met.positions[0])
+    return 0.0 if met.unilateral and not isinstance(met, NonlinearSpring) else None
 
 
 def own_duration(operator: Any, period: float) -> float:

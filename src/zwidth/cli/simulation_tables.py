@@ -11,6 +11,7 @@ every key of [simulation] is an option under its own name.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from zwidth.cli.options import Parameter
@@ -21,13 +22,29 @@ from zwidth.errors import InputError
 from zwidth.operator import OPERATORS, Operator, ParametricOperator, RecordedForce, WitnessMotion
 from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.units import parse_number
-from zwidth.specification.table import COMMAND_LINE, Table, located, quoted, suggestion
+from zwidth.specification.table import COMMAND_LINE, Table, located, plain, quoted, suggestion
 
 OPERATOR, FOLLOWER = "operator", "follower_operator"
 """The hand, and that on the follower of a pair; on the command line with a dot before its keys."""
 
 RECORD, WITNESS, WALL = "force-record", "witness", "wall"
 """Operators that come out of a file; and what else may hold a follower."""
+
+IN_A_WORD: Mapping[str, str] = MappingProxyType(
+    {
+        "constant-force": "the same push always",
+        "cycle": "in and out each sample",
+        "dowel": "a stick pressed on",
+        "finger": "a finger of your numbers",
+        "guide": "a motor that pushes in",
+        "malicious": "fast and loose",
+        "soft": "a touch barely above friction",
+        "typical": "a usual touch",
+        RECORD: "measured forces of a file",
+        WITNESS: "the motion that takes energy out, of a file",
+    }
+)
+"""What each hand is."""
 
 AMPLIFIERS = ("current", "ideal", "voltage-limited", "lag")
 
@@ -67,7 +84,7 @@ def operator_parameters() -> Iterator[Parameter]:
     """The options of an operator."""
     before = f"{OPERATOR}."
     kinds = ", ".join((*OPERATORS, RECORD, WITNESS))
-    yield Parameter(OPERATOR, "TYPE", f"the hand, or that on the leader: {kinds}")
+    yield Parameter(OPERATOR, "TYPE", f"the hand, or that on the leader; begin with typical: {kinds}")
     yield Parameter(before + "file", "FILE", f"of a {RECORD} or {WITNESS}")
     yield Parameter(before + "column", "COLUMN", f"of the file of a {RECORD}, where it has several")
     yield Parameter(before + "rounds", "N", f"how often a {WITNESS} does its cycle (default: 100 at most)")
@@ -175,8 +192,9 @@ def build_hand(table: Table, motion: str, option: str = OPERATOR) -> Operator:
         As `build_touch`.
     """
     if "type" not in table.values:
-        kinds = ", ".join((*OPERATORS, RECORD, WITNESS))
-        raise InputError(f"no hand is given: set --{option.replace('_', '-')} to one of {kinds}")
+        kinds = "; ".join(f"{name}, {IN_A_WORD[name]}" for name in (*OPERATORS, RECORD, WITNESS))
+        flag = f"--{option.replace('_', '-')}"
+        raise InputError(f"no hand is given: begin with {flag} typical, or take one of: {kinds}")
     kind = table.text("type")
     if kind == RECORD:
         return _record(table)
@@ -184,7 +202,8 @@ def build_hand(table: Table, motion: str, option: str = OPERATOR) -> Operator:
         return _witness(table)
     if kind not in OPERATORS:
         known = (*OPERATORS, RECORD, WITNESS)
-        raise InputError(f"{table.where('type')}: there is no hand {quoted(kind)}; {suggestion(kind, known)}")
+        hint = f"{suggestion(kind, known)}; begin with typical"
+        raise InputError(f"{table.where('type')}: there is no hand {quoted(kind)}; {hint}")
     build: type[ParametricOperator] = OPERATORS[kind]
     parameters = build.parameters()
     table.check_keys(("type", *parameters), f"the hand {quoted(kind)}")
@@ -193,7 +212,18 @@ def build_hand(table: Table, motion: str, option: str = OPERATOR) -> Operator:
         if name != "type":
             values[name] = _number(table, name, parameters[name], motion)
     with located(table.label):
-        return build(**values)
+        try:
+            return build(**values)
+        except InputError as error:
+            raise InputError(_in_their_words(str(error), table.values, values)) from None
+
+
+def _in_their_words(message: str, typed: Mapping[str, object], read: Mapping[str, float]) -> str:
+    """A message with the number as it was typed, 449 deg, in the place of 7.83653."""
+    for name, value in read.items():
+        if message.startswith(f"{name} "):
+            return message.replace(f"got {value:g}", f"got {plain(str(typed[name]), 60)}")
+    return message
 
 
 def _record(table: Table) -> Operator:

@@ -26,12 +26,13 @@ _FEW = ("deepest position", "largest actuator force", "contacts made", "at the e
 """Of the measures: what a short report has."""
 
 
-def print_trace(trace: xr.Dataset, in_full: bool = False) -> None:
-    """Print the report of one trace."""
+def print_trace(trace: xr.Dataset, in_full: bool = False, missed: str = "") -> None:
+    """Print the report of one trace; `missed` says that the hand met nothing, where it did not."""
     with page() as out:
-        out.print(trace_headline(trace))
+        out.print(headline("missed", "yellow", missed) if missed else trace_headline(trace))
         if not in_full:
-            blocks(out, [row for row in _measures(trace) if row[0] in _FEW], _about(trace))
+            few = [name for name in _FEW if not (missed and name == "contacts made")]
+            blocks(out, [row for row in _measures(trace) if row[0] in few], _about(trace))
             more_with_all(out, "every measure, where each joule went")
             return
         out.print(below(grid(_about(trace))))

@@ -10,6 +10,7 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
+from types import MappingProxyType
 from typing import Any, Literal
 
 from zwidth.device import Device
@@ -17,19 +18,33 @@ from zwidth.errors import InputError
 from zwidth.explorer.scale import Scale, scale_of, usual
 from zwidth.explorer.state import State, Values
 from zwidth.quantity.exact import Exact, Interval
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.kind import Kind
 from zwidth.quantity.parameter import Parameter, parameters_of
-from zwidth.quantity.text import in_words, shown, unit_text
+from zwidth.quantity.text import in_words, readable, shown, unit_text
 from zwidth.rendering import LAWS
 from zwidth.specification.environments import TYPES
 from zwidth.specification.table import quoted
+from zwidth.specification.values import FILTERS
 from zwidth.specification.write import toml
 
 Sort = Literal["number", "word", "flag", "text"]
 
+_SMALL = ("rad", "N*m", "rad/s")
+"""Units whose numbers have a prefix where they are small."""
+
 _FIRST = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
 """Of a device what a verdict depends on."""
+
+
+_FILTER_BEGINS: Mapping[str, Mapping[str, object]] = MappingProxyType(
+    {
+        "window": {"samples": 2},
+        "one-pole": {"time_constant": "2 ms"},
+        "filter": {"numerator": [1000, -1000], "denominator": [1, 0]},
+    }
+)
+"""Numbers of a filter of the velocity when it is chosen."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +129,9 @@ def _of_table(
 ) -> Iterator[Control]:
     for key, own in kinds[str(values["type"])].keys.items():
         here, value = f"{path}.{key}", getattr(thing, key)
-        if own.form == "environment":
+        if own.form == "velocity filter":
+            yield from _of_filter(here, _label(key, own), own, values[key], value)
+        elif own.form == "environment":
             inner = values[key]
             assert isinstance(inner, Mapping)
             yield from _of_table(here, inner, kinds, value, motion)
@@ -122,6 +139,25 @@ def _of_table(
             yield _number(here, _label(key, own), own, value, motion, own.bound)
         else:
             yield _else(here, key, own, values.get(key))
+
+
+def _of_filter(path: str, label: str, own: Parameter, table: object, value: Any) -> Iterator[Control]:
+    """Which filter of a velocity, and its numbers."""
+    assert isinstance(table, Mapping)
+    name = str(table["type"])
+    yield Control(path, "word", label, meaning=own.meaning, text=name, words=tuple(FILTERS))
+    for key in FILTERS[name]:
+        if key not in table:
+            continue  # a one-pole filter has a time constant or a cutoff
+        here, words = f"{path}.{key}", f"{in_words(key)} of the filter"
+        if name == "filter":
+            meaning = "coefficients, the highest power of z first"
+            yield Control(here, "text", words, meaning=meaning, text=toml(table[key]))
+            continue
+        unit = "s" if key == "time_constant" else "1"
+        quantity = Quantity(key, "", unit, unit, words)
+        number = own._replace(quantity=quantity, form="uncertain", required=True, bound="> 0")
+        yield number_control(here, number, getattr(value, key), "linear", words)
 
 
 def _label(key: str, own: Parameter) -> str:
@@ -158,12 +194,12 @@ def _number(
 
 
 def typed(value: Any, unit: str) -> str:
-    """A number with its unit as a person would type it; "" where there is none."""
+    """A number with its unit as a person would type it, to six digits; "" where there is none."""
     if value is None:
         return ""
     if isinstance(value, Interval):
-        return f"{float(value.low):.12g} .. {float(value.high):.12g} {unit_text(unit)}".strip()
-    return shown(value, unit, 12)
+        return f"{float(value.low):.6g} .. {float(value.high):.6g} {unit_text(unit)}".strip()
+    return readable(float(value), unit, 6) if unit in _SMALL else shown(value, unit, 6)
 
 
 def _else(path: str, key: str, own: Parameter, value: object) -> Control:
@@ -195,6 +231,8 @@ def read_entry(control: Control, text: str) -> object:
         return None
     if control.sort == "flag":
         return text == "true"
+    if control.path.endswith("velocity_filter"):
+        return {"type": text, **_FILTER_BEGINS.get(text, {})}
     if control.sort == "text" and text.startswith(("[", "{")):
         try:
             return tomllib.loads(f"value = {text}", parse_float=Decimal)["value"]

@@ -50,14 +50,20 @@ export function render({ model, el }) {
     const input = make("input", { type: "text", value: one.text, spellcheck: false, autocomplete: "off" });
     input.placeholder = one.required ? "" : "not given";
     input.setAttribute("aria-label", `${one.label}, typed with its unit`);
-    input.addEventListener("change", () => tell("typed", one.path, input.value));
+    input.addEventListener("change", () => {
+      if (input.value !== (input.closest(".row")?.dataset.text ?? one.text)) tell("typed", one.path, input.value);
+    }); // six digits are shown of what may have more: untouched it stays as it is
     return input;
   };
+  let chosenFile; // kept while the rest is drawn again, so that the name of the file stays
   const choice = (one) => {
     const input = make("select", {});
     for (const [value, text] of one.words) input.append(new Option(text, value, false, value === one.text));
     input.setAttribute("aria-label", one.label);
-    input.addEventListener("change", () => tell("choose", one.path, input.value));
+    input.addEventListener("change", () => {
+      if (one.path === "device" && chosenFile) chosenFile.value = "";
+      tell("choose", one.path, input.value);
+    });
     return input;
   };
   const box = (one) => {
@@ -71,6 +77,7 @@ export function render({ model, el }) {
     return input;
   };
   const file = (one) => {
+    if (chosenFile) return chosenFile;
     const input = make("input", { type: "file", accept: ".toml" });
     input.setAttribute("aria-label", one.label);
     input.addEventListener("change", async () => {
@@ -81,14 +88,16 @@ export function render({ model, el }) {
       } else {
         tell("upload", given.name, await given.text());
       }
-      input.value = "";
     });
+    input.addEventListener("click", () => (input.value = "")); // so that the same file can be given again
+    chosenFile = input;
     return input;
   };
 
   const shown = (one) => {
     const row = make("div", { className: `row ${one.sort}` });
     row.dataset.path = one.path;
+    row.dataset.text = one.text ?? "";
     if (one.sort === "button") {
       row.append(button(one));
       return row;
@@ -106,6 +115,7 @@ export function render({ model, el }) {
     row.append(label);
     if (one.sort === "number") row.append(slider(one));
     if (one.sort === "number" && !one.text) row.classList.add("unknown");
+    if (one.below) row.append(make("small", { textContent: one.below }));
     return row;
   };
 
@@ -140,6 +150,8 @@ export function render({ model, el }) {
       if (!row) continue;
       const [typed, range] = [row.querySelector("[type=text]"), row.querySelector("[type=range]")];
       if (typed) typed.value = text;
+      row.dataset.text = text;
+      if (row.matches(".number")) row.querySelector("small")?.remove();
       if (range && dragged !== path && !waiting.has(`move ${path}`)) range.value = Math.round(STEPS * place);
       if (range) range.setAttribute("aria-valuetext", text || "not given");
       row.classList.toggle("unknown", Boolean(range) && !text);
@@ -160,6 +172,10 @@ export function render({ model, el }) {
   heed();
   if (model.views) setTimeout(() => window.dispatchEvent(new Event("zwidth-drawn")));
   return form;
+}
+
+function row_of(input) {
+  return input.closest(".row");
 }
 
 function el_active(form) {

@@ -88,8 +88,8 @@ def group(title: str, controls: Iterable[Mapping[str, Any]], folded: bool = Fals
     return {"title": title, "controls": list(controls), "folded": folded}
 
 
-def shown(control: Control) -> dict[str, Any]:
-    """A control as the page takes it."""
+def shown(control: Control, below: str = "") -> dict[str, Any]:
+    """A control as the page takes it, with a line below it until it is set."""
     return {
         "path": control.path,
         "sort": "choice" if control.sort == "word" else control.sort,
@@ -98,18 +98,22 @@ def shown(control: Control) -> dict[str, Any]:
         "text": control.text,
         "place": control.place,
         "required": control.required,
+        "below": below,
         "words": [[word, word] for word in control.words],
     }
 
 
-def choice(path: str, label: str, options: Sequence[tuple[str, str]], chosen: str) -> dict[str, Any]:
-    """One of several, each with its words."""
+def choice(
+    path: str, label: str, options: Sequence[tuple[str, str]], chosen: str, meaning: str = ""
+) -> dict[str, Any]:
+    """One of several, each with its words; `meaning` is said below, of the one that is chosen."""
     return {
         "path": path,
         "sort": "choice",
         "label": label,
         "words": [list(o) for o in options],
         "text": chosen,
+        "below": meaning,
     }
 
 

@@ -16,6 +16,9 @@ from zwidth.specification.read import Specification
 
 DOWNLOADS = {"toml": "The loop as TOML", "json": "The verdict as JSON", "report": "The report as a page"}
 
+MARK = "nobody's measurement: the page begins with it, set your own"
+"""Below a number of the device that nobody gave."""
+
 
 def controls_of(state: State, loop: Specification) -> Iterator[Control]:
     """Every parameter of a loop."""
@@ -32,7 +35,12 @@ def groups_of(state: State, name: str, controls: Sequence[Control]) -> list[dict
     """The groups; `name` is the device's."""
 
     def under(path: str, more: bool = False) -> list[dict[str, Any]]:
-        return [shown(one) for one in controls if one.path.startswith(path) and one.more == more]
+        marks = {f"device.{key}": MARK for key in state.begun}
+        return [
+            shown(one, marks.get(one.path, ""))
+            for one in controls
+            if one.path.startswith(path) and one.more == more
+        ]
 
     laws = [
         group(f"Law {number}: {_spoken(str(law['type']))}", under(f"law.{number}."))
@@ -61,8 +69,9 @@ def _devices(name: str) -> dict[str, Any]:
 
 
 def _environments(state: State) -> dict[str, Any]:
-    options = [(name, f"{_spoken(name)}: {kind.meaning}") for name, kind in TYPES.items()]
-    return choice("environment", "kind", options, str(state.environment["type"]))
+    options = [(name, _spoken(name)) for name in TYPES]
+    chosen = str(state.environment["type"])
+    return choice("environment", "kind", options, chosen, TYPES[chosen].meaning)
 
 
 def _boxes(state: State) -> list[dict[str, Any]]:

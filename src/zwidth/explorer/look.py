@@ -44,15 +44,15 @@ def new_figure(x: str, y: str, *, height: int = HEIGHT, **options: Any) -> Any:
     return made
 
 
-def legend_above(made: Any) -> None:
+def legend_above(made: Any, columns: int = 2) -> None:
     """The names of the curves above them: beside or inside there is no room on a small screen."""
     legend: Legend = made.legend[0]
-    legend.orientation, legend.location, legend.ncols = "horizontal", "left", 2
+    legend.orientation, legend.location, legend.ncols = "horizontal", "left", columns
     legend.background_fill_alpha = legend.border_line_alpha = 0
     legend.label_text_color = GREY
     legend.label_text_font_size = "12px"
     legend.padding = legend.margin = 2
-    legend.label_standoff = 4
+    legend.label_standoff, legend.glyph_width = 4, 12
     made.add_layout(legend, "above")
 
 

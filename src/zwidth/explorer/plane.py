@@ -7,6 +7,7 @@ from typing import Any
 from bokeh.models import BoxAnnotation, ColumnDataSource, HoverTool, LabelSet, Range1d
 from bokeh.models import Span as Line
 
+from zwidth.device import catalogue
 from zwidth.explorer.look import BLUE, GREEN, GREY, RED, new_figure
 from zwidth.passivity.formulas.quantization import plane_point
 from zwidth.passivity.linear_verdict import LinearVerdict
@@ -29,6 +30,7 @@ class PlanePicture:
 
     def __init__(self) -> None:
         self._others = {d.name: place_at_limit(d) for d in complete_devices()}
+        self._catalogue = _of_the_catalogue(len(self._others), len(catalogue.names()))
         texts = {
             d.name: f"{d.name} at {_stiffness(float(largest_spring_of(d)), d.motion)}"
             for d in complete_devices()
@@ -49,12 +51,13 @@ class PlanePicture:
                 "beta": [place[0] for place in self._others.values()],
                 "sigma": [place[1] for place in self._others.values()],
                 "text": list(texts.values()),
+                "name": list(texts),
             }
         )
         squares = self.figure.scatter("beta", "sigma", source=known, marker="square", size=8, color=GREY)
-        self.figure.add_layout(_names(known, GREY))
+        self.figure.add_layout(_names(known, "name"))
         self.figure.scatter("beta", "sigma", source=self._here, size=13, color="colour")
-        self.figure.add_layout(_names(self._here, GREY))
+        self.figure.add_layout(_names(self._here, "text"))
         self.figure.add_tools(HoverTool(renderers=[squares], tooltips=[("", "@text")]))
 
     def show(self, verdict: Verdict | None) -> str:
@@ -62,7 +65,7 @@ class PlanePicture:
         if not _has_place(verdict):
             self._here.data = {"beta": [], "sigma": [], "colour": [], "text": []}
             self._line.data = {"beta": [], "sigma": []}
-            return _NO_PLACE
+            return f"{_NO_PLACE} {self._catalogue}"
         assert isinstance(verdict, LinearVerdict)
         device, stiffness = verdict.device, verdict.decision.loop.static_stiffness
         assert stiffness is not None
@@ -80,18 +83,26 @@ class PlanePicture:
         self._here.data = {"beta": [beta], "sigma": [sigma], "colour": [colour], "text": [text]}
         return (
             f"This loop is at β = {number(beta)}, σ = {number(sigma)}: {point.region}. Green, both at least "
-            "½: passive. A stiffer wall lies further down and to the left. Squares: the catalogue, "
-            "each at its largest passive stiffness."
+            "½: passive. A stiffer wall lies further down and to the left. " + self._catalogue
         )
+
+
+def _of_the_catalogue(placed: int, known: int) -> str:
+    """What the squares are, and how many devices have none."""
+    return (
+        f"Squares: {placed} of the {known} devices of the catalogue, at the largest passive stiffness; the "
+        f"other {known - placed} have no place, since their damping, Coulomb friction, resolution or rate is "
+        "not published."
+    )
 
 
 def _stiffness(value: float, motion: str) -> str:
     return f"{number(value)} {quantity_unit('stiffness', motion)}"
 
 
-def _names(source: ColumnDataSource, colour: str) -> LabelSet:
+def _names(source: ColumnDataSource, column: str) -> LabelSet:
     return LabelSet(
-        x="beta", y="sigma", text="text", source=source, x_offset=8, y_offset=-16, text_color=colour,
+        x="beta", y="sigma", text=column, source=source, x_offset=8, y_offset=-16, text_color=GREY,
         text_font_size="12px",
     )  # fmt: skip
 

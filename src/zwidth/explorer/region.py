@@ -47,7 +47,7 @@ class RegionPicture:
             line_color=GREY,
             legend_label="this wall",
         )
-        legend_above(self.figure)
+        legend_above(self.figure, columns=1)
 
     def show(self, region: Region, damping: float, stiffness: float, motion: str) -> str:
         """Draw it; a sentence about what is seen."""

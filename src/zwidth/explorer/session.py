@@ -19,8 +19,8 @@ from zwidth.explorer.controls import Control
 from zwidth.explorer.form import Event, Form, Soon, words
 from zwidth.explorer.form_of_loop import controls_of, groups_of
 from zwidth.explorer.judging import Judged, judged_at_once, judged_in_full
-from zwidth.explorer.state import State, catalogued, from_file
-from zwidth.explorer.verdict_card import WAITING, badge, details, head
+from zwidth.explorer.state import State, catalogued, from_file, lacking_of
+from zwidth.explorer.verdict_card import WAITING, badge, details, head, not_measured
 from zwidth.explorer.view import View, given
 from zwidth.explorer.views import views_of
 from zwidth.explorer.working import Answer, Workers
@@ -30,6 +30,7 @@ from zwidth.rendering import LAWS
 from zwidth.showing import element
 from zwidth.specification.environments import TYPES
 from zwidth.specification.read import Specification
+from zwidth.specification.table import plain
 from zwidth.specification.write import written
 
 _askers = count(1)
@@ -121,7 +122,7 @@ class Session:
         if kind == "release":
             self._open.released()
         elif kind == "upload":
-            self._become(self._uploaded(str(value), path), redraw=True)
+            self._upload(str(value), path)
         elif kind == "choose" and path in _CHOICES:
             self._become(_CHOICES[path](self.state, str(value)), redraw=True)
         elif kind == "choose" and path.startswith("with."):
@@ -134,8 +135,9 @@ class Session:
     def _set(self, event: Event) -> Mapping[str, Any]:
         """One parameter, by its slider or as it was typed or chosen."""
         control, value = given(self._controls, event)
-        self._become(self.state.changed(control.path, value).settled(), redraw=False)
-        now = self._controls[control.path]
+        state = self.state.changed(control.path, value).settled()
+        self._become(state, redraw=False)
+        now = self._controls.get(control.path, control)
         told = {"values": {control.path: [now.text, now.place]}, "error": ""}
         if event.get("kind") == "move":
             return told
@@ -147,10 +149,11 @@ class Session:
         loop = state.loop()
         judged = judged_at_once(loop)
         self.state = state
-        if redraw:
+        kept = {one.path: _kept(one, self._controls) for one in controls_of(state, loop)}
+        if redraw or kept.keys() != self._controls.keys():  # another velocity filter has other numbers
             self._draw_form(loop)
         else:
-            self._controls = {one.path: _kept(one, self._controls) for one in controls_of(state, loop)}
+            self._controls = kept
         self._show(judged)
         self._soon(partial(self._follow_if, state))
         if redraw:
@@ -190,8 +193,8 @@ class Session:
         self._follow()
 
     def _say(self, note: str) -> None:
-        self.head.html = str(head(self.verdict, note))
-        self.badge.html = str(badge(self.verdict, note))
+        self.head.html = str(head(self.verdict, note, self.state.begun))
+        self.badge.html = str(badge(self.verdict, note, self.state.begun))
 
     def _follow_if(self, state: State) -> None:
         if state is self.state:
@@ -204,19 +207,27 @@ class Session:
 
     # files
 
-    def _uploaded(self, text: str, name: str) -> State:
-        state, device = from_file(text, name)
-        return (
-            starts.with_device(self.state, device)
-            if state is None
-            else replace(state, extras=self.state.extras)
-        )
+    def _upload(self, text: str, name: str) -> None:
+        """The loop of a file, or its device; of one that cannot be used it is said what is still shown."""
+        try:
+            given = from_file(text, name)
+            state = given.state
+            if state is None:
+                state = starts.with_device(self.state, given.device, given.begun)
+            else:
+                state = replace(state, extras={**self.state.extras, **state.extras}).with_begun(given.begun)
+            self._become(state, redraw=True)
+        except InputError as error:
+            still = self.state.loop().device.name
+            raise InputError(f"{error}. The page still shows {plain(still)}, not this file.") from None
 
     def _file(self, name: str) -> Mapping[str, Any]:
         """A file to keep; a report takes longer, and comes when it is done."""
         loop = self.state.loop()
         if name == "toml":
-            return _download("loop.toml", "application/toml", written(loop.device, loop.environment))
+            marks = "".join(f"# {line}\n" for line in not_measured(self.state.begun))
+            text = f"{marks}{written(loop.device, loop.environment)}"
+            return _download("loop.toml", "application/toml", text)
         if name == "report":
             self.compute("report", reported, self._reported)
             return {"error": "The report is being written …"}
@@ -260,7 +271,9 @@ def _known(name: str, kinds: Mapping[str, Any], what: str) -> str:
 
 def _chosen_device(state: State, name: str) -> State:
     own = name in (starts.OWN_LINEAR, starts.OWN_ROTARY)
-    return starts.with_device(state, starts.own_device(name) if own else catalogued(name))
+    if own:
+        return starts.with_device(state, starts.own_device(name))
+    return starts.with_device(state, catalogued(name), lacking_of(name))
 
 
 _CHOICES: Mapping[str, Callable[[State, str], State]] = {

@@ -13,7 +13,7 @@ from zwidth.device import Device
 from zwidth.device.rotary import rotary
 from zwidth.environment import Wall
 from zwidth.explorer.scale import usual
-from zwidth.explorer.state import State, Values, catalogued, lacking_of
+from zwidth.explorer.state import State, Values, catalogued, completed
 from zwidth.quantity.kind import Kind
 from zwidth.quantity.parameter import Parameter
 from zwidth.rendering import LAWS
@@ -89,17 +89,15 @@ def from_sources(
     found = read_tables(sources, WITH_LAWS)
     if not (found.keys() & {"device"} or typed.keys() & DEVICE_KEYS):
         found["device"] = Table(FIRST, {"catalogue": FIRST})
-    device_table = found.get("device")
-    if device_table is not None and set(device_table.values) == {"catalogue"}:
-        lacking = lacking_of(str(device_table.values["catalogue"]))
-        device_table.values.update({key: text for key, text in lacking.items() if key not in typed})
+    begun = completed(found["device"], typed) if "device" in found else {}
     device = specified_device(found, {key: text for key, text in typed.items() if key in DEVICE_KEYS})
     of_environment = {key: text for key, text in typed.items() if key not in DEVICE_KEYS}
     if "environment" in found or of_environment:
         environment = build_environment(environment_table(found, of_environment), device.motion)
     else:
         environment = Wall(stiffness=_stiffness(device))
-    return State.of(device, with_laws(environment, found.get("law"), laws, device.motion))
+    law = with_laws(environment, found.get("law"), laws, device.motion)
+    return State.of(device, law).with_begun(begun)
 
 
 def own_device(kind: str) -> Device:
@@ -115,12 +113,22 @@ def own_device(kind: str) -> Device:
     )  # fmt: skip
 
 
-def with_device(state: State, device: Device) -> State:
-    """The same environment on another device; of one that moves otherwise, a wall."""
+def with_device(state: State, device: Device, begun: Mapping[str, str] = MappingProxyType({})) -> State:
+    """The same environment on another device; of one that moves otherwise, a wall.
+
+    Parameters
+    ----------
+    state
+        The loop before.
+    device
+        The other device.
+    begun
+        What nobody gave of it, as it begins.
+    """
     before = state.loop()
     if device.motion == before.device.motion:
-        return replace(state, device=State.of(device, before.environment).device)
-    return State.of(device, Wall(stiffness=_stiffness(device)))
+        return replace(state, device=State.of(device, before.environment).device).with_begun(begun)
+    return State.of(device, Wall(stiffness=_stiffness(device))).with_begun(begun)
 
 
 def _stiffness(device: Device) -> str:

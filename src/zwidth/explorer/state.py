@@ -9,16 +9,19 @@ their units; a list or a table is written as TOML.  All of it is read by the spe
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.parse import quote_plus, urlencode
 
 from zwidth.device import Device, catalogue
+from zwidth.device.rotary import ROTARY
 from zwidth.environment import Environment
 from zwidth.errors import InputError
+from zwidth.explorer.scale import usual
+from zwidth.quantity.glossary import GLOSSARY
 from zwidth.specification.environments import build_environment
 from zwidth.specification.laws import ROW, with_laws
 from zwidth.specification.read import WITH_LAWS, Specification, build_device, tables_of
@@ -31,8 +34,11 @@ LONGEST_QUERY = 12_000
 LARGEST_FILE = 64 * 1024
 """Bytes of a file that is given to the page."""
 
-EXTRAS = ("coupling", "operator")
-"""Tables beside those of the loop: what joins two of its arms, and the hand that touches it."""
+BEGUN = "begun"
+"""Names the table of those numbers of the device that nobody gave: the page begins with them, and says so."""
+
+EXTRAS = ("coupling", "operator", BEGUN)
+"""Tables beside those of the loop: what joins two of its arms, the hand that touches it, and `BEGUN`."""
 
 Values = Mapping[str, object]
 
@@ -98,6 +104,17 @@ class State:
         """With another table beside those of the loop."""
         return replace(self, extras={**self.extras, name: values})
 
+    @property
+    def begun(self) -> Mapping[str, str]:
+        """Damping or rate of the device where nobody gave it, as the page began with it."""
+        found = self.extras.get(BEGUN, {})
+        return {key: str(found[key]) for key in ("damping", "rate") if key in found}
+
+    def with_begun(self, begun: Mapping[str, str]) -> State:
+        """With these numbers of the device marked as nobody's measurement, and no others."""
+        extras = {name: values for name, values in self.extras.items() if name != BEGUN}
+        return replace(self, extras={**extras, BEGUN: dict(begun)} if begun else extras)
+
     def changed(self, path: str, value: object) -> State:
         """With one value in the place of another; None takes it out.
 
@@ -113,7 +130,8 @@ class State:
             device = _put(self.device, keys, value)
             if keys == ["rate"]:
                 device.pop("sample_period", None)
-            return replace(self, device=device)
+            begun = {key: text for key, text in self.begun.items() if key != keys[0]}
+            return replace(self, device=device).with_begun(begun)
         if kind == "environment":
             return replace(self, environment=_put(self.environment, keys, value))
         if kind == "law":
@@ -223,8 +241,26 @@ def _value(key: str, text: str) -> object:
         raise InputError(f"{plain(key)}: {quoted(text)} is no list and no table as TOML has them") from None
 
 
-def from_file(text: str, name: str) -> tuple[State | None, Device]:
-    """The loop of a specification, or None and its device where it has no environment.
+class Given(NamedTuple):
+    """What is in a file.
+
+    Parameters
+    ----------
+    state
+        The loop; None where there is no environment.
+    device
+        Its device.
+    begun
+        Numbers of the device that the file does not give, as they begin.
+    """
+
+    state: State | None
+    device: Device
+    begun: Mapping[str, str]
+
+
+def from_file(text: str, name: str) -> Given:
+    """The loop of a specification, or its device alone; what the device lacks begins with a usual number.
 
     Parameters
     ----------
@@ -247,12 +283,14 @@ def from_file(text: str, name: str) -> tuple[State | None, Device]:
         raise InputError(f"{quoted(name)} has no [device] table")
     if not {"name", "catalogue"} & set(found["device"].values):
         found["device"].values["name"] = plain(name).removesuffix(".toml")
+    begun = completed(found["device"])
     device = build_device(found["device"])
     if "environment" not in found:
-        return None, device
+        return Given(None, device, begun)
     row = found.get("law")
     environment = build_environment(found["environment"], device.motion)
-    return State.of(device, with_laws(environment, row, None, device.motion)), device
+    state = State.of(device, with_laws(environment, row, None, device.motion))
+    return Given(state.with_begun(begun), device, begun)
 
 
 def catalogued(name: str) -> Device:
@@ -274,12 +312,29 @@ def lacking_of(name: str) -> dict[str, str]:
     InputError
         If there is none of this name.
     """
-    known = catalogue.entry(name).known()
-    lacking = {} if "damping" in known else {"damping": UNKNOWN_DAMPING}
+    return _lacking(catalogue.entry(name).known(), "linear")
+
+
+def completed(device: Table, typed: Container[str] = ()) -> dict[str, str]:
+    """Put into a table of a device what it lacks and no parameter of `typed` gives; what that is."""
+    name = device.values.get("catalogue")
+    known = set(device.values)
+    if isinstance(name, str):
+        known |= set(catalogue.entry(name).known())
+    turns = device.values.get("motion") == "rotary" or any(key in known for key in ROTARY)
+    known |= {key for key in ("damping", "rate", "sample_period") if key in typed}
+    lacking = _lacking(known, "rotary" if turns else "linear")
+    device.values.update(lacking)
+    return lacking
+
+
+def _lacking(known: Container[str], motion: str) -> dict[str, str]:
+    unit = GLOSSARY["damping"].unit_for(motion)
+    lacking = {} if "damping" in known else {"damping": f"{usual(unit):g} {unit}"}
     if "rate" not in known and "sample_period" not in known:
         lacking["rate"] = UNKNOWN_RATE
     return lacking
 
 
-UNKNOWN_DAMPING, UNKNOWN_RATE = "0.1 N*s/m", "1 kHz"
+UNKNOWN_RATE = "1 kHz"
 """Where a slider begins whose number no source gives; the page says that it is nobody's measurement."""

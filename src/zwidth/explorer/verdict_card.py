@@ -5,11 +5,14 @@ Every sentence is the verdict's own.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.text import unit_text
 from zwidth.showing import Html, Lines, Table, element, join
 
 WAITING = "Working it out …"
@@ -23,7 +26,16 @@ def headline(answer: Any) -> Html:
     return join(element("p", badge), element("p", answer.claim, **{"class": "claim"}))
 
 
-def head(verdict: Verdict | None, note: str = "") -> Html:
+def not_measured(begun: Mapping[str, str]) -> list[str]:
+    """A sentence about each number of the device that nobody gave, {"damping": "0.1 N*s/m"}."""
+    return [
+        f"The {key} {unit_text(text)} is nobody's measurement: none is given, and the page begins with it. "
+        "The verdict is of that number; set your own."
+        for key, text in begun.items()
+    ]
+
+
+def head(verdict: Verdict | None, note: str = "", begun: Mapping[str, str] = MappingProxyType({})) -> Html:
     """Outcome and claim; None while it is being worked out.
 
     Parameters
@@ -32,9 +44,13 @@ def head(verdict: Verdict | None, note: str = "") -> Html:
         What `zwidth.check` said.
     note
         A line below, such as that more is being worked out.
+    begun
+        Numbers of the device that nobody gave.
     """
+    marks = join(*(element("p", line, **{"class": "bad"}) for line in not_measured(begun)))
     quiet = element("p", note, **{"class": "quiet"}) if note else Html("")
-    return (quiet or element("p", WAITING)) if verdict is None else join(headline(verdict), quiet)
+    said = (quiet or element("p", WAITING)) if verdict is None else join(headline(verdict), quiet)
+    return join(marks, said)
 
 
 def details(verdict: Verdict | None) -> Html:
@@ -52,7 +68,8 @@ def _advice(verdict: Verdict) -> Html:
     if not verdict.advice:
         return Html("")
     title, *lines = verdict.advised()
-    return join(element("h3", title), *(line.html for line in lines if isinstance(line, Lines)))
+    heading = element("h3", f"{str(title)[:1].upper()}{str(title)[1:]}")
+    return join(heading, *(line.html for line in lines if isinstance(line, Lines)))
 
 
 def _scope(verdict: Verdict) -> Html:
@@ -60,7 +77,7 @@ def _scope(verdict: Verdict) -> Html:
     return Lines(verdict.small_print(), "What this covers").html
 
 
-def badge(verdict: Verdict | None, note: str = "") -> Html:
+def badge(verdict: Verdict | None, note: str = "", begun: Mapping[str, str] = MappingProxyType({})) -> Html:
     """The outcome in a line, for where there is little room."""
     if verdict is None:
         return element("p", note or WAITING, **{"class": "quiet"})
@@ -68,4 +85,5 @@ def badge(verdict: Verdict | None, note: str = "") -> Html:
         "span", verdict.outcome, style=f"background:{COLOUR[verdict.outcome]}", **{"class": "badge"}
     )
     limit = f" {verdict.limit}" if isinstance(verdict, LinearVerdict) else ""
-    return element("p", word, limit)
+    mark = element("span", f" {' and '.join(begun)} not measured", **{"class": "bad"}) if begun else Html("")
+    return element("p", word, limit, mark)

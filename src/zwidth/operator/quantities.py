@@ -13,4 +13,7 @@ SPEED = Quantity("speed", "v", "m/s", "rad/s", "of the approach")
 
 NO_NEGATIVE_MASS = "a body has inertia; 0 is a hand without mass"
 NO_NEGATIVE_DAMPING = "a hand with negative damping gives out energy by itself; 0 loses none"
-OUTSIDE = "a touch starts outside the wall or at its surface, x = 0, so that what it finds there is contact"
+OUTSIDE = (
+    "a touch starts outside the wall or at its surface, x = 0, so that what it finds there is contact; "
+    "where the device starts is said by initial_position"
+)

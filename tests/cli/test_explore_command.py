@@ -1,0 +1,70 @@
+"""`zwidth explore` as it is typed: the address is said, Ctrl-C ends it, and what it lacks is one message."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+from urllib.request import urlopen
+
+import pytest
+
+from zwidth.cli.main import main
+
+COMMAND = [sys.executable, "-m", "zwidth", "explore", "--no-browser", "--port", "0"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
+def test_it_says_where_it_is_and_ends_at_ctrl_c() -> None:
+    """The page answers at the address that is said; the status is 130, as of what else is served."""
+    with subprocess.Popen(
+        [*COMMAND, "haptic-paddle"],
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+    ) as running:
+        try:
+            assert running.stderr is not None
+            line = running.stderr.readline()
+            found = re.fullmatch(r"exploring at (http://127\.0\.0\.1:\d+/) ; Ctrl-C ends it\n", line)
+            assert found, line
+            with urlopen(found[1], timeout=60) as answer:
+                assert answer.status == 200
+                assert b"zwidth" in answer.read()
+            running.send_signal(signal.SIGINT)
+            rest = running.communicate(timeout=60)[1]
+        finally:
+            running.kill()
+    assert running.returncode == 130
+    assert "Traceback" not in rest
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["--port", "70000"], "--port is a port"),
+        (["--token", "short"], "16 characters or more"),
+        (["no-such-device"], "neither a file nor a device"),
+    ],
+)
+def test_what_cannot_be_explored_is_one_line(
+    given: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Status 2, and a message that says what to give."""
+    assert main(["explore", "--no-browser", *given]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+def test_without_its_libraries_it_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One line that names the extra."""
+    monkeypatch.setattr("zwidth.explorer.library.find_spec", lambda _: None)
+    assert main(["explore", "--no-browser"]) == 2
+    error = capsys.readouterr().err
+    assert "pip install 'zwidth[explore]'" in error
+    assert error.count("\n") == 1
