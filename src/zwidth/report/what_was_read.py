@@ -64,5 +64,8 @@ def _rounded(text: str, unit: str = "") -> str:
 
 
 def _in_short(text: str) -> str:
-    """So much of a list as fits, its last number whole."""
-    return text if len(text) <= _LONGEST else f"{text[:_LONGEST].rpartition(', ')[0]}, …]"
+    """So much of a list as fits, its last number, or list of numbers, whole."""
+    if len(text) <= _LONGEST:
+        return text
+    between = "], " if text.startswith("[[") else ", "
+    return f"{text[:_LONGEST].rpartition(between)[0]}{between}…]"
