@@ -7,8 +7,7 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from zwidth.quantity.text import in_words, readable
-from zwidth.report.again import NAME
-from zwidth.report.proof import Examined
+from zwidth.report.proof import NAME, Examined
 from zwidth.showing import Part, Table
 
 _DIGITS = 6
