@@ -48,7 +48,7 @@ def _plain_terminal() -> Iterator[None]:
 
 @pytest.fixture(scope="session", autouse=True)
 def _messages_in_one_line() -> Iterator[None]:
-    """A message is compared as it was written; tests/cli/test_help.py looks at how lines break."""
+    """A message is compared as it was written; tests/cli/test_help_width.py looks at how lines break."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("zwidth.cli.output.message_lines", lambda text: [text])
         yield

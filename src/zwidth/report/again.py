@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 from hashlib import sha256
-from typing import TYPE_CHECKING
 
+from zwidth.report.contents import Contents
 from zwidth.report.made_with import versions
+from zwidth.report.proof import NAME
 from zwidth.showing import Lines, Part, Table
-
-if TYPE_CHECKING:
-    from zwidth.report.contents import Contents
-
-NAME = "verdict.json"
-"""What the attached document is called."""
 
 
 def how_to_check_again(said: Contents, attached: str, *libraries: str) -> list[Part]:

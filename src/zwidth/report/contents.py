@@ -92,12 +92,18 @@ def _title(verdict: Answer, provenance: Provenance) -> str:
 
 
 def _law_in_short(verdict: Verdict) -> str:
-    """The law in a few words; of a longer one what stands before its numbers."""
-    law = verdict.environment.describe(verdict.device.motion)
-    return law if len(law) <= _SHORT else law.partition(", ")[0][:_LONGEST]
+    """The law in a few words: as much of its description as fits, up to a comma."""
+    first, *others = verdict.environment.describe(verdict.device.motion).split(", ")
+    told = first if len(first) <= _LONGEST else f"{first[:_LONGEST]}…"
+    for other in others:
+        if len(told) + len(other) > _SHORT:
+            break
+        told += f", {other}"
+    return told
 
 
-_SHORT, _LONGEST = 32, 60
+_SHORT, _LONGEST = 40, 60
+"""Characters of a law in the title: with its numbers, and of its name alone."""
 
 
 def _before(verdict: Answer, pieces: Sequence[Examined], title: str) -> Iterator[Section]:

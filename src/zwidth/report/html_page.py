@@ -5,9 +5,10 @@ Its policy allows no script and no address abroad; pictures and the proof stand 
 
 from __future__ import annotations
 
-from zwidth.report.again import NAME, how_to_check_again
+from zwidth.report.again import how_to_check_again
 from zwidth.report.contents import Contents, Section
 from zwidth.report.figures import pictures
+from zwidth.report.proof import NAME
 from zwidth.showing import Headline, Html, Part, data_uri, element, void
 
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"

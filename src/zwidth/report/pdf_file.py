@@ -11,10 +11,11 @@ from io import BytesIO
 from typing import Any
 
 from zwidth.errors import InputError
-from zwidth.report.again import NAME, how_to_check_again
+from zwidth.report.again import how_to_check_again
 from zwidth.report.attachment import attach
 from zwidth.report.contents import Contents, Section
 from zwidth.report.figures import pictures
+from zwidth.report.proof import NAME
 from zwidth.showing import Headline, Lines, Part, Picture, Table, printable
 
 try:

@@ -10,6 +10,9 @@ from zwidth.passivity.result import EVIDENCE, Answer, Evidence
 from zwidth.passivity.verdict import Verdict
 from zwidth.showing import Part
 
+NAME = "verdict.json"
+"""What the attached document is called."""
+
 _NAMES = {
     "certificate": "The certificate",
     "violation": "The proof that energy comes out",

@@ -7,8 +7,7 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from zwidth.quantity.text import in_words, readable
-from zwidth.report.again import NAME
-from zwidth.report.proof import Examined
+from zwidth.report.proof import NAME, Examined
 from zwidth.showing import Part, Table
 
 _DIGITS = 6
@@ -64,5 +63,8 @@ def _rounded(text: str, unit: str = "") -> str:
 
 
 def _in_short(text: str) -> str:
-    """So much of a list as fits, its last number whole."""
-    return text if len(text) <= _LONGEST else f"{text[:_LONGEST].rpartition(', ')[0]}, …]"
+    """So much of a list as fits, its last number, or list of numbers, whole."""
+    if len(text) <= _LONGEST:
+        return text
+    between = "], " if text.startswith("[[") else ", "
+    return f"{text[:_LONGEST].rpartition(between)[0]}{between}…]"
