@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import http.client
+import re
 import socket
 import urllib.error
 import urllib.request
@@ -21,7 +22,6 @@ _UPGRADE = {
     "Upgrade": "websocket",
     "Sec-WebSocket-Version": "13",
     "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
-    "Sec-WebSocket-Protocol": "bokeh, none",
 }
 
 
@@ -36,23 +36,36 @@ def status(address: str, path: str = "/", **headers: str) -> tuple[int, str]:
     return answer.status, answer.headers.get("Set-Cookie", "")
 
 
-def upgrade(address: str, origin: str, **more: str) -> int:
-    """What a page of this origin is answered that asks for a WebSocket."""
-    host = urlsplit(address).netloc
-    connection = http.client.HTTPConnection(host, timeout=20)
-    connection.request("GET", "/ws", headers={**_UPGRADE, "Origin": origin, **more})
-    answer = connection.getresponse()
-    connection.close()
-    return answer.status
+def upgrade(address: str, origin: str, session: str, **more: str) -> int:
+    """What a page of this origin is answered that asks for a WebSocket; 0 if it is hung up on."""
+    host, _, port = urlsplit(address).netloc.partition(":")
+    wanted = {"Sec-WebSocket-Protocol": f"bokeh, {session}", "Origin": origin, **more}
+    asked = {"Host": f"{host}:{port}", **_UPGRADE, **wanted}
+    head = "".join(f"{name}: {value}\r\n" for name, value in asked.items())
+    with socket.create_connection((host, int(port)), timeout=60) as stream:
+        stream.sendall(f"GET /ws HTTP/1.1\r\n{head}\r\n".encode())
+        answer = stream.makefile("rb")
+        status = int(answer.readline().split()[1])
+        while answer.readline().strip():
+            pass
+        return status if status != 101 or answer.read(1) else 0
+
+
+def session_of(address: str, **headers: str) -> str:
+    """The session that a page is given, as its text has it."""
+    request = urllib.request.Request(address, headers=headers)
+    with urllib.request.urlopen(request, timeout=60) as answer:
+        return re.findall(r'"token": ?"([\w.=-]+)"', answer.read().decode())[0]
 
 
 def test_only_pages_of_this_server_get_a_websocket() -> None:
     """A page of another site is refused, also where it comes from another port of this machine."""
     with serve_explorer() as page:
         port = urlsplit(page.address).port
-        assert upgrade(page.address, f"http://127.0.0.1:{port}") == 101
+        session = session_of(page.address)
         for foreign in ("http://evil.example", "http://127.0.0.1:1", f"http://evil.example:{port}", "null"):
-            assert upgrade(page.address, foreign) == 403
+            assert upgrade(page.address, foreign, session) == 403
+        assert upgrade(page.address, f"http://127.0.0.1:{port}", session) == 101
 
 
 def test_only_this_machine_is_answered() -> None:
@@ -69,14 +82,15 @@ def test_a_token_opens_the_page_and_nothing_else_does() -> None:
         assert status(page.address)[0] == 302
         assert status(page.address, "/?token=another-token-0123456789")[0] == 302
         assert status(page.address, "/enter")[0] == 401
-        assert upgrade(page.address, origin) in (302, 401, 403)
         code, cookie = status(page.address, f"/?token={TOKEN}")
         assert code == 200
         assert "HttpOnly" in cookie
         assert "SameSite=Strict" in cookie
         kept = cookie.partition(";")[0]
         assert status(page.address, Cookie=kept)[0] == 200
-        assert upgrade(page.address, origin, Cookie=kept) == 101
+        session = session_of(origin, Cookie=kept)
+        assert upgrade(page.address, origin, session) in (0, 302, 401, 403)
+        assert upgrade(page.address, origin, session, Cookie=kept) == 101
 
 
 def test_a_form_takes_the_token() -> None:
