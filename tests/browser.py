@@ -26,9 +26,12 @@ def _chromium() -> str:
     return found
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
-    """Chromium; --no-sandbox since tests may run as root, in a container."""
+    """Chromium; --no-sandbox since tests may run as root, in a container.
+
+    It ends with its module: while it runs this thread has an event loop, and no other test may have one.
+    """
     path = _chromium()
     with sync_playwright() as playwright:
         started = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])

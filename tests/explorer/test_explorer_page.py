@@ -15,7 +15,7 @@ import zwidth as zw
 from zwidth.explorer.serving import serve_explorer
 from zwidth.specification.write import parsed
 
-WAIT = 25_000
+WAIT = 120_000
 """For a machine that has much else to do [ms]."""
 
 SCHEMES = {"Criterion": ("light", "dark"), "Touch": ("light",), "Motion": ("dark",), "Two arms": ("light",)}

@@ -11,7 +11,7 @@ import zwidth as zw
 
 ROOT = Path(__file__).parents[2]
 
-SCREENS = ("live", "report")
+SCREENS = ("explore", "live", "report")
 """Pages as a browser shows them."""
 
 PADDLE = zw.catalogue.device("haptic-paddle")
