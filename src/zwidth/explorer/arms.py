@@ -61,7 +61,7 @@ def pair_card(verdict: PairVerdict, advice: Sequence[str] | None) -> Html:
     if advice is None:
         said: Html = element("p", "Looking for what to change …", **{"class": "quiet"})
     else:
-        said = join(element("h3", "Each of these alone"), Lines(advice).html) if advice else Html("")
+        said = join(element("h3", "Each of these alone"), Lines(advice).html) if advice else join()
     return join(headline(verdict), element("div", rows, **{"class": "numbers"}), said, covers)
 
 

@@ -48,7 +48,7 @@ def head(verdict: Verdict | None, note: str = "", begun: Mapping[str, str] = Map
         Numbers of the device that nobody gave.
     """
     marks = join(*(element("p", line, **{"class": "bad"}) for line in not_measured(begun)))
-    quiet = element("p", note, **{"class": "quiet"}) if note else Html("")
+    quiet = element("p", note, **{"class": "quiet"}) if note else join()
     said = (quiet or element("p", WAITING)) if verdict is None else join(headline(verdict), quiet)
     return join(marks, said)
 
@@ -56,7 +56,7 @@ def head(verdict: Verdict | None, note: str = "", begun: Mapping[str, str] = Map
 def details(verdict: Verdict | None) -> Html:
     """The numbers, what to change, and what the claim covers."""
     if verdict is None:
-        return Html("")
+        return join()
     return join(_numbers(verdict), _advice(verdict), _scope(verdict))
 
 
@@ -66,7 +66,7 @@ def _numbers(verdict: Verdict) -> Html:
 
 def _advice(verdict: Verdict) -> Html:
     if not verdict.advice:
-        return Html("")
+        return join()
     title, *lines = verdict.advised()
     heading = element("h3", f"{str(title)[:1].upper()}{str(title)[1:]}")
     return join(heading, *(line.html for line in lines if isinstance(line, Lines)))
@@ -85,5 +85,5 @@ def badge(verdict: Verdict | None, note: str = "", begun: Mapping[str, str] = Ma
         "span", verdict.outcome, style=f"background:{COLOUR[verdict.outcome]}", **{"class": "badge"}
     )
     limit = f" {verdict.limit}" if isinstance(verdict, LinearVerdict) else ""
-    mark = element("span", f" {' and '.join(begun)} not measured", **{"class": "bad"}) if begun else Html("")
+    mark = element("span", f" {' and '.join(begun)} not measured", **{"class": "bad"}) if begun else join()
     return element("p", word, limit, mark)

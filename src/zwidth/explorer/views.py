@@ -16,7 +16,7 @@ from zwidth.explorer.touch_view import Touches
 from zwidth.explorer.verdict_card import WAITING
 from zwidth.explorer.view import Asked, View, said, wide
 from zwidth.explorer.working import Answer
-from zwidth.showing import Html, element
+from zwidth.showing import element, join
 
 
 def views_of(page: Asked) -> list[View]:
@@ -89,7 +89,7 @@ def _laws(page: Asked) -> View:
             said(table, answer.message)
         else:
             moves = page.state.motion
-            hint = Html("") if page.state.laws else element("p", laws.NONE)
+            hint = join() if page.state.laws else element("p", laws.NONE)
             table.html = f"{laws.compared_table(answer.value, moves)}{hint}"
 
     def released() -> None:

@@ -10,7 +10,7 @@ from importlib.resources import files
 from zwidth.errors import InputError
 from zwidth.explorer.play.played import Played
 from zwidth.firmware.plant import given_plant, plant_module, plant_program
-from zwidth.showing import Html, element
+from zwidth.showing import element
 
 _EXPORTED = re.compile(r"^export (?:const|function|class) (\w+)", re.MULTILINE)
 _IMPORT = re.compile(r'^import (\{[^}]*\}) from "\./(\w+)\.mjs";$', re.MULTILINE)
@@ -46,9 +46,9 @@ def play_page(loops: Sequence[Played], *, title: str = "Play with a loop") -> st
     parts = {
         "title": element("title", title),
         "heading": element("h1", title),
-        "style": Html(_file("play.css")),
-        "facts": Html(facts),
-        "script": Html("\n".join(modules).replace("</", "<\\/")),
+        "style": _file("play.css"),
+        "facts": facts,
+        "script": "\n".join(modules).replace("</", "<\\/").replace("<!--", "<\\!--"),
     }
     return re.sub(r"<!-- (\w+) -->", lambda found: parts[found[1]], _file("page.html"))
 
@@ -62,11 +62,11 @@ def _file(name: str) -> str:
     return files("zwidth.explorer.play").joinpath(name).read_text(encoding="utf-8")
 
 
-def _as_function(module: str) -> Html:
+def _as_function(module: str) -> str:
     """An ES module as an expression: what it exports, as one object; what it imports stands before it.
 
     A page that is a file, or a text in a frame, has no address from which a module could be imported.
     """
     names = ", ".join(_EXPORTED.findall(module))
     body = _IMPORT.sub(r"const \1 = \2;", module)
-    return Html(f"(() => {{\n{re.sub('^export ', '', body, flags=re.MULTILINE)}return {{ {names} }};\n}})()")
+    return f"(() => {{\n{re.sub('^export ', '', body, flags=re.MULTILINE)}return {{ {names} }};\n}})()"
