@@ -9,6 +9,8 @@ import pytest
 
 import zwidth as zw
 from zwidth.errors import InputError
+from zwidth.explorer.shown import Explorer
+from zwidth.explorer.starts import from_sources
 
 
 def test_it_shows_the_loop_that_it_was_given() -> None:
@@ -51,6 +53,18 @@ def test_whatever_a_browser_sends_is_answered(kind: object, value: object) -> No
         shown._session.form.event = {"kind": kind, "path": path, "value": value, "number": number}
         assert shown._session.form.told["heard"] == number
     shown._session.form.event = {}
+
+
+def test_a_verdict_of_a_number_that_nobody_measured_stays_on_the_page() -> None:
+    """There it is marked; a file would go about without the mark, until the number is set."""
+    form = Explorer(from_sources(["hapkit"]))._session.form
+    for number, path in enumerate(("json", "report"), 1):
+        form.event = {"kind": "press", "path": path, "value": None, "number": number}
+        assert "nobody's measurement" in form.told["error"]
+    form.event = {"kind": "typed", "path": "device.damping", "value": "0.3 N*s/m", "number": 3}
+    form.event = {"kind": "typed", "path": "device.rate", "value": "1 kHz", "number": 4}
+    form.event = {"kind": "press", "path": "json", "value": None, "number": 5}
+    assert form.told.get("error", "") == ""
 
 
 def _one(made: list[object] = []) -> object:  # noqa: B006  # one is enough for all

@@ -228,6 +228,9 @@ class Session:
             marks = "".join(f"# {line}\n" for line in not_measured(self.state.begun))
             text = f"{marks}{written(loop.device, loop.environment)}"
             return _download("loop.toml", "application/toml", text)
+        unknown = not_measured(self.state.begun)
+        if unknown:  # on the page it stands beside the verdict; a file would go about without it
+            raise InputError(" ".join(unknown))
         if name == "report":
             self.compute("report", reported, self._reported)
             return {"error": "The report is being written …"}

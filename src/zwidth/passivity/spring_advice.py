@@ -51,7 +51,7 @@ def advise_on_spring(device: Device, spring: Environment, passive: bool) -> tupl
     found = []
     for knob, at in _knobs(device, spring):
         advice = turn(knob, device.motion, kind)  # type: ignore[arg-type]
-        if isinstance(advice.to, float) and (advice.to in (0.0, inf) or _is_proved(at, advice.to)):
+        if isinstance(advice.to, float) and (advice.to == inf or _is_proved(at, advice.to)):
             found.append(advice)
     return tuple(found)
 
