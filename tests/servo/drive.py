@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 from zwidth.servo.connection import (
     CLOSED,
@@ -18,6 +19,11 @@ from zwidth.servo.connection import (
     LibraryConnection,
 )
 from zwidth.servo.posix import now
+
+PATIENCE = 60.0
+"""For an answer that comes [s]: a busy machine, or one that stands still for some seconds, is no fault."""
+
+Other = TypeVar("Other")
 
 
 @dataclass
@@ -37,13 +43,13 @@ def drive(
     law: Callable[[float], float] = lambda reading: 1.0,
     *,
     sample_period: float = 1e-3,
-    wait: float = 2.0,
+    wait: float = PATIENCE,
 ) -> Driven:
     """Open, run so many periods of the law, give 0 and close; end early as the loop does.
 
     A bad exchange holds the force for one period; a second one in a row, or a closed line, or a fault that
-    the device itself reports, gives 0 at once and ends the run.  An answer is waited for `wait` [s]: long,
-    since the emulator shares the machine with others; where none will come, a test gives less.
+    the device itself reports, gives 0 at once and ends the run.  An answer is waited for `wait` [s], see
+    `drive_into` for where none will come.
     """
     run = Driven()
     if isinstance(connection, CompiledConnection):
@@ -88,3 +94,16 @@ def drive(
     apply(0.0)
     connection.close()
     return run
+
+
+def drive_into(expected: list[int], attempt: Callable[[float], tuple[Other, Driven]]) -> tuple[Other, Driven]:
+    """Drive into a fault: `attempt` is told how long to wait for an answer; the other side, and the run.
+
+    Where an answer does not come the wait is to be short, and of a machine that stands still meanwhile it is
+    too short for those that do: a run that does not begin as `expected` is made again with more time.
+    """
+    for wait in (0.2, 4.0, 30.0):
+        other, run = attempt(wait)
+        if run.statuses[: len(expected)] == expected:
+            break
+    return other, run

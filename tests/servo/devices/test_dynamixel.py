@@ -4,7 +4,7 @@ import math
 
 import pytest
 from servo.bad_answers import ANSWERS, NO_FAULTS, changing
-from servo.drive import drive
+from servo.drive import drive, drive_into
 from servo.emulators.dynamixel import DynamixelEmulator
 from servo.emulators.faults import Fault
 
@@ -92,10 +92,14 @@ def test_a_dynamixel_whose_watchdog_has_expired_is_served_again():
 @pytest.mark.parametrize("fault", list(ANSWERS))
 def test_a_fault_of_a_dynamixel_bus_ends_the_torque(fault):
     """It is known at its first exchange; a torque is held for one period at most, then 0 arrives."""
-    with DynamixelEmulator(COUNTS, fault, AT) as other:
-        run = drive(servo(other), 100, lambda reading: 0.3, wait=0.2)
-    good = AT - OPENING
-    assert run.statuses == [GOOD] * good + ANSWERS[fault]
+    expected = [GOOD] * (AT - OPENING) + ANSWERS[fault]
+
+    def attempt(wait):
+        with DynamixelEmulator(COUNTS, fault, AT) as other:
+            return other, drive(servo(other), 100, lambda reading: 0.3, wait=wait)
+
+    other, run = drive_into(expected, attempt)
+    assert run.statuses == expected
     assert run.forces[-1] == 0.0
     assert run.zeroed_after == len(ANSWERS[fault]) - 1
     if fault is not Fault.CLOSED:
@@ -189,11 +193,16 @@ def test_a_dynamixel_that_is_not_to_be_served_is_left_alone():
         assert bytes(other.table) == before
 
 
-def test_what_is_wrong_with_a_dynamixel_is_said_when_it_is_opened():
-    """Nobody with this identifier; a hardware error, by its name."""
+def test_nobody_on_a_dynamixel_bus(monkeypatch):
+    """Said when it is opened."""
+    monkeypatch.setattr("zwidth.servo.devices.bus_servo._WAIT", 100_000_000)
     nobody = pytest.raises(InputError, match=r"Dynamixel servo 1 .* does not answer")
     with DynamixelEmulator(COUNTS, identifier=7) as other, nobody:
         servo(other).open(1e-3)
+
+
+def test_what_is_wrong_with_a_dynamixel_is_said_when_it_is_opened():
+    """A hardware error, by its name."""
     with DynamixelEmulator(COUNTS) as other:
         other.alert = True
         other.put(70, 1, 0b100100)

@@ -4,7 +4,7 @@ import math
 
 import pytest
 from servo.bad_answers import ANSWERS, NO_FAULTS, changing
-from servo.drive import drive
+from servo.drive import drive, drive_into
 from servo.emulators.faults import Fault
 from servo.emulators.feetech import FeetechEmulator
 
@@ -66,9 +66,14 @@ def test_a_feetech_servo_is_left_as_it_was_found():
 @pytest.mark.parametrize("fault", list(ANSWERS))
 def test_a_fault_of_a_feetech_bus_ends_the_torque(fault):
     """It is known at its first exchange; a duty is held for one period at most, then 0 arrives."""
-    with FeetechEmulator(COUNTS, fault, AT) as other:
-        run = drive(servo(other), 100, lambda reading: 0.3, wait=0.2)
-    assert run.statuses == [GOOD] * AT + ANSWERS[fault]
+    expected = [GOOD] * AT + ANSWERS[fault]
+
+    def attempt(wait):
+        with FeetechEmulator(COUNTS, fault, AT) as other:
+            return other, drive(servo(other), 100, lambda reading: 0.3, wait=wait)
+
+    other, run = drive_into(expected, attempt)
+    assert run.statuses == expected
     assert run.forces[-1] == 0.0
     assert run.zeroed_after == len(ANSWERS[fault]) - 1
     if fault is not Fault.CLOSED:
@@ -137,8 +142,9 @@ def test_counts_that_are_no_4096th_of_a_turn_are_refused():
         assert other.table[40] == 1
 
 
-def test_nobody_on_a_feetech_bus():
+def test_nobody_on_a_feetech_bus(monkeypatch):
     """Said when it is opened."""
+    monkeypatch.setattr("zwidth.servo.devices.bus_servo._WAIT", 100_000_000)
     nobody = pytest.raises(InputError, match=r"Feetech servo 1 .* does not answer")
     with FeetechEmulator(COUNTS, identifier=7) as other, nobody:
         servo(other).open(1e-3)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 
 import pytest
-from servo.drive import drive
+from servo.drive import Driven, drive, drive_into
 from servo.emulators.faults import Fault
 from servo.emulators.hapkit import HapkitEmulator
 
@@ -49,8 +49,12 @@ def test_ten_thousand_exchanges(count: float) -> None:
 )
 def test_a_fault_is_told_and_ends_in_no_force(fault: Fault, statuses: list[int]) -> None:
     """At the first bad exchange; the last force of all is 0."""
-    with HapkitEmulator(jumping, fault, at=51) as board:
-        run = drive(Hapkit(board.port, COUNT), 200, wait=0.2)
+
+    def attempt(wait: float) -> tuple[HapkitEmulator, Driven]:
+        with HapkitEmulator(jumping, fault, at=51) as board:
+            return board, drive(Hapkit(board.port, COUNT), 200, wait=wait)
+
+    board, run = drive_into([GOOD] * 50 + statuses, attempt)
     assert run.statuses == [GOOD] * 50 + statuses
     assert run.zeroed_after is not None
     assert run.zeroed_after <= 1
@@ -91,8 +95,9 @@ def test_a_board_that_has_cut_its_force_ends_the_run() -> None:
     assert run.zeroed_after == 0
 
 
-def test_a_board_that_starts_slowly_is_asked_again() -> None:
+def test_a_board_that_starts_slowly_is_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """Opening the port resets most boards: the first questions are lost."""
+    monkeypatch.setattr("zwidth.servo.devices.hapkit._ONE_TRY", 0.2e9)
 
     class Booting(HapkitEmulator):
         deaf = 1

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from servo.drive import drive
+from servo.drive import Driven, drive, drive_into
 from servo.emulators.faults import Fault
 from servo.emulators.haply import BASE, INNER, OUTER, HaplyEmulator, angles_of
 
@@ -124,10 +125,14 @@ def test_a_question_repeats_the_force() -> None:
 def test_a_fault_is_told_and_ends_in_no_force(fault: Fault, status: int, of_force: bool) -> None:
     """Whether it begins with the answer to a question, or with that to a force."""
     period = 50
-    with HaplyEmulator(jumping, fault, at=1 + 2 * period + of_force) as board:
-        run = drive(HaplyPantograph(board.port), 200, wait=0.2)
-    assert run.statuses[: period + of_force] == [GOOD] * (period + of_force)
-    assert run.statuses[period + of_force] == status
+    expected = [GOOD] * (period + of_force) + [status]
+
+    def attempt(wait: float) -> tuple[HaplyEmulator, Driven]:
+        with HaplyEmulator(jumping, fault, at=1 + 2 * period + of_force) as board:
+            return board, drive(HaplyPantograph(board.port), 200, wait=wait)
+
+    board, run = drive_into(expected, attempt)
+    assert run.statuses[: len(expected)] == expected
     assert run.zeroed_after is not None
     assert run.zeroed_after <= 1
     if fault is not Fault.CLOSED:
@@ -144,13 +149,22 @@ def test_answers_that_come_twice_or_in_pieces_are_no_fault(fault: Fault) -> None
     assert run.readings == pytest.approx(expected, abs=COUNT)
 
 
+def once_faulty(fault: Fault) -> Callable[[float], tuple[HaplyEmulator, Driven]]:
+    """Sixty periods, of which the answer in period 50 has the fault."""
+
+    def attempt(wait: float) -> tuple[HaplyEmulator, Driven]:
+        with HaplyEmulator(jumping, fault, at=101) as board:
+            board.until = 102
+            return board, drive(HaplyPantograph(board.port), 60, wait=wait)
+
+    return attempt
+
+
 def test_an_answer_that_comes_late_once_is_no_later_sample() -> None:
     """The next question waits for it, and is answered by its own."""
-    with HaplyEmulator(jumping, Fault.LATE_ANSWERS, at=101) as board:
-        board.until = 102
-        run = drive(HaplyPantograph(board.port), 60, wait=0.2)
-    assert [period for period, status in enumerate(run.statuses) if status != GOOD] == [50]
-    assert run.statuses[50] == SILENT
+    statuses = [GOOD] * 50 + [SILENT] + [GOOD] * 9
+    run = drive_into(statuses, once_faulty(Fault.LATE_ANSWERS))[1]
+    assert run.statuses == statuses
     expected = [jumping(1 + 2 * period)[0] for period in range(60)]
     del run.readings[50], expected[50]
     assert run.readings == pytest.approx(expected, abs=COUNT)
@@ -159,11 +173,9 @@ def test_an_answer_that_comes_late_once_is_no_later_sample() -> None:
 @pytest.mark.parametrize("fault", [Fault.HALF_FRAME, Fault.GARBAGE])
 def test_one_answer_that_means_nothing_costs_one_sample(fault: Fault) -> None:
     """Where the next one begins is known again."""
-    with HaplyEmulator(jumping, fault, at=101) as board:
-        board.until = 102
-        run = drive(HaplyPantograph(board.port), 60, wait=0.2)
-    assert [period for period, status in enumerate(run.statuses) if status != GOOD] == [50]
-    assert run.statuses[50] == GARBLED
+    statuses = [GOOD] * 50 + [GARBLED] + [GOOD] * 9
+    run = drive_into(statuses, once_faulty(fault))[1]
+    assert run.statuses == statuses
     expected = [jumping(1 + 2 * period)[0] for period in range(60)]
     del run.readings[50], expected[50]
     assert run.readings == pytest.approx(expected, abs=COUNT)
@@ -180,8 +192,9 @@ def test_one_motor_has_its_angle_and_its_torque() -> None:
     assert motor.motion == "rotary"
 
 
-def test_nobody_at_the_port() -> None:
+def test_nobody_at_the_port(monkeypatch: pytest.MonkeyPatch) -> None:
     """A board that does not answer is refused when it is opened, with what to look at."""
+    monkeypatch.setattr("zwidth.servo.devices.haply._FIRST_ANSWER", 0.1e9)
     with (
         HaplyEmulator(fault=Fault.SILENCE) as board,
         pytest.raises(InputError, match=r"no answer in time.*firmware"),

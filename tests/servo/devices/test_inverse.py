@@ -4,7 +4,7 @@ import socket
 from threading import Thread
 
 import pytest
-from servo.drive import drive
+from servo.drive import drive, drive_into
 from servo.emulators.faults import Fault
 from servo.emulators.inverse import InverseEmulator
 
@@ -21,8 +21,8 @@ from zwidth.servo.connection import (
     STALE,
     UNTIL,
 )
+from zwidth.servo.devices import websocket
 from zwidth.servo.devices.inverse import Inverse
-from zwidth.servo.posix import now
 
 OPENING = 1
 """Exchanges that opening makes: measurement k reads the answer of exchange k + 1."""
@@ -71,9 +71,13 @@ def test_ten_thousand_exchanges():
 )
 def test_a_fault_is_told_at_its_first_exchange_and_the_force_ends(fault, expected):
     """What the line was; a force held for one period at most, then 0, which is the last that arrives."""
-    with InverseEmulator(fault, AT) as service:
-        run = served(service, 100, wait=0.3)
     good = AT - OPENING
+
+    def attempt(wait):
+        with InverseEmulator(fault, AT) as service:
+            return service, served(service, 100, wait=wait)
+
+    service, run = drive_into([GOOD] * good + expected, attempt)
     assert run.statuses == [GOOD] * good + expected
     assert run.readings[:good] == answered(service, good)
     assert run.forces[good - 1] < 0.0
@@ -147,7 +151,7 @@ def test_behind_a_pause_the_position_is_asked_for_anew():
         kind = type(connection)
         found = []
         for index in (0, 1, 2, 5, 6, 0, 1):
-            memory[INDEX], memory[UNTIL], memory[FORCE] = index, now() + 2e9, 0.5
+            memory[INDEX], memory[UNTIL], memory[FORCE] = index, 2.0**62, 0.5
             assert kind.measure(memory, inbox, outbox) == GOOD
             found.append(memory[READING])
             kind.apply(memory, inbox, outbox)
@@ -158,20 +162,30 @@ def test_behind_a_pause_the_position_is_asked_for_anew():
 
 def test_one_late_answer_costs_one_sample():
     """The measurement behind it reads two answers, and takes the newest."""
-    with InverseEmulator(Fault.LATE_ANSWERS, AT) as service:
-        service.until = AT + 1
-        run = served(service, 40, wait=0.3)
     good = AT - OPENING
-    assert run.statuses == [GOOD] * good + [SILENT] + [GOOD] * (39 - good)
+    expected = [GOOD] * good + [SILENT] + [GOOD] * (39 - good)
+
+    def attempt(wait):
+        with InverseEmulator(Fault.LATE_ANSWERS, AT) as service:
+            service.until = AT + 1
+            return service, served(service, 40, wait=wait)
+
+    service, run = drive_into(expected, attempt)
+    assert run.statuses == expected
     assert run.readings[good + 1 :] == answered(service, 40)[good + 1 :]
 
 
 def test_an_answer_that_never_comes_ends_the_run():
     """Nothing in a state says which message it answers: with one missing, all that follow may be old."""
-    with InverseEmulator(Fault.SILENCE, AT) as service:
-        service.until = AT + 1
-        run = served(service, 40, wait=0.3)
-    assert run.statuses[-2:] == [SILENT, STALE]
+    expected = [GOOD] * (AT - OPENING) + [SILENT, STALE]
+
+    def attempt(wait):
+        with InverseEmulator(Fault.SILENCE, AT) as service:
+            service.until = AT + 1
+            return service, served(service, 40, wait=wait)
+
+    service, run = drive_into(expected, attempt)
+    assert run.statuses == expected
     assert service.commands[-1].force == 0.0
 
 
@@ -187,14 +201,26 @@ def test_an_answer_that_never_comes_ends_the_run():
         ({"greeting": b"hello"}, {}, "no list of devices"),
         ({"greeting": b"[1, 2]"}, {}, "no list of devices"),
         ({"greeting": b'{"inverse3": [{"device_id": "0", "config": 3}]}'}, {}, "not understood"),
-        ({"fault": Fault.SILENCE}, {}, "no answer in time"),
     ],
 )
-def test_what_cannot_be_served_is_refused_at_once(options, asked, said, monkeypatch):
+def test_what_cannot_be_served_is_refused_at_once(options, asked, said):
     """With what was found, in one message, and the line is closed."""
-    monkeypatch.setattr("zwidth.servo.devices.inverse._ANSWER_TIME", 0.4)
     with InverseEmulator(**options) as service, pytest.raises(InputError, match=said):
         Inverse(address=service.address, **asked).open(1e-3)
+
+
+def test_a_service_that_answers_no_force_is_refused(monkeypatch):
+    """It has greeted: only what it is asked then is waited for, and not for long."""
+    connect = websocket.connect
+
+    def connected(*place):
+        found = connect(*place)
+        monkeypatch.setattr("zwidth.servo.devices.inverse._ANSWER_TIME", 0.1)
+        return found
+
+    monkeypatch.setattr(websocket, "connect", connected)
+    with InverseEmulator(Fault.SILENCE) as service, pytest.raises(InputError, match="no answer in time"):
+        Inverse(address=service.address).open(1e-3)
 
 
 def test_nobody_and_somebody_else_listening():

@@ -6,7 +6,7 @@ from itertools import islice
 import numpy as np
 import pytest
 from servo.bad_answers import ANSWERS, NO_FAULTS, changing
-from servo.drive import drive
+from servo.drive import drive, drive_into
 from servo.emulators.faults import Fault
 from servo.emulators.moteus import MoteusEmulator
 
@@ -61,10 +61,14 @@ def test_the_watchdog_of_a_moteus_runs_only_in_the_loop():
 @pytest.mark.parametrize("fault", list(ANSWERS))
 def test_a_fault_of_a_moteus_line_ends_the_torque(fault):
     """It is known at its first exchange; a torque is held for one period at most, then 0 arrives."""
-    with MoteusEmulator(TURNS, fault, AT, checksums=True) as other:
-        run = drive(Moteus(other.port, checksums=True), 100, lambda reading: 0.3, wait=0.2)
-    good = AT - OPENING
-    assert run.statuses == [GOOD] * good + ANSWERS[fault]
+    expected = [GOOD] * (AT - OPENING) + ANSWERS[fault]
+
+    def attempt(wait):
+        with MoteusEmulator(TURNS, fault, AT, checksums=True) as other:
+            return other, drive(Moteus(other.port, checksums=True), 100, lambda reading: 0.3, wait=wait)
+
+    other, run = drive_into(expected, attempt)
+    assert run.statuses == expected
     assert run.forces[-1] == 0.0
     assert run.zeroed_after == len(ANSWERS[fault]) - 1
     if fault is not Fault.CLOSED:
@@ -81,6 +85,19 @@ def test_every_sample_of_a_moteus_is_of_its_own_question(fault):
     assert run.readings == in_radians(TURNS, 300)
 
 
+@pytest.fixture
+def _soon(monkeypatch):
+    """A controller that does not come to operate is given up at its first answer, or without one, soon."""
+    monkeypatch.setattr("zwidth.servo.devices.moteus._START_TIME", 0.0)
+
+
+@pytest.fixture
+def _at_once(_soon, monkeypatch):
+    """And no answer is waited for."""
+    monkeypatch.setattr("zwidth.servo.devices.moteus._ONE_TRY", 0.1e9)
+
+
+@pytest.mark.usefixtures("_at_once")
 def test_an_answer_without_the_checksum_that_was_asked_for_is_garbled():
     """A UART that lost the end of its lines is not believed."""
     with MoteusEmulator(TURNS, checksums=True) as other:
@@ -146,11 +163,17 @@ def test_a_position_that_is_no_number_is_refused():
     assert run.statuses == [GOOD] * (10 - OPENING) + [REFUSED]
 
 
-def test_what_is_wrong_with_a_moteus_is_said_when_it_is_opened():
-    """Nobody with this identifier; a fault that comes back; an adapter whose bus is off."""
+@pytest.mark.usefixtures("_at_once")
+def test_nobody_on_the_bus_of_a_moteus():
+    """Said when it is opened."""
     nobody = pytest.raises(InputError, match=r"moteus 1 .* does not answer.*id\.id")
     with MoteusEmulator(TURNS, identifier=2) as other, nobody:
         Moteus(other.port).open(1e-3)
+
+
+@pytest.mark.usefixtures("_soon")
+def test_what_is_wrong_with_a_moteus_is_said_when_it_is_opened():
+    """A fault that comes back; an adapter whose bus is off."""
     with MoteusEmulator(TURNS) as other:
         other._command = lambda values, written: None
         other.mode, other.fault_code = 1, 36

@@ -4,7 +4,7 @@ import os
 import tty
 
 import pytest
-from servo.drive import drive
+from servo.drive import PATIENCE, drive, drive_into
 from servo.emulators.faults import Fault
 from servo.emulators.odrive import ODriveEmulator
 
@@ -50,8 +50,12 @@ def test_ten_thousand_exchanges():
 )
 def test_a_fault_is_told_at_its_first_exchange_and_the_torque_ends(fault, expected):
     """What the line was; a torque held for one period at most, then 0, which is the last that arrives."""
-    with ODriveEmulator(fault, AT) as motor:
-        run = served(motor, 100, wait=0.3)
+
+    def attempt(wait):
+        with ODriveEmulator(fault, AT) as motor:
+            return motor, served(motor, 100, wait=wait)
+
+    motor, run = drive_into([GOOD] * AT + expected, attempt)
     assert run.statuses == [GOOD] * AT + expected
     assert run.readings[:AT] == pytest.approx(motor.positions[:AT], rel=1e-15)
     held = run.forces[AT - 1]
@@ -72,25 +76,41 @@ def test_what_is_no_fault_leaves_every_sample_fresh(fault):
 
 
 @pytest.mark.parametrize(
-    "fault",
-    [Fault.HALF_FRAME, Fault.GARBAGE, Fault.SILENCE, Fault.WRONG_CHECKSUM, Fault.LATE_ANSWERS],
+    ("fault", "status"),
+    [
+        (Fault.HALF_FRAME, GARBLED),
+        (Fault.GARBAGE, GARBLED),
+        (Fault.SILENCE, SILENT),
+        (Fault.WRONG_CHECKSUM, GARBLED),
+        (Fault.LATE_ANSWERS, SILENT),
+    ],
 )
-def test_one_bad_exchange_costs_one_sample(fault):
+def test_one_bad_exchange_costs_one_sample(fault, status):
     """The state is asked for behind it, so that no old position is taken for a new one."""
-    with ODriveEmulator(fault, AT) as motor:
-        motor.until = AT + 1
-        run = served(motor, 60, wait=0.3)
-    assert [status == GOOD for status in run.statuses] == [True] * AT + [False] + [True] * (59 - AT)
+    expected = [GOOD] * AT + [status] + [GOOD] * (59 - AT)
+
+    def attempt(wait):
+        with ODriveEmulator(fault, AT) as motor:
+            motor.until = AT + 1
+            return motor, served(motor, 60, wait=wait)
+
+    motor, run = drive_into(expected, attempt)
+    assert run.statuses == expected
     fresh = AT + 1
     assert run.readings[fresh:] == pytest.approx(motor.positions[fresh:], rel=1e-15)
 
 
 def test_one_lost_answer_about_the_state_costs_one_sample():
     """No position is asked for before it comes, since an ODrive drops a second answer."""
-    with ODriveEmulator() as motor:
-        motor.lose_states = 1
-        run = served(motor, 60, wait=0.3)
-    assert run.statuses == [GOOD, SILENT] + [GOOD] * 58
+    expected = [GOOD, SILENT] + [GOOD] * 58
+
+    def attempt(wait):
+        with ODriveEmulator() as motor:
+            motor.lose_states = 1
+            return motor, served(motor, 60, wait=wait)
+
+    motor, run = drive_into(expected, attempt)
+    assert run.statuses == expected
     assert run.readings[2:] == pytest.approx(motor.positions[1:], rel=1e-15)
 
 
@@ -178,6 +198,7 @@ def test_a_port_where_no_odrive_answers(monkeypatch):
         ODrive(port=os.ttyname(far)).open(1e-3)
     os.close(near)
     os.close(far)
+    monkeypatch.setattr("zwidth.servo.devices.odrive._ANSWER_TIME", PATIENCE)
     with ODriveEmulator() as motor, pytest.raises(InputError, match=r"has no axis1\.current_state"):
         ODrive(port=motor.port, axis=1).open(1e-3)
 

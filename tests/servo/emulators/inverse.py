@@ -70,7 +70,6 @@ class InverseEmulator(Emulator):
         self._devices, self._padding, self._status, self._scale = devices, padding, status, scale
         self._greeting, self._parts = greeting, parts
         self._listener = socket.create_server(("127.0.0.1", 0))
-        self._listener.settimeout(5)
         self.address = f"127.0.0.1:{self._listener.getsockname()[1]}"
         self._line: socket.socket | None = None
         self._thread = Thread(target=self._serve, daemon=True)
@@ -96,8 +95,10 @@ class InverseEmulator(Emulator):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        with suppress(OSError):  # one who waits for a line waits no more
+            socket.create_connection(self._listener.getsockname(), timeout=60).close()
+        self._thread.join(timeout=60)
         self._listener.close()
-        self._thread.join(timeout=5)
         self.hang_up()
 
     def _serve(self) -> None:

@@ -49,7 +49,7 @@ class TerminalEmulator(Emulator):
         if self._far is not None:
             os.close(self._far)  # where the adapter has closed too, the thread's read now ends
             self._far = None
-        self._thread.join(timeout=5)
+        self._thread.join(timeout=60)
         self.hang_up()
 
     def _listen(self) -> None:

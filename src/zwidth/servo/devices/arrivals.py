@@ -21,12 +21,16 @@ _PAUSE = 20_000
 
 @compiled
 def more_bytes(descriptor: int, inbox: Bytes, filled: int, until: int) -> int:
-    """Take what comes, behind the `filled` bytes: how many; 0 when the time is over, −2 at a closed line."""
+    """Take what comes, behind the `filled` bytes: how many; 0 when the time is over, −2 at a closed line.
+
+    The last look is after the time: a thread that stood still until then does not miss what came meanwhile.
+    """
     while True:
+        over = now() >= until
         count = read_some(descriptor, inbox, filled)
         if count != -1:
             return count
-        if now() >= until:
+        if over:
             return 0
         pause(_PAUSE)
 

@@ -208,13 +208,14 @@ def _measure(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
     memory[LAST] = memory[INDEX]
     before = memory[ANSWERS]
     while True:
+        over = now() >= memory[UNTIL]  # the last look is after the time, see `arrivals.more_bytes`
         status = _take(memory, inbox, outbox)
         if status != GOOD:
             return status
         if memory[PENDING] <= 0:
             memory[READING] = memory[SEEN]
             return GOOD
-        if now() >= memory[UNTIL]:
+        if over:
             if memory[HAVE] > 0:
                 return GARBLED
             return STALE if memory[ANSWERS] > before else SILENT

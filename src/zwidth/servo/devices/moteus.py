@@ -27,7 +27,6 @@ from zwidth.servo.connection import (
     OWN,
     READING,
     REFUSED,
-    SILENT,
     TOLD,
     UNTIL,
     CompiledConnection,
@@ -67,6 +66,11 @@ from zwidth.servo.posix import Bytes, now, write_all
 ASKED, BEFORE, SEEN, SERVO, WATCHDOG, CHECKED = range(OWN + 3, OWN + 9)
 
 _FIRST_SOURCE, _SOURCES = 112, 16
+
+_START_TIME = 0.6
+"""For the controller to operate, when it is opened [s]."""
+_ONE_TRY = 200e6
+"""For an answer then [ns]."""
 
 _AROUND = 65536.0
 """Turns after which the position begins anew, from 32768 at −32768 (moteus documentation, "Limits")."""
@@ -255,15 +259,15 @@ class Moteus(CompiledConnection):
     def _begin(self, memory: Array, inbox: Bytes, outbox: Bytes) -> None:
         """Ask and command 0 until the controller operates."""
         write_all(int(memory[DESCRIPTOR]), outbox, put_stop(outbox, self.identifier, self.checksums))
-        end = time.monotonic() + 0.6
-        status = SILENT
-        while time.monotonic() < end:
+        end = time.monotonic() + _START_TIME
+        while True:
             _apply(memory, inbox, outbox)
-            memory[UNTIL] = now() + 200_000_000
+            memory[UNTIL] = now() + _ONE_TRY
             status = _measure(memory, inbox, outbox)
             if status == GOOD:
                 return
-            if status == CLOSED or (status == REFUSED and memory[MODE] == 1):
+            faulty = status == REFUSED and memory[MODE] == 1
+            if status == CLOSED or faulty or time.monotonic() >= end:
                 break
             time.sleep(0.005)
         raise InputError(self._trouble(status, int(memory[MODE]), int(memory[FAULT])))

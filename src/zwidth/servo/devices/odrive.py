@@ -145,10 +145,11 @@ def _send(memory: Array, outbox: Bytes, start: int, end: int) -> bool:
 def _wait(memory: Array, inbox: Bytes, flag: int) -> int:
     """Until the question of this flag has its answer: GOOD; or what went wrong."""
     while True:
+        over = now() >= memory[UNTIL]  # the last look is after the time, see `arrivals.more_bytes`
         status = _take(memory, inbox)
         if status != GOOD or memory[flag] == 0:
             return status
-        if now() >= memory[UNTIL]:
+        if over:
             if memory[HAVE] > 0 or memory[BAD] > 0:
                 return GARBLED
             return STALE if memory[OLD] > 0 else SILENT
@@ -399,14 +400,15 @@ def _ask(serial: Any, command: str, seconds: float) -> str | None:
     """The answer to a question; lines without a right checksum are answers to what others asked."""
     serial.write(_line_of(command))
     data, until = b"", time.monotonic() + seconds
-    while time.monotonic() < until:
+    while True:
+        over = time.monotonic() >= until  # the last look is after the time
         part = serial.read(256)
-        if not part:
-            time.sleep(1e-3)
-            continue
         *lines, data = (data + part).split(b"\n")
         for line in lines:
             text, asterisk, checksum = line.strip().partition(b"*")
             if asterisk and checksum.isdigit() and text and int(checksum) == reduce(xor, text):
                 return text.decode(errors="replace")
-    return None
+        if over:
+            return None
+        if not part:
+            time.sleep(1e-3)
