@@ -9,7 +9,9 @@ from math import isfinite
 from pathlib import Path
 
 import control
+import pandas as pd
 import pytest
+import xarray as xr
 
 import zwidth as zw
 from zwidth.passivity.certificate import read_document, verify_document
@@ -144,3 +146,30 @@ def test_what_has_no_picture_says_so() -> None:
     """One sentence, by its name."""
     with pytest.raises(zw.InputError, match="no picture of this Bounding"):
         answers()["bounding"].plot()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_answer_is_a_row_of_a_table(name: str) -> None:
+    """Outcome, claim, scope and numbers in pandas and in xarray, by the names of the plain data."""
+    answer = answers()[name]
+    row, data, stated = answer.to_pandas(), answer.to_xarray(), answer.stated()
+    assert row["outcome"] == data["outcome"].item() == stated["outcome"]
+    assert row["scope.contact"] == stated["scope"]["contact"]
+    assert set(row.index) == set(data.data_vars)
+    assert data.attrs["assumptions"].splitlines() == stated["assumptions"]
+    for key, value in stated.items():
+        if isinstance(value, float):
+            assert row[key] == value
+            assert data[key].item() == value
+
+
+def test_rows_make_a_table_with_units() -> None:
+    """Three walls beside each other: in pandas by a list of rows, in xarray along an axis."""
+    walls = [200, 250, 770]
+    verdicts = [zw.check(PADDLE, zw.Wall(k)) for k in walls]
+    table = pd.DataFrame([verdict.to_pandas() for verdict in verdicts], index=walls)
+    assert list(table["outcome"]) == ["passive", "passive", "active"]
+    assert table.loc[770, "margins.damping_N_s_per_m"] == verdicts[2].margins["damping"]
+    data = xr.concat([verdict.to_xarray() for verdict in verdicts], xr.DataArray(walls, dims="stiffness"))
+    assert data["margins.damping_N_s_per_m"].attrs == {"units": "N*s/m"}
+    assert (data["margins.damping_N_s_per_m"].values > 0).tolist() == [True, True, False]

@@ -34,7 +34,7 @@ _BESIDE_A_KNOWN_ONE = "beside a known one"
 _OF_A_HELD_PAIR = "zwidth held pair 1"
 """Hands on the free one of two arms, and the documents about them."""
 
-_OF_A_PORT = "zwidth indices 1"
+_OF_A_PORT = ("zwidth indices 1", "zwidth scattering 1")
 """A document about a port by itself."""
 
 
@@ -166,7 +166,7 @@ def _misfit_of_a_port(
     evidence: Mapping[str, Any], shows: str, outcome: str, told: Mapping[str, Any]
 ) -> str | None:
     """The same of a port: it is passive for an input index of 0 or more, and active for one below."""
-    if told.get("format") != _OF_A_PORT:
+    if told.get("format") not in _OF_A_PORT:
         return "is of a port"
     level = Fraction(str(evidence["level"]))
     if evidence["index"] == "input" and (shows, outcome, level) in (

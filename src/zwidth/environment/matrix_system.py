@@ -1,4 +1,4 @@
-"""Systems of several inputs and outputs, of python-control and scipy.signal, read exactly.
+"""Systems of several inputs and outputs, of python-control, scipy.signal and harold, read exactly.
 
     G = (n_ij/d_ij)      y_i = Σ_j G_ij u_j
 
@@ -13,6 +13,7 @@ from typing import Any, Literal, NamedTuple
 
 from flint import fmpq, fmpq_mat, fmpq_poly
 
+from zwidth.environment.harold import renamed
 from zwidth.environment.system import (
     Polynomial,
     bounded,
@@ -38,7 +39,8 @@ class MatrixSystem(NamedTuple):
 
 
 def size_of(system: Any) -> tuple[int, int]:
-    """(outputs, inputs) of a system of python-control or scipy.signal."""
+    """(outputs, inputs) of a system of python-control, scipy.signal or harold."""
+    system = renamed(system)
     if hasattr(system, "noutputs"):
         return int(system.noutputs), int(system.ninputs)
     if hasattr(system, "D"):
@@ -58,6 +60,7 @@ def read_matrix_system(system: Any) -> MatrixSystem:
         If it has not as many inputs as outputs, is no transfer function or state space, or holds
         a number that is not finite.
     """
+    system = renamed(system)
     outputs, inputs = size_of(system)
     if outputs != inputs:
         raise InputError(
@@ -70,7 +73,7 @@ def read_matrix_system(system: Any) -> MatrixSystem:
     if not (hasattr(system, "num") and hasattr(system, "den")):
         raise InputError(
             f"a system of type {type(system).__name__} with several inputs is not read; give a "
-            "TransferFunction or StateSpace of python-control, or a StateSpace of scipy.signal"
+            "TransferFunction or StateSpace of python-control or harold, or a StateSpace of scipy.signal"
         )
     return MatrixSystem(_from_transfer_functions(system), *time_of(system), None)
 

@@ -1,7 +1,7 @@
-"""Systems of python-control and scipy.signal, read exactly.
+"""Systems of python-control, scipy.signal and harold, read exactly.
 
 They are recognised by what they have (num and den; A, B, C, D; zeros, poles,
-gain), so that neither library is needed here.  A float means its shortest
+gain), so that none of these libraries is needed here.  A float means its shortest
 decimal, as everywhere; the transfer function of a state space is computed in
 rational arithmetic.  Common factors are kept: a mode that the transfer
 function hides is still run by the controller.
@@ -18,6 +18,7 @@ from typing import Any, Literal, NamedTuple
 import flint
 
 from zwidth.environment.discretization import LARGEST_ORDER
+from zwidth.environment.harold import is_of_harold, renamed
 from zwidth.errors import InputError
 
 Polynomial = tuple[Fraction, ...]
@@ -34,8 +35,8 @@ class LinearSystem(NamedTuple):
 
 
 def is_system(thing: object) -> bool:
-    """True for what looks like a system of python-control or scipy.signal."""
-    return hasattr(thing, "dt") and not isinstance(thing, type)
+    """True for what looks like a system of python-control, scipy.signal or harold."""
+    return (hasattr(thing, "dt") and not isinstance(thing, type)) or is_of_harold(thing)
 
 
 def read_system(system: Any) -> LinearSystem:
@@ -47,6 +48,7 @@ def read_system(system: Any) -> LinearSystem:
         If the system has several inputs or outputs, is not a transfer function,
         state space or zeros–poles–gain model, or holds a number that is not finite.
     """
+    system = renamed(system)
     if all(hasattr(system, name) for name in ("A", "B", "C", "D")):
         num, den = _from_state_space(system)
     elif hasattr(system, "num") and hasattr(system, "den"):
@@ -56,7 +58,7 @@ def read_system(system: Any) -> LinearSystem:
     else:
         raise InputError(
             f"a system of type {type(system).__name__} is not read; give a TransferFunction, StateSpace or "
-            "ZerosPolesGain system of python-control or scipy.signal, or the coefficients themselves"
+            "ZerosPolesGain system of python-control, scipy.signal or harold, or the coefficients themselves"
         )
     return LinearSystem(num, den, *time_of(system))
 
@@ -66,7 +68,7 @@ def time_of(system: Any) -> tuple[Literal["continuous", "discrete", "unsaid"], F
 
     scipy says None for continuous time; python-control says 0, and None for either.
     """
-    dt = system.dt
+    dt = renamed(system).dt
     if dt is None:
         return ("continuous" if _of_scipy(system) else "unsaid"), None
     if dt is True:

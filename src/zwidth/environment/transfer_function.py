@@ -1,7 +1,7 @@
 """Any linear law, given as H(s) or as H(z), position → force.
 
 Both take coefficients in descending powers, as scipy.signal does, or a system
-of python-control or scipy.signal.
+of python-control, scipy.signal or harold.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class PulseTransferFunction(Environment):
     numerator, denominator
         Coefficients in descending powers of z [N/m; N·m/rad]; H proper, of order ≤ 200.
         Common factors are kept.  Or, in the place of both, a discrete system of
-        python-control or scipy.signal.
+        python-control, scipy.signal or harold.
     sample_period
         T > 0 [s] that the coefficients are meant for; a device of another is then refused.
         None (default) where they do not say.
@@ -117,7 +117,7 @@ class ContinuousTransferFunction(Environment):
     ----------
     numerator, denominator
         Coefficients in descending powers of s [N/m; N·m/rad], of order ≤ 200.
-        Or, in the place of both, a continuous system of python-control or scipy.signal.
+        Or, in the place of both, a continuous system of python-control, scipy.signal or harold.
     discretization
         "backward", "forward", "tustin", "zoh", "impulse" or "matched".  Needed: the same
         H(s) may be passive under one and active under another.  The coefficients of H(z)
@@ -180,8 +180,8 @@ def as_environment(thing: object, discretization: Discretization | None = None) 
     Parameters
     ----------
     thing
-        An environment, which is returned as it is; or a linear system of python-control
-        or scipy.signal.
+        An environment, which is returned as it is; or a linear system of python-control,
+        scipy.signal or harold.
     discretization
         For a continuous system, and for it alone.
 
@@ -196,8 +196,8 @@ def as_environment(thing: object, discretization: Discretization | None = None) 
         return thing
     if not is_system(thing):
         raise InputError(
-            f"an environment is a wall, a solid, a transfer function, or a system of python-control or "
-            f"scipy.signal; got {thing!r}"
+            f"an environment is a wall, a solid, a transfer function, or a system of python-control, "
+            f"scipy.signal or harold; got {thing!r}"
         )
     system = read_system(thing)
     if system.time == "discrete" or (discretization is None and _is_constant(system)):

@@ -91,7 +91,7 @@ def simulate(
     device
         With a mass; every number certain.
     environment
-        An `Environment`, or a discrete system of python-control or scipy.signal.
+        An `Environment`, or a discrete system of python-control, scipy.signal or harold.
     operator
         The hand, see `zwidth.operators`.
     duration

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from zwidth.checker import verify
 from zwidth.errors import InputError
 from zwidth.passivity.document import save_json, to_json
+from zwidth.passivity.flat import to_dataset, to_series
 from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.wording import lines
@@ -231,6 +232,17 @@ class Answer(Result):
             "assumptions": list(self.small_print()),
             **self.numbers(),
         }
+
+    def to_pandas(self) -> Any:
+        """What is stated as a pandas Series, units in its labels: a row of a table of many answers.
+
+        Assumptions, advice and evidence are in `to_dict`.
+        """
+        return to_series(self.stated())
+
+    def to_xarray(self) -> Any:
+        """The same as an xarray Dataset without dimensions, its units in the attributes too."""
+        return to_dataset(self.stated())
 
     def to_dict(self) -> dict[str, Any]:
         """What is stated, and the evidence, as plain data, units in the keys."""

@@ -33,7 +33,7 @@ class Rendered(Environment):
     Parameters
     ----------
     environment
-        What the hand meets: an `Environment`, or a discrete system of python-control or scipy.signal.
+        What the hand meets: an `Environment`, or a discrete system of python-control, scipy.signal or harold.
     laws
         The laws, from the environment to the actuator.
 

@@ -55,7 +55,7 @@ class VirtualCoupling(Environment):
     damping
         B_c, of either sign, on the backward difference [N·s/m; N·m·s/rad].
     environment
-        E: an `Environment`, or a discrete system of python-control or scipy.signal.
+        E: an `Environment`, or a discrete system of python-control, scipy.signal or harold.
 
     Raises
     ------

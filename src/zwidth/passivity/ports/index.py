@@ -18,6 +18,8 @@ from typing import Any, Literal
 
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import FORMAT, Certificate
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.ports.bands import Band, bands
 from zwidth.passivity.ports.documents import motion_document, proof_document, system_document
 from zwidth.passivity.ports.extracting_input import ExtractingInput
 from zwidth.passivity.ports.largest import Largest, NoLevel
@@ -116,14 +118,31 @@ class PassivityIndex(Shown):
         """
         if self.at_least(level):
             return None
-        at = Exact(level).fraction
-        motion = find_motion(self.port, at, self.found.cosine if isinstance(self.found, Largest) else None)
+        cosine = self.found.cosine if isinstance(self.found, Largest) else None
+        return self._refuted(Exact(level).fraction, cosine)
+
+    def _refuted(self, at: Fraction, cosine: Fraction | None) -> ExtractingInput | None:
+        motion = find_motion(self.port, at, cosine)
         if motion is None:
             return None
         taken = -absorbed(self.port, at, motion)
         size = absorbed(self.port, Fraction(0), motion) - absorbed(self.port, Fraction(1), motion)
         share = float(taken / size) if size else inf
         return ExtractingInput(self._document(motion_document(motion), at), share, self.port, motion)
+
+    def bands(self, level: RealLike = 0) -> tuple[Band, ...]:
+        """Where the level is undercut: Re F (the least eigenvalue) < level, in ascending frequency.
+
+        None is not all: a pole where it may not be lets no level hold, whatever the real part; see `reason`.
+        """
+        return bands(self.port, Exact(level).fraction)
+
+    def refute_in(self, band: Band, level: RealLike = 0) -> ExtractingInput | None:
+        """A motion by which the port gives out more than this level allows, near the middle of a band.
+
+        None where none was found that the checker can sum: a narrow band needs a long burst.
+        """
+        return self._refuted(Exact(level).fraction, band.middle)
 
     def places(self) -> list[complex]:
         """Poles and zeros of the port, to rounding."""
@@ -166,3 +185,11 @@ class PassivityIndex(Shown):
         system = system_document(self.port if self.name == "input" else self.port.inverse())
         claim = {"index": self.name, "level": str(level), "system": system}
         return {"format": FORMAT, "kind": evidence["kind"], **claim, **evidence}
+
+
+def evidenced(index: PassivityIndex) -> Outcome:
+    """ "passive" where the index is proved to be ≥ 0, "active" where a motion shows that it is less."""
+    if index.at_least(0):
+        return "passive" if index.certificate(0).verify() else "undecided"
+    witness = index.refute(0)
+    return "active" if witness is not None and witness.verify() else "undecided"

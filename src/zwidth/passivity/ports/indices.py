@@ -2,6 +2,7 @@
 
     ν  largest with ∫ u y ≥ ν ∫ u²    input feedforward index (Bao & Lee 2007; Kottenstette et al. 2014)
     ρ  largest with ∫ u y ≥ ρ ∫ y²    output feedback index
+    R  least with ∫ (y − z u)² ≤ R² ∫ (y + z u)²    relative index, at a reference z
     b  least device damping with which H(z), sampled and held, is passive    (Colgate & Schenkel 1997)
 
 ν and ρ take y·u for the power at the port: they mean something where input and
@@ -20,13 +21,16 @@ from zwidth.environment.environment import Environment
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.ports.bands import Band, in_words
 from zwidth.passivity.ports.extracting_input import ExtractingInput
-from zwidth.passivity.ports.index import PassivityIndex
+from zwidth.passivity.ports.index import PassivityIndex, evidenced
 from zwidth.passivity.ports.largest import largest_level
 from zwidth.passivity.ports.reading import read_port
+from zwidth.passivity.ports.relative import RelativeIndex, relative_index
 from zwidth.passivity.ports.sampled import SampledDamping, sampled_damping
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
+from zwidth.quantity.exact import RealLike
 
 
 @dataclass(frozen=True, repr=False)
@@ -51,9 +55,7 @@ class PassivityIndices(PassivityAnswer):
     @cached_property
     def outcome(self) -> Outcome:
         """ "passive": ν ≥ 0 with a proof; "active": ν < 0 with a motion; the checker has accepted either."""
-        if self.input.at_least(0):
-            return "passive" if self.input.certificate(0).verify() else "undecided"
-        return "active" if self.witness is not None and self.witness.verify() else "undecided"
+        return evidenced(self.input)
 
     @property
     def claim(self) -> str:
@@ -89,6 +91,26 @@ class PassivityIndices(PassivityAnswer):
         """A motion from rest that takes energy out; None if the port is passive, or none was found."""
         return self.input.refute(0)
 
+    @cached_property
+    def bands(self) -> tuple[Band, ...]:
+        """Frequencies at which a sinusoid takes energy out, in ascending order; () where none does."""
+        return self.input.bands()
+
+    def relative(self, reference: RealLike = 1) -> RelativeIndex:
+        """How much of a wave comes back at most, R; the port is passive if and only if R ≤ 1.
+
+        Parameters
+        ----------
+        reference
+            z > 0, in the unit of output over input: against which u and y are waves.
+
+        Raises
+        ------
+        InputError
+            If the reference is not positive.
+        """
+        return relative_index(self.input.port, reference)
+
     @property
     def scope(self) -> Scope:
         """A linear port by itself: every hand, no surface, no encoder, nothing sampled but what G(z) is."""
@@ -97,6 +119,8 @@ class PassivityIndices(PassivityAnswer):
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
         rows = [("input index", self.input.describe()), ("output index", self.output.describe())]
+        if self.bands:
+            rows.append(("violated", in_words(self.bands)))
         if self.sampled_damping is not None:
             rows.append(("sampled and held", self.sampled_damping.describe()))
         if not self.hidden_modes_decay:
@@ -107,7 +131,9 @@ class PassivityIndices(PassivityAnswer):
         """The indices, and the damping needed by the sampled loop, as plain data."""
         damping = self.sampled_damping
         need = {} if damping is None else {unit_key("damping", damping.device.motion): damping.required}
-        return {"input_index": self.input.value, "output_index": self.output.value, **need}
+        violated = [[band.low, band.high] for band in self.bands]
+        found = {"input_index": self.input.value, "output_index": self.output.value}
+        return {**found, "violated_Hz": violated, **need}
 
     def __repr__(self) -> str:
         rows = "; ".join(f"{name} {text}" for name, text in self.rows())
@@ -125,7 +151,7 @@ def passivity_indices(
     ----------
     system
         As many inputs as outputs, each input times its own output a power: a TransferFunction or
-        StateSpace of python-control, a system of scipy.signal, continuous or discrete; or an
+        StateSpace of python-control, a system of scipy.signal or harold, continuous or discrete; or an
         environment, for its H(z).
     device
         What H runs on: its rate and delay for `sampled_damping`.  Needed for that with a continuous

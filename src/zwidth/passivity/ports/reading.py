@@ -26,7 +26,7 @@ _NOT_CAUSAL = "G(z) has more zeros than poles: it would need samples that are st
 
 
 def read_port(thing: Environment | Any, period: Fraction | None = None) -> Port:
-    """A port from a square system of python-control or scipy.signal, or from an environment's H(z).
+    """A port from a square system of python-control, scipy.signal or harold, or from an environment's H(z).
 
     Raises
     ------
@@ -41,7 +41,7 @@ def read_port(thing: Environment | Any, period: Fraction | None = None) -> Port:
         return _of_one_axis(h.numerator, h.denominator, "discrete", period)
     if not is_system(thing):
         raise InputError(
-            f"a port is a system of python-control or scipy.signal, or an environment; got {thing!r}"
+            f"a port is a system of python-control, scipy.signal or harold, or an environment; got {thing!r}"
         )
     if size_of(thing) != (1, 1):
         return _of_several_axes(thing)

@@ -18,6 +18,7 @@ from flint import fmpq_poly
 from zwidth.device import Device
 from zwidth.environment.discretization import Discretization
 from zwidth.environment.environment import Environment
+from zwidth.environment.system import is_system, time_of
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity import parameter_limits
@@ -98,10 +99,8 @@ def sampled_damping(
 
 def _bare(system: Any) -> Device | None:
     """A device of no damping at the rate that a discrete system says."""
-    dt = getattr(system, "dt", None)
-    if dt is None or dt is True or dt == 0:
-        return None
-    return Device(damping=0, sample_period=Fraction(repr(float(dt))))
+    period = time_of(system)[1] if is_system(system) else None
+    return None if period is None else Device(damping=0, sample_period=period)
 
 
 def _of_several_axes(port: Port, device: Device) -> SampledDamping:

@@ -169,7 +169,7 @@ def tolerated_activity(
     device
         Every number certain.
     environment
-        An `Environment`, or a system of python-control or scipy.signal.
+        An `Environment`, or a system of python-control, scipy.signal or harold.
     below
         f₀, 0 < f₀ ≤ 1/(2T) [Hz], or a text such as "10 Hz", the default: people are passive above some 10 Hz.
 

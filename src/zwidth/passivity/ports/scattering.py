@@ -1,0 +1,167 @@
+"""Is a network of which the waves are known passive?
+
+    b = S a,    power in = |a|² − |b|²,    passive ⇔ S bounded real: stable, ‖S(jω)‖ ≤ 1 at every frequency
+
+(Anderson & Vongpanitlerd, Network Analysis and Synthesis, 1973, ch. 2.)  With u = a − Σb and y = a + Σb,
+Σ of signs, uᵀy is that power, and some Σ makes u invertible: then S is bounded real exactly if u → y
+is positive real, which is decided, proved and refuted as for every other port.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from typing import Any
+
+from flint import fmpq_poly
+
+from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.ports.bands import Band, in_words
+from zwidth.passivity.ports.extracting_input import ExtractingInput
+from zwidth.passivity.ports.index import PassivityIndex, evidenced
+from zwidth.passivity.ports.largest import largest_level
+from zwidth.passivity.ports.port import Port
+from zwidth.passivity.ports.reading import read_port
+from zwidth.passivity.ports.relative import RelativeIndex, direct, relative_index
+from zwidth.passivity.result import PassivityAnswer
+from zwidth.passivity.scope import Scope
+
+
+@dataclass(frozen=True, repr=False)
+class ScatteringPassivity(PassivityAnswer):
+    """What `scattering_passivity` found.
+
+    Attributes
+    ----------
+    signs
+        Σ: which sign each b has in u = a − Σb and y = a + Σb.
+    input
+        The input index of u → y; ≥ 0 where S is bounded real.
+    """
+
+    FORMAT = "zwidth scattering 1"
+
+    signs: tuple[int, ...]
+    input: PassivityIndex
+
+    @cached_property
+    def outcome(self) -> Outcome:
+        """ "passive" with a proof, "active" with waves; the checker has accepted either."""
+        return evidenced(self.input)
+
+    @property
+    def claim(self) -> str:
+        """The outcome in a sentence."""
+        if self.outcome == "undecided":
+            return "Nothing that the checker accepts was found: nothing is proved."
+        if self.outcome == "passive":
+            return "No waves into this network, from rest, bring back more than they carry."
+        return "Waves into this network, from rest, bring back more than they carry."
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """That of which S is the waves."""
+        return ("every port has a positive real reference, which S was made with",)
+
+    @cached_property
+    def gain(self) -> RelativeIndex:
+        """‖S‖∞: how much of a wave comes back, at most."""
+        return relative_index(self.input.port)
+
+    @property
+    def margin(self) -> float:
+        """1 − ‖S‖∞."""
+        return 1 - self.gain.value
+
+    @cached_property
+    def bands(self) -> tuple[Band, ...]:
+        """Where ‖S(jω)‖ > 1, in ascending frequency."""
+        return self.input.bands()
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """The proof that S is bounded real: of u → y; None if it is not."""
+        return self.input.certificate(0) if self.passive else None
+
+    @cached_property
+    def witness(self) -> ExtractingInput | None:
+        """Signals u and y by which more comes back; None if S is bounded real, or none were found."""
+        return self.input.refute(0)
+
+    def waves(self, points: int = 1000) -> tuple[list[float], list[list[float]], list[list[float]]] | None:
+        """(t [s], a, b) of the witness, a signal for each port; None where there is no witness."""
+        if self.witness is None:
+            return None
+        t, u, y = self.witness.signals(points)
+        if len(self.signs) == 1:
+            u, y = [u], [y]
+        a = [[(p + q) / 2 for p, q in zip(*axis, strict=True)] for axis in zip(u, y, strict=True)]
+        b = [
+            [sign * (q - p) / 2 for p, q in zip(*axis, strict=True)]
+            for sign, axis in zip(self.signs, zip(u, y, strict=True), strict=True)
+        ]
+        return t, a, b
+
+    @property
+    def scope(self) -> Scope:
+        """A linear network by itself."""
+        return Scope(contact="both sides")
+
+    def rows(self) -> list[tuple[str, str]]:
+        """The main numbers as (name, text) for a report."""
+        rows = [("largest gain", self.gain.describe().replace("R = ", "‖S‖ = "))]
+        if self.bands:
+            rows.append(("violated", in_words(self.bands)))
+        return rows
+
+    def numbers(self) -> dict[str, Any]:
+        """The signs Σ, ‖S‖∞ and the bands of violation, as plain data."""
+        return {
+            "signs": list(self.signs),
+            "largest_gain": self.gain.value,
+            "violated_Hz": [[band.low, band.high] for band in self.bands],
+        }
+
+    def __repr__(self) -> str:
+        rows = "; ".join(f"{name} {text}" for name, text in self.rows())
+        return f"<ScatteringPassivity {self.outcome}: {rows}>"
+
+
+def scattering_passivity(system: Any) -> ScatteringPassivity:
+    """Whether S is bounded real, exactly, with a proof or with waves that bring back more than they carry.
+
+    Parameters
+    ----------
+    system
+        S, a rational matrix from incident waves a to reflected waves b, each port with a positive real
+        reference: a system of python-control, scipy.signal or harold, continuous or discrete.  For a
+        table of measured or simulated samples there is `scattering_table`.
+
+    Raises
+    ------
+    InputError
+        As `passivity_indices`.
+    """
+    waves = read_port(system)
+    for signs in product((1, -1), repeat=waves.axes):
+        port = direct(_powers(waves, signs))
+        if port is not None:
+            return ScatteringPassivity(signs, PassivityIndex("input", port, largest_level(port)))
+    raise AssertionError("1 − ΣS is invertible for some signs Σ")
+
+
+def _powers(waves: Port, signs: Sequence[int]) -> Port:
+    """u = a − Σb, y = a + Σb."""
+    size = range(waves.axes)
+    a, b = ([[fmpq_poly(list(p)) for p in row] for row in side] for side in (waves.inputs, waves.outputs))
+
+    def mixed(sign: int) -> tuple[tuple[tuple[int, ...], ...], ...]:
+        entries = ((a[i][j] + sign * signs[i] * b[i][j] for j in size) for i in size)
+        return tuple(tuple(tuple(int(c) for c in p.coeffs()) or (0,) for p in row) for row in entries)
+
+    inputs = mixed(-1)
+    denominator = inputs[0][0] if waves.axes == 1 else waves.denominator
+    return Port(mixed(1), inputs, denominator, waves.time, waves.period, waves.hidden_modes_decay)

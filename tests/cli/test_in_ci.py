@@ -1,0 +1,56 @@
+"""The example for continuous integration: its commands as they are written, before a change and after."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "github-actions"
+
+
+def the_step() -> str:
+    """The script of the step that checks, as the runner gives it to bash."""
+    (job,) = yaml.safe_load((EXAMPLE / "passivity.yml").read_text(encoding="utf-8"))["jobs"].values()
+    (script,) = (step["run"] for step in job["steps"] if "zwidth check" in step.get("run", ""))
+    return str(script)
+
+
+def run_in(folder: Path) -> subprocess.CompletedProcess[str]:
+    """`bash -e` in a checkout, with this zwidth and this python on the path."""
+    tools = folder / "tools"
+    tools.mkdir(exist_ok=True)
+    for name, words in (("zwidth", "-m zwidth "), ("python", "")):
+        tool = tools / name
+        tool.write_text(f'#!/bin/sh\nexec "{sys.executable}" {words}"$@"\n', encoding="utf-8")
+        tool.chmod(0o755)
+    path = {**os.environ, "PATH": f"{tools}{os.pathsep}{os.environ['PATH']}"}
+    command = ["bash", "-e", "-c", the_step()]
+    return subprocess.run(command, cwd=folder, env=path, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="the runner's shell is bash")
+def test_a_gain_change_that_makes_a_wall_active_fails_the_build(tmp_path: Path) -> None:
+    """As it is the build goes on; with a stiffer bump stop and a wall that cannot be read it fails."""
+    shutil.copy(EXAMPLE / "device.toml", tmp_path)
+    shutil.copytree(EXAMPLE / "walls", tmp_path / "walls")
+    good = run_in(tmp_path)
+    assert good.returncode == 0, good.stdout + good.stderr
+    assert good.stdout.count("VALID") == len(list((tmp_path / "walls").iterdir()))
+    assert "::" not in good.stdout
+    stop = tmp_path / "walls" / "bump-stop.toml"
+    stop.write_text(stop.read_text(encoding="utf-8").replace("15 N*m/rad", "25 N*m/rad"), encoding="utf-8")
+    (tmp_path / "walls" / "soft-lock.toml").write_text("[environment]\ntype = 3\n", encoding="utf-8")
+    bad = run_in(tmp_path)
+    assert bad.returncode == 1
+    assert (
+        "::error file=walls/bump-stop.toml::active. The hand can take any amount of energy out" in bad.stdout
+    )
+    assert "::error file=walls/soft-lock.toml::it cannot be used" in bad.stdout
+    assert json.loads((tmp_path / "verdicts" / "bump-stop.json").read_text())["outcome"] == "active"

@@ -1,0 +1,142 @@
+"""Scattering parameters: rational ones decided with proof or waves, tables sample by sample."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import control
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth.cli.main import main
+
+PASSIVE = {
+    "open end": control.tf([1], [1]),
+    "short end": control.tf([-1], [1]),
+    "all-pass": control.tf([1, -1], [1, 1]),
+    "lag": control.tf([0.5], [1, 1]),
+    "through": control.tf([[[0], [1]], [[1], [0]]], [[[1], [1]], [[1], [1]]]),
+    "gyrator": control.tf([[[0], [-1]], [[1], [0]]], [[[1], [1]], [[1], [1]]]),
+    "sampled": control.tf([0.3, 0.4], [1, 0.1], 0.5),
+}
+ACTIVE = {
+    "amplifier": (control.tf([1.2], [1, 1]), 1.2, 0.0),
+    "one way": (control.tf([[[0], [1.1]], [[1], [0]]], [[[1], [1, 1]], [[1], [1]]]), 1.1, 0.0),
+    "sampled": (control.tf([0.3, 1.1], [1, 0.5], 1), 1.6, 0.5),
+}
+
+
+@pytest.mark.parametrize("name", PASSIVE)
+def test_bounded_real_is_passive_with_a_proof(name):
+    """What no wave leaves larger is proved so, open and short ends and a gyrator too."""
+    found = zw.ports.scattering_passivity(PASSIVE[name])
+    assert found.passive
+    assert found.certificate.verify()
+    assert found.bands == ()
+    assert found.witness is None
+    assert found.waves() is None
+
+
+@pytest.mark.parametrize("name", ACTIVE)
+def test_what_brings_back_more_is_shown_by_waves(name):
+    """The largest gain and its frequency by hand; ∫ |a|² − |b|² of the waves, summed anew, is below 0."""
+    system, gain, at = ACTIVE[name]
+    found = zw.ports.scattering_passivity(system)
+    assert found.outcome == "active"
+    assert found.gain.value == pytest.approx(gain, rel=1e-9)
+    assert found.gain.frequency == pytest.approx(at, abs=1e-9)
+    t, a, b = found.waves(4000)
+    carried = sum(np.trapezoid(np.square(x), t) if system.dt == 0 else np.sum(np.square(x)) for x in a)
+    back = sum(np.trapezoid(np.square(x), t) if system.dt == 0 else np.sum(np.square(x)) for x in b)
+    assert back > carried
+    assert "violated" in repr(found)
+
+
+def test_the_waves_answer_each_other():
+    """b of the waves is what scipy's response of S to a is."""
+    found = zw.ports.scattering_passivity(ACTIVE["amplifier"][0])
+    t, (a,), (b,) = (np.array(x) for x in found.waves(20001))
+    answer = control.forced_response(ACTIVE["amplifier"][0], t, a).outputs
+    assert answer == pytest.approx(b, abs=1e-4)
+
+
+@pytest.mark.parametrize("system", [PASSIVE["gyrator"], ACTIVE["one way"][0]])
+def test_what_is_saved_is_verified(system, tmp_path, capsys):
+    """`zwidth verify` accepts the proof and the waves for what the document says."""
+    zw.ports.scattering_passivity(system).save(tmp_path / "s.json")
+    assert main(["verify", str(tmp_path / "s.json")]) == 0
+    assert "VALID" in capsys.readouterr().out
+
+
+def test_an_unstable_network_is_active():
+    """A pole that grows, though ‖S‖ ≤ 1 at every frequency."""
+    found = zw.ports.scattering_passivity(control.tf([1], [1, -1]))
+    assert found.outcome == "active"
+    assert found.bands == ()
+    assert found.to_dict()["largest_gain"] == np.inf
+
+
+def table(*gains, **more):
+    """One port, samples from 1 GHz on."""
+    s = np.reshape(np.array(gains, complex), (-1, 1, 1))
+    return SimpleNamespace(f=1e9 + 1e8 * np.arange(len(gains)), s=s, **more)
+
+
+def test_samples_above_one_are_told_with_what_lies_beside_them():
+    """Which run of samples violates, and between which samples its edges lie."""
+    found = zw.ports.scattering_table(table(0.5, 1.1j, -1.2, 0.9, 1.0, 1.3))
+    assert found.violates
+    first, last = found.bands
+    assert (first.before, first.low, first.high, first.after) == (1e9, 1.1e9, 1.2e9, 1.3e9)
+    assert (last.low, last.high, last.after) == (1.5e9, 1.5e9, None)
+    assert found.largest == (pytest.approx(1.3), 1.5e9)
+    assert "At 3 of 6 samples more comes back than goes in" in found.describe()
+    assert found.to_dict()["violated_Hz"] == [[1.1e9, 1.2e9], [1.5e9, 1.5e9]]
+
+
+def test_samples_that_keep_the_bound_prove_nothing():
+    """No sample violates: that is said, and that it is no proof."""
+    found = zw.ports.scattering_table(table(0.5, 0.6j, -1.0))
+    assert not found.violates
+    assert "no proof of passivity" in found.describe()
+    assert any("between samples" in line for line in found.assumptions)
+
+
+def test_one_is_told_from_a_little_more_exactly():
+    """0.6 + 0.8j has size 1; its neighbours in the last digit have not, whatever rounding says."""
+    more = complex(np.nextafter(0.6, 1), 0.8)
+    less = complex(np.nextafter(0.6, 0), 0.8)
+    found = zw.ports.scattering_table(table(0.6 + 0.8j, more, less))
+    assert found.violated == (False, True, False)
+
+
+def test_of_several_ports_the_largest_singular_value_counts():
+    """A rotation by 0.6 and 0.8 carries all; every entry is below 1 and a little more gain is found."""
+    rotation = np.array([[0.6, 0.8], [-0.8, 0.6]], complex)
+    network = SimpleNamespace(
+        f=[1.0, 2.0], s=np.array([rotation, rotation * (1 + 1e-12)]), z0=[[50, 75.0]] * 2
+    )
+    assert zw.ports.scattering_table(network).violated == (False, True)
+
+
+@pytest.mark.parametrize(
+    ("network", "message"),
+    [
+        (3, "is a Network of scikit-rf"),
+        (SimpleNamespace(f=[1, 2], s=np.ones((2, 1, 2))), "one square matrix for each frequency"),
+        (SimpleNamespace(f=[2, 1], s=np.ones((2, 1, 1))), "ascend"),
+        (SimpleNamespace(f=[1, 2], s=np.full((2, 1, 1), np.nan)), "not finite"),
+        (table(0.5, z0=-50), "positive real part"),
+        (table(0.5, z0=50 + 3j, s_def="traveling"), "renormalize"),
+    ],
+)
+def test_tables_that_tell_no_power_are_refused(network, message):
+    """With what was given and what to do."""
+    with pytest.raises(zw.InputError, match=message):
+        zw.ports.scattering_table(network)
+
+
+def test_complex_references_of_power_waves_are_taken():
+    """Kurokawa's waves carry |a|² − |b|² at a complex reference too."""
+    assert not zw.ports.scattering_table(table(0.5, z0=50 + 3j, s_def="power")).violates
