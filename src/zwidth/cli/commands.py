@@ -292,6 +292,19 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "--resolution '22.4 um' --stiffness 250\n"
             "  zwidth identify swing.csv --mass '36 g'",
         ),
+        "tissue": Command(
+            "which tissue was it, and how much of it may a device render?",
+            "Read a relaxation, creep or loading test of a probe in tissue from a spreadsheet: the model, its\n"
+            "numbers with intervals, and the largest scale of it that is proved passive on a device.",
+            "Columns and units are known by their names; others are named: --column force='Ch 2' --unit\n"
+            "force=mN. Semicolons, decimal commas, units in a row of their own are read.\n\n"
+            "exit status: 0 fitted, 2 bad input; with a device that of zwidth check: 0 passive, 1 active,\n"
+            "3 undecided, 4 passive while contact is kept\n\n"
+            "examples:\n"
+            "  zwidth tissue relaxation.csv\n"
+            "  zwidth tissue relaxation.csv phantom -o my-tissue.toml --plot tissue.png\n"
+            "  zwidth tissue creep.csv --column indentation=z --unit indentation=um --kind creep",
+        ),
         "plan": Command(
             "how to move a device by hand so that its limit becomes known",
             "Plan the experiment for zwidth identify: which strokes, how many, how long, and when to stop.",

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import re
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from zwidth.cli.column_options import as_options, pairs_of
 from zwidth.cli.decision import decided, exit_status
 from zwidth.cli.identification_result import Result
 from zwidth.cli.options import BEHIND, Once, add_all, add_in_full, add_output, environment_parameters, given
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
-from zwidth.specification.table import quoted, suggestion
+from zwidth.specification.table import quoted
 
 QUANTITIES = ("time", "position", "hand_force", "actuator_force")
 """What a column may hold."""
@@ -117,7 +115,7 @@ def _found(arguments: argparse.Namespace, confidence: float) -> Result:
     options = _options(arguments)
     environment_of = _environment(arguments)
     warn_of_compiling_the_estimates()
-    with _as_options():
+    with as_options():
         reading = _reading(arguments)
         logs = [log_from(Path(name), **reading) for name in (arguments.log, *_further_logs(arguments))]
         log = logs[0] if len(logs) == 1 else Log.concatenate(logs)
@@ -145,9 +143,7 @@ def _reading(arguments: argparse.Namespace) -> dict[str, Any]:
     """How to read the log, as `read_log` takes it."""
     reading: dict[str, Any] = {}
     for option, name, _, _ in _PAIRS:
-        pairs = dict(_pair(option, typed) for typed in getattr(arguments, name) or ())
-        if len(pairs) < len(getattr(arguments, name) or ()):
-            raise InputError(f"{option} names a quantity twice; which one is meant?")
+        pairs: dict[str, Any] = pairs_of(option, getattr(arguments, name), QUANTITIES)
         if name == "columns":
             pairs = {key: None if value == "none" else value for key, value in pairs.items()}
         if pairs:
@@ -158,16 +154,6 @@ def _reading(arguments: argparse.Namespace) -> dict[str, Any]:
     if reading.get("motion", "linear") not in ("linear", "rotary"):
         raise InputError(f"--motion is linear or rotary, got {quoted(reading['motion'])}")
     return reading
-
-
-def _pair(option: str, typed: str) -> tuple[str, Any]:
-    key, sign, value = typed.partition("=")
-    name = key.strip().replace("-", "_")
-    if not sign or not value:
-        raise InputError(f"{option} is written {option} position=VALUE, got {quoted(typed)}")
-    if name not in QUANTITIES:
-        raise InputError(f"{option}: there is no quantity {quoted(key)}; {suggestion(name, QUANTITIES)}")
-    return name, value
 
 
 def _options(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -219,32 +205,6 @@ def _environment(arguments: argparse.Namespace) -> Any:
         return lambda motion: None
     table = environment_table(tables, words)
     return lambda motion: build_environment(table, motion)
-
-
-_PYTHON = re.compile(r"(columns|units|scale)=\{[\"'](\w+)[\"']: (?:\"([^\"]*)\"|(None|…))\}")
-_NAMES = {"columns": "--column", "units": "--unit", "scale": "--scale"}
-
-
-@contextmanager
-def _as_options() -> Iterator[None]:
-    """What to try, in messages, as it is typed here."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(_PYTHON.sub(_as_option, _plain_options(str(error)))) from None
-
-
-def _as_option(found: re.Match[str]) -> str:
-    name, quantity, value, other = found.groups()
-    value = value if value is not None else {"None": "none"}.get(other, "…")
-    written = f"'{quantity}={value}'" if " " in value else f"{quantity}={value}"
-    return f"{_NAMES[name]} {written}"
-
-
-def _plain_options(text: str) -> str:
-    text = text.replace("sample_rate or sample_period", "--rate or --sample-period")
-    text = re.sub(r'\bresolution=("[^"]*")', r"--resolution \1", text)
-    return re.sub(r"\bcounts_per_turn=(\d+)", r"--counts-per-turn \1", text)
 
 
 def _json(found: Result) -> str:

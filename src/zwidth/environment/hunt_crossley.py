@@ -16,7 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from decimal import Context, Decimal
 from fractions import Fraction
-from typing import Literal, NoReturn
+from typing import Literal, NoReturn, Self
 
 from zwidth.environment.environment import Environment, PowerLaw, clamping
 from zwidth.environment.wording import never_pulls, with_unit
@@ -121,6 +121,10 @@ class HuntCrossley(Environment):
             "a Hunt–Crossley contact has no H(z): the law is not linear; "
             "zwidth.check, zwidth.simulate and zwidth.limit take it"
         )
+
+    def scaled(self, factor: Fraction) -> Self:
+        """The contact with factor · K, exactly: every force times the factor."""
+        return self.replace(stiffness=Exact(self.stiffness.fraction * factor))
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, on one line, in linear or rotary units."""

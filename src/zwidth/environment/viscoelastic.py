@@ -22,6 +22,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Self
 
 from zwidth.environment.discretization import (
     ROUNDED,
@@ -41,7 +42,7 @@ from zwidth.environment.environment import (
 from zwidth.environment.wall import NEGATIVE_SPRING, Wall
 from zwidth.environment.wording import never_pulls, with_unit
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.quantity.exact import Exact, Interval, ends, times
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Given, Reads, Uncertain, parameter, part, read_number
 
@@ -128,6 +129,14 @@ class StandardLinearSolid(Environment):
         eta = certain(self.branch_damping, "branch_damping")
         return _discretized(k, [(mu, eta)], self.discretization, sample_period)
 
+    def scaled(self, factor: Fraction) -> Self:
+        """The solid factor · H(s), exactly: stiffer, and it relaxes as before."""
+        return self.replace(
+            stiffness=times(self.stiffness, factor),
+            branch_stiffness=times(self.branch_stiffness, factor),
+            branch_damping=times(self.branch_damping, factor),
+        )
+
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, on one line."""
         k = with_unit("stiffness", self.stiffness, motion)
@@ -205,6 +214,11 @@ class GeneralizedMaxwell(Environment):
         ]
         return _discretized(k, pairs, self.discretization, sample_period)
 
+    def scaled(self, factor: Fraction) -> Self:
+        """The solid factor · H(s), exactly: stiffer, and it relaxes as before."""
+        branches = [(times(mu, factor), times(eta, factor)) for mu, eta in self.branches]
+        return self.replace(stiffness=times(self.stiffness, factor), branches=branches)
+
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, on one line."""
         parts = [with_unit("stiffness", self.stiffness, motion)]
@@ -274,6 +288,10 @@ class Maxwell(Environment):
         """H(z) [N/m]; backward: μ η (z − 1)/((μ T + η) z − η)."""
         pair = certain(self.stiffness, "stiffness"), certain(self.damping, "damping")
         return _discretized(Fraction(0), [pair], self.discretization, sample_period)
+
+    def scaled(self, factor: Fraction) -> Self:
+        """The body factor · H(s), exactly: stiffer, and it relaxes as before."""
+        return self.replace(stiffness=times(self.stiffness, factor), damping=times(self.damping, factor))
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, on one line."""

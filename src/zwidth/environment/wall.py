@@ -27,7 +27,7 @@ from zwidth.environment.environment import (
 from zwidth.environment.velocity import BackwardDifference, OnePole, VelocityEstimator
 from zwidth.environment.wording import never_pulls, with_unit
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, ends
+from zwidth.quantity.exact import Exact, ends, times
 from zwidth.quantity.parameter import Reads, Uncertain, parameter, part
 
 NEGATIVE_SPRING = "a negative spring pulls the hand in and gives out energy without end"
@@ -91,6 +91,10 @@ class Wall(Environment):
         b = certain(self.damping, "damping")
         num, den = self.velocity_filter.transfer(sample_period)
         return RationalFunction(add(multiply((k,), den), multiply((b,), num)), den)
+
+    def scaled(self, factor: Fraction) -> Self:
+        """The wall factor · f, exactly."""
+        return self.replace(stiffness=times(self.stiffness, factor), damping=times(self.damping, factor))
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, on one line, in linear or rotary units."""

@@ -146,6 +146,12 @@ def as_parameter(value: RealLike | Interval | tuple[RealLike, RealLike]) -> Exac
     return Exact(value)
 
 
+def times(value: Exact | Interval, factor: Fraction) -> Exact | Interval:
+    """A parameter times a factor > 0, exactly; of an interval both ends."""
+    low, high = (end * factor for end in ends(value))
+    return Interval(Exact(low), Exact(high)) if isinstance(value, Interval) else Exact(low)
+
+
 def ends(value: Exact | Interval) -> tuple[Fraction, Fraction]:
     """The smallest and the largest value a parameter may have, exactly."""
     if isinstance(value, Interval):

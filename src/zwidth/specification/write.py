@@ -21,7 +21,7 @@ from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.kind import Kind, name_of
 from zwidth.quantity.text import exact_text
 from zwidth.rendering import ESTIMATORS, LAWS
-from zwidth.specification.environments import TYPES
+from zwidth.specification.environments import TYPES, build_environment
 from zwidth.specification.laws import with_laws
 from zwidth.specification.read import WITH_LAWS, Specification, specified, tables_of
 from zwidth.specification.scenes import ELEMENTS
@@ -69,6 +69,21 @@ def written(device: Device, environment: Environment) -> str:
     again = parsed(text)
     if (again.device.replace(name=device.name), again.environment) != (device, environment):
         raise InputError(f"a specification cannot say all of this: {environment.describe(device.motion)}")
+    return text
+
+
+def written_environment(environment: Environment, motion: str = "linear") -> str:
+    """The environment alone, as the file that stands beside a device: `zwidth check DEVICE FILE`.
+
+    Raises
+    ------
+    InputError
+        If a specification has no words for it.
+    """
+    text = "\n".join(["[environment]", *_lines(_environment(environment, motion)), ""])
+    again = build_environment(tables_of(text, "environment")["environment"], motion)
+    if again != environment:
+        raise InputError(f"a specification cannot say all of this: {environment.describe(motion)}")
     return text
 
 

@@ -58,7 +58,7 @@ def read_log(
     source = Path(path)
     period = stated_period(sample_rate, sample_period)
     with readable(str(source)):
-        table = _table(source)
+        table = table_of_file(source)
         names = recognise(table.units, {**table.means, **(columns or {})}, table.source)
         meaning = meaning_of(
             table,
@@ -72,8 +72,14 @@ def read_log(
         return Log(**contents(table, meaning, period))
 
 
-def _table(path: Path) -> Table:
-    """The table of a file, by its first bytes: the libraries take their time to load."""
+def table_of_file(path: Path) -> Table:
+    """The table of a file, by its first bytes: the libraries take their time to load.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it is none that is read.
+    """
     if path.is_dir() and not (path / "metadata.yaml").is_file():
         if (table := _recorded(path)) is not None:
             return table
@@ -106,6 +112,8 @@ def _table(path: Path) -> Table:
         raise InputError(f"{path} is NetCDF 3; write it as NetCDF 4, for example with nccopy -k nc4")
     if start[:2] == b"PK":
         raise InputError(f"{path} is a zip archive or a spreadsheet; unpack it, or save it as CSV")
+    if start[:8] == b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1":
+        raise InputError(f"{path} is a spreadsheet of an old office program; save the sheet as CSV")
     if b"zW" in start:
         from zwidth.identification.logs.telemetry.table import is_telemetry, telemetry_table
 

@@ -4,6 +4,8 @@ from zwidth.environment.creeping import creep, position_response
 from zwidth.environment.relaxing import force_response, relaxation
 from zwidth.identification.tissue.adaptive import AdaptiveSolid, Rendered, required_damping
 from zwidth.identification.tissue.comparison import TissueComparison
+from zwidth.identification.tissue.experiment.fit import fit_test, read_test
+from zwidth.identification.tissue.experiment.result import TissueTest
 from zwidth.identification.tissue.first_order import (
     Solid,
     coefficients,
@@ -23,15 +25,18 @@ __all__ = [
     "Solid",
     "TissueComparison",
     "TissueFit",
+    "TissueTest",
     "Track",
     "Tracker",
     "coefficients",
     "compare_tissues",
     "creep",
+    "fit_test",
     "fit_tissue",
     "five_parameters",
     "force_response",
     "position_response",
+    "read_test",
     "relaxation",
     "required_damping",
     "solid_of",

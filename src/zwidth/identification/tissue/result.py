@@ -70,6 +70,8 @@ class TissueFit(Documented):
         What was found in the record, and what was done about it.
     position
         As it was read [m; rad]; None where it is not known.
+    time
+        Of the samples that count [s]; None where it is not known, and then there is no picture.
     """
 
     model: Model
@@ -85,6 +87,7 @@ class TissueFit(Documented):
     further: int = 0
     findings: tuple[Finding, ...] = ()
     position: Array | None = None
+    time: Array | None = None
 
     @cached_property
     def values(self) -> Mapping[str, float]:
@@ -286,6 +289,18 @@ class TissueFit(Documented):
             low, high = self.interval(name)
             lines.append([name, f"{value:.6g}", f"{low:.4g} … {high:.4g}", unit_text(self._unit(name))])
         return lines
+
+    def figure(self) -> Any:
+        """What `plot` returns: measured and fitted against the time, and what is left over.
+
+        Raises
+        ------
+        InputError
+            If the times are not known.
+        """
+        from zwidth.identification.tissue.picture import fit_figure  # matplotlib takes its time
+
+        return fit_figure(self)
 
     def _summary(self) -> str:
         noise = "white noise" if not self.noise_order else f"noise of order {self.noise_order}"

@@ -238,6 +238,7 @@ def _result(task: Task, solved: Solved, stops: tuple[float, float], motion: str)
             )
         ),
         position=task.record.position,
+        time=task.record.time[task.used],
     )
 
 

@@ -1,0 +1,208 @@
+"""The command `tissue`: a tissue from a spreadsheet, and how much of it a device may render."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from zwidth.cli.column_options import as_options, pairs_of
+from zwidth.cli.decision import decided, exit_status
+from zwidth.cli.options import Once, add_in_full, add_output
+from zwidth.cli.output import print_json, say_written, targets, writing
+from zwidth.errors import InputError
+from zwidth.specification.table import quoted, suggestion
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from zwidth.cli.tissue_result import Result, Wall
+    from zwidth.device import Device
+    from zwidth.identification.tissue import TissueTest
+
+QUANTITIES = ("time", "indentation", "force")
+KINDS = ("relaxation", "creep", "loading")
+ZEROS = ("fitted", "exact")
+DISCRETIZATIONS = ("backward", "tustin", "forward", "zoh", "impulse", "matched")
+
+LEVEL = 0.95
+"""How often the box of intervals that is checked holds the tissue."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth tissue`."""
+    parser.usage = (
+        "%(prog)s TEST [DEVICE] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] [--kind KIND] "
+        "[--trial N] [--model MODEL ...] [--zero KIND] [--discretization RULE] [--scaled] [--all] [--json] "
+        "[--plot FILE] [-o FILE] [--force]"
+    )
+    parser.add_argument(
+        "test", metavar="TEST", help="what a probe in tissue measured, in a file of any format"
+    )
+    parser.add_argument(
+        "device",
+        metavar="DEVICE",
+        nargs="?",
+        help="device of the catalogue, or TOML file with a [device] table, that shall render the tissue",
+    )
+    reading = parser.add_argument_group("test")
+    for option, dest, metavar, meaning in (
+        ("--column", "columns", "QUANTITY=NAME", f"column of {', '.join(QUANTITIES)} (repeatable)"),
+        (
+            "--unit",
+            "units",
+            "QUANTITY=UNIT",
+            "unit of a column where the file does not state it (repeatable)",
+        ),
+    ):
+        reading.add_argument(option, dest=dest, metavar=metavar, action="append", help=meaning)
+    for option, metavar, meaning in (
+        ("--kind", "KIND", f"{', '.join(KINDS)} (default: as the data say)"),
+        ("--trial", "N", "which of several in the file, from 1 (default: 1)"),
+        ("--zero", "KIND", "of the force, and of the depth in creep: fitted (default) or exact"),
+    ):
+        reading.add_argument(option, metavar=metavar, action=Once, help=meaning)
+    model = parser.add_argument_group("model")
+    model.add_argument(
+        "--model", metavar="MODEL", action="append", help="fit this one alone, or several (default: all)"
+    )
+    model.add_argument(
+        "--discretization",
+        metavar="RULE",
+        action=Once,
+        help=f"how the device shall run it: {', '.join(DISCRETIZATIONS)} (default: {DISCRETIZATIONS[0]})",
+    )
+    model.add_argument(
+        "--scaled",
+        action="store_true",
+        help="save the largest scale of the tissue that is proved passive on DEVICE, not the tissue",
+    )
+    saved = "the tissue as an environment in TOML, for zwidth check"
+    add_in_full(add_output(parser, "the numbers", "the plot", saved))
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth tissue`: 0; with a device that of `zwidth check` of the tissue on it."""
+    plot, save = targets(arguments.plot, arguments.save, arguments.force)
+    _check(arguments, save)
+    found = _found(arguments)
+    if save is not None:
+        _save(found, save, arguments.scaled)
+    if plot is not None:
+        with writing(plot):
+            found.test.plot(plot)
+    if arguments.json:
+        print_json(_json(found))
+    else:
+        from zwidth.cli.tissue_report import print_tissue
+
+        print_tissue(found, arguments.in_full)
+        say_written(save, plot)
+    return 0 if found.wall is None else exit_status(found.wall.verdict.outcome)
+
+
+def _check(arguments: argparse.Namespace, save: Path | None) -> None:
+    """Refuse what cannot be, before anything is computed."""
+    for option, value, allowed in (
+        ("--kind", arguments.kind, KINDS),
+        ("--zero", arguments.zero, ZEROS),
+        ("--discretization", arguments.discretization, DISCRETIZATIONS),
+    ):
+        if value is not None and value not in allowed:
+            raise InputError(f"{option}: there is no {quoted(value)}; {suggestion(value, allowed)}")
+    if save is not None and save.suffix.lower() != ".toml":
+        raise InputError(f"--save: a tissue is saved as TOML, my-tissue.toml; got {quoted(save.name)}")
+    if arguments.scaled and (arguments.device is None or save is None):
+        raise InputError("--scaled is of a file and a device: give DEVICE, and -o FILE")
+
+
+def _found(arguments: argparse.Namespace) -> Result:
+    from zwidth.cli.tissue_result import Result
+    from zwidth.identification.tissue import read_test
+
+    device = None if arguments.device is None else _device(arguments.device)
+    options: dict[str, Any] = {
+        "columns": pairs_of("--column", arguments.columns, QUANTITIES),
+        "units": pairs_of("--unit", arguments.units, QUANTITIES),
+    }
+    with as_options():
+        test = read_test(
+            arguments.test,
+            **options,
+            kind=arguments.kind,
+            trial=_number(arguments.trial),
+            models=tuple(arguments.model or ()),
+            zero=arguments.zero or "fitted",
+        )
+    rule = arguments.discretization or DISCRETIZATIONS[0]
+    return Result(test, rule, None if device is None else _wall(test, device, rule))
+
+
+def _device(source: str) -> Device:
+    from zwidth.specification.read import read_tables, specified_device
+
+    device = specified_device(read_tables([source], ("device",)), {})
+    if device.motion != "linear":
+        raise InputError(
+            f"{source} turns, and a tissue is pushed along a line: give a device whose motion is linear"
+        )
+    return device
+
+
+def _number(typed: str | None) -> int | None:
+    if typed is None:
+        return None
+    if not typed.strip().isdecimal() or int(typed) < 1:
+        raise InputError(f"--trial is a whole number from 1, got {quoted(typed)}")
+    return int(typed)
+
+
+def _wall(test: TissueTest, device: Device, rule: Any) -> Wall:
+    """The tissue on the device, its largest passive scale, and all that the intervals allow."""
+    from zwidth.cli.tissue_result import Wall
+    from zwidth.specification.read import Specification
+
+    verdict = decided(Specification(device, test.environment(rule)))
+    try:
+        bracket = test.wall(device, rule)
+    except InputError as error:  # a contact that nothing decides on this device
+        return Wall(device, verdict, None, str(error), None)
+    try:
+        box = test.environment(rule, level=LEVEL)
+    except InputError:  # intervals that are not to be trusted: the report says which
+        return Wall(device, verdict, bracket, "", None)
+    return Wall(device, verdict, bracket, "", decided(Specification(device, box)))
+
+
+def _save(found: Result, path: Path, scaled: bool) -> None:
+    """The environment with its intervals above it, as comments."""
+    from zwidth.specification.write import written_environment
+    from zwidth.writing import writing_whole
+
+    law, remark = found.test.environment(found.rule), ""
+    if scaled:
+        gain = None if found.wall is None or found.wall.bracket is None else found.wall.bracket.proved_passive
+        if gain is None:
+            raise InputError("--scaled: no scale of this tissue is proved passive on the device")
+        law, remark = (
+            found.test.scaled(gain, found.rule),
+            f"# Every force times {gain:.6g}: proved passive.\n",
+        )
+    numbers = [f"#   {name}: {low_high} {unit}" for name, _, low_high, unit in found.test.parameters()[1:]]
+    head = [f"# Tissue of a {found.test.test.kind} test, by zwidth tissue; 95 % intervals:", *numbers]
+    with writing(path), writing_whole(path) as file:
+        file.write(("\n".join(head) + "\n" + remark + written_environment(law)).encode())
+
+
+def _json(found: Result) -> str:
+    from zwidth.passivity.document import to_json
+
+    document = found.test.to_dict()
+    wall = found.wall
+    if wall is not None:
+        document["check"] = wall.verdict.to_dict()
+        document["largest_gain"] = {
+            "proved_passive": wall.bracket and wall.bracket.proved_passive,
+            "proved_active": wall.bracket and wall.bracket.proved_active,
+        }
+        document["check_of_intervals"] = None if wall.box is None else wall.box.outcome
+    return to_json(document)

@@ -1,0 +1,119 @@
+"""Which model it is: the corrected AIC of the likelihood with the noise's own memory, and what it cannot tell.
+
+    AICc = −2 ln L + 2 k + 2 k (k + 1)/(N − k − 1)
+
+k numbers fitted, those of the noise among them; N samples (Sugiura, 1978; Hurvich & Tsai, Biometrika 76,
+1989).  L is that of noise whose memory was estimated for this very model, so that neither a memory of the
+noise nor the sampling rate makes large models look good.
+
+Taken is the model of fewest numbers among those within `APART` of the least.  Not told apart from it are all
+others within, but for those that only add to it and gain nothing by that.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import stats
+
+from zwidth.identification.tissue.experiment.estimate import Solved, Task, solved
+from zwidth.identification.tissue.experiment.history import History
+from zwidth.identification.tissue.model import Model, as_model
+
+APART = 6.0
+"""Difference of AICc beyond which a model is told apart: the other is exp(−3), a twentieth, as likely."""
+
+MODELS = (
+    ("kelvin-voigt", None),
+    ("maxwell", None),
+    ("standard-linear-solid", None),
+    ("generalized-maxwell", 2),
+    ("generalized-maxwell", 3),
+    ("hunt-crossley", None),
+)
+
+UNLIKELY = 1e-3
+"""Chance below which what is left over is no noise."""
+
+LAGS = 8
+
+
+class Tried(NamedTuple):
+    """A model as it was fitted, and its AICc."""
+
+    task: Task
+    found: Solved
+    criterion: float
+
+
+def tried(test: History, zero: bool, names: tuple[str, ...] = ()) -> list[Tried]:
+    """Every model that such a test allows, the smallest AICc first."""
+    every = [
+        _tried(Task(model, test, zero))
+        for model in _models(test)
+        if not names or label(model) in names or model.name in names
+    ]
+    return sorted(every, key=lambda each: each.criterion)
+
+
+def _models(test: History) -> list[Model]:
+    response = "position" if test.kind == "creep" else "force"
+    most = (test.time.size - 4) // 2
+    models = [as_model(n, b, "force") for n, b in MODELS if response == "force" or n != "hunt-crossley"]
+    return [model for model in models if len(model.parameters) <= most]
+
+
+def label(model: Model) -> str:
+    """As it is called where several have branches: "generalized-maxwell-3"."""
+    return f"{model.name}-{model.branches}" if model.name == "generalized-maxwell" else model.name
+
+
+def _tried(task: Task) -> Tried:
+    found = solved(task)
+    return Tried(task, found, criterion(found))
+
+
+def criterion(found: Solved) -> float:
+    """AICc, up to a constant of the test."""
+    n, k = found.left.size, found.numbers
+    return found.deviance + 2 * k + 2 * k * (k + 1) / max(n - k - 1, 1)
+
+
+def taken(every: list[Tried]) -> int:
+    """The place of the model that is taken, of those in the order of their AICc."""
+    least = every[0].criterion
+    within = [k for k, each in enumerate(every) if each.criterion - least <= APART]
+    return min(within, key=lambda k: (every[k].task.own, k))
+
+
+def not_told_apart(every: list[Tried], chosen: int) -> tuple[int, ...]:
+    """The places of other models that the test does not tell from the one that is taken."""
+    least, own = every[0].criterion, every[chosen]
+    return tuple(
+        k
+        for k, each in enumerate(every)
+        if k != chosen
+        and each.criterion - least <= APART
+        and not (_adds_to(each.task.model, own.task.model) and each.criterion > own.criterion)
+    )
+
+
+def _adds_to(larger: Model, smaller: Model) -> bool:
+    """True where the larger model has the smaller one as a special case, or a limit."""
+    if not (larger.linear and smaller.linear) or len(larger.parameters) <= len(smaller.parameters):
+        return False
+    return True
+
+
+def leftover(found: Solved) -> float:
+    """How seldom noise would look so: the chance of the autocorrelation of what is left (Ljung & Box, 1978)."""
+    left, _ = found.whitened
+    n = left.size
+    lags = min(LAGS, n // 5)
+    size = float(left @ left)
+    if not size or np.sqrt(size / n) < 1e-9:
+        return 1.0
+    r = np.array([float(left[k:] @ left[:-k]) / size for k in range(1, lags + 1)])
+    value = n * (n + 2) * float((r**2 / (n - np.arange(1, lags + 1))).sum())
+    return float(stats.chi2.sf(value, lags - bool(found.noise.memory)))

@@ -1,0 +1,75 @@
+"""The three columns of a test from a file, in SI units as they stand in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from zwidth.compiled import Array
+from zwidth.errors import InputError
+from zwidth.identification.logs.block import Finding
+from zwidth.identification.logs.read import table_of_file
+from zwidth.identification.logs.table import readable
+from zwidth.identification.tissue.experiment.columns import recognised
+
+MOST_ROWS = 10**6
+"""Of a test; more are a log of something else."""
+
+
+class Raw(NamedTuple):
+    """Columns in SI units as they stand in the file, and the number of the trial in each row."""
+
+    source: str
+    time: Array
+    indentation: Array
+    force: Array
+    trial: Array | None
+    findings: tuple[Finding, ...]
+
+
+def read_columns(
+    path: str | PathLike[str],
+    columns: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
+) -> Raw:
+    """The columns of a file: text, Parquet, HDF5, MATLAB, …
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or a column or its unit is not known.
+    """
+    source = Path(path)
+    with readable(str(source)):
+        table = table_of_file(source)
+        known = recognised(table, columns, units)
+        names = [known.time.name, known.indentation.name, known.force.name]
+        wanted = [*names, known.trial] if known.trial else names
+        pieces = list(table.read(tuple(wanted)))
+        whole = [np.concatenate([piece[k] for piece in pieces]) for k in range(len(wanted))]
+    if not pieces or whole[0].size > MOST_ROWS:
+        raise InputError(f"{source} has {len(pieces) and whole[0].size} rows; a test has 1 to {MOST_ROWS}")
+    return Raw(
+        str(source),
+        _seconds(whole[0], known.time.factor),
+        whole[1].astype(float) * known.indentation.factor,
+        whole[2].astype(float) * known.force.factor,
+        whole[3].astype(float) if known.trial else None,
+        (*known.findings, *table.notes.values()),
+    )
+
+
+def _seconds(stamps: np.ndarray, factor: float) -> Array:
+    """Dates from the first one on: a double has no room for microseconds in a year's worth of seconds."""
+    if stamps.dtype.kind == "M":
+        since = (stamps - stamps[0]).astype("timedelta64[ns]")
+        seconds = since.astype(float) / 1e9
+        seconds[np.isnat(since)] = np.nan
+        return np.asarray(seconds)
+    if stamps.dtype.kind in "iu":
+        stamps = stamps - stamps[0]
+    return np.asarray(stamps.astype(float) * factor)

@@ -1,0 +1,240 @@
+"""What a test says of a tissue, and what a device may render of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from zwidth.environment.discretization import Discretization
+from zwidth.environment.environment import Environment
+from zwidth.errors import InputError
+from zwidth.identification.tissue.experiment.choice import UNLIKELY, Tried, label, leftover
+from zwidth.identification.tissue.experiment.history import History
+from zwidth.identification.tissue.experiment.kind import Kind
+from zwidth.identification.tissue.result import TissueFit
+from zwidth.passivity.result import Documented
+from zwidth.quantity.text import shown
+from zwidth.showing import Lines, Part, Table
+
+if TYPE_CHECKING:
+    from zwidth.device import Device
+    from zwidth.passivity.bracket import Bracket
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class TissueTest(Documented):
+    """A test of a tissue with every model fitted to it, the smallest AICc first.
+
+    Attributes
+    ----------
+    source
+        The file.
+    test
+        The history of the probe as it was fitted, with its `kind`.
+    seen_as
+        Which test the data look like.
+    tried
+        The fits as they were made, for those who want the residuals and derivatives.
+    fits
+        As results, in the same order.
+    chosen
+        The place of the one that is taken.
+    as_good
+        The places of others that this test does not tell from it.
+    """
+
+    source: str
+    test: History
+    seen_as: Kind
+    tried: tuple[Tried, ...]
+    fits: tuple[TissueFit, ...]
+    chosen: int
+    as_good: tuple[int, ...]
+
+    @property
+    def best(self) -> TissueFit:
+        """The fit that is taken."""
+        return self.fits[self.chosen]
+
+    def __getitem__(self, name: str) -> TissueFit:
+        for own, fit in zip(self.names, self.fits, strict=True):
+            if name in (own, fit.model.name):
+                return fit
+        raise InputError(f"{name!r} was not fitted; {', '.join(self.names)} were")
+
+    @property
+    def criteria(self) -> tuple[float, ...]:
+        """AICc of each above the smallest."""
+        return tuple(each.criterion - self.tried[0].criterion for each in self.tried)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the models, in the same order."""
+        return tuple(label(fit.model) for fit in self.fits)
+
+    @property
+    def rivals(self) -> tuple[str, ...]:
+        """Names of models that this test does not tell from the one that is taken."""
+        return tuple(self.names[k] for k in self.as_good)
+
+    @property
+    def is_noise(self) -> bool:
+        """True where what the best model leaves over may be noise."""
+        return leftover(self.tried[self.chosen].found) > UNLIKELY
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What a reader should know before trusting the numbers."""
+        said = list(self.best.remarks)
+        if not self.is_noise:
+            said.append(
+                "what is left over is not noise: none of these models is the tissue to within the "
+                "noise, and the intervals are too narrow"
+            )
+        return tuple(said)
+
+    def environment(
+        self, discretization: Discretization = "backward", *, level: float | None = None
+    ) -> Environment:
+        """The best fit as a controller renders it; as `TissueFit.environment`.
+
+        Parameters
+        ----------
+        discretization
+            Of a solid with branches.
+        level
+            None: the estimates; else intervals that hold all of them at least so often.
+        """
+        return self.best.environment(discretization, level=level)
+
+    def wall(
+        self, device: Device, discretization: Discretization = "backward", seconds: float = 20.0
+    ) -> Bracket:
+        """How many times the tissue the device may render: proved passive below, refuted above.
+
+        All forces are multiplied by the gain; relaxation times stay.  It is `zwidth.limit` of the estimates.
+
+        Parameters
+        ----------
+        device
+            What the hand holds.
+        discretization
+            Of a solid with branches.
+        seconds
+            After which the bracket so far is given.
+
+        Raises
+        ------
+        InputError
+            If nothing decides such a contact on this device.
+        """
+        from zwidth.passivity.bracket import passive_limit
+
+        return passive_limit(device, self.environment(discretization), "gain", seconds=seconds)
+
+    def scaled(self, gain: float, discretization: Discretization = "backward") -> Environment:
+        """The best fit with every force times a gain.
+
+        Parameters
+        ----------
+        gain
+            > 0, such as `wall(device).proved_passive`.
+        discretization
+            Of a solid with branches.
+        """
+        made = self.environment(discretization).scaled(Fraction(gain))
+        assert made is not None
+        return made
+
+    def table(self) -> list[list[str]]:
+        """Headings, then one line of text for each model."""
+        lines = [["model", "numbers", "AICc above", "left over", "noise"]]
+        for k, (fit, each) in enumerate(zip(self.fits, self.tried, strict=True)):
+            unit = "m" if fit.response == "position" else "N"
+            memory = each.found.noise.memory
+            mark = " ←" if k == self.chosen else " =" if k in self.as_good else ""
+            lines.append(
+                [
+                    label(fit.model) + mark,
+                    str(each.found.numbers),
+                    f"{self.criteria[k]:.1f}",
+                    shown(fit.rms, unit, 3),
+                    f"memory {shown(memory, 's', 2)}" if memory else "white",
+                ]
+            )
+        return lines
+
+    def parameters(self) -> list[list[str]]:
+        """Headings, then one line of text for each parameter of the best fit."""
+        return self.best.table()
+
+    def claim(self) -> str:
+        """The answer in a sentence."""
+        name = self.names[self.chosen]
+        if self.rivals:
+            return f"{name}; not told apart from {', '.join(self.rivals)}"
+        near = [value for k, value in enumerate(self.criteria) if k != self.chosen]
+        own = self.criteria[self.chosen]
+        if not near:
+            return f"{name}, the only model that was fitted"
+        return f"{name}; AICc {min(near) - own:+.3g} for the next"
+
+    def spoken(self) -> str:
+        """The tissue in a few words: how stiff at once and in the end, and how long it takes to relax."""
+        fit = self.best
+        if not fit.model.linear:
+            return f"exponent {fit['exponent']:.3g}"
+        parts = fit.model.elements([fit[name] for name in fit.model.parameters])
+        if parts.dashpot:
+            return f"{shown(parts.spring, 'N/m', 3)} beside {shown(parts.dashpot, 'N*s/m', 3)}"
+        times = " and ".join(shown(eta / mu, "s", 3) for mu, eta in parts.branches)
+        at_once, end = (shown(value, "N/m", 3) for value in (parts.instantaneous, parts.spring))
+        return f"{at_once} at once, {end} in the end, relaxing in {times}"
+
+    def report(self) -> Iterable[Part]:
+        """The model, its numbers, and what is to be said of them."""
+        yield f"{self.test.kind} test, {self.test.time.size} samples: {self.claim()}"
+        head, *rows = self.parameters()
+        yield Table(heads=[head], rows=rows)
+        yield from self.remarked()
+        head, *rows = self.table()
+        yield Table(heads=[head], rows=rows)
+
+    def remarked(self) -> Iterator[Part]:
+        """Doubts, and what was odd in the file."""
+        if self.doubts:
+            yield Lines(self.doubts, mark="!")
+        if self.best.findings:
+            yield Lines(self.best.findings)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The numbers, for JSON."""
+        return {
+            "kind": self.test.kind,
+            "seen_as": self.seen_as,
+            "samples": int(self.test.time.size),
+            "duration_s": float(self.test.time[-1]),
+            "model": self.names[self.chosen],
+            "not_told_apart": list(self.rivals),
+            "left_over_is_noise": self.is_noise,
+            "best": self.best.to_dict(),
+            "models": [
+                {
+                    "model": self.names[k],
+                    "aicc_above": self.criteria[k],
+                    "rms": fit.rms,
+                    "noise_memory_s": self.tried[k].found.noise.memory,
+                }
+                for k, fit in enumerate(self.fits)
+            ],
+            "doubts": list(self.doubts),
+            "findings": [finding.text for finding in self.best.findings],
+        }
+
+    def figure(self) -> Any:
+        """What `plot` returns: the test, the best fit, and what is left over."""
+        from zwidth.identification.tissue.experiment.picture import test_figure  # matplotlib takes its time
+
+        return test_figure(self)

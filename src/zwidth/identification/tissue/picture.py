@@ -1,0 +1,65 @@
+"""A fit of a tissue as a picture: measured and fitted, and what is left over."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from zwidth.compiled import Array
+from zwidth.errors import InputError
+from zwidth.plots.style import BLUE, GREY, LOOK, RED, heading, new_figure, page_heading, scale
+from zwidth.quantity.text import quantity_unit
+
+if TYPE_CHECKING:
+    from zwidth.identification.tissue.result import TissueFit
+
+MOST_DOTS = 4000
+
+
+@rc_context(LOOK)
+def fit_figure(fit: TissueFit) -> Figure:
+    """Measured and fitted against the time; below, what is left over.
+
+    Raises
+    ------
+    InputError
+        If the times are not known.
+    """
+    if fit.time is None:
+        raise InputError("this fit does not hold the times of its samples: there is nothing to draw")
+    figure = new_figure(7.4, 5.2)
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1.0))
+    draw_fit(above, fit, fit.time)
+    draw_left(below, fit, fit.time)
+    below.set_xlabel("time t [s]")
+    page_heading(figure, title(fit))
+    return figure
+
+
+def title(fit: TissueFit) -> str:
+    """The model and its numbers, on a line."""
+    numbers = ", ".join(f"{row[0].replace('_', ' ')} {row[1]} {row[3]}" for row in fit.table()[1:])
+    return f"{fit.model.name}: {numbers}"
+
+
+def draw_fit(axes: Axes, fit: TissueFit, time: Array) -> None:
+    """Dots measured, a line fitted."""
+    factor, unit = scale(fit.output, quantity_unit(fit.response, fit.motion))
+    every = slice(None, None, max(1, time.size // MOST_DOTS))
+    axes.plot(time[every], factor * fit.output[every], ".", ms=3, color=GREY, mew=0, label="measured")
+    axes.plot(time, factor * (fit.output - fit.residuals), color=BLUE, label=f"{fit.model.name}, fitted")
+    axes.set_ylabel(f"{'force' if fit.response == 'force' else 'depth'} [{unit}]")
+    axes.legend(loc="best")
+
+
+def draw_left(axes: Axes, fit: TissueFit, time: Array) -> None:
+    """Measured less fitted: noise, if the model is right."""
+    factor, unit = scale(fit.residuals, quantity_unit(fit.response, fit.motion))
+    every = slice(None, None, max(1, time.size // MOST_DOTS))
+    axes.axhline(0.0, color=GREY, lw=0.8)
+    axes.plot(time[every], factor * fit.residuals[every], ".", ms=2.5, color=RED, mew=0)
+    axes.set_ylabel(f"left over [{unit}]")
+    heading(axes, "measured less fitted: noise, where the model is right")
