@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from collections.abc import Callable
+from functools import partial
 from threading import Event, Thread
 from typing import Any
 
@@ -142,7 +144,7 @@ class _Server:
         document = panel_state.curdoc
         self._open += 1
         state, message = self._asked(document)
-        session = Session(state, self._workers, document.add_next_tick_callback, message)
+        session = Session(state, self._workers, partial(_soon, document), message)
         document.on_session_destroyed(lambda _: self._left(session))
         return page_of(session)
 
@@ -167,6 +169,24 @@ class _Server:
             self._loop.call_soon_threadsafe(self._ended.set)
         self._thread.join()
         self._workers.close()
+
+
+def _soon(document: Document, work: Callable[[], None]) -> None:
+    """Have something done when what goes before has been sent."""
+    document.add_next_tick_callback(partial(_and_sent, document, work))
+
+
+def _and_sent(document: Document, work: Callable[[], None]) -> None:
+    """Do it, and have what it changes sent before anything else is done.
+
+    Held, changes are sent by Bokeh itself, which keeps the document to itself until they are out.  Panel
+    would put them off while an answer to the browser is on its way, until after whatever comes next.
+    """
+    document.hold()
+    try:
+        work()
+    finally:
+        document.unhold()
 
 
 def _text(value: bytes | str) -> str:

@@ -201,9 +201,13 @@ class Session:
             self._follow()
 
     def _follow(self) -> None:
-        """Numbers, advice and scope, and the picture that is open."""
+        """Numbers, advice and scope; a moment later the picture that is open."""
         self.details.html = str(details(self.verdict))
-        self._open.moved()
+        self._soon(partial(self._draw_if, self.state))
+
+    def _draw_if(self, state: State) -> None:
+        if state is self.state:
+            self._open.moved()
 
     # files
 
