@@ -16,12 +16,11 @@ import xarray as xr
 from full_disk import full_disk
 
 import zwidth as zw
-from zwidth.maps.chunk import Place, compute
+from zwidth.maps.chunk import compute
 from zwidth.maps.kernel import STABLE, UNKNOWN, UNSTABLE
 from zwidth.maps.kernel import decide as decide_cell
 from zwidth.maps.plan import plan
-from zwidth.maps.request import CHUNK, request
-from zwidth.maps.store import FORMAT
+from zwidth.maps.request import CHUNK, FORMAT, request
 from zwidth.maps.sustained import _exactly
 from zwidth.operator import Dowel, Finger
 from zwidth.passivity.check import check_by_closed_forms
@@ -366,8 +365,8 @@ def test_chunks_tile_the_map() -> None:
     """The last chunk is the rest: no cell twice, none missing."""
     asked = request(PADDLE, *WIDE, (CHUNK + 3, 5), None, {"none": None})
     ready = plan(asked)
-    assert asked.chunks == (2, 1)
-    assert [compute(ready, Place(i, 0))["passive"].shape for i in (0, 1)] == [(CHUNK, 5), (3, 5)]
+    assert asked.layout.chunks == (2, 1)
+    assert [compute(ready, (i, 0))["passive"].shape for i in (0, 1)] == [(CHUNK, 5), (3, 5)]
 
 
 @pytest.mark.parametrize(

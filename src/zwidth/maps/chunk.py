@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
 from zwidth.maps.kernel import STABLE, UNKNOWN, decide_block
+from zwidth.maps.layout import Layers, Place, cells
 from zwidth.maps.plan import Contact, HandPlan, Plan
 from zwidth.maps.request import CHUNK, Array
 from zwidth.quantity.exact import Exact
@@ -18,24 +17,9 @@ _SHY = 1e-14
 """By how much every number of the admissible speed is taken to its safe side: more than its rounding."""
 
 
-class Place(NamedTuple):
-    """Which chunk, counted along K and along B."""
-
-    row: int
-    column: int
-
-    @property
-    def cells(self) -> tuple[slice, slice]:
-        """Its cells in the whole map."""
-        return tuple(slice(n * CHUNK, (n + 1) * CHUNK) for n in self)  # type: ignore[return-value]
-
-
-Layers = dict[str, NDArray[Any]]
-
-
 def compute(ready: Plan, place: Place) -> Layers:
     """Every layer of one chunk, by the name of its array."""
-    rows, columns = place.cells
+    rows, columns = cells(place, (CHUNK, CHUNK))
     k, b = ready.stiffness[rows], ready.damping[columns]
     indices = np.arange(len(ready.stiffness))[rows]
     passive = indices[:, None] < ready.passive[columns][None, :]

@@ -19,12 +19,15 @@ from zwidth.device import Device
 from zwidth.environment import BackwardDifference, Wall
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
+from zwidth.maps.layout import Layout
 from zwidth.operator import Dowel, Finger
 from zwidth.operator.hand_impedance import HandImpedance, as_hand
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.stability.known_hand.coupled import motion_of
 
 Array = NDArray[np.float64]
+
+FORMAT = "zwidth map 1"
 
 MOST_CELLS = 100_000_000
 """Of one map; more are a mistake in the numbers."""
@@ -64,9 +67,18 @@ class Request:
     hands: tuple[tuple[str, HandImpedance], ...]
 
     @property
-    def chunks(self) -> tuple[int, int]:
-        """How many chunks there are along K and along B."""
-        return -(-self.stiffness.cells // CHUNK), -(-self.virtual_damping.cells // CHUNK)
+    def layout(self) -> Layout:
+        """The arrays of the map."""
+        stable = {f"stable_{name}": "bool" for name, _ in self.hands}
+        return Layout(
+            "map",
+            FORMAT,
+            self.digest(),
+            self.describe(),
+            {"stiffness": self.stiffness.values, "virtual_damping": self.virtual_damping.values},
+            (CHUNK, CHUNK),
+            {"passive": "bool", "passive_sustained": "bool", "admissible_speed": "float64"} | stable,
+        )
 
     def describe(self) -> dict[str, Any]:
         """The request as JSON holds it; exact numbers as text."""

@@ -1,16 +1,20 @@
-"""Who computes the chunks: threads here, or a Dask cluster elsewhere.  The bits are the same."""
+"""Who computes the chunks: threads or processes here, or a Dask cluster elsewhere.  The bits are the same."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, CancelledError, ThreadPoolExecutor, wait
 from itertools import islice
+from queue import SimpleQueue
 from typing import Any
 
 from zwidth.errors import InputError
-from zwidth.maps.chunk import Layers, Place, compute
-from zwidth.maps.plan import Plan
+from zwidth.maps.layout import Layers, Place
+from zwidth.maps.worker import Worker
+
+Compute = Callable[[Any, Place], Layers]
+"""From what was made ready once, and a chunk, to its layers."""
 
 Finished = Iterator[tuple[Place, Layers]]
 
@@ -18,9 +22,9 @@ _TIMEOUT = "10 s"
 """How long a cluster may take to answer."""
 
 
-def on_threads(ready: Plan, places: list[Place], workers: int | None) -> Finished:
+def on_threads(compute: Compute, ready: Any, places: list[Place], workers: int | None) -> Finished:
     """Each chunk as it is finished, on so many threads; the kernels do not hold Python's lock."""
-    count = (os.cpu_count() or 1) if workers is None else workers
+    count = processors() if workers is None else workers
     waiting = iter(places)
     with ThreadPoolExecutor(count) as pool:
         running = {pool.submit(compute, ready, place): place for place in islice(waiting, 2 * count)}
@@ -32,14 +36,39 @@ def on_threads(ready: Plan, places: list[Place], workers: int | None) -> Finishe
                     running[pool.submit(compute, ready, place)] = place
 
 
-def on_cluster(ready: Plan, places: list[Place], address: str) -> Finished:
+def on_processes(compute: Compute, ready: Any, places: list[Place], workers: int | None) -> Finished:
+    """Each chunk as it is finished, on so many processes: what is written in Python holds its lock."""
+    count = min(processors() if workers is None else workers, len(places))
+    if count <= 1:
+        yield from ((place, compute(ready, place)) for place in places)
+        return
+    idle: SimpleQueue[Worker] = SimpleQueue()
+    hired = [Worker(compute, ready) for _ in range(count)]
+    for worker in hired:
+        idle.put(worker)
+
+    def ask(_: Any, place: Place) -> Layers:
+        worker = idle.get()
+        try:
+            return worker.ask(place)
+        finally:
+            idle.put(worker)
+
+    try:
+        yield from on_threads(ask, None, places, count)
+    finally:
+        for worker in hired:
+            worker.dismiss()
+
+
+def on_cluster(compute: Compute, ready: Any, places: list[Place], address: str) -> Finished:
     """Each chunk as it is finished, on the workers of the Dask scheduler at an address."""
     try:
         import distributed
     except ImportError:
         raise InputError(
             'a cluster needs Dask, which is not installed: pip install "zwidth[maps]"; '
-            "without an address the map is computed on this machine"
+            "without an address all is computed on this machine"
         ) from None
     dask: Any = distributed
     try:
@@ -52,6 +81,16 @@ def on_cluster(ready: Plan, places: list[Place], address: str) -> Finished:
     with client:
         (shared,) = client.scatter([ready], broadcast=True)  # in a list: a tuple is scattered part by part
         futures = {client.submit(compute, shared, place, pure=False): place for place in places}
-        for future, layers in dask.as_completed(futures, with_results=True):
-            yield futures[future], layers
-            future.release()
+        try:
+            for future, layers in dask.as_completed(futures, with_results=True):
+                yield futures[future], layers
+                future.release()
+        except (CancelledError, OSError):
+            raise InputError(
+                f"the Dask scheduler at {address} went away; what is finished is kept where a file was named"
+            ) from None
+
+
+def processors() -> int:
+    """How many processors there are to compute on."""
+    return os.cpu_count() or 1

@@ -22,12 +22,13 @@ import xarray as xr
 from zwidth.device import Device
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
-from zwidth.maps.chunk import Layers, Place
+from zwidth.maps.chunk import compute
+from zwidth.maps.layout import Layers, Place
 from zwidth.maps.plan import Plan, plan, spring_limit, stable_limits
-from zwidth.maps.request import Request, request
+from zwidth.maps.request import FORMAT, Request, request
 from zwidth.maps.scopes import scopes
-from zwidth.maps.store import FORMAT, Store, layer_types
-from zwidth.maps.workers import on_cluster, on_threads
+from zwidth.maps.store import computed
+from zwidth.maps.workers import Finished, on_cluster, on_threads
 from zwidth.passivity.document import to_json
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY
@@ -103,45 +104,14 @@ def z_width(
     if not speed > 0:
         raise InputError(f"speed must be > 0, got {speed}: a hand at rest gains nothing from any wall")
     ready = plan(asked)
-    layers = _computed(asked, ready, None if path is None else Path(path), address, workers, progress)
+
+    def finished(left: list[Place]) -> Finished:
+        if address is None:
+            return on_threads(compute, ready, left, workers)
+        return on_cluster(compute, ready, left, address)
+
+    layers = computed(asked.layout, finished, None if path is None else Path(path), progress)
     return _dataset(asked, ready, layers, speed)
-
-
-def _computed(
-    asked: Request,
-    ready: Plan,
-    path: Path | None,
-    address: str | None,
-    workers: int | None,
-    progress: Progress,
-) -> Layers:
-    keep: Any = _Memory(asked) if path is None else Store(path, asked)
-    places = keep.left
-    total = asked.chunks[0] * asked.chunks[1]
-    finished = on_threads(ready, places, workers) if address is None else on_cluster(ready, places, address)
-    for count, (place, layers) in enumerate(finished, start=total - len(places) + 1):
-        keep.write(place, layers)
-        progress(count, total)
-    whole: Layers = keep.read()
-    return whole
-
-
-class _Memory:
-    """The arrays of one map without a file."""
-
-    def __init__(self, asked: Request) -> None:
-        shape = (asked.stiffness.cells, asked.virtual_damping.cells)
-        self._layers: Layers = {
-            name: np.zeros(shape, dtype=kind) for name, kind in layer_types(asked).items()
-        }
-        self.left = [Place(i, j) for i in range(asked.chunks[0]) for j in range(asked.chunks[1])]
-
-    def write(self, place: Place, layers: Layers) -> None:
-        for name, values in layers.items():
-            self._layers[name][place.cells] = values
-
-    def read(self) -> Layers:
-        return self._layers
 
 
 def _dataset(asked: Request, ready: Plan, layers: Layers, speed: float) -> xr.Dataset:
