@@ -33,8 +33,10 @@ def test_a_value_with_its_unit(value: float | None, unit: str, text: str) -> Non
 
 
 def test_a_value_in_a_unit_that_is_kept() -> None:
-    """Six digits without a prefix; what is no number is a word."""
+    """Six digits; a tiny one has four and a prefix, and what is no number is a word."""
     assert in_unit(0.0123456789, "N*s/m") == "0.0123457 N·s/m"
+    assert in_unit(-2.39684e-05, "N*m") == "-23.97 µN·m"
+    assert in_unit(7.123456e-05, "N*m*s/rad") == "71.23 µN·m·s/rad"
     assert (in_unit(None, "N/m"), in_unit(inf, "N/m")) == ("none", "any")
 
 

@@ -19,6 +19,7 @@ from zwidth.cli.output import print_message, quiet_pipe, tolerate_encoding
 from zwidth.cli.typed import as_typed
 from zwidth.cli.welcome import WELCOME
 from zwidth.errors import InputError
+from zwidth.quantity.spoken import answers_as_typed
 from zwidth.specification.table import plain, quoted, suggestion
 
 BAD_INPUT = 2
@@ -54,7 +55,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         answer(_parser)
     typed = list(sys.argv[1:] if argv is None else argv)
     try:
-        return _run(typed)
+        with answers_as_typed():
+            return _run(typed)
     except InputError as error:
         print_message(plain(as_typed(str(error), typed), _LONGEST_MESSAGE))
         return BAD_INPUT

@@ -24,7 +24,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Certain, parameter, plain, read_number
-from zwidth.quantity.text import unit_text
+from zwidth.quantity.text import told
 
 LARGEST_EXPONENT = 10
 """A contact much harder than any is."""
@@ -128,7 +128,7 @@ class HuntCrossley(Environment):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, on one line, in linear or rotary units."""
-        k = f"{self.stiffness:.6g} {unit_text(self.unit_of('stiffness', motion))}"
+        k = told(self.stiffness, self.unit_of("stiffness", motion))
         parts = [k, f"exponent {self.exponent:g}"]
         if self.dissipation:
             parts.append(with_unit("dissipation", self.dissipation, motion))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from zwidth.quantity.exact import Exact, Interval
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 
 _SUPERSCRIPT = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 _LONGEST = 6
@@ -13,8 +13,7 @@ _LONGEST = 6
 
 def with_unit(key: str, value: Exact | Interval, motion: str) -> str:
     """A value and the unit its glossary entry has for the motion."""
-    number = str(value) if isinstance(value, Interval) else f"{float(value):.6g}"
-    return f"{number} {quantity_unit(key, motion)}"
+    return told_quantity(value, key, motion)
 
 
 def never_pulls(clamped: bool) -> str:

@@ -25,7 +25,8 @@ from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.result import Result
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Interval, RealLike, ends
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.spoken import spoken
+from zwidth.quantity.text import quantity_unit, told, told_quantity
 from zwidth.quantity.units import parse, parse_number
 from zwidth.rendering.rendered import laws_of
 from zwidth.servo.proving import least_friction
@@ -122,9 +123,7 @@ class Emitted(Result):
             rows.append(("force off by at most", f"{self.machine.error:.4g} {unit}"))
         cost = self.judged.cost(self.device, self.environment)
         if cost is not None:
-            rows.append(
-                ("stiffness that it costs", f"{cost:.4g} {quantity_unit('stiffness', self.device.motion)}")
-            )
+            rows.append(("stiffness that it costs", told_quantity(cost, "stiffness", self.device.motion, 4)))
         return rows
 
     def rows(self) -> list[tuple[str, str]]:
@@ -151,12 +150,13 @@ class Emitted(Result):
             actuator = "current rise and filters are not counted; force limit and converter steps are"
         elif self.judged.counted and self.machine.law.step > 0:
             actuator += "; converter steps are"
-        unit = "counts" if self.machine.law.resolution > 0 else quantity_unit("position", self.device.motion)
+        unit = "counts" if self.machine.law.resolution > 0 else self.device.unit("position")
+        to = told(high, unit, 10)
         uncounted = () if self.judged.counted else (self.judged.statement,)
         return (
             *uncounted,
             actuator,
-            f"readings from {low:.10g} to {high:.10g} {unit}; beyond them nothing is claimed",
+            f"readings from {low * spoken(unit)[0]:.10g} to {to}; beyond them nothing is claimed",
             f"a force at each sample, {late:g} s after its reading (the delay), held to the next",
         )
 

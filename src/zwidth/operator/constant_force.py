@@ -11,7 +11,7 @@ from zwidth.operator.operator import Signals
 from zwidth.operator.parameter import ParametricOperator
 from zwidth.operator.quantities import FORCE
 from zwidth.quantity.parameter import parameter
-from zwidth.quantity.text import unit_text
+from zwidth.quantity.text import told
 
 if TYPE_CHECKING:
     from zwidth.operator.operator import Signal
@@ -43,4 +43,4 @@ class ConstantForce(ParametricOperator):
 
     def describe(self, motion: str = "linear") -> str:
         """The push on one line."""
-        return f"constant force, {self.force:.6g} {unit_text(FORCE.unit_for(motion))}"
+        return f"constant force, {told(self.force, FORCE.unit_for(motion))}"

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Interval, ends
+from zwidth.quantity.exact import ends
 from zwidth.quantity.parameter import Parametric, Uncertain, parameter
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 
 _DRIVES = "a passive hand has no energy of its own to give; 0 where it has none"
 
@@ -50,8 +50,7 @@ class HandImpedance(Parametric):
     def describe(self, motion: str = "linear") -> str:
         """The hand with its numbers, on one line, in linear or rotary units."""
         parts = [
-            f"{symbol} = {value if isinstance(value, Interval) else f'{float(value):.6g}'} "
-            f"{quantity_unit(name, motion)}"
+            f"{symbol} = {told_quantity(value, name, motion)}"
             for symbol, name, value in (
                 ("m_h", "mass", self.mass),
                 ("k", "stiffness", self.stiffness),

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Self
 from zwidth.operator.operator import Operator
 from zwidth.quantity.glossary import Quantity
 from zwidth.quantity.parameter import Parametric, parameters_of
-from zwidth.quantity.text import unit_text
+from zwidth.quantity.text import told
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,6 +45,6 @@ class ParametricOperator(Parametric, Operator):
     def describe_parameters(self, motion: str = "linear") -> str:
         """The numbers with their units, in linear or rotary units."""
         return ", ".join(
-            f"{name.replace('_', ' ')} {getattr(self, name):.6g} {unit_text(quantity.unit_for(motion))}"
+            f"{name.replace('_', ' ')} {told(getattr(self, name), quantity.unit_for(motion))}"
             for name, quantity in self.parameters().items()
         )

@@ -10,8 +10,8 @@ from zwidth.errors import InputError
 from zwidth.operator.motion import UNIT, as_path, first, sampled
 from zwidth.operator.operator import Signals
 from zwidth.operator.record import RecordedOperator, as_record
-from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Parametric, Reads, part
+from zwidth.quantity.text import told_quantity
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -75,11 +75,13 @@ class PrescribedMotion(Parametric, RecordedOperator):
 
     def describe(self, motion: str = "linear") -> str:
         """How long the motion is and where it starts."""
-        unit = GLOSSARY["position"].unit_for(motion)
         if callable(self.positions):
-            return f"prescribed motion, a function of time, from {self.initial_position:.6g} {unit}"
-        low, high = self.positions.min(), self.positions.max()
-        return f"prescribed motion, {len(self.positions)} positions, {low:.6g} to {high:.6g} {unit}"
+            start = told_quantity(self.initial_position, "position", motion)
+            return f"prescribed motion, a function of time, from {start}"
+        low, high = (
+            told_quantity(x, "position", motion) for x in (self.positions.min(), self.positions.max())
+        )
+        return f"prescribed motion, {len(self.positions)} positions, {low} to {high}"
 
 
 def _same_length(what: str, given: int, wanted: int, of: str) -> None:

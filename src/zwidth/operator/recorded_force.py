@@ -10,8 +10,8 @@ from zwidth.errors import InputError
 from zwidth.operator.column import read_column
 from zwidth.operator.operator import Signals
 from zwidth.operator.record import RecordedOperator, as_record
-from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Parametric, Reads, part
+from zwidth.quantity.text import told_quantity
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -74,6 +74,6 @@ class RecordedForce(Parametric, RecordedOperator):
 
     def describe(self, motion: str = "linear") -> str:
         """How long the record is and what it spans."""
-        unit = GLOSSARY["force"].unit_for(motion)
         low, high = self.newtons.min(), self.newtons.max()
-        return f"recorded force, {len(self.newtons)} samples, {low:.6g} to {high:.6g} {unit}"
+        highest = told_quantity(high, "force", motion)
+        return f"recorded force, {len(self.newtons)} samples, {low:.6g} to {highest}"

@@ -13,8 +13,8 @@ from zwidth.operator.operator import LinearHand, Signals
 from zwidth.operator.parameter import ParametricOperator
 from zwidth.operator.quantities import DAMPING, MASS, NO_NEGATIVE_DAMPING, NO_NEGATIVE_MASS, STIFFNESS
 from zwidth.operator.record import RecordedOperator
-from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Reads, parameter, part
+from zwidth.quantity.text import told_quantity
 
 if TYPE_CHECKING:
     from zwidth.operator.motion import Path
@@ -130,6 +130,5 @@ class Tracking(RecordedOperator, ParametricOperator):
 
     def describe(self, motion: str = "linear") -> str:
         """The hand with its numbers, on one line."""
-        unit = GLOSSARY["position"].unit_for(motion)
-        path = f"a path from {self.initial_position:.6g} {unit}"
+        path = f"a path from {told_quantity(self.initial_position, 'position', motion)}"
         return f"hand tracking {path}, {self.describe_parameters(motion)}"

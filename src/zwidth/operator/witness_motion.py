@@ -9,7 +9,7 @@ import numpy as np
 
 from zwidth.operator.motion import check_period, held, listed
 from zwidth.operator.operator import Operator, Signals
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import told_quantity
 
 if TYPE_CHECKING:
     from zwidth.operator.operator import Signal
@@ -66,8 +66,8 @@ class WitnessMotion(Operator):
 
     def describe(self, motion: str = "linear") -> str:
         """How long the motion is and how deep."""
-        unit = GLOSSARY["position"].unit_for(motion)
-        return f"motion of a witness, {self.intervals} samples, to {self._positions.max():.6g} {unit}"
+        deepest = told_quantity(self._positions.max(), "position", motion)
+        return f"motion of a witness, {self.intervals} samples, to {deepest}"
 
     @property
     def _positions(self) -> Signal:

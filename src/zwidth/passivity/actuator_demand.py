@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from zwidth.device import Device
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, Interval, ends
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 
 if TYPE_CHECKING:
     from zwidth.passivity.storage.evidence.gain import Gain
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 def actuator_demand(device: Device, limit: Exact | Interval, witness: Witness | Gain) -> str:
     """Whether the motion asks for more force than the limit of the device's actuator [N; N·m]."""
-    unit = quantity_unit("force", device.motion)
-    most, needed = float(ends(limit)[1]), _peak_force(witness)
+    most = told_quantity(float(ends(limit)[1]), "force", device.motion)
+    needed = told_quantity(_peak_force(witness), "force", device.motion, 4)
     if not is_beyond(limit, witness):
-        return f"the motion stays within the actuator's {most:.6g} {unit}: it asks for {needed:.4g} {unit}"
+        return f"the motion stays within the actuator's {most}: it asks for {needed}"
     return (
-        f"the motion asks for {needed:.4g} {unit}, more than the actuator's {most:.6g} {unit}; with that "
+        f"the motion asks for {needed}, more than the actuator's {most}; with that "
         "limit respected no motion is shown, and none is excluded"
     )
 

@@ -26,7 +26,8 @@ from zwidth.passivity.linear.boundary import (
 from zwidth.passivity.parameter_limits import Change, has_stiffness, is_of_high_degree, provable, stiffness_of
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import in_words, readable, unit_text
+from zwidth.quantity.spoken import spoken
+from zwidth.quantity.text import in_words, readable
 
 _NEVER_NOTHING = ("stiffness", "resolution", "link_delay")
 """What nobody can set to 0 and keep what it is there for."""
@@ -197,8 +198,8 @@ def turn(knob: Knob, motion: str, kind: Literal["change", "slack"], grain: int =
     if kind == "change" and to is not None and not _is_change(knob, to):
         to = None
     unit = GLOSSARY[knob.parameter.rpartition(".")[2]].unit_for(motion)
-    shown = None if to is None else outward(to, knob)
-    return Advice(knob.parameter, knob.current, to, unit, kind, _text(knob, shown, unit_text(unit), kind))
+    shown = None if to is None else outward(to, knob, spoken(unit)[0])
+    return Advice(knob.parameter, knob.current, to, unit, kind, _text(knob, shown, unit, kind))
 
 
 def _simplest_near(value: float, holds: Holds, more: bool, grain: int) -> float:
@@ -219,12 +220,13 @@ def _is_change(knob: Knob, to: float) -> bool:
     return to > knob.current if knob.more else to < knob.current
 
 
-def outward(value: float, knob: Knob) -> float:
-    """Four significant digits on the safe side, if those are proved too."""
+def outward(value: float, knob: Knob, factor: float = 1.0) -> float:
+    """Four significant digits on the safe side, in the unit of which one in SI is `factor`, if proved too."""
     if value == 0 or isinf(value):
         return value
-    scale = 10.0 ** (floor(log10(abs(value))) - 3)
-    rounded = float(f"{(ceil(value / scale) if knob.more else floor(value / scale)) * scale:.4g}")
+    told = value * factor
+    scale = 10.0 ** (floor(log10(abs(told))) - 3)
+    rounded = float(f"{(ceil(told / scale) if knob.more else floor(told / scale)) * scale:.4g}") / factor
     return rounded if knob.holds(Exact(rounded).fraction) else value
 
 

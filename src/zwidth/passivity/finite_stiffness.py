@@ -28,7 +28,7 @@ from zwidth.passivity.result import Documented
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
@@ -132,18 +132,15 @@ class FiniteStiffnessReplay(Documented):
 
     def rows(self) -> Iterator[tuple[str, str]]:
         """What a person reads."""
-        k, m = (quantity_unit(name, self.motion) for name in ("stiffness", "mass"))
         times = f" (its cycle {self.rounds} of {self.rounds_found:,} times)" if self.rounds_found > 1 else ""
         yield "ideal hand", f"{self.claimed:.4g} J by the proof, {self.replayed:.4g} J simulated{times}"
         for threshold in self.thresholds:
             if threshold.stiffness is None:
                 text = f"gets nothing out, up to {self.curve[-1].bandwidth:.3g} Hz"
             else:
-                text = (
-                    f"must be stiffer than {threshold.stiffness:.3g} {k}, quicker than "
-                    f"{threshold.bandwidth:.3g} Hz"
-                )
-            yield f"a hand on {threshold.mass:.3g} {m}", text
+                k = told_quantity(threshold.stiffness, "stiffness", self.motion, 3)
+                text = f"must be stiffer than {k}, quicker than {threshold.bandwidth:.3g} Hz"
+            yield f"a hand on {told_quantity(threshold.mass, 'mass', self.motion, 3)}", text
         yield "best hand tried", f"{100 * self.best_share:.3g} % of the ideal energy"
 
     def report(self) -> Iterable[Part]:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from zwidth.passivity.scope import Contact, Encoder, Law, Sampling, Scope, Torque
 from zwidth.passivity.wording import describe_hands
-from zwidth.quantity.text import in_words, quantity_unit
+from zwidth.quantity.text import in_words, told_quantity
 
 _CONTACT: dict[Contact, str] = {
     "made and broken": "contact made and broken",
@@ -94,12 +94,11 @@ def _hands(scope: Scope, active: bool) -> Iterator[str]:
 def _losses(scope: Scope) -> str:
     if scope.friction is not None:
         return "friction not below its measured curve, continued beyond its ends"
-    damping, force = (quantity_unit(name, scope.motion) for name in ("damping", "force"))
     parts = []
     if scope.damping is not None:
-        parts.append(f"b = {scope.damping:.6g} {damping}")
+        parts.append(f"b = {told_quantity(scope.damping, 'damping', scope.motion)}")
         if scope.coulomb_friction is not None:
-            parts.append(f"f_c = {scope.coulomb_friction:.6g} {force}")
+            parts.append(f"f_c = {told_quantity(scope.coulomb_friction, 'force', scope.motion)}")
     if not parts:
         return ""
     left_out = "" if scope.coulomb_friction is not None else ", Coulomb friction left out"
@@ -109,7 +108,7 @@ def _losses(scope: Scope) -> str:
 def _measured(scope: Scope) -> str:
     if scope.friction_speed is None:
         return ""
-    speed = f"{scope.friction_speed:.6g} {quantity_unit('friction_speed', scope.motion)}"
+    speed = told_quantity(scope.friction_speed, "friction_speed", scope.motion)
     return f", measured up to {speed} and taken for granted beyond"
 
 
@@ -123,6 +122,4 @@ def _forces(scope: Scope) -> str:
     if scope.largest_force is None:
         return ""
     moment = "" if scope.largest_moment is None else f" and moments up to {scope.largest_moment:.6g} N·m"
-    return (
-        f"forces of the wall up to {scope.largest_force:.6g} {quantity_unit('force', scope.motion)}{moment}"
-    )
+    return f"forces of the wall up to {told_quantity(scope.largest_force, 'force', scope.motion)}{moment}"

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from zwidth.passivity.scope import Contact, Hands, Law, Scope
-from zwidth.quantity.text import in_words, quantity_unit
+from zwidth.quantity.text import in_words, told_quantity
 
 if TYPE_CHECKING:
     from zwidth.passivity.outcome import Outcome
@@ -97,7 +97,7 @@ def if_friction_goes_on(scope: Scope) -> str:
     """
     if scope.friction_speed is None or scope.friction is not None:
         return ""
-    speed = f"{scope.friction_speed:.6g} {quantity_unit('friction_speed', scope.motion)}"
+    speed = told_quantity(scope.friction_speed, "friction_speed", scope.motion)
     return f", if friction beyond {speed}, where it was not measured, is no less than f_c + b |v|"
 
 
@@ -129,8 +129,7 @@ def _lines(scope: Scope, active: bool) -> Iterator[str]:
         yield _TORQUE[scope.torque]
     if scope.largest_force is not None:
         moment = "" if scope.largest_moment is None else f" and moments up to {scope.largest_moment:.6g} N·m"
-        force = quantity_unit("force", scope.motion)
-        yield f"forces of the wall up to {scope.largest_force:.6g} {force}{moment}"
+        yield f"forces of the wall up to {told_quantity(scope.largest_force, 'force', scope.motion)}{moment}"
     yield _SAMPLING[scope.sampling]
     yield _ENCODER[scope.encoder]
     yield from (f"{in_words(key)} was not given and taken as 0" for key in scope.assumed)
@@ -154,18 +153,20 @@ def intervals(scope: Scope, outcome: Outcome) -> str | None:
 
 
 def _losses(scope: Scope) -> Iterator[str]:
-    damping, force = (quantity_unit(name, scope.motion) for name in ("damping", "force"))
     if scope.friction is not None:
         yield f"the device takes out what its friction curve says; {scope.friction.assumption}"
     elif scope.damping is not None and scope.coulomb_friction is not None:
+        b = told_quantity(scope.damping, "damping", scope.motion)
+        dry = told_quantity(scope.coulomb_friction, "force", scope.motion)
         yield (
-            f"the device takes out at least b = {scope.damping:.6g} {damping} of viscous and "
-            f"f_c = {scope.coulomb_friction:.6g} {force} of Coulomb friction{_measured(scope)}"
+            f"the device takes out at least b = {b} of viscous and f_c = {dry} of Coulomb friction"
+            f"{_measured(scope)}"
         )
     elif scope.damping is not None:
+        b = told_quantity(scope.damping, "damping", scope.motion)
         yield (
-            f"the device takes out b = {scope.damping:.6g} {damping} of viscous friction; Coulomb friction "
-            f"is left out{_measured(scope)}"
+            f"the device takes out b = {b} of viscous friction; Coulomb friction is left out"
+            f"{_measured(scope)}"
         )
 
 
@@ -173,7 +174,7 @@ def _measured(scope: Scope) -> str:
     """Up to which speed."""
     if scope.friction_speed is None:
         return ""
-    speed = f"{scope.friction_speed:.6g} {quantity_unit('friction_speed', scope.motion)}"
+    speed = told_quantity(scope.friction_speed, "friction_speed", scope.motion)
     return f"; it was measured up to {speed}, for faster motions the same is taken for granted"
 
 
@@ -190,21 +191,24 @@ def _actuator(scope: Scope) -> str:
 
 def describe_hands(hands: Hands, motion: str) -> str:
     """The hands that a result is about, in words."""
-    damping, length, speed = (quantity_unit(n, motion) for n in ("damping", "position", "friction_speed"))
     if hands.impedance is not None:
         return f"a hand that is known: {hands.impedance}"
     if hands.activity is not None:
         where = "" if hands.below is None else f" below {hands.below:g} Hz"
-        return f"hands that give out at most {hands.activity:.6g} {damping}{where} of their motion"
+        most = told_quantity(hands.activity, "damping", motion)
+        return f"hands that give out at most {most}{where} of their motion"
     bounds = []
     if hands.speed is not None:
         over = "each part of a sample with one force" if hands.in_each_part else "one sample"
         bounds.append(
-            f"up to {hands.speed:.4g} {speed} over {over}" + _counts(hands.counts_a_sample, " a sample")
+            f"up to {told_quantity(hands.speed, 'friction_speed', motion, 4)} over {over}"
+            + _counts(hands.counts_a_sample, " a sample")
         )
     if hands.inside is not None:
         counts = _counts(hands.counts_inside)
-        bounds.append(f"up to {hands.inside:.4g} {length}{counts} {_sides(hands, length)}")
+        bounds.append(
+            f"up to {told_quantity(hands.inside, 'position', motion, 4)}{counts} {_sides(hands, motion)}"
+        )
     return f"hands of {', '.join(bounds)}" if bounds else "every hand"
 
 
@@ -213,9 +217,9 @@ def _counts(counts: float | None, per: str = "") -> str:
     return "" if counts is None else f" ({counts:.4g} counts{per})"
 
 
-def _sides(hands: Hands, unit: str) -> str:
+def _sides(hands: Hands, motion: str) -> str:
     if hands.outside is None:
         return "inside and any distance outside"
     if hands.inside is not None and hands.outside == hands.inside:
         return "on either side"
-    return f"inside and {hands.outside:.4g} {unit} outside"
+    return f"inside and {told_quantity(hands.outside, 'position', motion, 4)} outside"

@@ -21,6 +21,7 @@ from zwidth.plots.style import (
     ORANGE,
     PURPLE,
     SKY,
+    drawn_in,
     label,
     new_figure,
     number,
@@ -57,15 +58,18 @@ def has_friction(verdict: LinearVerdict) -> bool:
 def draw_damping(axes: Axes, verdict: LinearVerdict) -> None:
     """Shares of the required damping, stacked, above the device's damping."""
     account, motion = verdict.budget, verdict.device.motion
+    factor, _ = drawn_in("damping", motion)
     if isfinite(account.required) and verdict.required_damping is not None:
-        _stack(axes, [(getattr(account, key), text, colour) for key, text, colour in _SHARES])
-        total = f"asked in all: {number(account.required)}"
+        _stack(axes, [(factor * getattr(account, key), text, colour) for key, text, colour in _SHARES])
+        asked = factor * account.required
         if account.required < account.hold + max(account.dynamics, 0) + max(account.delay, 0) - _TINY:
-            axes.plot([account.required] * 2, [0.6, 1.4], color=BLACK, lw=2, label=total)
+            total = f"asked in all: {number(asked)}"
+            axes.plot([asked] * 2, [0.6, 1.4], color=BLACK, lw=2, label=total)
     else:
         axes.text(0.02, 0.72, "no damping is enough", transform=axes.transAxes)
-    axes.barh(0, account.damping, height=0.6, color=BLACK, gid="b")
-    _finish(axes, ("leaks", f"b = {number(account.damping)}"))
+    has = factor * account.damping
+    axes.barh(0, has, height=0.6, color=BLACK, gid="b")
+    _finish(axes, ("leaks", f"b = {number(has)}"))
     axes.set_xlabel(label("damping", motion))
 
 

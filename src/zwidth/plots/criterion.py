@@ -15,8 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.plots.style import BLUE, GREY, LOOK, OUTCOME, RED, heading, label, new_figure, number
-from zwidth.quantity.text import quantity_unit
+from zwidth.plots.style import BLUE, GREY, LOOK, OUTCOME, RED, drawn_in, heading, label, new_figure, number
 
 _NEAR = 120
 """Extra points on each side of the tightest frequency."""
@@ -43,7 +42,9 @@ def criterion(verdict: LinearVerdict, log_frequency: bool = False) -> Figure:
 def draw_criterion(axes: Axes, verdict: LinearVerdict, log_frequency: bool = False) -> None:
     """The same on given axes."""
     frequencies, needs = refined_curve(verdict)
-    b, motion = float(verdict.decision.loop.damping), verdict.device.motion
+    motion = verdict.device.motion
+    factor, unit = drawn_in("damping", motion)
+    needs, b = [factor * need for need in needs], factor * float(verdict.decision.loop.damping)
     low, high = damping_range(needs, b)
     wanting = [n > b for n in needs]
     if any(wanting):
@@ -51,7 +52,6 @@ def draw_criterion(axes: Axes, verdict: LinearVerdict, log_frequency: bool = Fal
             frequencies, b, needs, where=wanting, color=RED, alpha=0.2, lw=0, label="b too small"
         )
     axes.plot(frequencies, needs, color=BLUE, label="asked of the device")
-    unit = quantity_unit("damping", motion)
     axes.axhline(b, color="black", ls="--", lw=1.4, label=f"device damping b = {number(b)} {unit}")
     nyquist = 0.5 / float(verdict.decision.loop.period)
     slowest = nyquist / 1000 if log_frequency else 0.0
@@ -95,8 +95,8 @@ def damping_range(needs: list[float], b: float) -> tuple[float, float]:
 
 
 def _mark(axes: Axes, verdict: LinearVerdict, needs: list[float], limits: tuple[float, float]) -> None:
-    peak, need = verdict.critical_frequency, verdict.budget.required
-    unit = quantity_unit("damping", verdict.device.motion)
+    factor, unit = drawn_in("damping", verdict.device.motion)
+    peak, need = verdict.critical_frequency, factor * verdict.budget.required
     if limits[0] < 0:
         axes.axhline(0, color=GREY, lw=0.6)
     if verdict.required_damping is None and need < inf:

@@ -10,9 +10,8 @@ from matplotlib.gridspec import SubplotSpec
 
 from zwidth.errors import InputError
 from zwidth.plots.storage import draw_storage
-from zwidth.plots.style import LOOK, OUTCOME, heading, new_figure, number, page_heading
+from zwidth.plots.style import LOOK, OUTCOME, heading, new_figure, number, page_heading, scale
 from zwidth.plots.witness import draw_motion
-from zwidth.quantity.text import unit_text
 
 if TYPE_CHECKING:
     from zwidth.passivity.bracket import Bracket
@@ -71,4 +70,5 @@ def _refuted(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
 
 def _value(bracket: Bracket, value: float | None) -> str:
     assert value is not None
-    return f"{number(value)} {unit_text(bracket.unit)}".rstrip()
+    factor, unit = scale([value], bracket.unit)
+    return f"{number(value * factor)} {unit}".rstrip()

@@ -25,14 +25,15 @@ from zwidth.plots.style import (
     GREY,
     LOOK,
     RED,
+    drawn_in,
     low_index,
     new_figure,
     note,
     number,
+    quantity_text,
     shown_name,
 )
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.text import quantity_unit
 
 _NEEDED = ("damping", "coulomb_friction", "resolution")
 
@@ -88,7 +89,7 @@ def draw_plane(
     passive = point.region == "globally stable"
     axes.plot([beta], [sigma], "o", color=GREEN if passive else RED, ms=8, zorder=6, gid="device")
     axes.annotate(
-        f"{shown_name(device)}\nK = {number(k)} {quantity_unit('stiffness', device.motion)}\n{point.region}",
+        f"{shown_name(device)}\nK = {quantity_text(k, 'stiffness', device.motion)}\n{point.region}",
         (beta, sigma), (9, -4), textcoords="offset points", va="top", fontsize=8.5, color=BLACK, zorder=7,
         parse_math=False,
         bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.8},
@@ -151,11 +152,12 @@ def _line(
         [beta / softest, beta / stiffest], [sigma / softest, sigma / stiffest],
         color=BLUE, lw=1.8, gid="stiffnesses",
     )  # fmt: skip
-    unit = quantity_unit("stiffness", device.motion)
-    decades = [10.0**n for n in range(ceil(log10(softest * 1.1)), floor(log10(stiffest / 1.1)) + 1)]
+    factor, unit = drawn_in("stiffness", device.motion)
+    ends = (ceil(log10(softest * factor * 1.1)), floor(log10(stiffest * factor / 1.1)) + 1)
+    decades = [10.0**n / factor for n in range(*ends)]
     for k in decades:
         axes.plot([beta / k], [sigma / k], "o", color="white", mec=BLUE, ms=4, zorder=4)
-        text = f"{number(k)} {unit}" if k == decades[0] else number(k)
+        text = number(k * factor) + (f" {unit}" if k == decades[0] else "")
         axes.annotate(
             text,
             (beta / k, sigma / k),
@@ -178,10 +180,10 @@ def _others(device: Device) -> list[Device]:
 def _mark_others(axes: Axes, others: list[Device]) -> None:
     """Where they are at their largest passive stiffness."""
     for other in others:
-        k = number(float(largest_spring_of(other)))
+        k = quantity_text(float(largest_spring_of(other)), "stiffness", other.motion)
         axes.plot(*([v] for v in place_at_limit(other)), "s", color=GREY, ms=5, gid="catalogue")
         axes.annotate(
-            f"{other.name} at {k} {quantity_unit('stiffness', other.motion)}",
+            f"{other.name} at {k}",
             place_at_limit(other), (7, 5), textcoords="offset points", fontsize=7.5, color=GREY,
         )  # fmt: skip
 

@@ -20,6 +20,7 @@ from matplotlib.textpath import text_to_path
 from zwidth.device import Device
 from zwidth.passivity.outcome import TOLD
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import PREFIXES, in_words, unit_text
 from zwidth.showing import printable
 
@@ -70,7 +71,7 @@ def label(name: str, motion: str = "linear", text: str | None = None, unit: str 
     """An axis label from the glossary: name, symbol, unit."""
     quantity = GLOSSARY[name]
     words = in_words(quantity.name) if text is None else text
-    shown = unit_text(quantity.unit_for(motion) if unit is None else unit) or "1"
+    shown = unit_text(spoken(quantity.unit_for(motion))[1] if unit is None else unit) or "1"
     return f"{words} {symbol(name)} [{shown}]".strip()
 
 
@@ -98,11 +99,18 @@ _SUPERSCRIPT = dict(zip("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹", strict=
 
 def scale(values: Iterable[float], unit: str) -> tuple[float, str]:
     """(factor, unit) with which these values are read without exponents, such as (1000, "mm")."""
-    largest = max((abs(v) for v in values if isfinite(v)), default=0.0)
+    factor, unit = spoken(unit)
+    largest = factor * max((abs(v) for v in values if isfinite(v)), default=0.0)
     if unit not in _SCALED or largest == 0:
-        return 1.0, unit_text(unit)
+        return factor, unit_text(unit)
     power = max(-12, min(6, 3 * floor(log10(largest * 1.0000001) / 3)))
-    return 10.0**-power, PREFIXES[power] + unit_text(unit)
+    return factor * 10.0**-power, PREFIXES[power] + unit_text(unit)
+
+
+def drawn_in(name: str, motion: str) -> tuple[float, str]:
+    """(factor, unit) of an axis with the `label` of a quantity: SI, an angle in the unit that was typed."""
+    factor, unit = spoken(GLOSSARY[name].unit_for(motion))
+    return factor, unit_text(unit)
 
 
 def quantity_text(value: float, name: str, motion: str = "linear") -> str:

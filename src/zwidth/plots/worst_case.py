@@ -27,12 +27,11 @@ from zwidth.plots.style import (
     heading,
     label,
     new_figure,
-    number,
+    quantity_text,
     scale,
     shown_name,
 )
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.text import quantity_unit
 
 _POINTS = 100
 
@@ -82,8 +81,8 @@ def draw_worst_case(axes: Axes, device: Device, stiffness: RealLike, span: RealL
         axes.text(place, 0.02, word, transform=axes.transAxes, ha="center", va="bottom", color=GREY)
     axes.set_xlabel(f"way out in one sample λ [{metres}]")
     axes.set_ylabel(label("energy", text="beyond an ideal spring,", unit=joules).replace(" W ", " J* "))
-    unit = quantity_unit("stiffness", device.motion)
-    text = f"{shown_name(device)}, K = {number(float(Exact(stiffness)))} {unit}: {region}"
+    k = quantity_text(float(Exact(stiffness)), "stiffness", device.motion)
+    text = f"{shown_name(device)}, K = {k}: {region}"
     heading(axes, text, parse_math=False)
     axes.margins(y=0.12)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2)

@@ -8,12 +8,16 @@ from math import floor, inf, log10
 
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.spoken import spoken
 
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 """By the power of ten."""
 
 _PREFIXED = ("m", "s", "J", "N", "Hz", "m/s")
 """Units that people prefix in text; N·s/m stays as it is, and 300 N/m too."""
+
+_NO_EXPONENT = ("N*m", "N·m", "rad")
+"""How units begin that have a prefix in the place of an exponent: those of torques, and radians."""
 
 
 def unit_text(unit: str) -> str:
@@ -38,17 +42,21 @@ def shown(value: float | Exact | Interval | None, unit: str, digits: int = 4) ->
     if value is None:
         return "none"
     if isinstance(value, Interval):
-        return f"{float(value.low):g} … {float(value.high):g} {unit_text(unit)}".rstrip()
+        return told(value, unit)
     number = float(value)
     if abs(number) == inf:
         return "any" if number > 0 else "none"
+    factor, unit = spoken(unit)
+    number *= factor
     power, name = _prefix(number, unit, digits)
     return f"{number / 10.0**power:.{digits}g} {name}".rstrip()
 
 
 def _prefix(number: float, unit: str, digits: int) -> tuple[int, str]:
-    if unit not in _PREFIXED or number == 0:
+    if number == 0:
         return 0, unit_text(unit)
+    if unit not in _PREFIXED:
+        return _instead_of_exponent(number, unit, digits)
     rounded = float(f"{abs(number):.{digits}g}")
     power = 3 * floor(floor(log10(rounded)) / 3)
     if (unit == "m" and power > 0) or (unit == "N" and 0.01 <= rounded < 1000) or not -9 <= power <= 9:
@@ -56,24 +64,50 @@ def _prefix(number: float, unit: str, digits: int) -> tuple[int, str]:
     return power, PREFIXES[power] + unit
 
 
+def _instead_of_exponent(number: float, unit: str, digits: int) -> tuple[int, str]:
+    """77.2 µN·m·s/deg for what would be 7.72e-05."""
+    power = 3 * floor(log10(abs(number)) / 3)
+    if "e-" not in f"{number:.{digits}g}" or not unit.startswith(_NO_EXPONENT) or power not in PREFIXES:
+        return 0, unit_text(unit)
+    return power, PREFIXES[power] + unit_text(unit)
+
+
+def told(value: float | Exact | Interval, unit: str, digits: int = 6) -> str:
+    """A value to `digits` significant digits in this very unit, an angle in the unit that was typed."""
+    factor, unit = spoken(unit)
+    if isinstance(value, Interval):
+        number = f"{float(value.low) * factor:g} … {float(value.high) * factor:g}"
+    else:
+        number = f"{float(value) * factor:.{digits}g}"
+    return f"{number} {unit_text(unit)}".rstrip()
+
+
+def told_quantity(value: float | Exact | Interval, name: str, motion: str, digits: int = 6) -> str:
+    """The same with the unit of a quantity of the glossary: "0.4 N·m/deg"."""
+    return told(value, GLOSSARY[name].unit_for(motion), digits)
+
+
 def readable(value: float, unit: str, digits: int = 4) -> str:
     """A value with its unit; a prefix replaces an exponent and noughts: "0.15 J", and "1.5 mJ"."""
+    factor, unit = spoken(unit)
+    value *= factor
     text = f"{value:.{digits}g}"
     prefixed = (*_PREFIXED, "rad", "N*m", "N·m", "rad/s")
     is_long = "e" in text or 0.0 < abs(value) < 0.01
     power = 3 * floor(log10(abs(value)) / 3) if is_long and unit in prefixed else 0
     if power not in PREFIXES or not power:
-        return f"{text} {unit_text(unit)}".rstrip()
+        power, name = _instead_of_exponent(value, unit, digits) if value else (0, unit_text(unit))
+        return f"{value / 10.0**power:.{digits}g} {name}".rstrip()
     return f"{value / 10.0**power:.{digits}g} {PREFIXES[power]}{unit_text(unit)}"
 
 
 def in_unit(value: float | None, unit: str) -> str:
-    """A value of six digits in this very unit; "none" and "any" for what is no number."""
+    """A value of six digits, a tiny one of four with a prefix; "none" and "any" for what is no number."""
     if value is None:
         return "none"
     if value == inf:
         return "any"
-    return f"{value:.6g} {unit_text(unit)}"
+    return readable(value, unit) if "e-" in f"{value * spoken(unit)[0]:.6g}" else told(value, unit)
 
 
 def in_a_table(value: float, digits: int = 4) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.result import Answer
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.text import quantity_unit, shown
+from zwidth.quantity.text import shown, told
 from zwidth.showing import Picture
 
 _WIDTH = 6.0
@@ -54,12 +54,12 @@ def _pictures(verdict: Answer, ending: str) -> Iterator[Picture]:
 
 
 def _criterion(verdict: LinearVerdict) -> str:
-    unit = quantity_unit("damping", verdict.device.motion)
+    unit = verdict.device.unit("damping")
     account = verdict.budget
-    most = f"{account.required:.4g} {unit}" if isfinite(account.required) else "any amount"
+    most = told(account.required, unit, 4) if isfinite(account.required) else "any amount"
     return (
         f"Curve of required damping against frequency: highest at {shown(account.frequency, 'Hz')}, with "
-        f"{most}; a line marks the device's {account.damping:.4g} {unit}."
+        f"{most}; a line marks the device's {told(account.damping, unit, 4)}."
     )
 
 
@@ -76,11 +76,13 @@ def _plane(verdict: LinearVerdict) -> str:
 
 
 def _budget(verdict: LinearVerdict) -> str:
-    unit = quantity_unit("damping", verdict.device.motion)
+    unit = verdict.device.unit("damping")
     account = verdict.budget
     shares = {"the hold": account.hold, "the law": account.dynamics, "the delay": account.delay}
-    asked = ", ".join(f"{name} {value:.4g}" for name, value in shares.items() if isfinite(value) and value)
-    return f"Bars: asked for by {asked or 'nothing'}; the device has {account.damping:.4g} {unit}."
+    asked = ", ".join(
+        f"{name} {told(value, unit, 4)}" for name, value in shares.items() if isfinite(value) and value
+    )
+    return f"Bars: asked for by {asked or 'nothing'}; the device has {told(account.damping, unit, 4)}."
 
 
 def _motion(verdict: Verdict) -> str:

@@ -44,7 +44,7 @@ from zwidth.passivity.scope import Scope
 from zwidth.passivity.storage.evidence.gain import Gain
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 from zwidth.rendering import VirtualCoupling
 
 
@@ -154,16 +154,15 @@ class CouplingCondition(Answer):
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
-        unit = {key: quantity_unit(key, self.device.motion) for key in ("stiffness", "damping")}
-        need = self.required_damping
+        need, motion = self.required_damping, self.device.motion
         return [
-            ("coupling stiffness K_c", f"{float(self.stiffness):.6g} {unit['stiffness']}"),
-            ("coupling damping B_c", f"{float(self.damping):.6g} {unit['damping']}"),
+            ("coupling stiffness K_c", told_quantity(self.stiffness, "stiffness", motion)),
+            ("coupling damping B_c", told_quantity(self.damping, "damping", motion)),
             (
                 "required device damping",
-                "none is enough" if need is None else f"{need:.6g} {unit['damping']}",
+                "none is enough" if need is None else told_quantity(need, "damping", motion),
             ),
-            ("device damping", f"{float(self.device.exact('damping')):.6g} {unit['damping']}"),
+            ("device damping", told_quantity(self.device.exact("damping"), "damping", motion)),
         ]
 
     def __repr__(self) -> str:

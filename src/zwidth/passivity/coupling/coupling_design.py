@@ -42,7 +42,7 @@ from zwidth.passivity.result import Result
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 from zwidth.rendering import VirtualCoupling
 from zwidth.showing import Part, Table
 
@@ -113,12 +113,12 @@ class CouplingDesign(Result):
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
-        unit = quantity_unit("stiffness", self.device.motion)
+        motion = self.device.motion
         rigid = self.verdict
         return [
             *self.condition.rows(),
-            ("felt slowly", f"{self.felt_slowly:.6g} {unit}"),
-            ("felt at half the rate", f"{self.felt_quickly:.6g} {unit}"),
+            ("felt slowly", told_quantity(self.felt_slowly, "stiffness", motion)),
+            ("felt at half the rate", told_quantity(self.felt_quickly, "stiffness", motion)),
             ("margin of damping", f"{100 * self.margin:.3g} %"),
             ("before every passive environment", "passive" if self.condition.holds else "not proved"),
             ("before a rigid one, encoder and friction counted", rigid.outcome),

@@ -19,7 +19,8 @@ from zwidth.passivity.linear.boundary import Holds
 from zwidth.passivity.pairs.limits import grain_of, is_passive, largest_stiffness, samples_around, with_share
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import unit_suffix
-from zwidth.quantity.text import in_words, unit_text
+from zwidth.quantity.spoken import spoken
+from zwidth.quantity.text import in_words, told
 
 MOST_SAMPLES = 200
 """Delays around the whole loop, in samples, beyond which a look at every number takes too long."""
@@ -101,8 +102,8 @@ def _stiffness_at(
     if largest is None:
         proved = "proved" if any(pair.compensations) else "passive"
         return StiffnessAt(parameter, times, None, unit, f"{where} no stiffness is {proved}")
-    safe = outward(largest, next(_of_the_coupling(pair)))
-    text = f"{where} a stiffness of up to {safe:.6g} {unit_text(unit)} is passive"
+    safe = outward(largest, next(_of_the_coupling(pair)), spoken(unit)[0])
+    text = f"{where} a stiffness of up to {told(safe, unit)} is passive"
     return StiffnessAt(parameter, times, largest, unit, text)
 
 
@@ -177,7 +178,7 @@ def _both_arms(pair: Pair, grain: int) -> Iterator[Advice]:
         if not isinstance(advice.to, float) or advice.to <= max(now):
             continue
         if now[0] != now[1]:
-            to = f"{outward(advice.to, knob):.6g} {unit_text(advice.unit)}"
+            to = told(outward(advice.to, knob, spoken(advice.unit)[0]), advice.unit)
             advice = replace(advice, text=f"raise the {knob.name} to {to}")
         yield advice
 

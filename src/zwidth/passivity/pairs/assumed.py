@@ -8,7 +8,7 @@ from zwidth.pairs import Pair
 from zwidth.passivity.pairs.compensation import assumed_of_forces
 from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.quantity.exact import ends
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 
 
 def assumed_of_timing(criterion: PairCriterion, any_age: bool) -> Iterator[str]:
@@ -46,9 +46,8 @@ def assumed_of_arms(pair: Pair) -> Iterator[str]:
 
 def friction_goes_on(pair: Pair) -> str:
     """The condition on friction beyond the speeds at which it was measured; "" where there is none."""
-    unit = quantity_unit("friction_speed", pair.motion)
     told = ", ".join(
-        f"{name}: {float(ends(device.friction_speed)[0]):.6g} {unit}"
+        f"{name}: {told_quantity(float(ends(device.friction_speed)[0]), 'friction_speed', pair.motion)}"
         for name, device in (("leader", pair.leader), ("follower", pair.follower))
         if device.friction_speed is not None
     )

@@ -29,7 +29,7 @@ from zwidth.passivity.ports.port import Port, in_lowest_terms
 from zwidth.passivity.ports.reading import from_polynomials
 from zwidth.passivity.scope import Scope
 from zwidth.quantity.balls import as_fmpq
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 
 _SAME_PERIOD = Fraction(1, 10**9)
 
@@ -66,8 +66,8 @@ class SampledDamping:
         """The need in a line."""
         if self.required is None:
             return "no damping is enough"
-        unit = quantity_unit("damping", self.device.motion)
-        return f"b ≥ {self.required:.9g} {unit}, tightest at {self.frequency:.6g} Hz"
+        required = told_quantity(self.required, "damping", self.device.motion, 9)
+        return f"b ≥ {required}, tightest at {self.frequency:.6g} Hz"
 
     def __repr__(self) -> str:
         return f"<SampledDamping {self.describe()}>"

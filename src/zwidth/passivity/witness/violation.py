@@ -20,7 +20,7 @@ from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import Contact
 from zwidth.passivity.witness.refutation import refute_linear
 from zwidth.passivity.witness.witness import Setting, Witness
-from zwidth.quantity.text import exact_text, quantity_unit
+from zwidth.quantity.text import exact_text, told_quantity
 
 FORMAT = "zwidth violation 1"
 
@@ -79,6 +79,5 @@ class Violation(Evidence):
         return "the law is unstable by itself"
 
     def _static(self) -> str:
-        unit = quantity_unit("stiffness", self.setting.motion)
-        stiffness = self.setting.loop.static_stiffness or Fraction(0)
-        return f"static stiffness {float(stiffness):.6g} {unit}"
+        stiffness = float(self.setting.loop.static_stiffness or Fraction(0))
+        return f"static stiffness {told_quantity(stiffness, 'stiffness', self.setting.motion)}"

@@ -24,6 +24,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import Quantity
 from zwidth.quantity.parameter import CertainOrNone, parameter
+from zwidth.quantity.text import told
 from zwidth.rendering.reading import damping_per_sample
 from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
@@ -108,11 +109,11 @@ class EnergyTank(RenderingLaw):
         """The law with its numbers, in a few words."""
         unit = self._unit("largest_damping", motion)
         said = (
-            ("to", self.level, "J"),
-            ("refill", self.refill, f"{unit} per J"),
-            ("at most", self.largest_damping, unit),
+            ("to", self.level, "J", ""),
+            ("refill", self.refill, unit, " per J"),
+            ("at most", self.largest_damping, unit, ""),
         )
-        parts = [f"{word} {float(value):g} {of}" for word, value, of in said if value is not None]
+        parts = [f"{word} {told(value, of)}{more}" for word, value, of, more in said if value is not None]
         return f"energy tank ({', '.join(parts)})" if parts else "energy tank"
 
 

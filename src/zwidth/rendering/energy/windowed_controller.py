@@ -31,6 +31,7 @@ from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import PLAIN, Certain, CertainOrNone, Count, parameter, part, plain
+from zwidth.quantity.text import told
 from zwidth.rendering.energy.controller_limit import largest_damping as or_the_devices
 from zwidth.rendering.energy.controller_limit import spring_of
 from zwidth.rendering.reading import below, count
@@ -161,8 +162,8 @@ class WindowedController(RenderingLaw):
         slowest = SLOWEST[motion] if self.slowest is None else float(self.slowest)
         of = self.with_unit("largest_damping", motion) or "b of the device"
         return (
-            f"windowed passivity controller ({self.window} samples, floor {slowest:.3g} "
-            f"{self._unit('slowest', motion)}, at most {float(self.share):g} of {of})"
+            f"windowed passivity controller ({self.window} samples, floor "
+            f"{told(slowest, self._unit('slowest', motion), 3)}, at most {float(self.share):g} of {of})"
         )
 
 

@@ -22,7 +22,7 @@ from zwidth.loop.sampled_plant import ball
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.quantity.balls import precision
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 from zwidth.stability.active_hand.band import PI, Band
 from zwidth.stability.known_hand.characteristic import as_floats, decays
 
@@ -83,14 +83,18 @@ class ShakingHand:
 
     def describe(self) -> str:
         """The hand in a line."""
-        damping, mass, stiffness = (self._unit(name) for name in ("damping", "mass", "stiffness"))
-        return (
-            f"{self.activity:.6g} {damping} at {self.frequency:.4g} Hz, {self.mass:.4g} {mass} on "
-            f"{self.stiffness:.6g} {stiffness}: the swing doubles every {_spoken(self.doubling_time)}"
+        activity, mass, stiffness = (
+            told_quantity(value, name, self.motion, digits)
+            for value, name, digits in (
+                (self.activity, "damping", 6),
+                (self.mass, "mass", 4),
+                (self.stiffness, "stiffness", 6),
+            )
         )
-
-    def _unit(self, name: str) -> str:
-        return quantity_unit(name, self.motion)
+        return (
+            f"{activity} at {self.frequency:.4g} Hz, {mass} on {stiffness}: the swing doubles every "
+            f"{_spoken(self.doubling_time)}"
+        )
 
 
 def _spoken(seconds: float) -> str:

@@ -38,7 +38,7 @@ from zwidth.passivity.scope import Contact, Hands, Scope, scope_of
 from zwidth.passivity.wording import if_friction_goes_on, lines
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
-from zwidth.quantity.text import exact_text, unit_text
+from zwidth.quantity.text import exact_text, told
 from zwidth.quantity.units import parse_number
 from zwidth.stability.active_hand.band import Band, band_of, prove_inside
 from zwidth.stability.active_hand.shaking import ShakingHand, shaking_hand, tolerance
@@ -116,7 +116,7 @@ class ToleratedActivity(Result):
         """The numbers as (name, text) for a report."""
 
         def said(value: float | None, otherwise: str) -> str:
-            return otherwise if value is None else f"up to {value:.6g} {unit_text(self.unit)}"
+            return otherwise if value is None else f"up to {told(value, self.unit)}"
 
         rows = [
             (f"below {self.below:g} Hz", said(self.activity, "none is proved") + ", contact kept"),
@@ -283,8 +283,8 @@ def _claim(kept: _Proved | None, scope: Scope, unit: str) -> str:
     if kept is None:
         return "Not even every passive hand is proved not to drive this loop; zwidth.check says why."
     return (
-        f"A hand that is passive above {scope.hands.below:g} Hz and gives back at most {kept[0]:.6g} "
-        f"{unit_text(unit)} below cannot go on gaining energy from this loop while it keeps contact"
+        f"A hand that is passive above {scope.hands.below:g} Hz and gives back at most {told(kept[0], unit)} "
+        "below cannot go on gaining energy from this loop while it keeps contact"
         f"{if_friction_goes_on(scope)}."
     )
 

@@ -34,7 +34,7 @@ from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import Answer
 from zwidth.passivity.scope import Scope
 from zwidth.quantity.exact import RealLike
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 
 Binding = Literal["device damping", "coupling and environment"]
 
@@ -116,14 +116,14 @@ class TransformedCondition(Answer):
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
-        unit = quantity_unit("damping", self.device.motion)
+        motion = self.device.motion
         need = self.required_damping
         return [
             (
                 "required device damping",
-                "none is enough" if need is None else f"{need:.6g} {unit}",
+                "none is enough" if need is None else told_quantity(need, "damping", motion),
             ),
-            ("device damping", f"{float(self.device.exact('damping')):.6g} {unit}"),
+            ("device damping", told_quantity(self.device.exact("damping"), "damping", motion)),
             ("binding inequality", self.binding),
             ("contact", self.scope.contact),
             ("encoder", self.scope.encoder),

@@ -27,6 +27,8 @@ from zwidth.errors import InputError
 from zwidth.passivity.formulas.hypotheses import number
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.spoken import spoken
+from zwidth.quantity.text import told
 
 
 @dataclass(frozen=True, init=False, kw_only=True)
@@ -108,8 +110,9 @@ class SlopeBounds:
     def describe(self, motion: str = "linear") -> str:
         """The class in words, with the hypothesis on Φ."""
         unit = GLOSSARY["stiffness"].unit_for(motion)
+        least = f"{float(self.least) * spoken(unit)[0]:.6g}"
         return (
-            f"every static spring with slopes from {self.least:.6g} to {self.greatest:.6g} {unit} whose "
+            f"every static spring with slopes from {least} to {told(self.greatest, unit)} whose "
             "potential is bounded below"
         )
 

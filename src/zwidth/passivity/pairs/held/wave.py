@@ -25,7 +25,7 @@ from zwidth.passivity.pairs.held.evidence import HeldViolation, held_document
 from zwidth.passivity.pairs.held.law import felt, felt_loop
 from zwidth.passivity.result import Evidence
 from zwidth.passivity.witness.motion import Repeat
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 
 Floats = NDArray[np.float64]
 
@@ -107,10 +107,9 @@ class HeldWitness(Evidence):
     def describe(self) -> str:
         """What comes out, in words."""
         question = self.violation.question
-        far = quantity_unit("position", question.pair.motion)
+        far = told_quantity(float(np.ptp(self.positions)), "position", question.pair.motion, 3)
         return (
-            f"a wave of {self.samples} samples takes {self.energy:.4g} J out, the {question.free} over "
-            f"{float(np.ptp(self.positions)):.3g} {far}"
+            f"a wave of {self.samples} samples takes {self.energy:.4g} J out, the {question.free} over {far}"
         )
 
 

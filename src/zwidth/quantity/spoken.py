@@ -1,0 +1,98 @@
+"""Answers in the units of the question: who types degrees reads degrees.
+
+    1 deg = π/180 rad      1 turn = 2π rad      1 rpm = 2π/60 rad/s
+
+Everything is computed in SI, and radians are what a file holds: its keys say so.  What a person
+reads is told in the angle that the person typed.  While a command reads its values, `units` notes
+the angles among them; once one was in degrees every angle of the answer is, so that what is compared
+has one unit.  In Python nothing is noted: answers are in radians, or as `answers_in` says.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import cache
+from math import pi
+
+from zwidth.errors import InputError
+
+_ANGLES = {"deg": 180 / pi, "turn": 0.5 / pi, "rad": 1.0}
+"""How many of each are one radian; of several that were typed the first one here is told."""
+
+_WORDS = {
+    **dict.fromkeys(("deg", "degree", "degrees"), "deg"),
+    **dict.fromkeys(("turn", "turns", "rev", "revs"), "turn"),
+    "rpm": "rpm",
+}
+_WORD = re.compile(r"[A-Za-z]+")
+_RADIAN = re.compile(r"\brad(?:\^([0-9.]+))?(?![A-Za-z])")
+
+_NOTED: ContextVar[set[str] | None] = ContextVar("angles that were typed", default=None)
+
+
+@contextmanager
+def answers_as_typed() -> Iterator[None]:
+    """Inside, answers are in the units of the angles that are read."""
+    with _noting(set()):
+        yield
+
+
+@contextmanager
+def answers_in(*units: str) -> Iterator[None]:
+    """Inside, answers are in these units of angle.
+
+    Parameters
+    ----------
+    units
+        "rad", "deg" or "turn", and "rpm" for speeds.
+
+    Raises
+    ------
+    InputError
+        If it is none of them.
+    """
+    unknown = [unit for unit in units if unit not in (*_ANGLES, "rpm")]
+    if unknown:
+        raise InputError(
+            f"an angle is spoken of in {', '.join(_ANGLES)}, a speed also in rpm; got {unknown[0]!r}"
+        )
+    with _noting(set(units)):
+        yield
+
+
+@contextmanager
+def _noting(noted: set[str]) -> Iterator[None]:
+    token = _NOTED.set(noted)
+    try:
+        yield
+    finally:
+        _NOTED.reset(token)
+
+
+def note(unit: str) -> None:
+    """Take down the angle in a unit that a person typed: "N*m/deg" has degrees."""
+    noted = _NOTED.get()
+    if noted is not None:
+        noted.update(_WORDS[word] for word in _WORD.findall(unit) if word in _WORDS)
+
+
+def spoken(unit: str) -> tuple[float, str]:
+    """(factor, unit) in which a value in an SI unit is told: (π/180, "N*m/deg") for "N*m/rad" in degrees."""
+    noted = _NOTED.get()
+    return _spoken(unit, frozenset(noted)) if noted else (1.0, unit)
+
+
+@cache
+def _spoken(unit: str, noted: frozenset[str]) -> tuple[float, str]:
+    if unit == "rad/s" and "rpm" in noted:
+        return 30 / pi, "rpm"
+    angle = next((name for name in _ANGLES if name in noted), "rad")
+    found = _RADIAN.search(unit)
+    if found is None or angle == "rad":
+        return 1.0, unit
+    per_radian = _ANGLES[angle] ** float(found[1] or 1)
+    above = "/" not in unit[: found.start()]
+    return (per_radian if above else 1 / per_radian), unit.replace("rad", angle)
