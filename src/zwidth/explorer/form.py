@@ -53,7 +53,7 @@ class Form(Told):
 
     _esm = _read("form.js")
     _says = ("event",)
-    _priority_changes = ["event"]  # noqa: RUF012  # else each waits 50 ms for others
+    _priority_changes = _busy__ignore = ["event"]  # noqa: RUF012  # else each waits 50 ms for others
     _stylesheets = [_read("form.css")]  # noqa: RUF012  # as Panel has it
 
     def listen(self, hear: Callable[[Event], Mapping[str, Any]], soon: Soon) -> None:
