@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
 
 import pytest
 
 import zwidth as zw
 from zwidth.errors import InputError
+from zwidth.explorer.session import Session
 from zwidth.explorer.shown import Explorer
-from zwidth.explorer.starts import from_sources
+from zwidth.explorer.starts import first, from_sources
+from zwidth.explorer.working import Workers
 
 
 def test_it_shows_the_loop_that_it_was_given() -> None:
@@ -53,6 +56,45 @@ def test_whatever_a_browser_sends_is_answered(kind: object, value: object) -> No
         shown._session.form.event = {"kind": kind, "path": path, "value": value, "number": number}
         assert shown._session.form.told["heard"] == number
     shown._session.form.event = {}
+
+
+def test_a_move_shows_outcome_then_limits_then_the_picture_of_the_newest() -> None:
+    """Each when what goes before is on its way; of a loop that has been left nothing more is worked out."""
+    waiting: list[Callable[[], None]] = []
+
+    def next_one() -> None:
+        waiting.pop(0)()
+
+    workers = Workers(count=0)
+    session = Session(first(), workers, waiting.append)
+    while waiting:
+        next_one()
+
+    def shown() -> tuple[str, str, object]:
+        curve = session.views[0].parts[0].object.renderers[0].data_source.data
+        return session.head.html, session.details.html, tuple(curve.get("needed", ()))
+
+    def move(place: float) -> None:
+        session.hear({"kind": "move", "path": "environment.stiffness", "value": place})
+
+    begun = shown()
+    move(0.9)
+    heard = shown()
+    assert heard[0] != begun[0]
+    assert heard[1:] == begun[1:]
+    next_one()
+    followed = shown()
+    assert followed[1] != begun[1]
+    assert followed[2] == begun[2]
+    next_one()
+    assert shown()[2] != begun[2]
+    assert not waiting
+    move(0.2)
+    move(0.3)
+    next_one()
+    assert shown()[1] == followed[1]
+    next_one()
+    assert shown()[1] != followed[1]
 
 
 def test_a_verdict_of_a_number_that_nobody_measured_stays_on_the_page() -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 from bokeh.models import ColumnDataSource, Range1d
 from bokeh.models import Span as Line
+from numpy import array, full_like, maximum
 
 from zwidth.explorer.look import BLUE, GREY, RED, legend_above, new_figure
 from zwidth.passivity.linear_verdict import LinearVerdict
@@ -70,11 +71,12 @@ class CriterionPicture:
         self._x.update(start=0, end=0.5 / float(verdict.decision.loop.period))
         self._y.update(start=low, end=high)
         self.figure.yaxis[0].axis_label = f"damping [{quantity_unit('damping', motion)}]"
+        needed = array(finite)  # arrays are sent as they are, lists number by number
         self._curve.data = {
-            "frequency": frequencies,
-            "needed": finite,
-            "lacking": [max(need, has) for need in finite],
-            "has": [has] * len(finite),
+            "frequency": array(frequencies),
+            "needed": needed,
+            "lacking": maximum(needed, has),
+            "has": full_like(needed, has),
         }
         most = verdict.budget.required
         self._peak.data = {

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import param
 from panel.custom import JSComponent
@@ -30,7 +30,20 @@ def _read(name: str) -> str:
     return (_HERE / name).read_text(encoding="utf-8")
 
 
-class Form(JSComponent):  # type: ignore[misc]  # Panel has no types
+class Told(JSComponent):  # type: ignore[misc]  # Panel has no types
+    """What the browser shows and is told by Python; of the other way `_says` alone is listened to.
+
+    Panel takes whatever is set here for a change by the browser as well, and tends to it while a move waits.
+    """
+
+    _says: ClassVar[tuple[str, ...]] = ()
+
+    @property
+    def _linked_properties(self) -> tuple[str, ...]:
+        return self._says
+
+
+class Form(Told):
     """Groups of controls; `on_event` is told what is changed."""
 
     groups = param.List(default=[])
@@ -39,7 +52,8 @@ class Form(JSComponent):  # type: ignore[misc]  # Panel has no types
     told = param.Dict(default={"heard": 0})
 
     _esm = _read("form.js")
-    _priority_changes = ["event"]  # noqa: RUF012  # else each waits 50 ms for others
+    _says = ("event",)
+    _priority_changes = _busy__ignore = ["event"]  # noqa: RUF012  # else each waits 50 ms for others
     _stylesheets = [_read("form.css")]  # noqa: RUF012  # as Panel has it
 
     def listen(self, hear: Callable[[Event], Mapping[str, Any]], soon: Soon) -> None:
@@ -59,7 +73,7 @@ class Form(JSComponent):  # type: ignore[misc]  # Panel has no types
         self.param.watch(on_event, "event")
 
 
-class Words(JSComponent):  # type: ignore[misc]
+class Words(Told):
     """Words that change, told by a screen reader when they do if they are `live`."""
 
     html = param.String(default="")

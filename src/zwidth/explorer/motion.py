@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import param
 from bokeh.models import ColumnDataSource, DataRange1d
-from panel.custom import JSComponent
 
+from zwidth.explorer.form import Told
 from zwidth.explorer.look import BLUE, RED, VIOLET, new_figure
 from zwidth.plots.style import number, scale
 from zwidth.quantity.glossary import GLOSSARY
@@ -21,7 +21,7 @@ NAME = "Motion"
 _HERE = Path(__file__).parent
 
 
-class Player(JSComponent):  # type: ignore[misc]  # Panel has no types
+class Player(Told):
     """The handle at the wall, with play, pause and step."""
 
     motion = param.Dict(default={})

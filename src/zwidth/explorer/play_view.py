@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import param
-from panel.custom import JSComponent
 
 from zwidth.explorer import computing
-from zwidth.explorer.form import words
+from zwidth.explorer.form import Told, words
 from zwidth.explorer.verdict_card import WAITING
 from zwidth.explorer.view import Asked, View, said
 from zwidth.explorer.working import Answer
@@ -17,7 +16,7 @@ from zwidth.showing import element
 NAME = "Play"
 
 
-class Frame(JSComponent):  # type: ignore[misc]  # Panel has no types
+class Frame(Told):
     """A page in a page, apart from it."""
 
     html = param.String(default="")

@@ -5,9 +5,10 @@ Every value given was itself proved passive, all else as it was.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cache, partial
 from math import ceil, floor, inf, isinf, log10
 from typing import Literal
 
@@ -15,6 +16,14 @@ from zwidth.device import Device
 from zwidth.environment import OnePole, Wall, Window
 from zwidth.environment.environment import Environment
 from zwidth.environment.wall import wall_of
+from zwidth.passivity.decision import decide
+from zwidth.passivity.likely_limits import (
+    Change,
+    likely_damping,
+    likely_friction,
+    likely_resolution,
+    likely_value,
+)
 from zwidth.passivity.linear.boundary import (
     COARSE,
     COARSER,
@@ -23,7 +32,7 @@ from zwidth.passivity.linear.boundary import (
     largest_holding,
     smallest_holding,
 )
-from zwidth.passivity.parameter_limits import Change, has_stiffness, is_of_high_degree, provable, stiffness_of
+from zwidth.passivity.parameter_limits import has_stiffness, is_of_high_degree, provable, stiffness_of
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
@@ -39,6 +48,14 @@ _EASIEST_FIRST = (
     "delay", "damping", "resolution", "coulomb_friction",
 )  # fmt: skip
 """The law, then the loop, then the machine."""
+
+
+Likely = Callable[[], float | None]
+"""Where a limit may be looked for first; None where nothing is known of that."""
+
+
+def nowhere() -> None:
+    """Nothing is known of where a limit is."""
 
 
 @dataclass(frozen=True)
@@ -129,7 +146,8 @@ def _name(parameter: str) -> str:
 class Knob:
     """A number that one can turn: `holds` of a value that is proved; with `more`, more of it is safer.
 
-    `parameter` is a name of the glossary, behind "leader." or "follower." where it is of one arm.
+    `parameter` is a name of the glossary, behind "leader." or "follower." where it is of one arm.  Where
+    its limit may be looked for first says `likely`.
     """
 
     parameter: str
@@ -137,69 +155,133 @@ class Knob:
     holds: Holds
     more: bool
     name: str
+    likely: Likely = nowhere
 
 
 def advise(
-    device: Device, environment: Environment, passive: bool, contact: bool = False
+    device: Device,
+    environment: Environment,
+    passive: bool,
+    contact: bool = False,
+    stiffest: Likely = nowhere,
 ) -> tuple[Advice, ...]:
-    """Advice on every parameter of a certain loop; `contact` as for `provable`."""
+    """Advice on every parameter of a certain loop.
+
+    Parameters
+    ----------
+    device, environment
+        The loop, without intervals.
+    passive
+        True to say how far each parameter may go, False for what to change.
+    contact
+        As for `provable`.
+    stiffest
+        Its `max_stiffness`, which is then not looked for twice.
+    """
     kind: Literal["change", "slack"] = "slack" if passive else "change"
-    grain = COARSER if is_of_high_degree(device, environment) else COARSE
-    knobs = _knobs(device, environment, contact)
+    is_high = is_of_high_degree(device, environment)
+    grain = COARSER if is_high else COARSE
+    knobs = list(_Knobs(device, environment, contact).every(stiffest))
+    if is_high:  # to find where a limit is likely takes as long as to find it
+        knobs = [replace(knob, likely=nowhere) for knob in knobs]
     found = [turn(knob, device.motion, kind, grain) for knob in knobs]
     wall = wall_of(environment)
     if not passive and wall is not None and wall.damping != 0:
-        found.extend(_estimators(device, wall, contact))
+        found.extend(_estimators(device, wall, contact, grain))
     return tuple(found)
 
 
-def _knobs(device: Device, environment: Environment, contact: bool) -> Iterator[Knob]:
-    def on_device(key: str) -> Holds:
-        return _proved(lambda value: (device.replace(**{key: Exact(value)}), environment), contact)
+@dataclass(frozen=True)
+class _Knobs:
+    """Those of a loop; `contact` as for `provable`."""
 
-    rate = _proved(lambda value: (device.replace(rate=Exact(value)), environment), contact)
-    yield Knob("rate", float(device.exact("sample_period") ** -1), rate, True, "rate")
-    for key, more in (("damping", True), ("coulomb_friction", True), ("resolution", False), ("delay", False)):
-        name = {"damping": "device damping", "resolution": "encoder resolution"}.get(key, in_words(key))
-        yield Knob(key, float(device.exact(key)), on_device(key), more, name)
-    if has_stiffness(environment):
-        now = float(stiffness_of(environment))
-        change: Change = lambda k: (device, environment.replace(stiffness=Exact(k)))  # noqa: E731
-        yield Knob("stiffness", now, _proved(change, contact), False, "stiffness")
-    if (wall := wall_of(environment)) is not None:
+    device: Device
+    environment: Environment
+    contact: bool
+
+    def every(self, stiffest: Likely) -> Iterator[Knob]:
+        """All of them, from the device to the law."""
+        period = float(self.device.exact("sample_period"))
+        yield self._searched("rate", 1 / period, self._device("rate"), True, "rate", period)
+        yield from self._losses()
+        delay = float(self.device.exact("delay"))
+        yield self._searched("delay", delay, self._device("delay"), False, "delay", period)
+        if has_stiffness(self.environment):
+            now, change = float(stiffness_of(self.environment)), self._law("stiffness")
+            yield Knob("stiffness", now, self._proved(change), False, "stiffness", stiffest)
+        if (wall := wall_of(self.environment)) is not None:
+            yield from self._of_wall(wall)
+
+    def _losses(self) -> Iterator[Knob]:
+        """What takes energy out, and the encoder: of these it is known what a loop asks for."""
+        decision, contact = decide(self.device, self.environment), self.contact
+        of_one = replace(decision, setting=replace(decision.setting, resolution=Fraction(1)))
+        for key, more, name, likely in (
+            ("damping", True, "device damping", lambda: likely_damping(decision, contact)),
+            (
+                "coulomb_friction",
+                True,
+                in_words("coulomb_friction"),
+                lambda: likely_friction(decision, contact),
+            ),
+            ("resolution", False, "encoder resolution", lambda: likely_resolution(of_one, contact)),
+        ):
+            now = float(self.device.exact(key))
+            yield Knob(key, now, self._proved(self._device(key)), more, name, likely)
+
+    def _of_wall(self, wall: Wall) -> Iterator[Knob]:
         b = wall.damping
         assert isinstance(b, Exact)
-        sign = -1 if b < 0 else 1
-        law: Change = lambda v: (device, environment.replace(damping=Exact(sign * v)))  # noqa: E731
-        yield Knob("virtual_damping", abs(float(b)), _proved(law, contact), False, "virtual damping")
-        yield from _time_constant(device, wall, contact)
+        law = self._law("damping", -1 if b < 0 else 1)
+        usual = float(self.device.exact("damping")) or 1.0
+        yield self._searched("virtual_damping", abs(float(b)), law, False, "virtual damping", usual)
+        tau = wall.velocity_filter.time_constant
+        if isinstance(tau, Exact) and b != 0:
+            yield self.time_constant(wall, float(tau), "filter time constant")
 
+    def time_constant(self, wall: Wall, now: float, name: str) -> Knob:
+        """Of a one-pole filter of the velocity [s]."""
+        change: Change = lambda t: (self.device, wall.replace(velocity_filter=OnePole(Exact(t))))  # noqa: E731
+        return self._searched("time_constant", now, change, True, name, now)
 
-def _proved(change: Change, contact: bool) -> Holds:
-    """Whether the loop with a value is proved passive; `contact` as for `provable`."""
-    return lambda value: provable(change, value, contact)
+    def _searched(self, key: str, now: float, change: Change, more: bool, name: str, other: float) -> Knob:
+        """A knob of which secants say where its limit is likely; `other` as for `likely_value`."""
+        likely = partial(likely_value, change, self.contact, now, other, more)
+        return Knob(key, now, self._proved(change), more, name, likely)
 
+    def _device(self, key: str) -> Change:
+        return lambda value: (self.device.replace(**{key: Exact(value)}), self.environment)
 
-def _time_constant(device: Device, wall: Wall, contact: bool) -> Iterator[Knob]:
-    now = wall.velocity_filter.time_constant
-    if isinstance(now, Exact) and wall.damping != 0:
-        change: Change = lambda t: (device, wall.replace(velocity_filter=OnePole(Exact(t))))  # noqa: E731
-        yield Knob("time_constant", float(now), _proved(change, contact), True, "filter time constant")
+    def _law(self, key: str, sign: int = 1) -> Change:
+        return lambda value: (self.device, self.environment.replace(**{key: Exact(sign * value)}))
+
+    def _proved(self, change: Change) -> Holds:
+        """Whether the loop with a value is proved passive."""
+        return lambda value: provable(change, value, self.contact)
 
 
 def turn(knob: Knob, motion: str, kind: Literal["change", "slack"], grain: int = COARSE) -> Advice:
     """How far a knob must be turned, or may be; `grain` as for `largest_holding`."""
-    search = smallest_holding if knob.more else largest_holding
-    to = search(knob.holds, knob.current or 1e-4, grain)
-    if to is not None and SMALLEST < to < inf:
-        to = _simplest_near(to, knob.holds, knob.more, grain)
-    if knob.more and to is not None and to <= SMALLEST:
-        to = inf if knob.parameter == "rate" else 0.0
+    knob = replace(knob, holds=cache(knob.holds))  # at its limit, and for a shorter one, it is asked again
+    to = None
+    if knob.more or knob.current or kind == "slack":  # nothing is less than 0
+        to = _last_proved(knob, grain)
     if kind == "change" and to is not None and not _is_change(knob, to):
         to = None
     unit = GLOSSARY[knob.parameter.rpartition(".")[2]].unit_for(motion)
     shown = None if to is None else outward(to, knob, spoken(unit)[0])
     return Advice(knob.parameter, knob.current, to, unit, kind, _text(knob, shown, unit, kind))
+
+
+def _last_proved(knob: Knob, grain: int) -> float | None:
+    """The last value that is proved, inf or 0 where that is any, None where none is."""
+    search = smallest_holding if knob.more else largest_holding
+    to = search(knob.holds, knob.current or 1e-4, grain, knob.likely())
+    if to is None or to == inf:
+        return to
+    if knob.more and to <= SMALLEST:
+        return inf if knob.parameter == "rate" else 0.0
+    return _simplest_near(to, knob.holds, knob.more, grain) if to > SMALLEST else to
 
 
 def _simplest_near(value: float, holds: Holds, more: bool, grain: int) -> float:
@@ -245,7 +327,7 @@ def _text(knob: Knob, to: float | None, unit: str, kind: str) -> str:
     return f"{knob.name} may go {bound} {readable(to, unit, 6)} (now {now})"
 
 
-def _estimators(device: Device, wall: Wall, contact: bool) -> Iterator[Advice]:
+def _estimators(device: Device, wall: Wall, contact: bool, grain: int) -> Iterator[Advice]:
     """Another velocity estimator that makes the loop passive, if one of the usual does."""
     now = wall.velocity_filter.describe()
     for samples in _WINDOWS:
@@ -256,9 +338,10 @@ def _estimators(device: Device, wall: Wall, contact: bool) -> Iterator[Advice]:
             yield Advice("velocity_filter", now, to, "", "change", text)
             break
     if wall.velocity_filter.time_constant is None:
-        change: Change = lambda t: (device, wall.replace(velocity_filter=OnePole(Exact(t))))  # noqa: E731
-        knob = Knob("time_constant", 0.0, _proved(change, contact), True, "time constant")
-        tau = _first_scanned(knob, device)
+        knobs = _Knobs(device, wall, contact)
+        period = float(device.exact("sample_period"))
+        knob = knobs.time_constant(wall, period, "time constant")
+        tau = _first_scanned(knob, period, grain)
         if tau is not None:
             shown = outward(tau, knob)
             to = f"one-pole filter of {readable(shown, 's')}"
@@ -266,10 +349,9 @@ def _estimators(device: Device, wall: Wall, contact: bool) -> Iterator[Advice]:
             yield Advice("velocity_filter", now, to, "", "change", text)
 
 
-def _first_scanned(knob: Knob, device: Device) -> float | None:
+def _first_scanned(knob: Knob, period: float, grain: int) -> float | None:
     """The smallest time constant found, from one sample to a thousand."""
-    period = float(device.exact("sample_period"))
     for power in range(10):
         if knob.holds(Exact(period * 2**power).fraction):
-            return smallest_holding(knob.holds, period * 2**power)
+            return smallest_holding(knob.holds, period * 2**power, grain, knob.likely())
     return None

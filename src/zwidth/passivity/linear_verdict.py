@@ -128,7 +128,8 @@ class LinearVerdict(Verdict):
     @cached_property
     def advice(self) -> tuple[Advice, ...]:
         """The smallest single changes that would do, or the slack of each parameter."""
-        return advise(self.device, self.environment, self.is_proved, self._with_contact_broken)
+        contact, stiffest = self._with_contact_broken, lambda: self.max_stiffness
+        return advise(self.device, self.environment, self.is_proved, contact, stiffest)
 
     @cached_property
     def actuator(self) -> tuple[ActuatorCheck, ...]:
@@ -141,8 +142,8 @@ class LinearVerdict(Verdict):
         """(frequency [Hz], damping the criterion asks for there [N·s/m]), for plotting only."""
         loop = self.decision.loop
         turns = [(k + 0.5) / points / 2 for k in range(points)]
-        cosines = [Fraction(cos(2 * pi * t)) for t in turns]
-        return [t / float(loop.period) for t in turns], [loop.required_damping_at(c) for c in cosines]
+        needs = loop.required_dampings_at([cos(2 * pi * t) for t in turns])
+        return [t / float(loop.period) for t in turns], needs
 
     def numbers(self) -> dict[str, Any]:
         """Limits, margins and advice as plain data, a unit in every key of a physical quantity."""

@@ -6,7 +6,6 @@ which it was not.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import fields
 from fractions import Fraction
 from math import inf
@@ -15,13 +14,12 @@ from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.passivity.decision import Decision, decide
+from zwidth.passivity.likely_limits import Change, likely_value
 from zwidth.passivity.linear.boundary import COARSE, Holds, largest_holding, smallest_holding
 from zwidth.passivity.linear.linear import LinearProof, decide_linear
 from zwidth.passivity.linear.loop import HIGH_DEGREE, linear_loop
 from zwidth.passivity.linear.supremum import tightest
 from zwidth.quantity.exact import Exact
-
-Change = Callable[[Fraction], tuple[Device, Environment]]
 
 
 def provable(change: Change, value: Fraction, contact: bool = False) -> bool:
@@ -71,13 +69,30 @@ def max_stiffness(device: Device, environment: Environment, contact: bool = Fals
     def holds(k: Fraction) -> bool:
         return provable(change, k, contact)
 
-    grain = COARSE if is_of_high_degree(device, environment) else 1
-    found = largest_holding(holds, now or 1.0, grain)
+    is_high = is_of_high_degree(device, environment)
+    grain = COARSE if is_high else 1
+    likely = None if is_high or not now else likely_value(change, contact, now, now, more=False)
+    found = largest_holding(holds, now or 1.0, grain, likely)
     if found:
         return found
     # with negative virtual damping a softer wall may ask for more friction: look among stiffer ones
-    stiffer = next((k for k in _stiffer(now) if holds(Exact(k).fraction)), None)
+    among = [] if _only_worse(change, now) else _stiffer(now)
+    stiffer = next((k for k in among if holds(Exact(k).fraction)), None)
     return found if stiffer is None else largest_holding(holds, stiffer, grain)
+
+
+def _only_worse(change: Change, now: float) -> bool:
+    """True where the loop is active at one frequency, and all the more with more stiffness.
+
+    What is asked for there, H and its size being linear in K, is convex in K: once it grows it always does.
+    """
+    violated = decide(*change(Exact(now).fraction))
+    cosine = getattr(violated.viscous, "cosine", None)
+    if cosine is None:
+        return False
+    need = violated.loop.required_damping_at(cosine)
+    stiffer = decide(*change(Exact(_stiffer(now)[0]).fraction)).loop.required_damping_at(cosine)
+    return stiffer >= need > float(violated.loop.damping)
 
 
 def is_of_high_degree(device: Device, environment: Environment) -> bool:

@@ -6,7 +6,6 @@ below the device's damping b, at every frequency up to half the sample rate.
 
 from __future__ import annotations
 
-from fractions import Fraction
 from math import cos, inf, isfinite, log, pi
 from statistics import median
 
@@ -77,7 +76,8 @@ def refined_curve(verdict: LinearVerdict, points: int = 400) -> tuple[list[float
     steps = [nyquist * 10 ** (-10 * k / _NEAR) for k in range(_NEAR)]
     near = [f for s in steps for f in (peak - s, peak + s) if 0 < f < nyquist]
     known = dict(zip(*verdict.curve(points), strict=True))
-    known.update((f, loop.required_damping_at(Fraction(cos(pi * f / nyquist)))) for f in near)
+    needs = loop.required_dampings_at([cos(pi * f / nyquist) for f in near])
+    known.update(zip(near, needs, strict=True))
     known[min(peak, nyquist)] = verdict.budget.required
     frequencies = sorted(known)
     return frequencies, [known[f] for f in frequencies]

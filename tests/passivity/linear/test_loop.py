@@ -143,3 +143,18 @@ def test_static_stiffness():
     assert loop_from(h, Fraction(1), Fraction(1, 700), Fraction(0)).static_stiffness == 3
     integrator = RationalFunction((Fraction(7),), (Fraction(2), Fraction(-2)))
     assert loop_from(integrator, Fraction(1), Fraction(1, 700), Fraction(0)).static_stiffness is None
+
+
+@seeds(20)
+def test_many_places_at_once_have_the_same_needs(seed):
+    """Bit for bit those of one place after the other, at the ends and at a pole on the circle too."""
+    random = Random(seed)
+    loop = loop_from(*random_loop(random))
+    cosines = [-1.0, 1.0, 0.0, *(random.uniform(-1, 1) for _ in range(20))]
+    assert loop.required_dampings_at(cosines) == [loop.required_damping_at(Fraction(c)) for c in cosines]
+    integrator = loop_from(
+        RationalFunction((Fraction(3),), (Fraction(1), Fraction(-1))), *random_loop(random)[1:]
+    )
+    assert integrator.required_dampings_at([1.0, 0.3]) == [
+        integrator.required_damping_at(Fraction(c)) for c in (1.0, 0.3)
+    ]

@@ -17,7 +17,7 @@ from zwidth.checker.loop.one_norm import NORM, one_norm_bound
 from zwidth.passivity.certificate import certify
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.linear.loop import linear_loop
-from zwidth.passivity.linear.one_norm import bound_one_norm
+from zwidth.passivity.linear.one_norm import _rounded, bound_one_norm
 from zwidth.passivity.witness.witness import Setting
 
 
@@ -151,3 +151,10 @@ def test_every_number_of_the_norm_proof_binds(seed):
     for norm in broken:
         with pytest.raises(Invalid):
             bound_of(document, norm)
+
+
+def test_whole_numbers_are_rounded_as_fractions_are():
+    """To the nearest, of two the even one, with either sign."""
+    for top in range(-60, 61):
+        for bottom in (-7, -6, -4, -3, -2, -1, 1, 2, 3, 4, 6, 7):
+            assert _rounded(top, bottom) == round(Fraction(top, bottom)), (top, bottom)

@@ -22,45 +22,51 @@ COARSE = 1 << 30
 COARSER = 1 << 42
 """1e-3 of the value: for advice on laws of high order, of which each decision takes long."""
 
+_BESIDE, _ANYWHERE = 4, 17
+"""Steps of a gallop, each 16 times as long: around where the boundary is likely, and through all doubles."""
+
 Holds = Callable[[Fraction], bool]
 
 
-def largest_holding(holds: Holds, guess: float, grain: int = 1) -> float | None:
+def largest_holding(holds: Holds, guess: float, grain: int = 1, likely: float | None = None) -> float | None:
     """The largest double in range where `holds` is true, true below and false above it.
 
     Returns 0.0 if it holds at 0 but nowhere in range, inf if it holds
     throughout, None if it fails even at 0.  With a `grain` the answer is only
-    that many doubles near.
+    that many doubles near.  Where it probably is, `likely`, is looked at first,
+    and then from `guess` on.
     """
-    return _search(holds, guess, True, grain)
+    return _search(holds, guess, True, grain, likely)
 
 
-def smallest_holding(holds: Holds, guess: float, grain: int = 1) -> float | None:
+def smallest_holding(holds: Holds, guess: float, grain: int = 1, likely: float | None = None) -> float | None:
     """The smallest double in range where `holds` is true, false below and true above it.
 
-    Returns 0.0 if it holds at 0, None if it holds nowhere in range; `grain` as
-    for `largest_holding`.
+    Returns 0.0 if it holds at 0, None if it holds nowhere in range; `grain` and
+    `likely` as for `largest_holding`.
     """
     if holds(Fraction(0)):
         return 0.0
-    return _search(holds, guess, False, grain)
+    return _search(holds, guess, False, grain, likely)
 
 
-def _search(holds: Holds, guess: float, upward: bool, grain: int) -> float | None:
-    """Gallop outward from the guess in ordered doubles, then halve."""
-    start = _index(min(max(guess, SMALLEST), LARGEST))
+def _search(holds: Holds, guess: float, upward: bool, grain: int, likely: float | None) -> float | None:
+    """Gallop outward from the guess in ordered doubles, or begin where it is likely; then halve."""
+    start = _in_range(guess)
     here = _at(holds, start)
     outward = here == upward  # which way the boundary lies: True is to larger values
-    step, inside = grain, start
-    bottom, top = _index(SMALLEST), _index(LARGEST)
-    while True:
-        probe = min(inside + step, top) if outward else max(inside - step, bottom)
-        if _at(holds, probe) != here:
-            break
-        if probe in (bottom, top):
-            return _beyond(holds, probe == top, here, upward)
-        inside, step = probe, step * 16
-    low, high = sorted((inside, probe))
+    end = _in_range(LARGEST if outward else SMALLEST)
+    bracket = None
+    if likely is not None and (_in_range(likely) > start) == outward:
+        at = _in_range(likely)
+        there = _at(holds, at)
+        if at == end and there == here:
+            return _beyond(holds, outward, here, upward)
+        bracket = _turn(holds, at, there, end if there == here else start, grain, _BESIDE)
+    bracket = bracket or _turn(holds, start, here, end, grain, _ANYWHERE)
+    if bracket is None:
+        return _beyond(holds, outward, here, upward)
+    low, high = bracket
     while high - low > grain:
         middle = (low + high) // 2
         if _at(holds, middle) == upward:
@@ -68,6 +74,19 @@ def _search(holds: Holds, guess: float, upward: bool, grain: int) -> float | Non
         else:
             high = middle
     return _double(low if upward else high)
+
+
+def _turn(holds: Holds, inside: int, here: bool, end: int, grain: int, most: int) -> tuple[int, int] | None:
+    """Two places between which the answer turns, in so many steps; None where it does not up to the end."""
+    step = grain if end > inside else -grain
+    for _ in range(most):
+        probe = min(inside + step, end) if step > 0 else max(inside + step, end)
+        if _at(holds, probe) != here:
+            return min(inside, probe), max(inside, probe)
+        if probe == end:
+            break
+        inside, step = probe, step * 16
+    return None
 
 
 def _beyond(holds: Holds, at_top: bool, here: bool, upward: bool) -> float | None:
@@ -80,6 +99,10 @@ def _beyond(holds: Holds, at_top: bool, here: bool, upward: bool) -> float | Non
 
 def _at(holds: Holds, index: int) -> bool:
     return holds(Exact(_double(index)).fraction)
+
+
+def _in_range(value: float) -> int:
+    return _index(min(max(value, SMALLEST), LARGEST))
 
 
 def _index(value: float) -> int:

@@ -92,23 +92,37 @@ def _series(d: list[int], length: int) -> tuple[int, ...]:
     for k in range(length):
         value = scale * d[0] if k == 0 else 0
         value -= sum(d[i] * e[k - i] for i in range(1, min(k, len(d) - 1) + 1))
-        e.append(round(Fraction(value, d[0])))
+        e.append(_rounded(value, d[0]))
     return tuple(e)
+
+
+def _rounded(top: int, bottom: int) -> int:
+    """The whole number nearest to top/bottom, of two the even one: `round` of a fraction, but quick."""
+    top, bottom = (top, bottom) if bottom > 0 else (-top, -bottom)
+    quotient, left = divmod(top, bottom)
+    up = 2 * left > bottom or (2 * left == bottom and quotient % 2)
+    return quotient + 1 if up else quotient
 
 
 def _bound(
     modes: tuple[Mode, ...], numerator: fmpq_poly, denominator: fmpq_poly, inverse: tuple[int, ...]
 ) -> NormBound | None:
     e = fmpq_poly(list(inverse))
-    head, *tail = (abs(c) for c in _fractions(denominator * e))
-    left_over = sum(tail, Fraction(0))
+    cut = denominator * e
+    head = abs(as_fraction(cut[0]))
+    left_over = _size(cut) - head
     if left_over * 10**9 > head:
         return None
-    rest = sum((abs(c) for c in _fractions(numerator * e)), Fraction(0)) / (head - left_over)
+    rest = _size(numerator * e) / (head - left_over)
     slow = sum((abs(mode.residue) / (1 - abs(mode.pole)) for mode in modes), Fraction(0))
     return NormBound(
         rest + slow, modes, tuple(_fractions(numerator)), tuple(_fractions(denominator)), inverse
     )
+
+
+def _size(p: fmpq_poly) -> Fraction:
+    """Σ|c| of the coefficients."""
+    return Fraction(sum(abs(int(c)) for c in p.numer().coeffs()), int(p.denom()))
 
 
 def _fractions(p: fmpq_poly) -> list[Fraction]:
