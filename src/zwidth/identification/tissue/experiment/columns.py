@@ -39,14 +39,16 @@ _WORDS: Mapping[str, tuple[str, ...]] = {
 }
 """Words of each quantity, the better ones first."""
 
-_OTHER = frozenset(
-    ["setpoint", "target", "commanded", "command", "desired", "rate", "speed", "velocity", "stress", "strain", "error", "std", "deviation", "temperature", "soll", "geschwindigkeit", "spannung", "dehnung", "vitesse", "contrainte"]
-)
+_OTHER_WORDS = """
+setpoint target commanded command desired rate speed velocity stress strain error std deviation temperature
+soll geschwindigkeit spannung dehnung vitesse contrainte
+"""
+_OTHER = frozenset(_OTHER_WORDS.split())
 """Words of what is measured besides, or was only wanted."""
 
-_TRIALS = frozenset(
-    ["trial", "trials", "sample", "specimen", "run", "test", "cycle", "repeat", "repetition", "replicate", "versuch", "essai"]
-)
+_TRIAL_WORDS = "trial trials sample specimen run test cycle repeat repetition replicate versuch essai"
+_TRIALS = frozenset(_TRIAL_WORDS.split())
+"""Words of a column that numbers the trials."""
 
 _WEIGHT = 9.80665
 _OLD: Mapping[str, tuple[str, float]] = {
