@@ -7,12 +7,13 @@ generalized Maxwell of two branches; of loading a Hunt–Crossley contact too), 
 
     stiffness           50 to 2000 N/m, a branch 0.3 to 1.5 times that
     relaxation times    0.05 to 2 s; of two branches the slower 8 to 30 times the quicker
-    motion              1 to 8 mm; a smooth ramp of 40 to 400 ms and a hold, or strokes in and out at two speeds
-    time                6 to 20 times the slowest relaxation time, from any first stamp; half of the tests come
-                        from outside; a third is sampled more and more seldom
+    motion              1 to 8 mm: a smooth ramp of 40 to 400 ms, or of 8 samples where that is longer, and a
+                        hold; or strokes in and out at two speeds
+    time                6 to 20 times the slowest relaxation time, from any first stamp; a third of the tests
+                        comes from outside; a third is sampled more and more seldom
     samples             200 to 600
-    noise               0.2 to 2 % of the largest response, normal, white in one half, in the other with a memory
-                        of 1 to 4 samples (exponential); on the force, in creep on the depth
+    noise               0.2 to 2 % of the largest response, normal; white in one half, in the other with a
+                        memory of 1 to 4 samples (exponential); on the force, in creep on the depth
     zero                of the force off by up to a fifth of its largest
 
 The true response comes from a motion eight times as finely sampled.  The test is then read as arrays, as a
@@ -156,10 +157,7 @@ def response(
     if kind == "creep":
         force = log_uniform(rng, 0.2, 5.0) * smooth(since / ramp)
         return model.predict(values, Record(time, np.zeros_like(time), force, "position", 0.0)), force
-    if kind == "relaxation":
-        path = far * smooth(since / ramp)
-    else:
-        path = strokes(since, far, span, rng)
+    path = far * smooth(since / ramp) if kind == "relaxation" else strokes(since, far, span, rng)
     outside = far * rng.uniform(0.05, 0.3) if before and rng.random() < 0.5 else 0.0
     depth = path * (1 + outside / far) - outside
     inside = np.maximum(depth, 0.0)

@@ -2,10 +2,11 @@
 
     min  | W (y − ŷ(θ, zero, surface, held)) |²
 
-ŷ is the model under the measured history (`prediction`), so that a ramp counts as it was; W whitens the noise, whose memory is estimated from what is left (`noise`), until both agree.  Fitted besides
-the logarithms θ of the parameters: the zero of the response, the depth of the surface where the probe came
-from outside, and what each branch holds after a hole.  Every model of a test has the same of them, so that
-none may take for a fault of the sensor what another explains.
+ŷ is the model under the measured history (`prediction`), so that a ramp counts as it was; W whitens the
+noise, whose memory is estimated from what is left (`noise`), until both agree.  Fitted besides the
+logarithms θ of the parameters: the zero of the response, the depth of the surface where the probe came from
+outside, and what each branch holds after a hole.  Every model of a test has the same of them, so that none
+may take for a fault of the sensor what another explains.
 
     cov = s² (JᵀWᵀWJ)⁻¹,    s² = |W r|²/(N − k)
 """

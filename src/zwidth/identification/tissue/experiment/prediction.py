@@ -1,7 +1,7 @@
 """What a model says of a test, and its derivatives by what is fitted.
 
-Between samples the history is a monotone cubic (Fritsch & Carlson, 1980), looked at `FINER` times as finely: a
-quick ramp of few samples is neither a step nor a chain of straight lines.  Velocities are the slopes of it.
+Between samples the history is a monotone cubic (Fritsch & Carlson, 1980), looked at `FINER` times as finely:
+a quick ramp of few samples is neither a step nor a chain of straight lines.  Velocities are its slopes.
 
     f = K u + B u̇ + Σ μᵢ y(1/τᵢ),     ẏ = u̇ − r y,   u = max(x − surface, 0)
     f = K uⁿ (1 + λ u̇)                                                    Hunt–Crossley
@@ -110,7 +110,7 @@ def predicted(task: Task, point: Array) -> Array:
 
 
 def derivatives(task: Task, point: Array) -> Array:
-    """Of the output by the point: of branches in closed form but for the slope by the rate, else differences."""
+    """Of the output by the point: of branches in closed form but for their rate, else by differences."""
     table = np.empty((task.test.time.size, point.size))
     quick = task.model.linear and task.test.kind != "creep"
     if quick:
