@@ -8,7 +8,7 @@ generalized Maxwell of two branches; of loading a Hunt–Crossley contact too), 
     stiffness           50 to 2000 N/m, a branch 0.3 to 1.5 times that
     relaxation times    0.05 to 2 s; of two branches the slower 8 to 30 times the quicker
     motion              1 to 8 mm: a smooth ramp of 40 to 400 ms, or of 8 samples where that is longer, and a
-                        hold; or strokes in and out at two speeds
+                        hold; or strokes in and out at two speeds (of a Maxwell body in alone)
     time                6 to 20 times the slowest relaxation time, from any first stamp; a third of the tests
                         comes from outside; a third is sampled more and more seldom
     samples             200 to 600
@@ -157,7 +157,8 @@ def response(
     if kind == "creep":
         force = log_uniform(rng, 0.2, 5.0) * smooth(since / ramp)
         return model.predict(values, Record(time, np.zeros_like(time), force, "position", 0.0)), force
-    path = far * smooth(since / ramp) if kind == "relaxation" else strokes(since, far, span, rng)
+    returns = model.name != "maxwell"  # what has relaxed to nothing lets the probe go
+    path = far * smooth(since / ramp) if kind == "relaxation" else strokes(since, far, span, returns, rng)
     outside = far * rng.uniform(0.05, 0.3) if before and rng.random() < 0.5 else 0.0
     depth = path * (1 + outside / far) - outside
     inside = np.maximum(depth, 0.0)
@@ -165,13 +166,14 @@ def response(
     return depth, force
 
 
-def strokes(since: Array, far: float, span: float, rng: Rng) -> Array:
-    """In, some way out and in again at two speeds, never all the way out."""
+def strokes(since: Array, far: float, span: float, returns: bool, rng: Rng) -> Array:
+    """In at two speeds, and, if it returns, some way out in between, never all the way."""
     slow, quick = span * rng.uniform(0.25, 0.4), span * rng.uniform(0.04, 0.1)
     path, at, level = np.zeros_like(since), 0.0, 0.0
     for k in range(40):
         duration = slow if k % 3 == 0 else quick
-        goal = far * (rng.uniform(0.7, 1.0) if k % 2 == 0 else rng.uniform(0.3, 0.5))
+        deep, out = rng.uniform(0.7, 1.0), rng.uniform(0.3, 0.5)
+        goal = far * (deep if k % 2 == 0 else out) if returns else level + 0.2 * far * deep
         path += (goal - level) * smooth((since - at) / duration)
         at, level = at + duration, goal
         if at > since[-1]:
