@@ -351,6 +351,7 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
         "emit",
         "compare",
         "identify",
+        "tissue",
         "plan",
         "traces",
         "devices",

@@ -294,8 +294,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
         ),
         "tissue": Command(
             "which tissue was it, and how much of it may a device render?",
-            "Read a relaxation, creep or loading test of a probe in tissue from a spreadsheet: the model, its\n"
-            "numbers with intervals, and the largest scale of it that is proved passive on a device.",
+            "Read a relaxation, creep or loading test of a probe in tissue from a spreadsheet: the model,\n"
+            "its numbers with intervals, and the largest scale of it that is proved passive on a device.",
             "Columns and units are known by their names; others are named: --column force='Ch 2' --unit\n"
             "force=mN. Semicolons, decimal commas, units in a row of their own are read.\n\n"
             "exit status: 0 fitted, 2 bad input; with a device that of zwidth check: 0 passive, 1 active,\n"

@@ -10,13 +10,27 @@ from rich.text import Text
 
 from zwidth.cli.page import Row, blocks, headline, items, more_with_all, page, section
 from zwidth.cli.tissue_result import Result, Wall
+from zwidth.identification.logs import Finding
 from zwidth.identification.tissue import TissueTest
 from zwidth.passivity.bracket import Bracket
 from zwidth.passivity.outcome import TOLD
-from zwidth.quantity.text import in_words, shown
+from zwidth.quantity.text import shown
 
-_FEW = 3
+_FEW = 4
 """Findings in a short report."""
+
+_FIRST = ("trials", "loaded", "hole", "surface", "sign", "unit")
+"""Kinds of findings that a short report has before others."""
+
+
+_SPOKEN = {
+    "kelvin-voigt": "Kelvin–Voigt solid",
+    "maxwell": "Maxwell body",
+    "standard-linear-solid": "standard linear solid",
+    "generalized-maxwell-2": "generalized Maxwell solid with 2 branches",
+    "generalized-maxwell-3": "generalized Maxwell solid with 3 branches",
+    "hunt-crossley": "Hunt–Crossley contact",
+}
 
 
 def print_tissue(found: Result, in_full: bool = False) -> None:
@@ -28,13 +42,20 @@ def print_tissue(found: Result, in_full: bool = False) -> None:
         section(out, "what to doubt", items(test.doubts))
         rows = [*_wall(found.wall), *([] if in_full else [("models", _models(test))])]
         blocks(out, rows)
-        odd = test.best.findings
-        section(out, "what the file shows", items(odd if in_full else odd[:_FEW]))
+        section(out, "what the file shows", items(_findings(test, in_full)))
         if in_full:
             section(out, "models, the smallest AICc first", [_columns(test.table())])
             section(out, "assumes", items(_assumed(test), "dim"))
             return
         more_with_all(out, "every model, what the file shows, what the intervals assume")
+
+
+def _findings(test: TissueTest, in_full: bool) -> list[Finding]:
+    """What was odd in the file; in short what changes the answer."""
+    odd = list(test.best.findings)
+    if in_full:
+        return odd
+    return sorted(odd, key=lambda one: one.kind not in _FIRST)[:_FEW]
 
 
 def _headline(test: TissueTest) -> Padding:
@@ -47,14 +68,14 @@ def _headline(test: TissueTest) -> Padding:
 
 
 def _claim(test: TissueTest) -> str:
-    name = in_words(test.best.model.name.replace("-", "_"))
+    name = _SPOKEN[test.names[test.chosen]]
     kind = f"A {test.test.kind} test"
     if test.seen_as != test.test.kind:
         kind += f" as you say (the data look like {test.seen_as})"
     if not test.is_noise:
-        return f"{kind}. {name} comes nearest, and leaves more than noise."
+        return f"{kind}. A {name} comes nearest, and leaves more than noise."
     if test.as_good:
-        others = ", ".join(in_words(n.replace("-", "_")) for n in test.rivals)
+        others = " or a ".join(_SPOKEN[name] for name in test.rivals)
         return f"{kind} of a {name}, or of a {others}: this test cannot tell."
     return f"{kind} of a {name}: {test.spoken()}."
 

@@ -131,6 +131,10 @@ _ONE = 1e-12
 """Of a rate: those that differ by less are one, for between them no double may be left for the zero of H."""
 
 
+MOST_HALVINGS = 2200
+"""All the doubles between 0 and a rate are halved so often at the most."""
+
+
 def _poles(parts: Elements) -> list[_Pole]:
     poles: list[_Pole] = []
     for rate, mu in sorted((mu / eta, mu) for mu, eta in parts.branches):
@@ -178,4 +182,4 @@ def _zero(parts: Elements, poles: list[_Pole], low: _Pole | None, high: _Pole | 
         springs = parts.instantaneous
         stop = start + springs / parts.dashpot + (springs * start / parts.dashpot) ** 0.5
         stop *= 1.0 + 1e-12
-    return float(brentq(scaled, start, stop, xtol=1e-300, rtol=1e-15))
+    return float(brentq(scaled, start, stop, xtol=1e-300, rtol=1e-15, maxiter=MOST_HALVINGS))

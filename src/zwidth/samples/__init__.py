@@ -44,7 +44,7 @@ EXAMPLES = (
     Example(
         ("relaxation.csv", "fit_tissue.py"),
         "a probe held in soft tissue: which tissue, and may it be rendered?",
-        "python fit_tissue.py",
+        "zwidth tissue relaxation.csv phantom",
     ),
     Example(
         ("hapkit.toml",),

@@ -111,7 +111,13 @@ def table_of_file(path: Path) -> Table:
     if start[:3] == b"CDF":
         raise InputError(f"{path} is NetCDF 3; write it as NetCDF 4, for example with nccopy -k nc4")
     if start[:2] == b"PK":
-        raise InputError(f"{path} is a zip archive or a spreadsheet; unpack it, or save it as CSV")
+        sheet = path.suffix.lower() in (".xlsx", ".xlsm", ".ods")
+        how = (
+            "a spreadsheet with formulas and styles; save the sheet as CSV"
+            if sheet
+            else ("a zip archive or a spreadsheet; unpack it, or save it as CSV")
+        )
+        raise InputError(f"{path} is {how}")
     if start[:8] == b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1":
         raise InputError(f"{path} is a spreadsheet of an old office program; save the sheet as CSV")
     if b"zW" in start:

@@ -1,4 +1,4 @@
-"""Which model it is: the corrected AIC of the likelihood with the noise's own memory, and what it cannot tell.
+"""Which model it is: the corrected AIC, the noise's own memory in the likelihood; and what it cannot tell.
 
     AICc = −2 ln L + 2 k + 2 k (k + 1)/(N − k − 1)
 
@@ -17,8 +17,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy import stats
 
-from zwidth.identification.tissue.experiment.estimate import Solved, Task, solved
+from zwidth.errors import InputError
+from zwidth.identification.tissue.experiment.estimate import Solved, solved
 from zwidth.identification.tissue.experiment.history import History
+from zwidth.identification.tissue.experiment.prediction import Task, fine_of
 from zwidth.identification.tissue.model import Model, as_model
 
 APART = 6.0
@@ -48,13 +50,30 @@ class Tried(NamedTuple):
 
 
 def tried(test: History, zero: bool, names: tuple[str, ...] = ()) -> list[Tried]:
-    """Every model that such a test allows, the smallest AICc first."""
-    every = [
-        _tried(Task(model, test, zero))
-        for model in _models(test)
-        if not names or label(model) in names or model.name in names
-    ]
+    """Every model that such a test allows, the smallest AICc first.
+
+    A third branch is tried where the second was worth its numbers.
+    """
+    fine, every = fine_of(test), []
+    for model in _models(test):
+        if names and not {label(model), model.name} & set(names):
+            continue
+        if not names and model.branches > 2 and not _gained(every):
+            continue
+        try:
+            every.append(_tried(Task(model, test, fine, zero)))
+        except InputError:  # a contact that does not push in four samples has no place to begin
+            if names:
+                raise
     return sorted(every, key=lambda each: each.criterion)
+
+
+def _gained(every: list[Tried]) -> bool:
+    """True where two branches did better than one."""
+    by_branches = {
+        each.task.model.branches: each.criterion for each in every if each.task.model.name != "maxwell"
+    }
+    return by_branches.get(2, np.inf) < by_branches.get(1, np.inf)
 
 
 def _models(test: History) -> list[Model]:
@@ -101,13 +120,12 @@ def not_told_apart(every: list[Tried], chosen: int) -> tuple[int, ...]:
 
 def _adds_to(larger: Model, smaller: Model) -> bool:
     """True where the larger model has the smaller one as a special case, or a limit."""
-    if not (larger.linear and smaller.linear) or len(larger.parameters) <= len(smaller.parameters):
-        return False
-    return True
+    both = larger.linear and smaller.linear
+    return both and len(larger.parameters) > len(smaller.parameters)
 
 
 def leftover(found: Solved) -> float:
-    """How seldom noise would look so: the chance of the autocorrelation of what is left (Ljung & Box, 1978)."""
+    """How seldom noise would be so much like itself a moment before: p of Ljung & Box (1978)."""
     left, _ = found.whitened
     n = left.size
     lags = min(LAGS, n // 5)

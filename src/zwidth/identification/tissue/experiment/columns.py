@@ -31,22 +31,25 @@ _WORDS: Mapping[str, tuple[str, ...]] = {
     "time": ("time zeit temps tiempo tempo elapsed timestamp seconds sec t",),
     "indentation": (
         "indentation depth penetration eindringtiefe eindringung tiefe enfoncement indentación profundidad",
-        "displacement deflection compression extension elongation stroke travel weg verschiebung auslenkung "
+        "displacement disp deflection compression extension elongation stroke travel weg standardweg "
+        "verschiebung auslenkung "
         "déplacement deplacement desplazamiento spostamento",
         "position pos crosshead traverse distance height z x",
     ),
-    "force": ("force load kraft last effort fuerza forza fz fn f",),
+    "force": ("force load kraft standardkraft last effort fuerza forza fz fn f",),
 }
 """Words of each quantity, the better ones first."""
 
-_OTHER = frozenset(
-    ["setpoint", "target", "commanded", "command", "desired", "rate", "speed", "velocity", "stress", "strain", "error", "std", "deviation", "temperature", "soll", "geschwindigkeit", "spannung", "dehnung", "vitesse", "contrainte"]
-)
+_OTHER_WORDS = """
+setpoint target commanded command desired rate speed velocity stress strain error std deviation temperature
+soll geschwindigkeit spannung dehnung vitesse contrainte
+"""
+_OTHER = frozenset(_OTHER_WORDS.split())
 """Words of what is measured besides, or was only wanted."""
 
-_TRIALS = frozenset(
-    ["trial", "trials", "sample", "specimen", "run", "test", "cycle", "repeat", "repetition", "replicate", "versuch", "essai"]
-)
+_TRIAL_WORDS = "trial trials sample specimen run test cycle repeat repetition replicate versuch essai"
+_TRIALS = frozenset(_TRIAL_WORDS.split())
+"""Words of a column that numbers the trials."""
 
 _WEIGHT = 9.80665
 _OLD: Mapping[str, tuple[str, float]] = {
@@ -102,6 +105,7 @@ def recognised(
     found: dict[str, str] = {}
     for quantity in QUANTITIES:
         found[quantity] = _column(table, quantity, chosen, [*found.values(), *chosen.values()])
+    _refuse_without_unit(table, found, units)
     factors = {q: _factor(table, q, name, units.get(q)) for q, name in found.items()}
     numbered = [name for name in table.units if name not in found.values() and _TRIALS & set(_words(name))]
     return Columns(
@@ -188,21 +192,28 @@ def _kind(unit: str | None, quantity: str) -> str | None:
     return next((name for name, own in _DIMENSIONS.items() if own == dimension), "")
 
 
+def _refuse_without_unit(table: Table, found: Mapping[str, str], units: Mapping[str, str]) -> None:
+    """Ask for all units that nobody states at once."""
+    lacking = [q for q, name in found.items() if q not in units and not spelled(_unit(table, name) or "")]
+    if lacking:
+        names = listed([found[q] for q in lacking])
+        asked = " ".join(f'units={{"{q}": "{_EXAMPLES[q]}"}}' for q in lacking)
+        raise InputError(f"{table.source}: nobody says in which unit {names} is; state it with {asked}")
+
+
+_EXAMPLES = {"time": "s", "indentation": "mm", "force": "N"}
+
+
 def _factor(table: Table, quantity: str, column: str, given: str | None) -> float:
     """SI per number in the column."""
     unit = given if given is not None else _unit(table, column)
-    example = {"time": "s", "indentation": "mm", "force": "N"}[quantity]
-    if unit is None or not spelled(unit):
-        raise InputError(
-            f'{table.source}: nobody says in which unit the {quantity} in column "{column}" is; state it '
-            f'with units={{"{quantity}": "{example}"}}'
-        )
+    assert unit is not None
     kind = _kind(unit, quantity)
     if kind != quantity:
         what = "no unit that is known here" if kind is None else f"no unit of {_KINDS[quantity]}"
         raise InputError(
             f'{table.source}: the {quantity} in column "{column}" is in {unit}, {what}; state it '
-            f'with units={{"{quantity}": "{example}"}}'
+            f'with units={{"{quantity}": "{_EXAMPLES[quantity]}"}}'
         )
     bare = spelled(unit)
     if bare in _OLD:

@@ -2,11 +2,11 @@
 
     min  | W (y − ŷ(θ, zero, surface, held)) |²
 
-ŷ is the model under the measured history, straight between samples, so that a ramp counts as it was; W
-whitens the noise, whose memory is estimated from what is left (`noise`), until both agree.  Fitted besides
-the logarithms θ of the parameters: the zero of the response, the depth of the surface where the probe came
-from outside, and what each branch holds after a hole.  Every model of a test has the same of them, so that
-none may take for a fault of the sensor what another explains.
+ŷ is the model under the measured history (`prediction`), so that a ramp counts as it was; W whitens the
+noise, whose memory is estimated from what is left (`noise`), until both agree.  Fitted besides the
+logarithms θ of the parameters: the zero of the response, the depth of the surface where the probe came from
+outside, and what each branch holds after a hole.  Every model of a test has the same of them, so that none
+may take for a fault of the sensor what another explains.
 
     cov = s² (JᵀWᵀWJ)⁻¹,    s² = |W r|²/(N − k)
 """
@@ -18,62 +18,19 @@ from typing import NamedTuple
 import numpy as np
 
 from zwidth.compiled import Array
-from zwidth.identification.tissue.experiment.history import History
 from zwidth.identification.tissue.experiment.noise import Noise, likelihood, noise_of, with_memory
-from zwidth.identification.tissue.model import Model, Record
+from zwidth.identification.tissue.experiment.prediction import Task, derivatives, predicted
 from zwidth.identification.tissue.start import starting_points
 
-REACH = 25.0
+REACH = 14.0
 """How far the logarithm of a parameter may go from where it began."""
 
 AGREED = 0.05
 """Relative change of the memory below which fit and noise agree."""
 
 ROUNDS = 4
-STEP = 1e-5
 FIRST, MOST = 8, 60
 """Evaluations of a search from each start, and of that from the best of them."""
-
-
-class Task(NamedTuple):
-    """A model, a test, and whether the zero is fitted."""
-
-    model: Model
-    test: History
-    zero: bool
-
-    @property
-    def own(self) -> int:
-        """Parameters of the model."""
-        return len(self.model.parameters)
-
-    @property
-    def surface(self) -> bool:
-        """True where its depth is fitted; a creep test is predicted from the force, which has none."""
-        return self.test.surface is not None and self.test.kind != "creep"
-
-    @property
-    def held(self) -> int:
-        """Numbers for what branches hold after holes."""
-        return len(self.test.begins) * (self.model.branches if self.model.linear else 0)
-
-    @property
-    def size(self) -> float:
-        """Of the output."""
-        return float(np.abs(self.output).max()) or 1.0
-
-    @property
-    def output(self) -> Array:
-        """What is predicted, and carries the noise."""
-        return self.test.depth if self.test.kind == "creep" else self.test.force
-
-    def record(self, surface: float) -> Record:
-        """The test as a model takes it, with the surface at a depth."""
-        test = self.test
-        depth = np.maximum(test.depth - surface, 0.0) if self.surface else test.depth
-        response = "position" if test.kind == "creep" else "force"
-        rest = 0.0 if test.starts_loaded or test.kind == "creep" else None
-        return Record(test.time, depth, test.force, response, rest, test.begins)
 
 
 class Solved(NamedTuple):
@@ -130,42 +87,8 @@ def _with_noise(task: Task, point: Array) -> Solved:
 def _starts(task: Task) -> list[Array]:
     surface = task.test.surface if task.surface else None
     record = task.record(surface or 0.0)
-    further = [0.0] * task.zero + ([surface / _way(task)] if surface is not None else []) + [0.0] * task.held
+    further = [0.0] * task.zero + ([surface / task.way] if surface is not None else []) + [0.0] * task.held
     return [np.append(np.log(start), further) for start in starting_points(task.model, record)]
-
-
-def _way(task: Task) -> float:
-    return float(np.abs(task.test.depth).max()) or 1.0
-
-
-def predicted(task: Task, point: Array) -> Array:
-    """The output at a point, in parts of its size."""
-    own = task.own
-    place = own + task.zero
-    surface = float(point[place]) * _way(task) if task.surface else 0.0
-    values = [float(v) for v in np.exp(np.clip(point[:own], -80.0, 80.0))]
-    record = task.record(surface)
-    found = task.model.predict(values, record) / task.size
-    if task.zero:
-        found = found + point[own]
-    if task.held:
-        columns = [c for begin in record.begins for c in task.model.fading(values, record, begin)]
-        found = found + np.stack(columns, axis=1) @ point[place + task.surface :]
-    return np.asarray(found)
-
-
-def derivatives(task: Task, point: Array) -> Array:
-    """Of the output by the point, by central differences."""
-    columns = []
-    for k in range(point.size):
-        if k == task.own and task.zero:
-            columns.append(np.ones(task.test.time.size))
-            continue
-        up, down = point.copy(), point.copy()
-        up[k] += STEP
-        down[k] -= STEP
-        columns.append((predicted(task, up) - predicted(task, down)) / (2 * STEP))
-    return np.stack(columns, axis=1)
 
 
 def _searched(task: Task, start: Array, noise: Noise, most: int = MOST) -> tuple[Array, float]:

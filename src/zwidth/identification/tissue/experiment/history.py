@@ -23,10 +23,7 @@ TOUCH = 5.0
 """Times its noise by which the force shows that the probe touches."""
 
 SMALL = 0.02
-"""Of the largest force, below which nothing is said to be touched; and of the way, below which none was gone."""
-
-LOADED = 0.5
-"""Of the largest force, from which on a test begins loaded where what is held never changed."""
+"""Of the largest force, below which nothing is touched; and of the way, below which none was gone."""
 
 
 class History(NamedTuple):

@@ -68,7 +68,10 @@ def noise_of(time: Array, residuals: Array, jacobian: Array) -> Noise:
     """The noise that the residuals show: white, unless a memory does better by more than `SEEN`."""
     white = with_memory(time, 0.0)
     steps = np.diff(time)
-    low, high = log(0.2 * float(np.median(steps))), log(max(LONGEST * float(time[-1]), float(steps.max())))
+    low, high = (
+        log(0.3 * float(np.quantile(steps, 0.1))),
+        log(max(LONGEST * float(time[-1]), float(steps.max()))),
+    )
     if not low < high:
         return white
 
@@ -78,7 +81,7 @@ def noise_of(time: Array, residuals: Array, jacobian: Array) -> Noise:
     grid = np.linspace(low, high, _STEPS)
     found = [missed(float(np.exp(at))) for at in grid]
     best = int(np.argmin(found))
-    if found[best] + SEEN > missed(0.0) and best > 0:
+    if found[best] + SEEN > missed(0.0):
         return white
     return with_memory(time, float(np.exp(_vertex(grid, np.array(found), best))))
 

@@ -1,4 +1,4 @@
-"""One trial of a spreadsheet, in order: rows without numbers, repeated stamps and other trials are left out."""
+"""One trial of a spreadsheet, in order, without rows that lack a number and stamps that come twice."""
 
 from __future__ import annotations
 

@@ -1,0 +1,221 @@
+"""Tests of tissue: which test it is, the history of the probe, the noise, the model, the intervals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.linalg import cholesky, solve_triangular
+from scipy.stats import binom
+
+import zwidth as zw
+from zwidth.identification.tissue.experiment.choice import Tried, not_told_apart, taken
+from zwidth.identification.tissue.experiment.history import history_of
+from zwidth.identification.tissue.experiment.kind import kind_of
+from zwidth.identification.tissue.experiment.noise import likelihood, noise_of, with_memory
+from zwidth.identification.tissue.experiment.prediction import Task, derivatives, fine_of, predicted
+from zwidth.identification.tissue.experiment.tidy import Trial
+from zwidth.identification.tissue.model import as_model
+
+SOLID = zw.StandardLinearSolid(420, 260, 90)
+TRUE = (420, 260, 90)
+
+
+def relaxation(count: int = 300, begin: float = 0.5) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """4 mm within 0.3 s and a hold, without noise."""
+    time = np.linspace(0, 6, count)
+    s = np.clip((time - begin) / 0.3, 0, 1)
+    depth = 0.004 * s**2 * (3 - 2 * s)
+    return time, depth, exact(time, begin)
+
+
+def exact(time: np.ndarray, begin: float) -> np.ndarray:
+    """The force of that smooth ramp, by integration of q̇ = μ ẋ − q μ/η in steps of 0.1 ms."""
+    fine = np.arange(0, 6.0001, 1e-4)
+    s = np.clip((fine - begin) / 0.3, 0, 1)
+    moved = np.diff(0.004 * s**2 * (3 - 2 * s))
+    q, held = np.zeros(fine.size), np.exp(-1e-4 * 260 / 90)
+    for k, step in enumerate(moved):
+        q[k + 1] = held * q[k] + 260 * step * np.sqrt(held)
+    return np.interp(time, fine, 420 * 0.004 * s**2 * (3 - 2 * s) + q)
+
+
+def strokes() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """From 1 mm outside in and half out again, three times."""
+    time = np.linspace(0, 6, 400)
+    depth = -0.001 + 0.003 * (1 - np.cos(2 * np.pi * time / 6)) + 0.0008 * np.sin(9 * time) * (time / 6)
+    return time, depth, zw.tissue.force_response(SOLID, time, np.maximum(depth, 0))
+
+
+def creep() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """2 N within 0.2 s, held."""
+    time = np.linspace(0, 8, 300)
+    force = 2 * np.clip((time - 0.5) / 0.2, 0, 1)
+    return time, zw.tissue.position_response(SOLID, time, force, 0.0), force
+
+
+@pytest.mark.parametrize(
+    ("arrays", "kind"), [(relaxation, "relaxation"), (creep, "creep"), (strokes, "loading")]
+)
+@pytest.mark.parametrize("noisy", [0.0, 0.01])
+def test_which_test_it_is(arrays, kind, noisy):
+    """With noise of 1 % on all, with other origins, and the other way round."""
+    rng = np.random.default_rng(4)
+    time, x, f = arrays()
+    x, f = (v + noisy * np.ptp(v) * rng.normal(size=v.size) for v in (x, f))
+    assert kind_of(time, x, f) == kind
+    assert kind_of(time, 0.7 - x, -3 - f) == kind
+
+
+@pytest.mark.parametrize("arrays", [relaxation, creep, strokes])
+def test_without_noise_the_parameters_come_back_whatever_origin_and_sign(arrays):
+    """A ramp is followed as it was, between its samples too."""
+    time, x, f = arrays()
+    for test in (
+        zw.tissue.fit_test(time, x, f, models=("standard-linear-solid",)),
+        zw.tissue.fit_test(time + 55, 0.3 - x, 7 - f, models=("standard-linear-solid",)),
+    ):
+        assert [test.best[name] for name in test.best.model.parameters] == pytest.approx(TRUE, rel=3e-3)
+
+
+def test_a_step_before_the_first_sample():
+    """The hold alone gives all three numbers, and the finding says what was taken for granted."""
+    time = np.geomspace(0.001, 8, 150)
+    force = 0.004 * (420 + 260 * np.exp(-(time - 0.001) * 260 / 90))
+    test = zw.tissue.fit_test(time, np.full(150, 0.004), -force, models=("standard-linear-solid",))
+    assert [test.best[name] for name in test.best.model.parameters] == pytest.approx(TRUE, rel=1e-5)
+    assert test.test.starts_loaded
+    assert any("begins loaded" in str(said) for said in test.best.findings)
+
+
+def test_the_surface_is_found_where_the_probe_comes_from_outside():
+    time, x, f = strokes()
+    trial = Trial(time, x + 0.04, f, ())
+    history = history_of(trial, "loading", "here")
+    assert history.surface == pytest.approx(0.001, abs=2e-4)
+    assert history.depth[0] == 0
+
+
+def test_what_branches_hold_after_a_hole_in_which_the_probe_moved():
+    """A third of a stroke is lost: the fit is as good as without the hole, and says so."""
+    time, x, f = strokes()
+    keep = np.r_[0:180, 215:400]
+    test = zw.tissue.fit_test(time[keep], x[keep], f[keep], models=("standard-linear-solid",))
+    assert [test.best[name] for name in test.best.model.parameters] == pytest.approx(TRUE, rel=3e-3)
+    assert any("what the branches hold after it is fitted" in str(said) for said in test.best.findings)
+
+
+@pytest.mark.parametrize("name", ["kelvin-voigt", "maxwell", "generalized-maxwell", "hunt-crossley"])
+def test_derivatives_are_those_of_differences(name):
+    """With a surface, a zero, and two holes."""
+    time, x, f = strokes()
+    history = history_of(Trial(time, x, f, ()), "loading", "here")._replace(begins=(150, 250))
+    task = Task(as_model(name, None, "force"), history, fine_of(history), True)
+    values = {"kelvin-voigt": (400, 20), "maxwell": (400, 90), "hunt-crossley": (4000, 1.4, 5)}
+    own = values.get(name, (420, 200, 10, 260, 90))
+    point = np.concatenate([np.log(own), [0.02], [0.15], np.full(task.held, 0.1)])
+    found = derivatives(task, point)
+    for k in range(point.size):
+        up, down = point.copy(), point.copy()
+        up[k] += 1e-4
+        down[k] -= 1e-4
+        expected = (predicted(task, up) - predicted(task, down)) / 2e-4
+        assert found[:, k] == pytest.approx(expected, abs=1e-6 * np.abs(expected).max())
+
+
+def test_whitening_is_that_of_the_whole_covariance():
+    """At uneven times: |ε|² and ln det from the matrix exp(−|tᵢ − tⱼ|/τ)."""
+    rng = np.random.default_rng(8)
+    time = np.cumsum(rng.uniform(0.01, 0.2, 40))
+    noise = with_memory(time, 0.13)
+    values = rng.normal(size=40)
+    matrix = np.exp(-np.abs(time[:, None] - time) / 0.13)
+    white = solve_triangular(cholesky(matrix, lower=True), values, lower=True)
+    assert np.abs(noise.whitened(values)) == pytest.approx(np.abs(white), rel=1e-9)
+    assert noise.log_determinant == pytest.approx(np.linalg.slogdet(matrix)[1], rel=1e-9)
+    expected = 40 * np.log(white @ white / 40) + noise.log_determinant
+    assert likelihood(noise, values) == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_memory_is_seen_and_white_noise_has_none():
+    rng = np.random.default_rng(5)
+    time = np.cumsum(rng.uniform(0.005, 0.015, 500))
+    columns = np.stack([np.ones(500), time], axis=1)
+    white = rng.normal(size=500)
+    noise = with_memory(time, 0.03)
+    coloured = white.copy()
+    for k, rho in enumerate(noise.between):
+        coloured[k + 1] = rho * coloured[k] + np.sqrt(1 - rho * rho) * white[k + 1]
+    assert noise_of(time, white, columns).memory == 0
+    assert 0.02 < noise_of(time, coloured, columns).memory < 0.045
+
+
+def candidate(name: str, branches: int | None, criterion: float) -> Tried:
+    time, x, f = relaxation(40)
+    history = history_of(Trial(time, x, f, ()), "relaxation", "here")
+    task = Task(as_model(name, branches, "force"), history, fine_of(history), True)
+    return Tried(task, None, criterion)  # type: ignore[arg-type]  # nothing here looks at the fit
+
+
+@pytest.mark.parametrize(
+    ("criteria", "best", "others"),
+    [
+        ((0.0, 4.0, 90.0), "standard-linear-solid", ()),  # a branch more gains nothing
+        (
+            (5.9, 0.0, 90.0),
+            "standard-linear-solid",
+            ("generalized-maxwell",),
+        ),  # … or not enough to be believed
+        ((6.1, 0.0, 90.0), "generalized-maxwell", ()),
+        ((0.0, 4.0, 5.9), "standard-linear-solid", ("hunt-crossley",)),  # neither contains the other
+        ((0.0, 4.0, 6.1), "standard-linear-solid", ()),
+    ],
+)
+def test_the_simplest_within_6_is_taken_and_rivals_are_named(criteria, best, others):
+    models = (("standard-linear-solid", None), ("generalized-maxwell", 2), ("hunt-crossley", None))
+    every = [candidate(*model, value) for model, value in zip(models, criteria, strict=True)]
+    every.sort(key=lambda each: each.criterion)
+    chosen = taken(every)
+    assert every[chosen].task.model.name == best
+    assert tuple(every[k].task.model.name for k in not_told_apart(every, chosen)) == others
+
+
+def test_two_branches_are_told_from_one_and_a_misfit_is_said():
+    """The true model leaves noise; one branch too few does not, and then the intervals are doubted."""
+    time, x, _ = relaxation(400)
+    solid = zw.GeneralizedMaxwell(420, [(200, 10), (260, 200)])
+    force = zw.tissue.force_response(solid, time, x) + np.random.default_rng(2).normal(0, 0.004, 400)
+    test = zw.tissue.fit_test(time, x, force, models=("standard-linear-solid", "generalized-maxwell-2"))
+    assert (test.best.model.branches, test.rivals, test.is_noise) == (2, (), True)
+    alone = zw.tissue.fit_test(time, x, force, models=("maxwell",))
+    assert not alone.is_noise
+    assert "not noise" in alone.doubts[-1]
+
+
+def test_intervals_hold_the_truth_as_often_as_they_say():
+    """40 tests with noise of a memory of 3 samples: misses as a fair binomial may have them."""
+    rng = np.random.default_rng(11)
+    time, x, clean = relaxation(200)
+    runs, held = 40, dict.fromkeys(("stiffness", "branch_stiffness", "branch_damping"), 0)
+    rho = np.exp(-1 / 3)
+    for _ in range(runs):
+        white = rng.normal(0, 0.01, 200)
+        noise = white.copy()
+        for k in range(199):
+            noise[k + 1] = rho * noise[k] + np.sqrt(1 - rho**2) * white[k + 1]
+        best = zw.tissue.fit_test(time, x, clean + noise, models=("standard-linear-solid",)).best
+        for name, value in zip(held, TRUE, strict=True):
+            low, high = best.interval(name)
+            held[name] += low <= value <= high
+    fewest = binom.ppf(0.0005, runs, 0.95)
+    assert min(held.values()) >= fewest
+
+
+def test_a_fit_is_drawn():
+    """Of a test three panels, of a fit two, the fit in the colour of the line over the dots."""
+    time, x, f = relaxation(60)
+    test = zw.tissue.fit_test(time, x, f, models=("kelvin-voigt",))
+    assert len(test.plot().axes) == 3
+    figure = test.best.plot()
+    assert len(figure.axes) == 2
+    line = figure.axes[0].lines[1].get_ydata()
+    assert line == pytest.approx(test.best.output - test.best.residuals)
