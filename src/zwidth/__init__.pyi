@@ -37,6 +37,8 @@ from zwidth.identification import tissue as tissue
 from zwidth.identification.device.plan import plan_identification as plan
 from zwidth.identification.logs import Log as Log
 from zwidth.identification.logs import read_log as read_log
+from zwidth.maps import load_sweep as load_sweep
+from zwidth.maps import sweep as sweep
 from zwidth.maps import z_width as z_width
 from zwidth.pairs import Pair as Pair
 from zwidth.passivity import coupling as coupling

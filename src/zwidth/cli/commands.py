@@ -157,6 +157,22 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth map haptic-paddle --stiffness 0:3000 --virtual-damping 0:5 -o map.zarr "
             "--address tcp://cluster:8786",
         ),
+        "sweep": Command(
+            "the same question of a thousand loops",
+            "Vary parameters over a grid, and ask of each loop what check, limit, simulate or pair answers.\n"
+            "The results are a table of Parquet, or a zarr store that opens as labelled xarray.",
+            "A plain number is SI; in a range and in a list the unit may stand once, behind the last one.\n"
+            "Stopped, even killed, the same command goes on with what is missing.\n\n"
+            "exit status: 0, or 2 on bad input; 130 interrupted (what was finished is kept)\n\n"
+            "examples:\n"
+            "  zwidth sweep haptic-paddle --vary stiffness=50:600:40 --vary 'delay=0:5 ms:20' "
+            "--plot sweep.png\n"
+            "  zwidth sweep my-wheel.toml my-bumpstop.toml --vary 'rate=500:8000:20 log' -o sweep.parquet\n"
+            "  zwidth sweep haptic-paddle --of simulate --operator finger --duration '1 s' "
+            "--vary stiffness=100:2000:20 -o touches.zarr\n"
+            "  zwidth sweep haptic-paddle --vary stiffness=1:3000:1000 --vary 'delay=0:5 ms:1000' "
+            "-o big.zarr --dask tcp://cluster:8786",
+        ),
         "play": Command(
             "a page on which a loop is held, pushed and heard",
             "Write a page of HTML on which a person holds the handle and pushes into the wall: device, hand\n"

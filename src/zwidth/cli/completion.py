@@ -162,6 +162,7 @@ _WORDS: Mapping[str, Callable[[], Collection[str]]] = MappingProxyType(
         "--follower-operator": _hands,
         "--target": _targets,
         "--connection": _connections,
+        "--of": lambda: ("check", "limit", "simulate", "pair"),
         "--contact": lambda: ("kept", "made-and-broken"),
         "--motion": lambda: ("linear", "rotary"),
     }

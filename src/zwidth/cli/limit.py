@@ -71,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
     loop = Specification(given.device, rendered)
     if arguments.parameter is None:
         _refuse_without_stiffness(loop)
-    parameter = _parameter(arguments.parameter or "stiffness")
+    parameter = named(arguments.parameter or "stiffness")
     options = _options(arguments, loop.device.motion)
     from zwidth.cli.compile_notice import warn_of_compiling_the_iteration
     from zwidth.traces import passive_limit
@@ -117,8 +117,14 @@ def _refuse_without_stiffness(loop: Specification) -> None:
     )
 
 
-def _parameter(typed: str) -> str:
-    """The name in Python of what is an option here: `damping` is always the device's."""
+def named(typed: str) -> str:
+    """The name in Python of what is an option here: `damping` is always the device's.
+
+    Raises
+    ------
+    InputError
+        If there is no such parameter.
+    """
     name = typed.strip().replace("-", "_")
     on_device, in_environment = set(PROPERTIES) & set(GLOSSARY), {*option_keys(), "gain"}
     if name not in on_device | in_environment:

@@ -6,7 +6,7 @@ chunk is whole, and one that is not marked is computed again, to the same bits.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -102,6 +102,20 @@ def computed(
         progress(count, total)
     whole: Layers = keep.read()
     return whole
+
+
+def say(path: Path, layout: Layout, told: Mapping[str, Any]) -> None:
+    """Write into a store that is whole what is to be said of it.
+
+    Raises
+    ------
+    InputError
+        If the disk does not take it.
+    """
+    import zarr  # it was there to compute the store
+
+    with _on_disk(path, layout):
+        zarr.open_group(path, mode="r+").attrs["told"] = dict(told)
 
 
 def _opened(path: Path, layout: Layout) -> Any:

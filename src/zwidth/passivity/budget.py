@@ -27,6 +27,9 @@ NEGATIVE = "negative static stiffness"
 CONTACT = "contact made and broken"
 """The criterion holds while the hand stays inside, and a motion that touches and leaves gains."""
 
+LIMITS = (SAMPLING, DELAY, VIRTUAL_DAMPING, DYNAMICS, QUANTIZATION, UNSTABLE, NEGATIVE, CONTACT)
+"""Whatever may bind."""
+
 
 @dataclass(frozen=True)
 class Budget:

@@ -55,6 +55,7 @@ def check(
     environment: Environment | Any,
     *,
     contact: str = ...,
+    iterate: bool = ...,
     progress: Callable[[int], None] | None = ...,
 ) -> Verdict: ...
 @overload
@@ -68,6 +69,7 @@ def check(
     environment: Environment | Any = None,
     *,
     contact: str = "made and broken",
+    iterate: bool = True,
     progress: Callable[[int], None] | None = None,
     **of_an_arm: Any,
 ) -> Verdict | Workspace | PairVerdict | HeldVerdict:
@@ -103,6 +105,9 @@ def check(
         "made and broken": a one-sided law is "passive" if no hand gains that touches and leaves at will, and
         "passive in contact" if this is proved only of hands that stay inside.  "kept": the question is about
         those alone.
+    iterate
+        False for closed forms alone: what they leave open stays open, and no answer depends on the time that
+        value iteration gets.
     progress
         Told the number of states that still improve, where values are iterated.
     of_an_arm
@@ -130,9 +135,9 @@ def check(
     if not law.has_transfer_function:
         from zwidth.passivity.other_laws import check_other  # few loops have such a law
 
-        return check_other(device, law, check_by_closed_forms, progress)
+        return check_other(device, law, check_by_closed_forms, progress, iterate)
     verdict = check_by_closed_forms(device, law, contact=contact)
-    if asked == "kept" or not has_gap(device, law, verdict):
+    if not iterate or asked == "kept" or not has_gap(device, law, verdict):
         return verdict
     return with_value_iteration(device, law, verdict, progress)
 

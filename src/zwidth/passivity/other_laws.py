@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
@@ -33,9 +34,16 @@ _ACTUATOR = ("force_limit", "force_resolution", "motor_inductance", "supply_volt
 
 Progress = Callable[[int], None]
 
+Values = Callable[[Verdict], Verdict]
+"""What value iteration adds to a verdict, or nothing."""
+
 
 def check_other(
-    device: Device, law: Environment, closed: Closed, progress: Progress | None = None
+    device: Device,
+    law: Environment,
+    closed: Closed,
+    progress: Progress | None = None,
+    iterate: bool = True,
 ) -> Verdict:
     """The verdict on a law without H(z).
 
@@ -49,6 +57,8 @@ def check_other(
         How a wall that covers laws in a chain is decided.
     progress
         Told the number of states that still improve, while values are iterated.
+    iterate
+        False to iterate none.
 
     Raises
     ------
@@ -57,14 +67,15 @@ def check_other(
     """
     worst = _at_its_worst(device)
     asked = scope_of(device, law)
+    values: Values = partial(_by_values, progress=progress) if iterate else lambda verdict: verdict
     if law.points:
-        verdict = _spring(worst, law, asked, progress)
+        verdict = _spring(worst, law, asked, values)
     elif law.power_law is not None:
-        verdict = _by_values(Verdict("undecided", asked, worst, law), progress)
+        verdict = values(Verdict("undecided", asked, worst, law))
     elif law.starts_at_rest:
         verdict = decide_behind_coupling(Verdict("undecided", asked, worst, law), closed)
     elif laws_of(law):
-        verdict = _row(worst, law, asked, closed, progress)
+        verdict = _row(worst, law, asked, closed, values)
     else:
         raise InputError(f"no road is known to a verdict on {law.describe(device.motion)}")
     if verdict.outcome == "active" and not device.is_certain:  # at the worst: more friction may hold it
@@ -83,7 +94,7 @@ def _at_its_worst(device: Device) -> Device:
     return device.replace(**low, resolution=Exact(ends(device.resolution)[1]))
 
 
-def _spring(device: Device, law: Environment, asked: Scope, progress: Progress | None) -> Verdict:
+def _spring(device: Device, law: Environment, asked: Scope, values: Values) -> Verdict:
     from zwidth.passivity.formulas.nonlinear_spring import certify_spring, refute_spring, spring_need
 
     need = spring_need(device, law)
@@ -99,7 +110,7 @@ def _spring(device: Device, law: Environment, asked: Scope, progress: Progress |
         if runaway is not None:
             return replace(verdict, outcome="active", violation=runaway)
         verdict = verdict if need.bounded else replace(verdict, finding="no lowest energy")
-        return _by_values(verdict, progress)
+        return values(verdict)
     limited = friction == need.coulomb_friction > 0 or b == need.damping
     return _proved(verdict, certificate, asked, limited)
 
@@ -108,9 +119,7 @@ def _proved(verdict: Verdict, certificate: Certificate, scope: Scope, at_limit: 
     return replace(verdict, outcome="passive", scope=scope, certificate=certificate, at_limit=at_limit)
 
 
-def _row(
-    device: Device, law: Environment, asked: Scope, closed: Closed, progress: Progress | None
-) -> Verdict:
+def _row(device: Device, law: Environment, asked: Scope, closed: Closed, values: Values) -> Verdict:
     from zwidth.passivity.bounding import check_bounding, is_bounded
 
     verdict = Verdict("undecided", asked, device, law)
@@ -125,7 +134,7 @@ def _row(
             scope = proved.scope.replace(also=(), law=(_covered(device, covered[0]),))
             return _proved(verdict, proved.certificate, scope, proved.at_limit)
     on_paper = _on_paper(verdict)
-    return _by_values(verdict, progress) if on_paper is None else on_paper
+    return values(verdict) if on_paper is None else on_paper
 
 
 def _covered(device: Device, less: Device) -> Law:

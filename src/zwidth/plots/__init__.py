@@ -4,7 +4,7 @@ Import it by name, `import zwidth.plots`: nothing else in the package does, so
 that a verdict never waits for matplotlib.  `criterion`, `plane`, `budget`,
 `witness`, `worst_case`, `storage`, `cycle`, `indices`, `check_figure`,
 `limit_figure`, `plot_held_pair`, `plot_lateness`, `plot_links`, `plot_pair`, `plot_scene`,
-`workspace_figure` and `z_width_figure` return a `matplotlib.figure.Figure` that
+`sweep_figure`, `workspace_figure` and `z_width_figure` return a `matplotlib.figure.Figure` that
 belongs to no window; the `draw_…` functions draw on axes of your own, in the look
 of `LOOK` if your axes have it.
 """
@@ -24,6 +24,7 @@ from zwidth.plots.report import check_figure
 from zwidth.plots.scene import draw_scene, plot_scene
 from zwidth.plots.storage import draw_storage, storage
 from zwidth.plots.style import LOOK
+from zwidth.plots.sweep import save_sweep, sweep_figure
 from zwidth.plots.witness import draw_witness, witness
 from zwidth.plots.workspace import draw_workspace, workspace_figure
 from zwidth.plots.worst_case import draw_worst_case, worst_case
@@ -63,8 +64,10 @@ __all__ = [
     "plot_links",
     "plot_pair",
     "plot_scene",
+    "save_sweep",
     "save_z_width",
     "storage",
+    "sweep_figure",
     "witness",
     "workspace_figure",
     "worst_case",

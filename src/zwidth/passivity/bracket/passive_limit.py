@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from math import inf
 from typing import Any
 
 from zwidth.device.device import Device
@@ -36,6 +37,7 @@ def passive_limit(
     friction: FrictionCurve | None = None,
     tolerance: float = 0.01,
     seconds: float = 60.0,
+    iterate: bool = True,
     progress: Callable[[int, int], None] | None = None,
 ) -> Bracket:
     """How far a parameter may go: proved passive on one side, refuted by a motion on the other.
@@ -64,6 +66,8 @@ def passive_limit(
         Relative width of the bracket that is wanted.
     seconds
         Time after which the bracket so far is returned; that of compiling, once, is not counted.
+    iterate
+        False for closed conditions alone: the same on every machine, however long it takes.
     progress
         Told (loops decided, about how many there will be).
 
@@ -85,6 +89,8 @@ def passive_limit(
     asked = parameter_of(device, law, parameter)
     time_limit(seconds)
     counted = penetration, speed, force_limit, force_resolution, friction
+    if not iterate:
+        return _by_closed_forms(Search(asked, tolerance, time.monotonic(), inf, progress), counted)
     ideal = ends(device.resolution)[1] == 0
     in_a_row = bool(laws_of(law))
     if not (ideal or in_a_row or is_stepped(law)) and isinstance(
@@ -121,3 +127,13 @@ def passive_limit(
         return slow_hands(*asked.change(value), program(value).bounds.speed)
 
     return BoundedSearch(search, program, slow, every).bracket()
+
+
+def _by_closed_forms(search: Search, counted: tuple[Any, ...]) -> Bracket:
+    if any(entry is not None and entry is not False for entry in counted):
+        raise InputError(
+            "bounds on the hand, what the actuator gives and a friction curve are counted in by value "
+            "iteration alone: leave them out, or iterate"
+        )
+    every = search.by_closed_forms(every_law=True) or NOTHING
+    return search.bracket(every, (every.passive, every.active))

@@ -36,6 +36,16 @@ _DIGITS = (2, 3, 4, 6, 9, 13)
 """Of what a move inside a sample loses at least, where more make a proof too long."""
 
 
+NOTHING = "nothing is violated"
+COMPENSATION = "compensation of friction: it gives more than friction is proved to take"
+DRIVE = "damping of an arm: its own drive feeds more energy than it takes"
+DAMPING = "damping of the arms: the hold, the delay and the link feed more energy than it takes"
+FRICTION = "Coulomb friction: one count of the encoders feeds more energy than it takes"
+
+LIMITS = (NOTHING, COMPENSATION, DRIVE, DAMPING, FRICTION)
+"""Whatever may bind."""
+
+
 def check_pair(pair: Pair) -> PairVerdict:
     """Decide whether two hands can ever take energy out of a pair of arms.
 
@@ -212,16 +222,16 @@ class PairVerdict(PassivityAnswer):
     def limit(self) -> str:
         """What binds."""
         if self.outcome == "passive":
-            return "nothing is violated"
+            return NOTHING
         if self._spoiled:
-            return "compensation of friction: it gives more than friction is proved to take"
+            return COMPENSATION
         if self.criterion.slips:
-            return "damping of an arm: its own drive feeds more energy than it takes"
+            return DRIVE
         if not self.criterion.holds:
-            return "damping of the arms: the hold, the delay and the link feed more energy than it takes"
+            return DAMPING
         if max(self.criterion.missing_friction) > 0:
-            return "Coulomb friction: one count of the encoders feeds more energy than it takes"
-        return "nothing is violated"
+            return FRICTION
+        return NOTHING
 
     def rows(self) -> Iterator[tuple[str, str]]:
         """The main numbers."""

@@ -20,6 +20,10 @@ _AHEAD = 0.5
 """Time by which the first side may be ahead of the other [s]: it tells the other where to begin."""
 
 
+Clock = Callable[[], float]
+"""The time [s]."""
+
+
 class Side:
     """One claim, and how far it has been shown.
 
@@ -47,16 +51,16 @@ class Side:
         """Seek anew with sharper means: what failed before may be shown now."""
         self.bad, self._ahead = None, 0
 
-    def ask(self, value: Exact, other: Side, deadline: float) -> None:
+    def ask(self, value: Exact, other: Side, deadline: float, clock: Clock) -> None:
         """Try the claim at a value: no longer than a part of the time left, that there is some for others."""
         self._ahead += (self.good is None) != (self._nearest(other.good) is None)
-        begun = time.monotonic()
+        begun = clock()
         left = max(deadline - begun, 0.0)
         if self.holds(value, begun + left / (2 if self.good is None else 4)):
             self.good = value
         else:
             self.bad = value
-        self.spent += time.monotonic() - begun
+        self.spent += clock() - begun
 
     def next(self, other: Side, fine: float) -> Exact | None:
         """Where to ask; None if nothing is to be gained by it."""
@@ -82,17 +86,20 @@ class Side:
         return min(known, key=lambda value: self.towards * value) if known else None
 
 
-def approach(first: Side, second: Side, fine: float, deadline: float) -> None:
-    """Let both sides ask until neither gains, or the time is up; the one that has had less time goes next."""
+def approach(first: Side, second: Side, fine: float, deadline: float, clock: Clock = time.monotonic) -> None:
+    """Let both sides ask until neither gains, or the time is up; the one that has had less time goes next.
+
+    With a clock that counts work, and not seconds, the same is found on every machine.
+    """
     for side in (first, second):
         side.begin()
-    while time.monotonic() < deadline:
+    while clock() < deadline:
         own, others = first.next(second, fine), second.next(first, fine)
         behind = first.spent <= second.spent + _AHEAD
         if own is not None and (behind or others is None):
-            first.ask(own, second, deadline)
+            first.ask(own, second, deadline, clock)
         elif others is not None:
-            second.ask(others, first, deadline)
+            second.ask(others, first, deadline, clock)
         else:
             return
 

@@ -1,0 +1,100 @@
+"""A sweep in a few lines: how many loops came to what, over which values."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from zwidth.passivity.outcome import TOLD
+from zwidth.quantity.glossary import unit_suffix
+from zwidth.quantity.text import in_words, shown
+from zwidth.showing import Lines, Part, Table
+
+
+def report(found: xr.Dataset) -> Iterator[Part]:
+    """The answer, then over what, then what it means."""
+    loops = found["refused"].size
+    if "outcome" in found:
+        heads = ["outcome", "loops", "", *map(str, found.dims)]
+        yield Table(heads=[heads], rows=list(_outcomes(found)), lefts=1)
+    else:
+        heads = ["", "smallest", "median", "largest"]
+        yield Table(heads=[heads], rows=list(_numbers(found)), lefts=1)
+    axes = "; ".join(_axis(found[name]) for name in found.dims)
+    yield f"{loops} loops: {axes}"
+    if "first_refused" in found.attrs:
+        refused = int(found["refused"].sum())
+        yield f"{refused} of them cannot be; the first: {found.attrs['first_refused']}"
+    yield Lines([found.attrs["answers"]], "assumptions")
+
+
+def _axis(values: xr.DataArray) -> str:
+    unit = values.attrs["units"]
+    ends = [shown(float(end), unit) for end in (values.min(), values.max())]
+    return f"{in_words(str(values.name))} {ends[0]} to {ends[1]}, {values.size} values"
+
+
+def _outcomes(found: xr.Dataset) -> Iterator[tuple[str, ...]]:
+    """Of each outcome how many loops, and the range of each parameter that they take up."""
+    outcome = found["outcome"].values
+    for word in TOLD:
+        where = outcome == word
+        count = int(where.sum())
+        if count:
+            yield word, str(count), f"{count / outcome.size:.1%}", *_ranges(found, where)
+
+
+def _ranges(found: xr.Dataset, where: Any) -> Iterator[str]:
+    for k, name in enumerate(found.dims):
+        others = tuple(j for j in range(where.ndim) if j != k)
+        values = found[name].values[where.any(axis=others)]
+        unit = found[name].attrs["units"]
+        ends = [shown(float(end), unit, 4) for end in (values.min(), values.max())]
+        yield ends[0] if ends[0] == ends[1] else " to ".join(ends)
+
+
+def _numbers(found: xr.Dataset) -> Iterator[tuple[str, ...]]:
+    for name, values in _measured(found):
+        unit = values.attrs.get("units", "1")
+        known = values.values[~np.isnan(values.values)]
+        numbers = (known.min(), np.median(known), known.max()) if known.size else ()
+        text = [shown(float(number), unit, 4) for number in numbers] or ["none"] * 3
+        yield in_words(name), *text
+
+
+def _measured(found: xr.Dataset) -> Iterator[tuple[str, xr.DataArray]]:
+    return ((str(name), v) for name, v in found.data_vars.items() if v.dtype.kind == "f")
+
+
+def summary(found: xr.Dataset) -> dict[str, Any]:
+    """The same as plain data, units in the keys."""
+    axes = {_key(str(name), found[name]): found[name].values.tolist() for name in found.dims}
+    told: dict[str, Any] = {
+        "format": "zwidth sweep summary 1",
+        "of": found.attrs["of"],
+        "loops": found["refused"].size,
+        "refused": int(found["refused"].sum()),
+        "axes": axes,
+    }
+    if "outcome" in found:
+        words, counts = np.unique(found["outcome"].values, return_counts=True)
+        told["outcomes"] = {str(w): int(n) for w, n in zip(words, counts, strict=True) if w}
+    told["numbers"] = {_key(name, values): _ends(values) for name, values in _measured(found)}
+    if "scope" in found.attrs:
+        told["scope"] = json.loads(found.attrs["scope"])
+    return {**told, "answers": found.attrs["answers"]}
+
+
+def _ends(values: xr.DataArray) -> dict[str, float | None]:
+    """The least and the largest of those that are known; None where none is, or without a bound."""
+    known = values.values[np.isfinite(values.values)]
+    return {"smallest": float(known.min()), "largest": float(known.max())} if known.size else {}
+
+
+def _key(name: str, values: xr.DataArray) -> str:
+    unit = values.attrs.get("units", "1")
+    return name if unit in ("", "1") else f"{name}_{unit_suffix(unit)}"

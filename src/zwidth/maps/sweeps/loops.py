@@ -1,0 +1,269 @@
+"""The loop that is varied, and what of it may be: numbers of device, environment, pair, hand and run.
+
+A parameter is named as its option of the command line is: `damping` is the device's, `virtual_damping` the
+environment's, `environment.stiffness` is of what stands behind a coupling, `operator.force` of the hand.  Of
+a pair `stiffness` is of its coupling, `leader.damping` and `follower.damping` are of its arms, and `rate`,
+like every other number of a device, of both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields, is_dataclass, replace
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from zwidth.device import Device
+from zwidth.device.rotary import ROTARY, rotary
+from zwidth.environment.environment import Environment
+from zwidth.errors import InputError
+from zwidth.operator import ParametricOperator
+from zwidth.pairs import Pair
+from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import parameters_of
+from zwidth.specification.table import quoted, suggestion
+
+
+@dataclass(frozen=True)
+class Loop:
+    """One loop, and how it is asked.
+
+    Parameters
+    ----------
+    subject
+        A device, or two arms that follow each other.
+    environment
+        What a device renders; of a simulated pair None.
+    operator, follower
+        The hand of a simulation; what holds the follower of a pair.
+    options
+        Further arguments of the question.
+    """
+
+    subject: Device | Pair
+    environment: Environment | None = None
+    operator: Any = None
+    follower: Any = None
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def motion(self) -> str:
+        """ "linear" or "rotary"."""
+        return self.subject.motion
+
+
+class Parameter(NamedTuple):
+    """A number of the loop: its name, its unit, in which part of the loop it is, and the key there."""
+
+    name: str
+    unit: str
+    part: str
+    key: str
+
+
+Changes = dict[str, Exact]
+
+Units = Mapping[str, str]
+
+
+class Part(NamedTuple):
+    """A part of a loop.
+
+    Parameters
+    ----------
+    before
+        What stands before its keys.
+    units
+        The unit of each of its numbers by its key; empty where the loop has no such part.
+    change
+        The loop with other numbers in this part.
+    """
+
+    before: str
+    units: Callable[[Loop], Units]
+    change: Callable[[Loop, Changes], Loop]
+
+
+def parameter(loop: Loop, typed: str) -> Parameter:
+    """The number of that name.
+
+    Raises
+    ------
+    InputError
+        If the loop has none: it says what it has.
+    """
+    name = typed.strip().replace("-", "_")
+    known = {
+        f"{part.before}{_ALIAS.get((label, key), key)}": Parameter(name, unit, label, key)
+        for label, part in PARTS.items()
+        for key, unit in part.units(loop).items()
+    }
+    if name not in known:
+        raise InputError(
+            f"there is no number {quoted(typed)} to vary in this loop; {suggestion(name, sorted(known))}"
+        )
+    return known[name]
+
+
+def changed(loop: Loop, values: Mapping[Parameter, float]) -> Loop:
+    """The loop with other numbers; those of one part are set at once.
+
+    Raises
+    ------
+    InputError
+        If it cannot be.
+    """
+    parts: dict[str, Changes] = {}
+    for own, value in values.items():
+        parts.setdefault(own.part, {})[own.key] = Exact(value)
+    for label, new in parts.items():
+        loop = PARTS[label].change(loop, new)
+    return loop
+
+
+_ALIAS = {
+    ("law", "damping"): "virtual_damping",
+    ("behind", "damping"): "virtual_damping",
+    ("coupling", "damping"): "virtual_damping",
+    ("coupling", "follower_damping"): "follower_virtual_damping",
+}
+"""Keys that are options under another name: there damping is the device's."""
+
+
+def device_units(motion: str) -> Units:
+    """Of every number of a device, and those from which one is made."""
+    units = {name: own.unit_for(motion) for name, own in parameters_of(Device).items() if own.is_number}
+    turning = {name: ROTARY[name].unit_for(motion) for name in ("inertia", "counts_per_turn")}
+    return {**units, "rate": GLOSSARY["rate"].unit, **(turning if motion == "rotary" else {})}
+
+
+def other_device(device: Device, new: Changes) -> Device:
+    """The device with other numbers."""
+    arguments = dict(new)
+    if "inertia" in arguments:
+        arguments["mass"] = arguments.pop("inertia")
+    if "counts_per_turn" in arguments:
+        counted = rotary(damping=0, rate=1, counts_per_turn=arguments.pop("counts_per_turn"))
+        arguments["resolution"] = counted.exact("resolution")  # type: ignore[assignment]  # a rational
+    return device.replace(**arguments)
+
+
+def _of_device(loop: Loop) -> Units:
+    return device_units(loop.motion) if isinstance(loop.subject, Device) else {}
+
+
+def _of_arms(loop: Loop) -> Units:
+    return device_units(loop.motion) if isinstance(loop.subject, Pair) else {}
+
+
+def _device(loop: Loop, new: Changes) -> Loop:
+    assert isinstance(loop.subject, Device)
+    return replace(loop, subject=other_device(loop.subject, new))
+
+
+def _arms(*names: str) -> Callable[[Loop, Changes], Loop]:
+    def change(loop: Loop, new: Changes) -> Loop:
+        pair = loop.subject
+        return replace(loop, subject=pair.replace(**{n: other_device(getattr(pair, n), new) for n in names}))
+
+    return change
+
+
+_LINK = {"link_delay": ("there", "back"), "link_delay_back": ("back",)}
+"""Both ways, and one of them."""
+
+
+def _of_coupling(loop: Loop) -> Units:
+    if not isinstance(loop.subject, Pair):
+        return {}
+    own = parameters_of(Pair)
+    fields_ = {key: each for key, each in own.items() if each.is_number and key not in ("there", "back")}
+    return {key: each.unit_for(loop.motion) for key, each in fields_.items()} | dict.fromkeys(_LINK, "s")
+
+
+def _coupling(loop: Loop, new: Changes) -> Loop:
+    assert isinstance(loop.subject, Pair)
+    given = {key: value for key, value in new.items() if key not in _LINK}
+    for key in _LINK:  # the way back last: it may be another
+        given |= dict.fromkeys(_LINK[key], new[key]) if key in new else {}
+    return replace(loop, subject=loop.subject.replace(**given))
+
+
+def _numbers_of(thing: Any, unit: Callable[[str], str]) -> Units:
+    """Of a data class the fields that hold one number, or an interval in whose place one may stand."""
+    if not is_dataclass(thing):
+        return {}
+    held = {each.name: getattr(thing, each.name) for each in fields(thing)}
+    return {name: unit(name) for name, value in held.items() if isinstance(value, Exact | Interval)}
+
+
+def _of_law(loop: Loop) -> Units:
+    law = loop.environment
+    return {} if law is None else _numbers_of(law.met, lambda key: law.met.unit_of(key, loop.motion))
+
+
+def _law(loop: Loop, new: Changes) -> Loop:
+    law = loop.environment
+    assert law is not None
+    return replace(loop, environment=law.around(law.met.replace(**new)))
+
+
+def _behind(loop: Loop) -> Any:
+    return None if loop.environment is None else getattr(loop.environment.met, "environment", None)
+
+
+def _of_behind(loop: Loop) -> Units:
+    inner = _behind(loop)
+    return {} if inner is None else _numbers_of(inner, lambda key: inner.unit_of(key, loop.motion))
+
+
+def _law_behind(loop: Loop, new: Changes) -> Loop:
+    law = loop.environment
+    assert law is not None
+    return replace(loop, environment=law.around(law.met.replace(environment=_behind(loop).replace(**new))))
+
+
+def _hand(which: str) -> tuple[Callable[[Loop], Units], Callable[[Loop, Changes], Loop]]:
+    def units(loop: Loop) -> Units:
+        held = getattr(loop, which)
+        if isinstance(held, ParametricOperator):
+            return {name: own.unit_for(loop.motion) for name, own in held.parameters().items()}
+        return _numbers_of(held, lambda key: held.unit_of(key, loop.motion))
+
+    def change(loop: Loop, new: Changes) -> Loop:
+        return replace(loop, **{which: replace(getattr(loop, which), **new)})
+
+    return units, change
+
+
+_RUN = {"duration": "s", "initial_position": "", "initial_velocity": "", "encoder_phase": "1"}
+"""Of a simulation; "" where it turns on the motion."""
+
+
+def _of_run(loop: Loop) -> Units:
+    if loop.operator is None:
+        return {}
+    own = {"initial_position": GLOSSARY["position"], "initial_velocity": GLOSSARY["velocity"]}
+    return {key: unit or own[key].unit_for(loop.motion) for key, unit in _RUN.items()}
+
+
+def _run(loop: Loop, new: Changes) -> Loop:
+    return replace(loop, options={**loop.options, **{key: float(value) for key, value in new.items()}})
+
+
+PARTS: Mapping[str, Part] = MappingProxyType(
+    {
+        "device": Part("", _of_device, _device),
+        "arms": Part("", _of_arms, _arms("leader", "follower")),
+        "leader": Part("leader.", _of_arms, _arms("leader")),
+        "follower": Part("follower.", _of_arms, _arms("follower")),
+        "coupling": Part("", _of_coupling, _coupling),
+        "law": Part("", _of_law, _law),
+        "behind": Part("environment.", _of_behind, _law_behind),
+        "hand": Part("operator.", *_hand("operator")),
+        "held": Part("follower_operator.", *_hand("follower")),
+        "run": Part("", _of_run, _run),
+    }
+)
+"""Where a number may be."""

@@ -1,0 +1,190 @@
+"""The questions of a sweep: what `check`, `limit`, `simulate` and `pair` answer about one loop.
+
+No answer depends on the time that a search gets: values are not iterated.  What closed forms leave open stays
+open here, "undecided" or "passive in contact"; `zwidth.check` of that loop spends some seconds more on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple, get_args
+
+from zwidth.device import Device
+from zwidth.errors import InputError
+from zwidth.maps.sweeps.columns import Column, Columns
+from zwidth.maps.sweeps.loops import Loop
+from zwidth.pairs import Pair
+from zwidth.passivity.budget import LIMITS
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.pairs.verdict import LIMITS as LIMITS_OF_A_PAIR
+from zwidth.passivity.scope import Contact, Encoder, FedWith, Law, Scope
+from zwidth.quantity.glossary import GLOSSARY
+
+Answer = Mapping[str, Any]
+
+
+class Question(NamedTuple):
+    """What is asked of each loop.
+
+    Parameters
+    ----------
+    columns
+        What is kept of an answer.
+    answer
+        The answer of one loop: a value for each column.
+    needs
+        What the loop must have; raises InputError if it has not.
+    """
+
+    columns: Callable[[Loop], Columns]
+    answer: Callable[[Loop], Answer]
+    needs: Callable[[Loop], None]
+
+
+_OUTCOME = Column("what is proved of the loop", words=get_args(Outcome))
+_CONTACT = Column("contact that the outcome is about", words=get_args(Contact))
+_ENCODER = Column("whether the encoder's steps are in it", words=get_args(Encoder))
+
+
+def _scope(scope: Scope) -> Answer:
+    return {
+        "contact": scope.contact,
+        "encoder": scope.encoder,
+        "fed_with": scope.fed_with,
+        "law": scope.law,
+    }
+
+
+_OF_A_SCOPE = {
+    "contact": _CONTACT,
+    "encoder": _ENCODER,
+    "fed_with": Column("what a law with a memory must be fed with", words=get_args(FedWith)[:2]),
+    "law": Column("what of the law is not exact, or not looked at", words=get_args(Law), several=True),
+}
+
+
+def _stiffness(loop: Loop, meaning: str) -> Column:
+    return Column(meaning, GLOSSARY["stiffness"].unit_for(loop.motion))
+
+
+def _checked_columns(loop: Loop) -> Columns:
+    return {
+        "outcome": _OUTCOME,
+        **_OF_A_SCOPE,
+        "binding": Column("what binds: what is violated, or would be first", words=LIMITS),
+        "max_stiffness": _stiffness(loop, "largest passive stiffness, all else as it is"),
+    }
+
+
+def checked(loop: Loop) -> Answer:
+    """What `zwidth.check` says of a loop, by closed forms."""
+    from zwidth.passivity.check import check
+
+    verdict = check(loop.subject, loop.environment, iterate=False, **loop.options)  # type: ignore[call-overload]
+    return {
+        "outcome": verdict.outcome,
+        **_scope(verdict.scope),
+        "binding": getattr(verdict, "limit", ""),
+        "max_stiffness": getattr(verdict, "max_stiffness", None),
+    }
+
+
+def _limited_columns(loop: Loop) -> Columns:
+    from zwidth.passivity.bracket.parameter import parameter_of
+
+    assert isinstance(loop.subject, Device)
+    assert loop.environment is not None
+    unit = parameter_of(loop.subject, loop.environment, loop.options["parameter"]).unit
+    return {
+        "proved_passive": Column("last value that is proved passive", unit),
+        "proved_active": Column("first value at which a motion takes energy out", unit),
+        **_OF_A_SCOPE,
+    }
+
+
+def limited(loop: Loop) -> Answer:
+    """What `zwidth.passive_limit` says of a loop, by closed forms."""
+    from zwidth.passivity.bracket.passive_limit import passive_limit
+
+    found = passive_limit(loop.subject, loop.environment, iterate=False, **loop.options)  # type: ignore[arg-type]
+    return {
+        "proved_passive": found.proved_passive,
+        "proved_active": found.proved_active,
+        **_scope(found.scope),
+    }
+
+
+def _simulated_columns(loop: Loop) -> Columns:
+    from zwidth.loop.trace import UNITS
+    from zwidth.traces.comparison import COLUMNS
+
+    units = (*UNITS[loop.motion], "J", "1")
+    return {name: Column(own.heading, units[own.kind]) for name, own in COLUMNS.items()}
+
+
+def simulated(loop: Loop) -> Answer:
+    """The measures of a simulated touch."""
+    from zwidth.loop.simulate import simulate
+    from zwidth.traces.comparison import measure
+
+    options = dict(loop.options)
+    duration = options.pop("duration")
+    return measure(simulate(loop.subject, loop.environment, loop.operator, duration, **options))
+
+
+def _paired_columns(loop: Loop) -> Columns:
+    return {
+        "outcome": _OUTCOME,
+        "contact": _CONTACT,
+        "encoder": _ENCODER,
+        "binding": Column("what binds", words=LIMITS_OF_A_PAIR),
+        "max_stiffness": _stiffness(loop, "largest passive stiffness of the coupling, all else as it is"),
+    }
+
+
+def paired(loop: Loop) -> Answer:
+    """What `zwidth.check` says of two arms that follow each other."""
+    from zwidth.passivity.pairs import check_pair
+
+    verdict = check_pair(loop.subject)  # type: ignore[arg-type]  # a pair, see _two_arms
+    return {
+        "outcome": verdict.outcome,
+        "contact": verdict.scope.contact,
+        "encoder": verdict.scope.encoder,
+        "binding": verdict.limit,
+        "max_stiffness": verdict.largest_stiffness,
+    }
+
+
+def _one_device(loop: Loop) -> None:
+    if isinstance(loop.subject, Pair):
+        raise InputError('two arms that follow each other are asked about with of="pair"')
+    if not isinstance(loop.subject, Device):
+        raise InputError(f"a sweep is of a Device or a Pair, got {type(loop.subject).__name__}")
+    if loop.environment is None:
+        raise InputError("the environment is missing: what the device renders, such as zw.Wall(300)")
+
+
+def _touched(loop: Loop) -> None:
+    _one_device(loop)
+    if loop.operator is None:
+        raise InputError("a simulation needs a hand: operator=zw.operators.Finger(), or another")
+    if loop.options.get("duration") is None:
+        raise InputError('a simulation needs a duration, such as duration="2 s"')
+
+
+def _two_arms(loop: Loop) -> None:
+    if not isinstance(loop.subject, Pair):
+        raise InputError('of="pair" is of a zw.Pair: two arms that follow each other')
+
+
+QUESTIONS: Mapping[str, Question] = MappingProxyType(
+    {
+        "check": Question(_checked_columns, checked, _one_device),
+        "limit": Question(_limited_columns, limited, _one_device),
+        "simulate": Question(_simulated_columns, simulated, _touched),
+        "pair": Question(_paired_columns, paired, _two_arms),
+    }
+)
+"""By the command that answers it."""
