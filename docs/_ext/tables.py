@@ -189,7 +189,17 @@ def _device(name: str) -> str:
         for key, datum in entry.values.items()
     ]
     note = f"{entry.note}\n\n" if entry.note else ""
-    return f"## `{name}`: {entry.title}\n\n{note}{markdown(('value', '', 'unit', 'source'), rows)}"
+    table = markdown(("value", "", "unit", "source"), rows)
+    return f"## `{name}`: {entry.title}\n\n{note}{table}{_ranges(entry)}"
+
+
+def _ranges(entry: catalogue.Entry) -> str:
+    """What is stated in the place of unknown values."""
+    rows = [
+        (f"`{key}`", f"{float(own.low):.4g} … {float(own.high):.4g}", _unit(own.unit), own.why)
+        for key, own in entry.ranges.items()
+    ]
+    return f"\nStated, not measured:\n\n{markdown(('range', '', 'unit', 'why'), rows)}" if rows else ""
 
 
 def plants() -> str:

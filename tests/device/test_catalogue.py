@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import zwidth as zw
-from zwidth.device.catalogue import PROPERTIES, RECOMMENDATION, UNKNOWN
+from zwidth.device.catalogue import PROPERTIES, RECOMMENDATION, UNKNOWN, DeviceInRange
 
 NAMES = [
     "haptic-paddle",
@@ -26,7 +26,18 @@ NAMES = [
     "haply-2diy-gen3",
     "hapkit",
     "course-plant",
+    "openffboard-wheel",
+    "simucube-2-pro",
+    "fanatec-csl-dd",
+    "moza-r9",
+    "smartknob",
+    "feetech-sts3215",
+    "dynamixel-xl330-m288",
+    "dynamixel-mx-64",
+    "dynamixel-mx-106",
+    "dynamixel-xm430-w350",
 ]
+RANGED = [name for name in NAMES if zw.catalogue.entry(name).ranges]
 
 
 def test_names() -> None:
@@ -40,7 +51,9 @@ def test_every_value_has_a_source_and_a_unit(name: str) -> None:
     entry = zw.catalogue.entry(name)
     assert entry.name == name
     assert entry.title
-    assert set(PROPERTIES) - set(entry.values) in ({"rate"}, {"sample_period"})
+    left_out = set(PROPERTIES) - set(entry.values)
+    assert left_out - {"resolution"} in ({"rate"}, {"sample_period"})
+    assert ("resolution" in left_out) == ("counts_per_turn" in entry.values)
     for value, unit, source in entry.values.values():
         assert unit
         assert (value is None) == (source == UNKNOWN)
@@ -78,7 +91,8 @@ def test_what_the_phantom_lacks_is_assumed_aloud() -> None:
     [
         ("excalibur", ["--damping"]),
         ("course-plant", ["--rate"]),
-        ("touch", ["--damping", "--rate"]),
+        ("touch", ["--damping"]),
+        ("sigma.7", ["--damping", "--rate"]),
     ],
 )
 def test_needed_numbers_that_nobody_published(name: str, missing: list[str]) -> None:
@@ -122,3 +136,52 @@ def test_a_recommendation_is_called_one() -> None:
     datum = zw.catalogue.entry("novint-falcon").values["recommended_stiffness"]
     assert datum.value == 3000
     assert RECOMMENDATION in datum.source
+
+
+@pytest.mark.parametrize("name", RANGED)
+def test_a_device_in_its_ranges_can_be_decided(name: str) -> None:
+    """Every range says why; nothing that a verdict needs is missing, and nothing published is widened."""
+    found, entry = zw.catalogue.in_range(name), zw.catalogue.entry(name)
+    assert set(found.ranges) == {
+        {"rate": "sample_period", "counts_per_turn": "resolution"}.get(key, key) for key in entry.ranges
+    }
+    for key, own in entry.ranges.items():
+        assert own.low < own.high
+        assert len(own.why) > 20
+        assert entry.values.get(key) is None or entry.values[key].value is None
+    intervals = {k for k, v in found.device.parameters().items() if isinstance(v, zw.Interval)}
+    assert intervals == set(found.ranges)
+    assert found.device.motion == entry.motion
+    assert zw.check(found.device, zw.Wall("1e-9")).outcome == "passive"
+
+
+def test_what_is_given_needs_no_range() -> None:
+    """Under any name that it has; a rate then is one number, and counts are a resolution."""
+    found = zw.catalogue.in_range(
+        "simucube-2-pro", rate="1 kHz", counts_per_turn=65536, inertia="0.05 kg*m^2"
+    )
+    assert set(found.ranges) == {"damping", "coulomb_friction", "delay"}
+    assert found.device.exact("rate") == 1000
+    assert float(found.device.exact("resolution")) == pytest.approx(2 * 3.141592653589793 / 65536)
+    assert float(found.device.exact("mass")) == 0.05
+    assert zw.catalogue.in_range("haptic-paddle") == DeviceInRange(zw.catalogue.device("haptic-paddle"), {})
+
+
+def test_a_range_is_no_value() -> None:
+    """`device` still asks for what nobody published, and says who answers without it."""
+    with pytest.raises(zw.InputError, match="zwidth check moza-r9 answers for a stated range"):
+        zw.catalogue.device("moza-r9")
+    with pytest.raises(zw.InputError, match="no source gives the damping"):
+        zw.catalogue.in_range("excalibur")
+    with pytest.raises(zw.InputError, match="is rotary"):
+        zw.catalogue.in_range("smartknob", motion="linear")
+
+
+def test_units_of_a_rotary_entry() -> None:
+    """A damping of newton metres; at a radius it is a linear device."""
+    entry = zw.catalogue.entry("dynamixel-mx-64")
+    assert entry.values["damping"].unit == "N*m*s/rad"
+    assert entry.key("mass") == "inertia"
+    joint = zw.catalogue.device("dynamixel-mx-64", rate="1 kHz", handle_radius="0.1 m")
+    assert joint.motion == "linear"
+    assert float(joint.exact("damping")) == pytest.approx(1.17)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from zwidth.cli.decision import asked, decided, exit_status
 from zwidth.cli.options import (
@@ -19,9 +19,12 @@ from zwidth.cli.output import print_json, say_written, targets, writing
 
 if TYPE_CHECKING:
     from zwidth.passivity.finite_stiffness import FiniteStiffnessReplay
+    from zwidth.passivity.over_ranges import OverRanges
     from zwidth.passivity.verdict import Verdict
     from zwidth.specification.read import Specification
     from zwidth.stability.active_hand import ToleratedActivity
+
+    Report: TypeAlias = FiniteStiffnessReplay | ToleratedActivity | OverRanges
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -55,21 +58,22 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth check`: the status says the outcome."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
-    loop = asked(arguments).loop
+    loop = asked(arguments, in_range=True).loop
     active = _tolerated(loop, arguments.active_below)
     verdict = decided(loop, contact(arguments))
+    ranges = _ranges(loop, verdict)
     if save is not None:
         with writing(save):
-            verdict.save(save, {} if active is None else {"active_hand": active.to_dict()})
+            verdict.save(save, _reports(active_hand=active, ranges=ranges))
     if plot is not None:
         verdict.plot(plot)
     replayed = _replayed(verdict) if arguments.replay else None
     if arguments.json:
-        print_json(_in_full(verdict, real_hand=replayed, active_hand=active))
+        print_json(_in_full(verdict, real_hand=replayed, active_hand=active, ranges=ranges))
     else:
         from zwidth.cli.report import print_verdict
 
-        print_verdict(verdict, replayed, active, arguments.in_full)
+        print_verdict(verdict, replayed, active, arguments.in_full, ranges)
         say_written(save, plot)
     return exit_status(verdict.outcome)
 
@@ -91,8 +95,22 @@ def _tolerated(loop: Specification, below: str | None) -> ToleratedActivity | No
     return tolerated_activity(loop.device, loop.environment, parse_number(below, "Hz", "active_below"))
 
 
-def _in_full(verdict: Verdict, **reports: FiniteStiffnessReplay | ToleratedActivity | None) -> str:
+def _ranges(loop: Specification, verdict: Verdict) -> OverRanges | None:
+    """What holds over the ranges of a device of the catalogue, where it has some."""
+    if not loop.ranges:
+        return None
+    from zwidth.device.catalogue import DeviceInRange
+    from zwidth.passivity.over_ranges import over_ranges
+
+    return over_ranges(DeviceInRange(loop.device, loop.ranges), loop.environment, verdict)
+
+
+def _in_full(verdict: Verdict, **reports: Report | None) -> str:
     from zwidth.passivity.document import to_json
 
-    given = {name: report.to_dict() for name, report in reports.items() if report is not None}
-    return to_json({**verdict.to_dict(), **given})
+    return to_json({**verdict.to_dict(), **_reports(**reports)})
+
+
+def _reports(**reports: Report | None) -> dict[str, Any]:
+    """Those that were asked for, as plain data."""
+    return {name: report.to_dict() for name, report in reports.items() if report is not None}

@@ -32,8 +32,15 @@ class Asked(NamedTuple):
     law_table: Table | None
 
 
-def asked(arguments: argparse.Namespace) -> Asked:
+def asked(arguments: argparse.Namespace, in_range: bool = False) -> Asked:
     """The loop of the sources, the parameters and the laws of a command line.
+
+    Parameters
+    ----------
+    arguments
+        Of the command line.
+    in_range
+        True where a device of the catalogue may have its stated ranges in the place of what nobody published.
 
     Raises
     ------
@@ -45,9 +52,10 @@ def asked(arguments: argparse.Namespace) -> Asked:
 
     tables = read_tables(arguments.sources, WITH_LAWS)
     device_table, environment_table = merged(tables, overrides(arguments))
-    given = built(device_table, environment_table)
+    given = built(device_table, environment_table, in_range)
     rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
-    return Asked(Specification(given.device, rendered), device_table, environment_table, tables.get("law"))
+    loop = Specification(given.device, rendered, given.ranges)
+    return Asked(loop, device_table, environment_table, tables.get("law"))
 
 
 def exit_status(outcome: str) -> int:

@@ -13,7 +13,7 @@ from rich.text import Text
 from zwidth.cli.output import print_json
 from zwidth.cli.page import page
 from zwidth.device import catalogue
-from zwidth.device.catalogue import Datum, Entry
+from zwidth.device.catalogue import Datum, Entry, Range
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import in_words, shown
 
@@ -43,10 +43,17 @@ def print_entries(entries: Sequence[Entry], in_full: bool) -> None:
             if entry.note:
                 out.print(Text(f"  {entry.note}", style="italic"))
             out.print(_table(entry, in_full))
+            if in_full and entry.ranges:
+                out.print(Text("\nstated, not measured", style="bold"))
+                out.print(_ranges(entry))
             out.print()
         if not in_full:
             out.print(
-                Text("zwidth check NAME takes any of them; give what is unknown yourself.", style="dim")
+                Text(
+                    "zwidth check NAME takes any of them: what is unknown within its stated range, where it "
+                    "has one; else give it yourself.",
+                    style="dim",
+                )
             )
 
 
@@ -58,15 +65,30 @@ def _table(entry: Entry, in_full: bool) -> Table:
     grid.add_column(style="dim")
     unknown = []
     for key, datum in entry.values.items():
-        name = in_words(key)
+        name = in_words(entry.key(key))
         if datum.value is not None:
             grid.add_row("", name, Text(shown(datum.value, datum.unit, 6)), Text(datum.source))
         elif in_full:
             grid.add_row("", name, Text("unknown", style="yellow"), Text("no source found"))
-        else:
+        elif key not in entry.ranges:
             unknown.append(name)
+    if entry.ranges and not in_full:
+        within = ", ".join(f"{in_words(k)} {shown(r.interval, r.unit)}" for k, r in entry.ranges.items())
+        grid.add_row("", "taken within", "", Text(within))
     if unknown:
         grid.add_row("", Text("unknown", style="yellow"), "", Text(", ".join(unknown)))
+    return grid
+
+
+def _ranges(entry: Entry) -> Table:
+    """Each range, and why it is this one."""
+    grid = Table.grid(padding=(0, 2))
+    grid.add_column(width=0)
+    grid.add_column(min_width=16)
+    grid.add_column(min_width=12)
+    grid.add_column(style="dim")
+    for key, own in entry.ranges.items():
+        grid.add_row("", in_words(key), Text(shown(own.interval, own.unit)), Text(own.why))
     return grid
 
 
@@ -81,8 +103,13 @@ def _document(entry: Entry) -> dict[str, Any]:
         _key(key, datum): {"value": datum.value, "source": datum.source}
         for key, datum in entry.values.items()
     }
-    return {"title": entry.title, "note": entry.note, "values": values}
+    ranges = {
+        _key(key, own): {"low": own.low, "high": own.high, "why": own.why}
+        for key, own in entry.ranges.items()
+    }
+    about = {"title": entry.title, "note": entry.note, "motion": entry.motion}
+    return {**about, "values": values, "ranges": ranges}
 
 
-def _key(key: str, datum: Datum) -> str:
+def _key(key: str, datum: Datum | Range) -> str:
     return key if datum.unit in ("", "1") else f"{key}_{unit_suffix(datum.unit)}"

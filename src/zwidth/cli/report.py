@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from zwidth.passivity.finite_stiffness import FiniteStiffnessReplay
+    from zwidth.passivity.over_ranges import OverRanges
     from zwidth.stability.active_hand import ToleratedActivity
 
 _FIRST = ("limit", "largest passive gain", "damping, contact broken too")
@@ -52,11 +53,17 @@ def print_verdict(
     replayed: FiniteStiffnessReplay | None = None,
     active_hand: ToleratedActivity | None = None,
     in_full: bool = False,
+    ranges: OverRanges | None = None,
 ) -> None:
-    """Print the report on standard output, with what was asked for of real and of active hands."""
+    """Print the report on standard output, with what was asked for of real and of active hands.
+
+    `ranges` is what holds over the ranges of a device of the catalogue.
+    """
     with page() as out:
         out.print(_headline(verdict))
-        (_all if in_full else _few)(out, verdict)
+        if ranges is not None:
+            blocks(out, _over(ranges, in_full))
+        (_all if in_full else _few)(out, verdict, ranges is not None)
         if replayed is not None:
             section(out, "a real hand", [grid(replayed.rows())])
         if active_hand is not None:
@@ -65,9 +72,18 @@ def print_verdict(
             more_with_all(out, "numbers, budget, motion, actuator, assumptions in full")
 
 
-def _few(out: Console, verdict: Verdict) -> None:
+def _over(ranges: OverRanges, in_full: bool) -> Iterator[Row]:
+    """What holds for every device in the ranges; in full with why each is stated."""
+    for name, text in ranges.rows():
+        yield name, Text(text, style="yellow" if name == "ranges" else "")
+    if in_full:
+        for text in ranges.why():
+            yield "", text
+
+
+def _few(out: Console, verdict: Verdict, over_ranges: bool) -> None:
     """What binds and what to change; the loop, and what is assumed of it."""
-    of_the_loop = (*_loop(verdict), *_not_ideal(verdict), ("assumes", _assumed(verdict)))
+    of_the_loop = (*_loop(verdict, over_ranges), *_not_ideal(verdict), ("assumes", _assumed(verdict)))
     blocks(out, _to_do(verdict), of_the_loop)
 
 
@@ -98,10 +114,10 @@ def _assumed(verdict: Verdict) -> Text:
     return small_print(in_short(verdict.scope, verdict.outcome), *demand)
 
 
-def _all(out: Console, verdict: Verdict) -> None:
+def _all(out: Console, verdict: Verdict, over_ranges: bool) -> None:
     """Everything, the small print last."""
     fancy = encodes(PICTURE)
-    out.print(below(grid(_loop(verdict))))
+    out.print(below(grid(_loop(verdict, over_ranges))))
     out.print(_numbers(verdict))
     if isinstance(verdict, LinearVerdict):
         section(out, "budget", budget_bars(verdict, fancy))
@@ -127,11 +143,12 @@ def _claim(verdict: Verdict) -> str:
     return f"The motion below takes {joules(verdict.witness)} out of this loop, each time it is made."
 
 
-def _loop(verdict: Verdict) -> Iterator[Row]:
+def _loop(verdict: Verdict, over_ranges: bool) -> Iterator[Row]:
+    """The loop, at the worst corner of its intervals, which are told already where they are stated ranges."""
     yield "device", device_line(verdict.device)
     yield "environment", environment_line(verdict.environment, verdict.device.motion)
     between = intervals(verdict.scope, verdict.outcome)
-    if between is not None:
+    if between is not None and not over_ranges:
         yield "intervals", Text(between, style="yellow")
 
 

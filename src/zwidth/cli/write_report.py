@@ -68,7 +68,7 @@ def _loop(arguments: argparse.Namespace) -> tuple[Answer, Provenance]:
     """The verdict on a device and a law, and where their numbers come from."""
     from zwidth.report.provenance import Provenance, file_of, of_device, of_environment
 
-    given = asked(arguments)
+    given = asked(arguments, in_range=True)
     device, environment, typed = given.loop.device, given.loop.environment, arguments.law or ()
     verdict = decided(given.loop, contact(arguments))
     rows = of_environment(given.environment_table, environment, device.motion, given.law_table, typed)

@@ -312,16 +312,18 @@ def lacking_of(name: str) -> dict[str, str]:
     InputError
         If there is none of this name.
     """
-    return _lacking(catalogue.entry(name).known(), "linear")
+    found = catalogue.entry(name)
+    return _lacking(found.known(), found.motion)
 
 
 def completed(device: Table, typed: Container[str] = ()) -> dict[str, str]:
     """Put into a table of a device what it lacks and no parameter of `typed` gives; what that is."""
     name = device.values.get("catalogue")
     known = set(device.values)
+    turns = device.values.get("motion") == "rotary" or any(key in known for key in ROTARY)
     if isinstance(name, str):
         known |= set(catalogue.entry(name).known())
-    turns = device.values.get("motion") == "rotary" or any(key in known for key in ROTARY)
+        turns |= catalogue.entry(name).motion == "rotary"
     known |= {key for key in ("damping", "rate", "sample_period") if key in typed}
     lacking = _lacking(known, "rotary" if turns else "linear")
     device.values.update(lacking)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
+from math import inf
 from typing import TYPE_CHECKING, Any, overload
 
 from zwidth.device import Device
@@ -187,7 +188,7 @@ def check_by_closed_forms(
             touched = _touched(device, law, found)
             return found if touched is None else touched
         return _undecided(device, law, corners[0], decisions[0], "between corners")
-    worst = failing[0]
+    worst = _worst(failing, decisions)
     certain = device.is_certain and len(corners) == 1
     least = _refute(decisions[worst]) if certain else _refute_best(device, law)
     if least is not None:
@@ -320,6 +321,17 @@ def _at_limit(decision: Decision) -> bool:
         return False
     less = loop.with_damping(loop.damping * (1 - Fraction(1, 10**12)))
     return loop.damping == 0 or isinstance(decide_linear(less), LinearRefutation)
+
+
+def _worst(failing: list[int], decisions: list[Decision]) -> int:
+    """Of the corners that are not proved the one that asks for most: of damping, else of friction."""
+    refuted = [k for k in failing if not isinstance(decisions[k].viscous, LinearProof)]
+    if len(refuted or failing) == 1:
+        return (refuted or failing)[0]
+    if refuted:
+        return max(refuted, key=lambda k: tightest(decisions[k].loop)[0])
+    needs = {k: decisions[k].sufficient_friction for k in failing}
+    return max(failing, key=lambda k: inf if needs[k] is None else float(needs[k]))
 
 
 def _tightest(decisions: list[Decision]) -> int:

@@ -126,6 +126,8 @@ class Scope:
         Where in its workspace an arm is, in words; None for a device of one axis.
     intervals
         Parameters that stand for every value in an interval.
+    bounds
+        The ends of those that are the device's: (parameter, low, high), SI.
     assumed
         Parameters of the device that were not given and are taken as 0.
     law
@@ -153,6 +155,7 @@ class Scope:
     clamped: bool = False
     region: str | None = None
     intervals: tuple[str, ...] = ()
+    bounds: tuple[tuple[str, float, float], ...] = ()
     assumed: tuple[str, ...] = ()
     law: tuple[Law, ...] = ()
     also: tuple[Also, ...] = ()
@@ -195,6 +198,8 @@ def _document(scope: Scope) -> dict[str, Any]:
         written["friction"] = "curve"
     if scope.region is not None:
         written["region"] = scope.region
+    if scope.bounds:
+        written["bounds"] = {unit_key(name, scope.motion): [low, high] for name, low, high in scope.bounds}
     for name in ("intervals", "assumed", "law", "also"):
         values: Sequence[str] = getattr(scope, name)
         if values:
@@ -224,7 +229,7 @@ def scope_of(device: Device, environment: Environment) -> Scope:
     """What is asked of a loop, before anything is found: every hand, contact as the law has it."""
     certain = device.is_certain
     friction, damping = ends(device.coulomb_friction)[0], ends(device.damping)[0]
-    named = tuple(k for k, v in device.parameters().items() if isinstance(v, Interval))
+    uncertain = {k: v for k, v in device.parameters().items() if isinstance(v, Interval)}
     return Scope(
         contact="made and broken" if environment.unilateral else "both sides",
         encoder="counted" if ends(device.resolution)[1] else "ideal",
@@ -232,7 +237,8 @@ def scope_of(device: Device, environment: Environment) -> Scope:
         coulomb_friction=float(device.exact("coulomb_friction") if certain else friction),
         friction_speed=None if device.friction_speed is None else float(ends(device.friction_speed)[0]),
         clamped=environment.clamped and not environment.spring,
-        intervals=named + (() if environment.is_certain else ("the environment's intervals",)),
+        intervals=(*uncertain, *(() if environment.is_certain else ("the environment's intervals",))),
+        bounds=tuple((k, float(v.low), float(v.high)) for k, v in uncertain.items()),
         assumed=device.assumed,
         law=("rounded coefficients",) if environment.coefficients_rounded else (),
         motion=device.motion,

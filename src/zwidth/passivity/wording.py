@@ -5,11 +5,13 @@ Nothing reads these sentences again: whoever needs a fact takes it from the reco
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from zwidth.passivity.scope import Contact, Hands, Law, Scope
-from zwidth.quantity.text import in_words, told_quantity
+from zwidth.quantity.exact import Interval
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import in_words, shown, told_quantity
 
 if TYPE_CHECKING:
     from zwidth.passivity.outcome import Outcome
@@ -148,8 +150,14 @@ def intervals(scope: Scope, outcome: Outcome) -> str | None:
     """The line that stands beside a loop with intervals."""
     if not scope.intervals:
         return None
-    holds = "" if outcome == "undecided" else f"holds for every value within {', '.join(scope.intervals)}; "
-    return f"{holds}numbers are given for the worst corner of the intervals"
+    within = {name: f"{in_words(name)} {_between(name, ends, scope.motion)}" for name, *ends in scope.bounds}
+    values = ", ".join(within.get(name, in_words(name)) for name in scope.intervals)
+    holds = "asked for" if outcome == "undecided" else "holds for"
+    return f"{holds} every value within {values}; numbers are given for the worst corner of the intervals"
+
+
+def _between(name: str, ends: Sequence[float], motion: str) -> str:
+    return shown(Interval(*ends), GLOSSARY[name].unit_for(motion))
 
 
 def _losses(scope: Scope) -> Iterator[str]:

@@ -16,6 +16,9 @@ PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _PREFIXED = ("m", "s", "J", "N", "Hz", "m/s")
 """Units that people prefix in text; N·s/m stays as it is, and 300 N/m too."""
 
+_FAR = 1e4
+"""How many times the smaller end of an interval the larger is, for both to have the prefix of the smaller."""
+
 _NO_EXPONENT = ("N*m", "N·m", "rad")
 """How units begin that have a prefix in the place of an exponent: those of torques, and radians."""
 
@@ -42,7 +45,7 @@ def shown(value: float | Exact | Interval | None, unit: str, digits: int = 4) ->
     if value is None:
         return "none"
     if isinstance(value, Interval):
-        return told(value, unit)
+        return _between(value, unit, digits)
     number = float(value)
     if abs(number) == inf:
         return "any" if number > 0 else "none"
@@ -50,6 +53,16 @@ def shown(value: float | Exact | Interval | None, unit: str, digits: int = 4) ->
     number *= factor
     power, name = _prefix(number, unit, digits)
     return f"{number / 10.0**power:.{digits}g} {name}".rstrip()
+
+
+def _between(value: Interval, unit: str, digits: int) -> str:
+    """Both ends with one prefix: that of the smaller one, unless it is 0 or far below the other."""
+    factor, unit = spoken(unit)
+    ends = (float(value.low) * factor, float(value.high) * factor)
+    small, large = sorted(abs(end) for end in ends)
+    least = small if small and large < _FAR * small else large
+    power, name = _prefix(least, unit, digits)
+    return f"{' … '.join(f'{end / 10.0**power:.{digits}g}' for end in ends)} {name}".rstrip()
 
 
 def _prefix(number: float, unit: str, digits: int) -> tuple[int, str]:
@@ -73,13 +86,14 @@ def _instead_of_exponent(number: float, unit: str, digits: int) -> tuple[int, st
 
 
 def told(value: float | Exact | Interval, unit: str, digits: int = 6) -> str:
-    """A value to `digits` significant digits in this very unit, an angle in the unit that was typed."""
+    """A value to `digits` significant digits in this unit, an angle in the unit that was typed."""
     factor, unit = spoken(unit)
     if isinstance(value, Interval):
         number = f"{float(value.low) * factor:g} … {float(value.high) * factor:g}"
-    else:
-        number = f"{float(value) * factor:.{digits}g}"
-    return f"{number} {unit_text(unit)}".rstrip()
+        return f"{number} {unit_text(unit)}".rstrip()
+    number = float(value) * factor
+    power, name = _instead_of_exponent(number, unit, digits) if number else (0, unit_text(unit))
+    return f"{number / 10.0**power:.{digits}g} {name}".rstrip()
 
 
 def told_quantity(value: float | Exact | Interval, name: str, motion: str, digits: int = 6) -> str:

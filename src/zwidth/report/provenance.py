@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import pi
 from pathlib import PurePath
 from typing import Any
 
@@ -11,7 +12,7 @@ from zwidth.device import Device, catalogue
 from zwidth.device.rotary import ROTARY
 from zwidth.environment.environment import Environment
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.kind import name_of
 from zwidth.quantity.parameter import Parameter
@@ -71,10 +72,11 @@ def of_device(table: Table, device: Device) -> Iterator[Row]:
     """Of a device made of a table, the parameters of the command line in it."""
     name = table.values.get("catalogue")
     known = {} if name is None else catalogue.entry(str(name)).values
+    ranges = {} if name is None else catalogue.entry(str(name)).ranges
     for key, value in device.parameters().items():
         written = next((k for k in _WRITTEN_AS.get(key, (key,)) if k in table.values), None)
         asked = "inertia" if _is_inertia(key, device.motion) else key
-        where = _published(key, value, known) if written is None else _place(table, written, asked)
+        where = _place(table, written, asked) if written else _of_the_catalogue(key, value, known, ranges)
         yield (
             *_named(key, value, device.motion),
             where or _unless_assumed(key, device.assumed, "not given"),
@@ -151,6 +153,19 @@ def as_written(value: object, unit: str) -> str:
     return text if any(map(str.isalpha, text)) else f"{text} {unit_text(unit)}".rstrip()
 
 
+def _of_the_catalogue(
+    key: str,
+    value: Exact | Interval,
+    known: Mapping[str, catalogue.Datum],
+    ranges: Mapping[str, catalogue.Range],
+) -> str:
+    """The source of a published number, or that it is a range and why; "" where it is neither."""
+    stated = next((ranges[k] for k in (*_WRITTEN_AS.get(key, ()), key) if k in ranges), None)
+    if stated is not None and isinstance(value, Interval):
+        return f"catalogue, stated and not measured: {stated.why}"
+    return _published(key, value, known)
+
+
 def _published(key: str, value: Exact | Interval, known: Mapping[str, catalogue.Datum]) -> str:
     """The source in the catalogue of a number that is the one there."""
     for name in ("rate", key) if key == "sample_period" else (key,):
@@ -160,7 +175,10 @@ def _published(key: str, value: Exact | Interval, known: Mapping[str, catalogue.
         told = 1 / value.fraction if name == "rate" else value.fraction
         if datum.value.fraction == told:
             return f"catalogue: {datum.source}"
-    return ""
+    counts = known.get("counts_per_turn") if key == "resolution" else None
+    if counts is None or counts.value is None or float(ends(value)[0]) != 2 * pi / float(counts.value):
+        return ""
+    return f"catalogue, {float(counts.value):g} counts per turn: {counts.source}"
 
 
 def _unless_assumed(key: str, assumed: Sequence[str], otherwise: str) -> str:

@@ -12,14 +12,15 @@ wall's.  Nothing is ignored: an unknown key is an error.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from zwidth.device import Device, catalogue
+from zwidth.device.catalogue import Range
 from zwidth.device.rotary import ROTARY, rotary
 from zwidth.environment import Environment
 from zwidth.errors import InputError
@@ -30,6 +31,8 @@ from zwidth.quantity.units import parse
 from zwidth.specification.environments import build_environment, option_keys
 from zwidth.specification.laws import NOT_PROVED, ROW
 from zwidth.specification.table import COMMAND_LINE, Table, located, plain, quoted, suggestion
+
+T = TypeVar("T")
 
 _LONG_DELAY = Fraction(1, 2)
 """Without a unit, a delay this long is questioned [s]."""
@@ -54,10 +57,19 @@ _ONE_OF = (("rate", "sample_period"), ("resolution", "counts_per_turn"))
 
 @dataclass(frozen=True)
 class Specification:
-    """What is to be checked: a device against an environment."""
+    """What is to be checked: a device against an environment.
+
+    Parameters
+    ----------
+    device, environment
+        The loop.
+    ranges
+        By parameter of the device, what of it the catalogue states as a range; nothing where it is known.
+    """
 
     device: Device
     environment: Environment
+    ranges: Mapping[str, Range] = field(default_factory=dict)
 
 
 def load(sources: Sequence[Path | str], overrides: Mapping[str, str] | None = None) -> Specification:
@@ -105,16 +117,28 @@ def merged(tables: Mapping[str, Table], overrides: Mapping[str, str] | None = No
     return _device_table(tables, device_names), environment_table(tables, environment_names)
 
 
-def built(device_table: Table, environment: Table) -> Specification:
+def built(device_table: Table, environment: Table, in_range: bool = False) -> Specification:
     """The device and the environment that two tables describe.
+
+    Parameters
+    ----------
+    device_table, environment
+        The tables.
+    in_range
+        True where a device of the catalogue may have its stated ranges in the place of what nobody published.
 
     Raises
     ------
     InputError
         As `load`.
     """
-    device = build_device(device_table)
-    return Specification(device, build_environment(environment, device.motion))
+    ranges: Mapping[str, Range] = {}
+    if in_range and "catalogue" in device_table.values:
+        found = _catalogued(device_table, catalogue.in_range)
+        device, ranges = found.device, found.ranges
+    else:
+        device = build_device(device_table)
+    return Specification(device, build_environment(environment, device.motion), ranges)
 
 
 def load_device(sources: Sequence[Path | str], overrides: Mapping[str, str]) -> Device:
@@ -148,6 +172,8 @@ def build_device(table: Table) -> Device:
         If a key is unknown, missing, contradicts another or has a value it
         cannot have.
     """
+    if "catalogue" in table.values:
+        return _catalogued(table, catalogue.device)
     table.check_keys(DEVICE_KEYS, "a device")
     turning = [key for key in ROTARY if key in table.values]
     motion = table.text("motion") if "motion" in table.values else "rotary" if turning else "linear"
@@ -155,9 +181,7 @@ def build_device(table: Table) -> Device:
         raise InputError(
             f"{table.label}: {turning[0]} belongs to a rotary device, and motion is linear; drop one"
         )
-    arguments = {key: _device_value(table, key, motion) for key in table.values if key != "catalogue"}
-    if "catalogue" in table.values:
-        return _catalogue_device(table, arguments, turning, motion)
+    arguments = {key: _device_value(table, key, motion) for key in table.values}
     arguments.setdefault("damping", None)  # Device says that it is missing
     with located(table.label):
         if motion != "rotary":
@@ -200,14 +224,20 @@ _BETWEEN = {"delay": " between sample and force"}
 """What lies between, where the name alone does not say it."""
 
 
-def _catalogue_device(table: Table, arguments: Mapping[str, Any], turning: list[str], motion: str) -> Device:
-    if turning or motion != "linear":
-        raise InputError(
-            f"{table.label}: the devices of the catalogue are linear, at the handle; "
-            f"drop {', '.join(turning) or 'motion'}"
-        )
+def _catalogued(table: Table, build: Callable[..., T]) -> T:
+    """What `build` makes of a device of the catalogue and the numbers beside its name."""
+    table.check_keys(DEVICE_KEYS, "a device")
+    name = table.text("catalogue")
     with located(table.label):
-        return catalogue.device(table.text("catalogue"), **arguments)
+        motion = catalogue.entry(name).motion
+    foreign = [key for key in ROTARY if key in table.values and motion == "linear"]
+    asked = table.text("motion") if "motion" in table.values else motion
+    if foreign or asked != motion:
+        there = "linear, at its handle" if motion == "linear" else "rotary, at its axis"
+        raise InputError(f"{table.label}: {name} is {there}; drop {', '.join(foreign) or 'motion'}")
+    arguments = {key: _device_value(table, key, motion) for key in table.values if key != "catalogue"}
+    with located(table.label):
+        return build(name, **arguments)
 
 
 def read_tables(sources: Sequence[Path | str], kinds: Sequence[str] = LOOP_TABLES) -> dict[str, Table]:
