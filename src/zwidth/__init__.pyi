@@ -20,6 +20,7 @@ from zwidth.device import FrictionCurve as FrictionCurve
 from zwidth.device import amplifier as amplifiers
 from zwidth.device import catalogue as catalogue
 from zwidth.device.rotary import rotary as rotary
+from zwidth.diagnosis import diagnose as diagnose
 from zwidth.environment import ContinuousTransferFunction as ContinuousTransferFunction
 from zwidth.environment import GeneralizedMaxwell as GeneralizedMaxwell
 from zwidth.environment import HuntCrossley as HuntCrossley

@@ -321,6 +321,19 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth tissue relaxation.csv phantom -o my-tissue.toml --plot tissue.png\n"
             "  zwidth tissue creep.csv --column indentation=z --unit indentation=um --kind creep",
         ),
+        "diagnose": Command(
+            "why did it shake? One recording of a vibration, its cause, what to change",
+            "Find in a log of a vibrating wall, wheel or joint what keeps it going: sampling, a delay, the\n"
+            "velocity estimate, the encoder, the drive, friction, the motor's limits or a springy part;\n"
+            "with how sure, which frequency, which energy, and the one number to change.",
+            "A log holds time, position and the actuator's force: what the law asked for (commanded_force),\n"
+            "what the motor gave (actuator_force), best both, at every sample of the loop.\n\n"
+            "exit status: 0 a cause is named, 2 bad input, 3 the data do not say\n\n"
+            "examples:\n"
+            "  zwidth diagnose shaking.csv shaking.toml\n"
+            "  zwidth diagnose wheel.csv my-wheel.toml --plot why.png -o mended.toml\n"
+            "  zwidth diagnose log.csv --column commanded_force=cmd --unit commanded_force=N",
+        ),
         "plan": Command(
             "how to move a device by hand so that its limit becomes known",
             "Plan the experiment for zwidth identify: which strokes, how many, how long, and when to stop.",

@@ -90,6 +90,25 @@ def name_and_unit(column: str, quantity: str) -> tuple[str, str | None]:
     return plain, plain if plain in ("counts", "ticks", "seconds", "sec") else _counted(plain)
 
 
+def role_of_force(column: str) -> str | None:
+    """What a column of force is by its name: "actuator_force" that the motor gave, "commanded_force" that the
+    law asked for, "force" where it may be either, or the hand's; None where it is none of these."""
+    word = name_and_unit(column, "actuator_force")[0]
+    if _VECTOR.search(column.lower()):
+        return None
+    given, asked = (tier.split() for tier in _WORDS["actuator_force"])
+    unsaid = _WORDS["hand_force"][1].split()
+    if word in given:
+        return "actuator_force"
+    return (
+        "commanded_force"
+        if word in asked
+        else "force"
+        if word in ("force", "f", "torque") and word in unsaid
+        else None
+    )
+
+
 def _counted(word: str) -> str | None:
     return "counts" if word in ("encoder_counts", "enc_counts") else None
 

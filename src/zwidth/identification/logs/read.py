@@ -72,6 +72,12 @@ def read_log(
         return Log(**contents(table, meaning, period))
 
 
+def column_names(path: str | PathLike[str]) -> tuple[str, ...]:
+    """The columns of numbers in a file that `read_log` reads."""
+    with readable(str(path)):
+        return tuple(table_of_file(Path(path)).units)
+
+
 def table_of_file(path: Path) -> Table:
     """The table of a file, by its first bytes: the libraries take their time to load.
 

@@ -1,0 +1,138 @@
+"""The command `diagnose`: why did it shake?"""
+
+from __future__ import annotations
+
+import argparse
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from zwidth.cli.options import Once, add_all, add_in_full, add_output, device_parameters, given
+from zwidth.cli.output import print_json, say_written, targets, writing
+from zwidth.errors import InputError
+from zwidth.specification.table import quoted
+
+if TYPE_CHECKING:
+    from zwidth.device import Device
+    from zwidth.diagnosis import Diagnosis
+
+_READING = (
+    ("--column", "columns", "QUANTITY=NAME", "column of time, position, commanded_force, actuator_force"),
+    ("--unit", "units", "QUANTITY=UNIT", "unit of a column where neither file nor name states it"),
+    ("--scale", "scale", "QUANTITY=FACTOR", "what a number in a column stands for: actuator_force='2 N/A'"),
+)
+"""Options that may come several times: name, argument of `diagnose`, what stands for the value, help."""
+
+_QUANTITIES = ("time", "position", "commanded_force", "actuator_force")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth diagnose`."""
+    parser.usage = (
+        "%(prog)s LOG [SOURCE ...] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] "
+        "[--PARAMETER VALUE ...] [--all] [--json] [--plot FILE] [-o FILE] [--force]"
+    )
+    parser.add_argument("log", metavar="LOG", help="a recording of it shaking, in a file of any format")
+    parser.add_argument(
+        "sources",
+        metavar="SOURCE",
+        nargs="*",
+        help="device of the catalogue, or TOML file with a [device] table",
+    )
+    reading = parser.add_argument_group("log")
+    for option, name, metavar, meaning in _READING:
+        reading.add_argument(
+            option, dest=name, metavar=metavar, action="append", help=f"{meaning} (repeatable)"
+        )
+    reading.add_argument(
+        "--log-rate", metavar="1/T", action=Once, help="rows per second, where the log has no time [Hz]"
+    )
+    output = add_output(
+        parser, "the numbers", "the plot", "the loop with the number changed as TOML, for zwidth check"
+    )
+    add_in_full(output)
+    add_all(
+        parser.add_argument_group("device", "override what SOURCE says, or replace it"), device_parameters()
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth diagnose`: 0 where the cause is named, 3 where the data do not say."""
+    plot, save = targets(arguments.plot, arguments.save, arguments.force)
+    if save is not None and save.suffix.lower() != ".toml":
+        raise InputError(f"--save: the loop is saved as TOML, mended.toml; got {quoted(save.name)}")
+    found = _diagnosed(arguments)
+    if save is not None:
+        found.save(save, force=True)
+    if plot is not None:
+        from zwidth.diagnosis.picture import save_diagnosis  # matplotlib takes its time
+
+        with writing(plot):
+            save_diagnosis(found, plot, overwrite=True)
+    if arguments.json:
+        from zwidth.cli.diagnosis_report import command
+
+        print_json(_json(found, command(found, arguments)))
+    else:
+        from zwidth.cli.diagnosis_report import print_diagnosis
+
+        print_diagnosis(found, arguments)
+        say_written(save, plot)
+    return 0 if found.cause is not None else 3
+
+
+def _json(found: Diagnosis, command: str | None) -> str:
+    import json
+
+    return json.dumps({**found.to_dict(), "command": command}, indent=2, ensure_ascii=False)
+
+
+def _diagnosed(arguments: argparse.Namespace) -> Diagnosis:
+    from zwidth.diagnosis import diagnose
+
+    reading: dict[str, Any] = {}
+    for option, name, _, _ in _READING:
+        pairs = [_pair(option, typed) for typed in getattr(arguments, name) or ()]
+        if len(dict(pairs)) < len(pairs):
+            raise InputError(f"{option} names a quantity twice; which one is meant?")
+        if pairs:
+            reading[name] = {k: None if name == "columns" and v == "none" else v for k, v in pairs}
+    if arguments.log_rate is not None:
+        reading["sample_rate"] = arguments.log_rate
+    device = _device(arguments)
+    if device is not None and device.resolution != 0:
+        reading["resolution"] = device.resolution
+    try:
+        return diagnose(Path(arguments.log), device, **reading)
+    except InputError as error:
+        raise InputError(_as_typed(str(error))) from None
+
+
+_PYTHON = re.compile(r"(columns|units|scale)=\{[\"'](\w+)[\"']: (?:\"([^\"]*)\"|(\w+|…))\}")
+_OPTION = {name: option for option, name, _, _ in _READING}
+
+
+def _as_typed(text: str) -> str:
+    """What to try, in a message, as it is typed here."""
+    text = text.replace("sample_rate or sample_period", "--log-rate")
+    return _PYTHON.sub(lambda found: f"{_OPTION[found[1]]} {found[2]}={found[3] or found[4]}", text)
+
+
+def _device(arguments: argparse.Namespace) -> Device | None:
+    keys = [p.key for p in device_parameters()]
+    words = given(arguments, keys)
+    if not words and not arguments.sources:
+        return None
+    from zwidth.specification.read import load_device
+
+    return load_device(arguments.sources, words)
+
+
+def _pair(option: str, typed: str) -> tuple[str, str]:
+    key, sign, value = typed.partition("=")
+    name = key.strip().replace("-", "_")
+    if not sign or not value:
+        raise InputError(f"{option} is written {option} position=VALUE, got {quoted(typed)}")
+    if name not in _QUANTITIES:
+        raise InputError(f"{option}: there is no quantity {quoted(key)}; there are {', '.join(_QUANTITIES)}")
+    return name, value

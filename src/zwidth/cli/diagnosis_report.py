@@ -1,0 +1,95 @@
+"""A diagnosis as a report in the terminal: the cause, what speaks for it, what to do."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from rich.padding import Padding
+from rich.text import Text
+
+from zwidth.cli.options import device_parameters, given
+from zwidth.cli.page import below, grid, headline, items, more_with_all, page, section, small_print
+from zwidth.passivity.outcome import TOLD
+from zwidth.quantity.text import shown
+
+if TYPE_CHECKING:
+    from zwidth.diagnosis import Diagnosis
+    from zwidth.diagnosis.change import Change
+
+_OPTIONS = {"stiffness": "--stiffness", "damping": "--virtual-damping", "delay": "--delay"}
+"""Changes that one command line can ask `check` about."""
+
+
+def print_diagnosis(found: Diagnosis, arguments: argparse.Namespace) -> None:
+    """Print the report on standard output."""
+    with page() as out:
+        out.print(_headline(found))
+        section(out, "what speaks for it", items(found.evidence))
+        if found.change is not None:
+            section(out, "what to change", _change(found.change, found, arguments))
+        section(out, "what to record", items(found.record))
+        if not arguments.in_full:
+            more_with_all(out, "every number, the other causes, what is supposed")
+            return
+        out.print(below(grid(found.rows())))
+        section(out, "the file", items(found.findings))
+        out.print(small_print(*_supposed(found)))
+
+
+def _headline(found: Diagnosis) -> Padding:
+    if found.cause is None:
+        badge = "NO VIBRATION" if found.seen is None else "CANNOT TELL"
+        return headline(badge, "yellow", found.claim)
+    sure = f"{100 * min(found.confidence, 0.99):.0f} % sure"
+    energy = "" if found.energy_per_cycle is None else f", {_energy(found.energy_per_cycle)}"
+    return headline(found.cause, "red", f"{found.claim} ({sure}{energy})")
+
+
+def _energy(work: float) -> str:
+    if work < 0:
+        return f"the motor takes {shown(-work, 'J', 2)} a cycle"
+    return f"{shown(work, 'J', 2)} a cycle"
+
+
+def _change(change: Change, found: Diagnosis, arguments: argparse.Namespace) -> Iterator[Text]:
+    outcome = change.verdict.outcome
+    yield Text.assemble(f"· {change.text}: ", (outcome.upper(), TOLD[outcome].terminal))
+    typed = command(found, arguments)
+    if typed is not None:
+        yield Text(f"$ {typed}")
+
+
+def command(found: Diagnosis, arguments: argparse.Namespace) -> str | None:
+    """The line that asks `check` about the loop with the number changed."""
+    change = found.change
+    if change is None:
+        return None
+    if arguments.save is not None:
+        return f"zwidth check {shlex.quote(arguments.save)}"
+    if change.parameter not in _OPTIONS:
+        return f"zwidth diagnose {shlex.quote(arguments.log)} … -o mended.toml && zwidth check mended.toml"
+    assert found.seen is not None
+    assert found.seen.law is not None
+    words = ["zwidth", "check", *arguments.sources]
+    for key, value in given(arguments, [p.key for p in device_parameters()]).items():
+        if key != "delay":
+            words += [f"--{key.replace('_', '-')}", value]
+    law = found.seen.law
+    stiffness = change.to if change.parameter == "stiffness" else law.stiffness
+    damping = change.to if change.parameter == "damping" else law.damping
+    words += ["--stiffness", f"{stiffness:.6g}"]
+    if damping:
+        words += ["--virtual-damping", f"{damping:.6g}"]
+        if law.window > 1:
+            words += ["--velocity-filter", f"window {law.window}"]
+    if float(change.device.exact("delay")):
+        words += ["--delay", f"{float(change.device.exact('delay')):.6g}"]
+    return shlex.join(words)
+
+
+def _supposed(found: Diagnosis) -> Iterator[str]:
+    yield "one degree of freedom; the hand is passive"
+    yield "the confidence is that of simulated faults like those of the docs page"

@@ -1,0 +1,262 @@
+"""Why it may shake: each cause with what a recording must hold to show it, and its evidence in numbers.
+
+How likely each one is comes from the features of the recording by a multinomial logistic law,
+
+    log p_i = c_i + Σ_f w_if (φ_f − m_f)/s_f − log Σ,
+
+whose weights are learnt from simulated faults (`benchmarks/diagnosis_training.py`).  A cause is named only
+where its p is large *and* the file holds what shows it: without the motor's own force nobody can see a
+delay behind the command, and what is likely for want of anything better is no finding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from zwidth.diagnosis.evidence import Evidence
+from zwidth.diagnosis.features import features, vector
+from zwidth.quantity.text import shown
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+SURE = 0.6
+"""A cause that is less likely than this is not named."""
+
+_FURTHEST = 4.0
+"""Spreads from the middle of what was simulated beyond which a feature counts no more."""
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One reason for a vibration.
+
+    Parameters
+    ----------
+    name
+        In a few words.
+    because
+        What happens, for people.
+    shown
+        Whether this recording can show it at all.
+    evidence
+        The numbers that speak for it.
+    record
+        What to record where it is likely and not shown.
+    """
+
+    name: str
+    because: str
+    shown: Callable[[Evidence], bool]
+    evidence: Callable[[Evidence], Iterator[str]]
+    record: str
+
+
+def likelihoods(seen: Evidence) -> dict[str, float]:
+    """p of each cause, from the features alone."""
+    names, middle, spread, weights = _learnt()
+    z = np.clip((vector(features(seen), names) - middle) / spread, -_FURTHEST, _FURTHEST)
+    scores = weights[0] + z @ weights[1:]
+    odds = np.exp(scores - scores.max())
+    return dict(zip(CAUSES, map(float, odds / odds.sum()), strict=True))
+
+
+@cache
+def _learnt() -> tuple[tuple[str, ...], Array, Array, Array]:
+    """Names of the features, their middle and spread, and the weights: a row of constants, then one each."""
+    lines = files("zwidth.diagnosis").joinpath("weights.csv").read_text(encoding="utf-8").splitlines()
+    rows = [line.split(",") for line in lines if line and not line.startswith("#")]
+    assert rows[0][3:] == list(CAUSES)
+    numbers = np.array([[float(cell) for cell in row[1:]] for row in rows[1:]])
+    return tuple(row[0] for row in rows[2:]), numbers[1:, 0], numbers[1:, 1], numbers[:, 2:]
+
+
+def _force(seen: Evidence) -> str:
+    return "N*m" if seen.rotary else "N"
+
+
+def _share(seen: Evidence, term: str) -> str:
+    given = sum(max(0.0, w) for w in seen.supplied.values()) or 1.0
+    return f"{100 * max(0.0, seen.supplied[term]) / given:.0f} % of the energy that the law gives in a cycle"
+
+
+def _sampling(seen: Evidence) -> Iterator[str]:
+    assert seen.law is not None
+    demand = 0.5 * seen.law.stiffness * seen.loop_period
+    unit = seen.unit("damping")
+    has = "" if seen.known.damping is None else f", the device has {shown(seen.known.damping, unit, 3)}"
+    yield f"K T/2 = {shown(demand, unit, 3)}{has}"
+    yield f"the hold of the spring gives {_share(seen, 'sampling')}"
+
+
+def _delay(seen: Evidence) -> Iterator[str]:
+    if seen.sees_delay:
+        yield (
+            f"the force comes {shown(seen.delay, 's', 3)} after its sample, "
+            f"{seen.delay / seen.loop_period:.1f} samples; the hold alone is half a sample"
+        )
+        yield f"it gives {_share(seen, 'delay')}"
+    else:
+        yield "the commanded force gives less than the device's friction takes: something after it comes late"
+
+
+def _velocity(seen: Evidence) -> Iterator[str]:
+    assert seen.law is not None
+    window = f"a window of {seen.law.window} samples" if seen.law.window > 1 else "the last difference"
+    yield (
+        f"B = {shown(seen.law.damping, seen.unit('virtual_damping'), 3)} on {window}, at "
+        f"{seen.vibration.frequency * seen.loop_period:.2f} of the sample rate"
+    )
+    yield f"the damper gives {_share(seen, 'differenced velocity')}: it pushes"
+
+
+def _encoder(seen: Evidence) -> Iterator[str]:
+    step = seen.resolution * (seen.law.stiffness if seen.law else 0.0)
+    yield f"it moves {seen.counts:.1f} counts of the encoder from end to end"
+    if step:
+        has = (
+            ""
+            if not seen.known.coulomb
+            else f", dry friction holds {shown(seen.known.coulomb, _force(seen), 3)}"
+        )
+        yield f"half a count is worth K Δ/2 = {shown(step / 2, _force(seen), 3)}{has}"
+
+
+def _drive(seen: Evidence) -> Iterator[str]:
+    if seen.drive is None:
+        return
+    d = seen.drive
+    yield (
+        f"beside the command the motor gives B = {shown(d.damping, seen.unit('virtual_damping'), 3)} times "
+        f"the speed of {shown(d.damping_lag, 's', 3)} ago"
+    )
+    yield f"that leaves {100 * d.by_damper:.2g} % of its force unexplained, a delay {100 * d.by_delay:.2g} %"
+
+
+def _compensation(seen: Evidence) -> Iterator[str]:
+    assert seen.law is not None
+    has = (
+        "" if seen.known.coulomb is None else f", the device has {shown(seen.known.coulomb, _force(seen), 3)}"
+    )
+    yield f"the force holds {shown(seen.law.compensation, _force(seen), 3)} along the motion{has}"
+    yield f"it gives {_share(seen, 'friction compensation')}"
+
+
+def _weakening(seen: Evidence) -> Iterator[str]:
+    if seen.lost is not None:
+        yield (
+            f"in a cycle the motor gives {shown(seen.total, 'J', 2)} and friction should take "
+            f"{shown(seen.lost, 'J', 2)}"
+        )
+    yield f"it stands still for {100 * seen.standing:.0f} % of the time, a sine does for 6 %"
+
+
+def _limit(seen: Evidence) -> Iterator[str]:
+    if seen.drive is None:
+        return
+    d = seen.drive
+    yield (
+        f"the motor's force changes by no more than {shown(d.rate, _force(seen) + '/s', 3)}, which leaves "
+        f"{100 * d.by_rate:.2g} % of it unexplained, a delay {100 * d.by_delay:.2g} %"
+    )
+    yield f"coming late so gives {_share(seen, 'actuator limit')}"
+
+
+def _structure(seen: Evidence) -> Iterator[str]:
+    mass = seen.unit("mass")
+    has = "" if seen.known.mass is None else f", the device has {shown(seen.known.mass, mass, 3)}"
+    yield f"it moves under the motor's force as {shown(seen.apparent_mass, mass, 2)} would{has}"
+    if seen.total < 0:
+        taken = shown(-seen.total, "J", 2)
+        yield f"where the sensor sits the motor takes {taken} in a cycle, and it shakes all the same"
+
+
+def _missing(seen: Evidence) -> bool:
+    """Less comes in by the forces in the file than the device's friction takes."""
+    return seen.lost is not None and seen.total < seen.lost
+
+
+_BOTH = "the motor's own force, from its current, beside the force that the law asks for"
+_EVERY = "every sample of the loop, not every second or third"
+_DEVICE = "nothing more: give the device's numbers (mass, damping, Coulomb friction) beside the file"
+
+CAUSES: Mapping[str, Cause] = {
+    cause.name: cause
+    for cause in (
+        Cause(
+            "sampling",
+            "the spring is held from sample to sample and so pushes out harder than it was pressed in",
+            lambda s: s.supplied["sampling"] > 0,
+            _sampling,
+            _DEVICE,
+        ),
+        Cause(
+            "delay",
+            "the force comes late: it still pushes out where a spring would have let go",
+            lambda s: (
+                (s.sees_delay and s.delay > 0)
+                or (s.drive is None and "applied" not in s.roles and _missing(s))
+            ),
+            _delay,
+            _BOTH,
+        ),
+        Cause(
+            "differenced velocity",
+            "virtual damping from differenced positions comes so late that it drives the motion",
+            lambda s: s.law is not None and s.law.damping > 0,
+            _velocity,
+            _EVERY,
+        ),
+        Cause(
+            "encoder buzz",
+            "the loop plays with the last counts of the encoder, and dry friction is too small to stop it",
+            lambda s: s.counts < 50,
+            _encoder,
+            "the position in the encoder's own counts, at every sample of the loop",
+        ),
+        Cause(
+            "drive damping",
+            "the drive damps by itself, from a speed that is old, and so drives the motion",
+            lambda s: s.drive is not None,
+            _drive,
+            _BOTH,
+        ),
+        Cause(
+            "friction compensation",
+            "more friction is compensated than there is: the compensation drives the motion",
+            lambda s: s.law is not None and s.law.compensation > 0,
+            _compensation,
+            _EVERY,
+        ),
+        Cause(
+            "velocity-weakening friction",
+            "the device sticks and slips: its friction is larger at rest than in motion",
+            lambda s: _missing(s) or s.total <= 0,
+            _weakening,
+            "the same motion with the motor off, moved by hand: does it still stick and slip?",
+        ),
+        Cause(
+            "actuator limit",
+            "the motor cannot follow: its force comes late because it changes no faster",
+            lambda s: s.drive is not None,
+            _limit,
+            _BOTH,
+        ),
+        Cause(
+            "structural resonance",
+            "something springy between motor, sensor and handle swings: it is no rigid device",
+            lambda s: s.known.mass is not None or s.apparent_mass < 0 or s.total < 0,
+            _structure,
+            "a tap on the handle with the motor off: does it ring at this frequency?",
+        ),
+    )
+}
+"""The registry of causes."""

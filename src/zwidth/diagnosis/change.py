@@ -1,0 +1,221 @@
+"""The one number to change, handed to `check`: the largest value of it with which the loop is proved passive.
+
+The loop is what was found in the recording: the stated device, the identified law, the delay that is seen.
+Every value that is given was itself decided, all else as it was.  A damper inside the drive, B_d v(t −
+τ_d), takes at the worst frequency −B_d whatever τ_d is, so that loop is decided with B_d less damping in
+the device.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import floor, log10
+from typing import TYPE_CHECKING
+
+from zwidth.device import Device
+from zwidth.diagnosis.evidence import Evidence
+from zwidth.environment import Wall, Window
+from zwidth.environment.environment import Environment
+from zwidth.errors import InputError
+from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.exact import ends
+from zwidth.quantity.text import shown
+
+if TYPE_CHECKING:
+    pass
+
+PASSIVE = ("passive", "passive in contact")
+"""Outcomes that a change may have."""
+
+_HALVINGS = 14
+_DIGITS = 3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """One number of the loop, from where it is to where it may be.
+
+    Parameters
+    ----------
+    parameter
+        Its key, such as "stiffness".
+    current, to
+        In `unit`.
+    unit
+        SI.
+    text
+        In words.
+    device, environment
+        The loop with that number changed.
+    verdict
+        What `check` says to it.
+    """
+
+    parameter: str
+    current: float
+    to: float
+    unit: str
+    text: str
+    device: Device
+    environment: Environment
+    verdict: Verdict
+
+    def to_dict(self) -> dict[str, object]:
+        """As plain data."""
+        return {
+            "parameter": self.parameter,
+            "from": self.current,
+            "to": self.to,
+            "unit": self.unit,
+            "text": self.text,
+            "outcome": self.verdict.outcome,
+        }
+
+
+@dataclass(frozen=True)
+class _Loop:
+    """The loop in a recording: every number that a change may be of."""
+
+    device: Device
+    stiffness: float
+    damping: float
+    window: int
+    compensation: float
+    compensation_speed: float
+    delay: float
+    drive_damping: float
+
+    def built(self, **changes: float) -> tuple[Device, Environment]:
+        """With some numbers changed."""
+        at = {**self.__dict__, **changes}
+        device: Device = self.device.replace(delay=_text(at["delay"]))
+        if at["drive_damping"]:
+            left = float(ends(device.damping)[0]) - at["drive_damping"]
+            if left < 0:
+                raise InputError("the drive's damper may drive more than the device brakes")
+            device = device.replace(damping=_text(left))
+        wall: Environment = Wall(
+            _text(at["stiffness"]), _text(at["damping"]), velocity_filter=Window(self.window)
+        )
+        if at["compensation"]:
+            from zwidth.rendering import FrictionCompensation, render
+
+            wall = render(
+                wall,
+                FrictionCompensation(
+                    coulomb=_text(at["compensation"]), speed=_text(at["compensation_speed"])
+                ),
+            )
+        return device, wall
+
+    def decided(self, **changes: float) -> Verdict | None:
+        """The verdict; None where the loop cannot be decided in closed form."""
+        try:
+            return check_by_closed_forms(*self.built(**changes))
+        except InputError:
+            return None
+
+
+def change_for(cause: str, seen: Evidence, device: Device) -> Change | None:
+    """The change that takes a cause away; None where no single number of the loop does, or none is proved."""
+    if seen.law is None or cause not in _PARAMETERS:
+        return None
+    loop = _loop(seen, device, cause)
+    for key in _PARAMETERS[cause]:
+        current = getattr(loop, key)
+        if current <= 0:
+            continue
+        top = current
+        if cause == "actuator limit" and seen.drive is not None:
+            top = min(current, seen.drive.rate / (seen.vibration.angular * seen.amplitude))
+        to = _largest(lambda value, key=key: loop.decided(**{key: value}), top)  # type: ignore[misc]
+        if to is None:
+            continue
+        built = loop.built(**{key: to})
+        name, unit = _NAMES[key]
+        said = seen.unit(unit) if unit != "s" else "s"
+        verdict = check_by_closed_forms(*built)
+        return Change(
+            parameter=key,
+            current=current,
+            to=to,
+            unit=said,
+            text=f"lower the {name} from {shown(current, said, 3)} to {shown(to, said, 3)}",
+            device=built[0],
+            environment=built[1],
+            verdict=verdict,
+        )
+    return None
+
+
+_PARAMETERS = {
+    "sampling": ("stiffness", "damping"),
+    "delay": ("delay", "stiffness"),
+    "differenced velocity": ("damping", "stiffness"),
+    "encoder buzz": ("stiffness",),
+    "drive damping": ("drive_damping",),
+    "friction compensation": ("compensation",),
+    "actuator limit": ("stiffness",),
+}
+"""What to change, the first that helps."""
+
+_NAMES = {
+    "stiffness": ("stiffness", "stiffness"),
+    "damping": ("virtual damping", "virtual_damping"),
+    "delay": ("delay", "s"),
+    "drive_damping": ("damping inside the drive", "virtual_damping"),
+    "compensation": ("compensated Coulomb friction", "coulomb_friction"),
+}
+"""Each in words, and whose unit it has."""
+
+
+def _loop(seen: Evidence, device: Device, cause: str) -> _Loop:
+    assert seen.law is not None
+    law = seen.law
+    helped = law.compensation if seen.supplied["friction compensation"] > 0.02 * abs(seen.total) else 0.0
+    return _Loop(
+        device=device,
+        stiffness=law.stiffness,
+        damping=law.damping,
+        window=law.window,
+        compensation=_rounded(helped),
+        compensation_speed=_rounded(law.compensation_speed),
+        delay=_rounded(seen.delay) if cause == "delay" and seen.sees_delay else seen.known.delay,
+        drive_damping=seen.drive.damping if cause == "drive damping" and seen.drive is not None else 0.0,
+    )
+
+
+def _largest(decided: Callable[[float], Verdict | None], current: float) -> float | None:
+    """The largest value up to the current one that is passive, of a few digits; None where only 0 is, or
+    none.
+    """
+
+    def passive(value: float) -> bool:
+        verdict = decided(value)
+        return verdict is not None and verdict.outcome in PASSIVE
+
+    low, high = 0.0, current
+    if not passive(0.0) and not passive(1e-3 * current):
+        return None
+    if passive(_rounded(0.9 * current)):
+        return _rounded(0.9 * current)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if passive(middle) else (low, middle)
+    to = _rounded(0.98 * low)
+    return to if to > 1e-3 * current and passive(to) else None
+
+
+def _rounded(value: float) -> float:
+    """Down to three digits."""
+    if value <= 0:
+        return 0.0
+    step = 10.0 ** (floor(log10(value)) - _DIGITS + 1)
+    return float(f"{floor(value / step * (1 + 1e-12)) * step:.{_DIGITS}g}")
+
+
+def _text(value: float) -> str:
+    """The decimal that is meant."""
+    return f"{value:.6g}"

@@ -1,0 +1,117 @@
+"""From a recording of a thing that shakes to the reason.
+
+    recording → the stretch that vibrates → law, drive, energy of a cycle → how likely each cause → one change
+
+Nothing is named that the file cannot show; then it says what to record.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+from zwidth.device import Device
+from zwidth.diagnosis.causes import CAUSES, likelihoods
+from zwidth.diagnosis.change import change_for
+from zwidth.diagnosis.evidence import Evidence, gather
+from zwidth.diagnosis.recording import Recording, read
+from zwidth.diagnosis.result import Diagnosis, is_sure
+from zwidth.diagnosis.vibration import find
+from zwidth.errors import InputError
+from zwidth.identification.logs import Log
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_REGULAR = "a stretch of ten cycles or more in which it shakes, the hand as it was"
+_DEVICE = "the device's numbers (mass, damping, Coulomb friction, rate) beside the file: DEVICE"
+
+
+def diagnose(
+    recording: Log | str | PathLike[str] | xr.Dataset,
+    device: Device | None = None,
+    *,
+    columns: Mapping[str, str | None] | None = None,
+    units: Mapping[str, str] | None = None,
+    scale: Mapping[str, object] | None = None,
+    **reading: Any,
+) -> Diagnosis:
+    """Why did it shake?  One recording of a vibrating wall, wheel or joint.
+
+    Parameters
+    ----------
+    recording
+        A log, a file as `read_log` reads it, or a Dataset such as a trace: time, position, and the actuator's
+        force: what the law asked for, what the motor gave, best both.
+    device
+        What is known of the device: without it no number can be checked, and fewer causes be told apart.
+    columns, units, scale
+        As for `read_log`; `commanded_force` is the force that the law asked for, `actuator_force` the one
+        that the motor gave.
+    reading
+        Further arguments of `read_log`.
+
+    Returns
+    -------
+    Diagnosis
+        The cause, how sure, the frequency, the energy of a cycle, the number to change with its verdict; or
+        what to record.
+
+    Raises
+    ------
+    InputError
+        If the recording cannot be read, holds no force of the actuator, or moves otherwise than the device.
+    """
+    taken = read(recording, columns=columns, units=units, scale=scale, **reading)
+    if device is not None and device.motion != taken.motion:
+        raise InputError(
+            f"{taken.source} holds a {taken.motion} motion and the device is {device.motion}: "
+            "which one is meant?"
+        )
+    vibration = find(taken.time, taken.position, taken.period)
+    if vibration is None:
+        return _still(taken)
+    return _named(taken, gather(taken, vibration, device), device)
+
+
+def _still(taken: Recording) -> Diagnosis:
+    return Diagnosis(
+        cause=None, confidence=0.0, likely={}, frequency=None, frequency_spread=None, energy_per_cycle=None,
+        evidence=(), change=None, record=(_REGULAR,), seen=None, findings=taken.findings, recording=taken,
+    )  # fmt: skip
+
+
+def _named(taken: Recording, seen: Evidence, device: Device | None) -> Diagnosis:
+    likely = dict(sorted(likelihoods(seen).items(), key=lambda item: -item[1]))
+    first, p = next(iter(likely.items()))
+    cause = first if is_sure(p) and CAUSES[first].shown(seen) else None
+    change = change_for(cause, seen, device) if cause is not None and device is not None else None
+    return Diagnosis(
+        cause=cause,
+        confidence=p if cause is not None else 0.0,
+        likely=likely,
+        frequency=seen.vibration.frequency,
+        frequency_spread=seen.vibration.frequency_spread,
+        energy_per_cycle=seen.total,
+        evidence=tuple(CAUSES[cause].evidence(seen)) if cause is not None else (),
+        change=change,
+        record=() if change is not None else tuple(_record(cause, likely, seen, device)),
+        seen=seen,
+        findings=taken.findings,
+        recording=taken,
+    )
+
+
+def _record(
+    cause: str | None, likely: Mapping[str, float], seen: Evidence, device: Device | None
+) -> list[str]:
+    """What would say more: for the two likeliest, and what every diagnosis is better with."""
+    if cause is not None:
+        return [] if device is not None else [_DEVICE]
+    wanted = [CAUSES[name].record for name in list(likely)[:2]]
+    if len(seen.roles) < 2:
+        wanted.insert(0, CAUSES["delay"].record)
+    if device is None:
+        wanted.append(_DEVICE)
+    return list(dict.fromkeys(w for w in wanted if not w.startswith("nothing more")))[:3]

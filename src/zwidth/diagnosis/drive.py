@@ -1,0 +1,142 @@
+"""What lies between the force that the law asked for and the one that the motor gave.
+
+    a delay            f_a(t) = f(t − τ), cut off at ± L
+    a damper inside    f_a(t) = f(t − τ₀) + B_d v(t − τ_d)
+    a limit of rate    |df_a/dt| ≤ R
+
+Each is fitted by least squares, and what it leaves unexplained says how well it accounts for the file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from zwidth.compiled import compiled
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+_TRIED = 40
+_STEEP = (50, 70, 85, 90, 93, 95, 97, 99, 99.8)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drive:
+    """What the drive does to a command.
+
+    Parameters
+    ----------
+    delay
+        [s] τ of the best pure delay.
+    by_delay, by_damper, by_rate, by_nothing
+        Share of the applied force's variance that is left over by each; 0 is a full account.
+    damping, damping_lag
+        B_d [N·s/m; N·m·s/rad], positive where it brakes, and τ_d [s].
+    rate
+        [N/s; N·m/s] R.
+    ramps
+        Share of the time in which the force changes about as fast as it ever does.
+    applied
+        [N; N·m] the applied force in each row.
+    """
+
+    delay: float
+    by_nothing: float
+    by_delay: float
+    by_damper: float
+    by_rate: float
+    damping: float
+    damping_lag: float
+    rate: float
+    ramps: float
+    applied: Array
+
+
+def account(
+    commanded: Array, applied: Array, position: Array, row_period: float, loop_period: float, cycle: float
+) -> Drive:
+    """Fit the three to a stretch; `cycle` is the period of the vibration [s]."""
+    spread = float(np.var(applied)) or 1.0
+    times = np.arange(applied.size, dtype=np.float64) * row_period
+    skip = max(2, int(0.6 * cycle / row_period))
+    used = slice(min(skip, applied.size // 4), None)
+    step = min(loop_period, row_period) if row_period <= loop_period else loop_period
+    lags = _lags(cycle, step)
+
+    def left(model: Array) -> float:
+        return float(np.mean((applied - model)[used] ** 2)) / spread
+
+    top = float(np.abs(applied).max())
+    delayed = {lag: np.clip(_late(commanded, times, lag), -top, top) for lag in lags}
+    delay = min(lags, key=lambda lag: left(delayed[lag]))
+    best, damping, damping_lag = np.inf, 0.0, 0.0
+    speed = np.gradient(position, row_period)
+    short = [lag for lag in lags if lag <= max(step, 0.0) * 1.01]
+    for late in short:
+        missing = applied - delayed[late]
+        for lag in lags:
+            v = _late(speed, times, lag)
+            power = float(np.mean(v[used] ** 2))
+            gain = float(np.mean((missing * v)[used])) / power if power else 0.0
+            rest = left(delayed[late] + gain * v)
+            if gain > 0 and rest < best:
+                best, damping, damping_lag = rest, gain, lag
+    rate, by_rate = _rate(commanded, applied, times, step, left)
+    return Drive(
+        delay=delay, by_nothing=left(np.clip(commanded, -top, top)), by_delay=left(delayed[delay]),
+        by_damper=min(best, 1.0), by_rate=by_rate, damping=damping, damping_lag=damping_lag, rate=rate,
+        ramps=_ramps(applied), applied=applied,
+    )  # fmt: skip
+
+
+def _lags(cycle: float, step: float) -> list[float]:
+    """Up to three quarters of a cycle, in samples of the loop where those are not too many."""
+    longest = 0.75 * cycle
+    stride = step * max(1, int(np.ceil(longest / step / _TRIED)))
+    return [float(lag) for lag in np.arange(0.0, longest + stride / 2, stride)]
+
+
+def _late(values: Array, times: Array, lag: float) -> Array:
+    return np.interp(times - lag, times, values)
+
+
+def _rate(
+    commanded: Array, applied: Array, times: Array, step: float, left: Callable[[Array], float]
+) -> tuple[float, float]:
+    """R that follows the applied force best when the command is followed no faster."""
+    steep = np.abs(np.diff(applied)) / (times[1] - times[0])
+    between = max(1, round((times[1] - times[0]) / step))
+    fine = np.interp(
+        np.arange(between * (times.size - 1) + 1) * ((times[1] - times[0]) / between), times, commanded
+    )
+    best = (0.0, 1.0)
+    for rate in np.unique(np.percentile(steep, _STEEP)):
+        if rate > 0:
+            model = _followed(fine, applied[0], rate * (times[1] - times[0]) / between)[::between]
+            rest = left(model)
+            if rest < best[1]:
+                best = (float(rate), rest)
+    return best
+
+
+@compiled
+def _followed(commanded: Array, start: float, most: float) -> Array:
+    """The command followed by no more than so much a step, from the step after."""
+    followed = np.empty_like(commanded)
+    followed[0] = start
+    for k in range(1, commanded.size):
+        missing = commanded[k - 1] - followed[k - 1]
+        followed[k] = followed[k - 1] + min(max(missing, -most), most)
+    return followed
+
+
+def _ramps(applied: Array) -> float:
+    steep = np.abs(np.diff(applied))
+    top = float(np.percentile(steep, 97))
+    return float((np.abs(steep - top) < 0.15 * top).mean()) if top else 0.0

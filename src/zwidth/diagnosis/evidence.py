@@ -1,0 +1,294 @@
+"""What a vibration lives on: the energy of a cycle, and who puts it in.
+
+In a motion x = Re X exp(jωt) a force f = Re F exp(jωt), positive against x, gives in each cycle
+
+    W = −∮ f dx = −π Im(F X*)                                    [J]
+
+A law answers with F = Z(ω) X, and what is applied of it is F h exp(−jωτ), with the hold
+h = sinc(ωT/2) exp(−jωT/2) and the delay τ.  So what goes in comes apart, term by term:
+
+    sampling               the spring, through the hold:               −π |X|² Im(K h)
+    delay                  what exp(−jωτ) adds to spring and damper
+    differenced velocity   the damper through its estimate and the hold, where that is positive
+    friction compensation  the force along the motion
+    drive damping          what the drive adds by itself
+    actuator limit         what a limited rate adds
+
+and what goes out: b of the device takes π ω b |X|² and its Coulomb friction 4 f_c |X|.  What goes out must
+come in: where the known terms fall short, something that was not recorded feeds the motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from zwidth.device import Device
+from zwidth.diagnosis import drive, law
+from zwidth.diagnosis.drive import Drive
+from zwidth.diagnosis.law import Law
+from zwidth.diagnosis.recording import Recording
+from zwidth.diagnosis.vibration import Vibration, phasors
+from zwidth.quantity.exact import ends
+from zwidth.quantity.glossary import GLOSSARY
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+TERMS = (
+    "sampling",
+    "delay",
+    "differenced velocity",
+    "friction compensation",
+    "drive damping",
+    "actuator limit",
+)
+"""The terms of the energy that goes in."""
+
+_ALIKE = 2e-3
+"""Share of the applied force's variance by which it may differ from the command and be the same."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Known:
+    """What is known of the device, in plain numbers; None where nobody said it."""
+
+    mass: float | None = None
+    damping: float | None = None
+    coulomb: float | None = None
+    resolution: float | None = None
+    period: float | None = None
+    delay: float = 0.0
+
+    @classmethod
+    def of(cls, device: Device | None) -> Known:
+        """The middle of each number of a device."""
+        if device is None:
+            return cls()
+        return cls(
+            mass=_middle(device.mass),
+            damping=_middle(device.damping),
+            coulomb=_middle(device.coulomb_friction),
+            resolution=_middle(device.resolution) or None,
+            period=_middle(device.sample_period),
+            delay=_middle(device.delay) or 0.0,
+        )
+
+
+def _middle(number: object) -> float | None:
+    if number is None:
+        return None
+    low, high = ends(number)  # type: ignore[arg-type]
+    return float(low + high) / 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Evidence:
+    """Everything that was measured in a recording of a vibration.
+
+    Parameters
+    ----------
+    vibration
+        Where, how fast, how far.
+    loop_period
+        [s] T of the loop.
+    resolution
+        [m; rad] Δ; 0 where none is seen.
+    law
+        What the force was computed from; None where it does not follow the motion.
+    drive
+        What lies between the two forces; None where one was recorded.
+    amplitude
+        [m; rad] |X|.
+    delay
+        [s] from a sample to its force, as far as it is seen or stated.
+    supplied
+        [J] that each term gives in a cycle, negative where it takes.
+    total
+        [J] that the actuator gives in a cycle in all.
+    lost
+        [J] that the device's friction takes in a cycle; None without a device.
+    apparent_mass
+        [kg; kg·m²] Re(F/X)/ω²: the mass that would move so under the force.
+    standing
+        Share of the time in which it stands, where a sine does so for a sixteenth.
+    distortion
+        Harmonics of the motion against its frequency.
+    """
+
+    vibration: Vibration
+    loop_period: float
+    resolution: float
+    law: Law | None
+    drive: Drive | None
+    amplitude: float
+    delay: float
+    supplied: Mapping[str, float]
+    total: float
+    lost: float | None
+    apparent_mass: float
+    standing: float
+    distortion: float
+    roles: tuple[str, ...]
+    known: Known
+    rotary: bool
+
+    @property
+    def sees_delay(self) -> bool:
+        """True where the file shows what comes between a sample and its force."""
+        return "applied" in self.roles
+
+    def unit(self, name: str) -> str:
+        """Of a quantity of the glossary, for this motion."""
+        return GLOSSARY[name].unit_for("rotary" if self.rotary else "linear")
+
+    @property
+    def counts(self) -> float:
+        """Swing from end to end in counts of the encoder; infinite where none is seen."""
+        return self.vibration.swing / self.resolution if self.resolution else np.inf
+
+
+def gather(recording: Recording, vibration: Vibration, device: Device | None) -> Evidence:
+    """Measure everything."""
+    known = Known.of(device)
+    rows, period = vibration.rows, recording.period
+    x = recording.position[rows]
+    commanded = None if recording.commanded is None else recording.commanded[rows]
+    applied = None if recording.applied is None else recording.applied[rows]
+    loop_period = known.period or _loop_period(commanded, period)
+    seen = commanded if commanded is not None else applied
+    assert seen is not None
+    sign = _sign(x, seen, vibration, period)
+    commanded, applied = (None if f is None else sign * f for f in (commanded, applied))
+    cycle = 1 / vibration.frequency
+    found = None
+    if np.ptp(seen):
+        found = law.fit(x, sign * seen, period, loop_period, _lags(commanded is not None, cycle, loop_period))
+    between = None
+    if commanded is not None and applied is not None:
+        between = drive.account(commanded, applied, x, period, loop_period, cycle)
+    omega = vibration.angular
+    phasor_x = phasors(x, vibration.frequency, period)
+    X = complex(phasor_x[0]) or complex(np.finfo(float).tiny)
+    delay = _delay(known, found, between, commanded is not None)
+    force = applied if applied is not None else commanded
+    assert force is not None
+    F = phasors(force, vibration.frequency, period)[0] * _hold(omega, loop_period)
+    if applied is None:
+        F = F * np.exp(-1j * omega * delay)
+    supplied = _terms(found, between, vibration, X, omega, loop_period, delay, period, sign * seen)
+    lost = None
+    if known.damping is not None:
+        lost = np.pi * omega * known.damping * abs(X) ** 2 + 4 * (known.coulomb or 0.0) * abs(X)
+    return Evidence(
+        vibration=vibration,
+        loop_period=loop_period,
+        resolution=known.resolution or recording.resolution,
+        law=found,
+        drive=between,
+        amplitude=float(abs(X)),
+        delay=delay,
+        supplied=supplied,
+        total=float(-np.pi * np.imag(F * np.conj(X))),
+        lost=lost,
+        apparent_mass=float(np.real(F / X)) / omega**2,
+        standing=_standing(x, period, cycle),
+        distortion=float(np.sqrt((np.abs(phasor_x[1:]) ** 2).sum()) / abs(X)),
+        roles=tuple(
+            name for name, values in (("commanded", commanded), ("applied", applied)) if values is not None
+        ),
+        known=known,
+        rotary=recording.motion == "rotary",
+    )
+
+
+def _hold(omega: float, period: float) -> complex:
+    return complex(np.sinc(omega * period / (2 * np.pi)) * np.exp(-0.5j * omega * period))
+
+
+def _loop_period(commanded: Array | None, period: float) -> float:
+    """T: rows, or as many rows as a command usually stays the same for."""
+    if commanded is None:
+        return period
+    changes = np.flatnonzero(np.diff(commanded))
+    if changes.size < 20:
+        return period
+    usual = int(np.median(np.diff(changes)))
+    return period * max(1, usual) if usual >= 2 and (np.diff(changes) % usual == 0).mean() > 0.9 else period
+
+
+def _sign(x: Array, force: Array, vibration: Vibration, period: float) -> float:
+    """+1 where the force pushes back: a spring does so at least in its slow part, where delays are short."""
+    slope = float(np.cov(x - x.mean(), force)[0, 1])
+    return 1.0 if slope >= 0 else -1.0
+
+
+def _lags(commanded: bool, cycle: float, loop_period: float) -> list[float]:
+    """Lags to try: some samples of bookkeeping for a command, most of half a cycle for what was applied."""
+    if commanded:
+        return [k * loop_period for k in range(3)]
+    most = max(2, int(0.45 * cycle / loop_period))
+    return [float(k) * loop_period for k in np.unique(np.linspace(0, most, min(most + 1, 25)).round())]
+
+
+def _delay(known: Known, found: Law | None, between: Drive | None, commanded: bool) -> float:
+    if between is not None:
+        return between.delay
+    if not commanded and found is not None:
+        return found.lag
+    return known.delay
+
+
+def _terms(
+    found: Law | None, between: Drive | None, vibration: Vibration, X: complex, omega: float, T: float,
+    delay: float, period: float, seen: Array,
+) -> dict[str, float]:  # fmt: skip
+    """[J] in a cycle by each term."""
+    supplied = dict.fromkeys(TERMS, 0.0)
+    if found is None:
+        return supplied
+    h = _hold(omega, T)
+    late = np.exp(-1j * omega * delay)
+    spring = found.stiffness
+    damper = found.damping * (1 - np.exp(-1j * omega * found.window * T)) / (found.window * T)
+
+    helping = phasors(found.compensated, vibration.frequency, period)[0]
+    asked = phasors(seen, vibration.frequency, period)[0] - helping
+    share = min(
+        1.0, float(abs(asked)) / (abs((spring + damper) * X) or np.inf)
+    )  # less where it is cut off or away
+
+    def work(z: complex) -> float:
+        return float(-np.pi * abs(X) ** 2 * np.imag(z)) * share
+
+    supplied["sampling"] = work(spring * h)
+    supplied["differenced velocity"] = work(damper * h)
+    pushed = float(-np.pi * np.imag(helping * h * np.conj(X)))
+    supplied["friction compensation"] = pushed
+    supplied["delay"] = work((spring + damper) * h * (late - 1))
+    if between is not None:
+        accounts = {
+            "delay": between.by_delay,
+            "drive damping": between.by_damper,
+            "actuator limit": between.by_rate,
+        }
+        least = min(accounts, key=lambda name: accounts[name])
+        changed = phasors(between.applied - seen, vibration.frequency, period)[0]
+        added = float(-np.pi * np.imag(changed * h * np.conj(X)))
+        supplied |= dict.fromkeys(accounts, 0.0)
+        if between.by_nothing > _ALIKE:
+            supplied[least] = added
+    return supplied
+
+
+def _standing(x: Array, period: float, cycle: float) -> float:
+    """Share of time below a tenth of the largest speed, speeds being means over a sixteenth of a cycle."""
+    step = max(1, round(cycle / 16 / period))
+    speed = np.abs(x[step:] - x[:-step])
+    top = float(np.percentile(speed, 98)) if speed.size else 0.0
+    return float((speed < 0.1 * top).mean()) if top else 1.0

@@ -1,0 +1,242 @@
+"""Which law computed the force: stiffness, damping and its velocity estimate, compensation of friction, lag.
+
+    f(t) = a + K x(t − s) + B (x(t − s) − x(t − s − N T))/(N T) − F tanh(v/v_s)
+
+Every lag s, window N and speed v_s of a list is tried, and the terms are fitted by least squares.  The law is
+the one of least BIC: what a term leaves unexplained must fall by more than chance would have it.  Rows where
+the force stands at its limit or is off are left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+    Rows = NDArray[np.bool_]
+
+WINDOWS = (1, 2, 3, 5, 8, 10, 15, 20)
+
+_MOST_ROWS = 3000
+_FEWEST_ROWS = 30
+_BEST = 3
+_SPEEDS = (0.0, 0.01, 0.03, 0.1, 0.3)
+"""Candidates of v_s, in usual speeds."""
+
+_EXACT = 1e-9
+"""Share of a variance below which what is left over is rounding."""
+
+_RIDGE = 1e-12
+"""Keeps terms apart that are the same in a file, such as two windows over a square wave."""
+
+_DAMPED = range(1, len(WINDOWS) + 1)
+_HELPED = range(len(WINDOWS) + 1, len(WINDOWS) + 1 + len(_SPEEDS))
+_COMBINATIONS = (
+    np.array([(0,), *((k,) for k in _DAMPED)]),
+    np.array([*((0, k) for k in _DAMPED), *((0, k) for k in _HELPED)]),
+    np.array([(0, j, k) for j in _DAMPED for k in _HELPED]),
+)
+"""Terms that are tried together: spring, damper by a window, compensation with a speed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Law:
+    """What the force was computed from.
+
+    Parameters
+    ----------
+    stiffness, damping
+        K [N/m; N·m/rad] and B [N·s/m; N·m·s/rad].
+    window
+        N, samples of the velocity estimate.
+    compensation, compensation_speed
+        F [N; N·m] along the motion, 0 for none; v_s [m/s; rad/s].
+    lag
+        [s] s, from the position in a row to the force in it.
+    unexplained
+        Share of the force's variance that the law leaves over.
+    limited
+        Share of the time for which the force stands at its limit.
+    limit
+        [N; N·m] where it stands then; 0 if it never does.
+    away
+        Share of the time for which there is no force.
+    compensated
+        [N; N·m] the force of F in each row.
+    """
+
+    stiffness: float
+    damping: float
+    window: int
+    compensation: float
+    compensation_speed: float
+    lag: float
+    unexplained: float
+    limited: float
+    limit: float
+    away: float
+    compensated: Array
+
+
+def fit(
+    position: Array, force: Array, row_period: float, loop_period: float, lags: Sequence[float]
+) -> Law | None:
+    """The law of a force in a stretch; None where it does not follow the motion at all."""
+    sides = _at_ends(force)
+    away = np.abs(force) < 0.01 * np.abs(force).max()
+    out = away if away.mean() > 0.05 else np.zeros_like(away)
+    first = int(np.ceil((max(lags) + max(WINDOWS) * loop_period) / row_period)) + 1
+    first = min(first, position.size // 2)
+    rows = np.flatnonzero(~(sides | out))
+    rows = rows[rows >= first]
+    if rows.size < _FEWEST_ROWS or not np.ptp(force[rows]):
+        sides, rows = np.zeros_like(sides), np.arange(first, position.size)
+    if rows.size < _FEWEST_ROWS or not np.ptp(force[rows]):
+        return None
+    rows = rows[:: max(1, rows.size // _MOST_ROWS)]
+    times = np.arange(position.size, dtype=np.float64) * row_period
+    everywhere = np.arange(first, position.size, max(1, (position.size - first) // _MOST_ROWS))
+    ends = float(force.min()), float(force.max())
+    data = _Data(position, times, force, rows, everywhere, loop_period, row_period, ends)
+    tries = [tried for lag in lags for tried in _at_lag(data, lag)]
+    if not tries:
+        return None
+    best = min(tries, key=lambda tried: tried.bic)
+    return Law(
+        stiffness=best.stiffness, damping=best.damping, window=best.window, compensation=best.compensation,
+        compensation_speed=best.speed, lag=best.lag, unexplained=best.left, limited=float(sides.mean()),
+        limit=float(np.abs(force).max()) if sides.any() else 0.0, away=float(away.mean()),
+        compensated=_compensated(best, position, times, loop_period),
+    )  # fmt: skip
+
+
+class _Tried(NamedTuple):
+    """One combination of terms, as fitted."""
+
+    bic: float
+    left: float
+    lag: float
+    stiffness: float
+    damping: float
+    window: int
+    compensation: float
+    speed: float
+
+
+class _Data(NamedTuple):
+    """What is fitted: the rows in which the force is free, and all of them, where it may be cut off."""
+
+    position: Array
+    times: Array
+    force: Array
+    free: NDArray[np.intp]
+    everywhere: NDArray[np.intp]
+    loop_period: float
+    row_period: float
+    ends: tuple[float, float]
+
+
+def _at_lag(data: _Data, lag: float) -> list[_Tried]:
+    """The best combinations of terms with one lag whose signs are those of a law: K > 0, B > 0, F > 0."""
+    y = data.force[data.free]
+    raw = _columns(data, lag, data.free)
+    means = raw.mean(axis=0)
+    table = raw - means
+    scale = np.sqrt((table * table).mean(axis=0))
+    scale[scale == 0] = 1.0
+    table /= scale
+    middle = float(y.mean())
+    gram, answer, size = table.T @ table, table.T @ (y - middle), float(((y - middle) ** 2).sum())
+    fits: list[tuple[float, list[int], Array]] = []
+    for parts in _COMBINATIONS:
+        systems = gram[parts[:, :, None], parts[:, None, :]] + _RIDGE * y.size * np.eye(parts.shape[1])
+        solved = np.linalg.solve(systems, answer[parts][:, :, None])[:, :, 0]
+        explained = (solved * answer[parts]).sum(axis=1)
+        for part, found, gained in zip(parts, solved, explained, strict=True):
+            if (found > 0).all():
+                left = max(size - float(gained), 0.0) / size
+                bic = y.size * np.log(left + _EXACT) + part.size * np.log(y.size)
+                fits.append((bic, list(part), found / scale[part]))
+    fits.sort(key=lambda fit: fit[0])
+    return [
+        _tried(data, lag, part, terms, middle - float(means[part] @ terms)) for _, part, terms in fits[:_BEST]
+    ]
+
+
+def _columns(data: _Data, lag: float, rows: NDArray[np.intp]) -> Array:
+    """x, v by each window, and −tanh(v/v_s) of the last move by each speed."""
+    here = data.times[rows] - lag
+
+    def at(t: Array) -> Array:
+        return np.interp(t, data.times, data.position)
+
+    x = at(here)
+    columns = [x]
+    columns += [(x - at(here - n * data.loop_period)) / (n * data.loop_period) for n in WINDOWS]
+    columns += [-_bent(columns[1], speed) for speed in _speeds(data.position, data.row_period)]
+    return np.stack(columns, axis=1)
+
+
+def _tried(data: _Data, lag: float, part: list[int], terms: Array, offset: float) -> _Tried:
+    """One combination, judged in all rows: the force is cut off where the file's own ends."""
+    y = data.force[data.everywhere]
+    model = np.clip(_columns(data, lag, data.everywhere)[:, part] @ terms + offset, *data.ends)
+    left = float(((y - model) ** 2).mean() / (np.var(y) or 1.0))
+    named = dict(zip(part, terms, strict=True))
+    damped = [k for k in part if k in _DAMPED]
+    helped = [k for k in part if k in _HELPED]
+    return _Tried(
+        bic=y.size * np.log(left + _EXACT) + (len(part) + 2) * np.log(y.size),
+        left=left,
+        lag=lag,
+        stiffness=float(named.get(0, 0.0)),
+        damping=float(named[damped[0]]) if damped else 0.0,
+        window=WINDOWS[damped[0] - 1] if damped else 1,
+        compensation=float(named[helped[0]]) if helped else 0.0,
+        speed=_speeds(data.position, data.row_period)[helped[0] - _HELPED.start] if helped else 0.0,
+    )
+
+
+def _bent(speed: Array, least: float) -> Array:
+    bent: Array = np.tanh(speed / least) if least > 0 else np.sign(speed)
+    return bent
+
+
+def _compensated(best: _Tried, position: Array, times: Array, loop_period: float) -> Array:
+    before = np.interp(times - best.lag - loop_period, times, position)
+    move = (np.interp(times - best.lag, times, position) - before) / loop_period
+    force: Array = -best.compensation * _bent(move, best.speed)
+    return force
+
+
+def _at_ends(force: Array) -> Rows:
+    """Rows where the force stands still at its largest: exactly, or in noise for more of the time than a
+    sine.
+    """
+    size = np.abs(force)
+    top = float(np.percentile(size, 99.5))
+    exact = _beside(size >= 0.9995 * size.max())
+    if exact.sum() >= 6:
+        return exact
+    noisy = size >= 0.95 * top
+    return np.asarray(noisy if noisy.mean() > 0.35 else np.zeros_like(noisy))
+
+
+def _beside(at: Rows) -> Rows:
+    """Those that have a neighbour."""
+    beside = np.zeros_like(at)
+    beside[1:] |= at[:-1]
+    beside[:-1] |= at[1:]
+    both: Rows = at & beside
+    return both
+
+
+def _speeds(position: Array, period: float) -> list[float]:
+    usual = float(np.std(np.diff(position))) / period
+    return [usual * share for share in _SPEEDS]

@@ -1,0 +1,107 @@
+"""The picture of a diagnosis: some cycles, the spectrum, where the energy comes from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from zwidth.errors import InputError
+from zwidth.plots.files import save_figure
+from zwidth.plots.style import BLUE, GREY, LOOK, ORANGE, RED, heading, label, new_figure, page_heading, scale
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from zwidth.diagnosis.result import Diagnosis
+
+_CYCLES = 8
+"""That are drawn as they went."""
+
+
+def save_diagnosis(found: Diagnosis, path: str | Path, overwrite: bool = False) -> None:
+    """Write `diagnosis_figure` to a file; its ending, png, svg or pdf, says how.
+
+    Raises
+    ------
+    InputError
+        If the ending is another one, the file exists or cannot be written, or nothing vibrates.
+    """
+    save_figure(lambda: diagnosis_figure(found), path, overwrite)
+
+
+@rc_context(LOOK)
+def diagnosis_figure(found: Diagnosis) -> Figure:
+    """Position and force over some cycles; the spectrum beside the energy of a cycle, term by term.
+
+    Raises
+    ------
+    InputError
+        If nothing vibrates: there is nothing to draw.
+    """
+    if found.seen is None:
+        raise InputError("nothing vibrates in this recording, so there is no picture of a vibration")
+    figure = new_figure(9.0, 6.6)
+    grid = figure.add_gridspec(2, 2, height_ratios=(1.1, 1.0))
+    _cycles(figure.add_subplot(grid[0, :]), found)
+    _spectrum(figure.add_subplot(grid[1, 0]), found)
+    _energy(figure.add_subplot(grid[1, 1]), found)
+    page_heading(figure, found.claim)
+    return figure
+
+
+def _cycles(axes: Axes, found: Diagnosis) -> None:
+    assert found.seen is not None
+    recording, vibration = found.recording, found.seen.vibration
+    rows = max(8, int(_CYCLES / vibration.frequency / recording.period))
+    part = slice(max(vibration.rows.start, vibration.rows.stop - rows), vibration.rows.stop)
+    t = recording.time[part]
+    length, force = ("rad", "N*m") if found.seen.rotary else ("m", "N")
+    factor, unit = scale(recording.position[part] - recording.position[part].mean(), length)
+    axes.plot(t, factor * recording.position[part], color=BLUE, label="position")
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel(label("position", recording.motion, unit=unit), color=BLUE)
+    beside = axes.twinx()
+    for values, colour, name in (
+        (recording.commanded, GREY, "commanded"),
+        (recording.applied, ORANGE, "of the motor"),
+    ):
+        if values is not None:
+            beside.plot(t, values[part], color=colour, drawstyle="steps-post", label=name)
+    beside.set_ylabel(label("force", recording.motion, unit=force))
+    lines = [*axes.get_lines(), *beside.get_lines()]
+    axes.legend(lines, [str(line.get_label()) for line in lines], loc="upper right", fontsize=8)
+
+
+def _spectrum(axes: Axes, found: Diagnosis) -> None:
+    assert found.seen is not None
+    recording, vibration = found.recording, found.seen.vibration
+    x = recording.position[vibration.rows]
+    y = (x - np.polyval(np.polyfit(np.arange(x.size), x, 1), np.arange(x.size))) * np.hanning(x.size)
+    size = 2 * np.abs(np.fft.rfft(y)) / np.hanning(x.size).sum()
+    frequencies = np.fft.rfftfreq(x.size, recording.period)
+    factor, unit = scale(size, "rad" if found.seen.rotary else "m")
+    axes.semilogy(frequencies[1:], factor * size[1:] + 1e-12, color=BLUE)
+    axes.axvline(vibration.frequency, color=RED, linewidth=0.8)
+    axes.set_xlim(0, min(frequencies[-1], 6 * vibration.frequency))
+    axes.set_ylim(bottom=factor * size.max() * 1e-4)
+    axes.set_xlabel("frequency [Hz]")
+    axes.set_ylabel(f"amplitude [{unit}]")
+    heading(axes, f"{vibration.frequency:.4g} Hz")
+
+
+def _energy(axes: Axes, found: Diagnosis) -> None:
+    assert found.seen is not None
+    terms = {name: work for name, work in found.seen.supplied.items() if work}
+    if found.seen.lost is not None:
+        terms["friction"] = -found.seen.lost
+    factor, unit = scale(terms.values(), "J")
+    names = list(terms)[::-1]
+    colours = [RED if terms[name] > 0 else GREY for name in names]
+    axes.barh(names, [factor * terms[name] for name in names], color=colours)
+    axes.axvline(0, color="black", linewidth=0.8)
+    axes.set_xlabel(f"energy in a cycle [{unit}]")
+    heading(axes, "into the motion (red), out of it (grey)")
