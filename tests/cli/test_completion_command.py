@@ -79,6 +79,16 @@ def test_another_shell_is_refused_with_those_there_are(capsys: pytest.CaptureFix
     assert "bash, zsh, fish" in capsys.readouterr().err
 
 
+def test_without_a_shell_the_line_for_that_of_the_user_is_said(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As the environment names it; bash where it names one of which there is none."""
+    for path, shell in (("/usr/bin/fish", "fish"), ("/bin/tcsh", "bash")):
+        monkeypatch.setenv("SHELL", path)
+        assert main(["completion"]) == 2
+        assert f"zwidth completion {shell}" in " ".join(capsys.readouterr().err.split())
+
+
 def test_the_library_is_imported_at_the_tab_key_only() -> None:
     """A command that is run does not wait for it."""
     code = (

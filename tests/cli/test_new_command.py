@@ -238,7 +238,7 @@ def test_an_encoder_as_people_say_it(answer: str, degrees: float) -> None:
     assert float(load_device(["my-device.toml"], {}).resolution) == pytest.approx(math.radians(degrees))
 
 
-@pytest.mark.parametrize("word", ["turn", "wheel", "yes", "It turns", "rotary"])
+@pytest.mark.parametrize("word", ["turn", "wheel", "yes", "It turns", "a steering wheel"])
 def test_that_it_turns_may_be_said_in_other_words(word: str) -> None:
     """The question names a wheel; "wheel" is an answer."""
     assert main(["new", "device", *options({**WHEEL, "--motion": word}), "--no-questions"]) == 0
@@ -282,6 +282,19 @@ def test_what_the_motors_data_sheet_says_is_not_lost_in_silence(
     assert main(["new", "device", *current, "--no-questions", "--force"]) == 0
     assert "0.2 A of the motor says it with --torque-constant" in Path("my-device.toml").read_text(
         encoding="utf-8"
+    )
+
+
+def test_a_gear_as_it_is_named(refused: Answered) -> None:
+    """5:1 is five turns of the motor in one of the handle; of 1:5 nobody knows which way it is meant."""
+    known = {"--motion": "rotary", "--rate": "1 kHz", "--damping": "0.02", "--motor-friction": "5 mNm"}
+    assert main(["new", "device", *options({**known, "--gear-ratio": "5:1"}), "--no-questions"]) == 0
+    assert float(load_device(["my-device.toml"], {}).coulomb_friction or 0) == pytest.approx(0.025)
+    assert "turns more" in refused(
+        "device", *options({**known, "--gear-ratio": "1:5"}), "--force", "--no-questions"
+    )
+    assert "plain number" in refused(
+        "device", *options({**known, "--gear-ratio": "5:one"}), "--force", "--no-questions"
     )
 
 

@@ -10,6 +10,9 @@ import urllib.request
 from urllib.parse import urlsplit
 
 import pytest
+from bokeh.client import pull_session
+from bokeh.models import ImportedStyleSheet
+from bokeh.util.token import generate_session_id
 
 from zwidth.errors import InputError
 from zwidth.explorer import access
@@ -56,6 +59,17 @@ def session_of(address: str, **headers: str) -> str:
     request = urllib.request.Request(address, headers=headers)
     with urllib.request.urlopen(request, timeout=60) as answer:
         return re.findall(r'"token": ?"([\w.=-]+)"', answer.read().decode())[0]
+
+
+def test_nothing_is_asked_from_abroad_where_a_page_connects_late() -> None:
+    """Its document was forgotten: of the one that is made anew every style is of this server."""
+    with (
+        serve_explorer() as page,
+        pull_session(url=page.address, session_id=generate_session_id()) as session,
+    ):
+        styles = {style.url for style in session.document.select({"type": ImportedStyleSheet})}
+    assert styles
+    assert not [url for url in styles if "://" in url]
 
 
 def test_only_pages_of_this_server_get_a_websocket() -> None:

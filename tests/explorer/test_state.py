@@ -103,7 +103,7 @@ def test_whatever_the_address_says_it_is_a_loop_or_a_message(pairs: list[tuple[s
 def test_whatever_a_file_says_it_is_a_loop_or_a_message(text: str) -> None:
     """The same of a file."""
     try:
-        from_file(text, "file.toml")
+        from_file(text, "file.toml", starts.first())
     except InputError:
         return
 
@@ -111,15 +111,33 @@ def test_whatever_a_file_says_it_is_a_loop_or_a_message(text: str) -> None:
 def test_a_file_is_a_loop_or_a_device_and_not_too_large() -> None:
     """With an environment it is the loop, without it the device alone, named after the file."""
     device = '[device]\ndamping = 0.1\nrate = "1 kHz"\n'
-    state, alone, begun = from_file(device, "mine.toml")
+    shown = starts.first()
+    state, alone, begun = from_file(device, "mine.toml", shown)
     assert not begun
     assert state is None
     assert alone.name == "mine"
-    state = from_file(f'{device}[environment]\ntype = "wall"\nstiffness = 300\n', "mine.toml").state
+    state = from_file(f'{device}[environment]\ntype = "wall"\nstiffness = 300\n', "mine.toml", shown).state
     assert state is not None
     assert state.loop().environment == zw.Wall(300)
     with pytest.raises(InputError, match="64 kB"):
-        from_file("#" * (LARGEST_FILE + 1), "mine.toml")
+        from_file("#" * (LARGEST_FILE + 1), "mine.toml", shown)
+
+
+def test_an_environment_alone_is_put_on_the_device_that_is_shown() -> None:
+    """Whose marks stay; one of another kind of motion is refused, and so is a file with neither."""
+    own = from_file('[device]\nmotion = "rotary"\ndamping = "0.02 N*m*s/rad"\n', "wheel.toml", starts.first())
+    wheel = starts.with_device(starts.first(), own.device, own.begun)
+    text = '[environment]\ntype = "wall"\nstiffness = "12 N*m/rad"\n[[law]]\ntype = "passivity-controller"\n'
+    state = from_file(text, "stop.toml", wheel).state
+    assert state is not None
+    assert state.device == wheel.device
+    assert state.begun == wheel.begun == {"rate": "1 kHz"}
+    assert [law["type"] for law in state.laws] == ["passivity-controller"]
+    assert "wall, 12 N·m/rad" in state.loop().environment.describe("rotary")
+    with pytest.raises(InputError, match="stiffness"):
+        from_file(text, "stop.toml", starts.first())
+    with pytest.raises(InputError, match="neither"):
+        from_file("", "stop.toml", wheel)
 
 
 def test_what_a_specification_cannot_say_is_refused() -> None:
@@ -144,7 +162,7 @@ def test_another_device_keeps_the_wall_and_another_kind_of_motion_gets_its_own()
 
 def test_what_a_file_does_not_give_is_begun_with_and_marked_until_it_is_set() -> None:
     """A wheel without damping and rate begins with both; a mark is in the address, and goes with a value."""
-    given = from_file('[device]\nmotion = "rotary"\ninertia = "0.006 kg*m^2"\n', "wheel.toml")
+    given = from_file('[device]\nmotion = "rotary"\ninertia = "0.006 kg*m^2"\n', "wheel.toml", starts.first())
     assert given.begun == {"damping": "0.001 N*m*s/rad", "rate": "1 kHz"}
     state = starts.with_device(starts.first(), given.device, given.begun)
     assert read_again(state).begun == given.begun

@@ -55,6 +55,21 @@ def slow(value: Path) -> int:
     return 7
 
 
+def test_a_process_that_does_not_start_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a script that starts itself again; the next job is answered too."""
+
+    def fails() -> None:
+        raise EOFError
+
+    monkeypatch.setattr("zwidth.explorer.working._Process", fails)
+    answers: Queue[Answer] = Queue()
+    started = Workers(1)
+    for number in (1, 2):
+        started.submit(number, "double", doubled, (3,), answers.put)
+    assert all("__main__" in answers.get(timeout=60).message for _ in range(2))
+    started.close()
+
+
 @pytest.fixture
 def workers() -> Iterator[Workers]:
     """One process; a job may take three seconds, so that the wait is short."""

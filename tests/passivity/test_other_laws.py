@@ -19,13 +19,26 @@ TINY = Fraction(1, 10**9)
 STEEP = zw.NonlinearSpring(["-0.013", "0.002", "0.0071", "0.02"], ["-3.1", "-0.7", "2.9", "1.3"])
 
 
-def device_for(spring, more=Fraction(0), delay=0, step="0.0003"):
-    """A device that has exactly what the slopes ask for, or so much more or less of both."""
+def device_for(spring, delay=0, step="0.0003"):
+    """A device that has what the slopes ask for: exactly where that is a fraction, else a billionth more."""
     bare = zw.Device(damping=0, coulomb_friction=0, resolution=step, sample_period="0.0013", delay=delay)
     need = spring_need(bare, spring)
-    return bare.replace(
-        damping=need.damping * (1 + more), coulomb_friction=need.coulomb_friction * (1 + more)
-    )
+    b = Fraction(need.damping).limit_denominator(10**15) * (1 + TINY) if need.within else need.held
+    return bare.replace(damping=b, coulomb_friction=need.coulomb_friction)
+
+
+STEEPEST, PERIOD = Fraction("3.6") / Fraction("0.0051"), Fraction("0.0013")
+"""The steepest part of STEEP, which rises, and the sample period."""
+
+
+def test_a_delay_of_part_of_a_sample_whose_root_is_a_fraction():
+    """With L = s and 3/8 of a sample √((1/2 + 3/8)² + 15/64) = 1: b = (15/16) s T, and at its limit."""
+    device = device_for(STEEP, delay=PERIOD * 3 / 8).replace(damping=STEEPEST * PERIOD * 15 / 16)
+    verdict = zw.check(device, STEEP)
+    assert (verdict.outcome, verdict.at_limit) == ("passive", True)
+    assert spring_need(device, STEEP).damping == pytest.approx(float(device.damping), rel=1e-12)
+    less = zw.check(device.replace(damping=device.exact("damping") * (1 - TINY)), STEEP)
+    assert less.outcome != "passive"
 
 
 @pytest.mark.parametrize("delay", [0, "0.0013", "0.0039"])
@@ -57,15 +70,23 @@ def test_what_the_slopes_ask_for():
 
 
 def energy_out(device, spring, x):
-    """−Σ f Δx − f_c Σ|Δx| − (b/T) Σ Δx² of many motions at once, begun at rest; plain arithmetic."""
-    step, period = float(device.resolution), float(device.sample_period)
-    samples = round(float(device.delay) / period)
+    """−∫ (f + b v) dx − f_c ∫|dx| of many motions at once, begun at rest; plain arithmetic.
+
+    Within a sample the force changes from g to h; the hand is where that costs it least but for friction.
+    """
+    step, period, b = float(device.resolution), float(device.sample_period), float(device.damping)
+    samples, part = divmod(device.exact("delay") / device.exact("sample_period"), 1)
+    part = float(part)
     read = np.floor(x / step + 1e-9) * step if step else x
     force = np.interp(read, [float(p) for p in spring.positions], [float(f) for f in spring.forces])
-    force = np.concatenate([np.repeat(force[:, :1], samples, axis=1), force], axis=1)[:, : x.shape[1]]
+    force = np.concatenate([np.repeat(force[:, :1], samples + 1, axis=1), force], axis=1)
+    before, after = force[:, : x.shape[1] - 1], force[:, 1 : x.shape[1]]
     move = np.diff(x, axis=1)
-    friction = float(device.coulomb_friction) * abs(move) + float(device.damping) / period * move**2
-    return -(force[:, :-1] * move + friction).sum(axis=1)
+    first = part * move - period / (2 * b) * part * (1 - part) * (before - after)
+    second = move - first
+    dry = float(device.coulomb_friction) * (abs(first) + abs(second))
+    viscous = b / period * ((first**2 / part if part else 0) + second**2 / (1 - part))
+    return -(before * first + after * second + dry + viscous).sum(axis=1)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -77,7 +98,7 @@ def test_no_motion_gains_from_a_spring_that_is_proved(seed):
     forces[0], forces[-1] = -abs(forces[0]), abs(forces[-1])
     spring = zw.NonlinearSpring([f"{x:.4f}" for x in places], [f"{f:.4f}" for f in forces])
     step = random.choice(["0", "0.01", "0.3"])
-    device = device_for(spring, delay=random.choice([0, "0.0013"]), step=step)
+    device = device_for(spring, delay=random.choice([0, "0.0013", "0.0004", "0.0022"]), step=step)
     assert zw.check(device, spring).outcome == "passive"
     starts = rng.uniform(-6, 8, (400, 1))
     moves = rng.normal(size=(400, 60)) * 10 ** rng.uniform(-3, 1, (400, 1))

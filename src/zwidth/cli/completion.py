@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Callable, Collection, Mapping, Sequence
+from pathlib import Path
 from types import MappingProxyType
 
 from zwidth.cli.output import quiet_pipe
@@ -20,11 +21,15 @@ SHELLS = ("bash", "zsh", "fish")
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth completion`."""
-    parser.add_argument("shell", metavar="SHELL", help=", ".join(SHELLS))
+    parser.add_argument("shell", metavar="SHELL", nargs="?", help=", ".join(SHELLS))
 
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth completion`: 0."""
+    if arguments.shell is None:
+        yours = Path(os.environ.get("SHELL", "")).name
+        shell = yours if yours in SHELLS else SHELLS[0]
+        raise InputError(f"for which shell, {', '.join(SHELLS)}? For {shell}: zwidth completion {shell}")
     if arguments.shell not in SHELLS:
         raise InputError(
             f"there is no completion for {quoted(arguments.shell)}; {suggestion(arguments.shell, SHELLS)}"

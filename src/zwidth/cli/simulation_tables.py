@@ -194,7 +194,9 @@ def build_hand(table: Table, motion: str, option: str = OPERATOR) -> Operator:
     if "type" not in table.values:
         kinds = "; ".join(f"{name}, {IN_A_WORD[name]}" for name in (*OPERATORS, RECORD, WITNESS))
         flag = f"--{option.replace('_', '-')}"
-        raise InputError(f"no hand is given: begin with {flag} typical, or take one of: {kinds}")
+        raise InputError(
+            f"no hand is given: begin with {flag} typical --duration '2 s', or take one of: {kinds}"
+        )
     kind = table.text("type")
     if kind == RECORD:
         return _record(table)

@@ -296,7 +296,10 @@ def _read(key: str, value: Given | None, motion: str) -> Exact | Interval | None
     own = parameters_of(Device)[key]
     if value is None:
         if own.required:
-            raise InputError(f"{key} [{own.unit_for(motion)}] is needed and was not given")
+            raise InputError(
+                f"{key} [{own.unit_for(motion)}] is needed and was not given: measure it, or give a guess "
+                "and see what would follow"
+            )
         return None
     number: Exact | Interval = read_number(
         value, own.quantity, key, uncertain=True, bound=own.bound, why=own.why, motion=motion

@@ -20,6 +20,7 @@ from bokeh.server.util import bind_sockets
 from panel import Template
 from panel import state as panel_state
 from panel.io.application import build_applications
+from panel.io.resources import LOCAL_DIST
 from tornado.httpserver import HTTPServer
 from tornado.ioloop import IOLoop
 
@@ -142,6 +143,8 @@ class _Server:
         if self._open >= self._most:
             return full_page(self._most)
         document = panel_state.curdoc
+        # a page that connects too late has a second document, of which Panel forgets whence its styles come
+        document.template_variables["dist_url"] = LOCAL_DIST
         self._open += 1
         state, message = self._asked(document)
         session = Session(state, self._workers, partial(_soon, document), message)

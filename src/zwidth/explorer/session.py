@@ -214,7 +214,7 @@ class Session:
     def _upload(self, text: str, name: str) -> None:
         """The loop of a file, or its device; of one that cannot be used it is said what is still shown."""
         try:
-            given = from_file(text, name)
+            given = from_file(text, name, self.state)
             state = given.state
             if state is None:
                 state = starts.with_device(self.state, given.device, given.begun)

@@ -259,8 +259,10 @@ class Given(NamedTuple):
     begun: Mapping[str, str]
 
 
-def from_file(text: str, name: str) -> Given:
-    """The loop of a specification, or its device alone; what the device lacks begins with a usual number.
+def from_file(text: str, name: str, shown: State) -> Given:
+    """The loop of a specification, or its device or its environment alone.
+
+    What the device lacks begins with a usual number; an environment alone is put on the device that is shown.
 
     Parameters
     ----------
@@ -268,6 +270,8 @@ def from_file(text: str, name: str) -> Given:
         What is in the file.
     name
         Of the file, for messages.
+    shown
+        The loop before.
 
     Raises
     ------
@@ -279,8 +283,10 @@ def from_file(text: str, name: str) -> Given:
             f"{quoted(name)} is larger than {LARGEST_FILE // 1024} kB; a specification is a page of text"
         )
     found = tables_of(text, plain(name), WITH_LAWS)
+    if not found.keys() & {"device", "environment"}:
+        raise InputError(f"{quoted(name)} has neither a [device] nor an [environment] table")
     if "device" not in found:
-        raise InputError(f"{quoted(name)} has no [device] table")
+        return _rendered(found, shown)
     if not {"name", "catalogue"} & set(found["device"].values):
         found["device"].values["name"] = plain(name).removesuffix(".toml")
     begun = completed(found["device"])
@@ -291,6 +297,15 @@ def from_file(text: str, name: str) -> Given:
     environment = build_environment(found["environment"], device.motion)
     state = State.of(device, with_laws(environment, row, None, device.motion))
     return Given(state.with_begun(begun), device, begun)
+
+
+def _rendered(found: Mapping[str, Table], shown: State) -> Given:
+    """An environment and its laws on the device that is shown."""
+    device = shown.loop().device
+    environment = build_environment(found["environment"], device.motion)
+    made = State.of(device, with_laws(environment, found.get("law"), None, device.motion))
+    state = replace(shown, environment=made.environment, laws=made.laws)
+    return Given(state, device, shown.begun)
 
 
 def catalogued(name: str) -> Device:

@@ -26,6 +26,11 @@ _STEP = 0.05
 _PREPARING = 5
 """So many times as long as any job may what comes first take, and whatever waits for it."""
 
+_NO_PROCESS = (
+    "what takes longer could not be computed: no process could be started beside this one; a script starts "
+    'it under `if __name__ == "__main__":`'
+)
+
 _NOBODY = 0
 """Asks for what comes first: no page has this number."""
 
@@ -127,7 +132,12 @@ class Workers:
     def _work(self) -> None:
         process: _Process | None = None
         while (job := self._next()) is not None:
-            process = process or _Process()
+            try:
+                process = process or _Process()
+            except (EOFError, OSError, RuntimeError):
+                if self._is_wanted(job):
+                    job.then(Answer(None, _NO_PROCESS))
+                continue
             answer = self._answer(process, job)
             if answer is None or not process.alive:
                 process.end()

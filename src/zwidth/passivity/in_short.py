@@ -16,14 +16,14 @@ _CONTACT: dict[Contact, str] = {
     "made and broken": "contact made and broken",
     "kept": "contact kept: making and breaking it is not covered",
     "both sides": (
-        "a law on both sides of x = 0: what a spring holds where the motion starts may come back and is not "
-        "counted"
+        "a law that acts at every position: what a spring holds where the motion starts may come back and is "
+        "not counted"
     ),
 }
 _OF_A_MOTION: dict[Contact, str] = {
     "made and broken": "the motion makes and breaks contact",
     "kept": "the motion stays inside",
-    "both sides": "a law on both sides of x = 0",
+    "both sides": "a law that acts at every position",
 }
 _LAW: dict[Law, str] = {
     "rounded coefficients": "coefficients of H(z) rounded to doubles",

@@ -99,10 +99,11 @@ def _spring(device: Device, law: Environment, asked: Scope, values: Values) -> V
 
     need = spring_need(device, law)
     b, friction = device.exact("damping"), device.exact("coulomb_friction")
-    needs = [Need("coulomb_friction", float(need.coulomb_friction), float(friction))]
-    if need.damping is not None:
-        needs.insert(0, Need("damping", float(need.damping), float(b)))
-    verdict = Verdict("undecided", asked, device, law, needs=tuple(needs))
+    needs = (
+        Need("damping", need.damping, float(b)),
+        Need("coulomb_friction", float(need.coulomb_friction), float(friction)),
+    )
+    verdict = Verdict("undecided", asked, device, law, needs=needs)
     certificate = certify_spring(device, law)
     covered = certificate.covered()
     if covered is None:
@@ -111,7 +112,7 @@ def _spring(device: Device, law: Environment, asked: Scope, values: Values) -> V
             return replace(verdict, outcome="active", violation=runaway)
         verdict = verdict if need.bounded else replace(verdict, finding="no lowest energy")
         return values(verdict)
-    limited = friction == need.coulomb_friction > 0 or b == need.damping
+    limited = friction == need.coulomb_friction > 0 or need.spare(b) == 0
     return _proved(verdict, certificate, asked, limited)
 
 

@@ -1,6 +1,6 @@
 """What to change of a nonlinear spring's loop, or how far each of its numbers may go, and what binds.
 
-    b ≥ (L/2 + d s) T      f_c ≥ s Δ/2
+    b ≥ (L/2 + d s) T, with a part of a sample somewhat more      f_c ≥ s Δ/2
 
 are enough (`formulas.nonlinear_spring`); the stiffness of such a spring is its steepest slope s, and a softer
 one has all its forces scaled.  Every value given was itself proved passive, all else as it was; that no value
@@ -85,10 +85,8 @@ def _is_enough(at: Callable[[Fraction], Loop], value: Fraction) -> bool:
         need = spring_need(device, spring)
     except (InputError, ZeroDivisionError):
         return False
-    if need.damping is None or not need.bounded:
-        return False
     b, friction = device.exact("damping"), device.exact("coulomb_friction")
-    return b >= need.damping and friction >= need.coulomb_friction
+    return need.bounded and need.spare(b) >= 0 and friction >= need.coulomb_friction
 
 
 def _is_proved(at: Callable[[Fraction], Loop], value: float) -> bool:

@@ -22,14 +22,14 @@ _CONTACT: dict[Contact, str] = {
     "made and broken": "contact made and broken at any instant",
     "kept": "contact is kept: the hand stays inside; making and breaking contact is not covered",
     "both sides": (
-        "the law acts on both sides of x = 0: there is no contact to make or break; "
+        "the law acts at every position: there is no contact to make or break; "
         "what a spring holds where the motion starts may come back and is not counted"
     ),
 }
 _OF_A_MOTION: dict[Contact, str] = {
     "made and broken": "the motion makes and breaks contact",
     "kept": "the motion stays inside: a hand that keeps contact can make it",
-    "both sides": "the law acts on both sides of x = 0: there is no contact to make or break",
+    "both sides": "the law acts at every position: there is no contact to make or break",
 }
 _ALSO = {
     "springs": "the same holds for every spring law of slope 0 to K that is 0 somewhere",

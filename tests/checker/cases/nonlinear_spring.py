@@ -1,10 +1,13 @@
 """A spring through points: b ≥ (L/2 + d s) T and f_c ≥ s Δ/2, L the largest slope and s the largest |slope|.
 
+A delay of a part α of a sample more asks for b ≥ (T/2) (w + √(w² + α (1 − α) s²)), w = L/2 + (d + α) s.
+
 Beyond an end it pulls on for ever with more than friction holds: a hand takes energy out without end.
 """
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 from . import TINY, accepted, edge, put, refused, without
@@ -91,16 +94,27 @@ CASES = [
         put(RISING, {"law.points_m_N": [[-2, "0.001"], [0, 2], [1, 6], [3, 0]]}),
         "pulls away for ever",
     ),
-    refused(
-        "part of a sample",
-        put(RISING, {"loop.delay_s": "1/4", "loop.damping_N_s_per_m": 99}),
-        "whole samples",
+    *(  # w² + α (1 − α) s² is 16, 4 and 36
+        case
+        for name, told, delay, damping in (
+            ("3/8 of a sample", RISING, "3/16", "15/8"),
+            ("an eighth of a sample", FALLING, "1/16", "7/8"),
+            ("a sample and a part", FALLING, "67/112", "165/56"),
+        )
+        for late in (put(told, {"loop.delay_s": delay}),)
+        for case in edge(
+            name,
+            put(late, {"loop.damping_N_s_per_m": damping}),
+            put(late, {"loop.damping_N_s_per_m": Fraction(damping) - TINY}),
+            DAMPING,
+        )
     ),
+    accepted("level, with a part of a sample", put(ONLY_FALLING, {"loop.delay_s": "1/4"})),
     accepted("2000 samples late", put(RISING, {"loop.delay_s": 1000, "loop.damping_N_s_per_m": 4001})),
     refused(
         "2001 samples late",
         put(RISING, {"loop.delay_s": "2001/2", "loop.damping_N_s_per_m": 9999}),
-        "whole samples",
+        "more than 2000 samples",
     ),
     *(
         refused(

@@ -11,6 +11,7 @@ import zwidth as zw
 from zwidth import checker
 from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import available_storage
+from zwidth.passivity.storage.program import program_of
 
 BOUNDS = {"penetration": "0.0008", "speed": "0.8"}
 
@@ -115,3 +116,13 @@ def test_not_on_a_graphics_card():
     """Said at once."""
     with pytest.raises(zw.InputError, match="processor"):
         available_storage(device("0.3", "0.02", "0.5"), zw.Wall(300), **BOUNDS, backend="gpu")
+
+
+def test_a_delay_of_very_many_samples_is_too_large_at_once() -> None:
+    """A search that raises the rate comes there: the power of the number of moves is not worked out."""
+    device = zw.Device(
+        damping="0.02", coulomb_friction="0.05", resolution="1e-4", rate="1e15 Hz", delay="0.3 ms"
+    )
+    program = program_of(device, zw.NonlinearSpring(["0.35", "0.6"], [0, 5]))
+    assert program.too_large is not None
+    assert program.refute(4) is None

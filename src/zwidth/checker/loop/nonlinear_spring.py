@@ -1,12 +1,17 @@
 """A spring given by points, its force held and read in counts: what its slopes ask of the device.
 
-    b ≥ (L/2 + d s) T      f_c ≥ s Δ/2
+    b (b − w T) ≥ α (1 − α) s² T²/4,   w = L/2 + (d + α) s,   b ≥ 0      f_c ≥ s Δ/2
 
-L ≥ 0 the largest slope, s the largest |slope|, d whole samples of delay; beyond its ends the spring does
-not pull away, so that its potential Φ has a lowest value.  With x̃ = x − Δ/2 the storage
-V = Φ(x̃) + (s/2) Σ_{i<d} (d − i) Δx²_{n−i} pays for every move:
+L ≥ 0 the largest slope, s the largest |slope|, a delay of d whole samples and a part α of one; beyond its
+ends the spring does not pull away, so that its potential Φ has a lowest value.  In a sample the hand moves by
+u against g = φ(q_{n−d−1}) for α T, then by D − u against h = φ(q_{n−d}).  Coulomb friction pays for both
+counts, and whatever u is, with x̃ = x − Δ/2 and the forces there,
 
-    φ(q_{n−d}) D ≥ φ(x̃_n) D − (s Δ/2 + s Σ|Δx|) |D|,     φ(x̃) D ≥ Φ(x̃ + D) − Φ(x̃) − (L/2) D²
+    g u + h (D − u) + (b/T) (u²/α + (D − u)²/(1 − α))
+        ≥ (α g + (1 − α) h) D + (b/T) D² − α (1 − α) T (g − h)²/(4 b)
+    φ(x̃_{n−i}) D ≥ φ(x̃_n) D − s Σ|Δx| |D|,     φ(x̃) D ≥ Φ(x̃ + D) − Φ(x̃) − (L/2) D²
+
+and a storage Φ(x̃) + weights · Δx²_{n−i} passes on what a move owes for earlier ones.
 """
 
 from __future__ import annotations
@@ -31,14 +36,16 @@ NONLINEAR_SPRING = document(
 def nonlinear_spring(told: Read) -> str:
     """Say what was proved."""
     loop, points = told.loop, increasing(told.law.points, _POSITIONS)
-    period, delay = loop.sample_period, loop.delay
-    if delay % period or delay // period > MOST_DELAY:
-        raise Invalid(f"a nonlinear spring is proved for delays of whole samples, at most {MOST_DELAY}")
+    period, b, late = loop.sample_period, loop.damping, loop.delay / loop.sample_period
+    if late > MOST_DELAY:
+        raise Invalid(f"the delay is more than {MOST_DELAY} samples")
     if points[0][1] > 0 or points[-1][1] < 0:
         raise Invalid("beyond its ends the spring pulls away for ever: its potential has no lowest value")
     slopes = [(f1 - f0) / (x1 - x0) for (x0, f0), (x1, f1) in pairwise(points)]
     largest, steepest = max(*slopes, Fraction(0)), max(map(abs, slopes))
-    if loop.damping < (largest / 2 + delay // period * steepest) * period:
+    part = late % 1
+    held = (largest / 2 + late * steepest) * period
+    if b < held or 4 * b * (b - held) < part * (1 - part) * (steepest * period) ** 2:
         raise Invalid("the damping is below what the hold and the delay of this spring need")
     if 2 * loop.coulomb_friction < steepest * loop.resolution:
         raise Invalid("the Coulomb friction is below half a count of the steepest part of this spring")

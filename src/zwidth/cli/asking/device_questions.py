@@ -28,18 +28,18 @@ def motion_of(answer: str) -> str:
     InputError
         If it is neither.
     """
-    word = answer.lower().removeprefix("it ")
-    found = next((motion for motion, words in _MOTIONS.items() if word in words), None)
-    if found is None:
+    said = set(answer.lower().split())
+    found = [motion for motion, words in _MOTIONS.items() if said & words]
+    if len(found) != 1:
         raise InputError(f'it turns or slides: write rotary or linear, got "{answer[:40]}"')
-    return found
+    return found[0]
 
 
 _MOTIONS = {
-    "rotary": ("rotary", "turn", "turns", "rotate", "rotates", "rotation", "wheel", "knob", "yes", "y"),
-    "linear": ("linear", "slide", "slides", "slider", "no", "n"),
+    "rotary": {"rotary", "turn", "turns", "rotate", "rotates", "rotation", "wheel", "knob", "yes", "y"},
+    "linear": {"linear", "slide", "slides", "slider", "no", "n"},
 }
-"""Answers to whether the handle turns."""
+"""Words of an answer to whether the handle turns."""
 
 
 MOTION = Question(

@@ -49,18 +49,16 @@ def described(ask: Asker, path: Path) -> Written:
         print_text(f"{_DEVICE} is {motion} at the handle, so this is too; --motion says otherwise.")
     same = device if device is not None and device.motion == motion else None
     text = _FILES[kind](_Asked(ask, motion, same))
-    return Written(text, _next(kind, path))
+    return Written(text, _next(path))
 
 
-def _next(kind: str, path: Path) -> list[str]:
+def _next(path: Path) -> list[str]:
     """What to type now, with a guess of what the device lacks."""
     missing = lacking(_DEVICE)
     guess = f" {guessed(missing)}" if missing else ""
-    command = "check" if kind == "wall" else "limit"
-    more = "" if kind == "wall" else " --parameter rate"
     first = [] if missing is not None else ["the device first:", "  zwidth new device"]
     head = f"next, with a guess of what {_DEVICE} lacks:" if missing else "next:"
-    return [*first, head, f"  zwidth {command} {_DEVICE} {shlex.quote(str(path))}{guess}{more}"]
+    return [*first, head, f"  zwidth check {_DEVICE} {shlex.quote(str(path))}{guess}"]
 
 
 class _Asked(NamedTuple):

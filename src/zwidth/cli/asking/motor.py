@@ -39,6 +39,8 @@ class _Read(NamedTuple):
 
 def _read(key: str, answer: str) -> _Read:
     units = _UNITS.get(key, _CURRENT_OR_TORQUE)
+    if key == "gear_ratio" and ":" in answer:
+        return _Read(_turns(answer), "1")
     if not any(map(str.isalpha, answer)) and len(units) > 1:
         raise InputError(f"{key} needs its unit, {' or '.join(units)}, got {answer[:40]}")
     for unit in units:
@@ -51,6 +53,18 @@ def _read(key: str, answer: str) -> _Read:
     if number.fraction <= 0:
         raise InputError(f"{key} must be > 0, got {number:g}; leave it out if unknown")
     return _Read(number.fraction, unit)
+
+
+def _turns(answer: str) -> Fraction:
+    """Of the motor in one of the handle, of a gear as it is named: 5:1."""
+    motor, _, handle = answer.partition(":")
+    sides = [parse_number(one.strip(), "1", "gear_ratio").fraction for one in (motor, handle)]
+    if not sides[0] >= sides[1] > 0:
+        raise InputError(
+            f'which of the two turns more in "{answer[:40]}"? write 5 where the motor turns five times '
+            "in one turn of the handle, 0.2 where the handle does in one of the motor"
+        )
+    return sides[0] / sides[1]
 
 
 def _question(key: str, ask: str, why: str, unknown: str) -> Question:
@@ -84,7 +98,7 @@ CONSTANT = _question(
 )
 RATIO = _question(
     "gear_ratio",
-    "Turns of the motor in one turn of the handle? Enter for 1, driven directly",
+    "Turns of the motor in one turn of the handle? such as 5 or 5:1; Enter for 1, driven directly",
     "Torque and friction at the handle are so many times those of the motor.",
     "Not known, so nothing is taken from the motor's data sheet.",
 )._replace(needed=True, enter="1")

@@ -1,9 +1,10 @@
 """A spring given by points, proved from its slopes: detents, bump stops, magnets.
 
-    b ≥ (L/2 + d s) T      f_c ≥ s Δ/2
+    b ≥ (T/2) (w + √(w² + α (1 − α) s²)),   w = L/2 + (d + α) s      f_c ≥ s Δ/2
 
-L ≥ 0 is the largest slope, s the largest |slope|, d whole samples of delay.  Negative slopes cost nothing
-without delay, as long as the potential has a lowest value: beyond its ends the spring must not pull away.
+L ≥ 0 is the largest slope, s the largest |slope|, the delay d whole samples and a part α of one; of whole
+samples it is b ≥ w T.  Negative slopes cost nothing without delay, as long as the potential has a lowest
+value: beyond its ends the spring must not pull away.
 The proof is in the documentation; where its steepest part is long enough, both conditions are necessary.
 """
 
@@ -12,6 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from math import sqrt
 from typing import Any
 
 from zwidth.device import Device
@@ -34,8 +36,10 @@ class SpringNeed:
         L ≥ 0, what the hold multiplies [N/m; N·m/rad].
     steepest
         s, the largest |slope|, what an encoder count multiplies [N/m; N·m/rad].
-    damping
-        b that is enough [N·s/m; N·m·s/rad]; None with a delay of part of a sample.
+    held
+        w T, what hold and delay ask for [N·s/m; N·m·s/rad].
+    within
+        α (1 − α) s² T²/4, what a force that changes within a sample adds [(N·s/m)²; (N·m·s/rad)²].
     coulomb_friction
         f_c that is enough [N; N·m].
     bounded
@@ -44,9 +48,20 @@ class SpringNeed:
 
     largest_slope: Fraction
     steepest: Fraction
-    damping: Fraction | None
+    held: Fraction
+    within: Fraction
     coulomb_friction: Fraction
     bounded: bool
+
+    @property
+    def damping(self) -> float:
+        """The least b that is enough [N·s/m; N·m·s/rad], rounded."""
+        held = float(self.held)
+        return (held + sqrt(held**2 + 4 * float(self.within))) / 2
+
+    def spare(self, damping: Fraction) -> Fraction:
+        """Exactly ≥ 0 for a damping that is enough, 0 at the limit."""
+        return min(damping - self.held, damping * (damping - self.held) - self.within)
 
 
 def spring_need(device: Device, spring: Environment) -> SpringNeed:
@@ -61,12 +76,13 @@ def spring_need(device: Device, spring: Environment) -> SpringNeed:
     slopes = [(f1 - f0) / (x1 - x0) for (x0, f0), (x1, f1) in pairwise(points)]
     largest, steepest = max(*slopes, Fraction(0)), max(map(abs, slopes))
     period = device.exact("sample_period")
-    samples = device.exact("delay") / period
-    whole = samples.denominator == 1
+    late = device.exact("delay") / period
+    part = late % 1
     return SpringNeed(
         largest_slope=largest,
         steepest=steepest,
-        damping=(largest / 2 + samples * steepest) * period if whole else None,
+        held=(largest / 2 + late * steepest) * period,
+        within=part * (1 - part) * (steepest * period) ** 2 / 4,
         coulomb_friction=steepest * device.exact("resolution") / 2,
         bounded=points[0][1] <= 0 <= points[-1][1],
     )

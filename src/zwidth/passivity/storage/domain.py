@@ -170,9 +170,14 @@ def too_large(law: FiniteLaw, losses: Losses, domain: Domain) -> str | None:
     )
 
 
+_LONG = 64
+"""Readings of which there are too many states, however few moves there are: 3 ** 64 of them."""
+
+
 def states_of(law: FiniteLaw, losses: Losses, domain: Domain) -> int:
-    """Cells, readings before and averages of a grid together."""
-    states = int(domain.cells * (2 * domain.reach + 1) ** (law.memory + losses.delay))
+    """Cells, readings before and averages of a grid together; where a law remembers long, at least so many."""
+    remembered = min(law.memory + losses.delay, _LONG)  # a power of millions is never worked out
+    states = int(domain.cells * (2 * domain.reach + 1) ** remembered)
     return states * domain.cells if law.relaxing is not None else states
 
 

@@ -31,7 +31,7 @@ _MOST_WORK = 60_000
 
 
 def grids(law: FiniteLaw, losses: Losses, domain: Domain) -> list[tuple[int, Domain]]:
-    """Counts in a cell, and the cells within the bounds; coarse to fine."""
+    """Counts in a cell, and the cells within the bounds; coarse to fine; none on which no hand moves."""
     within = domain.within
     far = min(domain.speed, Fraction(within.highest))
     remembered = law.memory + losses.delay
@@ -45,7 +45,7 @@ def grids(law: FiniteLaw, losses: Losses, domain: Domain) -> list[tuple[int, Dom
     here = within, _shallow(law, within), _near(law, within, remembered)
     chosen = next((d for d in here if _work(law, losses, d) <= _MOST_WORK), here[-1])
     whole = [] if chosen == within or too_large(law, losses, within) else [(1, within)]  # last, as it is slow
-    return [*found, (1, chosen), *whole]
+    return [(counts, cells) for counts, cells in (*found, (1, chosen), *whole) if cells.reach > 0]
 
 
 def _work(law: FiniteLaw, losses: Losses, domain: Domain) -> int:
