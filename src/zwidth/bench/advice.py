@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from zwidth.device.device import Device
 from zwidth.environment.wall import Wall
 from zwidth.passivity.check import check_by_closed_forms
+from zwidth.quantity.text import told
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,12 +35,12 @@ def answer(scores: xr.Dataset, device: Device, wall: Wall) -> str:
     """
     wanted = float(wall.stiffness)  # type: ignore[arg-type]
     alone = check_by_closed_forms(device, Wall(wall.stiffness))
-    limit = alone.max_stiffness
+    limit, unit = alone.max_stiffness, device.unit("stiffness")
     words = [
-        f"Alone, a wall of {wanted:g} N/m is passive on this device and needs no law."
+        f"Alone, a wall of {told(wanted, unit)} is passive on this device and needs no law."
         if alone.outcome == "passive"
-        else f"The device alone renders {limit:.4g} N/m passively, so that {wanted:g} N/m needs a law or "
-        "other hardware."
+        else f"The device alone renders {told(limit, unit, 4)} passively, so that {told(wanted, unit)} needs "
+        "a law or other hardware."
         if limit
         else "The device alone renders no wall passively."
     ]
@@ -49,7 +50,7 @@ def answer(scores: xr.Dataset, device: Device, wall: Wall) -> str:
         felt = float(scores["static_stiffness"].sel(law=best))
         status = str(scores["status"].sel(law=best).item())
         words.append(
-            f"Quiet under a fast finger and closest to what is wanted is {best!r} with {felt:.4g} N/m"
+            f"Quiet under a fast finger and closest to what is wanted is {best!r} with {told(felt, unit, 4)}"
             + (
                 ""
                 if status == "passive"
@@ -105,7 +106,8 @@ def _proved(scores: xr.Dataset) -> list[str]:
         best = _stiffest(some)
         felt = float(some["static_stiffness"].sel(law=best))
         if felt > most:
-            words.append(f"{how} for every hand, the stiffest here is {best!r}: {felt:.4g} N/m are felt.")
+            feels = told(felt, some["static_stiffness"].attrs["units"], 4)
+            words.append(f"{how} for every hand, the stiffest here is {best!r}: {feels} are felt.")
             most = felt
     return words or ["None of these laws is proved for every hand."]
 

@@ -13,6 +13,7 @@ import numpy as np
 from zwidth.bench import scores
 from zwidth.bench.adversary import FASTEST, Attack, attack
 from zwidth.bench.advice import advice, answer, told_of
+from zwidth.bench.at_rim import about_axis, at_rim, radius_of
 from zwidth.bench.laws import standard_laws, wall_to_render
 from zwidth.bench.motions import found_motions
 from zwidth.bench.pairs import PairComparison, compare_pairs
@@ -31,6 +32,7 @@ from zwidth.pairs import Pair
 from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import unit_suffix
+from zwidth.quantity.text import shown
 from zwidth.showing import Part
 
 if TYPE_CHECKING:
@@ -87,6 +89,9 @@ class LawComparison(Documented):
         Of each law and touch.
     device, environment
         What was compared.
+    radius
+        Of a device that turns: how far from its axis it was touched [m]; traces and motions are those of
+        that place.  None for a handle.
     """
 
     FORMAT = "zwidth laws 1"
@@ -97,6 +102,7 @@ class LawComparison(Documented):
     traces: Mapping[str, Mapping[str, xr.Dataset]]
     device: Device
     environment: Wall
+    radius: float | None = None
 
     @property
     def evidence(self) -> dict[str, str]:
@@ -111,7 +117,7 @@ class LawComparison(Documented):
     def in_short(self, most: int = 6) -> Iterable[Part]:
         """What to do, and the table of a few laws."""
         what = answer(self.scores, self.device, self.environment)
-        yield f"{self.environment.describe()} on {self.device.name or 'the device'}: {what}"
+        yield f"{self._what()}: {what}"
         yield ""
         yield short_table(self.scores, told_of(self.scores, self.environment), most)
         yield ""
@@ -119,7 +125,7 @@ class LawComparison(Documented):
 
     def report(self) -> Iterable[Part]:
         """What to do, the table, and what its words mean."""
-        yield f"{self.environment.describe()} on {self.device.name or 'the device'}: {self.advice}"
+        yield f"{self._what()}: {self.advice}"
         yield ""
         yield table(self.scores)
         yield ""
@@ -128,7 +134,14 @@ class LawComparison(Documented):
     def to_dict(self) -> dict[str, Any]:
         """The scores of each law, a unit in every key, what is known of it, and the advice."""
         laws = {name: self._known(name) | self._scored(name) for name in map(str, self.scores["law"].values)}
-        return {"format": self.FORMAT, "advice": self.advice, "laws": laws}
+        touched = {} if self.radius is None else {"touched_at_radius_m": self.radius}
+        return {"format": self.FORMAT, "advice": self.advice, **touched, "laws": laws}
+
+    def _what(self) -> str:
+        """What was compared, in a few words."""
+        touched = "" if self.radius is None else f", touched {shown(self.radius, 'm')} from its axis"
+        law = self.environment.describe(self.device.motion)
+        return f"{law} on {self.device.name or 'the device'}{touched}"
 
     def _known(self, name: str) -> dict[str, Any]:
         known = self.standings[name]
@@ -167,6 +180,7 @@ def compare(
     laws: Mapping[str, Environment] | None = ...,
     *,
     fastest: RealLike = ...,
+    handle_radius: RealLike | None = ...,
     progress: Callable[[int, int], None] | None = ...,
 ) -> LawComparison: ...
 @overload
@@ -179,6 +193,7 @@ def compare(
     laws: Mapping[str, Environment] | None = None,
     *,
     fastest: RealLike = FASTEST,
+    handle_radius: RealLike | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> LawComparison | PairComparison:
     """Put laws on the bench: three touches, a stroke in free air, and a hand that tries to take energy out.
@@ -188,7 +203,7 @@ def compare(
     Parameters
     ----------
     device
-        With a mass, linear, every number certain.
+        With a mass, every number certain.
     environment
         The wall that is to be rendered.
     laws
@@ -196,25 +211,33 @@ def compare(
     fastest
         Speed of the fastest hand that tries to take energy out [m/s].  What gains only beyond 1 m/s, about
         what a hand reaches, says so in the evidence.
+    handle_radius
+        Of a device that turns, how far from its axis it is touched, > 0 [m]; None of a handle.
     progress
         Told (laws done, laws in all).
 
     Raises
     ------
     InputError
-        If the device is rotary or has no mass, the environment is no wall with a stiffness, or the speed is
-        not > 0.
+        If the device has no mass, the environment is no wall with a stiffness, or the speed is not > 0; if a
+        device that turns has no radius, or laws of one's own, whose numbers are not of its rim.
     """
     if isinstance(device, Mapping):
         if environment is not None or laws is not None:
             raise InputError("pairs are compared as they are: leave out the environment and the laws")
         return compare_pairs(device, progress=progress)
     wall = wall_to_render(as_environment(environment))
-    if device.motion != "linear":
-        raise InputError(
-            "the touches of the bench are a finger's, in metres: give the device at its handle, by "
-            "zwidth.rotary(…, handle_radius=…) or --handle-radius"
-        )
+    if device.motion == "rotary":
+        if laws is not None:
+            raise InputError(
+                "laws of your own have numbers about the axis, and the bench touches the rim: compare the "
+                "standard ones, or give device, wall and laws at the handle: rotary(…, handle_radius=…)"
+            )
+        radius = radius_of(device, handle_radius)
+        there = compare(*at_rim(device, wall, radius), fastest=fastest, progress=progress)
+        return about_axis(there, device, wall, radius)
+    if handle_radius is not None:
+        raise InputError("handle_radius is of a device that turns, and this one is linear: leave it out")
     if device.mass is None:
         raise InputError("the touches are simulated and need the device's mass [kg]")
     chosen = standard_laws(device, wall) if laws is None else dict(laws)

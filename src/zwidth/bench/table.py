@@ -7,7 +7,8 @@ from math import isfinite, isinf
 from typing import TYPE_CHECKING, NamedTuple
 
 from zwidth.bench.perceived import SOURCE, WEBER
-from zwidth.quantity.text import in_a_table
+from zwidth.quantity.spoken import spoken
+from zwidth.quantity.text import in_a_table, unit_text
 from zwidth.showing import Table
 
 if TYPE_CHECKING:
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Column(NamedTuple):
-    """A heading, what is below it, and in which unit it is shown."""
+    """A heading, what is below it, and in which unit it is shown on a device that is linear."""
 
     heading: str
     variable: str
@@ -47,11 +48,27 @@ ON_PAPER = "on paper"
 def table(scores: xr.Dataset) -> Table:
     """Headings, units, and a row for each law."""
     return Table(
-        heads=_heads(COLUMNS), rows=[_row(scores.sel(law=name)) for name in scores["law"].values], lefts=2
+        heads=_heads(columns_of(scores)),
+        rows=[_row(scores.sel(law=name)) for name in scores["law"].values],
+        lefts=2,
     )
 
 
-def _row(one: xr.Dataset, columns: Sequence[Column] = COLUMNS) -> list[str]:
+def columns_of(scores: xr.Dataset) -> list[Column]:
+    """The columns in the units of these scores, an angle in the unit that was typed."""
+    return [_in_its_unit(c, scores[c.variable].attrs["units"]) for c in COLUMNS]
+
+
+def _in_its_unit(column: Column, unit: str) -> Column:
+    if "rad" not in unit and unit != "N*m":
+        return column
+    factor, told = spoken(unit)
+    prefix = "m" if column.factor == 1e3 and "deg" not in told else ""
+    return column._replace(factor=factor * (1e3 if prefix else 1.0), unit=prefix + unit_text(told))
+
+
+def _row(one: xr.Dataset, columns: Sequence[Column] = ()) -> list[str]:
+    columns = columns or columns_of(one)
     status = str(one["status"].item())
     cells = (_number(float(one[c.variable]) * c.factor) for c in columns)
     return [str(one["law"].item()), ON_PAPER if status == "theorem" else status, *cells]
@@ -65,7 +82,7 @@ _RANK = ("passive", "theorem", "undecided", "active")
 
 def short_table(scores: xr.Dataset, first: Sequence[str], most: int) -> Table:
     """At most so many laws with three numbers each: the first, those proved, those that give out least."""
-    columns = [c for c in COLUMNS if c.variable in _KEYS]
+    columns = [c for c in columns_of(scores) if c.variable in _KEYS]
 
     def rank(name: str) -> tuple[bool, int, float]:
         one = scores.sel(law=name)

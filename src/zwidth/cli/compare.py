@@ -18,6 +18,8 @@ from zwidth.specification.table import Table, quoted, suggestion
 if TYPE_CHECKING:
     from zwidth.bench.bench import LawComparison
     from zwidth.environment import Environment
+    from zwidth.quantity.exact import Exact
+    from zwidth.specification.read import Specification
 
 YOURS = "yours"
 """What the row of laws of a specification is called on the bench."""
@@ -50,7 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--fastest",
         metavar="SPEED",
         action=Once,
-        help="of the fastest hand that tries to take energy out [m/s] (default: 10)",
+        help="of the fastest hand that tries to take energy out, of a wheel at its rim [m/s] (default: 10)",
     )
     add_in_full(add_output(parser, "the scores", "the plot", "the scores as JSON"))
     add_parameters(parser)
@@ -58,13 +60,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth compare`: 0."""
-    from zwidth.specification.read import PAIR_TABLES, WITH_LAWS, read_tables, specified
+    from zwidth.specification.read import PAIR_TABLES, WITH_LAWS, read_tables
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     tables = read_tables(arguments.sources, (*WITH_LAWS, *PAIR_TABLES))
     if any(name in tables for name in PAIR_TABLES):
         return _pairs(arguments, tables, save)
-    loop = specified(tables, overrides(arguments))
+    loop, radius = _touched(tables, overrides(arguments))
     own = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
     from zwidth.bench.laws import standard_laws
     from zwidth.cli.compile_notice import warn_of_compiling
@@ -72,10 +74,50 @@ def run(arguments: argparse.Namespace) -> int:
 
     warn_of_compiling()
     yours = {} if own is loop.environment else {YOURS: own}
-    laws = _chosen(arguments.laws, standard_laws(loop.device, loop.environment), yours)
-    found = compare(loop.device, loop.environment, laws, fastest=_speed(arguments.fastest))
+    fastest = _speed(arguments.fastest)
+    if radius is None:
+        laws = _chosen(arguments.laws, standard_laws(loop.device, loop.environment), yours)
+        found = compare(loop.device, loop.environment, laws, fastest=fastest)
+    else:
+        found = _of_a_rim(loop, radius, arguments.laws, yours, fastest)
     give_out(found, save, plot, arguments.json, None if arguments.in_full else _few(found))
     return 0
+
+
+def _touched(tables: Mapping[str, Table], typed: Mapping[str, str]) -> tuple[Specification, Exact | None]:
+    """The loop, and of a device that turns the radius at which it is touched."""
+    from zwidth.bench.at_rim import radius_of
+    from zwidth.specification.read import specified
+
+    table = tables.get("device")
+    beside = {key: value for key, value in typed.items() if key != "handle_radius"}
+    radius = typed.get("handle_radius")
+    if radius is None and table is not None and "handle_radius" in table.values:
+        radius = table.values.pop("handle_radius")
+    turning = table is not None and table.values.get("motion") == "rotary"
+    loop = specified(
+        tables, {**beside, **({"motion": "rotary"} if radius is not None and not turning else {})}
+    )
+    return loop, radius_of(loop.device, radius) if loop.device.motion == "rotary" else None
+
+
+def _of_a_rim(
+    loop: Specification, radius: Exact, typed: str | None, yours: Mapping[str, Environment], fastest: float
+) -> LawComparison:
+    """The comparison at the rim, told about the axis."""
+    from zwidth.bench.at_rim import about_axis, at_rim
+    from zwidth.bench.laws import standard_laws, wall_to_render
+    from zwidth.traces import compare
+
+    if yours:
+        raise InputError(
+            "laws of your own have numbers about the axis, and the bench touches the rim: compare those of "
+            "--laws, or give device, wall and laws at the handle"
+        )
+    wall = wall_to_render(loop.environment)
+    there = at_rim(loop.device, wall, radius)
+    found = compare(*there, _chosen(typed, standard_laws(*there), {}), fastest=fastest)
+    return about_axis(found, loop.device, wall, radius)
 
 
 def _few(found: LawComparison) -> Iterator[Part]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,11 +12,13 @@ from zwidth.cli.options import Once, add_all, device_parameters, given
 from zwidth.cli.output import print_json, print_message, print_report, say_written, targets, writing
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import shown, unit_text
+from zwidth.quantity.spoken import spoken_data
+from zwidth.quantity.text import shown, told_quantity, unit_text
 from zwidth.quantity.units import parse_number
-from zwidth.showing import Part, Table
-from zwidth.specification.read import read_tables, specified_device
-from zwidth.specification.table import plain, quoted, suggestion
+from zwidth.showing import Part
+from zwidth.showing import Table as ShownTable
+from zwidth.specification.read import LOOP_TABLES, read_tables, specified_device
+from zwidth.specification.table import Table, plain, quoted, suggestion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,7 +38,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "sources",
         metavar="SOURCE",
         nargs="*",
-        help="device of the catalogue, or TOML file with a [device] table",
+        help="device of the catalogue, or TOML file with a [device] table; of a wall beside it the velocity "
+        "filter is taken",
     )
     walls = parser.add_argument_group("walls")
     for option, metavar, meaning in (
@@ -44,7 +47,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         ("--virtual-damping", "LOW:HIGH", "range of B [N*s/m; rotary N*m*s/rad]"),
         ("--cells", "NxM", "how many along K and along B (default: 200x200)"),
         ("--velocity-filter", "FILTER", "backward-difference, window N, one-pole τ or f, filter"),
-        ("--hands", "NAMES", "known hands, of none, finger, dowel, with commas between (default: all)"),
+        (
+            "--hands",
+            "NAMES",
+            "known hands of none, finger, dowel; of a rotary device none, hands-on (default: all)",
+        ),
         ("--speed", "SPEED", "up to which a hand must not gain for a wall to count as quiet (default: 0.5)"),
     ):
         walls.add_argument(option, metavar=metavar, action=Once, help=meaning)
@@ -76,8 +83,9 @@ def run(arguments: argparse.Namespace) -> int:
     from zwidth.maps import z_width
 
     plot, proof = targets(arguments.plot, arguments.certify, arguments.force, "--certify")
-    device = _device(arguments)
-    options = _options(arguments, device.motion)
+    tables = read_tables(arguments.sources, LOOP_TABLES)
+    device = _device(arguments, tables)
+    options = _options(arguments, device.motion, tables.get("environment"))
     warn_of_compiling_the_map()
     try:
         found = z_width(device, **options)
@@ -111,17 +119,30 @@ def _certify(device: Device, found: xr.Dataset, velocity: VelocityEstimator | No
         certificate.save(path)
 
 
-def _device(arguments: argparse.Namespace) -> Device:
+def _device(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> Device:
     overrides = given(arguments, [p.key for p in device_parameters()])
     if ":" in overrides.get("damping", ""):
         raise InputError(
             "--damping is the friction of the device itself, one value; the range of the wall's damping is "
             "--virtual-damping LOW:HIGH"
         )
-    return specified_device(read_tables(arguments.sources, ("device",)), overrides)
+    return specified_device(tables, overrides)
 
 
-def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
+def _filter_of(table: Table | None, motion: str) -> VelocityEstimator | None:
+    """The velocity filter of a wall in a file, of which the rest is what the map goes through."""
+    if table is None:
+        return None
+    from zwidth.environment import Wall
+    from zwidth.specification.environments import build_environment
+
+    wall = build_environment(table, motion)
+    if not isinstance(wall, Wall):
+        raise InputError(f"{table.label}: a map is of walls, stiffness by damping; give a file without it")
+    return wall.velocity_filter
+
+
+def _options(arguments: argparse.Namespace, motion: str, environment: Table | None) -> dict[str, Any]:
     """The map as `z_width` takes it."""
     from zwidth.maps.request import standard_hands
     from zwidth.specification.values import velocity_filter
@@ -136,8 +157,10 @@ def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
         options["cells"] = _cells(arguments.cells)
     if arguments.velocity_filter is not None:
         options["velocity_filter"] = velocity_filter(arguments.velocity_filter)
+    elif (filtered := _filter_of(environment, motion)) is not None:
+        options["velocity_filter"] = filtered
     if arguments.hands is not None:
-        known, names = standard_hands(), [name.strip() for name in arguments.hands.split(",")]
+        known, names = standard_hands(motion), [name.strip() for name in arguments.hands.split(",")]
         for name in names:
             if name not in known:
                 raise InputError(f"there is no hand {quoted(name)}; {suggestion(name, list(known))}")
@@ -157,8 +180,11 @@ def _range(typed: str | None, option: str, quantity: str, motion: str) -> tuple[
     low, colon, high = typed.partition(":")
     if not colon:
         raise InputError(f"--{option} is a range, LOW:HIGH, got {quoted(typed)}")
-    unit = GLOSSARY[quantity].unit_for(motion)
-    return parse_number(low.strip(), unit, option), parse_number(high.strip(), unit, option)
+    low, high, unit = low.strip(), high.strip(), GLOSSARY[quantity].unit_for(motion)
+    behind = high.lstrip("+-.0123456789eE ")
+    if behind and not any(map(str.isalpha, low)):  # "0:1 N*m/deg": the unit is of both
+        low = f"{low} {behind}"
+    return parse_number(low, unit, option), parse_number(high, unit, option)
 
 
 def _cells(typed: str) -> tuple[int, int]:
@@ -177,9 +203,10 @@ def _whole(typed: str, option: str) -> int:
 
 def _report(found: xr.Dataset) -> Iterator[Part]:
     """The regions, widest claim first, and what is felt in free air."""
+    found = spoken_data(found)
     unit = unit_text(found["largest_stiffness"].attrs["units"])
     heads = [("region", f"largest K [{unit}]", "area of the map")]
-    yield Table(heads=heads, rows=[_row(str(name), found) for name in found["region"].values], lefts=1)
+    yield ShownTable(heads=heads, rows=[_row(str(name), found) for name in found["region"].values], lefts=1)
     if found.attrs["not_covered"]:
         spring = shown(float(found["spring_limit"]), found["spring_limit"].attrs["units"])
         yield (
@@ -212,7 +239,8 @@ def _region(name: str, found: xr.Dataset) -> str:
     if name == "passive_sustained":
         return "passive, contact kept"
     if name == "quiet":
-        return f"no gain up to {found['quiet'].attrs['speed']:g} {found['admissible_speed'].attrs['units']}"
+        speed = told_quantity(found["quiet"].attrs["speed"], "velocity", found.attrs["motion"], 4)
+        return f"no gain up to {speed}"
     hand = name.removeprefix("stable_")
     return "stable, no hand" if hand == "none" else f"stable, {hand}"
 

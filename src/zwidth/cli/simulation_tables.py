@@ -19,7 +19,14 @@ from zwidth.device import amplifier as amplifiers
 from zwidth.device.amplifier import Amplifier
 from zwidth.environment import Wall
 from zwidth.errors import InputError
-from zwidth.operator import OPERATORS, Operator, ParametricOperator, RecordedForce, WitnessMotion
+from zwidth.operator import (
+    OPERATORS,
+    HandsOff,
+    Operator,
+    ParametricOperator,
+    RecordedForce,
+    WitnessMotion,
+)
 from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.units import parse_number
 from zwidth.specification.table import COMMAND_LINE, Table, located, plain, quoted, suggestion
@@ -37,6 +44,8 @@ IN_A_WORD: Mapping[str, str] = MappingProxyType(
         "dowel": "a stick pressed on",
         "finger": "a finger of your numbers",
         "guide": "a motor that pushes in",
+        "hands-off": "let go",
+        "hands-on": "two hands on a wheel",
         "malicious": "fast and loose",
         "soft": "a touch barely above friction",
         "typical": "a usual touch",
@@ -153,6 +162,11 @@ def build_touch(
     hand = build_hand(hand_table, motion, OPERATOR)
     run_table.check_keys(KEYS, "a simulation")
     options = _options(run_table, motion)
+    if isinstance(hand, HandsOff) and not {"initial_position", "initial_velocity"} & options.keys():
+        raise InputError(
+            "hands-off moves nothing by itself: say how it is let go, --initial-velocity '360 deg/s' or "
+            "--initial-position '5 deg'"
+        )
     return Touch(hand, options.pop("duration", None), options)
 
 
@@ -207,6 +221,10 @@ def build_hand(table: Table, motion: str, option: str = OPERATOR) -> Operator:
         hint = f"{suggestion(kind, known)}; begin with typical"
         raise InputError(f"{table.where('type')}: there is no hand {quoted(kind)}; {hint}")
     build: type[ParametricOperator] = OPERATORS[kind]
+    if build.motion not in ("", motion):
+        raise InputError(
+            f"{table.where('type')}: {kind} holds a device that turns, this one is {motion}: take typical"
+        )
     parameters = build.parameters()
     table.check_keys(("type", *parameters), f"the hand {quoted(kind)}")
     values = {}

@@ -89,7 +89,7 @@ def rotary(
     device = Device(**given, motion="rotary", **rest)
     if handle_radius is None:
         return device
-    return _at_handle(device, _positive(handle_radius, "handle_radius", "the handle turns about the axis"))
+    return at_handle(device, _positive(handle_radius, "handle_radius", "the handle turns about the axis"))
 
 
 ROTARY: Mapping[str, Quantity] = MappingProxyType(
@@ -123,7 +123,8 @@ _POWER = {
 """The power of the handle radius that takes each rotary quantity to the handle."""
 
 
-def _at_handle(device: Device, radius: Exact | Interval) -> Device:
+def at_handle(device: Device, radius: Exact | Interval) -> Device:
+    """The linear device that a rotary one is at a handle, r from its axis [m]."""
     changes: dict[str, Any] = {"motion": "linear"}
     for key, power in _POWER.items():
         value = getattr(device, key)

@@ -20,7 +20,7 @@ from zwidth.environment import BackwardDifference, Wall
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
 from zwidth.maps.layout import Layout
-from zwidth.operator import Dowel, Finger
+from zwidth.operator import Dowel, Finger, HandsOn
 from zwidth.operator.hand_impedance import HandImpedance, as_hand
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.stability.known_hand.coupled import motion_of
@@ -113,8 +113,10 @@ def _axis(axis: Axis) -> list[str]:
     return [str(axis.low.fraction), str(axis.high.fraction), str(axis.cells)]
 
 
-def standard_hands() -> dict[str, Any]:
-    """No hand, a finger and a wooden dowel, by name."""
+def standard_hands(motion: str = "linear") -> dict[str, Any]:
+    """No hand, a finger and a wooden dowel, by name; on a device that turns no hand and two on a wheel."""
+    if motion == "rotary":
+        return {"none": None, "hands-on": HandsOn()}
     return {"none": None, "finger": Finger(), "dowel": Dowel(force=1)}
 
 
@@ -137,7 +139,7 @@ def request(
         raise InputError(
             "a map is of one device, and a parameter of this one is an interval; choose a value in it"
         )
-    named = standard_hands() if hands is None else dict(hands)
+    named = standard_hands(device.motion) if hands is None else dict(hands)
     known = tuple((name, as_hand(hand)) for name, hand in named.items())
     for name, hand in known:
         if not motion_of(device, hand).is_certain:

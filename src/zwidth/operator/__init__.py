@@ -10,6 +10,7 @@ from zwidth.operator.cycle import Cycle
 from zwidth.operator.dowel import Dowel
 from zwidth.operator.finger import Finger
 from zwidth.operator.guide import Guide
+from zwidth.operator.on_a_wheel import HandsOff, HandsOn
 from zwidth.operator.operator import LinearHand, Operator, Signals
 from zwidth.operator.parameter import ParametricOperator
 from zwidth.operator.prescribed_motion import PrescribedMotion
@@ -26,6 +27,8 @@ OPERATORS: Mapping[str, type[ParametricOperator]] = MappingProxyType(
         "dowel": Dowel,
         "finger": Finger,
         "guide": Guide,
+        "hands-off": HandsOff,
+        "hands-on": HandsOn,
         "malicious": MaliciousTouch,
         "soft": SoftTouch,
         "typical": TypicalTouch,
@@ -40,6 +43,8 @@ __all__ = [
     "Dowel",
     "Finger",
     "Guide",
+    "HandsOff",
+    "HandsOn",
     "LinearHand",
     "MaliciousTouch",
     "Operator",

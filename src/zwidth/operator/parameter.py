@@ -22,6 +22,9 @@ class ParametricOperator(Parametric, Operator):
     called: ClassVar[str] = ""
     """What it is in a word or two, as a line about it begins."""
 
+    motion: ClassVar[str] = ""
+    """ "rotary" of a hand on a device that turns, "linear" of one on a handle that moves; "" of either."""
+
     @classmethod
     def parameters(cls) -> dict[str, Quantity]:
         """The numbers it takes, by the name of the argument."""

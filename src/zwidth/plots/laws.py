@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, new_figure, verbatim
+from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, new_figure, scale, verbatim
 
 _SHOWN = 0.12
 """Time of a tap that is drawn [s]."""
@@ -62,12 +62,13 @@ def laws_figure(comparison: Any) -> Figure:
 
 
 def _stiffness(axes: Axes, scores: Any, wanted: float) -> None:
-    felt = scores["static_stiffness"].values
+    factor, unit = scale([wanted], scores["static_stiffness"].attrs["units"])
+    felt, wanted = factor * scores["static_stiffness"].values, factor * wanted
     axes.axvline(wanted, color=GREY, lw=0.8, ls=":")
     axes.annotate("wanted", (wanted, 1.0), xycoords=("data", "axes fraction"), ha="center", fontsize=7.5)
     _dots(axes, scores, felt, 0.0)
     axes.set_xlim(0, 1.15 * max(wanted, np.nanmax(felt)))
-    axes.set_xlabel("stiffness felt\nat rest [N/m]")
+    axes.set_xlabel(f"stiffness felt\nat rest [{unit}]")
 
 
 def _energy(axes: Axes, scores: Any, joules: NDArray[np.float64], label: str) -> None:
@@ -95,7 +96,7 @@ def _dots(axes: Axes, scores: Any, values: NDArray[np.float64], start: float) ->
 
 def _taps(axes: Axes, comparison: Any, names: list[str]) -> None:
     """Forces one below the other; what leaves its row is cut off, and its largest value written."""
-    peaks = comparison.scores["peak_force"].values
+    peaks = comparison.scores["peak_force"].values / (comparison.radius or 1.0)  # at the rim, as the traces
     newton = float(np.median(peaks)) / _ROW or 1.0
     for row, name in enumerate(names):
         trace = comparison.traces[name]["tap"]

@@ -36,6 +36,7 @@ from zwidth.plots.style import (
     number,
     verbatim,
 )
+from zwidth.quantity.spoken import spoken, spoken_data
 from zwidth.quantity.text import unit_text
 
 if TYPE_CHECKING:
@@ -43,8 +44,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_SPEEDS = (0.1, 0.2, 0.5, 1, 2, 5, 10)
-"""Whose contours are drawn [m/s; rad/s]."""
+_SPEEDS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500)
+"""Whose contours are drawn, those beyond 10 m/s or 10 rad/s only in degrees."""
 
 _SEEN = 10
 """Cells along each axis that a region needs for a close-up: fewer would show the cells and not the region."""
@@ -92,6 +93,7 @@ def z_width_figure(found: xr.Dataset) -> Figure:
     """
     if "passive" not in found or "admissible_speed" not in found:
         raise InputError("this is no Z-width map: z_width makes one")
+    found = _told(found)
     near = _corner(found)
     figure = new_figure(12.4 if near is not None else 8.0, 4.6)
     axes = figure.subplots(1, 2 if near is not None else 1, squeeze=False)[0]
@@ -131,6 +133,7 @@ def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
     found
         What `zwidth.z_width` returned.
     """
+    found = _told(found)
     motion = found.attrs["motion"]
     b, k = (_edges(found[name].values) for name in ("virtual_damping", "stiffness"))
     speed = f"{number(found['quiet'].attrs['speed'])} {unit_text(found['admissible_speed'].attrs['units'])}"
@@ -156,6 +159,18 @@ def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
     axes.set_xlabel(label("virtual_damping", motion))
     axes.set_ylabel(label("stiffness", motion))
     axes.legend(loc="upper right", frameon=True, framealpha=0.85, edgecolor="none")
+
+
+def _told(found: xr.Dataset) -> xr.Dataset:
+    """Angles in the unit that was typed; told once, it is as it is."""
+    told = spoken_data(found)
+    before, after = (each["admissible_speed"].attrs["units"] for each in (found, told))
+    if before != after:
+        told["quiet"].attrs = {
+            **found["quiet"].attrs,
+            "speed": spoken(before)[0] * found["quiet"].attrs["speed"],
+        }
+    return told
 
 
 def _sustained(found: xr.Dataset) -> tuple[tuple[str, str, float, str], ...]:
@@ -190,9 +205,10 @@ def _speeds(axes: Axes, found: xr.Dataset) -> bool:
     """Contours of the admissible speed, each with its value; False where there is none to draw."""
     values = found["admissible_speed"].values
     shown = np.log10(np.where(np.isfinite(values) & (values > 0), values, np.nan))
+    fastest = 10.0 if found["admissible_speed"].attrs["units"] in ("m/s", "rad/s") else _SPEEDS[-1]
     inside = [
         level
-        for level in _SPEEDS
+        for level in (speed for speed in _SPEEDS if speed <= fastest)
         if np.nanmin(shown, initial=9) < log10(level)
         and min((shown > log10(level)).sum(axis=along).max() for along in (0, 1)) >= _APART
     ]

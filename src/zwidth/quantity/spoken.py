@@ -16,8 +16,12 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
 from math import pi
+from typing import TYPE_CHECKING
 
 from zwidth.errors import InputError
+
+if TYPE_CHECKING:
+    from xarray import Dataset
 
 _ANGLES = {"deg": 180 / pi, "turn": 0.5 / pi, "rad": 1.0}
 """How many of each are one radian; of several that were typed the first one here is told."""
@@ -85,13 +89,23 @@ def spoken(unit: str) -> tuple[float, str]:
     return _spoken(unit, frozenset(noted)) if noted else (1.0, unit)
 
 
+def spoken_data(found: Dataset) -> Dataset:
+    """A dataset with every variable and coordinate in the unit in which it is told."""
+    told = found.copy()
+    for name, value in found.variables.items():
+        factor, unit = spoken(str(value.attrs.get("units", "")))
+        if factor != 1.0:
+            told[name] = (value.dims, factor * value.values, {**value.attrs, "units": unit})
+    return told
+
+
 @cache
 def _spoken(unit: str, noted: frozenset[str]) -> tuple[float, str]:
     if unit == "rad/s" and "rpm" in noted:
         return 30 / pi, "rpm"
     angle = next((name for name in _ANGLES if name in noted), "rad")
     found = _RADIAN.search(unit)
-    if found is None or angle == "rad":
+    if found is None or angle == "rad" or unit.count("rad") > 1:
         return 1.0, unit
     per_radian = _ANGLES[angle] ** float(found[1] or 1)
     above = "/" not in unit[: found.start()]
