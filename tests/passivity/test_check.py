@@ -502,8 +502,11 @@ def test_assumptions_name_what_was_not_given():
     assert "not given" not in full
     assert "encoder counts" in full
     assert "contact made and broken" in full
-    uncertain = "\n".join(zw.check(PADDLE.replace(damping=(0.2, 0.3)), zw.Wall(100)).assumptions)
-    assert "every value within damping" in uncertain
+    uncertain = zw.check(PADDLE.replace(damping=(0.2, 0.3)), zw.Wall(100))
+    assert "every value within damping" in "\n".join(uncertain.assumptions)
+    assert uncertain.claim.endswith("out of this loop, for any damping within its range.")
+    both = zw.check(PADDLE.replace(damping=(0.2, 0.3)), zw.Wall(zw.Interval(80, 100)))
+    assert "for any damping and value of the environment within their ranges" in both.claim
 
 
 def test_rounded_coefficients_are_said():

@@ -86,10 +86,21 @@ def claim_of_passivity(scope: Scope, at_limit: bool) -> str:
     if not scope.hands.every:
         return (
             "No motion of the hand within these bounds takes energy out of this loop, ever"
-            f"{if_friction_goes_on(scope)}."
+            f"{_for_any_value(scope)}{if_friction_goes_on(scope)}."
         )
     more = "; it is exactly at its limit, equality included" if at_limit else ""
-    return f"{NO_MOTION.format(hand=hand)}{if_friction_goes_on(scope)}{more}."
+    return f"{NO_MOTION.format(hand=hand)}{_for_any_value(scope)}{if_friction_goes_on(scope)}{more}."
+
+
+def _for_any_value(scope: Scope) -> str:
+    """What a claim about intervals ranges over, by name."""
+    of_the_law = {"the environment's intervals": "value of the environment"}
+    names = [of_the_law.get(name, in_words(name)) for name in scope.intervals]
+    if not names:
+        return ""
+    if len(names) == 1:
+        return f", for any {names[0]} within its range"
+    return f", for any {', '.join(names[:-1])} and {names[-1]} within their ranges"
 
 
 def if_friction_goes_on(scope: Scope) -> str:
