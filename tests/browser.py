@@ -12,6 +12,9 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
+PATIENCE = 120_000
+"""For what a page will do, on a machine that has much else to do [ms]."""
+
 WIDE = {"width": 1280, "height": 800}
 NARROW = {"width": 390, "height": 844}
 
@@ -34,7 +37,7 @@ def browser() -> Iterator[Browser]:
     """
     path = _chromium()
     with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        started = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"], timeout=PATIENCE)
         yield started
         started.close()
 
@@ -44,6 +47,7 @@ def page(browser: Browser, request: pytest.FixtureRequest) -> Iterator[Page]:
     """A page of either size; what its console complains of fails the test, and so does a request abroad."""
     complaints: list[str] = []
     opened = browser.new_page(viewport=request.param)
+    opened.set_default_timeout(PATIENCE)
     opened.on("console", lambda m: complaints.append(m.text) if m.type == "error" else None)
     opened.on("pageerror", lambda e: complaints.append(str(e)))
     opened.on("request", lambda r: None if _near(r.url) else complaints.append(f"asks for {r.url}"))

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
+from real_time import undisturbed
 
 # no window, and no settings of one's own for pictures: before anything imports matplotlib
 os.environ["MPLBACKEND"] = "agg"
@@ -23,7 +24,9 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
     print_blob=True,
 )
-settings.register_profile("same", settings.get_profile("explore"), derandomize=True, database=None)
+settings.register_profile(  # the same examples in every run: more of them are for those who look for others
+    "same", settings.get_profile("explore"), derandomize=True, database=None, max_examples=40
+)
 settings.load_profile("same")
 
 _TERMINAL = (
@@ -60,6 +63,22 @@ def _time_enough() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("zwidth.passivity.gap.SECONDS", 60.0)
         yield
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Marks of these tests."""
+    config.addinivalue_line("markers", "real_time: made again if the machine stood still, see real_time.py")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
+    """A test in real time is called until the machine did not stand still; what it printed before is gone."""
+    if pyfuncitem.get_closest_marker("real_time") is None:
+        return None
+    given = {name: pyfuncitem.funcargs[name] for name in pyfuncitem._fixtureinfo.argnames}
+    printed = given.get("capsys")
+    undisturbed(lambda: pyfuncitem.obj(**given), (lambda: None) if printed is None else printed.readouterr)
+    return True
 
 
 @pytest.hookimpl(optionalhook=True)

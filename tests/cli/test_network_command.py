@@ -184,6 +184,7 @@ def compiled(tmp_path):
         plan.runs(name, Exact("0.01"))
 
 
+@pytest.mark.real_time
 @pytest.mark.usefixtures("compiled")
 def test_a_bad_link_is_run_by_real_processes_and_one_that_is_killed_leaves_no_force(tmp_path):
     p = free_ports(4)

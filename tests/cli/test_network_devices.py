@@ -103,6 +103,7 @@ def process(path, name):
     )
 
 
+@pytest.mark.real_time
 @pytest.mark.parametrize("channel", [udp, zenoh])
 def test_a_board_feels_the_scene_and_no_force_once_the_scene_is_killed(tmp_path, channel):
     """Its handle goes to and fro by 4 mm; no side hears of more energy than the other sent."""
@@ -136,6 +137,7 @@ def test_a_board_feels_the_scene_and_no_force_once_the_scene_is_killed(tmp_path,
     assert told["device"]["samples"] <= told["steps"]
 
 
+@pytest.mark.real_time
 def test_a_board_that_fails_ends_its_process_with_force_0_and_status_1(tmp_path, capsys, monkeypatch):
     """Two bad answers in a row; nobody is at the other end, and nothing was felt."""
     monkeypatch.setattr("zwidth.cli.network._MEETING", 0.0)

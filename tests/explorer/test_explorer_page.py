@@ -9,19 +9,17 @@ from urllib.parse import parse_qsl, urlsplit
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
+from browser import PATIENCE
 from playwright.sync_api import Browser, Locator, Page, expect
 
 import zwidth as zw
 from zwidth.explorer.serving import serve_explorer
 from zwidth.specification.write import parsed
 
-WAIT = 120_000
-"""For a machine that has much else to do [ms]."""
-
 SCHEMES = {"Criterion": ("light", "dark"), "Touch": ("light",), "Motion": ("dark",), "Two arms": ("light",)}
 """Under which tabs axe looks: a picture, a choice of hands, a player, a form of its own."""
 
-expect.set_options(timeout=WAIT)
+expect.set_options(timeout=PATIENCE)
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +31,7 @@ def address() -> Iterator[str]:
 
 def opened(page: Page, address: str) -> Page:
     """The page, once it answers."""
-    page.set_default_timeout(WAIT)
+    page.set_default_timeout(PATIENCE)
     page.goto(address)
     expect(verdict(page).locator("table")).to_be_visible()
     return page

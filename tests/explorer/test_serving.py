@@ -31,7 +31,7 @@ _UPGRADE = {
 def status(address: str, path: str = "/", **headers: str) -> tuple[int, str]:
     """What a request is answered with, redirections not followed, and its cookie."""
     host = urlsplit(address).netloc
-    connection = http.client.HTTPConnection(host, timeout=20)
+    connection = http.client.HTTPConnection(host, timeout=60)
     connection.request("GET", path, headers=headers)
     answer = connection.getresponse()
     answer.read()

@@ -6,14 +6,19 @@ import os
 import time
 from collections.abc import Iterator
 from functools import partial
+from itertools import count
 from pathlib import Path
 from queue import Queue
+from threading import local
 from typing import Any
 
 import pytest
 
 from zwidth.errors import InputError
 from zwidth.explorer.working import Answer, Workers
+
+LOOK = 0.02
+"""For an answer, at most [s]."""
 
 
 def doubled(value: int) -> int:
@@ -50,7 +55,7 @@ def until(place: Path) -> None:
 
 def slow(value: Path) -> int:
     """Something that takes longer than a job may."""
-    time.sleep(1)
+    time.sleep(120 * LOOK)
     value.touch()
     return 7
 
@@ -70,10 +75,23 @@ def test_a_process_that_does_not_start_is_said(monkeypatch: pytest.MonkeyPatch) 
     started.close()
 
 
+@pytest.fixture(autouse=True)
+def _looks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A second is a look for the answer, and the next one: a machine that stands still takes no longer."""
+
+    class Looks(local):
+        def __init__(self) -> None:
+            self.so_far = count()
+
+    looks = Looks()
+    monkeypatch.setattr("zwidth.explorer.working.monotonic", lambda: float(next(looks.so_far)))
+    monkeypatch.setattr("zwidth.explorer.working._STEP", LOOK)
+
+
 @pytest.fixture
 def workers() -> Iterator[Workers]:
-    """One process; a job may take three seconds, so that the wait is short."""
-    made = Workers(1, longest=3.0)
+    """One process; a job may take a hundred looks."""
+    made = Workers(1, longest=100.0)
     yield made
     made.close()
 
@@ -82,7 +100,7 @@ def asked(workers: Workers, compute: Any, value: object) -> Answer:
     """What comes of it."""
     answers: Queue[Answer] = Queue()
     workers.submit(1, "job", compute, (value,), answers.put)
-    return answers.get(timeout=60)
+    return answers.get(timeout=600)
 
 
 def test_an_answer_a_message_and_a_mistake(workers: Workers) -> None:
@@ -100,10 +118,13 @@ def test_what_dies_or_takes_too_long_is_said_and_replaced(workers: Workers) -> N
     assert asked(workers, doubled, 4) == Answer(8)
 
 
-def test_no_job_takes_too_long_before_what_comes_first_is_done(tmp_path: Path) -> None:
+def test_no_job_takes_too_long_before_what_comes_first_is_done(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """What waits for a compiler, or competes with it, is not refused for that."""
+    monkeypatch.setattr("zwidth.explorer.working._PREPARING", 10**6)  # looks are cheap here
     place = tmp_path / "done"
-    workers = Workers(2, longest=0.3, first=partial(until, place))
+    workers = Workers(2, longest=100.0, first=partial(until, place))
     try:
         assert asked(workers, slow, place) == Answer(7)
     finally:
@@ -119,12 +140,12 @@ def test_the_newest_job_alone_is_done() -> None:
         for value in range(5):
             workers.submit(1, "job", doubled, (value,), answers.put)
         workers.submit(2, "job", doubled, (50,), answers.put)
-        found = {answers.get(timeout=60).value for _ in range(2)}
+        found = {answers.get(timeout=600).value for _ in range(2)}
         assert found == {8, 100}
         workers.submit(3, "job", doubled, (1,), answers.put)
         workers.forget(3)
         workers.submit(4, "job", doubled, (7,), answers.put)
-        assert answers.get(timeout=60).value == 14
+        assert answers.get(timeout=600).value == 14
         assert answers.empty()
     finally:
         workers.close()

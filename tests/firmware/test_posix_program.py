@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -70,6 +71,7 @@ def test_a_signal_ends_it_in_order(simulated: Path, tmp_path: Path) -> None:
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as running:
         while not (path.exists() and path.stat().st_size > 300):
             assert running.poll() is None
+            time.sleep(0.01)
         running.terminate()
         _, said = running.communicate()
     assert running.returncode == 0
@@ -100,7 +102,7 @@ def test_the_second_thread_ends_the_force_where_the_loop_hangs(tmp_path: Path) -
 
 
 ROTARY = ("law.h", "#define LAW_ROTARY 0", "#define LAW_ROTARY 1")
-ANSWERED_LATE = f"{SLOW} -DANSWER_MS=10000 -DGUARD_SPEED=10000.0"
+ANSWERED_LATE = f"{SLOW} -DANSWER_MS=60000 -DGUARD_SPEED=10000.0"
 
 
 def test_a_device_that_cannot_be_opened_ends_it_at_once(tmp_path: Path) -> None:

@@ -44,6 +44,7 @@ def _child(channel, side, seconds, start):
     return subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
 
 
+@pytest.mark.real_time
 @pytest.mark.skipif(sys.platform == "win32", reason="a process kills itself")
 @pytest.mark.parametrize("kind", [udp, zenoh])
 def test_no_side_hears_of_more_than_was_sent_and_a_killed_one_is_felt_as_no_force(kind):

@@ -16,6 +16,8 @@ from zwidth.servo import Placement, Safety, Servo, proving, running
 from zwidth.servo.connection import CLOSED, GARBLED, REFUSED, SILENT, STALE
 from zwidth.servo.devices import Simulated
 
+pytestmark = pytest.mark.real_time
+
 T = 1e-3
 PADDLE = zw.catalogue.device("haptic-paddle").replace(force_limit=None)
 SOFT = zw.Wall(stiffness=300)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from axe_playwright_python.sync_playwright import Axe
+from browser import PATIENCE
 from explorer.play.engines import Array, simulated
 from playwright.sync_api import Browser, Page
 
@@ -49,6 +50,14 @@ def address(loops: list[Played], tmp_path_factory: pytest.TempPathFactory) -> st
     return place.as_uri()
 
 
+_FRAMES = "n => new Promise(done => { const go = () => n-- > 0 ? requestAnimationFrame(go) : done(); go(); })"
+
+
+def _frames(page: Page, count: int) -> None:
+    """Wait for so many pictures of the page, of a sixtieth of a second at least in the loop's own time."""
+    page.evaluate(_FRAMES, count)
+
+
 def _stroke(page: Page, parts: list[float], release: bool = False) -> None:
     """Press the pointer on the stage and go through these parts of its width."""
     box: Any = page.locator("#stage").bounding_box()
@@ -56,7 +65,7 @@ def _stroke(page: Page, parts: list[float], release: bool = False) -> None:
     page.mouse.down()
     for part in parts:
         page.mouse.move(box["x"] + part * box["width"], box["y"] + 0.5 * box["height"])
-        page.wait_for_timeout(25)
+        _frames(page, 2)
     if release:
         page.mouse.up()
 
@@ -111,7 +120,7 @@ def test_letting_go_frees_the_handle(page: Page, address: str) -> None:
     """The wall pushes it out where the hand had held it; the recording says when it was held."""
     page.goto(address)
     _stroke(page, [0.5, 0.6, 0.7, 0.75, 0.75], release=True)
-    page.wait_for_timeout(300)
+    _frames(page, 20)
     _, rows = _recording(page)
     held = rows[:, 2] > 0
     last = int(np.flatnonzero(held).max())
@@ -123,6 +132,7 @@ def test_letting_go_frees_the_handle(page: Page, address: str) -> None:
 def test_it_is_silent_until_asked_and_a_buzz_is_loud(browser: Browser, address: str) -> None:
     """What is handed to the sound card of a buzz has many times the power of a calm press."""
     page = browser.new_page()
+    page.set_default_timeout(PATIENCE)
     page.add_init_script(_LISTEN)
     page.goto(address)
     _stroke(page, [0.5, 0.7, 0.75])
@@ -133,7 +143,7 @@ def test_it_is_silent_until_asked_and_a_buzz_is_loud(browser: Browser, address: 
     for number in (0, 1):
         page.locator("#loops button").nth(number).click()
         _stroke(page, [0.5, 0.6, 0.7, 0.74])
-        page.wait_for_timeout(400)
+        _frames(page, 25)
         page.evaluate("window.heard.length = 0")
         for part in (0.76, 0.75, 0.77, 0.76, 0.75, 0.76):
             _stroke(page, [part])
@@ -175,17 +185,18 @@ def test_it_works_in_a_frame_that_asks_for_nothing(page: Page, loops: list[Playe
 
 
 def test_a_page_that_was_hidden_does_not_catch_up(page: Page, address: str) -> None:
-    """A frame that comes two seconds late moves the loop by a tenth of a second."""
+    """A picture that comes two seconds late moves the loop by a tenth of one; the others are 10 ms apart."""
     page.add_init_script(
         """
         const frame = window.requestAnimationFrame.bind(window);
-        window.skip = 0;
-        window.requestAnimationFrame = (told) => frame((now) => told(now + window.skip));
+        window.skip = window.shown = 0;
+        window.requestAnimationFrame = (told) => frame(() => told(10 * ++window.shown + window.skip));
         """
     )
     page.goto(address)
-    page.wait_for_timeout(200)
-    page.evaluate("window.skip = 2000")
-    page.wait_for_timeout(100)
+    page.wait_for_function("window.shown > 10")
+    before = page.evaluate("window.skip = 2000, window.shown")
+    page.wait_for_function(f"window.shown > {before + 10}")
     _, rows = _recording(page)
-    assert rows[-1, 0] < 1.9
+    after = page.evaluate("window.shown")
+    assert 0.01 * before + 0.1 < rows[-1, 0] < 0.01 * after + 0.1

@@ -15,7 +15,7 @@ import zwidth as zw
 from zwidth import InputError
 from zwidth.loop import Timing
 from zwidth.rendering import Damper, ForceBounding, PassivityController, TickTime, Window, render
-from zwidth.servo import Placement
+from zwidth.servo import Placement, Safety
 from zwidth.servo.devices import Simulated
 from zwidth.servo.recording import Recorder, Recording, read_recording, replay, touch_of
 from zwidth.servo.session import Servo
@@ -196,7 +196,8 @@ def test_a_served_touch_is_replayed(tmp_path: Path, suffix: str, placement: Plac
     device = paddle(rate="500 Hz", sample_period=None)
     hand = zw.operators.Finger(force=1.5, speed=0.3, start=-2e-3)
     simulated = Simulated(device=device, hand=hand, duration="300 ms")
-    with Servo(device, WALL, simulated, placement=placement) as servo:
+    slow = Safety(longest_gap="60 s", host_timeout="60 s")  # a machine that stands still ends no loop
+    with Servo(device, WALL, simulated, placement=placement, safety=slow) as servo:
         servo.measure("20 ms")
         with Recorder(servo.rows, tmp_path / f"run{suffix}") as recorder:
             servo.start(anyway=True)

@@ -13,9 +13,13 @@ import zwidth as zw
 from zwidth import InputError
 from zwidth.energy import ledger
 from zwidth.operator import Operator
+from zwidth.servo import Safety
 from zwidth.servo.devices import Simulated
 from zwidth.servo.recording import Recorder, Recording, read_recording, trace_of
 from zwidth.servo.session import Servo
+
+SLOW = Safety(longest_gap="60 s", host_timeout="60 s")
+"""A machine that stands still makes a loop miss samples, and does not end it."""
 
 WALL = zw.Wall(stiffness=300, damping="0.2 N*s/m")
 
@@ -34,7 +38,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Recording:
     path = tmp_path_factory.mktemp("served") / "run.mcap"
     device = paddle(rate="500 Hz", sample_period=None, stiction=0.2, delay="0.7 ms")
     simulated = Simulated(device=device, hand=tracking(2e-3), duration="300 ms")
-    with Servo(device, WALL, simulated) as servo:
+    with Servo(device, WALL, simulated, safety=SLOW) as servo:
         servo.measure("20 ms")
         with Recorder(servo.rows, path):
             servo.start(anyway=True)
