@@ -13,7 +13,7 @@ import shutil
 import statistics
 import sys
 
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import Browser, Page, sync_playwright
 
 from zwidth.explorer.serving import serve_explorer
 
@@ -49,23 +49,48 @@ MOVE = """async (moves) => {
 }"""
 
 
+LOOPS = {
+    "a spring": "",
+    "a damped wall": "?device.damping=0.15 N*s/m&device.coulomb_friction=0.12 N&device.resolution=22.4 um"
+    "&device.rate=1 kHz&environment.type=wall&environment.stiffness=50 N/m&environment.damping=0.05 N*s/m",
+}
+"""What is moved: the loop that the page begins with, and one with more to look for."""
+
+
 def main() -> None:
-    """Print the median and the worst, and how busy the machine was."""
+    """Print the median and the worst of each loop, and how busy the machine was."""
     moves = int(sys.argv[1]) if len(sys.argv) > 1 else 200
     chromium = shutil.which("chromium") or shutil.which("google-chrome")
     with serve_explorer() as page, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-        opened = browser.new_page(viewport={"width": 1280, "height": 800})
-        opened.set_default_timeout(600_000)
-        opened.goto(page.address)
-        opened.locator("#verdict table").wait_for()
-        opened.wait_for_timeout(3000)
-        times = opened.evaluate(MOVE, moves)
+        for name, loop in LOOPS.items():
+            report(name, measured(opened(browser, f"{page.address}{loop}"), moves))
         browser.close()
-    for name, column in (("outcome", 0), ("limit and advice", 1)):
+    print(f"{moves} moves each; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
+
+
+def opened(browser: Browser, address: str) -> Page:
+    """The page, when it has come to rest."""
+    page = browser.new_page(viewport={"width": 1280, "height": 800})
+    page.set_default_timeout(600_000)
+    page.goto(address)
+    page.locator("#verdict table").wait_for()
+    page.wait_for_timeout(3000)
+    return page
+
+
+def measured(page: Page, moves: int) -> list[tuple[float, float]]:
+    """Of each move, after how long outcome and numbers had changed [ms]."""
+    found: list[tuple[float, float]] = page.evaluate(MOVE, moves)
+    return found
+
+
+def report(name: str, times: list[tuple[float, float]]) -> None:
+    """A line for the outcome, a line for the numbers."""
+    print(name)
+    for what, column in (("outcome", 0), ("limit and advice", 1)):
         found = [one[column] for one in times]
-        print(f"{name:<18} median {statistics.median(found):6.0f} ms   worst {max(found):6.0f} ms")
-    print(f"{moves} moves; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
+        print(f"  {what:<18} median {statistics.median(found):6.0f} ms   worst {max(found):6.0f} ms")
 
 
 if __name__ == "__main__":

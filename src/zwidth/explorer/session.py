@@ -1,7 +1,8 @@
 """One person's page: the loop it is at, what is shown of it, and what happens when something is moved.
 
 Nothing here is shared with another page.  A move is answered at once with the outcome that the closed forms
-know, a moment later with limit and advice; what takes longer is computed beside and shown when it comes.
+know, a moment later with limit and advice, then with the picture; what takes longer is computed beside and
+shown when it comes.
 """
 
 from __future__ import annotations
@@ -60,6 +61,7 @@ class Session:
     ) -> None:
         self.state = state
         self.verdict: Verdict | None = None
+        self._note = ""
         self._workers, self._soon, self._asker = workers, soon, next(_askers)
         self._controls: dict[str, Control] = {}
         self.form = Form(sizing_mode="stretch_width", views=in_page)
@@ -193,16 +195,17 @@ class Session:
         self._follow()
 
     def _say(self, note: str) -> None:
+        self._note = note
         self.head.html = str(head(self.verdict, note, self.state.begun))
-        self.badge.html = str(badge(self.verdict, note, self.state.begun))
 
     def _follow_if(self, state: State) -> None:
         if state is self.state:
             self._follow()
 
     def _follow(self) -> None:
-        """Numbers, advice and scope; a moment later the picture that is open."""
+        """Numbers, advice, scope and the line with the limit; a moment later the picture that is open."""
         self.details.html = str(details(self.verdict))
+        self.badge.html = str(badge(self.verdict, self._note, self.state.begun))
         self._soon(partial(self._draw_if, self.state))
 
     def _draw_if(self, state: State) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from math import ceil, floor, inf, isinf, log10
 from typing import Literal
 
@@ -201,14 +201,14 @@ class _Knobs:
 
     def every(self, stiffest: Likely) -> Iterator[Knob]:
         """All of them, from the device to the law."""
-        period = float(self.device.exact("sample_period"))
-        yield self._searched("rate", 1 / period, self._device("rate"), True, "rate", period)
+        period = self.device.exact("sample_period")
+        yield self._searched("rate", 1 / period, self._device("rate"), True, "rate", float(period))
         yield from self._losses()
-        delay = float(self.device.exact("delay"))
-        yield self._searched("delay", delay, self._device("delay"), False, "delay", period)
+        delay = self.device.exact("delay")
+        yield self._searched("delay", delay, self._device("delay"), False, "delay", float(period))
         if has_stiffness(self.environment):
-            now, change = float(stiffness_of(self.environment)), self._law("stiffness")
-            yield Knob("stiffness", now, self._proved(change), False, "stiffness", stiffest)
+            now, change = stiffness_of(self.environment).fraction, self._law("stiffness")
+            yield Knob("stiffness", float(now), self._proved(change, now), False, "stiffness", stiffest)
         if (wall := wall_of(self.environment)) is not None:
             yield from self._of_wall(wall)
 
@@ -218,36 +218,34 @@ class _Knobs:
         of_one = replace(decision, setting=replace(decision.setting, resolution=Fraction(1)))
         for key, more, name, likely in (
             ("damping", True, "device damping", lambda: likely_damping(decision, contact)),
-            (
-                "coulomb_friction",
-                True,
-                in_words("coulomb_friction"),
-                lambda: likely_friction(decision, contact),
-            ),
+            ("coulomb_friction", True, "Coulomb friction", lambda: likely_friction(decision, contact)),
             ("resolution", False, "encoder resolution", lambda: likely_resolution(of_one, contact)),
         ):
-            now = float(self.device.exact(key))
-            yield Knob(key, now, self._proved(self._device(key)), more, name, likely)
+            now = self.device.exact(key)
+            yield Knob(key, float(now), self._proved(self._device(key), now), more, name, likely)
 
     def _of_wall(self, wall: Wall) -> Iterator[Knob]:
         b = wall.damping
         assert isinstance(b, Exact)
         law = self._law("damping", -1 if b < 0 else 1)
         usual = float(self.device.exact("damping")) or 1.0
-        yield self._searched("virtual_damping", abs(float(b)), law, False, "virtual damping", usual)
+        yield self._searched("virtual_damping", abs(b.fraction), law, False, "virtual damping", usual)
         tau = wall.velocity_filter.time_constant
         if isinstance(tau, Exact) and b != 0:
-            yield self.time_constant(wall, float(tau), "filter time constant")
+            change = self._filter(wall)
+            yield self._searched("time_constant", tau.fraction, change, True, "filter time constant", 0.0)
 
-    def time_constant(self, wall: Wall, now: float, name: str) -> Knob:
-        """Of a one-pole filter of the velocity [s]."""
-        change: Change = lambda t: (self.device, wall.replace(velocity_filter=OnePole(Exact(t))))  # noqa: E731
-        return self._searched("time_constant", now, change, True, name, now)
+    def time_constant(self, wall: Wall, begin: float) -> Knob:
+        """Of a one-pole filter in the place of that of the wall [s]; looked for from `begin` on."""
+        change = self._filter(wall)
+        likely = partial(likely_value, change, self.contact, begin, begin, True)
+        holds: Holds = lambda value: provable(change, value, self.contact)  # noqa: E731
+        return Knob("time_constant", 0.0, holds, True, "time constant", likely)
 
-    def _searched(self, key: str, now: float, change: Change, more: bool, name: str, other: float) -> Knob:
+    def _searched(self, key: str, now: Fraction, change: Change, more: bool, name: str, other: float) -> Knob:
         """A knob of which secants say where its limit is likely; `other` as for `likely_value`."""
-        likely = partial(likely_value, change, self.contact, now, other, more)
-        return Knob(key, now, self._proved(change), more, name, likely)
+        likely = partial(likely_value, change, self.contact, float(now), other, more)
+        return Knob(key, float(now), self._proved(change, now), more, name, likely)
 
     def _device(self, key: str) -> Change:
         return lambda value: (self.device.replace(**{key: Exact(value)}), self.environment)
@@ -255,9 +253,16 @@ class _Knobs:
     def _law(self, key: str, sign: int = 1) -> Change:
         return lambda value: (self.device, self.environment.replace(**{key: Exact(sign * value)}))
 
-    def _proved(self, change: Change) -> Holds:
-        """Whether the loop with a value is proved passive."""
-        return lambda value: provable(change, value, self.contact)
+    def _filter(self, wall: Wall) -> Change:
+        return lambda value: (self.device, wall.replace(velocity_filter=OnePole(Exact(value))))
+
+    def _proved(self, change: Change, now: Fraction) -> Holds:
+        """Whether the loop with a value is proved passive; as it is, it is decided once for all knobs."""
+        return lambda value: self._here if value == now else provable(change, value, self.contact)
+
+    @cached_property
+    def _here(self) -> bool:
+        return provable(lambda _: (self.device, self.environment), Fraction(0), self.contact)
 
 
 def turn(knob: Knob, motion: str, kind: Literal["change", "slack"], grain: int = COARSE) -> Advice:
@@ -340,7 +345,7 @@ def _estimators(device: Device, wall: Wall, contact: bool, grain: int) -> Iterat
     if wall.velocity_filter.time_constant is None:
         knobs = _Knobs(device, wall, contact)
         period = float(device.exact("sample_period"))
-        knob = knobs.time_constant(wall, period, "time constant")
+        knob = knobs.time_constant(wall, period)
         tau = _first_scanned(knob, period, grain)
         if tau is not None:
             shown = outward(tau, knob)
