@@ -133,7 +133,7 @@ def _found(arguments: argparse.Namespace) -> Result:
             models=tuple(arguments.model or ()),
             zero=arguments.zero or "fitted",
         )
-    rule = arguments.discretization or DISCRETIZATIONS[0]
+    rule: Any = arguments.discretization or DISCRETIZATIONS[0]
     return Result(test, rule, None if device is None else _wall(test, device, rule))
 
 

@@ -54,7 +54,8 @@ def tried(test: History, zero: bool, names: tuple[str, ...] = ()) -> list[Tried]
 
     A third branch is tried where the second was worth its numbers.
     """
-    fine, every = fine_of(test), []
+    every: list[Tried] = []
+    fine = fine_of(test)
     for model in _models(test):
         if names and not {label(model), model.name} & set(names):
             continue

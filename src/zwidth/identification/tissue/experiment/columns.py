@@ -108,8 +108,11 @@ def recognised(
     _refuse_without_unit(table, found, units)
     factors = {q: _factor(table, q, name, units.get(q)) for q, name in found.items()}
     numbered = [name for name in table.units if name not in found.values() and _TRIALS & set(_words(name))]
+    time, indentation, force = (Column(found[q], factors[q]) for q in QUANTITIES)
     return Columns(
-        *(Column(found[q], factors[q]) for q in QUANTITIES),
+        time,
+        indentation,
+        force,
         numbered[0] if len(numbered) == 1 else None,
         tuple(_guessed(table, found, chosen, units)),
     )

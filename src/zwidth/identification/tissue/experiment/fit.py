@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from zwidth.errors import InputError
+from zwidth.identification.logs import Finding
 from zwidth.identification.tissue.experiment.choice import MODELS, Tried, label, not_told_apart, taken, tried
 from zwidth.identification.tissue.experiment.estimate import covariance
-from zwidth.identification.tissue.experiment.history import History, history_of
+from zwidth.identification.tissue.experiment.history import history_of
 from zwidth.identification.tissue.experiment.kind import KINDS, Kind, kind_of
 from zwidth.identification.tissue.experiment.reading import Raw, read_columns
 from zwidth.identification.tissue.experiment.result import TissueTest
@@ -93,7 +94,8 @@ def fit_test(
     if any(values.ndim != 1 or values.shape != arrays[0].shape for values in arrays):
         shapes = ", ".join(str(values.shape) for values in arrays)
         raise InputError(f"time, indentation and force are three arrays of one length; got {shapes}")
-    return _fitted(Raw("arrays", *arrays, None, ()), kind, None, models, zero)
+    t, x, f = arrays
+    return _fitted(Raw("arrays", t, x, f, None, ()), kind, None, models, zero)
 
 
 def _fitted(
@@ -129,7 +131,7 @@ def _check(kind: object, models: tuple[str, ...], zero: object) -> None:
             raise InputError(f"there is no model {name!r} of a tissue; there are {', '.join(known)}")
 
 
-def _fit(each: Tried, findings: tuple) -> TissueFit:
+def _fit(each: Tried, findings: tuple[Finding, ...]) -> TissueFit:
     """What was found, as every fit of a tissue is given."""
     task, found = each.task, each.found
     spread, condition = covariance(found)
@@ -165,6 +167,3 @@ def _slow_last(each: Tried) -> list[int]:
         zip(places[1:own:2], places[2:own:2], strict=True), key=lambda p: point[p[1]] - point[p[0]]
     )
     return [0, *(k for pair in pairs for k in pair), *places[own:]]
-
-
-__all__ = ["History", "fit_test", "read_test"]

@@ -98,7 +98,7 @@ def _vertex(grid: Array, values: Array, best: int) -> float:
 def _restricted(noise: Noise, residuals: Array, jacobian: Array) -> float:
     """−2 ln of the restricted likelihood, up to a constant."""
     table = noise.whitened(np.column_stack([jacobian, residuals]))
-    square = np.linalg.qr(table, mode="r")
+    square: Array = np.linalg.qr(table, mode="r")  # type: ignore[assignment]
     k, n = jacobian.shape[1], residuals.size
     left = max(float(square[k, k]) ** 2, np.finfo(float).tiny)
     sizes = np.abs(np.diag(square)[:k])

@@ -1,9 +1,9 @@
 """What a model says of a test, and its derivatives by what is fitted.
 
 Between samples the history is a curve, looked at `FINER` times as finely: a quick ramp of few samples is
-neither a step nor a chain of straight lines.  Velocities are its slopes.  Where the motion is smooth the curve
-is a cubic spline, where it has corners a monotone cubic (Fritsch & Carlson, 1980): whichever of the two, laid
-through every other sample, comes nearer to those between.
+neither a step nor a chain of straight lines.  Velocities are its slopes.  Where the motion is smooth the
+curve is a cubic spline, where it has corners a monotone cubic (Fritsch & Carlson, 1980): whichever of the
+two, laid through every other sample, comes nearer to those between.
 
     f = K u + B u̇ + Σ μᵢ y(1/τᵢ),     ẏ = u̇ − r y,   u = max(x − surface, 0)
     f = K uⁿ (1 + λ u̇)                                                    Hunt–Crossley
