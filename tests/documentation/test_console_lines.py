@@ -24,6 +24,7 @@ NOT_RUN = {
     "new": "it asks; run in tests/cli/test_new_command.py",
     "play": "it opens a browser; run in tests/cli/test_play_command.py",
     "serve": "it runs until it is ended",
+    "sweep": "it asks hundreds of loops; run in tests/cli/test_sweep_command.py",
     "tour": "it simulates a touch; run in tests/cli/test_tour_command.py",
     "workspace": "it covers an arm; run in tests/cli/test_workspace_command.py",
 }

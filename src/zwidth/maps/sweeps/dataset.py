@@ -82,7 +82,7 @@ def _why(asked: Request, place: tuple[int, ...]) -> str:
         f"{own.name} = {own.values[n]:.12g} {own.unit}" for own, n in zip(asked.axes, place, strict=True)
     )
     try:
-        asked.question.answer(asked.at(place))
+        asked.question.answer(asked.at(place), {})
     except InputError as error:
         return f"{values}: {error}"
     return values
