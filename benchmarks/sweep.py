@@ -3,9 +3,9 @@
     python benchmarks/sweep.py                    10^6 springs over stiffness and delay
     python benchmarks/sweep.py --side 300         as many along each axis
 
-The sweep is run three times: undisturbed on one process; on two workers of a Dask cluster, its command killed by
-SIGKILL when about a third of the chunks are there; and the same command again.  Every array is compared byte by
-byte.  Times are of the same run, on the same machine; what the machine did beside it is told by the processor time.
+The sweep is run three times: undisturbed on one process; on two workers of a Dask cluster, its command killed
+by SIGKILL when about a third of the chunks are there; and the same command again.  Every array is compared,
+byte by byte.  The times of a loop are of the processor, and of one run.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def _arrays(path: Path) -> dict[str, bytes]:
 
 
 def _against_a_loop(side: int, loops: int) -> None:
-    """The time of a loop in a sweep, and of one in Python over `zw.check`, of loops drawn from the same grid."""
+    """The time of a loop in a sweep, and in Python over `zw.check`, of loops drawn from the same grid."""
     device, wall = zw.catalogue.device("haptic-paddle"), zw.Wall(100)
     vary = {"stiffness": f"1:3000:{side}", "delay": f"0:5 ms:{side}"}
     begun = time.process_time()
@@ -103,13 +103,11 @@ def _against_a_loop(side: int, loops: int) -> None:
         outcome += middle - begun
         one = found.isel(stiffness=k, delay=d)
         assert (one.outcome, one.binding, one.max_stiffness) == (verdict.outcome, limit, largest)
-    print(
-        f"springs, processor time a loop: sweep {swept * 1e6:.1f} µs; zw.check {outcome / loops * 1e6:.0f} µs,"
-    )
-    print(f"  with what binds and the largest stiffness {with_numbers / loops * 1e6:.0f} µs")
-    print(
-        f"  ratios {outcome / loops / swept:.0f} and {with_numbers / loops / swept:.0f}, {loops} loops alike"
-    )
+    each, both = outcome / loops, with_numbers / loops
+    print(f"springs, a loop: sweep {swept * 1e6:.1f} µs, zw.check {each * 1e6:.0f} µs")
+    print(f"  ratio {each / swept:.0f}")
+    print(f"  with what binds and the largest stiffness {both * 1e6:.0f} µs, ratio {both / swept:.0f}")
+    print(f"  {loops} loops drawn at random, each the same")
     _damped(device, loops)
 
 

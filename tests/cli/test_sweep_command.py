@@ -22,7 +22,9 @@ def test_the_report_and_the_json_say_the_same(capsys: pytest.CaptureFixture[str]
     assert main((*SWEEP, "--json")) == 0
     document = json.loads(capsys.readouterr().out)
     found = zw.sweep(
-        zw.catalogue.device("haptic-paddle"), zw.Wall(1), vary={"stiffness": (50, 600, 12), "delay": "0:2 ms:5"}
+        zw.catalogue.device("haptic-paddle"),
+        zw.Wall(1),
+        vary={"stiffness": (50, 600, 12), "delay": "0:2 ms:5"},
     )
     passive = int((found.outcome == "passive").sum())
     assert document["outcomes"] == {"active": 60 - passive, "passive": passive}
@@ -97,6 +99,6 @@ def test_what_was_finished_is_kept(
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("zwidth.maps.sweeps.run.sweep", stop)
+    monkeypatch.setattr("zwidth.sweeps.run.sweep", stop)
     assert main((*SWEEP, "-o", str(tmp_path / "s.zarr"))) == 130
     assert "the same command goes on" in " ".join(capsys.readouterr().err.split())

@@ -91,7 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
     """`zwidth sweep`: 0."""
     from zwidth.cli.compile_notice import warn_of_compiling
     from zwidth.cli.sweep_loop import asked
-    from zwidth.maps.sweeps.run import sweep
+    from zwidth.sweeps.run import sweep
 
     plot = _picture(arguments)
     of = arguments.of or "check"

@@ -14,15 +14,15 @@ import xarray as xr
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.maps.sweeps import request as requests
-from zwidth.maps.sweeps.axes import axis
-from zwidth.maps.sweeps.compute import compute
-from zwidth.maps.sweeps.loops import Loop, changed, parameter
-from zwidth.maps.sweeps.questions import checked
-from zwidth.maps.sweeps.request import request
-from zwidth.maps.sweeps.springs import largest_spring
-from zwidth.maps.worker import Worker
+from zwidth.chunks.worker import Worker
 from zwidth.passivity.check import check_by_closed_forms
+from zwidth.sweeps import request as requests
+from zwidth.sweeps.axes import axis
+from zwidth.sweeps.compute import compute
+from zwidth.sweeps.loops import Loop, changed, parameter
+from zwidth.sweeps.questions import checked
+from zwidth.sweeps.request import request
+from zwidth.sweeps.springs import largest_spring
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 WALL = zw.Wall(100)

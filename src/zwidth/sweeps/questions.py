@@ -12,14 +12,14 @@ from typing import Any, NamedTuple, get_args
 
 from zwidth.device import Device
 from zwidth.errors import InputError
-from zwidth.maps.sweeps.columns import Column, Columns
-from zwidth.maps.sweeps.loops import Loop
 from zwidth.pairs import Pair
 from zwidth.passivity.budget import LIMITS
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.verdict import LIMITS as LIMITS_OF_A_PAIR
 from zwidth.passivity.scope import Contact, Encoder, FedWith, Law, Scope
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.sweeps.columns import Column, Columns
+from zwidth.sweeps.loops import Loop
 
 Answer = Mapping[str, Any]
 

@@ -13,15 +13,15 @@ from typing import Any
 
 import numpy as np
 
+from zwidth.chunks.layout import Layout, Place, cells
 from zwidth.errors import InputError
-from zwidth.maps.layout import Layout, Place, cells
-from zwidth.maps.sweeps.axes import Axis, axis
-from zwidth.maps.sweeps.columns import OF_EVERY_SWEEP, Columns
-from zwidth.maps.sweeps.loops import Loop, Parameter, changed, parameter
-from zwidth.maps.sweeps.questions import QUESTIONS, Question
-from zwidth.maps.sweeps.springs import Springs, springs
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.specification.table import quoted, suggestion
+from zwidth.sweeps.axes import Axis, axis
+from zwidth.sweeps.columns import OF_EVERY_SWEEP, Columns
+from zwidth.sweeps.loops import Loop, Parameter, changed, parameter
+from zwidth.sweeps.questions import QUESTIONS, Question
+from zwidth.sweeps.springs import Springs, springs
 
 FORMAT = "zwidth sweep 1"
 
@@ -92,7 +92,7 @@ class Request:
 
     @property
     def stiffness_axis(self) -> int | None:
-        """The axis along which the law's stiffness varies: loops that differ in it alone are kept together."""
+        """The axis of the law's stiffness: loops that differ in it alone are kept together."""
         found = (k for k, own in enumerate(self.parameters) if (own.part, own.key) == ("law", "stiffness"))
         return next(found, None)
 

@@ -15,8 +15,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
+from zwidth.chunks.layout import Layers, Place
 from zwidth.errors import InputError
-from zwidth.maps.layout import Layers, Place
 
 
 class Worker:
@@ -31,7 +31,7 @@ class Worker:
     """
 
     def __init__(self, compute: Callable[[Any, Place], Layers], ready: Any) -> None:
-        command = [sys.executable, "-c", "from zwidth.maps.worker import serve; serve()"]
+        command = [sys.executable, "-c", "from zwidth.chunks.worker import serve; serve()"]
         path = os.pathsep.join(filter(None, sys.path))
         self.process = subprocess.Popen(
             command,

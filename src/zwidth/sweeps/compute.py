@@ -6,11 +6,11 @@ from collections import defaultdict
 
 import numpy as np
 
+from zwidth.chunks.layout import Layers, Place
 from zwidth.errors import InputError
-from zwidth.maps.layout import Layers, Place
-from zwidth.maps.sweeps.columns import REFUSED
-from zwidth.maps.sweeps.questions import Line
-from zwidth.maps.sweeps.request import Request
+from zwidth.sweeps.columns import REFUSED
+from zwidth.sweeps.questions import Line
+from zwidth.sweeps.request import Request
 
 
 def compute(asked: Request, place: Place) -> Layers:
