@@ -343,6 +343,7 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
         "links",
         "gains",
         "map",
+        "sweep",
         "play",
         "simulate",
         "serve",

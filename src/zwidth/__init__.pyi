@@ -38,8 +38,6 @@ from zwidth.identification import tissue as tissue
 from zwidth.identification.device.plan import plan_identification as plan
 from zwidth.identification.logs import Log as Log
 from zwidth.identification.logs import read_log as read_log
-from zwidth.maps import load_sweep as load_sweep
-from zwidth.maps import sweep as sweep
 from zwidth.maps import z_width as z_width
 from zwidth.pairs import Pair as Pair
 from zwidth.passivity import coupling as coupling
@@ -59,6 +57,8 @@ from zwidth.rendering import render as render
 from zwidth.scene import Scene as Scene
 from zwidth.servo.serving import serve as serve
 from zwidth.specification.load import load as load
+from zwidth.sweeps.files import load_sweep as load_sweep
+from zwidth.sweeps.run import sweep as sweep
 from zwidth.traces import available_storage as available_storage
 from zwidth.traces import compare as compare
 from zwidth.traces import identify as identify

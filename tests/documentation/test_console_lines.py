@@ -25,6 +25,7 @@ NOT_RUN = {
     "play": "it opens a browser; run in tests/cli/test_play_command.py",
     "serve": "it runs until it is ended",
     "tissue": "it needs a recording; run in tests/cli/test_tissue_command.py",
+    "sweep": "it asks hundreds of loops; run in tests/cli/test_sweep_command.py",
     "tour": "it simulates a touch; run in tests/cli/test_tour_command.py",
     "workspace": "it covers an arm; run in tests/cli/test_workspace_command.py",
 }

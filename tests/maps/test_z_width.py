@@ -353,7 +353,7 @@ def test_a_cluster_gives_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two workers, each a process of its own, against the threads of this one."""
     import distributed
 
-    monkeypatch.setattr("zwidth.maps.workers._TIMEOUT", "600 s")  # they may start slowly
+    monkeypatch.setattr("zwidth.chunks.workers._TIMEOUT", "600 s")  # they may start slowly
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, scheduler_port=0
     ) as cluster:

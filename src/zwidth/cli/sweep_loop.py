@@ -18,7 +18,7 @@ from zwidth.cli.options import (
 )
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
-from zwidth.specification.table import COMMAND_LINE
+from zwidth.specification.table import COMMAND_LINE, quoted, suggestion
 
 
 class Asked(NamedTuple):
@@ -52,8 +52,13 @@ def _begin(arguments: argparse.Namespace, vary: Mapping[str, str]) -> None:
     """Give each parameter that is varied its last value, which has its unit."""
     for key, values in vary.items():
         dest = f"parameter {key}"
+        if key.startswith(("leader.", "follower.")):
+            continue  # of one arm: it has no option
         if not hasattr(arguments, dest):
-            continue  # of one arm, say: it has no option
+            known = sorted(
+                n.removeprefix("parameter ") for n in vars(arguments) if n.startswith("parameter ")
+            )
+            raise InputError(f"--vary: there is no number {quoted(key)}; {suggestion(key, known)}")
         if getattr(arguments, dest) is not None:
             raise InputError(f"--{key.replace('_', '-')} is given and varied; which one is meant?")
         parts = values.split(":") if ":" in values else [*values.split(","), ""]

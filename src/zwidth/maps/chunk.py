@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from zwidth.chunks.layout import Layers, Place, cells
 from zwidth.maps.kernel import STABLE, UNKNOWN, decide_block
-from zwidth.maps.layout import Layers, Place, cells
 from zwidth.maps.plan import Contact, HandPlan, Plan
 from zwidth.maps.request import CHUNK, Array
 from zwidth.quantity.exact import Exact

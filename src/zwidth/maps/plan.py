@@ -8,7 +8,7 @@ broken, and what is left of them for a hand of bounded speed (docs: contact made
 K_max is rational, so that a cell is passive by an exact comparison.  With a delay of part of a sample, or a
 filter whose response does not end, no condition covers a wall with damping; a spring alone is compared with
 
-    b² − b (K T/2)(2d + 1 + 2α) − ¼ T² α(1 − α) K² ≥ 0,    f_c ≥ K Δ/2.
+    b² − b (K T/2)(2d + 1 + 2α) − ¼ T² α(1 − α) K² ≥ 0,    2 b ≥ (K T/2)(2d + 1 + 2α),    f_c ≥ K Δ/2.
 """
 
 from __future__ import annotations
@@ -121,7 +121,9 @@ def _spring_passes(asked: Request, stiffness: Fraction) -> bool:
     late = device.exact("delay") / period
     part = late % 1
     turned = stiffness * period / 2
-    viscous = b * b - b * turned * (2 * late + 1) - part * (1 - part) * turned * turned >= 0
+    linear = turned * (2 * late + 1)
+    # the larger root is asked for: for b = 0 and a delay of whole samples the square alone is 0
+    viscous = 2 * b >= linear and b * b - b * linear - part * (1 - part) * turned * turned >= 0
     return viscous and 2 * device.exact("coulomb_friction") >= stiffness * device.exact("resolution")
 
 

@@ -19,16 +19,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from zwidth.chunks.layout import Layers, Place
+from zwidth.chunks.store import computed
+from zwidth.chunks.workers import Finished, on_cluster, on_threads
 from zwidth.device import Device
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
 from zwidth.maps.chunk import compute
-from zwidth.maps.layout import Layers, Place
 from zwidth.maps.plan import Plan, plan, spring_limit, stable_limits
 from zwidth.maps.request import FORMAT, Request, request
 from zwidth.maps.scopes import scopes
-from zwidth.maps.store import computed
-from zwidth.maps.workers import Finished, on_cluster, on_threads
 from zwidth.passivity.document import to_json
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY

@@ -19,11 +19,11 @@ import numpy as np
 import xarray as xr
 
 from zwidth.errors import InputError
-from zwidth.maps.sweeps.columns import Column
-from zwidth.maps.sweeps.request import FORMAT, Request
 from zwidth.missing import did_you_mean
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.reading import check_parquet
+from zwidth.sweeps.columns import Column
+from zwidth.sweeps.request import FORMAT, Request
 from zwidth.writing import first_line, writing_whole
 
 ZARR, PARQUET = ".zarr", ".parquet"

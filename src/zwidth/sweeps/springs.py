@@ -18,15 +18,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from zwidth.chunks.layout import Layers
 from zwidth.device import Device
 from zwidth.environment import Wall
-from zwidth.maps.layout import Layers
-from zwidth.maps.sweeps.axes import Axis
-from zwidth.maps.sweeps.columns import Columns
-from zwidth.maps.sweeps.loops import Loop, Parameter, changed
 from zwidth.passivity.budget import DELAY, QUANTIZATION, SAMPLING
 from zwidth.passivity.linear.boundary import LARGEST, SMALLEST
 from zwidth.quantity.exact import Exact
+from zwidth.sweeps.axes import Axis
+from zwidth.sweeps.columns import Columns
+from zwidth.sweeps.loops import Loop, Parameter, changed
 
 Floats = NDArray[np.float64]
 

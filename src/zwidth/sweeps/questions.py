@@ -12,16 +12,19 @@ from typing import Any, NamedTuple, get_args
 
 from zwidth.device import Device
 from zwidth.errors import InputError
-from zwidth.maps.sweeps.columns import Column, Columns
-from zwidth.maps.sweeps.loops import Loop
 from zwidth.pairs import Pair
 from zwidth.passivity.budget import LIMITS
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.verdict import LIMITS as LIMITS_OF_A_PAIR
 from zwidth.passivity.scope import Contact, Encoder, FedWith, Law, Scope
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.sweeps.columns import Column, Columns
+from zwidth.sweeps.loops import Loop
 
 Answer = Mapping[str, Any]
+
+Line = dict[Any, Any]
+"""What is known already of loops that differ in the stiffness of the law alone."""
 
 
 class Question(NamedTuple):
@@ -32,13 +35,13 @@ class Question(NamedTuple):
     columns
         What is kept of an answer.
     answer
-        The answer of one loop: a value for each column.
+        The answer of one loop, given what is known of its line: a value for each column.
     needs
         What the loop must have; raises InputError if it has not.
     """
 
     columns: Callable[[Loop], Columns]
-    answer: Callable[[Loop], Answer]
+    answer: Callable[[Loop, Line], Answer]
     needs: Callable[[Loop], None]
 
 
@@ -77,16 +80,19 @@ def _checked_columns(loop: Loop) -> Columns:
     }
 
 
-def checked(loop: Loop) -> Answer:
-    """What `zwidth.check` says of a loop, by closed forms."""
+def checked(loop: Loop, line: Line) -> Answer:
+    """What `zwidth.check` says of a loop, by closed forms; the largest stiffness is sought once in a line."""
     from zwidth.passivity.check import check
 
     verdict = check(loop.subject, loop.environment, iterate=False, **loop.options)  # type: ignore[call-overload]
+    about = verdict.outcome, verdict.scope.contact
+    if about not in line:
+        line[about] = getattr(verdict, "max_stiffness", None)
     return {
         "outcome": verdict.outcome,
         **_scope(verdict.scope),
         "binding": getattr(verdict, "limit", ""),
-        "max_stiffness": getattr(verdict, "max_stiffness", None),
+        "max_stiffness": line[about],
     }
 
 
@@ -103,7 +109,7 @@ def _limited_columns(loop: Loop) -> Columns:
     }
 
 
-def limited(loop: Loop) -> Answer:
+def limited(loop: Loop, _: Line) -> Answer:
     """What `zwidth.passive_limit` says of a loop, by closed forms."""
     from zwidth.passivity.bracket.passive_limit import passive_limit
 
@@ -123,7 +129,7 @@ def _simulated_columns(loop: Loop) -> Columns:
     return {name: Column(own.heading, units[own.kind]) for name, own in COLUMNS.items()}
 
 
-def simulated(loop: Loop) -> Answer:
+def simulated(loop: Loop, _: Line) -> Answer:
     """The measures of a simulated touch."""
     from zwidth.loop.simulate import simulate
     from zwidth.traces.comparison import measure
@@ -143,7 +149,7 @@ def _paired_columns(loop: Loop) -> Columns:
     }
 
 
-def paired(loop: Loop) -> Answer:
+def paired(loop: Loop, _: Line) -> Answer:
     """What `zwidth.check` says of two arms that follow each other."""
     from zwidth.passivity.pairs import check_pair
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import prod
@@ -13,15 +13,15 @@ from typing import Any
 
 import numpy as np
 
+from zwidth.chunks.layout import Layout, Place, cells
 from zwidth.errors import InputError
-from zwidth.maps.layout import Layout, Place, cells
-from zwidth.maps.sweeps.axes import Axis, axis
-from zwidth.maps.sweeps.columns import OF_EVERY_SWEEP, Columns
-from zwidth.maps.sweeps.loops import Loop, Parameter, changed, parameter
-from zwidth.maps.sweeps.questions import QUESTIONS, Question
-from zwidth.maps.sweeps.springs import Springs, springs
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.specification.table import quoted, suggestion
+from zwidth.sweeps.axes import Axis, axis
+from zwidth.sweeps.columns import OF_EVERY_SWEEP, Columns
+from zwidth.sweeps.loops import Loop, Parameter, changed, parameter
+from zwidth.sweeps.questions import QUESTIONS, Question
+from zwidth.sweeps.springs import Springs, springs
 
 FORMAT = "zwidth sweep 1"
 
@@ -49,12 +49,15 @@ class Request:
         With its numbers before they are varied.
     parameters, axes
         What is varied, and its values.
+    at_once
+        Loops that are computed and kept at a time, at most.
     """
 
     of: str
     loop: Loop
     parameters: tuple[Parameter, ...]
     axes: tuple[Axis, ...]
+    at_once: int = 1
 
     @property
     def question(self) -> Question:
@@ -79,12 +82,19 @@ class Request:
     @property
     def chunk(self) -> tuple[int, ...]:
         """Loops along each axis that are computed and kept at a time."""
-        at_once = SLOW if self.of in _SLOW else ONE_BY_ONE if self.springs is None else BY_CLOSED_FORMS
-        sizes = []
-        for own in reversed(self.axes):  # what lies side by side is kept together
-            sizes.append(min(len(own.values), at_once))
-            at_once = max(1, at_once // sizes[-1])
-        return tuple(reversed(sizes))
+        sizes = [1] * len(self.axes)
+        left = self.at_once
+        stiffness = self.stiffness_axis
+        for k in sorted(range(len(sizes)), key=lambda k: (k != stiffness, -k)):
+            sizes[k] = min(len(self.axes[k].values), left)
+            left = max(1, left // sizes[k])
+        return tuple(sizes)
+
+    @property
+    def stiffness_axis(self) -> int | None:
+        """The axis of the law's stiffness: loops that differ in it alone are kept together."""
+        found = (k for k, own in enumerate(self.parameters) if (own.part, own.key) == ("law", "stiffness"))
+        return next(found, None)
 
     @cached_property
     def layout(self) -> Layout:
@@ -153,10 +163,17 @@ def request(of: str, loop: Loop, vary: Mapping[str, object]) -> Request:
         axis(own.name, given, own.unit) for own, given in zip(parameters, vary.values(), strict=True)
     )
     asked = Request(of, loop, parameters, axes)
+    asked = replace(asked, at_once=_at_once(asked))
     if asked.size > MOST_LOOPS:
         raise InputError(f"a sweep has at most {MOST_LOOPS} loops, got {asked.size}: take fewer values")
     _check_ends(asked)
     return asked
+
+
+def _at_once(asked: Request) -> int:
+    if asked.of in _SLOW:
+        return SLOW
+    return ONE_BY_ONE if asked.springs is None else BY_CLOSED_FORMS
 
 
 def _refuse_the_same(parameters: Iterable[Parameter]) -> None:

@@ -9,20 +9,20 @@ from typing import Any
 
 import xarray as xr
 
+from zwidth.chunks.layout import Place
+from zwidth.chunks.store import computed, say
+from zwidth.chunks.workers import Finished, on_cluster, on_processes
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
-from zwidth.maps.layout import Place
-from zwidth.maps.store import computed, say
-from zwidth.maps.sweeps.compute import compute
-from zwidth.maps.sweeps.dataset import dataset
-from zwidth.maps.sweeps.files import PARQUET, ZARR, begun, save_table, saved_table
-from zwidth.maps.sweeps.loops import Loop
-from zwidth.maps.sweeps.request import Request, request
-from zwidth.maps.workers import Finished, on_cluster, on_processes
 from zwidth.pairs import Pair
 from zwidth.quantity.units import parse_number
+from zwidth.sweeps.compute import compute
+from zwidth.sweeps.dataset import dataset
+from zwidth.sweeps.files import PARQUET, ZARR, begun, save_table, saved_table
+from zwidth.sweeps.loops import Loop
+from zwidth.sweeps.request import Request, request
 from zwidth.traces.progress import progress_bar
 
 SUFFIXES = (ZARR, PARQUET)

@@ -12,10 +12,11 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
+from zwidth.chunks.layout import Layers, Place
 from zwidth.errors import InputError
-from zwidth.maps.layout import Layers, Place
 
 
 class Worker:
@@ -30,9 +31,9 @@ class Worker:
     """
 
     def __init__(self, compute: Callable[[Any, Place], Layers], ready: Any) -> None:
-        command = [sys.executable, "-c", "from zwidth.maps.worker import serve; serve()"]
+        command = [sys.executable, "-c", "from zwidth.chunks.worker import serve; serve()"]
         path = os.pathsep.join(filter(None, sys.path))
-        self._process = subprocess.Popen(
+        self.process = subprocess.Popen(
             command,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -50,7 +51,7 @@ class Worker:
         """
         try:
             self._say(place)
-            failed, answer = pickle.load(self._process.stdout)  # type: ignore[arg-type]  # it is a pipe
+            failed, answer = pickle.load(self.process.stdout)  # type: ignore[arg-type]  # it is a pipe
         except (EOFError, OSError, pickle.UnpicklingError):
             raise InputError(
                 "a process that computed for this one ended before its time, for want of memory or because "
@@ -62,11 +63,14 @@ class Worker:
 
     def dismiss(self) -> None:
         """End it; what it is at is lost."""
-        self._process.kill()
-        self._process.communicate()
+        self.process.kill()
+        self.process.wait()
+        for stream in (self.process.stdin, self.process.stdout):
+            with suppress(OSError):  # what was still to be said to it
+                stream.close()  # type: ignore[union-attr]  # both are pipes
 
     def _say(self, message: Any) -> None:
-        stream = self._process.stdin
+        stream = self.process.stdin
         assert stream is not None
         pickle.dump(message, stream)
         stream.flush()

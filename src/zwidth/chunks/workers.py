@@ -9,9 +9,9 @@ from itertools import islice
 from queue import SimpleQueue
 from typing import Any
 
+from zwidth.chunks.layout import Layers, Place
+from zwidth.chunks.worker import Worker
 from zwidth.errors import InputError
-from zwidth.maps.layout import Layers, Place
-from zwidth.maps.worker import Worker
 
 Compute = Callable[[Any, Place], Layers]
 """From what was made ready once, and a chunk, to its layers."""

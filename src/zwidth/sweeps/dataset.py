@@ -6,15 +6,15 @@ from typing import Any
 
 import xarray as xr
 
+from zwidth.chunks.layout import Layers
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
-from zwidth.maps.layout import Layers
-from zwidth.maps.sweeps.columns import REFUSED
-from zwidth.maps.sweeps.request import FORMAT, Request
 from zwidth.passivity.document import to_json
 from zwidth.passivity.scope import scope_of
 from zwidth.quantity.exact import Interval
+from zwidth.sweeps.columns import REFUSED
+from zwidth.sweeps.request import FORMAT, Request
 
 _OF_EACH = ("contact", "encoder", "fed_with", "law", "damping", "coulomb_friction", "clamped")
 """Entries of a scope that may be another at every loop: they are variables, or the loop's own numbers."""
@@ -82,7 +82,7 @@ def _why(asked: Request, place: tuple[int, ...]) -> str:
         f"{own.name} = {own.values[n]:.12g} {own.unit}" for own, n in zip(asked.axes, place, strict=True)
     )
     try:
-        asked.question.answer(asked.at(place))
+        asked.question.answer(asked.at(place), {})
     except InputError as error:
         return f"{values}: {error}"
     return values

@@ -170,8 +170,8 @@ def _arms(*names: str) -> Callable[[Loop, Changes], Loop]:
     return change
 
 
-_LINK = {"link_delay": ("there", "back"), "link_delay_back": ("back",)}
-"""Both ways, and one of them."""
+_LINK = ("link_delay", "link_delay_back")
+"""Both ways, and the way back alone."""
 
 
 def _of_coupling(loop: Loop) -> Units:
@@ -184,9 +184,11 @@ def _of_coupling(loop: Loop) -> Units:
 
 def _coupling(loop: Loop, new: Changes) -> Loop:
     assert isinstance(loop.subject, Pair)
-    given = {key: value for key, value in new.items() if key not in _LINK}
-    for key in _LINK:  # the way back last: it may be another
-        given |= dict.fromkeys(_LINK[key], new[key]) if key in new else {}
+    given: dict[str, Any] = {key: value for key, value in new.items() if key not in _LINK}
+    there, back = loop.subject.delay
+    both = new.get("link_delay")
+    there, back = (there, back) if both is None else (both, both)
+    given["delay"] = there, new.get("link_delay_back", back)
     return replace(loop, subject=loop.subject.replace(**given))
 
 

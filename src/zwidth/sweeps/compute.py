@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+
 import numpy as np
 
+from zwidth.chunks.layout import Layers, Place
 from zwidth.errors import InputError
-from zwidth.maps.layout import Layers, Place
-from zwidth.maps.sweeps.columns import REFUSED
-from zwidth.maps.sweeps.request import Request
+from zwidth.sweeps.columns import REFUSED
+from zwidth.sweeps.questions import Line
+from zwidth.sweeps.request import Request
 
 
 def compute(asked: Request, place: Place) -> Layers:
@@ -21,16 +24,19 @@ def compute(asked: Request, place: Place) -> Layers:
     else:
         decided = asked.springs.layers(cells, shape, asked.columns)
         layers, left = decided.layers, list(map(tuple, np.argwhere(~decided.sure)))
+    lines: defaultdict[tuple[int, ...], Line] = defaultdict(dict)
     for cell in left:
-        _one(asked, layers, cell, tuple(own[n] for own, n in zip(ranges, cell, strict=True)))
+        place = tuple(own[n] for own, n in zip(ranges, cell, strict=True))
+        line = lines[tuple(n for k, n in enumerate(place) if k != asked.stiffness_axis)]
+        _one(asked, layers, cell, place, line)
     return layers
 
 
-def _one(asked: Request, layers: Layers, cell: tuple[int, ...], place: tuple[int, ...]) -> None:
+def _one(asked: Request, layers: Layers, cell: tuple[int, ...], place: tuple[int, ...], line: Line) -> None:
     """Ask about one loop; one that cannot be has no answer."""
     columns = asked.columns
     try:
-        answer = {**asked.question.answer(asked.at(place)), REFUSED: False}
+        answer = {**asked.question.answer(asked.at(place), line), REFUSED: False}
     except InputError:
         answer = {name: () if own.several else None for name, own in columns.items()} | {REFUSED: True}
     for name, own in columns.items():

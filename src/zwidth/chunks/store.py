@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from zwidth.chunks.layout import Layers, Layout, Place
 from zwidth.errors import InputError
-from zwidth.maps.layout import Layers, Layout, Place
 from zwidth.writing import first_line
 
 

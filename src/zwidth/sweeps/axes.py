@@ -26,7 +26,7 @@ from zwidth.specification.table import quoted
 MOST_VALUES = 1_000_000
 """Of one parameter; more are a mistake in the numbers."""
 
-_WRITTEN = "such as 100:3000:50, 1:1000:20 log, or a list 0, 1 ms, 2 ms"
+_WRITTEN = "100:3000:50, 1:1000:20 log, or a list 0, 1 ms, 2 ms"
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def _values(name: str, given: object, unit: str) -> tuple[float, ...]:
     if isinstance(given, Iterable):
         return tuple(float(parse_number(_plain(value), unit, name)) for value in given)
     raise InputError(
-        f"{name} is varied over a text, {_WRITTEN}; over (start, stop, count); or over a list of values"
+        f"{name} is varied over a text such as {_WRITTEN}; over (start, stop, count); or over a list"
     )
 
 

@@ -1,0 +1,1 @@
+"""Arrays that are computed and kept piece by piece: what is stopped goes on, whoever computes."""

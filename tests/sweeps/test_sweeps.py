@@ -1,0 +1,307 @@
+"""Sweeps: each loop answered as by itself, the same bits however they are computed, one line on bad input."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable
+from math import inf, nextafter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from strategies import seeds
+
+import zwidth as zw
+from zwidth.chunks.worker import Worker
+from zwidth.passivity.check import check_by_closed_forms
+from zwidth.sweeps import request as requests
+from zwidth.sweeps.axes import axis
+from zwidth.sweeps.compute import compute
+from zwidth.sweeps.loops import Loop, changed, parameter
+from zwidth.sweeps.questions import checked
+from zwidth.sweeps.request import request
+from zwidth.sweeps.springs import largest_spring
+
+PADDLE = zw.catalogue.device("haptic-paddle")
+WALL = zw.Wall(100)
+GRID = {"stiffness": "50:600:7", "delay": "0:2 ms:5"}
+
+
+@pytest.mark.parametrize(
+    ("given", "values"),
+    [
+        ("100:3000:3", (100, 1550, 3000)),
+        ("0:5 ms:3", (0, 0.0025, 0.005)),
+        ("1:100:3 log", (1, 10, 100)),
+        ("0, 1, 2.5 ms", (0, 0.001, 0.0025)),
+        ("1e-3, 2e-3", (0.001, 0.002)),
+        ((0, "3 ms", 4), (0, 0.001, 0.002, 0.003)),
+        ((1, 8, 4, "log"), (1, 2, 4, 8)),
+        (np.array([0.1, 0.2]), (0.1, 0.2)),
+        (["1 ms", 0.5], (0.001, 0.5)),
+    ],
+)
+def test_values_are_read(given: object, values: tuple[float, ...]) -> None:
+    """Ranges, ranges of equal ratios and lists; each number the double nearest to what is meant."""
+    assert axis("delay", given, "s").values == values
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("1:2", "start:stop:count"),
+        ("2:1:5", "swap the ends"),
+        ("1:2:1", "whole number from 2"),
+        ("1:2:2.5", "whole number from 2"),
+        ("1:2:many", "whole number from 2"),
+        ("0:2:5 log", "begins above 0"),
+        ("1:2:5 ms", "log alone"),
+        ("1 ms : 0.005:2", "unit belongs after the last"),
+        ("1, 2, 1", "twice"),
+        ("1, two", "delay is in s"),
+        ("0:1 N:3", "delay is in s"),
+        ([], "no value"),
+        (3, "varied over a text"),
+        ((1, 2, 3, "lin"), "may come"),
+    ],
+)
+def test_bad_values_are_refused(given: object, message: str) -> None:
+    """One message each."""
+    with pytest.raises(zw.InputError, match=message):
+        axis("delay", given, "s")
+
+
+def one_by_one(asked: requests.Request) -> dict[str, Any]:
+    """Every loop asked by itself."""
+    shape = tuple(len(own.values) for own in asked.axes)
+    found = {name: np.zeros(shape, own.kind) for name, own in asked.columns.items()}
+    for place in np.ndindex(shape):
+        for name, value in checked(asked.at(place), {}).items():
+            found[name][place] = asked.columns[name].kept(value)
+    return found
+
+
+@seeds(6)
+def test_springs_are_decided_as_by_check(seed: int) -> None:
+    """Whatever is varied, at the limit and a double beyond it too: the same words and largest spring."""
+    drawn = np.random.default_rng(seed)
+    device = PADDLE.replace(
+        damping=zw.Exact(f"{drawn.uniform(0.01, 1):.3g}"),
+        coulomb_friction=zw.Exact(f"{drawn.uniform(0, 0.1):.3g}"),
+        delay=drawn.choice(["0 ms", "0.3 ms", "1 ms", "2.5 ms"]),
+    )
+    largest = check_by_closed_forms(device, WALL).max_stiffness or 1.0
+    vary = {"stiffness": [0, largest, nextafter(largest, inf), largest * 1.3]} | dict(
+        drawn.permutation(
+            np.array(
+                [
+                    ("damping", "0, 0.15"),
+                    ("rate", "500, 1234.5"),
+                    ("delay", "0, 0.5, 1, 3.7 ms"),
+                    ("resolution", "0, 1, 300 um"),
+                    ("coulomb_friction", "0, 0.02"),
+                    ("mass", "30, 40 g"),
+                ]
+            )
+        )[:2]
+    )
+    asked = request("check", Loop(device, WALL), vary)
+    assert asked.springs is not None
+    layers = compute(asked, (0,) * len(vary))
+    for name, expected in one_by_one(asked).items():
+        np.testing.assert_array_equal(layers[name], expected, err_msg=name)
+
+
+def test_the_largest_spring_is_a_double_at_its_limit() -> None:
+    """Passive there and not at the next, with and without friction as the limit; none without damping."""
+    period, count = PADDLE.exact("sample_period"), PADDLE.exact("resolution")
+    numbers = PADDLE.exact("damping"), PADDLE.exact("coulomb_friction"), count, period
+    assert largest_spring(*numbers, period * 0) == 300
+    less = numbers[0], numbers[1] / 1000, count, period
+    assert (
+        largest_spring(*less, period * 0)
+        == check_by_closed_forms(PADDLE.replace(coulomb_friction=numbers[1] / 1000), WALL).max_stiffness
+    )
+    assert largest_spring(numbers[0] * 0, *numbers[1:], period * 0) == 0
+
+
+def arrays(found: xr.Dataset) -> dict[str, bytes]:
+    """Every number and word of a sweep."""
+    return {str(name): values.values.tobytes() for name, values in found.variables.items()}
+
+
+def stopped_after(chunks: int) -> Callable[[int, int], None]:
+    """A progress that stops the sweep, as Ctrl-C would."""
+
+    def report(done: int, total: int) -> None:
+        if done >= chunks:
+            raise KeyboardInterrupt
+
+    return report
+
+
+@pytest.mark.parametrize("name", ["sweep.zarr", "sweep.parquet"])
+def test_a_sweep_goes_on(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Stopped twice and gone on with, from the file again, from the file alone: the same bits."""
+    monkeypatch.setattr(requests, "BY_CLOSED_FORMS", 6)
+    whole = zw.sweep(PADDLE, WALL, vary=GRID, workers=1)
+    path = tmp_path / name
+    for _ in range(2):
+        with pytest.raises(KeyboardInterrupt):
+            zw.sweep(PADDLE, WALL, vary=GRID, workers=1, path=path, progress=stopped_after(2))
+    with pytest.raises(zw.InputError, match=r"no such file|not whole"):
+        zw.load_sweep(path)
+    left: list[int] = []
+    found = zw.sweep(
+        PADDLE, WALL, vary=GRID, workers=1, path=path, progress=lambda done, total: left.append(done)
+    )
+    assert 3 < left[0] <= len(left) + left[0]
+    again = zw.sweep(PADDLE, WALL, vary=GRID, path=path, progress=stopped_after(0))
+    for other in (found, again, zw.load_sweep(path)):
+        assert arrays(other) == arrays(whole)
+        assert other.attrs == whole.attrs
+        xr.testing.assert_identical(other, whole)
+    with pytest.raises(zw.InputError, match="another sweep"):
+        zw.sweep(PADDLE, WALL, vary={**GRID, "delay": "0:3 ms:5"}, path=path)
+
+
+def test_processes_compute_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two of them, chunks in whatever order."""
+    monkeypatch.setattr(requests, "BY_CLOSED_FORMS", 6)
+    alone, two = (zw.sweep(PADDLE, WALL, vary=GRID, workers=workers) for workers in (1, 2))
+    assert arrays(alone) == arrays(two)
+
+
+def test_a_worker_that_is_gone_is_told() -> None:
+    """One that was killed: a message, and no waiting for ever; one that nobody asks any more ends."""
+    asked = request("check", Loop(PADDLE, WALL), {"stiffness": "1, 2"})
+    worker = Worker(compute, asked)
+    assert worker.ask((0,))["outcome"].tolist() == [1, 1]
+    worker.process.send_signal(signal.SIGKILL)
+    worker.process.wait()
+    with pytest.raises(zw.InputError, match="ended before its time"):
+        worker.ask((0,))
+    worker.dismiss()
+    other = Worker(compute, asked)
+    assert other.process.stdin is not None
+    other.process.stdin.close()
+    assert other.process.wait() == 0
+    other.dismiss()
+
+
+def test_every_question_is_answered_as_by_itself() -> None:
+    """A law with memory, a limit, a touch, a pair: the numbers of the function that answers one."""
+    soft = zw.Maxwell(stiffness=100, damping=3)
+    found = zw.sweep(PADDLE, soft, vary={"stiffness": [100, 2000]}, workers=1)
+    for k in found.stiffness.values:
+        verdict = check_by_closed_forms(PADDLE, soft.replace(stiffness=k))
+        one = found.sel(stiffness=k)
+        assert (one.outcome, one.contact, one.binding) == (
+            verdict.outcome,
+            verdict.scope.contact,
+            verdict.limit,
+        )
+        assert one.max_stiffness == verdict.max_stiffness
+    damped = zw.Wall(100, "0.05")
+    limits = zw.sweep(PADDLE, damped, of="limit", vary={"rate": "1, 2 kHz"}, workers=1)
+    bracket = zw.limit(PADDLE.replace(rate="2 kHz"), damped, iterate=False)
+    assert limits.proved_passive.values[1] == bracket.proved_passive
+    assert limits.proved_active.values[1] == bracket.proved_active
+    pair = zw.Pair(PADDLE, PADDLE, stiffness=50)
+    pairs = zw.sweep(pair, of="pair", vary={"link-delay": "0, 2 ms", "rate": [1000]}, workers=1)
+    verdict_of_two = zw.check(pair.replace(delay="2 ms"))
+    assert pairs.outcome.values[1, 0] == verdict_of_two.outcome
+    assert pairs.max_stiffness.values[1, 0] == verdict_of_two.largest_stiffness
+
+
+def test_a_touch_is_simulated_as_by_itself() -> None:
+    """The measures of the traces, energy got out among them."""
+    hand = zw.operators.Dowel(force=1)
+    touches = zw.sweep(
+        PADDLE, zw.Wall(770), of="simulate", operator=hand, duration="0.05 s", workers=1,
+        vary={"operator.force": "1, 2", "stiffness": [770]},
+    )  # fmt: skip
+    trace = zw.simulate(PADDLE, zw.Wall(770), zw.operators.Dowel(force=2), 0.05)
+    row = zw.traces.compare_traces({"one": trace}).rows["one"]
+    assert {name: float(touches[name].values[1, 0]) for name in row} == row
+    assert touches["energy_extracted"].attrs["units"] == "J"
+
+
+def test_what_an_outcome_is_about_stands_beside_it() -> None:
+    """No claim without its contact and encoder; what all have in common is in the scope."""
+    found = zw.sweep(PADDLE, zw.Wall(30, "0.05"), vary={"delay": "0, 0.3 ms"}, workers=1)
+    assert found.outcome.values.tolist() == ["passive", "passive in contact"]
+    assert found.contact.values.tolist() == ["made and broken", "kept"]
+    assert set(found.encoder.values.tolist()) == {"counted"}
+    assert '"which": "every"' in found.attrs["scope"]
+    assert "by closed forms" in found.attrs["answers"]
+
+
+def test_a_wheel_in_degrees() -> None:
+    """Counts in a turn, degrees and revolutions, as options have them."""
+    wheel = zw.rotary(
+        inertia="6 g*m^2", damping="0.05", coulomb_friction="0.02", counts_per_turn=65536, rate=1000
+    )
+    wall = zw.Wall("2 N*m/rad")
+    found = zw.sweep(wheel, wall, vary={"counts_per_turn": [4096, 65536], "stiffness": "1, 5 N*m/deg"})
+    assert found.stiffness.attrs["units"] == "N*m/rad"
+    for n in (0, 1):
+        for k in (0, 1):
+            loop = Loop(wheel, wall)
+            own = [parameter(loop, name) for name in found.dims]
+            at = changed(loop, {own[0]: found.counts_per_turn.values[n], own[1]: found.stiffness.values[k]})
+            assert found.outcome.values[n, k] == check_by_closed_forms(at.subject, at.environment).outcome
+    coarse = zw.sweep(wheel, wall, vary={"resolution": "0.1, 1 deg"})
+    assert coarse.resolution.values[1] == pytest.approx(np.pi / 180)
+
+
+def test_a_loop_that_cannot_be_is_said_to_be_refused() -> None:
+    """Two rates that do not go into each other: no answer, and why of the first."""
+    pair = zw.Pair(PADDLE, PADDLE, stiffness=50)
+    found = zw.sweep(pair, of="pair", vary={"leader.rate": [1000, 1500, 2000]}, workers=1)
+    assert found.refused.values.tolist() == [False, True, False]
+    assert found.outcome.values[1] == ""
+    assert np.isnan(found.max_stiffness.values[1])
+    assert "leader.rate = 1500 Hz: one arm reads a whole number" in found.attrs["first_refused"]
+
+
+@pytest.mark.parametrize(
+    ("vary", "more", "message"),
+    [
+        ({}, {}, "nothing is varied"),
+        ({"stifness": "1, 2"}, {}, 'did you mean "stiffness"'),
+        ({"stiffness": "-1, 2"}, {}, r"at stiffness = -1 N/m: stiffness must be ≥ 0"),
+        ({"rate": "1, 2", "sample_period": "1, 2"}, {}, "the same number"),
+        ({"stiffness": (0, 1, 100_000), "delay": (0, 1, 1000)}, {}, "at most 20000000 loops"),
+        ({"stiffness": "1, 2"}, {"of": "serve"}, "a sweep is of check, limit, simulate, pair"),
+        ({"stiffness": "1, 2"}, {"of": "pair"}, "two arms"),
+        ({"stiffness": "1, 2"}, {"of": "simulate"}, "needs a hand"),
+        ({"stiffness": "1, 2"}, {"workers": 0}, "workers must be"),
+        ({"stiffness": "1, 2"}, {"path": "sweep.csv"}, r"ends in \.zarr or \.parquet"),
+        ({"stiffness": "1, 2"}, {"path": "nowhere/sweep.zarr"}, "no directory"),
+        ({"stiffness": "1, 2"}, {"address": "tcp://127.0.0.1:1"}, "no Dask scheduler answers"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_refused_before_work_starts(
+    vary: dict[str, object], more: dict[str, Any], message: str
+) -> None:
+    """One message each."""
+    with pytest.raises(zw.InputError, match=message):
+        zw.sweep(PADDLE, WALL, vary=vary, **more)
+
+
+def test_a_file_that_is_no_sweep(tmp_path: Path) -> None:
+    """Neither read nor written over."""
+    foreign = tmp_path / "x.parquet"
+    foreign.write_bytes(b"no table")
+    with pytest.raises(zw.InputError, match="no sweep that can be read"):
+        zw.load_sweep(foreign)
+    with pytest.raises(zw.InputError, match="another sweep, or none"):
+        zw.sweep(PADDLE, WALL, vary=GRID, path=foreign)
+    assert foreign.read_bytes() == b"no table"
+    with pytest.raises(zw.InputError, match="no such file"):
+        zw.load_sweep(tmp_path / "y.zarr")
+    with pytest.raises(zw.InputError, match=r"\.zarr or \.parquet"):
+        zw.load_sweep(tmp_path / "y.nc")
