@@ -86,6 +86,7 @@ SAID: dict[str, list[tuple[dict[str, Any], str]]] = {
 
 ELSEWHERE = {
     "intervals": "a line of its own beside the loop, see below",
+    "bounds": "the ends of the intervals, in the same line",
     "also": "more than the claim, never less",
 }
 
