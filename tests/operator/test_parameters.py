@@ -69,6 +69,9 @@ def test_every_number_has_units_a_meaning_and_a_place_in_the_docstring(kind: typ
 @EACH
 def test_equal_numbers_are_equal_hands(kind: type[Any]) -> None:
     """Hands are values: equal, hashable, and rebuilt by their repr."""
+    if not dataclasses.fields(kind):
+        assert (kind(), hash(kind())) == (kind(), hash(kind()))
+        return
     first = dataclasses.fields(kind)[0].name
     value = 0.75 * getattr(kind(), first)
     hand, same = kind(**{first: value}), kind(**{first: value})
@@ -86,7 +89,8 @@ def test_describes_itself_with_every_number(kind: type[ParametricOperator]) -> N
         line = hand.describe(motion)
         assert "\n" not in line
         for name, quantity in kind.parameters().items():
-            assert f"{getattr(hand, name):.6g} {unit_text(quantity.unit_for(motion))}" in line
+            unit, value = unit_text(quantity.unit_for(motion)), getattr(hand, name)
+            assert f"{value:.6g} {unit}" in line or f"{1e6 * value:.6g} µ{unit}" in line
 
 
 @EACH

@@ -23,6 +23,7 @@ from zwidth.cli.simulate_pair import pair_measures, simulated_pair
 from zwidth.environment import Environment, NonlinearSpring
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import shown
 from zwidth.specification.laws import with_laws
 from zwidth.specification.read import PAIR_TABLES, TABLES, read_tables, specified
@@ -35,6 +36,9 @@ PICTURES = (".png", ".svg", ".pdf")
 SAVED = (".nc", ".parquet", ".csv")
 SOUNDS = (".wav",)
 INTERRUPTED = 130
+
+ANGLES = "angles_in"
+"""The attribute of a saved trace that says in which unit angles are told."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -74,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
     pair = any(name in tables for name in PAIR_TABLES)
     trace, missed = (simulated_pair(arguments, tables), "") if pair else _simulated(arguments, tables)
     if save is not None:
-        save_trace(trace, save, force=True)
+        save_trace(trace.assign_attrs(_angles()), save, force=True)
     if sound is not None:
         save_sound(trace, sound, force=True)
     if plot is not None:
@@ -122,6 +126,12 @@ def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tu
     warn_of_compiling()
     trace = simulate(loop.device, environment, touch.operator, duration, **touch.options)
     return trace, never_reached(trace, environment.met, loop.device.motion)
+
+
+def _angles() -> dict[str, str]:
+    """In which unit angles were asked for, for whoever reads the trace: its numbers are SI."""
+    unit = spoken("rad")[1]
+    return {} if unit == "rad" else {ANGLES: unit}
 
 
 def never_reached(trace: xr.Dataset, met: Environment, motion: str) -> str:

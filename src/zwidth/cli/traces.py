@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import Once
 from zwidth.cli.output import print_json, say_written, writing
-from zwidth.cli.simulate import PICTURES, target
+from zwidth.cli.simulate import ANGLES, PICTURES, target
 from zwidth.errors import InputError
+from zwidth.quantity.spoken import note
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -49,4 +50,6 @@ def _labelled(files: list[str], load: Any) -> Iterator[tuple[str, xr.Dataset]]:
         if name in seen:
             raise InputError(f"{name} is given twice")
         seen.add(name)
-        yield name, load(name)
+        trace = load(name)
+        note(str(trace.attrs.get(ANGLES, "")))
+        yield name, trace

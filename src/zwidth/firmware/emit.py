@@ -26,7 +26,7 @@ from zwidth.passivity.result import Result
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Interval, RealLike, ends
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import quantity_unit, told, told_quantity
+from zwidth.quantity.text import quantity_unit, shown, told, told_quantity
 from zwidth.quantity.units import parse, parse_number
 from zwidth.rendering.rendered import laws_of
 from zwidth.servo.proving import least_friction
@@ -157,7 +157,7 @@ class Emitted(Result):
             *uncounted,
             actuator,
             f"readings from {low * spoken(unit)[0]:.10g} to {to}; beyond them nothing is claimed",
-            f"a force at each sample, {late:g} s after its reading (the delay), held to the next",
+            f"a force at each sample, {shown(late, 's')} after its reading (the delay), held to the next",
         )
 
     def to_dict(self) -> dict[str, Any]:

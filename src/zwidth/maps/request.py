@@ -20,7 +20,6 @@ from zwidth.device import Device
 from zwidth.environment import BackwardDifference, Wall
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
-from zwidth.maps.layout import Layout
 from zwidth.operator import Dowel, Finger, HandsOn
 from zwidth.operator.hand_impedance import HandImpedance, as_hand
 from zwidth.quantity.exact import Exact, RealLike, ends

@@ -52,7 +52,7 @@ def shown(value: float | Exact | Interval | None, unit: str, digits: int = 4) ->
     factor, unit = spoken(unit)
     number *= factor
     power, name = _prefix(number, unit, digits)
-    return f"{number / 10.0**power:.{digits}g} {name}".rstrip()
+    return f"{_rounded(number / 10.0**power, digits)} {name}".rstrip()
 
 
 def _between(value: Interval, unit: str, digits: int) -> str:
@@ -93,7 +93,13 @@ def told(value: float | Exact | Interval, unit: str, digits: int = 6) -> str:
         return f"{number} {unit_text(unit)}".rstrip()
     number = float(value) * factor
     power, name = _instead_of_exponent(number, unit, digits) if number else (0, unit_text(unit))
-    return f"{number / 10.0**power:.{digits}g} {name}".rstrip()
+    return f"{_rounded(number / 10.0**power, digits)} {name}".rstrip()
+
+
+def _rounded(number: float, digits: int) -> str:
+    """So many significant digits; 490, and not 4.9e+02."""
+    text = f"{number:.{digits}g}"
+    return f"{float(text):.0f}" if "e+" in text and abs(number) < 1e6 else text
 
 
 def told_quantity(value: float | Exact | Interval, name: str, motion: str, digits: int = 6) -> str:

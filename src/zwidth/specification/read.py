@@ -284,6 +284,8 @@ def tables_of(text: str, name: str, kinds: Sequence[str] = LOOP_TABLES) -> dict[
         if key == "law" and key not in kinds:
             raise InputError(f"{name}: [[law]]: {NOT_PROVED}")
         if key not in kinds:
+            if key == "environment":
+                raise InputError(f"{name}: [environment]: {_ALONE}")
             hint = _CHECKED_BY.get(key) or suggestion(key, kinds)
             raise InputError(f"{name}: there is no table or key {quoted(key)} in a specification; {hint}")
         if key == "law":
@@ -297,6 +299,11 @@ def tables_of(text: str, name: str, kinds: Sequence[str] = LOOP_TABLES) -> dict[
         for key, value in content.items()
     }
 
+
+_ALONE = (
+    "this command takes a device alone; put [environment] into a file of its own, and zwidth check, simulate "
+    "and others take both files"
+)
 
 _CHECKED_BY = {
     **dict.fromkeys((*TABLES, "follower_operator"), "it is for zwidth simulate"),

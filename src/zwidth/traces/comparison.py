@@ -13,6 +13,7 @@ from zwidth.energy import ledger
 from zwidth.errors import InputError
 from zwidth.loop.trace import UNITS
 from zwidth.passivity.result import Documented
+from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import unit_text
 from zwidth.showing import Part, Table
 
@@ -108,12 +109,18 @@ class Comparison(Documented):
 
     def table(self) -> list[list[str]]:
         """Headings, then one line of text per trace."""
-        units = self.units()
+        told = {name: spoken(unit) for name, unit in self.units().items()}
         head = [
             "trace",
-            *(f"{c.heading} [{unit_text(units[n])}]" if units[n] else c.heading for n, c in COLUMNS.items()),
+            *(
+                f"{c.heading} [{unit_text(told[n][1])}]" if told[n][1] else c.heading
+                for n, c in COLUMNS.items()
+            ),
         ]
-        lines = [[label, *(_written(row[name]) for name in COLUMNS)] for label, row in self.rows.items()]
+        lines = [
+            [label, *(_written(told[name][0] * row[name]) for name in COLUMNS)]
+            for label, row in self.rows.items()
+        ]
         return [head, *lines]
 
     def figure(self) -> Figure:

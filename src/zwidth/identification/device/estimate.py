@@ -13,6 +13,7 @@ from typing import NamedTuple
 from scipy import stats
 
 from zwidth.identification.logs import Finding
+from zwidth.quantity.spoken import spoken
 
 _UNITS = {
     "mass": ("kg", "kg m²"),
@@ -66,8 +67,9 @@ class Estimate(NamedTuple):
         return low > 0 or high < 0
 
     def __str__(self) -> str:
-        low, high = self.interval()
-        return f"{self.value:.4g} {self.unit} (95 %: {low:.4g} to {high:.4g})"
+        factor, unit = spoken(self.unit)
+        low, high = (factor * end for end in self.interval())
+        return f"{factor * self.value:.4g} {unit} (95 %: {low:.4g} to {high:.4g})"
 
 
 def unit_of(parameter: str, motion: str) -> str:

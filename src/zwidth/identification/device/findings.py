@@ -8,7 +8,7 @@ from zwidth.identification.device.choice import SURE
 from zwidth.identification.device.estimate import Directions, Estimate, perhaps_none, unit_of
 from zwidth.identification.device.fit import Found
 from zwidth.identification.logs import Finding
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 
 _SEEN = {
     "slow": "more friction at rest than f_c, as of lubricated contacts (Stribeck),",
@@ -38,10 +38,13 @@ def findings(
             "out of it; a hand may be quick one way and slow the other, so walls rest on the smaller",
         )
     yield from perhaps_none(estimates, ("damping", "coulomb_friction"))
-    per_second = quantity_unit("friction_speed", found.motion)
     for name, what in _SEEN.items():
         if name in estimates:
-            until = f", gone at {found.moments.knee:.3g} {per_second}" if name == "slow" else ""
+            until = (
+                f", gone at {told_quantity(found.moments.knee, 'friction_speed', found.motion, 3)}"
+                if name == "slow"
+                else ""
+            )
             text = f"{what} is seen and fitted: {estimates[name]}{until}"
             yield Finding(kind=_KINDS.get(name, name.replace("_", " ")), text=text)
     yield from _bend(found, names, slopes, speed)
@@ -53,10 +56,10 @@ def _bend(found: Found, names: tuple[str, ...], slopes: Directions, speed: float
         return
     more = () if "slow" in names else ("slow",)
     if found.sees(names, "quadratic") or found.sees((*names, *more), "quadratic"):
-        unit = quantity_unit("friction_speed", found.motion)
+        at = told_quantity(speed, "friction_speed", found.motion, 3)
         yield Finding(
             kind="bent friction",
-            text=f"friction is not f_c + b |v|: at {speed:.3g} {unit} its slope is {slopes.weaker}; "
+            text=f"friction is not f_c + b |v|: at {at} its slope is {slopes.weaker}; "
             "what is proved rests on the largest model below the friction curve",
         )
 

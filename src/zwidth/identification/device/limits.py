@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.spoken import spoken
+from zwidth.quantity.text import told_quantity
 
 if TYPE_CHECKING:
     from zwidth.identification.device.estimate import Estimate
@@ -80,9 +82,8 @@ def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
     found = limits(identified)
     binding = min(found, key=lambda limit: limit.interval(confidence)[0])
     name = {"damping": "damping", "coulomb_friction": "Coulomb friction"}[binding.parameter]
-    unit = quantity_unit("stiffness", identified.motion)
-    low, _ = binding.interval(confidence)
-    lines = [f"{name} limits the wall: {binding.symbol} ≥ {low:.4g} {unit} at {percent(confidence)}"]
+    least = told_quantity(binding.interval(confidence)[0], "stiffness", identified.motion, 4)
+    lines = [f"{name} limits the wall: {binding.symbol} ≥ {least} at {percent(confidence)}"]
     longer = _times_longer(binding.estimate, confidence)
     if longer < inf:
         lines.append(
@@ -94,16 +95,18 @@ def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
             f"a longer log would not halve the interval of {name}: half of it and more is what means over "
             f"{1e3 * identified.pulse_length:.3g} ms may be off; smoother, longer strokes allow longer ones"
         )
-    speed = quantity_unit("friction_speed", identified.motion)
+    factor, speed = spoken(GLOSSARY["friction_speed"].unit_for(identified.motion))
+    inward, outward = (factor * fast for fast in identified.fastest)
     lines.append(
-        f"friction was seen up to {identified.fastest[0]:.3g} {speed} into the wall and "
-        f"{identified.fastest[1]:.3g} out of it; at higher speeds it is not known: "
+        f"friction was seen up to {inward:.3g} {speed} into the wall and {outward:.3g} out of it; at "
+        "higher speeds it is not known: "
         "log quicker strokes, zwidth plan --speed says which"
     )
     slow, quick = np.quantile(np.abs(identified.points["speed"].values), [0.1, 0.9])
     if quick < NARROW * slow:
         lines.append(
-            f"most of the motion is between {slow:.2g} and {quick:.2g} {speed}: slower and quicker strokes "
+            f"most of the motion is between {factor * slow:.2g} and {factor * quick:.2g} {speed}: slower and "
+            "quicker strokes "
             "tell damping and Coulomb friction apart"
         )
     return tuple(lines)

@@ -22,7 +22,7 @@ from zwidth.errors import InputError
 from zwidth.identification.device.design import PARAMETERS, Stroke, best_shares, covariance
 from zwidth.identification.device.identified import Identified
 from zwidth.quantity.exact import Interval, ends
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 
 RUN = 30.0
 """Length of a run [s]: a load cell is zeroed again after it."""
@@ -143,18 +143,21 @@ def _protocol(plan: MeasurementPlan) -> Iterator[str]:
 def _reached(plan: MeasurementPlan) -> str:
     """Up to which speed friction will be seen, and what is known of it: a promise ends there."""
     will = max(s.speed for s in plan.strokes) / MARGIN
-    unit = quantity_unit("friction_speed", plan.guess.motion)
-    told = f"Friction will be seen up to some {will:.2g} {unit}; at higher speeds it will not be known."
+    seen = told_quantity(will, "friction_speed", plan.guess.motion, 2)
+    told = f"Friction will be seen up to some {seen}; at higher speeds it will not be known."
     if plan.guess.friction_speed is None:
         return told
     before = float(ends(plan.guess.friction_speed)[0])
     if before >= will:
         told = f"{told[:-1]}: state the speed that a hand may have."
-    return f"So far it was seen up to {before:.3g} {unit}. {told}"
+    so_far = told_quantity(before, "friction_speed", plan.guess.motion, 3)
+    return f"So far it was seen up to {so_far}. {told}"
 
 
 def _spoken(stroke: Stroke, share: float, rotary: bool) -> str:
-    size = f"{stroke.length:.3g} rad" if rotary else f"{100 * stroke.length:.3g} cm"
+    size = (
+        told_quantity(stroke.length, "position", "rotary", 3) if rotary else f"{100 * stroke.length:.3g} cm"
+    )
     count = max(round(share * RUN / stroke.duration), 1)
     return f"{count} strokes of some {size}, {stroke.duration:.3g} s each, to and fro."
 

@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from zwidth.identification.device.limits import limits, percent
-from zwidth.quantity.text import in_a_table, quantity_unit, unit_text
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.spoken import spoken
+from zwidth.quantity.text import in_a_table, quantity_unit, told_quantity, unit_text
 from zwidth.showing import Lines, Part, Table
 
 if TYPE_CHECKING:
@@ -61,7 +63,7 @@ def rows(identified: IdentifiedNumbers, confidence: float = 0.95) -> list[Row]:
                 estimate = getattr(identified.directions, name)
                 low, high = estimate.interval(confidence)
                 table.append(_row("b", f"  {name}", estimate.value, low, high, estimate.unit))
-    stiffness = quantity_unit("stiffness", identified.motion)
+    stiffness = GLOSSARY["stiffness"].unit_for(identified.motion)
     for limit in limits(identified):
         low, high = limit.interval(confidence)
         table.append(_row(limit.symbol, NAMES[limit.symbol], limit.value, low, high, stiffness))
@@ -70,14 +72,15 @@ def rows(identified: IdentifiedNumbers, confidence: float = 0.95) -> list[Row]:
 
 def facts(identified: IdentifiedNumbers) -> str:
     """What the numbers rest on, in a line."""
-    force, length = (quantity_unit(name, identified.motion) for name in ("force", "position"))
+    force = quantity_unit("force", identified.motion)
+    inward = told_quantity(identified.fastest[0], "friction_speed", identified.motion, 3)
+    outward = told_quantity(identified.fastest[1], "friction_speed", identified.motion, 3)
     return (
         f"r² = {identified.explained:.4f}, noise {identified.force_noise:.3g} {force} per sample, offset "
         f"{identified.offset:.3g} {force}; {identified.strokes} strokes, {identified.pulses} means over "
         f"{1e3 * identified.pulse_length:.3g} ms; T = {identified.sample_period:.6g} s, "
-        f"Δ = {identified.resolution:.6g} {length}\n"
-        f"friction seen up to {identified.fastest[0]:.3g} {length}/s into the wall, "
-        f"{identified.fastest[1]:.3g} out of it"
+        f"Δ = {told_quantity(identified.resolution, 'position', identified.motion)}\n"
+        f"friction seen up to {inward} into the wall, {outward} out of it"
     )
 
 
@@ -103,5 +106,6 @@ def report(identified: IdentifiedNumbers, confidence: float = 0.95) -> Iterable[
 
 
 def _row(symbol: str, name: str, value: float, low: float, high: float, unit: str) -> Row:
-    interval = f"{in_a_table(low)} … {in_a_table(high)}"
-    return Row(symbol, name, in_a_table(value), interval, unit_text(unit.replace(" ", "*")))
+    factor, told = spoken(unit.replace(" ", "*"))
+    interval = f"{in_a_table(factor * low)} … {in_a_table(factor * high)}"
+    return Row(symbol, name, in_a_table(factor * value), interval, unit_text(told))

@@ -15,6 +15,7 @@ from zwidth.identification.logs.table import Table
 from zwidth.quantity.dimension import PI, Dimension, Unit, unit_of
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.spelling import plain, spelled
+from zwidth.quantity.spoken import note
 from zwidth.quantity.units import parse_number
 
 _LENGTH, _ANGLE, _TIME = unit_of("m").dimension, unit_of("rad").dimension, unit_of("s").dimension
@@ -235,6 +236,8 @@ def _by_unit(where: str, quantity: str, unit: str | None, wanted: Dimension, kin
             f'{where} is in counts; say what a count is with scale={{"{quantity}": "0.01 N/count"}}'
         )
     known = _known(unit, where)
+    if known.dimension[4]:
+        note(unit)  # the answers are in the angle of the log
     if known.dimension != wanted:
         electric = known.dimension in (unit_of("V").dimension, unit_of("A").dimension)
         hint = f'; say what it stands for with scale={{"{quantity}": "2 N/{unit}"}}' if electric else ""
