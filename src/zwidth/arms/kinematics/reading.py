@@ -30,6 +30,7 @@ def read_arm(
     torque_limit: Sequence[float] | None = None,
     pose: bool = False,
     rest: dict[str, float] | None = None,
+    whole: bool = False,
 ) -> DescribedArm:
     """Read an arm from a URDF or MJCF file; needs the extra `arms`, which is pinocchio.
 
@@ -52,6 +53,8 @@ def read_arm(
     rest
         In pose, by name: joints at which the wall's rotation is at rest [rad; m]; those that are not named,
         in the middle of their ranges. None: in every orientation, for walls as stiff about every axis.
+    whole
+        Every joint that is not held goes over its whole range, for `zwidth.stiffness_over_postures`.
 
     Raises
     ------
@@ -76,7 +79,7 @@ def read_arm(
     given: dict[str, Any] = {
         "model": model,
         "frame": frame or frames[-1],
-        "joint_range": _ranges(model, m_names, hold),
+        "joint_range": _ranges(model, m_names, {} if whole and hold is None else hold, whole),
         "damping": b,
         "coulomb_friction": tuple(model.friction) if coulomb_friction is None else coulomb_friction,
         "resolution": resolution,
@@ -91,7 +94,9 @@ def read_arm(
     return DescribedArm(**given)
 
 
-def _ranges(model: Any, names: list[str], hold: dict[str, float] | None) -> tuple[tuple[float, float], ...]:
+def _ranges(
+    model: Any, names: list[str], hold: dict[str, float] | None, whole: bool
+) -> tuple[tuple[float, float], ...]:
     _named(hold or {}, names, "hold")
     ranges = []
     for i, name in enumerate(names):
@@ -103,7 +108,7 @@ def _ranges(model: Any, names: list[str], hold: dict[str, float] | None) -> tupl
                 low = high = (low + high) / 2
         ranges.append((low, high))
     moving = [name for name, (low, high) in zip(names, ranges, strict=True) if high > low]
-    if not 1 <= len(moving) <= 2:
+    if not moving or (len(moving) > 2 and not whole):
         raise InputError(f"the map moves one or two joints, here {len(moving)} would move; hold the others")
     return tuple(ranges)
 
