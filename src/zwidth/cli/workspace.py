@@ -12,7 +12,7 @@ from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.cli.workspace_arm import arm_of
 from zwidth.cli.workspace_joints import add_joint_options
 from zwidth.cli.workspace_report import print_workspace
-from zwidth.cli.workspace_wall import WALL_OPTIONS, wall_of
+from zwidth.cli.workspace_wall import WALL_OPTIONS, left_out, wall_of
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
 
@@ -88,14 +88,16 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.postures is not None:
         return _postures(arguments, plot, save)
     space = _verdict(arguments)
+    without = left_out(arguments, space.arm.turns)
     if save is not None:
         _save(space, save)
     if plot is not None:
         space.plot(plot)
     if arguments.json:
-        print_json(json.dumps(space.to_dict(), indent=2, ensure_ascii=False))
+        more = {"wall_leaves_out": without} if without else {}
+        print_json(json.dumps({**space.to_dict(), **more}, indent=2, ensure_ascii=False))
     else:
-        print_workspace(space, arguments.in_full)
+        print_workspace(space, arguments.in_full, without)
         say_written(save, plot)
     return TOLD[space.outcome].status
 
@@ -140,9 +142,10 @@ def _postures(arguments: argparse.Namespace, plot: Path | None, save: Path | Non
     if plot is not None:
         found.plot(plot)
     if arguments.json:
-        print_json(to_json(found.to_dict()))
+        without = left_out(arguments, arm.turns)
+        print_json(to_json({**found.to_dict(), **({"wall_leaves_out": without} if without else {})}))
     else:
-        print_postures(found, arguments.in_full)
+        print_postures(found, arguments.in_full, left_out(arguments, arm.turns))
         say_written(save, plot)
     return TOLD[found.outcome].status
 

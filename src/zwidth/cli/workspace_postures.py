@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from zwidth.cli.workspace_joints import damping_in_words
@@ -12,7 +13,7 @@ if TYPE_CHECKING:
     from zwidth.passivity.workspace import PostureMap
 
 
-def print_postures(found: PostureMap, in_full: bool = False) -> None:
+def print_postures(found: PostureMap, in_full: bool = False, without: Sequence[str] = ()) -> None:
     """Print the verdict, the numbers and what is assumed on standard output."""
     from zwidth.cli.page import blocks, headline, items, more_with_all, page, section, small_print
     from zwidth.passivity.in_short import in_short
@@ -25,6 +26,7 @@ def print_postures(found: PostureMap, in_full: bool = False) -> None:
             ("arm", f"{asked.arm.name}, {asked.arm.joint_count} joints, {shown(asked.rate, 'Hz')}"),
             ("joint damping", damping_in_words(asked.arm.damping)),
             ("wall", wall_in_words(asked.wall)),
+            *(("left out", text) for text in without),
         ]
         if in_full:
             blocks(out, list(found.rows()), about)

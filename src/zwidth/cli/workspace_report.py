@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from math import isfinite
 from typing import TYPE_CHECKING
@@ -24,7 +24,7 @@ _SHOWN = 1e-6
 """Of the sum: what one joint gets less than this is the room for rounding."""
 
 
-def print_workspace(space: Workspace, in_full: bool = False) -> None:
+def print_workspace(space: Workspace, in_full: bool = False, without: Sequence[str] = ()) -> None:
     """Print the verdict and what to change on standard output."""
     from zwidth.cli.page import blocks, grid, headline, items, more_with_all, page, section, small_print
     from zwidth.passivity.in_short import in_short
@@ -34,7 +34,7 @@ def print_workspace(space: Workspace, in_full: bool = False) -> None:
         out.print(headline(space.outcome, TOLD[space.outcome].terminal, space.claim))
         if in_full:
             changes = list(_changes(space))
-            blocks(out, _numbers(space))
+            blocks(out, [*_numbers(space), *(("left out", text) for text in without)])
             section(out, "what to change", [grid(changes)] if changes else [])
             section(out, "assumes", items(space.assumptions, "dim"))
             return
@@ -42,6 +42,7 @@ def print_workspace(space: Workspace, in_full: bool = False) -> None:
         changes = islice(_changes(space), _FEW)  # each of them is a proof: no more than are shown
         do = [("or" if place else "change", f"{name}: {text}") for place, (name, text) in enumerate(changes)]
         arm = [row for row in _asked(space) if row[0] not in _IN_SCOPE]
+        arm += [("left out", text) for text in without]
         assumed = ("assumes", small_print(in_short(space.scope, space.outcome)))
         blocks(out, [*first, *do], [*arm, assumed])
         more_with_all(out, "margin, encoder, every change, assumptions in full")

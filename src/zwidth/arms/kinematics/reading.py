@@ -44,8 +44,8 @@ def read_arm(
         Joints that stay at a value [rad; m], by name; the map moves two joints at most.
         None: of more than two joints, all but the first two are held in the middle of their ranges.
     damping, coulomb_friction, torque_limit
-        Of each joint [N·m·s/rad], [N·m], [N·m]; None: those of the description. Damping may be a
-        matrix, as of `Arm`, in the order of the description's joints.
+        Of each joint [N·m·s/rad], [N·m], [N·m], or one number in a list for all of them; None: those of
+        the description. Damping may be a matrix, as of `Arm`, in the order of the description's joints.
     resolution
         Encoder step of each joint [rad; m]; descriptions have none.
     pose
@@ -69,20 +69,22 @@ def read_arm(
     frames = [str(f.name) for f in model.frames]
     if frame is not None and frame not in frames:
         raise InputError(f"{path.name} has no frame {frame!r}; it has {', '.join(frames[1:21])}")
-    b: Damping = tuple(model.damping) if damping is None else damping
+    b: Damping = tuple(model.damping) if damping is None else _for_each(damping, m)
     if not np.any(b):
         raise InputError(
             f"{path.name} gives no joint any damping, and without damping no wall is passive; "
             "measure it and give damping, or write <dynamics damping=…/> in the description"
         )
-    limits = tuple(model.effortLimit) if torque_limit is None else tuple(torque_limit)
+    limits = tuple(model.effortLimit) if torque_limit is None else tuple(_for_each(torque_limit, m))
     given: dict[str, Any] = {
         "model": model,
         "frame": frame or frames[-1],
         "joint_range": _ranges(model, m_names, {} if whole and hold is None else hold, whole),
         "damping": b,
-        "coulomb_friction": tuple(model.friction) if coulomb_friction is None else coulomb_friction,
-        "resolution": resolution,
+        "coulomb_friction": (
+            tuple(model.friction) if coulomb_friction is None else _for_each(coulomb_friction, m)
+        ),
+        "resolution": _for_each(resolution, m),
         "torque_limit": limits if all(0 < v < np.inf for v in limits) else (),
         "name": str(model.name) or path.stem,
     }
@@ -92,6 +94,12 @@ def read_arm(
     if rest is not None:
         raise InputError("rest is where the rotation of a wall in pose rests; a point does not turn")
     return DescribedArm(**given)
+
+
+def _for_each(values: Any, count: int) -> Any:
+    """One number is that of every joint."""
+    alone = np.ndim(values) == 1 and len(values) == 1
+    return tuple(values) * count if alone else values
 
 
 def _ranges(
