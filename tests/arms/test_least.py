@@ -71,19 +71,19 @@ def test_one_matrix_of_one_joint_and_one_joint_that_is_enough() -> None:
 
 @pytest.mark.parametrize("name", ["two-link", "haply-2diy", "falcon"])
 def test_the_least_damping_proves_the_region(name: str) -> None:
-    """With it the region is proved; half of it is refuted, and so is the same sum shared out alike."""
+    """With it the region is proved; a little less is refuted, and so is the same sum shared out alike."""
     arm = built_in(name, damping=(0.004, 0.002, 0.003)[: 3 if name == "falcon" else 2], resolution=0)
     space = zw.workspace(arm, zw.Wall(900), rate=1000, points=20)
     added, before = np.array(space.least_additions), np.array(arm.damping)
-    assert 0 < added.sum() < len(before) * space.addition_to_all
-    assert added.sum() <= min(space.additions) * (1 + 1e-6)
+    enough, fails = space.added.least
+    assert sum(fails) < sum(enough) < 1.1 * sum(fails)
 
     def outcome(more: Array) -> str:
         return zw.workspace(
             arm.replace(damping=tuple(before + more)), space.wall, rate=1000, points=20
         ).outcome
 
-    assert outcome(added) in ("theorem", "passive")
-    if name != "haply-2diy":  # the bounds of its legs leave much to the checker
-        assert outcome(0.5 * added) == "active"
+    assert outcome(added) == "passive"
+    assert outcome(0.995 * np.array(fails)) == "active"
+    if name != "haply-2diy":  # its motors stand alike, and so does the least
         assert outcome(np.full(len(added), added.sum() / len(added))) == "active"

@@ -36,6 +36,9 @@ class ArmMotion:
     encoder
         "ideal": position and Jacobian are read without steps. "counted": at the readings of the arm's
         encoders.
+    imposed_by
+        "end": a hand at the end holds every joint. "links": it does not, as the arm has more joints than the
+        hand has coordinates; whoever makes this motion holds the links, too.
     """
 
     joints: Array
@@ -46,6 +49,7 @@ class ArmMotion:
     largest_force: float
     largest_moment: float = 0.0
     encoder: str = "ideal"
+    imposed_by: str = "end"
 
     @property
     def energy(self) -> float:

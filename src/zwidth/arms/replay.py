@@ -14,6 +14,8 @@ there are joints.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
@@ -147,10 +149,14 @@ def refuting_motion(
     *,
     counted: bool = False,
 ) -> ArmMotion | None:
-    """A motion near the joints `at` that takes energy out, `counted`: behind its encoders; or None."""
+    """A motion near the joints `at` that takes energy out, `counted`: behind its encoders; or None.
+
+    Of an arm with more joints than the hand has coordinates it is one of hands that hold the links, too.
+    """
     arm = arm.resting(at)
     jacobian = arm.jacobian(at)
-    if not holds_every_joint(jacobian, arm.turns):
+    redundant = jacobian.shape[1] > jacobian.shape[0]
+    if not redundant and not holds_every_joint(jacobian, arm.turns):
         return None
     samples, shape = _worst(arm, wall, sample_period, delay_samples, jacobian)
     turn = np.cos(2 * np.pi / samples * np.arange(samples))
@@ -160,7 +166,7 @@ def refuting_motion(
         if not np.isfinite(motion.energy):
             return None
         if motion.takes_energy:
-            return motion
+            return replace(motion, imposed_by="links" if redundant else "end")
     return None
 
 

@@ -133,7 +133,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
         "gains": Command(
             "are two arms passive with the gains of these files?",
             "Read the gain files of two arms (OpenArm, i2rt YAM, LeRobot, Piper), joint by joint: which are\n"
-            "passive, how stiff each may be, and which gains would be passive.",
+            "passive, how stiff each may be, and which gains would be passive. Of one arm in ROS 2\n"
+            "(ros2_control) each joint is decided by itself.",
             "What no gain file says, such as friction of the joints, rate and delay of the link, is\n"
             "published or assumed where it is not given, and the report says which.\n\n"
             "exit status: 0 every joint passive, 1 one is active, 2 bad input, 3 one is undecided, or the\n"
@@ -141,7 +142,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "examples:\n"
             "  zwidth gains leader.yaml follower.yaml --plant my-arm.toml --link-delay '2 ms'\n"
             "  zwidth gains yam.yml --bilateral-kp 0.1 --ideal-drive\n"
-            "  zwidth gains so101.json --supply-voltage '7.4 V' --both",
+            "  zwidth gains so101.json --supply-voltage '7.4 V' --both\n"
+            "  zwidth gains controllers.yaml --plant my-arm.toml",
         ),
         "map": Command(
             "which walls can this device render?",

@@ -14,7 +14,7 @@ from zwidth.quantity.units import parse_number
 from zwidth.specification.read import question_time
 
 if TYPE_CHECKING:
-    from zwidth.gains import ArmGains, GainsVerdict
+    from zwidth.gains import ArmGains, Controllers, GainsVerdict
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -88,6 +88,8 @@ def run(arguments: argparse.Namespace) -> int:
     """`zwidth gains`: the status says the outcome; 3 where no law of both arms is known."""
     from zwidth.gains import check_gains, read_gains
 
+    if arguments.family is None and _of_controllers(arguments.files):
+        return _held(arguments)
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if plot is not None and arguments.joint is None:
         raise InputError("--plot draws one joint: give --joint too, such as --joint J1")
@@ -122,6 +124,67 @@ def run(arguments: argparse.Namespace) -> int:
         print_gains(verdict, arguments.in_full)
         say_written(save)
     return exit_status(verdict.outcome)
+
+
+def _of_controllers(files: list[str]) -> bool:
+    """One file, with gains of ros2_control."""
+    from zwidth.gains.controllers import is_of_controllers
+    from zwidth.gains.file import read_table
+
+    return len(files) == 1 and is_of_controllers(read_table(files[0]))
+
+
+def _held(arguments: argparse.Namespace) -> int:
+    """The joints of one arm, each held at a target by the spring of its controller."""
+    from zwidth.gains import check_controllers, read_controllers
+    from zwidth.passivity.document import to_json
+
+    for option in (
+        "joint",
+        "plot",
+        "save",
+        "drive_rate",
+        "bilateral_kp",
+        "supply_voltage",
+        "link_delay_back",
+    ):
+        if getattr(arguments, option) is not None:
+            name = option.replace("_", "-")
+            raise InputError(f"--{name} is of two arms; these are the gains of one arm: leave it out")
+    for option in ("both", "ideal_drive", "no_compensation"):
+        if getattr(arguments, option):
+            name = option.replace("_", "-")
+            raise InputError(f"--{name} is of two arms; these are the gains of one arm: leave it out")
+    controllers = read_controllers(arguments.files[0])
+    if not controllers.joints and controllers.cartesian:
+        return _cartesian(controllers, arguments)
+    if arguments.plant is None:
+        raise InputError(
+            "no gain file gives the damping of the joints, and it decides: give --plant with a TOML file "
+            "that "
+            "has [arm] damping = … and coulomb_friction = …"
+        )
+    found = check_controllers(controllers, arguments.plant, arguments.rate, arguments.link_delay)
+    if arguments.json:
+        print_json(to_json(found.to_dict()))
+    else:
+        from zwidth.cli.gains_report import print_held
+
+        print_held(found)
+    return exit_status(found.outcome)
+
+
+def _cartesian(controllers: Controllers, arguments: argparse.Namespace) -> int:
+    """An impedance at the end: what it is, and which command decides it."""
+    if arguments.json:
+        from zwidth.passivity.document import to_json
+
+        print_json(to_json(controllers.to_dict()))
+    else:
+        from zwidth.cli.gains_report import print_cartesian
+
+        print_cartesian(controllers, arguments.files[0])
+    return exit_status("undecided")
 
 
 def _of_one(

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from zwidth.cli.page import headline, items, more_with_all, page, section
 from zwidth.cli.pair_report import print_pair
-from zwidth.gains import ArmGains, GainsVerdict
+from zwidth.gains import ArmGains, Controllers, GainsVerdict, HeldJoints
 from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.pairs import PairVerdict
 from zwidth.passivity.pairs.in_short import pair_in_short
@@ -43,6 +43,36 @@ def print_joint(verdict: PairVerdict, notes: Iterable[str], in_full: bool = Fals
     said = set(verdict.small_print())
     with page() as out:
         section(out, "\nof the gains", items((note for note in notes if note not in said), "dim"))
+
+
+def print_held(found: HeldJoints) -> None:
+    """Print the verdicts on the joints of one arm."""
+    parts = list(found.report())
+    with page() as out:
+        out.print(headline(found.outcome, TOLD[found.outcome].terminal, found.claim))
+        section(out, "joint by joint", [_set(part) for part in parts if isinstance(part, Table)])
+        section(out, "assumes", items(found.notes, "dim"))
+
+
+def print_cartesian(controllers: Controllers, path: str) -> None:
+    """Print impedances at the end, and the command that decides them."""
+    with page() as out:
+        claim = "An impedance at the end of the arm: it takes the arm to decide it."
+        out.print(headline("undecided", TOLD["undecided"].terminal, claim))
+        for one in controllers.cartesian:
+            rows = [
+                [name, f"{k:g}", f"{d:.4g}"]
+                for name, k, d in zip(_COORDINATES, one.stiffness, one.damping, strict=True)
+            ]
+            heads = [["", "K", "D"], ["", "N/m, N·m/rad", "N·s/m, N·m·s/rad"]]
+            section(out, one.source, [_set(Table(rows=rows, heads=heads, lefts=1))])
+            section(out, "of it", items(one.notes(3), "dim"))
+        rate = controllers.cartesian[0].rate or controllers.rate
+        often = f' --rate "{float(rate):g} Hz"' if rate is not None else ""
+        section(out, "next", [f"zwidth workspace ARM.urdf --pose --wall {path}{often}"])
+
+
+_COORDINATES = ("x", "y", "z", "about x", "about y", "about z")
 
 
 def print_follower(gains: ArmGains) -> None:

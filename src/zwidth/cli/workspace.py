@@ -12,12 +12,12 @@ from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.cli.workspace_arm import arm_of
 from zwidth.cli.workspace_joints import add_joint_options
 from zwidth.cli.workspace_report import print_workspace
-from zwidth.cli.workspace_wall import WALL_OPTIONS, wall_of
+from zwidth.cli.workspace_wall import WALL_OPTIONS, left_out, wall_of
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
-    from zwidth.passivity.workspace import Workspace
+    from zwidth.passivity.workspace import PostureMap, Workspace
 
 _RATE = "1 kHz"
 _SAVED = (".json", ".nc")
@@ -28,8 +28,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.usage = (
         "%(prog)s ARM --stiffness K [--pose --rotational-stiffness K] [--wall FILE] [--joint-damping B] "
         "[--joint-friction F] [--joint-resolution STEP] [--joints FILE] [--largest-force FORCE] "
-        "[--rate RATE] [--virtual-damping B] [--delay TIME] [--points N] [--all] [--json] [--plot FILE] "
-        "[-o FILE] [--force]"
+        "[--rate RATE] [--virtual-damping B] [--delay TIME] [--points N] [--postures N] [--all] [--json] "
+        "[--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
         "arm", metavar="ARM", help="hapkit, two-link, haply-2diy, falcon, or a .urdf, .xml or .mjcf file"
@@ -58,6 +58,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
             "(default: as far as the joints' Coulomb friction covers them)",
         ),
         ("--points", "N", "cells along each side of the map (default: 100)"),
+        (
+            "--postures",
+            "N",
+            "of a description: so many postures over the ranges of all joints in the place of a map of two, "
+            "such as 20000",
+        ),
     ):
         parser.add_argument(option, metavar=metavar, action=Once, help=meaning)
     parser.add_argument(
@@ -79,15 +85,19 @@ def run(arguments: argparse.Namespace) -> int:
         )
     from zwidth.passivity.outcome import TOLD
 
+    if arguments.postures is not None:
+        return _postures(arguments, plot, save)
     space = _verdict(arguments)
+    without = left_out(arguments, space.arm.turns)
     if save is not None:
         _save(space, save)
     if plot is not None:
         space.plot(plot)
     if arguments.json:
-        print_json(json.dumps(space.to_dict(), indent=2, ensure_ascii=False))
+        more = {"wall_leaves_out": without} if without else {}
+        print_json(json.dumps({**space.to_dict(), **more}, indent=2, ensure_ascii=False))
     else:
-        print_workspace(space, arguments.in_full)
+        print_workspace(space, arguments.in_full, without)
         say_written(save, plot)
     return TOLD[space.outcome].status
 
@@ -102,13 +112,45 @@ def _verdict(arguments: argparse.Namespace) -> Workspace:
         wall_of(arguments, arm.turns),
         rate=float(parse_number(arguments.rate or _RATE, "Hz", "rate")),
         delay=float(parse_number(arguments.delay or "0", "s", "delay")),
-        points=_whole(arguments.points or "100"),
+        points=_whole(arguments.points or "100", "points"),
         torque_held_up_to=_largest(arguments.torque_held_up_to, "torque-held-up-to"),
         largest_force=_largest(arguments.largest_force, "largest-force"),
     )
 
 
-def _save(space: Workspace, path: Path) -> None:
+def _postures(arguments: argparse.Namespace, plot: Path | None, save: Path | None) -> int:
+    """All joints over their ranges: no region is proved, and the report says so."""
+    from zwidth.cli.workspace_postures import print_postures
+    from zwidth.passivity.document import to_json
+    from zwidth.passivity.outcome import TOLD
+    from zwidth.passivity.workspace import stiffness_over_postures
+
+    for option in ("torque_held_up_to", "largest_force", "points"):
+        if getattr(arguments, option) is not None:
+            name = option.replace("_", "-")
+            raise InputError(f"--{name} is of a map of two joints; leave it out with --postures")
+    arm = arm_of(arguments)
+    found = stiffness_over_postures(
+        arm,
+        wall_of(arguments, arm.turns),
+        rate=float(parse_number(arguments.rate or _RATE, "Hz", "rate")),
+        delay=float(parse_number(arguments.delay or "0", "s", "delay")),
+        postures=_whole(arguments.postures, "postures"),
+    )
+    if save is not None:
+        _save(found, save)
+    if plot is not None:
+        found.plot(plot)
+    if arguments.json:
+        without = left_out(arguments, arm.turns)
+        print_json(to_json({**found.to_dict(), **({"wall_leaves_out": without} if without else {})}))
+    else:
+        print_postures(found, arguments.in_full, left_out(arguments, arm.turns))
+        say_written(save, plot)
+    return TOLD[found.outcome].status
+
+
+def _save(space: Workspace | PostureMap, path: Path) -> None:
     """The verdict with its certificate, or the map."""
     with writing(path):
         if path.suffix.lower() == ".json":
@@ -132,8 +174,8 @@ def _largest(text: str | None, option: str) -> list[float] | None:
     ]
 
 
-def _whole(text: str) -> int:
-    number = parse_number(text, "1", "points").fraction
+def _whole(text: str, what: str) -> int:
+    number = parse_number(text, "1", what).fraction
     if number.denominator != 1:
-        raise InputError(f"points must be a whole number, got {text}")
+        raise InputError(f"{what} must be a whole number, got {text}")
     return int(number)

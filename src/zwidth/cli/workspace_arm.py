@@ -54,6 +54,7 @@ def _described(arguments: argparse.Namespace, joints: Mapping[str, Any]) -> Arm:
         hold=_by_name(arguments.hold, "hold"),
         pose=arguments.pose,
         rest={} if arguments.rest == "middle" else _by_name(arguments.rest, "rest"),
+        whole=arguments.postures is not None,
         **joints,
     )
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import islice
 from math import isfinite
 from typing import TYPE_CHECKING
 
@@ -23,7 +24,7 @@ _SHOWN = 1e-6
 """Of the sum: what one joint gets less than this is the room for rounding."""
 
 
-def print_workspace(space: Workspace, in_full: bool = False) -> None:
+def print_workspace(space: Workspace, in_full: bool = False, without: Sequence[str] = ()) -> None:
     """Print the verdict and what to change on standard output."""
     from zwidth.cli.page import blocks, grid, headline, items, more_with_all, page, section, small_print
     from zwidth.passivity.in_short import in_short
@@ -31,17 +32,19 @@ def print_workspace(space: Workspace, in_full: bool = False) -> None:
 
     with page() as out:
         out.print(headline(space.outcome, TOLD[space.outcome].terminal, space.claim))
-        changes = list(_changes(space))
         if in_full:
-            blocks(out, _numbers(space))
+            changes = list(_changes(space))
+            blocks(out, [*_numbers(space), *(("left out", text) for text in without)])
             section(out, "what to change", [grid(changes)] if changes else [])
             section(out, "assumes", items(space.assumptions, "dim"))
             return
         first = [row for row in _numbers(space) if row[0] in _FIRST]
+        changes = islice(_changes(space), _FEW)  # each of them is a proof: no more than are shown
         do = [("or" if place else "change", f"{name}: {text}") for place, (name, text) in enumerate(changes)]
         arm = [row for row in _asked(space) if row[0] not in _IN_SCOPE]
+        arm += [("left out", text) for text in without]
         assumed = ("assumes", small_print(in_short(space.scope, space.outcome)))
-        blocks(out, [*first, *do[:_FEW]], [*arm, assumed])
+        blocks(out, [*first, *do], [*arm, assumed])
         more_with_all(out, "margin, encoder, every change, assumptions in full")
 
 
@@ -88,7 +91,8 @@ def _motion(motion: ArmMotion) -> str:
     gain, force = shown(-motion.energy, "J"), shown(motion.largest_force, "N")
     read = "" if motion.encoder == "ideal" else ", at the readings of the encoders"
     around = f"{len(motion.joints)} samples round the joints at {middle}"
-    return f"{around} take {gain} out, forces up to {force}{read}"
+    held = "" if motion.imposed_by == "end" else ", by hands that hold the links"
+    return f"{around} take {gain} out, forces up to {force}{read}{held}"
 
 
 def _friction(space: Workspace, steps: EncoderSteps) -> Iterator[tuple[str, str]]:
@@ -113,20 +117,29 @@ def _joints(space: Workspace) -> str:
 
 
 def _changes(space: Workspace) -> Iterator[tuple[str, str]]:
-    if space.addition_to_all == 0:
+    if not any(space.added.to_all.enough):
         return
     if space.largest_stiffness is None and space.stiffness_factor > 0:
         yield "wall", f"its stiffness times {space.stiffness_factor:.4g}, and no more"
     elif space.largest_stiffness:
         yield "wall", f"no stiffer than {shown(space.largest_stiffness, 'N/m')}"
-    total = sum(space.least_additions)
+    enough, fails = space.added.least
+    total, too_little = sum(enough), sum(fails)
     parts = [
         f"{shown(addition, 'N*m*s/rad')} more damping in joint {joint}"
-        for joint, addition in enumerate(space.least_additions, start=1)
+        for joint, addition in enumerate(enough, start=1)
         if addition > _SHOWN * total
     ]
-    yield "least in all", ", ".join(parts) + (f", together {shown(total, 'N*m*s/rad')}" if parts[1:] else "")
-    yield "all joints", f"{shown(space.addition_to_all, 'N*m*s/rad')} more damping in each"
-    for joint, addition in enumerate(space.additions, start=1):
-        if isfinite(addition):
-            yield f"joint {joint} alone", f"{shown(addition, 'N*m*s/rad')} more damping"
+    together = f", together {shown(total, 'N*m*s/rad')}" if parts[1:] else ""
+    yield "least in all", ", ".join(parts) + together + _too_little(too_little)
+    enough, fails = space.added.to_all
+    yield "all joints", f"{shown(enough[0], 'N*m*s/rad')} more damping in each{_too_little(fails[0])}"
+    for joint, (enough, fails) in enumerate(space.added.alone):
+        if isfinite(enough[joint]):
+            text = f"{shown(enough[joint], 'N*m*s/rad')} more damping{_too_little(fails[joint])}"
+            yield f"joint {joint + 1} alone", text
+
+
+def _too_little(fails: float) -> str:
+    """Below which less of it fails at some point of the map, where that is known."""
+    return f"; less than {shown(fails, 'N*m*s/rad')} fails" if fails else ""

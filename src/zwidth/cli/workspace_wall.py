@@ -27,8 +27,14 @@ WALL_OPTIONS = (
     ("--rotational-stiffness", "VALUE", "of a wall in pose, about every axis [N*m/rad] (default: 0)"),
     ("--virtual-damping", "VALUE", "of the wall, in every direction [N*s/m] (default: 0)"),
     ("--rotational-damping", "VALUE", "of a wall in pose, about every axis [N*m*s/rad] (default: 0)"),
-    ("--wall", "FILE", "matrices in the place of these: a .toml file with stiffness and damping in [wall]"),
+    (
+        "--wall",
+        "FILE",
+        "in the place of these: matrices from a .toml file with [wall], or the impedance of a "
+        "ros2_control .yaml",
+    ),
 )
+_CONTROLLERS = (".yaml", ".yml")
 _UNITS = {
     "stiffness": ("N/m", "N/rad", "N*m/rad"),
     "damping": ("N*s/m", "N*s/rad", "N*m*s/rad"),
@@ -50,7 +56,10 @@ def wall_of(arguments: argparse.Namespace, turns: int) -> Wall | MatrixWall:
         if given:
             option = next(iter(given)).replace("_", "-")
             raise InputError(f"--wall FILE says what the wall is; leave out --{option}")
-        return read_wall(Path(arguments.wall), turns)
+        path = Path(arguments.wall)
+        if path.suffix.lower() in _CONTROLLERS:
+            return _of_controllers(path, turns, arguments.rate)
+        return read_wall(path, turns)
     if not turns and (found := [key for key in given if key.startswith("rotational")]):
         raise InputError(f"--{found[0].replace('_', '-')}: a point does not turn; add --pose")
     if not {"stiffness", "rotational_stiffness"} & given.keys():
@@ -65,6 +74,35 @@ def wall_of(arguments: argparse.Namespace, turns: int) -> Wall | MatrixWall:
     k_turn = value("rotational_stiffness", "N*m/rad")
     b_turn = value("rotational_damping", "N*m*s/rad")
     return MatrixWall.in_pose(float(k), float(k_turn), float(b), float(b_turn), planar=turns == 1)
+
+
+def _of_controllers(path: Path, turns: int, rate: str | None) -> MatrixWall:
+    """The impedance of a parameter file of ros2_control."""
+    from zwidth.gains import read_controllers
+
+    found, name = read_controllers(path), f"--wall {path.name}"
+    if len(found.cartesian) != 1:
+        raise InputError(
+            f"{name}: it has {len(found.cartesian)} Cartesian impedances, and a wall is one; joint gains are "
+            "decided by zwidth gains"
+        )
+    (one,) = found.cartesian
+    if turns not in (0, len(one.stiffness) - 3):
+        raise InputError(f"{name}: it has three rotations; a hand in the plane has one")
+    often = one.rate or found.rate
+    if rate is None and often is not None:
+        hertz = f"{float(often):g} Hz"
+        raise InputError(f'{name}: its controller runs at {hertz}; give --rate "{hertz}"')
+    return one.wall(turns)
+
+
+def left_out(arguments: argparse.Namespace, turns: int) -> list[str]:
+    """What the wall of a controller's file leaves out of that controller."""
+    if arguments.wall is None or Path(arguments.wall).suffix.lower() not in _CONTROLLERS:
+        return []
+    from zwidth.gains import read_controllers
+
+    return [note for one in read_controllers(arguments.wall).cartesian for note in one.notes(turns)]
 
 
 def read_wall(path: Path, turns: int) -> MatrixWall:

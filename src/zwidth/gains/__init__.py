@@ -1,8 +1,23 @@
 """Gain files of arms that people have: what their numbers mean, the pairs they make, which are passive."""
 
 from zwidth.gains.arms import ArmGains
+from zwidth.gains.controllers import Controllers, JointLaw, read_controllers
+from zwidth.gains.held_joints import HeldJoints, check_controllers
 from zwidth.gains.joint import Gains, JointGains
 from zwidth.gains.read import read_gains
 from zwidth.gains.verdict import GainsVerdict, JointVerdict, check_gains
 
-__all__ = ["ArmGains", "Gains", "GainsVerdict", "JointGains", "JointVerdict", "check_gains", "read_gains"]
+__all__ = [
+    "ArmGains",
+    "Controllers",
+    "Gains",
+    "GainsVerdict",
+    "HeldJoints",
+    "JointGains",
+    "JointLaw",
+    "JointVerdict",
+    "check_controllers",
+    "check_gains",
+    "read_controllers",
+    "read_gains",
+]

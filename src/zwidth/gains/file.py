@@ -122,12 +122,38 @@ def read_table(path: str | Path) -> GainTable:
 def _yaml(text: str) -> Any:
     import yaml  # only where such a file is read
 
+    class Joined(yaml.BaseLoader):  # text, lists and mappings alone
+        """Keys that are given twice are one mapping, as ROS takes them; of anything else it is a mistake."""
+
+    Joined.add_constructor("tag:yaml.org,2002:map", _joined)
     try:
-        return yaml.load(text, Loader=yaml.BaseLoader)  # text, lists and mappings alone
+        return yaml.load(text, Loader=Joined)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = f"line {mark.line + 1}: " if mark else ""
         raise ValueError(f"{where}{getattr(error, 'problem', None) or 'cannot be read'}") from None
+
+
+def _joined(loader: Any, node: Any) -> dict[str, Any]:
+    table: dict[str, Any] = {}
+    for key_node, value_node in node.value:
+        key, value = (
+            loader.construct_object(key_node, deep=True),
+            loader.construct_object(value_node, deep=True),
+        )
+        if not isinstance(key, str):
+            raise ValueError(f"line {key_node.start_mark.line + 1}: a key is a word")
+        table[key] = _both(table[key], value, key, key_node.start_mark.line + 1) if key in table else value
+    return table
+
+
+def _both(first: Any, second: Any, key: str, line: int) -> Any:
+    if not (isinstance(first, dict) and isinstance(second, dict)):
+        raise ValueError(f"line {line}: {key} is given twice")
+    found = dict(first)
+    for name, value in second.items():
+        found[name] = _both(found[name], value, name, line) if name in found else value
+    return found
 
 
 def _json(text: str) -> Any:

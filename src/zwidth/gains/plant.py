@@ -66,7 +66,7 @@ def plant_of(joints: Sequence[JointGains], family: Family, given: GivenPlant) ->
         raise InputError(
             f"there is no published plant {quoted(given)}; {suggestion(given, known)}, or a TOML file"
         )
-    return _of_file(joints, given)
+    return plant_of_file(len(joints), given)
 
 
 def _of_devices(joints: Sequence[JointGains], devices: Sequence[Device]) -> Plant:
@@ -102,7 +102,14 @@ def _published(joints: Sequence[JointGains], family: Family, plant: PublishedPla
     return Plant(tuple(rows), tuple(rows), note)
 
 
-def _of_file(joints: Sequence[JointGains], path: str | Path) -> Plant:
+def plant_of_file(joints: int, path: str | Path) -> Plant:
+    """The plant of a TOML file, for so many joints.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or has no numbers for each joint.
+    """
     table = read_table(path)
     allowed = ("arm", "leader", "follower")
     for key in table.values:
@@ -113,7 +120,7 @@ def _of_file(joints: Sequence[JointGains], path: str | Path) -> Plant:
     ):
         raise InputError(f"{table.label}: give [arm] for both arms, or [leader] and [follower]")
     sides = ("arm", "arm") if "arm" in table else ("leader", "follower")
-    leader, follower = (_rows(table.table(side), len(joints)) for side in sides)
+    leader, follower = (_rows(table.table(side), joints) for side in sides)
     return Plant(leader, follower, f"damping and friction of the joints are from {table.label}")
 
 

@@ -5,6 +5,8 @@ that a verdict never waits for matplotlib.  `criterion`, `plane`, `budget`,
 `witness`, `worst_case`, `storage`, `cycle`, `indices`, `check_figure`,
 `limit_figure`, `plot_held_pair`, `plot_lateness`, `plot_links`, `plot_pair`, `plot_scene`,
 `sweep_figure`, `workspace_figure` and `z_width_figure` return a `matplotlib.figure.Figure` that
+`limit_figure`, `plot_held_pair`, `plot_lateness`, `plot_links`, `plot_pair`, `plot_scene`, `postures_figure`,
+`workspace_figure` and `z_width_figure` return a `matplotlib.figure.Figure` that
 belongs to no window; the `draw_…` functions draw on axes of your own, in the look
 of `LOOK` if your axes have it.
 """
@@ -20,6 +22,7 @@ from zwidth.plots.links import draw_links, plot_links
 from zwidth.plots.pair import draw_pair_damping, draw_pair_link, plot_pair
 from zwidth.plots.pair_motion import draw_pair_energy, draw_pair_motion
 from zwidth.plots.plane import draw_plane, plane
+from zwidth.plots.postures import postures_figure
 from zwidth.plots.report import check_figure
 from zwidth.plots.scene import draw_scene, plot_scene
 from zwidth.plots.storage import draw_storage, storage
@@ -65,6 +68,7 @@ __all__ = [
     "plot_pair",
     "plot_scene",
     "save_sweep",
+    "postures_figure",
     "save_z_width",
     "storage",
     "sweep_figure",

@@ -15,6 +15,10 @@ import numpy.typing as npt
 
 from zwidth.arms.kinematics.arm import Arm, Array, Axis, Sites, as_joints, middles
 from zwidth.arms.kinematics.chain import Placed
+from zwidth.errors import InputError
+
+_MOST_MAPPED = 2
+"""Joints of a map of cells."""
 
 _DIGITS = 15
 """Of rotations, which descriptions give as angles: what is beyond is the rounding of a sine."""
@@ -31,7 +35,8 @@ class DescribedArm(Arm):
     frame
         Name of the frame at whose origin the hand is.
     joint_range
-        (low, high) of each joint [rad; m]: where low = high the joint is held. Two joints or fewer move.
+        (low, high) of each joint [rad; m]: where low = high the joint is held. On a map of cells two joints
+        or fewer move.
     damping, coulomb_friction, resolution, torque_limit, name
         As of `Arm`.
     """
@@ -68,6 +73,11 @@ class DescribedArm(Arm):
     def sites(self, points: int) -> Sites:
         """Equal cells of the two joints that move, the others held."""
         moving = [i for i, (low, high) in enumerate(self.joint_range) if high > low]
+        if len(moving) > _MOST_MAPPED:
+            raise InputError(
+                f"a map of cells moves one or two joints, here {len(moving)} would move: hold the others, or "
+                "ask for postures, zwidth.stiffness_over_postures or --postures"
+            )
         names = [self.model.names[i + 1] for i in range(self.joint_count)]
         axes = tuple(
             Axis(names[i], unit_of(self.model, i), middles(*self.joint_range[i], points)) for i in moving
@@ -87,6 +97,10 @@ class DescribedArm(Arm):
         rates, between = self._rates()
         change = np.full(q.shape[:-1], np.linalg.norm(rates @ halves[between]))
         return Sites(axes, q, positions, jacobians, change, "; ".join(words))
+
+    def placed(self, joints: npt.ArrayLike) -> tuple[Array, Array]:
+        """Position and Jacobian of `sites` at any joints (…, m): in pose of every rest, or of `rest`."""
+        return self._computed(joints)
 
     def _computed(self, joints: npt.ArrayLike) -> tuple[Array, Array]:
         positions, jacobians = self._placed(joints)

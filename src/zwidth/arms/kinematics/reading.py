@@ -30,6 +30,7 @@ def read_arm(
     torque_limit: Sequence[float] | None = None,
     pose: bool = False,
     rest: dict[str, float] | None = None,
+    whole: bool = False,
 ) -> DescribedArm:
     """Read an arm from a URDF or MJCF file; needs the extra `arms`, which is pinocchio.
 
@@ -43,8 +44,8 @@ def read_arm(
         Joints that stay at a value [rad; m], by name; the map moves two joints at most.
         None: of more than two joints, all but the first two are held in the middle of their ranges.
     damping, coulomb_friction, torque_limit
-        Of each joint [N·m·s/rad], [N·m], [N·m]; None: those of the description. Damping may be a
-        matrix, as of `Arm`, in the order of the description's joints.
+        Of each joint [N·m·s/rad], [N·m], [N·m], or one number in a list for all of them; None: those of
+        the description. Damping may be a matrix, as of `Arm`, in the order of the description's joints.
     resolution
         Encoder step of each joint [rad; m]; descriptions have none.
     pose
@@ -52,6 +53,8 @@ def read_arm(
     rest
         In pose, by name: joints at which the wall's rotation is at rest [rad; m]; those that are not named,
         in the middle of their ranges. None: in every orientation, for walls as stiff about every axis.
+    whole
+        Every joint that is not held goes over its whole range, for `zwidth.stiffness_over_postures`.
 
     Raises
     ------
@@ -66,20 +69,22 @@ def read_arm(
     frames = [str(f.name) for f in model.frames]
     if frame is not None and frame not in frames:
         raise InputError(f"{path.name} has no frame {frame!r}; it has {', '.join(frames[1:21])}")
-    b: Damping = tuple(model.damping) if damping is None else damping
+    b: Damping = tuple(model.damping) if damping is None else _for_each(damping, m)
     if not np.any(b):
         raise InputError(
             f"{path.name} gives no joint any damping, and without damping no wall is passive; "
             "measure it and give damping, or write <dynamics damping=…/> in the description"
         )
-    limits = tuple(model.effortLimit) if torque_limit is None else tuple(torque_limit)
+    limits = tuple(model.effortLimit) if torque_limit is None else tuple(_for_each(torque_limit, m))
     given: dict[str, Any] = {
         "model": model,
         "frame": frame or frames[-1],
-        "joint_range": _ranges(model, m_names, hold),
+        "joint_range": _ranges(model, m_names, {} if whole and hold is None else hold, whole),
         "damping": b,
-        "coulomb_friction": tuple(model.friction) if coulomb_friction is None else coulomb_friction,
-        "resolution": resolution,
+        "coulomb_friction": (
+            tuple(model.friction) if coulomb_friction is None else _for_each(coulomb_friction, m)
+        ),
+        "resolution": _for_each(resolution, m),
         "torque_limit": limits if all(0 < v < np.inf for v in limits) else (),
         "name": str(model.name) or path.stem,
     }
@@ -91,7 +96,15 @@ def read_arm(
     return DescribedArm(**given)
 
 
-def _ranges(model: Any, names: list[str], hold: dict[str, float] | None) -> tuple[tuple[float, float], ...]:
+def _for_each(values: Any, count: int) -> Any:
+    """One number is that of every joint."""
+    alone = np.ndim(values) == 1 and len(values) == 1
+    return tuple(values) * count if alone else values
+
+
+def _ranges(
+    model: Any, names: list[str], hold: dict[str, float] | None, whole: bool
+) -> tuple[tuple[float, float], ...]:
     _named(hold or {}, names, "hold")
     ranges = []
     for i, name in enumerate(names):
@@ -103,7 +116,7 @@ def _ranges(model: Any, names: list[str], hold: dict[str, float] | None) -> tupl
                 low = high = (low + high) / 2
         ranges.append((low, high))
     moving = [name for name, (low, high) in zip(names, ranges, strict=True) if high > low]
-    if not 1 <= len(moving) <= 2:
+    if not moving or (len(moving) > 2 and not whole):
         raise InputError(f"the map moves one or two joints, here {len(moving)} would move; hold the others")
     return tuple(ranges)
 

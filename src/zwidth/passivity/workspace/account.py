@@ -35,7 +35,8 @@ class Account(NamedTuple):
     reached: Truth
     margins: Array
     proved: Truth
-    counted: Array  # δ_m − JᵀRJ, less what it may lose inside the cell
+    points: Array  # δ_m − JᵀRJ at the middle of the cell
+    counted: Array  # the same, less what it may lose inside the cell
 
 
 def account_of(damping: Array, need: Array, sites: Sites, turns: int) -> Account:
@@ -52,7 +53,7 @@ def account_of(damping: Array, need: Array, sites: Sites, turns: int) -> Account
     taken = np.where(np.isfinite(loss), loss, 0.0)
     taken = taken + 10 * rounding  # damping that is added adds to the rounding too
     counted = np.asarray(lacking - taken[:, None, None] * np.eye(lacking.shape[-1]))
-    return Account(reached, margins, margins > loss + rounding, counted)
+    return Account(reached, margins, margins > loss + rounding, lacking, counted)
 
 
 def reached_cells(sites: Sites) -> Truth:

@@ -33,6 +33,11 @@ def claim(outcome: str, covers: Covers, account: Account, without: str, steps: E
         text = f"No motion of the hand takes energy out with {where}, by a proof on paper."
     elif outcome == "active":
         text = "At one point of this map a motion of the hand takes energy out."
+        if not covers.can_be_refuted:
+            text = (
+                "At one point of this map a motion of the joints takes energy out: of hands that hold the "
+                "links. A hand at the end alone does not hold every joint, and of it nothing is said."
+            )
         if covers.encoder == "counted" and not covers.has_friction:
             text += " Coulomb friction is not given and taken as 0."
     elif covers.encoder == "counted" and without and (account.margins >= 0).all():
@@ -43,18 +48,14 @@ def claim(outcome: str, covers: Covers, account: Account, without: str, steps: E
             f"The condition holds at every point; between the points {part:.4g} % of the region are proved."
         )
     else:
-        text = f"{part:.4g} % of the region are proved; at other points the condition fails" + (
-            ", and no motion was found that takes energy out." if covers.can_be_refuted else "."
+        text = (
+            f"{part:.4g} % of the region are proved; at other points the condition fails, and no motion was "
+            "found that takes energy out."
         )
     if outcome in ("theorem", "undecided") and without:
         text += f" There is no certificate: {without}."
     if not account.reached.all():
         text += " Parts of the region are out of reach; a smaller region may be proved."
-    if outcome == "undecided" and not covers.can_be_refuted:
-        text += (
-            " No motion is looked for: with more joints than the hand has coordinates, no hand at the end "
-            "makes them follow a path."
-        )
     return f"{text} {_counted(covers, outcome)}{_beyond(covers, steps, outcome)}"
 
 

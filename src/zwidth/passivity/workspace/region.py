@@ -11,8 +11,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from zwidth.arms import Arm
-from zwidth.arms.joints import single_additions
-from zwidth.arms.least import least_additions
 from zwidth.arms.matrix_wall import MatrixWall
 from zwidth.arms.need import wall_need
 from zwidth.arms.replay import steps_of
@@ -20,6 +18,7 @@ from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.workspace.account import account_of, all_in_blocks, reached_cells, refinement
+from zwidth.passivity.workspace.additions import Additions
 from zwidth.passivity.workspace.claim import Covers, claim
 from zwidth.passivity.workspace.counting import counting
 from zwidth.passivity.workspace.evidence import Evidence, evidence_for
@@ -113,9 +112,7 @@ def workspace(
         sample_period=period,
         delay_samples=question.delay_samples,
         data=dataset(arm, sites, reached, all_in_blocks(whole, reached.shape), columns),
-        additions=tuple(float(v) for v in single_additions(account.counted).max(axis=0)),
-        addition_to_all=max(0.0, -float(np.linalg.eigvalsh(account.counted)[:, 0].min())),
-        least_additions=tuple(least_additions(account.counted)[0].tolist()),
+        added=Additions(question=question, points=account.points, cells=account.counted),
         stiffness_factor=float(factor),
         largest_stiffness=None if arm.turns else float(scaled_stiffness(wall, factor, n)),
         region=covers.region,

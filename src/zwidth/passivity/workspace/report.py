@@ -10,6 +10,7 @@ from zwidth.arms.matrix_wall import MatrixWall
 from zwidth.arms.motion import ArmMotion
 from zwidth.arms.need import wall_matrices
 from zwidth.environment.wall import Wall
+from zwidth.passivity.workspace.additions import Additions
 
 
 def wall_document(wall: Wall | MatrixWall, coordinates: int, turns: int) -> dict[str, Any]:
@@ -35,12 +36,27 @@ def steps_document(steps: EncoderSteps, turns: int) -> dict[str, Any]:
     }
 
 
+def additions_document(added: Additions) -> dict[str, Any]:
+    """What damping would do, and what of it fails at a point; None where none does."""
+    return {
+        "addition_to_all_N_m_s_per_rad": added.to_all.enough[0],
+        "addition_to_one_N_m_s_per_rad": [finite(one.enough[i]) for i, one in enumerate(added.alone)],
+        "least_additions_N_m_s_per_rad": list(added.least.enough),
+        "too_little": {
+            "to_all_N_m_s_per_rad": added.to_all.fails[0],
+            "to_one_N_m_s_per_rad": [finite(one.fails[i]) for i, one in enumerate(added.alone)],
+            "least_N_m_s_per_rad": list(added.least.fails),
+        },
+    }
+
+
 def motion_document(motion: ArmMotion, turns: int) -> dict[str, Any]:
     """A motion with its energy; of a hand with turns its rotations apart from its positions."""
     point = motion.positions.shape[-1] - turns
     document = {
         "energy_J": motion.energy,
         "encoder": motion.encoder,
+        "imposed_by": motion.imposed_by,
         "largest_force_N": motion.largest_force,
         "joints_rad": motion.joints.tolist(),
         "positions_m": motion.positions[:, :point].tolist(),

@@ -16,7 +16,14 @@ from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope, Torque
-from zwidth.passivity.workspace.report import finite, motion_document, steps_document, wall_document
+from zwidth.passivity.workspace.additions import Additions
+from zwidth.passivity.workspace.report import (
+    additions_document,
+    finite,
+    motion_document,
+    steps_document,
+    wall_document,
+)
 
 if TYPE_CHECKING:
     import xarray
@@ -43,13 +50,9 @@ class Workspace(PassivityAnswer):
         d, whole samples from reading to force.
     data
         The map, an xarray Dataset over the cells; each variable has its unit in `attrs`.
-    additions
-        The smallest damping that, given to one joint alone, proves the region; ∞ where none does
-        [N·m·s/rad].
-    addition_to_all
-        The smallest damping that, given to every joint, proves the region [N·m·s/rad].
-    least_additions
-        The damping of the joints with the smallest sum that proves the region [N·m·s/rad].
+    added
+        What more damping in the joints would do: `least`, `to_all`, `alone`, each with what is enough and
+        with what still fails; found when it is asked for.
     stiffness_factor
         How many times as stiff the wall may be and hold at every point; ∞ if it has no stiffness.
     largest_stiffness
@@ -69,8 +72,8 @@ class Workspace(PassivityAnswer):
         What the steps ask of Coulomb friction, up to which force it covers them, and from which on a motion
         across them takes energy out; None where there are none, or no bound is known.
     can_be_refuted
-        False of an arm with more joints than the hand has coordinates: no hand at its end makes them go round
-        a path of their own, so that no motion is looked for.
+        Whether a hand at the end alone can: False of an arm with more joints than the hand has coordinates.
+        There a `motion` is one of hands that hold the links, too.
     motion
         What takes energy out, if one was found.
     certificate
@@ -88,9 +91,7 @@ class Workspace(PassivityAnswer):
     sample_period: float
     delay_samples: int
     data: xarray.Dataset
-    additions: tuple[float, ...]
-    addition_to_all: float
-    least_additions: tuple[float, ...]
+    added: Additions
     stiffness_factor: float
     largest_stiffness: float | None
     region: str
@@ -101,6 +102,21 @@ class Workspace(PassivityAnswer):
     can_be_refuted: bool
     motion: ArmMotion | None
     certificate: Certificate | None = None
+
+    @property
+    def additions(self) -> tuple[float, ...]:
+        """The damping that, given to one joint alone, proves the region; ∞ where none does [N·m·s/rad]."""
+        return tuple(addition.enough[joint] for joint, addition in enumerate(self.added.alone))
+
+    @property
+    def addition_to_all(self) -> float:
+        """The damping that, given to every joint, proves the region [N·m·s/rad]."""
+        return self.added.to_all.enough[0]
+
+    @property
+    def least_additions(self) -> tuple[float, ...]:
+        """The damping of the joints, of a small sum, that proves the region [N·m·s/rad]."""
+        return self.added.least.enough
 
     @property
     def coordinates(self) -> int:
@@ -165,9 +181,7 @@ class Workspace(PassivityAnswer):
             "stiffness_factor": finite(self.stiffness_factor),
             "largest_stiffness_N_per_m": None if largest is None else finite(largest),
             "encoder_steps": None if steps is None else steps_document(steps, turns),
-            "addition_to_all_N_m_s_per_rad": self.addition_to_all,
-            "addition_to_one_N_m_s_per_rad": [finite(v) for v in self.additions],
-            "least_additions_N_m_s_per_rad": list(self.least_additions),
+            **additions_document(self.added),
             "proved_part": float(data["proved"].mean()),
             "motion": None if motion is None else motion_document(motion, turns),
         }

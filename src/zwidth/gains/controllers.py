@@ -1,0 +1,263 @@
+"""Parameter files of ros2_control: springs of joints, and Cartesian impedance, of one arm held at a target.
+
+    joint      τ = p e + i ∫e dt + d ė,   e = q_d − q      joint_trajectory_controller, pid_controller: gains
+               τ = k (q_d − q) − d q̇                        franka_ros2, example controllers: k_gains, d_gains
+    Cartesian  f = K (x_d − x) − D ẋ,  D = 2 ζ √K           Cartesian-Impedance-Controller: stiffness, damping
+
+To a hand that moves the arm while the target rests, each is a virtual wall on both sides of it.  Sources:
+ros-controls/ros2_controllers, joint_trajectory_controller_parameters.yaml; frankarobotics/franka_ros2,
+franka_bringup/config/controllers.yaml; matthias-mayr/Cartesian-Impedance-Controller, its parameters.yaml and
+cartesian_impedance_controller.cpp (dampingRule).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import sqrt
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from zwidth.arms.matrix_wall import MatrixWall
+from zwidth.errors import InputError
+from zwidth.gains.file import GainTable, read_table
+from zwidth.quantity.text import shown
+from zwidth.specification.table import quoted
+
+_AXES = ("x", "y", "z")
+_COMPLIANCE = ("trans_x", "rot_x")
+"""Keys of an admittance: positions are commanded, no force."""
+
+_JOINT_NOTES = (
+    "the target rests: each joint is a spring and a damper to the ground, on both sides",
+    "the speed of the d gain is taken as the difference of two readings; what the hardware reports is "
+    "filtered "
+    "in a way of its own",
+)
+
+
+@dataclass(frozen=True)
+class JointLaw:
+    """p, i and d of one joint [N·m/rad, N·m/(rad·s), N·m·s/rad], and where they stand."""
+
+    name: str
+    stiffness: Fraction
+    integral: Fraction
+    damping: Fraction
+    source: str
+
+
+@dataclass(frozen=True)
+class CartesianGains:
+    """The diagonal of K and D of an impedance at the end: x, y, z, and about x, y, z.
+
+    Attributes
+    ----------
+    stiffness
+        [N/m], [N·m/rad].
+    damping
+        [N·s/m], [N·m·s/rad].
+    nullspace
+        Of the joints, projected into what does not move the end [N·m/rad]; 0: none.
+    rate
+        Of the controller [Hz]; None where the file does not say.
+    source
+        Where they stand.
+    """
+
+    stiffness: tuple[float, ...]
+    damping: tuple[float, ...]
+    nullspace: float
+    rate: Fraction | None
+    source: str
+
+    def wall(self, turns: int) -> MatrixWall:
+        """As a wall for a hand at a point, 0 turns, or in pose, 3."""
+        size = 3 + turns
+        return MatrixWall(np.diag(self.stiffness[:size]), np.diag(self.damping[:size]), turns=turns)
+
+    def notes(self, turns: int) -> Iterator[str]:
+        """What the wall leaves out of the controller."""
+        if not turns and any(self.stiffness[3:]):
+            yield "its rotational springs are left out: ask in pose"
+        if turns:
+            yield (
+                "its moments go with the rotation vector, the wall's with 2 sin(φ/2): the same at small "
+                "angles"
+            )
+        if self.nullspace:
+            yield (
+                f"its null-space spring of {shown(self.nullspace, 'N*m/rad')} is left out: what is "
+                "projected by "
+                "1 − Jᵀ(Jᵀ)⁺ has no potential, and may give out energy by itself (Dietrich, Ott & "
+                "Stramigioli 2016)"
+            )
+
+
+@dataclass(frozen=True)
+class Controllers:
+    """What a parameter file says of one arm.
+
+    Attributes
+    ----------
+    joints
+        Springs of joints, by controller; empty where there are none.
+    cartesian
+        Impedances at the end.
+    rate
+        Of the controller manager [Hz]; None where the file does not say.
+    notes
+        What the numbers are.
+    """
+
+    joints: tuple[JointLaw, ...]
+    cartesian: tuple[CartesianGains, ...]
+    rate: Fraction | None
+    notes: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data, units in the keys."""
+        return {
+            "joints": [
+                {
+                    "name": joint.name,
+                    "stiffness_N_m_per_rad": float(joint.stiffness),
+                    "integral_N_m_per_rad_s": float(joint.integral),
+                    "damping_N_m_s_per_rad": float(joint.damping),
+                    "source": joint.source,
+                }
+                for joint in self.joints
+            ],
+            "cartesian": [
+                {
+                    "stiffness_N_per_m": list(one.stiffness[:3]),
+                    "rotational_stiffness_N_m_per_rad": list(one.stiffness[3:]),
+                    "damping_N_s_per_m": list(one.damping[:3]),
+                    "rotational_damping_N_m_s_per_rad": list(one.damping[3:]),
+                    "nullspace_stiffness_N_m_per_rad": one.nullspace,
+                    "rate_Hz": None if one.rate is None else float(one.rate),
+                    "source": one.source,
+                }
+                for one in self.cartesian
+            ],
+            "rate_Hz": None if self.rate is None else float(self.rate),
+        }
+
+
+def read_controllers(path: str | Path) -> Controllers:
+    """Read a parameter file of ros2_control, YAML.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, has no gains that are known, or a law that is none of a spring and a damper.
+    """
+    table = read_table(path)
+    found = [inner for inner in table.below() if _fits(inner)]
+    if not found:
+        raise InputError(
+            f"{table.label}: no gains of a controller; read are gains with p, i, d for each joint, "
+            "k_gains with "
+            "d_gains, and stiffness with translation and rotation, below ros__parameters"
+        )
+    joints = tuple(joint for inner in found for joint in _joints(inner))
+    cartesian = tuple(_cartesian(inner) for inner in found if _is_cartesian(inner))
+    return Controllers(joints, cartesian, _rate(table), _JOINT_NOTES if joints else ())
+
+
+def is_of_controllers(table: GainTable) -> bool:
+    """True for a file with gains of ros2_control."""
+    return any(_fits(inner) for inner in table.below())
+
+
+def _fits(table: GainTable) -> bool:
+    return "k_gains" in table or _is_pid(table) or _is_cartesian(table) or _is_compliance(table)
+
+
+def _is_pid(table: GainTable) -> bool:
+    gains = table.values.get("gains")
+    return isinstance(gains, dict) and any(isinstance(row, dict) and "p" in row for row in gains.values())
+
+
+def _is_cartesian(table: GainTable) -> bool:
+    inner = table.values.get("stiffness")
+    return isinstance(inner, dict) and "translation" in inner
+
+
+def _is_compliance(table: GainTable) -> bool:
+    inner = table.values.get("stiffness")
+    return isinstance(inner, dict) and any(key in inner for key in _COMPLIANCE)
+
+
+def _joints(table: GainTable) -> Iterator[JointLaw]:
+    if _is_compliance(table):
+        raise InputError(
+            f"{table.where('stiffness')}: of an admittance: it commands positions from a force that is "
+            "measured, "
+            "and no wall of a spring and a damper is that controller; read are impedance controllers"
+        )
+    if "k_gains" in table:
+        stiffness = table.numbers("k_gains", "N*m/rad")
+        damping = table.numbers("d_gains", "N*m*s/rad", len(stiffness))
+        for n, (k, d) in enumerate(zip(stiffness, damping, strict=True)):
+            yield JointLaw(f"joint{n + 1}", k, Fraction(0), d, table.where(f"k_gains[{n}]"))
+    if _is_pid(table):
+        yield from _pids(table)
+
+
+def _pids(table: GainTable) -> Iterator[JointLaw]:
+    interfaces = table.values.get("command_interfaces")
+    if isinstance(interfaces, list) and "effort" not in interfaces:
+        raise InputError(
+            f"{table.where('command_interfaces')}: gains act on "
+            f"{quoted(', '.join(map(str, interfaces)))}; they are "
+            "a spring and a damper where the command is an effort"
+        )
+    gains = table.table("gains")
+    for name in gains.values:
+        row = gains.table(name)
+
+        def number(key: str, unit: str, row: GainTable = row) -> Fraction:
+            return row.number(key, unit) if key in row else Fraction(0)
+
+        p, i, d = number("p", "N*m/rad"), number("i", "1"), number("d", "N*m*s/rad")
+        yield JointLaw(str(name), p, i, d, row.where("p"))
+
+
+def _cartesian(table: GainTable) -> CartesianGains:
+    stiffness = table.table("stiffness")
+    k = [
+        *_three(stiffness, "translation", "N/m"),
+        *(_three(stiffness, "rotation", "N*m/rad") if "rotation" in stiffness else (0.0,) * 3),
+    ]
+    factors = [1.0] * 6
+    if "damping" in table:
+        damping = table.table("damping")
+        for place, part in ((0, "translation"), (3, "rotation")):
+            if part in damping:
+                factors[place : place + 3] = _three(damping, part, "1")
+    if min(k) < 0 or min(factors) < 0:
+        raise InputError(f"{table.label}: stiffness and damping factors must be ≥ 0: a spring pulls back")
+    null = stiffness.number("nullspace_stiffness", "N*m/rad") if "nullspace_stiffness" in stiffness else 0
+    rate = table.number("update_frequency", "Hz") if "update_frequency" in table else None
+    d = tuple(2 * factor * sqrt(value) for factor, value in zip(factors, k, strict=True))
+    return CartesianGains(tuple(k), d, float(null), rate, table.where("stiffness"))
+
+
+def _three(table: GainTable, key: str, unit: str) -> Sequence[float]:
+    inner = table.table(key)
+    missing = [axis for axis in _AXES if axis not in inner]
+    if missing:
+        raise InputError(f"{inner.label}: {missing[0]} is missing; give x, y and z [{unit}]")
+    return [float(inner.number(axis, unit)) for axis in _AXES]
+
+
+def _rate(table: GainTable) -> Fraction | None:
+    """The update_rate of the controller manager."""
+    for inner in table.below():
+        if inner.label.endswith("controller_manager, ros__parameters") and "update_rate" in inner:
+            return inner.number("update_rate", "Hz")
+    return None

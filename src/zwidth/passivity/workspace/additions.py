@@ -1,0 +1,115 @@
+"""How much more damping in the joints would do: the smallest that is proved, and below what it fails.
+
+    fails    what is lacking at some point of the map: less of it, and δ_m − JᵀRJ is not ⪰ 0 there
+    enough   what the bounds between the points ask for: more than is needed, most of all of parallel arms
+
+Between the two the independent checker decides, which cuts cells where it must: the first of a few steps
+from `fails` to `enough` that it proves is told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from math import isfinite
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from zwidth.arms.joints import as_matrix, single_additions
+from zwidth.arms.least import least_additions
+from zwidth.passivity.workspace.certificate import arm_certificate
+from zwidth.passivity.workspace.question import Question
+
+Array = npt.NDArray[np.float64]
+
+_STEPS = (1 / 32, 1 / 8, 1 / 2)
+"""Of the way from what fails to what is enough."""
+
+_LEAST = 0.02
+"""Of what fails: nearer to it the checker would need too many cells."""
+
+
+class Addition(NamedTuple):
+    """Damping to be added to each joint [N·m·s/rad]; ∞ where none is enough.
+
+    With it the region is proved; with `fails`, or less in these proportions, the condition fails at a point.
+    """
+
+    enough: tuple[float, ...]
+    fails: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Additions:
+    """What to add to the damping of the joints for a question.
+
+    Parameters
+    ----------
+    question
+        The arm, the wall and the loop.
+    points
+        δ_m − JᵀRJ at the points of the map, (points, m, m).
+    cells
+        The same less what it may lose between them.
+    """
+
+    question: Question
+    points: Array
+    cells: Array
+
+    @cached_property
+    def least(self) -> Addition:
+        """With the smallest sum."""
+        return self._smallest(lambda matrices: np.asarray(least_additions(matrices)[0]))
+
+    @cached_property
+    def to_all(self) -> Addition:
+        """The same in every joint."""
+        return self._smallest(_to_all)
+
+    @cached_property
+    def alone(self) -> tuple[Addition, ...]:
+        """All in one joint, for each of them."""
+        return tuple(self._smallest(lambda matrices, i=i: _alone(matrices, i)) for i in range(self._joints))
+
+    @property
+    def _joints(self) -> int:
+        return int(self.points.shape[-1])
+
+    def _smallest(self, needed: Callable[[Array], Array]) -> Addition:
+        enough = needed(self.cells)
+        if not enough.any():
+            return Addition(_numbers(enough), _numbers(enough))
+        fails = needed(self.points)
+        if not all(map(isfinite, fails)):
+            return Addition(_numbers(fails), _numbers(fails))
+        far = np.where(np.isfinite(enough), enough, 4 * fails)  # the bounds alone may ask for no end of it
+        for share in _STEPS:
+            tried = np.maximum(fails + share * (far - fails), (1 + _LEAST) * fails)
+            if self._proves(tried):
+                return Addition(_numbers(tried), _numbers(fails))
+        return Addition(_numbers(enough), _numbers(fails))
+
+    def _proves(self, more: Array) -> bool:
+        asked = self.question
+        damped = asked.arm.replace(damping=as_matrix(asked.arm.damping) + np.diag(more))
+        loop = (damped, asked.wall, asked.rate, asked.delay_samples, asked.held_to)
+        return arm_certificate(*loop)[0] is not None
+
+
+def _to_all(matrices: Array) -> Array:
+    lacking = max(0.0, -float(np.linalg.eigvalsh(matrices)[:, 0].min()))
+    return np.full(matrices.shape[-1], lacking)
+
+
+def _alone(matrices: Array, joint: int) -> Array:
+    found = np.zeros(matrices.shape[-1])
+    found[joint] = single_additions(matrices)[:, joint].max()
+    return found
+
+
+def _numbers(values: Array) -> tuple[float, ...]:
+    return tuple(float(value) for value in values)

@@ -1,0 +1,285 @@
+"""How stiff a wall an arm with many joints may render, posture by posture over all of its joint ranges.
+
+    largest s with δ_m ⪰ Jᵀ(s K (2d + 1) T/2 + |B|) J    at each posture q
+
+Seven joints have no map of cells: postures are drawn evenly from their ranges, the worst are followed
+downhill, and what each gives is put where its hand is, by distance from the first axis and by height.  What
+is found is of these postures; between them nothing is proved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from zwidth.arms import ArmMotion, DescribedArm
+from zwidth.arms.matrix_wall import MatrixWall
+from zwidth.arms.need import wall_need
+from zwidth.arms.replay import refuting_motion
+from zwidth.environment.wall import Wall
+from zwidth.errors import InputError
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.result import PassivityAnswer
+from zwidth.passivity.scope import Scope
+from zwidth.passivity.workspace.mapped import scaled_stiffness, stiffness_factors
+from zwidth.passivity.workspace.question import Question, asked_of
+from zwidth.passivity.workspace.report import finite, motion_document, wall_document
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.text import shown
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = npt.NDArray[np.float64]
+
+MOST_POSTURES = 1_000_000
+_AT_ONCE = 5000
+_WORST, _AROUND, _ROUNDS = 8, 60, 12
+"""Postures that are followed, neighbours of each in a round, and rounds, each of half the size."""
+_FIRST = 0.05
+"""Of the ranges: how far the first neighbours are."""
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class PostureMap(PassivityAnswer):
+    """How stiff a wall may be, at the postures that were tried.
+
+    Parameters
+    ----------
+    question
+        The arm, the wall and the loop.
+    tried
+        How many postures.
+    data
+        By `radius` from the first axis and `height`, the hand's [m]: the smallest and the largest
+        `stiffness_factor` of the postures in a cell, of a wall at a point `largest_stiffness` [N/m] too, and
+        how many there are; nan where none is.
+    stiffness_factor
+        How many times as stiff the wall may be at every posture that was tried.
+    worst
+        The joints at the posture where that is least [rad; m].
+    motion
+        What takes energy out there, if the wall is too stiff and one was found.
+    """
+
+    FORMAT = "zwidth postures 1"
+    PICTURE = "postures_figure"
+    certificate = witness = None
+
+    question: Question
+    tried: int
+    data: xarray.Dataset
+    stiffness_factor: float
+    worst: tuple[float, ...]
+    motion: ArmMotion | None
+
+    @property
+    def outcome(self) -> Outcome:
+        """ "active" with a motion at a posture; else "undecided": of postures alone no region is proved."""
+        return "undecided" if self.motion is None else "active"
+
+    @cached_property
+    def largest_stiffness(self) -> float | None:
+        """The stiffest wall of this kind at every posture tried [N/m]; None of a wall in pose."""
+        wall, arm = self.question.wall, self.question.arm
+        size = 3 + arm.turns
+        return None if arm.turns else float(scaled_stiffness(wall, np.array(self.stiffness_factor), size))
+
+    @property
+    def claim(self) -> str:
+        """What was found, and that it is of postures."""
+        of = f"{self.tried} postures over the joint ranges"
+        if self.motion is not None:
+            by = ", of hands that hold the links" if self.motion.imposed_by == "links" else " of the hand"
+            return f"At one of {of} a motion{by} takes energy out."
+        if self.stiffness_factor < 1:
+            return f"At some of {of} the condition fails, and no motion was found that takes energy out."
+        return f"The condition holds at all of {of}; between them nothing is proved."
+
+    @property
+    def scope(self) -> Scope:
+        """A wall on both sides of its rest, read without steps, at the postures tried."""
+        held = bool(self.question.held_to)
+        return Scope(
+            contact="both sides",
+            encoder="not counted" if any(self.question.arm.resolution) else "ideal",
+            torque="held" if held else "follows the arm",
+            region="the postures that were tried",
+        )
+
+    @property
+    def margin(self) -> float:
+        """By how many times the wall may be stiffer, less 1."""
+        return self.stiffness_factor - 1
+
+    def rows(self) -> Iterator[tuple[str, str]]:
+        """The main numbers as (name, text) for a report."""
+        best = float(self.data["best_stiffness_factor"].max())
+        if self.largest_stiffness is None:
+            yield "stiffness", f"{self.stiffness_factor:.4g} times everywhere, {best:.4g} times at best"
+        else:
+            most = float(scaled_stiffness(self.question.wall, np.array(best), 3))
+            everywhere = shown(self.largest_stiffness, "N/m")
+            yield (
+                "largest stiffness",
+                f"{everywhere} at every posture tried, {shown(most, 'N/m')} at the best",
+            )
+        yield "worst posture", ", ".join(f"{value:.3g}" for value in self.worst)
+        if self.motion is not None:
+            yield "motion", f"{len(self.motion.joints)} samples take {shown(-self.motion.energy, 'J')} out"
+
+    def numbers(self) -> dict[str, Any]:
+        """As plain data, units in the keys."""
+        arm, motion = self.question.arm, self.motion
+        return {
+            "arm": arm.name,
+            "wall": wall_document(self.question.wall, 3 + arm.turns, arm.turns),
+            "sample_period_s": self.question.period,
+            "delay_samples": self.question.delay_samples,
+            "postures": self.tried,
+            "stiffness_factor": finite(self.stiffness_factor),
+            "largest_stiffness_N_per_m": self.largest_stiffness,
+            "worst_joints_rad": list(self.worst),
+            "motion": None if motion is None else motion_document(motion, arm.turns),
+        }
+
+
+def stiffness_over_postures(
+    arm: DescribedArm,
+    wall: Wall | MatrixWall,
+    *,
+    rate: RealLike,
+    delay: RealLike = 0,
+    postures: int = 20_000,
+    cells: int = 40,
+) -> PostureMap:
+    """Map the largest passive stiffness over all postures of an arm from a description.
+
+    Parameters
+    ----------
+    arm
+        `zwidth.arms.read_arm(…, whole=True)`: every joint that is not held goes over its whole range.
+    wall
+        As of `zwidth.workspace`.
+    rate, delay
+        As of `zwidth.workspace`.
+    postures
+        How many are drawn from the ranges, from 100 to 1 000 000; the same ones every time.
+    cells
+        Of the map along radius and height, from 2 to 1000.
+
+    Raises
+    ------
+    InputError
+        If a number is outside its bound, or the arm is not from a description.
+    """
+    if not isinstance(arm, DescribedArm):
+        raise InputError(
+            "postures are drawn of arms from a description; of others zwidth.workspace has a map"
+        )
+    if isinstance(postures, bool) or not isinstance(postures, int) or not 100 <= postures <= MOST_POSTURES:
+        raise InputError(f"postures must be a whole number from 100 to {MOST_POSTURES}, got {postures!r}")
+    question = asked_of(arm, wall, rate, delay, cells, None, None)
+    places = _drawn(arm, postures)
+    factors, positions = _factors(question, places)
+    worst = places[np.argsort(factors)[:_WORST]]
+    followed, lowest = _followed(question, worst)
+    at = int(np.argmin(lowest))
+    more = _factors(question, followed)
+    motion = _refuted(question, followed[np.argsort(lowest)]) if lowest[at] < 1 else None
+    return PostureMap(
+        question=question,
+        tried=postures,
+        data=_by_place(
+            question, np.concatenate([factors, more[0]]), np.concatenate([positions, more[1]]), cells
+        ),
+        stiffness_factor=float(lowest[at]),
+        worst=tuple(followed[at].tolist()),
+        motion=motion,
+    )
+
+
+def _drawn(arm: DescribedArm, count: int) -> Array:
+    """Evenly from the ranges (Halton 1960), the same every time."""
+    from scipy.stats import qmc
+
+    low, high = np.array(arm.joint_range).T
+    return np.asarray(low + (high - low) * qmc.Halton(len(low), scramble=False).random(count + 1)[1:])
+
+
+def _factors(question: Question, places: Array) -> tuple[Array, Array]:
+    """How many times as stiff the wall may be at each place, and where the hand is."""
+    arm = question.arm
+    assert isinstance(arm, DescribedArm)
+    size = 3 + arm.turns
+    need = wall_need(question.wall, question.period, question.delay_samples, size)
+    damping, found = question.damping(size), list[Array]()
+    positions, jacobians = arm.placed(places)
+    for start in range(0, len(places), _AT_ONCE):
+        found.append(stiffness_factors(damping, need, jacobians[start : start + _AT_ONCE]))
+    return np.concatenate(found), positions[:, :3]
+
+
+def _followed(question: Question, places: Array) -> tuple[Array, Array]:
+    """Downhill from some places, inside the ranges."""
+    arm = question.arm
+    assert isinstance(arm, DescribedArm)
+    low, high = np.array(arm.joint_range).T
+    steps = np.random.default_rng(0).normal(size=(_ROUNDS, _AROUND, len(low)))
+    lowest = _factors(question, places)[0]
+    for turn in range(_ROUNDS):
+        near = places[:, None] + _FIRST * 0.5**turn * (high - low) * steps[turn]
+        near = np.clip(near, low, high).reshape(-1, len(low))
+        values = _factors(question, near)[0].reshape(len(places), _AROUND)
+        best = values.argmin(axis=1)
+        rows = np.arange(len(places))
+        better = values[rows, best] < lowest
+        chosen = near.reshape(len(places), _AROUND, -1)[rows, best]
+        places = np.where(better[:, None], chosen, places)
+        lowest = np.minimum(lowest, values[rows, best])
+    return places, lowest
+
+
+def _refuted(question: Question, places: Array) -> ArmMotion | None:
+    """A motion at one of the places, replayed with the full kinematics."""
+    loop = (question.arm, question.wall, question.period, question.delay_samples)
+    found = (refuting_motion(*loop, place, question.torque_held) for place in places)
+    return next((motion for motion in found if motion is not None), None)
+
+
+def _by_place(question: Question, factors: Array, positions: Array, cells: int) -> xarray.Dataset:
+    """The least and the most of the factors in each cell, and how many there are."""
+    import xarray as xr
+
+    radius, height = np.hypot(positions[:, 0], positions[:, 1]), positions[:, 2]
+    edges = [np.linspace(v.min(), v.max() + 1e-12, cells + 1) for v in (radius, height)]
+    place = tuple(
+        np.clip(np.searchsorted(edge, v, side="right") - 1, 0, cells - 1)
+        for edge, v in zip(edges, (radius, height), strict=True)
+    )
+    least, most = np.full((cells, cells), np.inf), np.full((cells, cells), -np.inf)
+    count = np.zeros((cells, cells), dtype=np.int64)
+    np.minimum.at(least, place, factors)
+    np.maximum.at(most, place, factors)
+    np.add.at(count, place, 1)
+    least[count == 0] = most[count == 0] = np.nan
+    dims = ("radius", "height")
+    variables: dict[str, Any] = {
+        "stiffness_factor": (dims, least, {"units": "1", "long_name": "least of the postures in this cell"}),
+        "best_stiffness_factor": (dims, most, {"units": "1", "long_name": "most of them"}),
+        "postures": (dims, count, {"units": "1", "long_name": "how many there are"}),
+    }
+    if not question.arm.turns:
+        values = np.where(count > 0, scaled_stiffness(question.wall, least, 3), np.nan)
+        words = "stiffest wall that every posture in this cell bears"
+        variables["largest_stiffness"] = (dims, values, {"units": "N/m", "long_name": words})
+    middles = {
+        name: (name, (edge[1:] + edge[:-1]) / 2, {"units": "m"})
+        for name, edge in zip(dims, edges, strict=True)
+    }
+    return xr.Dataset(variables, middles, {"arm": question.arm.name, "tried": len(factors)})

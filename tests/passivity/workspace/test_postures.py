@@ -1,0 +1,91 @@
+"""All postures of an arm with seven joints: the least stiffness, where it is, and a motion beyond it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from described_arms import panda_like
+
+import zwidth as zw
+from zwidth import plots
+from zwidth.cli.main import main
+
+READY = (0, -np.pi / 4, 0, -3 * np.pi / 4, 0, np.pi / 2, np.pi / 4)
+
+
+@pytest.fixture(scope="module")
+def panda(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Its description."""
+    return panda_like(tmp_path_factory.mktemp("arm") / "panda.urdf", damping=0.8)
+
+
+def test_the_joints_are_placed_as_published(panda: Path) -> None:
+    """At the maker's ready posture the flange is 0.307 m ahead and 0.590 m up."""
+    arm = zw.arms.read_arm(panda, whole=True)
+    assert arm.forward(READY) == pytest.approx([0.30689, 0, 0.59028], abs=1e-5)
+
+
+def test_no_posture_of_others_is_worse(panda: Path) -> None:
+    """2b/T over the largest lever, at postures of another generator: none is below the one that was found."""
+    arm = zw.arms.read_arm(panda, whole=True)
+    found = zw.stiffness_over_postures(arm, zw.Wall(500), rate=1000, postures=3000)
+    low, high = np.array(arm.joint_range).T
+    others = np.random.default_rng(5).uniform(low, high, (3000, 7))
+    sizes = np.linalg.norm(arm.jacobian(others), 2, axis=(-2, -1))
+    stiffest = 2 * 0.8 * 1000 / sizes**2  # damped alike: K T/2 |J|² ≤ b
+    assert stiffest.min() >= found.largest_stiffness
+    assert np.linalg.norm(arm.jacobian(found.worst), 2) ** 2 == pytest.approx(1600 / found.largest_stiffness)
+    assert found.outcome == "undecided"
+    assert "nothing is proved" in found.claim
+    least = float(found.data["largest_stiffness"].min())
+    assert least == pytest.approx(found.largest_stiffness)
+    assert int(found.data["postures"].sum()) >= 3000
+
+
+def test_beyond_it_a_motion_of_the_joints_takes_energy_out(panda: Path) -> None:
+    """1 % stiffer, at the worst posture; 1 % less stiff there is none: the motion says who can make it."""
+    arm = zw.arms.read_arm(panda, whole=True)
+    limit = zw.stiffness_over_postures(arm, zw.Wall(500), rate=1000, postures=1000).largest_stiffness
+    over = zw.stiffness_over_postures(arm, zw.Wall(1.01 * limit), rate=1000, postures=1000)
+    under = zw.stiffness_over_postures(arm, zw.Wall(0.99 * limit), rate=1000, postures=1000)
+    assert (over.outcome, under.outcome) == ("active", "undecided")
+    assert over.motion.imposed_by == "links"
+    assert over.motion.energy < 0
+    assert "of hands that hold the links" in over.claim
+    assert plots.postures_figure(over).axes[0].get_ylabel() == "height [m]"
+
+
+def test_in_pose_factors_are_told(panda: Path) -> None:
+    """Metres and radians have no common stiffness."""
+    arm = zw.arms.read_arm(panda, whole=True, pose=True)
+    found = zw.stiffness_over_postures(arm, zw.arms.MatrixWall.in_pose(200, 10), rate=1000, postures=500)
+    assert found.largest_stiffness is None
+    assert found.stiffness_factor > 1
+    assert "times everywhere" in dict(found.rows())["stiffness"]
+
+
+def test_on_the_command_line(panda: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The report, the JSON and the map; what is of a map of two joints is refused."""
+    asked = ["workspace", str(panda), "--stiffness", "500", "--postures", "500"]
+    assert main([*asked, "-o", str(tmp_path / "map.nc"), "--plot", str(tmp_path / "map.png")]) == 3
+    assert "at every posture tried" in capsys.readouterr().out
+    assert (tmp_path / "map.nc").exists()
+    assert (tmp_path / "map.png").exists()
+    assert main([*asked, "--json"]) == 3
+    assert json.loads(capsys.readouterr().out)["postures"] == 500
+    assert main([*asked, "--points", "20"]) == 2
+    assert "leave it out with --postures" in capsys.readouterr().err
+
+
+def test_what_cannot_be_asked(panda: Path) -> None:
+    """A map of cells of seven joints, postures of an arm that is not described, too few of them."""
+    arm = zw.arms.read_arm(panda, whole=True)
+    with pytest.raises(zw.InputError, match="7 would move"):
+        zw.workspace(arm, zw.Wall(500), rate=1000)
+    with pytest.raises(zw.InputError, match="from a description"):
+        zw.stiffness_over_postures(zw.arms.built_in("hapkit", damping=1), zw.Wall(1), rate=1000)  # type: ignore[arg-type]
+    with pytest.raises(zw.InputError, match="from 100 to"):
+        zw.stiffness_over_postures(arm, zw.Wall(500), rate=1000, postures=3)
