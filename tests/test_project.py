@@ -225,7 +225,13 @@ def test_what_is_run_with_the_oldest_versions_exists() -> None:
     """Every test that the list names: one that has moved would be no test."""
     listed = re.findall(r"^  (tests/\S+)", (ROOT / ".ci" / "oldest").read_text(encoding="utf-8"), re.M)
     assert len(listed) > 10
-    assert [name for name in listed if not (ROOT / name).exists()] == []
+    assert [name for name in listed if not _is_there(*name.split("::"))] == []
+
+
+def _is_there(file: str, test: str = "") -> bool:
+    return (ROOT / file).exists() and (
+        not test or f"\ndef {test}(" in (ROOT / file).read_text(encoding="utf-8")
+    )
 
 
 def _blocks(page: str, language: str) -> list[str]:

@@ -69,21 +69,13 @@ def test_the_lines_of_a_page(page: str, tmp_path: Path, monkeypatch: pytest.Monk
 
 
 @pytest.mark.parametrize("page", [name for name in NAMES if "{computed}" in read(name)])
-def test_what_is_computed_says_what_the_text_relies_on(page: str, tmp_path: Path) -> None:
-    """As the docs are built: no output is typed, and none has come to say something else."""
+def test_each_computed_block_has_what_the_text_relies_on(page: str) -> None:
+    """The docs' build runs its commands, and ends where one is a mistake or says something else by now."""
     blocks = COMPUTED.findall(read(page))
     assert len(blocks) == read(page).count("```{computed}")
-    for number, (options, commands) in enumerate(blocks):
-        (relied_on,) = re.findall(r"^:says: (.+)$", options, re.M)
-        folder = tmp_path / str(number)
-        folder.mkdir()
-        put_files(page, folder)
-        printed = ""
-        for _, call in shown.commands_of(f"```console\n{commands}```"):
-            status, out, said = shown.run(call, folder)
-            assert status != shown.BAD_INPUT, said
-            printed += f" {out}"
-        assert shown.not_said(relied_on, printed) == [], commands
+    for options, commands in blocks:
+        assert len(re.findall(r"^:says: (.+)$", options, re.M)) == 1, commands
+        assert len(list(shown.commands_of(f"```console\n{commands}```"))) == commands.count("$ ")
 
 
 def test_calls_and_files_are_found() -> None:
