@@ -52,7 +52,7 @@ MOVE = """async (moves) => {
 LOOPS = {
     "a spring": "",
     "a damped wall": "?device.damping=0.15 N*s/m&device.coulomb_friction=0.12 N&device.resolution=22.4 um"
-    "&device.rate=1 kHz&environment.type=wall&environment.stiffness=50 N/m&environment.damping=0.05 N*s/m",
+    "&device.rate=1 kHz&environment.type=wall&environment.stiffness=130 N/m&environment.damping=0.05 N*s/m",
 }
 """What is moved: the loop that the page begins with, and one with more to look for."""
 
