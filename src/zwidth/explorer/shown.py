@@ -27,7 +27,7 @@ class Explorer(Viewer):  # type: ignore[misc]  # Panel has no types
 
     def __init__(self, state: State) -> None:
         super().__init__()
-        pn.extension()
+        pn.extension(inline=True)  # a notebook too asks nothing of a content network
         workers = Workers()
         finalize(self, workers.close)
         self._session = Session(state, workers, _soon, in_page=False)
