@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Callable
+from types import SimpleNamespace
 
 import pytest
 
@@ -120,3 +121,12 @@ def test_importing_zwidth_loads_no_panel() -> None:
     code = "import sys, zwidth; zwidth.check; print([m for m in ('panel', 'bokeh') if m in sys.modules])"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "[]"
+
+
+def test_in_a_kernel_panel_comes_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sliders that are shown in the cell that loads it are not heard: what to type is said instead."""
+    shell = SimpleNamespace(get_ipython=lambda: SimpleNamespace(kernel=object()))
+    monkeypatch.setitem(sys.modules, "IPython", shell)
+    monkeypatch.setattr("panel.extension._loaded", False)
+    with pytest.raises(InputError, match=r"panel\.extension\(inline=True\)"):
+        zw.explore()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from weakref import finalize
 
 import panel as pn
@@ -9,6 +10,7 @@ from panel.viewable import Viewer
 
 from zwidth.device import Device
 from zwidth.environment import Environment, Wall
+from zwidth.errors import InputError
 from zwidth.explorer.session import Session
 from zwidth.explorer.starts import first
 from zwidth.explorer.state import State
@@ -27,7 +29,8 @@ class Explorer(Viewer):  # type: ignore[misc]  # Panel has no types
 
     def __init__(self, state: State) -> None:
         super().__init__()
-        pn.extension()
+        _need_extension()
+        pn.extension(inline=True)
         workers = Workers()
         finalize(self, workers.close)
         self._session = Session(state, workers, _soon, in_page=False)
@@ -65,6 +68,15 @@ class Explorer(Viewer):  # type: ignore[misc]  # Panel has no types
         session = self._session
         answers = pn.Column(session.head, session.details, self._tabs, sizing_mode="stretch_width")
         return pn.Row(pn.Column(session.form, width=380), answers, sizing_mode="stretch_width")
+
+
+def _need_extension() -> None:
+    """In Jupyter Panel's scripts come with a cell before: sliders that are shown with them are not heard."""
+    shell = sys.modules.get("IPython")
+    if shell is not None and hasattr(shell.get_ipython(), "kernel") and not pn.extension._loaded:
+        raise InputError(
+            "Panel must be loaded before, in a cell of its own: import panel; panel.extension(inline=True)"
+        )
 
 
 def _soon(work: object) -> None:

@@ -175,7 +175,7 @@ _LONG = 64
 
 
 def states_of(law: FiniteLaw, losses: Losses, domain: Domain) -> int:
-    """Cells, readings before and averages of a grid together; where a law remembers long, at least that."""
+    """Cells, readings before and averages of a grid together; of a long memory, that they are too many."""
     remembered = min(law.memory + losses.delay, _LONG)  # a power of millions is never worked out
     states = int(domain.cells * (2 * domain.reach + 1) ** remembered)
     return states * domain.cells if law.relaxing is not None else states
