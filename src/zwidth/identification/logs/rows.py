@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from zwidth.errors import InputError
+from zwidth.identification.logs.jumps import between_jumps, hand_damper
 from zwidth.identification.logs.scales import Meaning
 from zwidth.identification.logs.table import PIECE, Table, readable
 
@@ -102,16 +103,19 @@ class Recording:
     def _read(self, tally: Counter[str]) -> Iterator[Rows]:
         quantities = tuple(self.meaning.columns)
         names = tuple(self.meaning.columns[q] for q in quantities)
-        sampled = (
-            "sampled" if str(self.table.attributes.get("format", "")).startswith("zwidth trace") else None
-        )
+        simulated = str(self.table.attributes.get("format", "")).startswith("zwidth trace")
+        damper = hand_damper(self.table) if simulated and "hand_force" in quantities else 0.0
+        more = ("sampled", "anchor_position") if damper else ("sampled",) if simulated else ()
         origin: Any = None
-        for values in self.table.read((*names, sampled) if sampled else names):
-            columns = dict(zip(quantities, values, strict=False))
-            if sampled:
-                at_samples = values[-1] != 0
+        for values in self.table.read((*names, *more)):
+            columns = dict(zip((*quantities, *more), values, strict=True))
+            if simulated:
+                at_samples = columns.pop("sampled") != 0
                 if not at_samples.all():
                     columns = {q: v[at_samples] for q, v in columns.items()}
+            if damper:
+                columns["hand_force"] = between_jumps(self.table, columns, damper)
+                del columns["anchor_position"]
             if "time" in columns and origin is None and columns["time"].size:
                 origin = _origin(columns["time"], self.meaning.factors["time"])
                 tally["dates"] += bool(origin)

@@ -41,7 +41,8 @@ def fit_figure(fit: TissueFit) -> Figure:
 
 def title(fit: TissueFit) -> str:
     """The model and its numbers, on a line."""
-    numbers = ", ".join(f"{row[0].replace('_', ' ')} {row[1]} {row[3]}" for row in fit.table()[1:])
+    rows = fit.table()[1 : 1 + len(fit.model.parameters)]
+    numbers = ", ".join(f"{row[0].replace('_', ' ')} {float(row[1]):.4g} {row[3]}" for row in rows)
     return f"{fit.model.name}: {numbers}"
 
 

@@ -53,9 +53,9 @@ def passive_limit(
     parameter
         A parameter of the environment ("stiffness", "damping") or of the device
         ("coulomb_friction", "device.damping", "sample_period", "resolution", …);
-        of a `NonlinearSpring` or a transfer function "gain", a factor on its force; of a
-        `HuntCrossley` contact "stiffness" or "dissipation".  Of laws in a chain one of the
-        environment that they render.
+        of a wall, a solid, a `HuntCrossley` contact, a `NonlinearSpring` or a transfer function "gain", a
+        factor on its force; of a `HuntCrossley` contact "stiffness" or "dissipation" too.  Of laws in a
+        chain one of the environment that they render.
     penetration, speed
         Bounds on the hand [m; rad], [m/s; rad/s], as for `available_storage`.
     force_limit, force_resolution

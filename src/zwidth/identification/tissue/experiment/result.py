@@ -88,6 +88,11 @@ class TissueTest(Documented):
     def doubts(self) -> tuple[str, ...]:
         """What a reader should know before trusting the numbers."""
         said = list(self.best.remarks)
+        if self.best.model.name == "kelvin-voigt" and self.test.surface is not None:
+            said.append(
+                "a Kelvin–Voigt solid that is met from outside jumps at the touch, between two samples: its "
+                "intervals are too narrow"
+            )
         if not self.is_noise:
             said.append(
                 "what is left over is not noise: none of these models is the tissue to within the "
