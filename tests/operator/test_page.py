@@ -25,7 +25,9 @@ def test_every_number_stands_on_the_page_with_its_default(name: str) -> None:
         r"^\| `(\w+)` \| (\S+ \S+) \| \S", _section(f"{kind.__name__} (`{name}`)"), re.MULTILINE
     )
     hand = kind()
-    expected = [(key, f"{getattr(hand, key):.6g} {q.unit_for(kind.motion)}") for key, q in kind.parameters().items()]
+    expected = [
+        (key, f"{getattr(hand, key):.6g} {q.unit_for(kind.motion)}") for key, q in kind.parameters().items()
+    ]
     assert sorted(rows) == sorted(expected)
 
 
