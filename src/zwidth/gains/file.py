@@ -122,12 +122,11 @@ def read_table(path: str | Path) -> GainTable:
 def _yaml(text: str) -> Any:
     import yaml  # only where such a file is read
 
-    class Joined(yaml.BaseLoader):  # text, lists and mappings alone
-        """Keys that are given twice are one mapping, as ROS takes them; of anything else it is a mistake."""
-
-    Joined.add_constructor("tag:yaml.org,2002:map", _joined)
+    # Text, lists and mappings alone; keys that are given twice are one mapping, as ROS takes them.
+    joined: Any = type("Joined", (yaml.BaseLoader,), {})
+    joined.add_constructor("tag:yaml.org,2002:map", _joined)
     try:
-        return yaml.load(text, Loader=Joined)
+        return yaml.load(text, Loader=joined)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = f"line {mark.line + 1}: " if mark else ""
