@@ -19,6 +19,7 @@ SAYS = {
     "paddle.toml": (1, "ACTIVE"),
     "knob.toml": (0, "TOUCH"),
     "session.csv": (0, "IDENTIFIED"),
+    "shaking.csv": (0, "DELAY"),
     "hapkit.toml": (0, "hapkit.ino"),
     "arm.urdf": (0, "PASSIVE"),
     "leader.toml": (0, "PASSIVE"),

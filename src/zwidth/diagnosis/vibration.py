@@ -23,7 +23,7 @@ LOWEST = 1.5
 """[Hz] what is slower is a movement of the hand."""
 
 HARMONICS = 5
-MOST_CYCLES = 60
+MOST_CYCLES = 25
 FEWEST_CYCLES = 5
 
 _BLOCK = 0.2
