@@ -117,13 +117,13 @@ def test_what_lies_between_two_forces() -> None:
 @pytest.mark.parametrize("late", [0, 3])
 def test_the_energy_of_a_cycle_is_that_of_the_held_force_along_the_motion(late: int) -> None:
     """−∮ f dx by sums over the exact moves between samples; the terms add up to it."""
-    position = shaken(2.0, drift=0.0)
+    position = shaken(2.5, drift=0.0)
     command = 640 * position + 0.4 * np.concatenate([[0.0], np.diff(position)]) / PERIOD
     applied = held(command, late)
     whole = vibration.find(np.arange(position.size) * PERIOD, position, PERIOD)
     assert whole is not None
     seen = gather(recorded(position, commanded=command, applied=applied), whole, None)
-    cycles = 30
+    cycles = 49  # 1654.008 rows
     rows = slice(100, 100 + round(cycles / FREQUENCY / PERIOD))
     work = -float(np.sum(applied[rows] * np.diff(position)[rows])) / cycles
     assert seen.total == pytest.approx(work, rel=0.03)
@@ -140,7 +140,10 @@ def test_the_energy_that_friction_takes() -> None:
     assert whole is not None
     seen = gather(recorded(position, applied=640 * position), whole, device)
     w = 2 * np.pi * FREQUENCY
-    assert seen.lost == pytest.approx(np.pi * w * 0.3 * 0.004**2 + 4 * 0.05 * 0.004, rel=0.01)
+    viscous = (
+        np.pi * w * 0.3 * 0.004**2 * (1 + (3 * 0.07) ** 2)
+    )  # the third harmonic moves three times as fast
+    assert seen.lost == pytest.approx(viscous + 4 * 0.05 * 0.004, rel=0.01)
     sinc = np.sinc(w * PERIOD / np.pi)  # the hold: cos(ωT/2) sin(ωT/2)/(ωT/2)
     assert seen.apparent_mass == pytest.approx(640 * sinc / w**2, rel=0.01)
 
