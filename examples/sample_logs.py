@@ -1,7 +1,7 @@
-"""The two logs that ship as samples: strokes of a hand on a simulated paddle, and a relaxation test.
+"""The logs that ship as samples: strokes on a simulated paddle, a wheel that shakes, a relaxation test.
 
-Run it as `python examples/sample_logs.py FOLDER`; it writes session.csv and relaxation.csv there, the same
-bytes each time.  Nothing in them was measured.
+Run it as `python examples/sample_logs.py FOLDER`; it writes session.csv, shaking.csv and relaxation.csv
+there, the same bytes each time.  Nothing in them was measured.
 """
 
 from __future__ import annotations
@@ -28,6 +28,24 @@ def session(path: Path) -> None:
     force = trace["hand_force"].values + 0.02 + rng.normal(0, 0.03, position.size)
     table = np.column_stack([trace["time"].values, 1e3 * position, force])[:10_000]
     _write(path, table, "time_s,position_mm,hand_force_N", ("%.3f", "%.2f", "%.2f"))
+
+
+def shaking(path: Path) -> None:
+    """1.2 s of a wheel let go off centre: its spring comes 3 ms later than wheel.toml says."""
+    step = 2 * np.pi / 65536
+    wheel = zw.Device(
+        motion="rotary", mass=0.006, damping=0.02, coulomb_friction=0.05, resolution=step, rate="1 kHz",
+        delay="3.3 ms", force_limit=12,
+    )  # fmt: skip
+    centring = zw.PulseTransferFunction([20], [1])
+    trace = zw.simulate(
+        wheel, centring, zw.operators.ConstantForce(force=0.01), 1.6, initial_position=0.15, encoder_phase=0.4
+    )
+    trace = trace.isel(time=slice(300, 1500))
+    columns = (np.rad2deg(trace["measured_position"]), trace["commanded_force"], trace["actuator_force"])
+    table = np.column_stack([trace["time"].values, *(column.values for column in columns)])
+    names = "time_s,angle_deg,commanded_torque_N_m,motor_torque_N_m"
+    _write(path, table, names, ("%.3f", "%.4f", "%.4f", "%.4f"))
 
 
 def relaxation(path: Path) -> None:
@@ -61,4 +79,5 @@ def _write(path: Path, table: np.ndarray, names: str, formats: tuple[str, ...]) 
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
     session(folder / "session.csv")
+    shaking(folder / "shaking.csv")
     relaxation(folder / "relaxation.csv")

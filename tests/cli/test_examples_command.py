@@ -20,6 +20,7 @@ SAYS = {
     "knob.toml": (0, "TOUCH"),
     "session.csv": (0, "IDENTIFIED"),
     "relaxation.csv": (0, "relaxation test of a standard linear solid"),
+    "shaking.csv": (0, "DELAY"),
     "hapkit.toml": (0, "hapkit.ino"),
     "arm.urdf": (0, "PASSIVE"),
     "leader.toml": (0, "PASSIVE"),

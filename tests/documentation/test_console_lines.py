@@ -12,6 +12,7 @@ from zwidth.cli import main as command_line
 
 NOT_RUN = {
     "compare": "it simulates every law; run in tests/bench",
+    "diagnose": "it needs a recording; run in tests/cli/test_diagnose_command.py",
     "doctor": "it measures for seconds",
     "explore": "it serves a page until it is ended; run in tests/explorer",
     "emit": "run in tests/firmware",

@@ -100,8 +100,8 @@ def _sampling(seen: Evidence) -> Iterator[str]:
 def _delay(seen: Evidence) -> Iterator[str]:
     if seen.sees_delay:
         yield (
-            f"the force comes {shown(seen.delay, 's', 3)} after its sample, "
-            f"{seen.delay / seen.loop_period:.1f} samples; the hold alone is half a sample"
+            f"the force comes up to {shown(seen.delay, 's', 3)} after its sample, "
+            f"{seen.delay / seen.loop_period:.0f} samples; the hold alone is half a sample"
         )
         yield f"it gives {_share(seen, 'delay')}"
     else:

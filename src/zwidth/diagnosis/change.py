@@ -11,20 +11,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import floor, log10
-from typing import TYPE_CHECKING
 
 from zwidth.device import Device
 from zwidth.diagnosis.evidence import Evidence
-from zwidth.environment import Wall, Window
+from zwidth.environment import BackwardDifference, Wall, Window
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
-from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.check import check, check_by_closed_forms
+from zwidth.passivity.covering import covering
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import shown
-
-if TYPE_CHECKING:
-    pass
+from zwidth.rendering.rendered import laws_of
 
 PASSIVE = ("passive", "passive in contact")
 """Outcomes that a change may have."""
@@ -96,9 +94,10 @@ class _Loop:
             if left < 0:
                 raise InputError("the drive's damper may drive more than the device brakes")
             device = device.replace(damping=_text(left))
-        wall: Environment = Wall(
-            _text(at["stiffness"]), _text(at["damping"]), velocity_filter=Window(self.window)
-        )
+        wall: Environment = Wall(_text(at["stiffness"]))
+        if at["damping"]:
+            estimate = Window(self.window) if self.window > 1 else BackwardDifference()
+            wall = Wall(_text(at["stiffness"]), _text(at["damping"]), velocity_filter=estimate)
         if at["compensation"]:
             from zwidth.rendering import FrictionCompensation, render
 
@@ -111,16 +110,18 @@ class _Loop:
         return device, wall
 
     def decided(self, **changes: float) -> Verdict | None:
-        """The verdict; None where the loop cannot be decided in closed form."""
+        """The verdict by closed forms; None where there is none."""
         try:
-            return check_by_closed_forms(*self.built(**changes))
+            device, law = self.built(**changes)
+            covered = covering(device, law) if laws_of(law) else (device, law)
         except InputError:
             return None
+        return None if covered is None else check_by_closed_forms(*covered)
 
 
 def change_for(cause: str, seen: Evidence, device: Device) -> Change | None:
     """The change that takes a cause away; None where no single number of the loop does, or none is proved."""
-    if seen.law is None or cause not in _PARAMETERS:
+    if seen.law is None or cause not in _PARAMETERS or (cause == "delay" and not seen.sees_delay):
         return None
     loop = _loop(seen, device, cause)
     for key in _PARAMETERS[cause]:
@@ -136,7 +137,7 @@ def change_for(cause: str, seen: Evidence, device: Device) -> Change | None:
         built = loop.built(**{key: to})
         name, unit = _NAMES[key]
         said = seen.unit(unit) if unit != "s" else "s"
-        verdict = check_by_closed_forms(*built)
+        verdict = check(*built) if laws_of(built[1]) else check_by_closed_forms(*built)
         return Change(
             parameter=key,
             current=current,

@@ -10,7 +10,7 @@ Each is fitted by least squares, and what it leaves unexplained says how well it
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -55,7 +55,7 @@ class Drive:
     damping_lag: float
     rate: float
     ramps: float
-    applied: Array
+    applied: Array = field(repr=False)
 
 
 def account(

@@ -1,13 +1,13 @@
 """What a vibration lives on: the energy of a cycle, and who puts it in.
 
-In a motion x = Re X exp(jωt) a force f = Re F exp(jωt), positive against x, gives in each cycle
+In a motion x = Re Σ X_n exp(jnωt) a force f = Re Σ F_n exp(jnωt), positive against x, gives in each cycle
 
-    W = −∮ f dx = −π Im(F X*)                                    [J]
+    W = −∮ f dx = −π Σ n Im(F_n X_n*)                            [J]
 
-A law answers with F = Z(ω) X, and what is applied of it is F h exp(−jωτ), with the hold
+A law answers with F_n = Z(nω) X_n, and what is applied of it is F h exp(−jωτ), with the hold
 h = sinc(ωT/2) exp(−jωT/2) and the delay τ.  So what goes in comes apart, term by term:
 
-    sampling               the spring, through the hold:               −π |X|² Im(K h)
+    sampling               the spring, through the hold
     delay                  what exp(−jωτ) adds to spring and damper
     differenced velocity   the damper through its estimate and the hold, where that is positive
     friction compensation  the force along the motion
@@ -22,9 +22,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from zwidth.device import Device
 from zwidth.diagnosis import drive, law
@@ -35,10 +36,7 @@ from zwidth.diagnosis.vibration import Vibration, phasors
 from zwidth.quantity.exact import ends
 from zwidth.quantity.glossary import GLOSSARY
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 TERMS = (
     "sampling",
@@ -163,7 +161,7 @@ def gather(recording: Recording, vibration: Vibration, device: Device | None) ->
     loop_period = known.period or _loop_period(commanded, period)
     seen = commanded if commanded is not None else applied
     assert seen is not None
-    sign = _sign(x, seen, vibration, period)
+    sign = _sign(x, seen)
     commanded, applied = (None if f is None else sign * f for f in (commanded, applied))
     cycle = 1 / vibration.frequency
     found = None
@@ -173,18 +171,19 @@ def gather(recording: Recording, vibration: Vibration, device: Device | None) ->
     if commanded is not None and applied is not None:
         between = drive.account(commanded, applied, x, period, loop_period, cycle)
     omega = vibration.angular
-    phasor_x = phasors(x, vibration.frequency, period)
-    X = complex(phasor_x[0]) or complex(np.finfo(float).tiny)
+    xs = phasors(x, vibration.frequency, period)
+    xs[0] = xs[0] or np.finfo(float).tiny
+    X = complex(xs[0])
     delay = _delay(known, found, between, commanded is not None)
     force = applied if applied is not None else commanded
     assert force is not None
-    F = phasors(force, vibration.frequency, period)[0] * _hold(omega, loop_period)
-    if applied is None:
-        F = F * np.exp(-1j * omega * delay)
-    supplied = _terms(found, between, vibration, X, omega, loop_period, delay, period, sign * seen)
+    motion = _Motion(xs, omega, loop_period, vibration.frequency, period)
+    F = motion.phasors(force) * (1 if applied is not None else motion.late(delay))
+    supplied = _terms(found, between, motion, delay, sign * seen)
     lost = None
     if known.damping is not None:
-        lost = np.pi * omega * known.damping * abs(X) ** 2 + 4 * (known.coulomb or 0.0) * abs(X)
+        viscous = np.pi * omega * known.damping * float((np.abs(motion.orders * xs) ** 2).sum())
+        lost = viscous + 4 * (known.coulomb or 0.0) * abs(X)
     return Evidence(
         vibration=vibration,
         loop_period=loop_period,
@@ -194,11 +193,11 @@ def gather(recording: Recording, vibration: Vibration, device: Device | None) ->
         amplitude=float(abs(X)),
         delay=delay,
         supplied=supplied,
-        total=float(-np.pi * np.imag(F * np.conj(X))),
+        total=motion.work(F),
         lost=lost,
-        apparent_mass=float(np.real(F / X)) / omega**2,
+        apparent_mass=float(np.real(F[0] / X)) / omega**2,
         standing=_standing(x, period, cycle),
-        distortion=float(np.sqrt((np.abs(phasor_x[1:]) ** 2).sum()) / abs(X)),
+        distortion=float(np.sqrt((np.abs(xs[1:]) ** 2).sum()) / abs(X)),
         roles=tuple(
             name for name, values in (("commanded", commanded), ("applied", applied)) if values is not None
         ),
@@ -207,8 +206,44 @@ def gather(recording: Recording, vibration: Vibration, device: Device | None) ->
     )
 
 
-def _hold(omega: float, period: float) -> complex:
-    return complex(np.sinc(omega * period / (2 * np.pi)) * np.exp(-0.5j * omega * period))
+class _Motion(NamedTuple):
+    """The motion as phasors of the frequency and its harmonics, and what a held force does along it."""
+
+    xs: NDArray[np.complex128]
+    omega: float
+    loop_period: float
+    frequency: float
+    period: float
+
+    @property
+    def orders(self) -> Array:
+        """n = 1, 2, …"""
+        return np.arange(1.0, self.xs.size + 1)
+
+    def late(self, delay: float) -> NDArray[np.complex128]:
+        """exp(−jnωτ)."""
+        return np.asarray(np.exp(-1j * self.orders * self.omega * delay))
+
+    def phasors(self, force: Array) -> NDArray[np.complex128]:
+        """Of a sampled force that is held."""
+        half = 0.5 * self.orders * self.omega * self.loop_period
+        held = phasors(force, self.frequency, self.period) * np.sinc(half / np.pi) * np.exp(-1j * half)
+        return np.asarray(held)
+
+    def work(self, force: NDArray[np.complex128]) -> float:
+        """[J] in a cycle, −π Σ n Im(F_n X_n*)."""
+        return float(-np.pi * (self.orders * np.imag(force * np.conj(self.xs))).sum())
+
+    def answer(self, stiffness: float, damping: float, window: int) -> NDArray[np.complex128]:
+        """What a spring and a damper ask for, before the hold, by each harmonic."""
+        span = window * self.loop_period
+        late = 1 - np.exp(-1j * self.orders * self.omega * span)
+        return np.asarray((stiffness + damping * late / span) * self.xs)
+
+    def held(self, asked: NDArray[np.complex128]) -> NDArray[np.complex128]:
+        """The same through the hold."""
+        half = 0.5 * self.orders * self.omega * self.loop_period
+        return np.asarray(asked * np.sinc(half / np.pi) * np.exp(-1j * half))
 
 
 def _loop_period(commanded: Array | None, period: float) -> float:
@@ -222,8 +257,8 @@ def _loop_period(commanded: Array | None, period: float) -> float:
     return period * max(1, usual) if usual >= 2 and (np.diff(changes) % usual == 0).mean() > 0.9 else period
 
 
-def _sign(x: Array, force: Array, vibration: Vibration, period: float) -> float:
-    """+1 where the force pushes back: a spring does so at least in its slow part, where delays are short."""
+def _sign(x: Array, force: Array) -> float:
+    """+1 where the force pushes back, as a spring does that comes less than a quarter of a cycle late."""
     slope = float(np.cov(x - x.mean(), force)[0, 1])
     return 1.0 if slope >= 0 else -1.0
 
@@ -245,32 +280,21 @@ def _delay(known: Known, found: Law | None, between: Drive | None, commanded: bo
 
 
 def _terms(
-    found: Law | None, between: Drive | None, vibration: Vibration, X: complex, omega: float, T: float,
-    delay: float, period: float, seen: Array,
-) -> dict[str, float]:  # fmt: skip
+    found: Law | None, between: Drive | None, motion: _Motion, delay: float, seen: Array
+) -> dict[str, float]:
     """[J] in a cycle by each term."""
     supplied = dict.fromkeys(TERMS, 0.0)
     if found is None:
         return supplied
-    h = _hold(omega, T)
-    late = np.exp(-1j * omega * delay)
-    spring = found.stiffness
-    damper = found.damping * (1 - np.exp(-1j * omega * found.window * T)) / (found.window * T)
-
-    helping = phasors(found.compensated, vibration.frequency, period)[0]
-    asked = phasors(seen, vibration.frequency, period)[0] - helping
-    share = min(
-        1.0, float(abs(asked)) / (abs((spring + damper) * X) or np.inf)
-    )  # less where it is cut off or away
-
-    def work(z: complex) -> float:
-        return float(-np.pi * abs(X) ** 2 * np.imag(z)) * share
-
-    supplied["sampling"] = work(spring * h)
-    supplied["differenced velocity"] = work(damper * h)
-    pushed = float(-np.pi * np.imag(helping * h * np.conj(X)))
-    supplied["friction compensation"] = pushed
-    supplied["delay"] = work((spring + damper) * h * (late - 1))
+    helping = motion.phasors(found.compensated)
+    spring = motion.held(motion.answer(found.stiffness, 0.0, 1))
+    damper = motion.held(motion.answer(0.0, found.damping, found.window))
+    asked = abs(motion.phasors(seen)[0] - helping[0])
+    share = min(1.0, asked / (abs(spring[0] + damper[0]) or np.inf))  # less where it is cut off or away
+    supplied["sampling"] = share * motion.work(spring)
+    supplied["differenced velocity"] = share * motion.work(damper)
+    supplied["friction compensation"] = motion.work(helping)
+    supplied["delay"] = share * motion.work((spring + damper) * (motion.late(delay) - 1))
     if between is not None:
         accounts = {
             "delay": between.by_delay,
@@ -278,8 +302,7 @@ def _terms(
             "actuator limit": between.by_rate,
         }
         least = min(accounts, key=lambda name: accounts[name])
-        changed = phasors(between.applied - seen, vibration.frequency, period)[0]
-        added = float(-np.pi * np.imag(changed * h * np.conj(X)))
+        added = motion.work(motion.phasors(between.applied - seen))
         supplied |= dict.fromkeys(accounts, 0.0)
         if between.by_nothing > _ALIKE:
             supplied[least] = added

@@ -10,7 +10,7 @@ the force stands at its limit or is off are left out.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -81,7 +81,7 @@ class Law:
     limited: float
     limit: float
     away: float
-    compensated: Array
+    compensated: Array = field(repr=False)
 
 
 def fit(

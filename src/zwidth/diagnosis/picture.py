@@ -73,7 +73,14 @@ def _cycles(axes: Axes, found: Diagnosis) -> None:
             beside.plot(t, values[part], color=colour, drawstyle="steps-post", label=name)
     beside.set_ylabel(label("force", recording.motion, unit=force))
     lines = [*axes.get_lines(), *beside.get_lines()]
-    axes.legend(lines, [str(line.get_label()) for line in lines], loc="upper right", fontsize=8)
+    axes.legend(
+        lines,
+        [str(line.get_label()) for line in lines],
+        loc="lower right",
+        bbox_to_anchor=(1, 1),
+        ncols=3,
+        fontsize=8,
+    )
 
 
 def _spectrum(axes: Axes, found: Diagnosis) -> None:

@@ -10,7 +10,7 @@ because what lies between them, a delay, a limit, a damper inside the drive, is 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.identification.logs import Log, read_log
+from zwidth.identification.logs import Log
 from zwidth.identification.logs.block import Block, Motion, whole_runs
 from zwidth.identification.logs.names import role_of_force
-from zwidth.identification.logs.read import column_names
+from zwidth.identification.logs.read import log_of, opened
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -88,18 +88,35 @@ def read(
         if columns or units or scale or reading:
             raise InputError("a log has been read already: give columns, units and scale to read_log")
         return _recording(recording, None, recording, ())
-    wanted = dict(columns or {})
-    roles = _roles(recording, wanted)
+    told = (dict(columns or {}), units or {}, scale or {}, reading)
+    if not isinstance(recording, str | PathLike):
+        names = [str(name) for name in recording.variables]
+        return _read(names, "the Dataset", lambda **given: Log.from_arrays(recording, **given), *told)
+    with opened(recording) as table:
+        return _read(list(table.units), table.source, lambda **given: log_of(table, **given), *told)
+
+
+def _read(
+    names: list[str],
+    source: str,
+    log: Callable[..., Log],
+    columns: Mapping[str, str | None],
+    units: Mapping[str, str],
+    scale: Mapping[str, object],
+    reading: Mapping[str, Any],
+) -> Recording:
+    """A log for each force that there is, of the same rows."""
+    roles = _roles(names, source, columns)
     if not roles:
         raise InputError(
-            f"{_name(recording)}: no column is known to be the actuator's force, and without it nobody can "
+            f"{source}: no column is known to be the actuator's force, and without it nobody can "
             "say where the energy of a vibration comes from; say which with "
             f'columns={{"{COMMANDED}": …}} for what the law asks for, or '
             'columns={"actuator_force": …} for what the motor gives; there are '
-            f"{', '.join(_columns(recording))}"
+            f"{', '.join(names)}"
         )
     logs = {
-        role: _log(recording, role, column, wanted, units or {}, scale or {}, reading)
+        role: log(**_arguments(role, column, columns, units, scale), **reading)
         for role, column in roles.items()
     }
     first = next(iter(logs.values()))
@@ -111,19 +128,8 @@ def read(
     return _recording(first, logs.get(COMMANDED) or logs.get("force"), logs.get("actuator_force"), supposed)
 
 
-def _name(recording: object) -> str:
-    return str(recording) if isinstance(recording, str | PathLike) else "the Dataset"
-
-
-def _columns(recording: str | PathLike[str] | xr.Dataset) -> Iterable[str]:
-    if isinstance(recording, str | PathLike):
-        return column_names(recording)
-    return [str(name) for name in recording.variables]
-
-
-def _roles(recording: str | PathLike[str] | xr.Dataset, wanted: Mapping[str, str | None]) -> dict[str, str]:
+def _roles(names: list[str], source: str, wanted: Mapping[str, str | None]) -> dict[str, str]:
     """The column of each force: as the user said, or as it is called; "force" of one that might be either."""
-    names = list(_columns(recording))
     found: dict[str, list[str]] = {}
     for name in names:
         if name not in wanted.values() and (role := role_of_force(name)) is not None:
@@ -138,7 +144,7 @@ def _roles(recording: str | PathLike[str] | xr.Dataset, wanted: Mapping[str, str
             roles[role] = found[role][0]
         elif found.get(role):
             raise InputError(
-                f"{_name(recording)}: {', '.join(found[role])} may each be the {role.replace('_', ' ')}; "
+                f"{source}: {', '.join(found[role])} may each be the {role.replace('_', ' ')}; "
                 f'say which with columns={{"{role}": "{found[role][0]}"}}'
             )
     if not roles and len(found.get("force", ())) == 1:
@@ -146,29 +152,25 @@ def _roles(recording: str | PathLike[str] | xr.Dataset, wanted: Mapping[str, str
     return roles
 
 
-def _log(
-    recording: str | PathLike[str] | xr.Dataset,
+def _arguments(
     role: str,
     column: str,
     columns: Mapping[str, str | None],
     units: Mapping[str, str],
     scale: Mapping[str, object],
-    reading: Mapping[str, Any],
-) -> Log:
-    """The log in which the actuator's force is that column."""
+) -> dict[str, Any]:
+    """How to read the log in which the actuator's force is that column."""
     chosen = {**columns, "actuator_force": column, "hand_force": None}
     chosen.pop(COMMANDED, None)
     key = COMMANDED if role == "force" else role
-    given: dict[str, Any] = {"columns": chosen, **reading}
+    given: dict[str, Any] = {"columns": chosen}
     for name, table in (("units", units), ("scale", scale)):
         own = {k: v for k, v in table.items() if k not in (COMMANDED, "actuator_force", "hand_force")}
         if key in table:
             own["actuator_force"] = table[key]
         if own:
             given[name] = own
-    if isinstance(recording, str | PathLike):
-        return read_log(recording, **given)
-    return Log.from_arrays(recording, **given)
+    return given
 
 
 def _recording(log: Log, commanded: Log | None, applied: Log | None, supposed: tuple[str, ...]) -> Recording:
@@ -187,7 +189,7 @@ def _recording(log: Log, commanded: Log | None, applied: Log | None, supposed: t
         position=longest.position,
         commanded=None if commanded is None else _longest(commanded).actuator_force,
         applied=None if applied is None else _longest(applied).actuator_force,
-        findings=(*supposed, *(finding.text for finding in log.findings)),
+        findings=(*supposed, *(finding.text for finding in log.findings if finding.kind != "no hand force")),
     )
 
 

@@ -71,7 +71,7 @@ class Diagnosis(Shown):
         if self.cause is None:
             first, second, *_ = self.likely
             return f"It shakes at {at}; the data do not say why: {first} or {second}, or something else."
-        return f"It shakes at {at}: {CAUSES[self.cause].because}."
+        return f"It shakes at {at} because {CAUSES[self.cause].because}."
 
     @property
     def next_steps(self) -> tuple[str, ...]:

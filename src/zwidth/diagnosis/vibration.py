@@ -18,12 +18,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+    Phasors = NDArray[np.complex128]
 
 LOWEST = 1.5
 """[Hz] what is slower is a movement of the hand."""
 
 HARMONICS = 5
-MOST_CYCLES = 60
+MOST_CYCLES = 25
 FEWEST_CYCLES = 5
 
 _BLOCK = 0.2
@@ -92,12 +93,12 @@ def find(time: Array, position: Array, period: float) -> Vibration | None:
     )
 
 
-def phasors(values: Array, frequency: float, period: float) -> Array:
+def phasors(values: Array, frequency: float, period: float) -> Phasors:
     """Complex amplitudes of the frequency and its harmonics: values ≈ Re Σ_n P_n exp(j n ω t), t from 0."""
     return fitted(values, frequency, period)[0]
 
 
-def fitted(values: Array, frequency: float, period: float) -> tuple[Array, Array]:
+def fitted(values: Array, frequency: float, period: float) -> tuple[Phasors, Array]:
     """The phasors, and what is left over."""
     t = np.arange(values.size) * period
     orders = [n for n in range(1, HARMONICS + 1) if n * frequency * period < 0.5]
@@ -106,7 +107,7 @@ def fitted(values: Array, frequency: float, period: float) -> tuple[Array, Array
         columns += [np.cos(2 * np.pi * n * frequency * t), np.sin(2 * np.pi * n * frequency * t)]
     table = np.stack(columns, axis=1)
     solution = np.linalg.lstsq(table, values, rcond=None)[0]
-    found = np.zeros(HARMONICS, dtype=complex)
+    found = np.zeros(HARMONICS, dtype=np.complex128)
     found[: len(orders)] = solution[2::2] - 1j * solution[3::2]
     return found, values - table @ solution
 

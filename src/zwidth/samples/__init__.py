@@ -42,6 +42,11 @@ EXAMPLES = (
         "zwidth identify session.csv -o my-device.toml",
     ),
     Example(
+        ("shaking.csv", "wheel.toml"),
+        "a log of a wheel that shakes when it is let go: why, and what to change?",
+        "zwidth diagnose shaking.csv wheel.toml",
+    ),
+    Example(
         ("relaxation.csv", "fit_tissue.py"),
         "a probe held in soft tissue: which tissue, and may it be rendered?",
         "zwidth tissue relaxation.csv phantom",

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 
@@ -55,27 +56,58 @@ def read_log(
     InputError
         If the file cannot be read, a column or its unit is not known, or nothing can be learnt from it.
     """
-    source = Path(path)
-    period = stated_period(sample_rate, sample_period)
-    with readable(str(source)):
-        table = table_of_file(source)
-        names = recognise(table.units, {**table.means, **(columns or {})}, table.source)
-        meaning = meaning_of(
+    with opened(path) as table:
+        return log_of(
             table,
-            names,
+            columns=columns,
             units=units,
             scale=scale,
+            sample_rate=sample_rate,
+            sample_period=sample_period,
             resolution=resolution,
             counts_per_turn=counts_per_turn,
             motion=motion,
         )
-        return Log(**contents(table, meaning, period))
 
 
-def column_names(path: str | PathLike[str]) -> tuple[str, ...]:
-    """The columns of numbers in a file that `read_log` reads."""
+@contextmanager
+def opened(path: str | PathLike[str]) -> Iterator[Table]:
+    """The table of a file, from which several logs may be made; what cannot be read inside is refused.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read.
+    """
     with readable(str(path)):
-        return tuple(table_of_file(Path(path)).units)
+        yield table_of_file(Path(path))
+
+
+def log_of(
+    table: Table,
+    *,
+    columns: Mapping[str, str | None] | None = None,
+    units: Mapping[str, str] | None = None,
+    scale: Mapping[str, object] | None = None,
+    sample_rate: object = None,
+    sample_period: object = None,
+    resolution: object = None,
+    counts_per_turn: object = None,
+    motion: Motion | None = None,
+) -> Log:
+    """The log of some columns of a table; arguments as of `read_log`."""
+    period = stated_period(sample_rate, sample_period)
+    names = recognise(table.units, {**table.means, **(columns or {})}, table.source)
+    meaning = meaning_of(
+        table,
+        names,
+        units=units,
+        scale=scale,
+        resolution=resolution,
+        counts_per_turn=counts_per_turn,
+        motion=motion,
+    )
+    return Log(**contents(table, meaning, period))
 
 
 def table_of_file(path: Path) -> Table:

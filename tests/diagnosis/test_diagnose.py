@@ -1,0 +1,163 @@
+"""Things that shake for one reason, simulated: what the diagnosis says, and whether its change helps."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth.diagnosis import CAUSES
+
+PERIOD = 0.001
+RNG = np.random.default_rng(3)
+
+
+def log_of(path: Path, trace: Any, *, both: bool = True) -> Path:
+    """The file that a logger would have written."""
+    columns = {
+        "time_s": trace["time"].values,
+        "position_mm": 1e3 * trace["measured_position"].values,
+        "commanded_force_N": trace["commanded_force"].values,
+    }
+    if both:
+        columns["motor_force_N"] = trace["actuator_force"].values + RNG.normal(0, 0.002, trace.sizes["time"])
+    table = np.column_stack(list(columns.values()))
+    np.savetxt(path, table, fmt="%.6f", delimiter=",", header=",".join(columns), comments="")
+    return path
+
+
+def released(device: zw.Device, law: Any, seconds: float = 1.5) -> Any:
+    """Let go off the middle of a law that acts on both sides, nobody's hand on it."""
+    nobody = zw.operators.ConstantForce(force=0.003)
+    return zw.simulate(device, law, nobody, seconds, initial_position=0.02)
+
+
+def centring(stiffness: float, damping: float = 0.0, window: int = 1) -> zw.PulseTransferFunction:
+    """K + B (1 − z⁻ᴺ)/(N T) on both sides."""
+    gain = damping / (window * PERIOD)
+    return zw.PulseTransferFunction([stiffness + gain, *[0] * (window - 1), -gain], [1, *[0] * window])
+
+
+def paddle(**other: Any) -> zw.Device:
+    """A light paddle with little friction and a motor of 30 N."""
+    numbers = {
+        "mass": 0.06, "damping": 0.12, "coulomb_friction": 0.004, "resolution": 5e-6, "sample_period": PERIOD
+    }  # fmt: skip
+    return zw.Device(**(numbers | {"force_limit": 30} | other))
+
+
+FAULTS = {
+    "sampling": (paddle(), paddle(), centring(900)),
+    "delay": (paddle(delay=0.003), paddle(), centring(150)),
+    "differenced velocity": (paddle(), paddle(), centring(150, 25, 10)),
+    "friction compensation": (
+        paddle(coulomb_friction=0.05),
+        paddle(coulomb_friction=0.05),
+        zw.render(centring(150), zw.FrictionCompensation(coulomb=0.3, speed=0.002)),
+    ),
+}
+"""The cause; the device as it is, as its owner knows it, and the law."""
+
+
+@pytest.mark.parametrize("cause", FAULTS)
+def test_a_fault_is_named_and_its_change_is_passive(cause: str, tmp_path: Path) -> None:
+    """Sure, with numbers, and with the verdict of check on the loop with one number changed."""
+    true, known, law = FAULTS[cause]
+    found = zw.diagnose(log_of(tmp_path / "log.csv", released(true, law)), known)
+    assert found.cause == cause
+    assert found.confidence >= 0.6
+    assert found.evidence
+    assert found.energy_per_cycle is not None
+    assert found.energy_per_cycle > 0
+    assert found.change is not None
+    assert found.change.to < found.change.current
+    verdict = zw.check(found.change.device, found.change.environment)
+    assert verdict.outcome == found.change.verdict.outcome
+    assert verdict.outcome in ("passive", "passive in contact")
+
+
+def test_the_thing_is_quiet_with_the_stiffness_that_is_advised(tmp_path: Path) -> None:
+    """900 N/m shakes to the end, what is advised comes to rest."""
+    found = zw.diagnose(log_of(tmp_path / "log.csv", released(paddle(), centring(900))), paddle())
+    assert found.change is not None
+    assert found.change.parameter == "stiffness"
+    softer = released(paddle(), centring(found.change.to))
+    assert np.abs(softer["velocity"].values[-200:]).max() < 0.01
+    assert np.abs(released(paddle(), centring(900))["velocity"].values[-200:]).max() > 0.5
+
+
+def test_a_delay_behind_the_command_is_not_named_from_the_command_alone(tmp_path: Path) -> None:
+    """Nothing in the file shows it: then what to record is said, the motor's own force first."""
+    device = paddle(damping=0.02)
+    trace = released(paddle(delay=0.003, damping=0.02), centring(150))
+    found = zw.diagnose(log_of(tmp_path / "log.csv", trace, both=False), device)
+    if found.cause is None:
+        assert found.change is None
+        assert "motor's own force" in found.record[0]
+    assert found.cause != "drive damping"
+    assert found.cause != "actuator limit"
+
+
+def test_rest_is_no_vibration(tmp_path: Path) -> None:
+    """A wall that comes to rest: no cause, and what to record."""
+    trace = released(paddle(damping=1.5), centring(300))
+    found = zw.diagnose(log_of(tmp_path / "log.csv", trace.isel(time=slice(200, None))), paddle())
+    assert found.cause is None
+    assert found.seen is None or found.confidence == 0
+    assert found.record
+
+
+def test_a_trace_is_a_recording() -> None:
+    """A Dataset holds both forces; the same answer as from a file."""
+    found = zw.diagnose(released(paddle(delay=0.003), centring(150)), paddle())
+    assert found.cause == "delay"
+    assert next(iter(found.likely)) == "delay"
+    assert sum(found.likely.values()) == pytest.approx(1)
+    assert set(found.likely) == set(CAUSES)
+
+
+def test_what_was_found_is_kept_as_json_and_as_a_loop(tmp_path: Path) -> None:
+    """Units in the keys; the loop is read again as it was checked."""
+    found = zw.diagnose(zw.samples.path("shaking.csv"), zw.load(zw.samples.path("wheel.toml")).device)
+    document = found.to_dict()
+    assert document["cause"] == "delay"
+    assert document["law"]["stiffness_N_m_per_rad"] == pytest.approx(20, rel=1e-3)
+    assert document["delay_s"] == pytest.approx(0.004)
+    found.save(tmp_path / "mended.toml")
+    loop = zw.load(tmp_path / "mended.toml")
+    assert zw.check(loop.device, loop.environment).outcome == document["change"]["outcome"]
+    with pytest.raises(zw.InputError, match="exists"):
+        found.save(tmp_path / "mended.toml")
+
+
+def test_a_picture_is_drawn(tmp_path: Path) -> None:
+    """Of what vibrates; of what does not there is none."""
+    found = zw.diagnose(zw.samples.path("shaking.csv"))
+    found.plot(tmp_path / "why.svg")
+    assert (tmp_path / "why.svg").stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("time_s,position_mm,hand_force_N\n", "actuator's force"),
+        ("time_s,position_mm,commanded_force_N,cmd_force_N\n", "may each be"),
+    ],
+)
+def test_a_file_without_the_force_it_takes_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    """One message, with what to say."""
+    columns = text.count(",") + 1
+    rows = (",".join([f"{k * PERIOD:.3f}", *[f"{np.sin(k):.4f}"] * (columns - 1)]) for k in range(60))
+    path = tmp_path / "log.csv"
+    path.write_text(text + "\n".join(rows) + "\n", encoding="utf-8")
+    with pytest.raises(zw.InputError, match=message):
+        zw.diagnose(path)
+
+
+def test_a_wheel_is_no_paddle() -> None:
+    """A rotary log with a linear device is refused."""
+    with pytest.raises(zw.InputError, match="rotary"):
+        zw.diagnose(zw.samples.path("shaking.csv"), paddle())

@@ -1,0 +1,160 @@
+"""The numbers of a diagnosis, each against another road: integrals in small steps, closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from zwidth.device import Device
+from zwidth.diagnosis import drive, law, vibration
+from zwidth.diagnosis.evidence import gather
+from zwidth.diagnosis.recording import Recording
+
+PERIOD = 1 / 800
+FREQUENCY = 23.7
+RNG = np.random.default_rng(11)
+
+
+def shaken(seconds: float = 1.5, amplitude: float = 0.004, drift: float = 0.002) -> np.ndarray:
+    """A sine with a third harmonic on a slow drift, sampled."""
+    t = np.arange(round(seconds / PERIOD)) * PERIOD
+    w = 2 * np.pi * FREQUENCY
+    return amplitude * (np.sin(w * t + 0.4) + 0.07 * np.sin(3 * w * t + 1.1)) + drift * t
+
+
+def held(values: np.ndarray, samples: int) -> np.ndarray:
+    """The same, so many samples later."""
+    return np.concatenate([np.full(samples, values[0]), values[: values.size - samples]])
+
+
+def recorded(position: np.ndarray, **forces: np.ndarray) -> Recording:
+    """Arrays as a recording."""
+    return Recording(
+        source="arrays",
+        motion="linear",
+        period=PERIOD,
+        resolution=1e-6,
+        time=np.arange(position.size) * PERIOD,
+        position=position,
+        commanded=forces.get("commanded"),
+        applied=forces.get("applied"),
+        findings=(),
+    )
+
+
+def test_frequency_and_swing_of_a_vibration_after_a_rest() -> None:
+    """It is found behind a second of slow motion, within its own spread; the swing is that of the sine."""
+    slow = 0.003 * np.sin(2 * np.pi * 0.4 * np.arange(800) * PERIOD)
+    position = np.concatenate([slow, slow[-1] + shaken()])
+    found = vibration.find(np.arange(position.size) * PERIOD, position, PERIOD)
+    assert found is not None
+    assert found.rows.start >= 600
+    assert abs(found.frequency - FREQUENCY) < max(3 * found.frequency_spread, 0.02)
+    assert found.swing == pytest.approx(0.008, rel=0.15)
+    assert found.regular > 0.95
+
+
+def test_a_hand_that_moves_slowly_does_not_vibrate() -> None:
+    """Half a hertz is no vibration, nor is a single stroke."""
+    t = np.arange(2000) * PERIOD
+    for position in (0.02 * np.sin(np.pi * t), np.where(t < 1, 0, 0.01) * np.minimum(t, 1.2), np.zeros(2000)):
+        assert vibration.find(t, position, PERIOD) is None
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "damping", "window", "compensation", "lag"),
+    [(731.0, 0.0, 1, 0.0, 0), (412.0, 1.3, 5, 0.0, 0), (388.0, 0.0, 1, 0.21, 0), (950.0, 0.8, 2, 0.0, 4)],
+)
+def test_the_law_of_a_force_is_found(
+    stiffness: float, damping: float, window: int, compensation: float, lag: int
+) -> None:
+    """From quantized positions, through a limit: terms to a thousandth, the window and the lag exactly."""
+    position = np.round(shaken() / 1e-6) * 1e-6
+    move = np.concatenate([np.zeros(window), position[window:] - position[:-window]]) / (window * PERIOD)
+    last = np.concatenate([[0.0], np.diff(position)])
+    force = stiffness * position + damping * move - compensation * np.sign(last)
+    force = np.clip(held(force, lag), -2.5, 2.5)
+    found = law.fit(position, force, PERIOD, PERIOD, [k * PERIOD for k in range(8)])
+    assert found is not None
+    assert found.stiffness == pytest.approx(stiffness, rel=1e-3)
+    assert found.damping == pytest.approx(damping, rel=1e-3, abs=1e-6)
+    assert found.compensation == pytest.approx(compensation, rel=1e-3, abs=1e-6)
+    assert found.lag == pytest.approx(lag * PERIOD)
+    assert found.window == (window if damping else 1)
+    assert found.unexplained < 1e-6
+
+
+def test_a_force_that_has_nothing_to_do_with_the_motion_is_not_explained() -> None:
+    """Noise stays noise."""
+    found = law.fit(shaken(), RNG.normal(size=1200), PERIOD, PERIOD, [0.0, PERIOD])
+    assert found is None or found.unexplained > 0.9
+
+
+def test_what_lies_between_two_forces() -> None:
+    """A delay, a damper inside and a limit of rate are each accounted for best by themselves."""
+    position = shaken()
+    command = 640 * position
+    speed = np.gradient(position, PERIOD)
+    followed = np.empty_like(command)
+    followed[0] = command[0]
+    for k in range(1, command.size):
+        followed[k] = followed[k - 1] + np.clip(command[k - 1] - followed[k - 1], -0.15, 0.15)
+    inside = command + 2.7 * held(speed, 6)
+    for name, applied in (("delay", held(command, 5)), ("damper", inside), ("rate", followed)):
+        found = drive.account(command, applied, position, PERIOD, PERIOD, 1 / FREQUENCY)
+        left = {"delay": found.by_delay, "damper": found.by_damper, "rate": found.by_rate}
+        assert min(left, key=lambda key: left[key]) == name
+        assert left[name] < 0.02
+        if name == "delay":
+            assert found.delay == pytest.approx(5 * PERIOD)
+        if name == "damper":
+            assert found.damping == pytest.approx(2.7, rel=0.05)
+            assert found.damping_lag == pytest.approx(6 * PERIOD)
+        if name == "rate":
+            assert found.rate == pytest.approx(0.15 / PERIOD, rel=0.05)
+
+
+@pytest.mark.parametrize("late", [0, 3])
+def test_the_energy_of_a_cycle_is_that_of_the_held_force_along_the_motion(late: int) -> None:
+    """−∮ f dx by sums over the exact moves between samples; the terms add up to it."""
+    position = shaken(2.5, drift=0.0)
+    command = 640 * position + 0.4 * np.concatenate([[0.0], np.diff(position)]) / PERIOD
+    applied = held(command, late)
+    whole = vibration.find(np.arange(position.size) * PERIOD, position, PERIOD)
+    assert whole is not None
+    seen = gather(recorded(position, commanded=command, applied=applied), whole, None)
+    cycles = 49  # 1654.008 rows
+    rows = slice(100, 100 + round(cycles / FREQUENCY / PERIOD))
+    work = -float(np.sum(applied[rows] * np.diff(position)[rows])) / cycles
+    assert seen.total == pytest.approx(work, rel=0.03)
+    assert sum(seen.supplied.values()) == pytest.approx(seen.total, rel=0.03)
+    assert (seen.supplied["delay"] > 0) == (late > 0)
+    assert seen.delay == pytest.approx(late * PERIOD)
+
+
+def test_the_energy_that_friction_takes() -> None:
+    """π ω b X² + 4 f_c X of the device's numbers, and the mass that would move so: K/ω² without a hand."""
+    position = shaken(drift=0.0)
+    device = Device(mass=0.03, damping=0.3, coulomb_friction=0.05, sample_period=PERIOD)
+    whole = vibration.find(np.arange(position.size) * PERIOD, position, PERIOD)
+    assert whole is not None
+    seen = gather(recorded(position, applied=640 * position), whole, device)
+    w = 2 * np.pi * FREQUENCY
+    viscous = (
+        np.pi * w * 0.3 * 0.004**2 * (1 + (3 * 0.07) ** 2)
+    )  # the third harmonic moves three times as fast
+    assert seen.lost == pytest.approx(viscous + 4 * 0.05 * 0.004, rel=0.01)
+    sinc = np.sinc(w * PERIOD / np.pi)  # the hold: cos(ωT/2) sin(ωT/2)/(ωT/2)
+    assert seen.apparent_mass == pytest.approx(640 * sinc / w**2, rel=0.01)
+
+
+def test_a_force_counted_the_other_way_is_turned_round() -> None:
+    """A spring pushes back, whatever the file counts."""
+    position = shaken()
+    whole = vibration.find(np.arange(position.size) * PERIOD, position, PERIOD)
+    assert whole is not None
+    one, other = (gather(recorded(position, commanded=s * 640 * position), whole, None) for s in (1, -1))
+    assert one.law is not None
+    assert other.law is not None
+    assert other.law.stiffness == pytest.approx(one.law.stiffness)
+    assert other.total == pytest.approx(one.total)
