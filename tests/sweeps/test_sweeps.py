@@ -20,7 +20,7 @@ from zwidth.sweeps import request as requests
 from zwidth.sweeps.axes import axis
 from zwidth.sweeps.compute import compute
 from zwidth.sweeps.loops import Loop, changed, parameter
-from zwidth.sweeps.questions import checked
+from zwidth.sweeps.questions import Line, checked
 from zwidth.sweeps.request import request
 from zwidth.sweeps.springs import largest_spring
 
@@ -77,13 +77,14 @@ def one_by_one(asked: requests.Request) -> dict[str, Any]:
     """Every loop asked by itself."""
     shape = tuple(len(own.values) for own in asked.axes)
     found = {name: np.zeros(shape, own.kind) for name, own in asked.columns.items()}
+    lines: dict[tuple[int, ...], Line] = {}
     for place in np.ndindex(shape):
-        for name, value in checked(asked.at(place), {}).items():
+        for name, value in checked(asked.at(place), lines.setdefault(place[1:], {})).items():
             found[name][place] = asked.columns[name].kept(value)
     return found
 
 
-@seeds(6)
+@seeds(4)
 def test_springs_are_decided_as_by_check(seed: int) -> None:
     """Whatever is varied, at the limit and a double beyond it too: the same words and largest spring."""
     drawn = np.random.default_rng(seed)
@@ -128,8 +129,12 @@ def test_the_largest_spring_is_a_double_at_its_limit() -> None:
 
 
 def arrays(found: xr.Dataset) -> dict[str, bytes]:
-    """Every number and word of a sweep."""
-    return {str(name): values.values.tobytes() for name, values in found.variables.items()}
+    """Every number and word of a sweep, bit by bit; a word has room for others, more or less."""
+    rows = {str(name): values.values for name, values in found.variables.items()}
+    return {
+        name: row.astype("U99" if row.dtype.kind == "U" else row.dtype).tobytes()
+        for name, row in rows.items()
+    }
 
 
 def stopped_after(chunks: int) -> Callable[[int, int], None]:
@@ -205,8 +210,8 @@ def test_every_question_is_answered_as_by_itself() -> None:
         )
         assert one.max_stiffness == verdict.max_stiffness
     damped = zw.Wall(100, "0.05")
-    limits = zw.sweep(PADDLE, damped, of="limit", vary={"rate": "1, 2 kHz"}, workers=1)
-    bracket = zw.limit(PADDLE.replace(rate="2 kHz"), damped, iterate=False)
+    limits = zw.sweep(PADDLE, damped, of="limit", vary={"rate": "1, 2 kHz"}, workers=1, tolerance=0.1)
+    bracket = zw.limit(PADDLE.replace(rate="2 kHz"), damped, iterate=False, tolerance=0.1)
     assert limits.proved_passive.values[1] == bracket.proved_passive
     assert limits.proved_active.values[1] == bracket.proved_active
     pair = zw.Pair(PADDLE, PADDLE, stiffness=50)
@@ -274,7 +279,7 @@ def test_a_loop_that_cannot_be_is_said_to_be_refused() -> None:
         ({"stifness": "1, 2"}, {}, 'did you mean "stiffness"'),
         ({"stiffness": "-1, 2"}, {}, r"at stiffness = -1 N/m: stiffness must be ≥ 0"),
         ({"rate": "1, 2", "sample_period": "1, 2"}, {}, "the same number"),
-        ({"stiffness": (0, 1, 100_000), "delay": (0, 1, 1000)}, {}, "at most 20000000 loops"),
+        ({"stiffness": (0, 1, 30_000), "delay": (0, 1, 1000)}, {}, "at most 20000000 loops"),
         ({"stiffness": "1, 2"}, {"of": "serve"}, "a sweep is of check, limit, simulate, pair"),
         ({"stiffness": "1, 2"}, {"of": "pair"}, "two arms"),
         ({"stiffness": "1, 2"}, {"of": "simulate"}, "needs a hand"),

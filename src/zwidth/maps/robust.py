@@ -16,9 +16,14 @@ from zwidth.device import Device
 from zwidth.environment import BackwardDifference, Wall
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
+from zwidth.loop.sampled_plant import Motion
 from zwidth.operator.hand_impedance import HandImpedance, as_hand
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.stability.known_hand.coupled import largest_stable, motion_of
+from zwidth.stability.known_hand.coupled import largest_stable, motion_of, plain_of
+from zwidth.stability.known_hand.crossing import last_stable
+
+_NEAR = 1e-6
+"""Relative difference of two limits that is more than floats are wrong."""
 
 
 def robust_boundary(
@@ -93,6 +98,16 @@ def _limits(device: Device, hand: HandImpedance, wall: Wall) -> tuple[float, ...
     found, _ = largest_stable(motion, wall, device.motion)
     worst = min(
         (largest_stable(corner, wall, device.motion)[0] or 0.0, *(float(ends[0]) for ends in corner[:3]))
-        for corner in motion.grid(2)
+        for corner in _weakest(motion, wall)
     )
     return (np.nan if found is None else found, *worst)
+
+
+def _weakest(motion: Motion, wall: Wall) -> list[Motion]:
+    """The corners whose limit is the smallest as floats have it: the others need not be decided exactly."""
+    law = wall.damped_spring(motion.period)
+    corners = list(motion.grid(2))
+    ends = [last_stable(plain_of(corner, law.velocity), float(law.damping)) for corner in corners]
+    limits = [0.0 if end is None else end.stiffness for end in ends]
+    enough = min(limits) * (1 + _NEAR)
+    return [corner for corner, limit in zip(corners, limits, strict=True) if limit <= enough]

@@ -83,7 +83,8 @@ def _values(name: str, given: object, unit: str) -> tuple[float, ...]:
     if isinstance(given, str):
         return _typed(name, given, unit)
     if isinstance(given, tuple) and len(given) in (3, 4):
-        return _range(name, *given[:3], unit, log=_is_log(name, given[3:]))
+        start, stop, count = given[:3]
+        return _range(name, start, stop, count, unit, log=_is_log(name, given[3:]))
     if isinstance(given, Iterable):
         return tuple(float(parse_number(_plain(value), unit, name)) for value in given)
     raise InputError(

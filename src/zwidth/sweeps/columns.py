@@ -49,7 +49,7 @@ class Column(NamedTuple):
         if not self.words:
             return kept
         if not self.several:
-            return np.array(["", *self.words])[kept]
+            return np.asarray(np.array(["", *self.words])[kept])
         found = {
             code: "; ".join(word for bit, word in enumerate(self.words) if code >> bit & 1)
             for code in np.unique(kept).tolist()

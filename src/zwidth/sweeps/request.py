@@ -163,11 +163,10 @@ def request(of: str, loop: Loop, vary: Mapping[str, object]) -> Request:
         axis(own.name, given, own.unit) for own, given in zip(parameters, vary.values(), strict=True)
     )
     asked = Request(of, loop, parameters, axes)
-    asked = replace(asked, at_once=_at_once(asked))
     if asked.size > MOST_LOOPS:
         raise InputError(f"a sweep has at most {MOST_LOOPS} loops, got {asked.size}: take fewer values")
     _check_ends(asked)
-    return asked
+    return replace(asked, at_once=_at_once(asked))
 
 
 def _at_once(asked: Request) -> int:

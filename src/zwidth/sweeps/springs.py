@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
 from math import inf, nextafter
 from typing import Any
 
@@ -98,18 +97,12 @@ class Springs:
 
     def _largest(self, cells: tuple[slice, ...]) -> Floats:
         """The largest passive stiffness of every combination of the other numbers."""
-        rows = [self._row(name, cells) for name in _OF_DEVICE]
-        axes = sorted({axis for name in _OF_DEVICE if (axis := self.along[name]) is not None})
-        lengths = {axis: len(self._row(name, cells)) for name in _OF_DEVICE
-                   if (axis := self.along[name]) is not None}  # fmt: skip
+        rows = [(self._row(name, cells), self.along[name]) for name in _OF_DEVICE]
+        lengths = {axis: len(row) for row, axis in rows if axis is not None}
         found = np.empty([lengths.get(k, 1) for k in range(len(cells))])
-        for place in product(*(range(lengths[axis]) for axis in axes)):
-            at = dict(zip(axes, place, strict=True))
-            numbers = (
-                row[0] if self.along[name] is None else row[at[self.along[name]]]
-                for name, row in zip(_OF_DEVICE, rows, strict=True)
-            )
-            found[tuple(at.get(k, 0) for k in range(len(cells)))] = largest_spring(*numbers)
+        for place in np.ndindex(found.shape):
+            numbers = (row[0] if axis is None else row[place[axis]] for row, axis in rows)
+            found[place] = largest_spring(*numbers)
         return found
 
 
@@ -124,14 +117,15 @@ class _Decided:
 def springs(loop: Loop, parameters: Sequence[Parameter], axes: Sequence[Axis]) -> Springs | None:
     """The loops of a sweep, where all of them are spring walls of single numbers; else None."""
     device, wall = loop.subject, loop.environment
-    plain = isinstance(device, Device) and type(wall) is Wall and loop.options.get("contact") is None
-    if not plain or not wall.spring or not wall.is_certain or device.stiction is not None:
+    if not isinstance(device, Device) or not isinstance(wall, Wall) or "contact" in loop.options:
+        return None
+    if not (wall.spring and wall.is_certain and device.is_certain and device.stiction is None):
         return None
     if any(own.part not in ("device", "law") or own.name == "virtual_damping" for own in parameters):
         return None
-    if not device.is_certain:
-        return None
-    numbers = {name: [device.exact(name)] for name in _OF_DEVICE} | {"stiffness": [wall.stiffness.fraction]}
+    stiffness = wall.stiffness
+    assert isinstance(stiffness, Exact), "a certain wall"
+    numbers = {name: [device.exact(name)] for name in _OF_DEVICE} | {"stiffness": [stiffness.fraction]}
     along: dict[str, int | None] = dict.fromkeys(numbers)
     for k, (own, axis) in enumerate(zip(parameters, axes, strict=True)):
         name = _MADE_OF.get(own.key, own.key)

@@ -215,7 +215,7 @@ def largest_stable(motion: Motion, law: Environment, units: str) -> tuple[float 
     if wall is None:
         return None, None
     damping, velocity = wall.damping, wall.velocity
-    ends_of_bands = [last_stable(_plain(corner, velocity), float(damping)) for corner in motion.grid(2)]
+    ends_of_bands = [last_stable(plain_of(corner, velocity), float(damping)) for corner in motion.grid(2)]
     if any(end is None for end in ends_of_bands):
         return None, None
     guess = min(end for end in ends_of_bands if end is not None)
@@ -248,7 +248,8 @@ def _largest_below(holds: Callable[[Fraction], bool], limit: float) -> float:
     return limit * low / whole
 
 
-def _plain(motion: Motion, velocity: Any) -> Plain:
+def plain_of(motion: Motion, velocity: Any) -> Plain:
+    """The characteristic polynomials of a certain loop over the walls of a velocity estimate, in floats."""
     with precision(PRECISIONS[0]):
         return plain(family(motion, velocity))
 
