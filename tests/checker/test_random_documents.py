@@ -136,7 +136,7 @@ def test_a_seed_is_a_document(ready):
         assert repr(write(seed, ready)) == repr(write(seed, ready))
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(5))
 def test_the_criterion_of_a_document_from_nothing_is_the_one_of_its_loop(seeds, seed):
     """q is 0 at the damping that is needed, by the referee's formula in balls, at any frequency."""
     from attack.referee import needed_at

@@ -243,7 +243,7 @@ def _altered(data: st.DataObject, value: Any) -> Any:
     return [*value[:key], _altered(data, value[key]), *value[key + 1 :]]
 
 
-@settings(quick, max_examples=150)
+@settings(quick, max_examples=60)
 @given(st.data())
 def test_altered_evidence(saved: list[dict[str, Any]], data: st.DataObject) -> None:
     document = _altered(data, data.draw(st.sampled_from(saved)))

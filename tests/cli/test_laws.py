@@ -241,7 +241,7 @@ def described(table: Table, motion: str) -> str:
         return str(error)
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.sampled_from(sorted(LAWS)), st.data(), st.sampled_from(["linear", "rotary"]))
 def test_any_values_make_a_law_or_one_line(name, data, motion):
     """Whatever stands in a file: no other exception, and a message that can be printed."""

@@ -62,7 +62,7 @@ def test_a_straight_curve_is_its_own_model() -> None:
         assert curve.minorants()[-1] == (zw.Exact("0.12"), zw.Exact("0.15"))
 
 
-@settings(max_examples=200)
+@settings(max_examples=80)
 @given(curves())
 def test_corners_lie_below_and_cannot_grow(curve: zw.FrictionCurve) -> None:
     """Each is a model below the curve, and neither of its numbers can be enlarged alone."""
@@ -77,7 +77,7 @@ def test_corners_lie_below_and_cannot_grow(curve: zw.FrictionCurve) -> None:
     assert all(p.coulomb_friction > q.coulomb_friction for p, q in pairwise(corners))
 
 
-@settings(max_examples=200)
+@settings(max_examples=80)
 @given(curves(), st.fractions(0, 1, max_denominator=50))
 def test_the_largest_friction_for_a_damping(curve: zw.FrictionCurve, part: Fraction) -> None:
     """Below the curve, and not below it when a little larger; refused beyond the largest damping."""
@@ -91,7 +91,7 @@ def test_the_largest_friction_for_a_damping(curve: zw.FrictionCurve, part: Fract
         curve.largest_coulomb_friction(-Fraction(1, 10**9))
 
 
-@settings(max_examples=200)
+@settings(max_examples=80)
 @given(curves(), st.fractions("0.001", 1, max_denominator=1000), st.fractions(0, 1, max_denominator=1000))
 def test_the_best_model_against_a_search(curve: zw.FrictionCurve, period: Fraction, delta: Fraction) -> None:
     """No model on a fine grid of dampings proves a stiffer wall."""

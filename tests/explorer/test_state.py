@@ -87,7 +87,7 @@ VALUES = st.one_of(
 )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(st.lists(st.tuples(st.builds(lambda h, n: f"{h}.{n}", HEADS, NAMES), VALUES), max_size=6))
 def test_whatever_the_address_says_it_is_a_loop_or_a_message(pairs: list[tuple[str, str]]) -> None:
     """Never another exception."""

@@ -82,7 +82,7 @@ ONE: dict[str, tuple[Callable, Callable]] = {
 
 
 @pytest.mark.parametrize("name", TWO)
-@seeds(60)
+@seeds(25)
 def test_two_operands(name: str, seed: int) -> None:
     """Range, error and sign of a result hold for all numbers that theirs hold for."""
     bounds, compute = TWO[name]
@@ -97,7 +97,7 @@ def test_two_operands(name: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("name", ONE)
-@seeds(100)
+@seeds(40)
 def test_one_operand(name: str, seed: int) -> None:
     """The same of one."""
     bounds, compute = ONE[name]
@@ -115,7 +115,7 @@ def test_a_root_of_what_may_be_negative_has_no_bound() -> None:
     assert isfinite(rooted(bent(0.0, 1.0, 0.1, (plain(0, 1),), signed=True)).error)
 
 
-@seeds(100)
+@seeds(40)
 def test_one_or_the_other(seed: int) -> None:
     """The hull holds for the points of both; what is apart is the most that they differ by."""
     random = Random(seed)
@@ -127,7 +127,7 @@ def test_one_or_the_other(seed: int) -> None:
         assert all(abs(p.computed - q.exact) <= max(apart(a, b), apart(b, a)) + 1e-9 for q in qs)
 
 
-@seeds(100)
+@seeds(40)
 def test_narrowing_loses_no_point(seed: int) -> None:
     """A number in both ranges is in the narrower one."""
     random = Random(seed)
@@ -204,7 +204,7 @@ def anything(random: Random, off: float) -> float:
     return random.choice([off, -off, random.uniform(-off, off)])
 
 
-@seeds(150)
+@seeds(60)
 def test_branches_whose_test_is_in_doubt(seed: int) -> None:
     """Where the two go different ways, the error counts what they differ by; a test is rounded too."""
     random = Random(seed)

@@ -45,7 +45,7 @@ def test_the_energy_of_a_touch_balances_with_contact_and_friction() -> None:
     assert trace.zwidth.energy.extracted == 0
 
 
-@seeds(30)
+@seeds(15)
 def test_no_hand_gains_at_the_limit_of_the_coupling(seed: int) -> None:
     """Random scenes, b = K T/2 + B exactly: more than was in the scene at first."""
     rng = np.random.default_rng(seed)

@@ -150,7 +150,7 @@ def test_a_hand_that_pushes_with_the_friction_force_waits_for_a_lagging_force(ul
     assert state[STOPS] <= 1
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=120, deadline=None)
 @given(
     h=st.sampled_from([1e-5, 1e-3, 0.03]),
     friction=st.sampled_from([0.0, 1e-7]) | st.floats(1e-3, 1.0),
@@ -187,7 +187,7 @@ def _typed(low: float, high: float) -> st.SearchStrategy[float]:
     return st.floats(low, high).map(lambda value: round(value, 6))
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=120, deadline=None)
 @given(
     h=_typed(1e-5, 5e-2),
     mass=_typed(1e-3, 2.0),
@@ -227,7 +227,7 @@ def test_both_energy_balances_close(
     assert state[[VISCOUS, COULOMB, HAND_LOSS]].min() >= -1e-18
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(
     h=st.floats(1e-4, 2e-2),
     cut=st.floats(0.01, 0.99),

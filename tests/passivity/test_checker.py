@@ -355,7 +355,7 @@ JSON = st.recursive(
 )  # fmt: skip
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(st.data())
 def test_malformed_documents_never_raise(data):
     """Any place of a document replaced by any JSON: an answer, not an exception."""
@@ -416,7 +416,7 @@ def plain_energy(law, setting, x, y, kind=Fraction):
     )
 
 
-@seeds(40)
+@seeds(20)
 def test_energy_against_plain_simulation(seed):
     """Random motions: the same joules in Fractions exactly, in floats to rounding."""
     random = Random(seed)
@@ -429,7 +429,7 @@ def test_energy_against_plain_simulation(seed):
         assert float(energy) == pytest.approx(plain_energy(law, setting, x, y, float), rel=1e-9, abs=1e-12)
 
 
-@seeds(30)
+@seeds(15)
 def test_wall_against_plain_simulation(seed):
     """A one-sided spring, in and out at will: the same joules."""
     random = Random(300 + seed)
@@ -442,7 +442,7 @@ def test_wall_against_plain_simulation(seed):
     assert setting.energy(Motion(tuple(x))) == plain_energy(([k], [1]), setting, x, [])
 
 
-@seeds(40)
+@seeds(20)
 def test_repeats_against_listing_every_round(seed):
     """Repeated parts, closed or advancing, one or several: the same joules as with every round listed."""
     random = Random(600 + seed)
@@ -464,7 +464,7 @@ def test_repeats_against_listing_every_round(seed):
     assert energy == plain_energy(law, setting, *(expanded(document)))
 
 
-@seeds(30)
+@seeds(15)
 def test_advancing_rounds_behind_a_surface(seed):
     """A ratchet into or out of a one-sided spring, through the surface too: as with every round listed."""
     random = Random(900 + seed)
@@ -480,7 +480,7 @@ def test_advancing_rounds_behind_a_surface(seed):
     assert checker.verify(document).energy == plain_energy(([k], [1]), setting, *expanded(document))
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(6))
 def test_switch_positions_are_the_best(seed):
     """Where the hand waits for a force that changes inside a sample is where a numerical search puts it."""
     random = Random(seed)

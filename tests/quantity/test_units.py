@@ -229,7 +229,7 @@ def test_a_number_too_long_to_print_is_refused() -> None:
     assert "digits" in attempt(-(10**5000), "m")[1]
 
 
-@settings(max_examples=300)
+@settings(max_examples=100)
 @given(texts(), st.sampled_from(["m", "N*s/m", "N*m*s/rad", "1", "Hz"]))
 @example("1 .. 2 ..", "m")
 @example("1 " + "m*" * 40, "m")
@@ -239,14 +239,14 @@ def test_any_text_gives_a_value_or_an_input_error(text: str, unit: str) -> None:
     assert isinstance(value, (Exact, Interval)) if not message else message.isprintable()
 
 
-@settings(max_examples=200)
+@settings(max_examples=80)
 @given(toml_values())
 def test_any_toml_value_gives_a_value_or_an_input_error(value: object) -> None:
     """Tables, lists, booleans and huge numbers included."""
     assert len(attempt(value, "m")[1]) < 400
 
 
-@settings(max_examples=200)
+@settings(max_examples=80)
 @given(st.text(alphabet="kmNsHzgrad*/^-+123µ ", max_size=12))
 def test_units_never_break(text: str) -> None:
     """A product of units or an InputError."""

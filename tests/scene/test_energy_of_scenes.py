@@ -28,7 +28,7 @@ def motion(seed: int, samples: int = 150) -> np.ndarray:
     )
 
 
-@seeds(25)
+@seeds(12)
 def test_the_energy_of_random_scenes_balances_to_rounding(seed: int) -> None:
     """Element by element, with contact and friction; no loss is negative."""
     scene = random_scene(seed, 3 + seed % 40)
@@ -134,7 +134,7 @@ def test_points_on_a_line_are_a_spring() -> None:
     assert np.abs(linear - through_points).max() < 1e-12
 
 
-@seeds(30)
+@seeds(15)
 def test_forces_of_several_contacts_and_frictions_answer_their_laws(seed: int) -> None:
     """However many meet at one node, what the solution leaves over is rounding."""
     scene = random_scene(seed, 30, ("contact", "friction", "points", "mass", "damper"))

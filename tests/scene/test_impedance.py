@@ -52,7 +52,7 @@ def node_matrix_impedance(scene: zw.Scene, z: complex) -> complex:
     return complex(1.0 / np.linalg.solve(a, b)[port])
 
 
-@seeds(40)
+@seeds(20)
 def test_it_is_that_of_the_node_equations(seed: int) -> None:
     """Levers, loops and all, at points around the unit circle; E(z) is that of positions."""
     scene = random_scene(seed, 3 + seed % 12, LINEAR)
@@ -62,7 +62,7 @@ def test_it_is_that_of_the_node_equations(seed: int) -> None:
     assert at(z, scene.pulse_transfer_function(T)) == pytest.approx(of_positions, rel=1e-7)
 
 
-@seeds(20)
+@seeds(12)
 def test_the_step_is_the_filter(seed: int) -> None:
     """Impulse response of the compiled step, and that of H(z) in exact arithmetic."""
     scene = random_scene(seed, 3 + seed % 8, LINEAR)

@@ -400,14 +400,14 @@ KEYS = st.sampled_from([*DEVICE_KEYS, *option_keys(), "type", "environment"]) | 
 VALUES = toml_values() | st.sampled_from([1, Decimal("0.5"), "1 ms", [1, 2], *TYPES])
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(st.dictionaries(KEYS, VALUES, max_size=6))
 def test_any_device_table_is_a_device_or_an_input_error(values: dict[str, Any]) -> None:
     """Whatever stands in it; and a device that is accepted has a period and a damping."""
     assert outcome(lambda: build_device(Table("x", {"damping": 1, "rate": 1000, **values}))).isprintable()
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=120, deadline=None)
 @given(st.sampled_from(sorted(TYPES)), st.dictionaries(KEYS, VALUES, max_size=4), st.data())
 def test_any_environment_table_is_one_or_an_input_error(
     name: str, values: dict[str, Any], data: st.DataObject
@@ -418,7 +418,7 @@ def test_any_environment_table_is_one_or_an_input_error(
     assert outcome(lambda: build_environment(Table("x", {"type": name, **values}), "rotary")).isprintable()
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(st.dictionaries(KEYS, texts(), max_size=5), st.sampled_from([[], ["haptic-paddle"], ["phantom"]]))
 def test_any_command_line_is_read_or_an_input_error(overrides: dict[str, str], sources: list[str]) -> None:
     """Names and values at random."""
@@ -442,7 +442,7 @@ PIECES = st.sampled_from(
 )
 
 
-@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.binary(max_size=200) | st.lists(PIECES | texts(), max_size=12).map(lambda p: "".join(p).encode()))
 def test_any_file_is_read_or_an_input_error(tmp_path: Path, content: bytes) -> None:
     """Bytes at random, and TOML with pieces out of order."""

@@ -214,7 +214,7 @@ def test_rows_without_a_number_cut_the_run(recording) -> None:
         zw.Log.from_arrays(time=recording.time, position=x, hand_force=mostly)
 
 
-@seeds(20)
+@seeds(12)
 def test_every_gap_is_found_behind_jitter(seed: int) -> None:
     """Gaps of any length, wherever they fall, and stamps off by up to T/5: runs as they were.
 

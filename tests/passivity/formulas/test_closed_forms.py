@@ -44,7 +44,7 @@ def assert_boundary(environment, bound, period, delay=Fraction(0)):
         assert proved(environment, value, period, delay)
 
 
-@seeds(40)
+@seeds(20)
 def test_kelvin_voigt(seed):
     """K T/2 + |B|, B of either sign."""
     random = Random(seed)
@@ -53,7 +53,7 @@ def test_kelvin_voigt(seed):
     assert_boundary(zw.Wall(k, b), forms.kelvin_voigt_damping(k, b, t), t)
 
 
-@seeds(40)
+@seeds(20)
 def test_window(seed):
     """Windows of 1 to 3 samples for B > 0, of any length for B < 0."""
     random = Random(seed)
@@ -67,7 +67,7 @@ def test_window(seed):
 
 
 @pytest.mark.parametrize("discretization", ["backward", "tustin"])
-@seeds(40)
+@seeds(20)
 def test_standard_linear_solid(seed, discretization):
     """Backward Euler and Tustin, relaxation times from far below to far above T."""
     random = Random(seed)
@@ -95,7 +95,7 @@ def test_negative_branch_damping_voids_the_criterion():
         forms.standard_linear_solid_damping(37, 53, "-0.2", t)
 
 
-@seeds(40)
+@seeds(20)
 def test_spring_with_fractional_delay(seed):
     """(K T/4)[2d + 1 + 2α + √…] for any real delay, and its inverse."""
     random = Random(seed)
@@ -106,7 +106,7 @@ def test_spring_with_fractional_delay(seed):
     assert float(forms.spring_stiffness(bound, t, delay)) == pytest.approx(float(k), rel=1e-14)
 
 
-@seeds(40)
+@seeds(20)
 def test_spring_stiffness(seed):
     """Proved below and at the largest stiffness, refuted above it."""
     random = Random(seed)
@@ -117,7 +117,7 @@ def test_spring_stiffness(seed):
     assert not proved(zw.Wall(largest * (1 + TINY)), b, t, delay)
 
 
-@seeds(40)
+@seeds(20)
 def test_whole_delay_is_rational(seed):
     """(2d + 1) K T/2 exactly; a delay just short of a whole number joins it continuously."""
     random = Random(seed)
@@ -140,7 +140,7 @@ def test_rational_root_is_exact():
     assert_boundary(zw.Wall(800), bound, Fraction(1, 1000), Fraction(3, 8000))
 
 
-@seeds(40)
+@seeds(20)
 def test_spring_inequality_without_a_root(seed):
     """b² − b (KT/2)(2d+1+2α) − (T²/4) α(1−α) K² changes sign at the bound."""
     random = Random(seed)
@@ -154,7 +154,7 @@ def test_spring_inequality_without_a_root(seed):
     assert slack(bound * (1 - TINY)) < 0 < slack(bound * (1 + TINY))
 
 
-@seeds(40)
+@seeds(20)
 def test_delayed_nonlinear_spring_gives_nothing(seed):
     """A one-sided spring that saturates gives no more than it stores, however the hand moves."""
     random = Random(seed)
@@ -190,7 +190,7 @@ def test_paddle_limits():
     )
 
 
-@seeds(40)
+@seeds(20)
 def test_abbott_okamura_against_the_engine(seed):
     """Sampling by the linear criterion, quantization by the energy of a step over one edge."""
     random = Random(seed)
@@ -216,7 +216,7 @@ def toggling_gain(wall, damping, friction, step, period, rest):
     return setting.energy(motion.repeated(2)) - setting.energy(motion)
 
 
-@seeds(40)
+@seeds(20)
 def test_chattering_friction_is_necessary(seed):
     """For B ≥ −K T a tiny step over one edge gains below the bound and loses at it."""
     random = Random(seed)
@@ -233,7 +233,7 @@ def test_chattering_friction_is_necessary(seed):
     assert waits.gain * float(step) / 2 == pytest.approx(float(bound), rel=1e-12)
 
 
-@seeds(40)
+@seeds(20)
 def test_chattering_friction_is_the_one_norm(seed):
     """The largest force error over all encoder errors ±Δ/2, B of any sign and size."""
     random = Random(seed)

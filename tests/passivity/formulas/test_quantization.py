@@ -54,7 +54,7 @@ def per_cycle(dev, stiffness, cycle):
     return energies[1] - energies[0]
 
 
-@seeds(40)
+@seeds(20)
 def test_worst_case_is_the_minimum_over_encoder_phases(seed):
     """J from its definition, with the real encoder, is never below J* and comes arbitrarily near."""
     random = Random(seed)
@@ -79,7 +79,7 @@ def test_worst_case_is_the_minimum_over_encoder_phases(seed):
     assert surplus(near, near + out) - q.worst_case(dev, k, -out).fraction == k * tiny * out
 
 
-@seeds(40)
+@seeds(20)
 def test_linear_worst_case(seed):
     """Below J* exactly where K ≤ 2b/T; in and out by one distance loses (2f_c − K Δ) λ."""
     random = Random(seed)
@@ -93,7 +93,7 @@ def test_linear_worst_case(seed):
         assert both == (2 * dev.exact("coulomb_friction") - k * dev.exact("resolution")) * distance
 
 
-@seeds(40)
+@seeds(20)
 def test_fast_press_gains_what_it_says(seed):
     """Above 2b/T the press gains its closed form of energy; one count less gains none."""
     random = Random(seed)
@@ -110,7 +110,7 @@ def test_fast_press_gains_what_it_says(seed):
             q.fast_press(dev, k, counts=n - 1)
 
 
-@seeds(40)
+@seeds(20)
 def test_edge_straddle_gains_what_it_says(seed):
     """Above 2f_c/Δ every round over the first edge gains its closed form of energy."""
     random = Random(seed)
@@ -168,7 +168,7 @@ def test_regions(viscous, dry, region):
     assert q.PlanePoint(zw.Exact(viscous), dry).region == region
 
 
-@seeds(40)
+@seeds(20)
 def test_globally_stable_is_passive(seed):
     """The first region is K ≤ min(2b/T, 2f_c/Δ); outside it there is a counterexample."""
     random = Random(seed)
@@ -182,7 +182,7 @@ def test_globally_stable_is_passive(seed):
         assert found.energy > 0
 
 
-@seeds(40)
+@seeds(20)
 def test_cycle_loss(seed):
     """2 K Δ² ξ [(β − ½) ξ + …] is what the checker finds for one sample in, one out."""
     random = Random(seed)
@@ -197,7 +197,7 @@ def test_cycle_loss(seed):
     assert float(inside) == pytest.approx(float(unit * point.cycle_loss(n).fraction), rel=1e-9)
 
 
-@seeds(40)
+@seeds(20)
 def test_admissible_speed_is_safe(seed):
     """No motion that stays at or below it in every sample gains, although the wall is active."""
     random = Random(seed)
@@ -217,7 +217,7 @@ def test_admissible_speed_is_safe(seed):
     assert gained(dev, k, x) <= 0
 
 
-@seeds(40)
+@seeds(20)
 def test_admissible_speed_is_reached(seed):
     """A whole number of counts a sample gains just above the limit and not at it."""
     random = Random(seed)

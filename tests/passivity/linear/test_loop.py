@@ -64,7 +64,7 @@ def needed(h, period, delay, turn):
     return (a + mpmath.sqrt(a * a + t * t * alpha * (1 - alpha) * abs(value) ** 2)) / 2
 
 
-@seeds(40)
+@seeds(20)
 def test_criterion_has_the_sign_of_what_the_formula_asks(seed):
     """q(c) ≥ 0 exactly where b is at least what the formula with complex numbers asks for."""
     random = Random(seed)
@@ -78,7 +78,7 @@ def test_criterion_has_the_sign_of_what_the_formula_asks(seed):
         assert (value > 0) == (mpmath.mpf(float(damping)) > needed(h, period, delay, turn))
 
 
-@seeds(30)
+@seeds(15)
 def test_required_damping_at_a_frequency(seed):
     """The damping named for a frequency is the formula's, to 1e-9."""
     random = Random(1000 + seed)
@@ -93,7 +93,7 @@ def test_required_damping_at_a_frequency(seed):
         assert loop.required_damping_at(c) == pytest.approx(float(expected), rel=1e-9, abs=1e-9 * scale)
 
 
-@seeds(30)
+@seeds(15)
 def test_hold_is_minus_r_plus_one_plus_c_times_s(seed):
     """−R + (1 + c) S with M D̄ = R + j sin θ S taken from complex values on the circle."""
     random = Random(2000 + seed)

@@ -62,7 +62,7 @@ def random_law(random):
     return zw.PulseTransferFunction([draw(random, -9, 9) for _ in range(3)], [1, -2 * r * c, r * r])
 
 
-@seeds(30)
+@seeds(15)
 def test_bound_holds_and_is_tight(seed):
     """‖h‖₁ ≤ bound ≤ ‖h‖₁ (1 + 1e-8); within a tenth where a slow mode is bounded by itself."""
     random = Random(seed)
@@ -96,7 +96,7 @@ def test_no_bound_for_laws_that_do_not_decay(denominator):
     assert bound_one_norm(linear_loop(zw.Device(damping="0.3", rate=1000), law)) is None
 
 
-@seeds(20)
+@seeds(12)
 def test_checker_finds_the_same_bound(seed):
     """The checker's own arithmetic gives the same rational, and any other inverse only a larger one."""
     random = Random(100 + seed)

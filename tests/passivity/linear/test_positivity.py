@@ -119,7 +119,7 @@ def test_degree_sixty(seed):
 
 
 @pytest.mark.filterwarnings("ignore:Descending")
-@seeds(40)
+@seeds(20)
 def test_against_roots(seed):
     """Random polynomials agree with the sign between the real roots that mpmath finds."""
     random = Random(seed)
@@ -137,7 +137,7 @@ def test_against_roots(seed):
 numbers = st.fractions(-2, 2, max_denominator=64)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(
     st.lists(numbers, max_size=5),
     st.lists(numbers, max_size=4),

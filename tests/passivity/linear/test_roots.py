@@ -51,7 +51,7 @@ def test_placed_roots(name):
     assert all(abs(a - b) < NEAR for a, b in zip(found, expected, strict=True))
 
 
-@seeds(20)
+@seeds(12)
 def test_random_polynomials(seed):
     """The same as from all complex roots."""
     random = Random(seed)

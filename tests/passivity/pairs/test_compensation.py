@@ -38,7 +38,7 @@ def largest_share(pair: zw.Pair) -> Fraction:
     return low
 
 
-@seeds(30)
+@seeds(15)
 def test_a_line_is_above_and_touches(seed):
     """F tanh(v/v_s) ≤ h + s v, and at v = v_s artanh r they are one."""
     random = np.random.default_rng(seed)
@@ -153,7 +153,7 @@ def test_a_round_that_is_large_enough_knows_nothing_of_tanh():
     assert verdict.witness.verify()
 
 
-@seeds(20)
+@seeds(12)
 def test_any_mean_of_past_moves_is_covered_by_the_wider_proof(seed):
     """It takes C + s of damping and none of local damping: never less than the proof of the last move."""
     random = np.random.default_rng(seed)

@@ -108,7 +108,7 @@ def test_both_sides_are_evidence(name, bounds):
         assert sum(Fraction(c) for c in motion["law"]["taps_N_per_m"]) == other.stiffness.fraction
 
 
-@pytest.mark.parametrize("tolerance", [0.1, 0.02, 0.004])
+@pytest.mark.parametrize("tolerance", [0.1, 0.004])
 @pytest.mark.parametrize("name", ["stiffness", "stiffness beside damping", "friction", "virtual damping"])
 def test_as_close_as_asked_for(name, tolerance):
     """The closed form, for every hand, lies within; and the bracket is no wider than the tolerance."""

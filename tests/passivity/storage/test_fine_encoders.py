@@ -185,7 +185,7 @@ def test_hands_between_the_ends_of_cells(name):
     assert best <= 1e-12
 
 
-LOOPS = 40
+LOOPS = 16
 
 
 @pytest.mark.parametrize("seed", range(LOOPS))

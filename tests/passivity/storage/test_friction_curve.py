@@ -48,7 +48,7 @@ def test_a_spring_below_the_curve(speed):
     assert found.proved_passive >= 0.99 * single.proved_passive
 
 
-@seeds(20)
+@seeds(12)
 def test_the_costs_enclose_the_loss(seed):
     """Outer costs at most, inner ones at least; between two steps the chord of outer ones is below too."""
     random = Random(seed)

@@ -54,7 +54,7 @@ def test_never_more_than_the_true_drag(apart, side):
         assert interpolated(0, apart, HALF, Fraction(1)) == (apart + HALF) ** 2
 
 
-@seeds(30)
+@seeds(15)
 def test_every_move_between_nodes_is_covered(seed):
     """V and V' drawn at random, just large enough at the nodes: then nowhere between them too small."""
     random = Random(seed)
@@ -113,7 +113,7 @@ def _descended(random, apart, spared):
         a, b = best
 
 
-@seeds(20)
+@seeds(12)
 def test_the_costs_of_a_grid_are_these(seed):
     """Outer: at most φ D + β L(D) of the true friction and drag; inner: at least φ D + β D²."""
     random = Random(seed)

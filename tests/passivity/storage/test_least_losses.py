@@ -77,7 +77,7 @@ def test_turning_back_and_resting_cost(made, rest):
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(400)
 
 
-@seeds(20)
+@seeds(12)
 def test_smooth_motions_by_quadrature(seed):
     """Polynomials of degree 6 with random speeds at both ends: above the least by more than rounding."""
     rng = np.random.default_rng(seed)

@@ -150,7 +150,7 @@ def test_the_same_value_in_every_state(name, approximation):
     assert set(seen) == {"passive", "active"}
 
 
-@seeds(30)
+@seeds(15)
 def test_what_gains_by_the_inner_costs_gains_by_the_outer_ones(seed):
     """A motion that gains in the inner approximation gains in the outer one on the same nodes."""
     random = Random(seed)

@@ -86,7 +86,7 @@ def lacking(law, delay, damping, cosine):
         return float(need - b)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(5))
 def test_a_random_law_is_never_undecided(seed):
     """At (1 ± 1e-9) of the need, at half of it and at none: proved on one side, a violation on the other."""
     random = Random(f"violation {seed}")

@@ -55,14 +55,14 @@ def path(count: int) -> list[tuple[float, float, float]]:
 
 @needs_library
 @pytest.mark.parametrize("axis", ["x", "y", "z"])
-def test_ten_thousand_exchanges(sdk: Path, axis: str) -> None:
+def test_two_thousand_exchanges(sdk: Path, axis: str) -> None:
     """Each position is that of its question, along the axis; the force as well, the other axes have none."""
     place = "xyz".index(axis)
     device = Device(sdk)
-    device.move(path(10_002))
-    run = drive(ForceDimension(axis), 10_000, lambda x: 5.0 * x)
-    assert run.statuses == [GOOD] * 10_000
-    assert run.readings == [place_of[place] for place_of in path(10_001)[1:]]
+    device.move(path(2_002))
+    run = drive(ForceDimension(axis), 2_000, lambda x: 5.0 * x)
+    assert run.statuses == [GOOD] * 2_000
+    assert run.readings == [place_of[place] for place_of in path(2_001)[1:]]
     expected = [0.0, *run.forces, 0.0, 0.0]
     assert [force[place] for force in device.forces] == expected
     assert all(force[other] == 0.0 for force in device.forces for other in range(3) if other != place)
