@@ -89,7 +89,7 @@ class Side:
 def approach(first: Side, second: Side, fine: float, deadline: float, clock: Clock | None = None) -> None:
     """Let both sides ask until neither gains, or the time is up; the one that has had less time goes next.
 
-    The clock is that of the machine; with one that counts work, and not seconds, every machine finds the same.
+    The clock is that of the machine; with one that counts work every machine finds the same.
     """
     clock = time.monotonic if clock is None else clock
     for side in (first, second):
