@@ -408,3 +408,14 @@ def test_what_no_condition_covers_is_said_and_springs_are_decided() -> None:
     coarse = zw.z_width(device.replace(coulomb_friction="0.001"), (0, 300), (0, 1), cells=(4, 4), hands={})
     assert float(coarse["spring_limit"]) == pytest.approx(2 * 0.001 / 2.24e-5)
     assert zw.z_width(PADDLE, (0, 300), (0, 1), cells=(4, 4), hands={}).attrs["not_covered"] == ""
+
+
+def test_no_spring_is_passive_without_damping_of_the_device() -> None:
+    """A filter whose response does not end leaves springs alone, and b = 0 holds none but that of K = 0."""
+    filtered = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
+    for damping, passive in ((0, [False, False]), (0.15, [True, False])):
+        found = zw.z_width(
+            PADDLE.replace(damping=damping), (0, 500), (-1, 1), (2, 1), velocity_filter=filtered, hands={}
+        )
+        assert found["virtual_damping"].values.tolist() == [0]
+        assert found["passive"].values[:, 0].tolist() == passive

@@ -286,7 +286,6 @@ def test_a_loop_that_cannot_be_is_said_to_be_refused() -> None:
         ({"stiffness": "1, 2"}, {"workers": 0}, "workers must be"),
         ({"stiffness": "1, 2"}, {"path": "sweep.csv"}, r"ends in \.zarr or \.parquet"),
         ({"stiffness": "1, 2"}, {"path": "nowhere/sweep.zarr"}, "no directory"),
-        ({"stiffness": "1, 2"}, {"address": "tcp://127.0.0.1:1"}, "no Dask scheduler answers"),
     ],
 )  # fmt: skip
 def test_bad_input_is_refused_before_work_starts(

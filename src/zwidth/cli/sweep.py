@@ -35,7 +35,7 @@ VERBS = ("check", "limit", "simulate", "pair")
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth sweep`."""
-    from zwidth.cli.simulation_tables import follower_parameters, operator_parameters, simulation_parameters
+    from zwidth.cli.simulation_tables import operator_parameters, simulation_parameters
 
     parser.usage = (
         "%(prog)s [SOURCE ...] --vary NAME=VALUES [--vary ...] [--of COMMAND] [--PARAMETER VALUE ...] "
@@ -82,7 +82,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     output.add_argument("--force", action="store_true", help="replace the picture if it exists")
     add_parameters(parser)
     taken = {action.dest for action in parser._actions}
-    rest = (*coupling_parameters(), *operator_parameters(), *follower_parameters(), *simulation_parameters())
+    rest = (*coupling_parameters(), *operator_parameters(), *simulation_parameters())
     more = parser.add_argument_group("pair and simulation", "of two arms, and of a hand that touches")
     add_all(more, (own for own in rest if f"parameter {own.key}" not in taken))
 
@@ -108,7 +108,6 @@ def run(arguments: argparse.Namespace) -> int:
             vary=vary,
             of=of,
             operator=loop.operator,
-            follower=loop.follower,
             path=arguments.save,
             address=arguments.dask,
             workers=_workers(arguments.workers),

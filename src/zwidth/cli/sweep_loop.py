@@ -27,7 +27,6 @@ class Asked(NamedTuple):
     subject: Any
     environment: Any = None
     operator: Any = None
-    follower: Any = None
     options: Mapping[str, Any] = {}
 
 
@@ -89,7 +88,7 @@ def _refuse_others(arguments: argparse.Namespace, of: str) -> None:
 
 def _parameters(of: str) -> Iterable[Parameter]:
     """The parameters that a question has."""
-    from zwidth.cli.simulation_tables import follower_parameters, operator_parameters, simulation_parameters
+    from zwidth.cli.simulation_tables import operator_parameters, simulation_parameters
 
     if of == "pair":
         return coupling_parameters()
@@ -97,8 +96,7 @@ def _parameters(of: str) -> Iterable[Parameter]:
     loop += [own._replace(key=BEHIND + own.key) for own in environment_parameters()]
     if of != "simulate":
         return loop
-    hands = (*operator_parameters(), *follower_parameters(), *simulation_parameters())
-    return [*loop, *coupling_parameters(), *hands]
+    return [*loop, *operator_parameters(), *simulation_parameters()]
 
 
 def _wall(arguments: argparse.Namespace, of: str) -> Asked:
@@ -124,33 +122,16 @@ def _pair(arguments: argparse.Namespace) -> Asked:
 
 
 def _touch(arguments: argparse.Namespace) -> Asked:
-    """A touch of one device, or of two arms."""
-    from zwidth.cli.simulate_pair import pair_with_options
-    from zwidth.cli.simulation_tables import (
-        FOLLOWER,
-        build_follower,
-        build_touch,
-        follower_parameters,
-        operator_parameters,
-        simulation_parameters,
-    )
+    from zwidth.cli.simulation_tables import build_touch, operator_parameters, simulation_parameters
     from zwidth.specification.laws import with_laws
-    from zwidth.specification.read import PAIR_TABLES, TABLES, read_tables, specified
+    from zwidth.specification.read import TABLES, read_tables, specified
 
-    tables = read_tables(arguments.sources, (*TABLES, *PAIR_TABLES, FOLLOWER))
+    tables = read_tables(arguments.sources, TABLES)
     words = given(arguments, [p.key for p in (*operator_parameters(), *simulation_parameters())])
-    held = given(arguments, [p.key for p in follower_parameters()])
-    if any(name in tables for name in PAIR_TABLES):
-        pair = pair_with_options(arguments, tables)
-        touch = build_touch(tables.get("operator"), tables.get("simulation"), words, pair.motion)
-        follower = build_follower(tables.get(FOLLOWER), held, pair.motion)
-        return Asked(pair, None, touch.operator, follower, _run(touch))
-    if FOLLOWER in tables or held:
-        raise InputError("the loop of one device has no follower: leave out what holds it")
     loop = specified(tables, overrides(arguments))
     law = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
     touch = build_touch(tables.get("operator"), tables.get("simulation"), words, loop.device.motion)
-    return Asked(loop.device, law, touch.operator, options=_run(touch))
+    return Asked(loop.device, law, touch.operator, _run(touch))
 
 
 def _run(touch: Any) -> dict[str, Any]:

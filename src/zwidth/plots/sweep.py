@@ -178,7 +178,7 @@ def _mark(axes: Axes, x: Any, words: Any) -> None:
 def _is_log(values: Any) -> bool:
     """Whether the steps grow so much that equal ratios show them better."""
     steps = np.diff(values)
-    return values.size > 2 and values.min() > 0 and (steps > 0).all() and steps[-1] > 5 * steps[0]
+    return bool(values.size > 2 and values.min() > 0 and (steps > 0).all() and steps[-1] > 5 * steps[0])
 
 
 class _Scaled(NamedTuple):

@@ -34,9 +34,9 @@ class Loop:
     subject
         A device, or two arms that follow each other.
     environment
-        What a device renders; of a simulated pair None.
-    operator, follower
-        The hand of a simulation; what holds the follower of a pair.
+        What a device renders; of a pair None.
+    operator
+        The hand of a simulation.
     options
         Further arguments of the question.
     """
@@ -44,7 +44,6 @@ class Loop:
     subject: Device | Pair
     environment: Environment | None = None
     operator: Any = None
-    follower: Any = None
     options: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -226,17 +225,14 @@ def _law_behind(loop: Loop, new: Changes) -> Loop:
     return replace(loop, environment=law.around(law.met.replace(environment=_behind(loop).replace(**new))))
 
 
-def _hand(which: str) -> tuple[Callable[[Loop], Units], Callable[[Loop, Changes], Loop]]:
-    def units(loop: Loop) -> Units:
-        held = getattr(loop, which)
-        if isinstance(held, ParametricOperator):
-            return {name: own.unit_for(loop.motion) for name, own in held.parameters().items()}
-        return _numbers_of(held, lambda key: held.unit_of(key, loop.motion))
+def _of_hand(loop: Loop) -> Units:
+    if not isinstance(loop.operator, ParametricOperator):
+        return {}
+    return {name: own.unit_for(loop.motion) for name, own in loop.operator.parameters().items()}
 
-    def change(loop: Loop, new: Changes) -> Loop:
-        return replace(loop, **{which: replace(getattr(loop, which), **new)})
 
-    return units, change
+def _hand(loop: Loop, new: Changes) -> Loop:
+    return replace(loop, operator=replace(loop.operator, **new))
 
 
 _RUN = {"duration": "s", "initial_position": "", "initial_velocity": "", "encoder_phase": "1"}
@@ -263,8 +259,7 @@ PARTS: Mapping[str, Part] = MappingProxyType(
         "coupling": Part("", _of_coupling, _coupling),
         "law": Part("", _of_law, _law),
         "behind": Part("environment.", _of_behind, _law_behind),
-        "hand": Part("operator.", *_hand("operator")),
-        "held": Part("follower_operator.", *_hand("follower")),
+        "hand": Part("operator.", _of_hand, _hand),
         "run": Part("", _of_run, _run),
     }
 )

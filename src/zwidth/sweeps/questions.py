@@ -84,7 +84,7 @@ def checked(loop: Loop, line: Line) -> Answer:
     """What `zwidth.check` says of a loop, by closed forms; the largest stiffness is sought once in a line."""
     from zwidth.passivity.check import check
 
-    verdict = check(loop.subject, loop.environment, iterate=False, **loop.options)  # type: ignore[call-overload]
+    verdict = check(loop.subject, loop.environment, iterate=False, **loop.options)  # type: ignore[arg-type]  # a device, see _one_device
     about = verdict.outcome, verdict.scope.contact
     if about not in line:
         line[about] = getattr(verdict, "max_stiffness", None)
@@ -136,6 +136,7 @@ def simulated(loop: Loop, _: Line) -> Answer:
 
     options = dict(loop.options)
     duration = options.pop("duration")
+    assert isinstance(loop.subject, Device), "see _touched"
     return measure(simulate(loop.subject, loop.environment, loop.operator, duration, **options))
 
 
@@ -173,6 +174,8 @@ def _one_device(loop: Loop) -> None:
 
 
 def _touched(loop: Loop) -> None:
+    if isinstance(loop.subject, Pair):
+        raise InputError("the touches of a sweep are of one device: simulate two arms one by one")
     _one_device(loop)
     if loop.operator is None:
         raise InputError("a simulation needs a hand: operator=zw.operators.Finger(), or another")

@@ -35,7 +35,6 @@ def sweep(
     vary: Mapping[str, object],
     of: str = "check",
     operator: Any = None,
-    follower: Any = None,
     duration: Any = None,
     path: str | PathLike[str] | None = None,
     address: str | None = None,
@@ -58,8 +57,8 @@ def sweep(
         "check": the verdict, what binds, the largest passive stiffness; "limit": `passive_limit`; "simulate":
         one touch each, what it felt like and the energy got out; "pair": the verdict on two arms. Verdicts
         are by closed forms: values are not iterated, so that no answer depends on the time that it gets.
-    operator, follower, duration
-        Of a simulation: the hand, what holds the follower of a pair, how long [s].
+    operator, duration
+        Of a simulation: the hand, and how long [s].
     path
         A zarr store, or a file .parquet: written as it goes; one that was begun is gone on with.
     address
@@ -94,7 +93,7 @@ def sweep(
     if of == "limit":
         options.setdefault("parameter", "stiffness")
     law = environment if environment is None or isinstance(device, Pair) else as_environment(environment)
-    asked = request(of, Loop(device, law, operator, follower, options), vary)
+    asked = request(of, Loop(device, law, operator, options), vary)
     file = None if path is None else _place(Path(path))
 
     def finished(left: list[Place]) -> Finished:

@@ -86,11 +86,12 @@ class Side:
         return min(known, key=lambda value: self.towards * value) if known else None
 
 
-def approach(first: Side, second: Side, fine: float, deadline: float, clock: Clock = time.monotonic) -> None:
+def approach(first: Side, second: Side, fine: float, deadline: float, clock: Clock | None = None) -> None:
     """Let both sides ask until neither gains, or the time is up; the one that has had less time goes next.
 
-    With a clock that counts work, and not seconds, the same is found on every machine.
+    The clock is that of the machine; with one that counts work every machine finds the same.
     """
+    clock = time.monotonic if clock is None else clock
     for side in (first, second):
         side.begin()
     while clock() < deadline:
