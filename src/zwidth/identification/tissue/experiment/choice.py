@@ -19,7 +19,7 @@ from scipy import stats
 
 from zwidth.errors import InputError
 from zwidth.identification.tissue.experiment.estimate import Solved, solved
-from zwidth.identification.tissue.experiment.history import History
+from zwidth.identification.tissue.experiment.history import History, about_surface
 from zwidth.identification.tissue.experiment.prediction import Task, fine_of
 from zwidth.identification.tissue.model import Model, as_model
 
@@ -35,6 +35,9 @@ MODELS = (
     ("hunt-crossley", None),
 )
 
+SEEN = 2.0
+"""Of AICc, by which a surface must do better than none."""
+
 UNLIKELY = 1e-3
 """Chance below which what is left over is no noise."""
 
@@ -47,6 +50,18 @@ class Tried(NamedTuple):
     task: Task
     found: Solved
     criterion: float
+
+
+def touching(test: History, zero: bool) -> History:
+    """The test with a surface where a standard linear solid does better with one, else without."""
+    if test.surface is None:
+        return test
+    alone, fine = test._replace(surface=None), fine_of(test)
+    model = as_model("standard-linear-solid", None, "force")
+    without, found = (criterion(solved(Task(model, each, fine, zero))) for each in (alone, test))
+    if without - found < SEEN:
+        return alone
+    return test._replace(findings=(*test.findings, about_surface(test.surface)))
 
 
 def tried(test: History, zero: bool, names: tuple[str, ...] = ()) -> list[Tried]:

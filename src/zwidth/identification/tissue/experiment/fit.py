@@ -10,7 +10,15 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.identification.logs import Finding
-from zwidth.identification.tissue.experiment.choice import MODELS, Tried, label, not_told_apart, taken, tried
+from zwidth.identification.tissue.experiment.choice import (
+    MODELS,
+    Tried,
+    label,
+    not_told_apart,
+    taken,
+    touching,
+    tried,
+)
 from zwidth.identification.tissue.experiment.estimate import covariance
 from zwidth.identification.tissue.experiment.history import history_of
 from zwidth.identification.tissue.experiment.kind import KINDS, Kind, kind_of
@@ -104,8 +112,10 @@ def _fitted(
     _check(kind, models, zero)
     trial = one_trial(raw, number)
     found = kind_of(trial.time, trial.indentation, trial.force)
-    test = history_of(trial, kind or found, raw.source)
-    every = tried(test, zero == "fitted" and not test.starts_loaded, models)
+    seen = history_of(trial, kind or found, raw.source)
+    zeroed = zero == "fitted" and not seen.starts_loaded
+    test = touching(seen, zeroed)
+    every = tried(test, zeroed, models)
     if not every:
         raise InputError(f"none of the models {', '.join(models)} is fitted to a {test.kind} test")
     best = taken(every)

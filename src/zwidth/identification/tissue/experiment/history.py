@@ -16,11 +16,14 @@ from zwidth.errors import InputError
 from zwidth.identification.logs.block import Finding
 from zwidth.identification.tissue.experiment.kind import Kind, changes, noise_of_differences
 from zwidth.identification.tissue.experiment.tidy import FEWEST, Trial
-from zwidth.identification.tissue.faults import hole_places
+from zwidth.identification.tissue.faults import MOST_HOLES
 from zwidth.quantity.text import shown
 
 TOUCH = 5.0
 """Times its noise by which the force shows that the probe touches."""
+
+HOLE = 4.0
+"""Times the longer of the intervals beside it by which one is a hole."""
 
 SMALL = 0.02
 """Of the largest force, below which nothing is touched; and of the way, below which none was gone."""
@@ -42,7 +45,7 @@ class History(NamedTuple):
     starts_loaded
         The step came before the first sample.
     surface
-        Depth at which the probe seems to touch [m]; None where it touches from the start.
+        Depth at which the probe may touch [m]; None where it touches from the start.
     begins
         Samples after a hole across which the probe moved.
     """
@@ -82,9 +85,14 @@ def history_of(trial: Trial, kind: Kind, source: str) -> History:
         text = f"from t = {shown(float(trial.time[end]), 's', 3)} on the probe is out again: left out"
         said.append(Finding(kind="out", text=text, samples=f.size - end))
     time, x, f = trial.time[:end], x[:end], f[:end]
+    surface = _surface(x, f)
+    if surface is not None and kind == "creep":
+        begin = max(int(np.argmax(x > surface)) - 1, 0)
+        said.append(Finding(kind="surface", text="what comes before the probe touches is left out"))
+        time, x, f, surface = time[begin:] - time[begin], x[begin:] - x[begin], f[begin:], None
     if time.size < FEWEST:
         raise InputError(f"{source}: the probe pushes for {time.size} samples only; {FEWEST} are needed")
-    return _whole(time, x, f, kind, False, _surface(x, f, said), said, source)
+    return _whole(time, x, f, kind, False, surface, said, source)
 
 
 def _whole(
@@ -97,8 +105,14 @@ def _whole(
     said: list[Finding],
     source: str,
 ) -> History:
-    begins = hole_places(time, x if kind != "creep" else f, source)
-    said.extend(_holes(time, begins))
+    holes = _holes(time)
+    begins = _moved(holes, time, x if kind != "creep" else f)
+    if len(begins) > MOST_HOLES:
+        raise InputError(
+            f"{source} has {len(begins)} holes in time across which the probe moved: what the tissue holds "
+            "after each is not known; record without losing samples, or give a part with fewer"
+        )
+    said.extend(_of_holes(time, holes, begins))
     if begins and kind == "creep":
         raise InputError(
             f"{source} has a hole in time after t = {time[begins[0] - 1]:.4g} s, across which the force "
@@ -107,19 +121,40 @@ def _whole(
     return History(time, x, f, kind, loaded, surface, begins, tuple(said))
 
 
-def _holes(time: Array, begins: tuple[int, ...]) -> list[Finding]:
-    """Every hole in time, and what it does."""
+def _holes(time: Array) -> list[int]:
+    """Intervals that are much longer than both beside them."""
     steps = np.diff(time)
-    beside = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(steps, 3, mode="edge"), 7), axis=1)
-    holes = np.flatnonzero(steps > 5.0 * beside)
+    padded = np.concatenate([[0.0], steps, [0.0]])
+    return np.flatnonzero(steps > HOLE * np.maximum(padded[:-2], padded[2:])).tolist()
+
+
+def _moved(holes: list[int], time: Array, given: Array) -> tuple[int, ...]:
+    """The samples after those holes across which what is given changed, or beside which it was moving."""
+    span, noise = float(np.ptp(given)), TOUCH * noise_of_differences(given)
+
+    def moves(k: int) -> bool:
+        if abs(given[k + 1] - given[k]) > max(SMALL * span, noise):
+            return True
+        gap = time[k + 1] - time[k]
+        for side in (slice(max(k - 4, 0), k + 1), slice(k + 1, k + 6)):
+            way = float(np.ptp(given[side]))
+            if way > max(noise, SMALL * span * float(np.ptp(time[side])) / gap):
+                return True
+        return False
+
+    return tuple(k + 1 for k in holes if 1 < k + 1 < given.size - 1 and moves(k))
+
+
+def _of_holes(time: Array, holes: list[int], begins: tuple[int, ...]) -> list[Finding]:
+    """Every hole in time, and what it does."""
     said = []
-    for k in holes[:3].tolist():
+    for k in holes[:3]:
         moved = k + 1 in begins
         how = "what the branches hold after it is fitted" if moved else "what is held did not change"
         text = f"no samples from t = {time[k]:.4g} to {time[k + 1]:.4g} s: {how}"
         said.append(Finding(kind="hole", text=text))
-    if holes.size > 3:
-        said.append(Finding(kind="hole", text=f"and {holes.size - 3} other holes in time"))
+    if len(holes) > 3:
+        said.append(Finding(kind="hole", text=f"and {len(holes) - 3} other holes in time"))
     return said
 
 
@@ -166,7 +201,7 @@ def _end(x: Array, f: Array) -> int:
     return int(np.argmax(low)) if low.any() else f.size
 
 
-def _surface(x: Array, f: Array, said: list[Finding]) -> float | None:
+def _surface(x: Array, f: Array) -> float | None:
     """The depth at which the force begins, where the probe came from outside."""
     noise = noise_of_differences(f)
     touches = f > max(TOUCH * noise, SMALL * float(f.max()))
@@ -176,7 +211,10 @@ def _surface(x: Array, f: Array, said: list[Finding]) -> float | None:
     after = slice(first, min(first + 6, x.size))
     slope, level = np.polyfit(x[after], f[after], 1) if np.ptp(x[after]) > 0 else (0.0, 0.0)
     guess = -level / slope if slope > 0 else x[first - 1]
-    guess = float(np.clip(guess, x[max(first - 3, 0)] - 0.1 * x.max(), x[first]))
-    text = f"the probe comes from outside and touches after {shown(guess, 'm', 3)}: that depth is fitted"
-    said.append(Finding(kind="surface", text=text))
-    return guess
+    return float(np.clip(guess, 0.0, x[first]))
+
+
+def about_surface(surface: float) -> Finding:
+    """That it is fitted."""
+    text = f"the probe comes from outside and touches after {shown(surface, 'm', 3)}: that depth is fitted"
+    return Finding(kind="surface", text=text)
