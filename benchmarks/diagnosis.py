@@ -1,6 +1,6 @@
 """Does the diagnosis name why a thing shakes, and is it quiet once the one number is changed?
 
-    python benchmarks/diagnosis.py FOLDER [--faults 500] [--seed 2026]
+    python benchmarks/diagnosis.py FOLDER [--faults 500] [--seed 2027]
 
 Faults are drawn by `shaken.py`, which knows nothing of the diagnosis, with a seed that was not used to
 learn its weights.  FOLDER keeps the logs, so that a second call goes on where the first one was stopped.
@@ -32,7 +32,8 @@ def main() -> None:
     )
     parser.add_argument("folder", type=Path)
     parser.add_argument("--faults", type=int, default=500)
-    parser.add_argument("--seed", type=int, default=2026)
+    parser.add_argument("--first", type=int, default=0, help="of the faults, where they are taken in pieces")
+    parser.add_argument("--seed", type=int, default=2027)
     given = parser.parse_args()
     given.folder.mkdir(exist_ok=True, parents=True)
     named: Counter[tuple[str, str]] = Counter()
@@ -40,7 +41,7 @@ def main() -> None:
     by_device: Counter[tuple[bool, str]] = Counter()
     mended: Counter[tuple[str, bool]] = Counter()
     confident: list[tuple[float, bool]] = []
-    for k in range(given.faults):
+    for k in range(given.first, given.first + given.faults):
         thing, logged = kept(given.folder, given.seed, k)
         found = zw.diagnose(logged.path, logged.device)
         says = found.cause or CANNOT_TELL

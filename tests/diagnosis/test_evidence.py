@@ -127,6 +127,7 @@ def test_the_energy_of_a_cycle_is_that_of_the_held_force_along_the_motion(late: 
     rows = slice(100, 100 + round(cycles / FREQUENCY / PERIOD))
     work = -float(np.sum(applied[rows] * np.diff(position)[rows])) / cycles
     assert seen.total == pytest.approx(work, rel=0.03)
+    assert seen.energy == pytest.approx(work, rel=0.05)
     assert sum(seen.supplied.values()) == pytest.approx(seen.total, rel=0.03)
     assert (seen.supplied["delay"] > 0) == (late > 0)
     assert seen.delay == pytest.approx(late * PERIOD)

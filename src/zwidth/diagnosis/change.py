@@ -1,4 +1,4 @@
-"""The one number to change, handed to `check`: the largest value of it with which the loop is proved passive.
+"""The one number to change, handed to `check`: four fifths of the largest value that is proved passive.
 
 The loop is what was found in the recording: the stated device, the identified law, the delay that is seen.
 Every value that is given was itself decided, all else as it was.  A damper inside the drive, B_d v(t −
@@ -28,6 +28,9 @@ PASSIVE = ("passive", "passive in contact")
 """Outcomes that a change may have."""
 
 _HALVINGS = 14
+_MARGIN = 0.8
+"""Of the largest value that is passive: at that itself a motion that is there need not die out."""
+
 _DIGITS = 3
 
 
@@ -200,12 +203,12 @@ def _largest(decided: Callable[[float], Verdict | None], current: float) -> floa
     low, high = 0.0, current
     if not passive(0.0) and not passive(1e-3 * current):
         return None
-    if passive(_rounded(0.9 * current)):
-        return _rounded(0.9 * current)
-    for _ in range(_HALVINGS):
+    if passive(current):
+        low = current
+    for _ in range(_HALVINGS if low < high else 0):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if passive(middle) else (low, middle)
-    to = _rounded(0.98 * low)
+    to = _rounded(_MARGIN * low)
     return to if to > 1e-3 * current and passive(to) else None
 
 

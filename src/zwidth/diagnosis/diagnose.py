@@ -93,7 +93,7 @@ def _named(taken: Recording, seen: Evidence, device: Device | None) -> Diagnosis
         likely=likely,
         frequency=seen.vibration.frequency,
         frequency_spread=seen.vibration.frequency_spread,
-        energy_per_cycle=seen.total,
+        energy_per_cycle=seen.energy,
         evidence=tuple(CAUSES[cause].evidence(seen)) if cause is not None else (),
         change=change,
         record=() if change is not None else tuple(_record(cause, likely, seen, device)),

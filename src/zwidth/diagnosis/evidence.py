@@ -108,7 +108,10 @@ class Evidence:
     supplied
         [J] that each term gives in a cycle, negative where it takes.
     total
-        [J] that the actuator gives in a cycle in all.
+        [J] that the actuator gives in a cycle in all, by the phasors.
+    energy
+        [J] the same by the held force along each move, where every sample of the loop is in the file; else
+        the total.
     lost
         [J] that the device's friction takes in a cycle; None without a device.
     apparent_mass
@@ -128,6 +131,7 @@ class Evidence:
     delay: float
     supplied: Mapping[str, float]
     total: float
+    energy: float
     lost: float | None
     apparent_mass: float
     standing: float
@@ -194,6 +198,9 @@ def gather(recording: Recording, vibration: Vibration, device: Device | None) ->
         delay=delay,
         supplied=supplied,
         total=motion.work(F),
+        energy=_along(x, force, 0 if applied is not None else round(delay / period))
+        if abs(period - loop_period) < 0.01 * period
+        else motion.work(F),
         lost=lost,
         apparent_mass=float(np.real(F[0] / X)) / omega**2,
         standing=_standing(x, period, cycle),
@@ -244,6 +251,23 @@ class _Motion(NamedTuple):
         """The same through the hold."""
         half = 0.5 * self.orders * self.omega * self.loop_period
         return np.asarray(asked * np.sinc(half / np.pi) * np.exp(-1j * half))
+
+
+def _along(x: Array, force: Array, late: int) -> float:
+    """[J] −Σ f_k (x_k+1 − x_k) in a cycle, from the first to the last rise through the middle."""
+    middle = 0.5 * (np.percentile(x, 5) + np.percentile(x, 95))
+    reach = 0.25 * (np.percentile(x, 95) - np.percentile(x, 5))
+    crossings, below = [], False
+    for k, value in enumerate(x):
+        if below and value > middle:
+            crossings.append(k)
+        below = value < middle - reach or (below and value <= middle)
+    if len(crossings) < 2:
+        return 0.0
+    first, last = crossings[0], crossings[-1]
+    moves = np.diff(x)[first:last]
+    held = force[max(0, first - late) : max(0, first - late) + moves.size]
+    return -float(held @ moves) / (len(crossings) - 1)
 
 
 def _loop_period(commanded: Array | None, period: float) -> float:

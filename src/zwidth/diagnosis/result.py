@@ -98,7 +98,7 @@ class Diagnosis(Shown):
         yield "frequency", f"{shown(v.frequency, 'Hz', 4)} ± {shown(v.frequency_spread, 'Hz', 2)}"
         counts = f", {self.seen.counts:.3g} counts" if self.seen.resolution else ""
         yield "end to end", f"{shown(v.swing, length, 3)}{counts}"
-        yield "energy in a cycle", shown(self.seen.total, "J", 3)
+        yield "energy in a cycle", shown(self.seen.energy, "J", 3)
         for term, work in self.seen.supplied.items():
             if work:
                 yield f"by {term}", shown(work, "J", 3)
