@@ -190,6 +190,9 @@ def test_a_device_in_its_ranges(run: Run) -> None:
     assert "let go at a turn a second" in said
     document = json.loads(run("check", "moza-r9", "--stiffness", "2 N*m/deg", "--json")[1])
     assert document["ranges"]["measure_first"]["parameter"] == "damping"
+    status, said = run("check", "moza-r9", "--stiffness", "2 N*m/deg", "--law", "force-bounding")
+    assert status == 2
+    assert "give yours, --delay '1 ms'" in said
     assert "zwidth check moza-r9" in run("simulate", "moza-r9", "--stiffness", "1", *HANDS)[1]
     run("report", "moza-r9", "--stiffness", "1 N*m/deg", "-o", "ranges.html")
     assert "stated and not measured" in Path("ranges.html").read_text(encoding="utf-8")

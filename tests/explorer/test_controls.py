@@ -38,7 +38,8 @@ def test_a_catalogue_device_has_a_slider_for_every_number(name: str) -> None:
     controls = device_controls(state, device)
     assert len(controls) == len([p for p in parameters_of(zw.Device).values() if p.is_number])
     by_path = {control.path: control for control in controls}
-    shown = zw.Device(damping=by_path["device.damping"].text, rate=by_path["device.rate"].text)
+    texts = {key: by_path[f"device.{key}"].text for key in ("damping", "rate")}
+    shown = zw.Device(**texts, motion=device.motion)
     assert (shown.damping, shown.sample_period) == (device.damping, device.sample_period)
     for control in controls:
         answers(state, control)

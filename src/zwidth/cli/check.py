@@ -16,6 +16,7 @@ from zwidth.cli.options import (
     contact,
 )
 from zwidth.cli.output import print_json, say_written, targets, writing
+from zwidth.errors import InputError
 
 if TYPE_CHECKING:
     from zwidth.passivity.finite_stiffness import FiniteStiffnessReplay
@@ -59,6 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
     """`zwidth check`: the status says the outcome."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     loop = asked(arguments, in_range=True).loop
+    _one_timing(loop)
     active = _tolerated(loop, arguments.active_below)
     verdict = decided(loop, contact(arguments))
     ranges = _ranges(loop, verdict)
@@ -93,6 +95,19 @@ def _tolerated(loop: Specification, below: str | None) -> ToleratedActivity | No
     from zwidth.stability.active_hand import tolerated_activity
 
     return tolerated_activity(loop.device, loop.environment, parse_number(below, "Hz", "active_below"))
+
+
+def _one_timing(loop: Specification) -> None:
+    """Refuse a stated range of delay or rate where a law is decided for one of each."""
+    ranged = [key for key in ("sample_period", "delay") if key in loop.ranges]
+    if loop.environment.has_transfer_function or not ranged:
+        return
+    named = {"sample_period": ("rate", "--rate '1 kHz'"), "delay": ("delay", "--delay '1 ms'")}
+    names, options = zip(*(named[key] for key in ranged), strict=True)
+    raise InputError(
+        f"{loop.environment.describe(loop.device.motion)} is decided for one {' and one '.join(names)}, of "
+        f"which the catalogue states a range for {loop.device.name}: give yours, {' '.join(options)}"
+    )
 
 
 def _ranges(loop: Specification, verdict: Verdict) -> OverRanges | None:

@@ -117,8 +117,8 @@ class OverRanges:
             first = {"parameter": self.first.key, "enough": enough, "times_the_stiffness": times}
         return {
             "stated": ranges,
-            f"passive_for_every_device_{unit_key('stiffness', self.motion)}": self.every,
-            f"passive_for_the_best_device_{unit_key('stiffness', self.motion)}": self.best,
+            f"passive_for_every_device_{unit_key('stiffness', self.motion)}": _finite(self.every),
+            f"passive_for_the_best_device_{unit_key('stiffness', self.motion)}": _finite(self.best),
             "measure_first": first,
         }
 
@@ -136,6 +136,10 @@ class OverRanges:
             return f"{name}: if it is {side} {enough}, this is passive for every device in the other ranges"
         grows = "from none" if first.times == inf else f"{first.times:.2g} times"
         return f"{name}: over its range the largest stiffness grows {grows}, more than over any other"
+
+
+def _finite(value: float | None) -> float | None:
+    return None if value == inf else value
 
 
 def _key(key: str, own: Range) -> str:
