@@ -168,7 +168,7 @@ def test_the_reported_energy_by_pinocchio(tmp_path: Path) -> None:
 
 
 def test_seven_joints_are_proved_up_to_what_a_hand_feels(tmp_path: Path) -> None:
-    """The factor is that of (J δ_m⁻¹ Jᵀ)⁻¹; a hand cannot hold seven joints, so nothing is refuted."""
+    """The factor is that of (J δ_m⁻¹ Jᵀ)⁻¹; beyond it hands that hold the links refute."""
     arm, wall = _arm(tmp_path, 7, moving=1), WALLS["coupled"]
     space = _space(arm, wall, 200)
     (need,) = wall_need(wall, 0.001, 0, 6).matrices
@@ -179,7 +179,10 @@ def test_seven_joints_are_proved_up_to_what_a_hand_feels(tmp_path: Path) -> None
         factors.append(1 / np.linalg.eigvals(np.linalg.solve(felt, need)).real.max())
     assert space.stiffness_factor == pytest.approx(min(factors), rel=1e-6)
     assert _space(arm, _times(wall, 0.95 * min(factors)), 200).outcome == "passive"
-    assert _space(arm, _times(wall, 1.5 * min(factors)), 200).outcome == "undecided"
+    over = _space(arm, _times(wall, 1.5 * min(factors)), 200)
+    assert over.outcome == "active"
+    assert over.motion is not None
+    assert over.motion.imposed_by == "links"
 
 
 def test_one_joint_that_turns_the_hand(tmp_path: Path) -> None:

@@ -218,12 +218,15 @@ def test_coulomb_friction_hides_small_motions_only() -> None:
     assert heavy.outcome == "undecided"
 
 
-def test_a_redundant_arm_is_proved_but_never_refuted() -> None:
-    """A hand at the end cannot hold every joint of three in the plane."""
+def test_a_redundant_arm_is_proved_and_refuted_by_hands_on_its_links() -> None:
+    """A hand at the end alone cannot hold every joint of three in the plane."""
     arm = PlanarChain(links=(0.1, 0.08, 0.05), damping=(0.05, 0.03, 0.02), joint_range=((0.3, 0.9),) * 3)
     limit = zw.workspace(arm, zw.Wall(100), rate=1000, points=60).largest_stiffness
     assert zw.workspace(arm, zw.Wall(limit / 3), rate=1000, points=60).outcome == "passive"
-    assert zw.workspace(arm, zw.Wall(limit * 2), rate=1000, points=60).outcome == "undecided"
+    over = zw.workspace(arm, zw.Wall(limit * 2), rate=1000, points=60)
+    assert over.outcome == "active"
+    assert over.motion is not None
+    assert over.motion.imposed_by == "links"
 
 
 def test_a_hand_that_nothing_moves_has_no_limit() -> None:

@@ -86,6 +86,6 @@ def test_what_cannot_be_asked(panda: Path) -> None:
     with pytest.raises(zw.InputError, match="7 would move"):
         zw.workspace(arm, zw.Wall(500), rate=1000)
     with pytest.raises(zw.InputError, match="from a description"):
-        zw.stiffness_over_postures(zw.arms.built_in("hapkit", damping=1), zw.Wall(1), rate=1000)  # type: ignore[arg-type]
+        zw.stiffness_over_postures(zw.arms.built_in("hapkit", damping=1), zw.Wall(1), rate=1000)
     with pytest.raises(zw.InputError, match="from 100 to"):
         zw.stiffness_over_postures(arm, zw.Wall(500), rate=1000, postures=3)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import isfinite
 from typing import NamedTuple
 
@@ -73,7 +73,7 @@ class Additions:
     @cached_property
     def alone(self) -> tuple[Addition, ...]:
         """All in one joint, for each of them."""
-        return tuple(self._smallest(lambda matrices, i=i: _alone(matrices, i)) for i in range(self._joints))
+        return tuple(self._smallest(partial(_alone, joint)) for joint in range(self._joints))
 
     @property
     def _joints(self) -> int:
@@ -105,7 +105,7 @@ def _to_all(matrices: Array) -> Array:
     return np.full(matrices.shape[-1], lacking)
 
 
-def _alone(matrices: Array, joint: int) -> Array:
+def _alone(joint: int, matrices: Array) -> Array:
     found = np.zeros(matrices.shape[-1])
     found[joint] = single_additions(matrices)[:, joint].max()
     return found

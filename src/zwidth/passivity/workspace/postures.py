@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.arms import ArmMotion, DescribedArm
+from zwidth.arms import Arm, ArmMotion, DescribedArm
 from zwidth.arms.matrix_wall import MatrixWall
 from zwidth.arms.need import wall_need
 from zwidth.arms.replay import refuting_motion
@@ -150,7 +150,7 @@ class PostureMap(PassivityAnswer):
 
 
 def stiffness_over_postures(
-    arm: DescribedArm,
+    arm: Arm,
     wall: Wall | MatrixWall,
     *,
     rate: RealLike,
