@@ -22,13 +22,22 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
+ROUNDING = 1e-9
+"""Of the largest force, below which a jump is none."""
+
+
 def hand_damper(table: Table) -> float:
     """How much a simulated hand's force jumps for a change of its anchor's speed [N·s/m; N·m·s/rad]."""
-    if "anchor_position" not in table.units or "time" not in table.units:
+    if anchor_column(table) is None:
         return 0.0
     own, hand = (_stated(table, (f"{whose}mass_", f"{whose}inertia_")) for whose in ("", "hand_"))
     share = own / (own + hand) if own + hand > 0 else 1.0
     return share * _stated(table, ("hand_damping_",))
+
+
+def anchor_column(table: Table) -> str | None:
+    """The column of the anchor, with its unit in the name where the format keeps it there."""
+    return next((name for name in table.units if name.startswith("anchor_position")), None)
 
 
 def _stated(table: Table, starts: tuple[str, ...]) -> float:
@@ -41,13 +50,14 @@ def between_jumps(table: Table, columns: Mapping[str, NDArray[Any]], damper: flo
     force = columns["hand_force"].astype(float)
     if "time" not in columns or force.size < 3:
         return force
-    speed = np.diff(columns["anchor_position"]) / np.diff(columns["time"])
+    speed = np.diff(columns["anchor"]) / np.diff(columns["time"])
     jumps = damper * np.diff(speed)
+    if np.abs(jumps).max() <= ROUNDING * np.abs(force).max():
+        return force
     force[1:-1] -= jumps / 2
-    if np.abs(jumps).max() > 1e-9 * np.abs(force).max():
-        table.notes["jumps"] = Finding(
-            kind="jumps",
-            text="the force of this simulated hand jumps at the samples, as the speed of its anchor does: "
-            "the mean of before and after is taken, as a load cell would",
-        )
+    table.notes["jumps"] = Finding(
+        kind="jumps",
+        text="the force of this simulated hand jumps at the samples, as the speed of its anchor does: "
+        "the mean of before and after is taken, as a load cell would",
+    )
     return force

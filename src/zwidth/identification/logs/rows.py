@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.identification.logs.jumps import between_jumps, hand_damper
+from zwidth.identification.logs.jumps import anchor_column, between_jumps, hand_damper
 from zwidth.identification.logs.scales import Meaning
 from zwidth.identification.logs.table import PIECE, Table, readable
 
@@ -105,9 +105,12 @@ class Recording:
         names = tuple(self.meaning.columns[q] for q in quantities)
         simulated = str(self.table.attributes.get("format", "")).startswith("zwidth trace")
         damper = hand_damper(self.table) if simulated and "hand_force" in quantities else 0.0
-        more = ("sampled", "anchor_position") if damper else ("sampled",) if simulated else ()
+        more = {"sampled": "sampled"} if simulated else {}
+        anchor = anchor_column(self.table)
+        if damper and anchor is not None:
+            more["anchor"] = anchor
         origin: Any = None
-        for values in self.table.read((*names, *more)):
+        for values in self.table.read((*names, *more.values())):
             columns = dict(zip((*quantities, *more), values, strict=True))
             if simulated:
                 at_samples = columns.pop("sampled") != 0
@@ -115,7 +118,7 @@ class Recording:
                     columns = {q: v[at_samples] for q, v in columns.items()}
             if damper:
                 columns["hand_force"] = between_jumps(self.table, columns, damper)
-                del columns["anchor_position"]
+                del columns["anchor"]
             if "time" in columns and origin is None and columns["time"].size:
                 origin = _origin(columns["time"], self.meaning.factors["time"])
                 tally["dates"] += bool(origin)
