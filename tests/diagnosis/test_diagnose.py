@@ -90,15 +90,13 @@ def test_the_thing_is_quiet_with_the_stiffness_that_is_advised(tmp_path: Path) -
     assert np.abs(released(paddle(), centring(900))["velocity"].values[-200:]).max() > 0.5
 
 
-def test_a_delay_behind_the_command_is_not_named_from_the_command_alone(tmp_path: Path) -> None:
-    """Nothing in the file shows it: then what to record is said, the motor's own force first."""
+def test_the_command_alone_does_not_show_what_lies_behind_it(tmp_path: Path) -> None:
+    """A delay may be likely, but no number is given, and the motor's own force is asked for."""
     trace = released(paddle(delay=0.002), centring(150))
     found = zw.diagnose(log_of(tmp_path / "log.csv", trace, both=False), paddle())
-    if found.cause is None:
-        assert found.change is None
-        assert "motor's own force" in found.record[0]
-    assert found.cause != "drive damping"
-    assert found.cause != "actuator limit"
+    assert found.cause in (None, "delay")
+    assert found.change is None
+    assert "motor's own force" in found.record[0]
 
 
 def test_rest_is_no_vibration(tmp_path: Path) -> None:

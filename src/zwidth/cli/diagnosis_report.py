@@ -30,6 +30,8 @@ def print_diagnosis(found: Diagnosis, arguments: argparse.Namespace) -> None:
         section(out, "what speaks for it", items(found.evidence))
         if found.change is not None:
             section(out, "what to change", _change(found.change, found, arguments))
+        elif found.cause is not None and not found.record:
+            section(out, "what to change", items(found.next_steps))
         section(out, "what to record", items(found.record))
         if not arguments.in_full:
             more_with_all(out, "every number, the other causes, what is supposed")

@@ -108,7 +108,8 @@ def _record(
 ) -> list[str]:
     """What would say more: for the two likeliest, and what every diagnosis is better with."""
     if cause is not None:
-        return [] if device is not None else [_DEVICE]
+        behind = [CAUSES["delay"].record] if cause == "delay" and not seen.sees_delay else []
+        return behind if device is not None else [*behind, _DEVICE]
     wanted = [CAUSES[name].record for name in list(likely)[:2]]
     if len(seen.roles) < 2:
         wanted.insert(0, CAUSES["delay"].record)

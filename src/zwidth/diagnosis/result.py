@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+NO_NUMBER = "no one number of the loop is proved to end it, with the device as it was stated"
+"""What is said of a cause without a change."""
+
+
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Diagnosis(Shown):
     """Why it shook.
@@ -78,6 +82,8 @@ class Diagnosis(Shown):
         """What to do, the change first."""
         if self.change is not None:
             return (self.change.text,)
+        if self.cause is not None and not self.record:
+            return (NO_NUMBER,)
         return self.record
 
     def report(self) -> Iterable[Part]:
