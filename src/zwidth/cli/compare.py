@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import Once, add_in_full, add_law_option, add_output, add_parameters, overrides
 from zwidth.cli.output import give_out, targets
@@ -91,7 +91,7 @@ def _touched(tables: Mapping[str, Table], typed: Mapping[str, str]) -> tuple[Spe
 
     table = tables.get("device")
     beside = {key: value for key, value in typed.items() if key != "handle_radius"}
-    radius = typed.get("handle_radius")
+    radius: Any = typed.get("handle_radius")
     if radius is None and table is not None and "handle_radius" in table.values:
         radius = table.values.pop("handle_radius")
     turning = table is not None and table.values.get("motion") == "rotary"

@@ -330,8 +330,12 @@ def _worst(failing: list[int], decisions: list[Decision]) -> int:
         return (refuted or failing)[0]
     if refuted:
         return max(refuted, key=lambda k: tightest(decisions[k].loop)[0])
-    needs = {k: decisions[k].sufficient_friction for k in failing}
-    return max(failing, key=lambda k: inf if needs[k] is None else float(needs[k]))
+
+    def friction(k: int) -> float:
+        need = decisions[k].sufficient_friction
+        return inf if need is None else float(need)
+
+    return max(failing, key=friction)
 
 
 def _tightest(decisions: list[Decision]) -> int:

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from math import floor, inf, isfinite, log10
 from typing import Any, NamedTuple
 
@@ -20,7 +21,7 @@ from zwidth.device.catalogue import DeviceInRange, Range
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.corners import worst_corners
+from zwidth.passivity.corners import Loop, worst_corners
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.boundary import COARSER, largest_holding, smallest_holding
 from zwidth.passivity.parameter_limits import has_stiffness, provable, stiffness_of
@@ -225,12 +226,21 @@ def _is_passive(device: Device, law: Environment) -> bool:
 
 def _largest(device: Device, law: Environment) -> float:
     """The largest stiffness that holds at all corners, to a part in a thousand; 0 for none."""
-    corners = [corner for corner, _ in worst_corners(device, law)]
 
     def holds(k: Fraction) -> bool:
-        return all(provable(lambda v, d=d: (d, law.replace(stiffness=Exact(v))), k, True) for d in corners)
+        return _all_hold(device, law.replace(stiffness=Exact(k)))
 
     return largest_holding(holds, float(stiffness_of(law)) or 1.0, COARSER) or 0.0
+
+
+def _all_hold(device: Device, law: Environment) -> bool:
+    """Whether every corner of the box is proved, contact made and broken."""
+    corners = [partial(_itself, corner) for corner in worst_corners(device, law)]
+    return all(provable(corner, Fraction(0), True) for corner in corners)
+
+
+def _itself(corner: Loop, _: Fraction) -> Loop:
+    return corner
 
 
 def _first(device: Device, keys: list[str], law: Environment) -> Measure | None:
@@ -266,8 +276,7 @@ def _enough(device: Device, key: str, law: Environment) -> float | None:
     def holds(value: Fraction) -> bool:
         if not low <= value <= high:
             return (value > high) if upward else (value < low)
-        corners = worst_corners(device.replace(**{key: Exact(value)}), law)
-        return all(provable(lambda _, c=corner: c, value, True) for corner in corners)
+        return _all_hold(device.replace(**{key: Exact(value)}), law)
 
     if not holds(high if upward else low):
         return None

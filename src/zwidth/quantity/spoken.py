@@ -60,9 +60,7 @@ def answers_in(*units: str) -> Iterator[None]:
     """
     unknown = [unit for unit in units if unit not in (*_ANGLES, "rpm")]
     if unknown:
-        raise InputError(
-            f"an angle is spoken of in {', '.join(_ANGLES)}, a speed also in rpm; got {unknown[0]!r}"
-        )
+        raise InputError(f"an angle is told in rad, deg or turn, a speed also in rpm; got {unknown[0]!r}")
     with _noting(set(units)):
         yield
 

@@ -89,8 +89,8 @@ def told(value: float | Exact | Interval, unit: str, digits: int = 6) -> str:
     """A value to `digits` significant digits in this unit, an angle in the unit that was typed."""
     factor, unit = spoken(unit)
     if isinstance(value, Interval):
-        number = f"{float(value.low) * factor:g} … {float(value.high) * factor:g}"
-        return f"{number} {unit_text(unit)}".rstrip()
+        ends = f"{float(value.low) * factor:g} … {float(value.high) * factor:g}"
+        return f"{ends} {unit_text(unit)}".rstrip()
     number = float(value) * factor
     power, name = _instead_of_exponent(number, unit, digits) if number else (0, unit_text(unit))
     return f"{_rounded(number / 10.0**power, digits)} {name}".rstrip()

@@ -86,14 +86,14 @@ def _parse_text(value: str, unit: str, what: str) -> Exact:
             return Exact(fraction * given.scale)
         if not compatible(given, wanted):
             raise InputError(f'{_is(what, unit)}; got "{_short(value)}", {_kind(rest, given, wanted)}')
-        number = _scaled(fraction * given.scale / wanted.scale, given.turns - wanted.turns)
+        read = _scaled(fraction * given.scale / wanted.scale, given.turns - wanted.turns)
     except InputError as error:
         if str(error).startswith(what):
             raise
         raise InputError(f'{_is(what, unit)}; got "{_short(value)}": {error}') from None
     if wanted.dimension[4]:  # of an angle, or per angle; counts per turn are a plain number
         note(rest)
-    return number
+    return read
 
 
 _COUNTED = re.compile(r"(?:counts?|steps?|cpr|1)?\s*(?:(?:/|per )\s*(?:turn|rev))?")

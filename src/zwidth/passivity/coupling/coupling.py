@@ -162,7 +162,7 @@ class CouplingCondition(Answer):
                 "required device damping",
                 "none is enough" if need is None else told_quantity(need, "damping", motion),
             ),
-            ("device damping", told_quantity(self.device.exact("damping"), "damping", motion)),
+            ("device damping", told_quantity(float(self.device.exact("damping")), "damping", motion)),
         ]
 
     def __repr__(self) -> str:

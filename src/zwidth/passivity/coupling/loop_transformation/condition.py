@@ -123,7 +123,7 @@ class TransformedCondition(Answer):
                 "required device damping",
                 "none is enough" if need is None else told_quantity(need, "damping", motion),
             ),
-            ("device damping", told_quantity(self.device.exact("damping"), "damping", motion)),
+            ("device damping", told_quantity(float(self.device.exact("damping")), "damping", motion)),
             ("binding inequality", self.binding),
             ("contact", self.scope.contact),
             ("encoder", self.scope.encoder),
