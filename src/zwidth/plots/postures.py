@@ -28,7 +28,7 @@ def postures_figure(found: PostureMap) -> Figure:
     data = found.data[name]
     values = np.asarray(data.values, dtype=np.float64)
     known = values[np.isfinite(values)]
-    figure = new_figure(6.4, 5.0)
+    figure = new_figure(5.4, 5.0)
     axes = figure.add_subplot()
     colours = axes.pcolormesh(
         found.data["radius"],

@@ -95,7 +95,7 @@ class PostureMap(PassivityAnswer):
         """What was found, and that it is of postures."""
         of = f"{self.tried} postures over the joint ranges"
         if self.motion is not None:
-            by = ", of hands that hold the links" if self.motion.imposed_by == "links" else " of the hand"
+            by = " of hands that hold the links" if self.motion.imposed_by == "links" else " of the hand"
             return f"At one of {of} a motion{by} takes energy out."
         if self.stiffness_factor < 1:
             return f"At some of {of} the condition fails, and no motion was found that takes energy out."
