@@ -33,9 +33,9 @@ def print_workspace(space: Workspace, in_full: bool = False, without: Sequence[s
     with page() as out:
         out.print(headline(space.outcome, TOLD[space.outcome].terminal, space.claim))
         if in_full:
-            changes = list(_changes(space))
+            every = list(_changes(space))
             blocks(out, [*_numbers(space), *(("left out", text) for text in without)])
-            section(out, "what to change", [grid(changes)] if changes else [])
+            section(out, "what to change", [grid(every)] if every else [])
             section(out, "assumes", items(space.assumptions, "dim"))
             return
         first = [row for row in _numbers(space) if row[0] in _FIRST]
