@@ -111,4 +111,4 @@ def _energy(axes: Axes, found: Diagnosis) -> None:
     axes.barh(names, [factor * terms[name] for name in names], color=colours)
     axes.axvline(0, color="black", linewidth=0.8)
     axes.set_xlabel(f"energy in a cycle [{unit}]")
-    heading(axes, "into the motion (red), out of it (grey)")
+    heading(axes, "into the motion (orange), out of it (grey)")
