@@ -217,7 +217,7 @@ def test_every_key_of_the_json_is_on_its_page(files, capsys):
         (["leader", "--stiffness", "9", "--plot", "a.txt"], (".png",)),
         (["leader", "--stiffness", "9", "-o", "no/such/a.json"], ("no directory",)),
         (["no-such-arm", "--stiffness", "9"], ("neither a file nor a device",)),
-        (["touch", "--stiffness", "9"], ("damping", "rate")),
+        (["touch", "--stiffness", "9"], ("damping",)),
     ],
 )  # fmt: skip
 def test_bad_input_ends_in_one_line(files, argv, parts, capsys):
