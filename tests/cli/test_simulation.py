@@ -282,8 +282,8 @@ def test_a_hand_that_met_nothing_says_so(tmp_path: Path, capsys: pytest.CaptureF
     touched = ["simulate", str(stop), "--operator", "typical", "--duration", "0.2"]
     assert main(touched) == 0
     said = " ".join(capsys.readouterr().out.split())
-    assert "never reached the wall: it begins at 7.854 rad" in said
-    assert "--initial-position '7.854 rad'" in said
+    assert "never reached the wall: it begins at 450 deg" in said
+    assert "--initial-position '450 deg'" in said
     assert "contacts made" not in said
     assert (
         main(
