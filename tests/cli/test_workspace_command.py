@@ -320,7 +320,8 @@ def test_the_least_damping_is_shown(run: Run) -> None:
     words = " ".join(run(*HAPLY, "--stiffness", "800", "--all")[1].split())
     assert re.search(r"least in all .* in joint 1, .* in joint 2, together", words)
     one = run("workspace", "two-link", "--joint-damping", "0.02,0.012", "--stiffness", "800", "--all")[1]
-    assert re.search(r"least in all +[0-9.]+ N·m·s/rad more damping in joint 1\n", one)
+    words = " ".join(one.split())
+    assert re.search(r"least in all [0-9.]+ N·m·s/rad more damping in joint 1; less than [0-9.]+", words)
 
 
 def test_a_wall_in_pose_is_reported_and_drawn(run: Run, tmp_path: Path) -> None:
