@@ -6,7 +6,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.bench import scores
-from zwidth.bench.at_rim import about_axis, at_rim, radius_of
+from zwidth.bench.at_rim import at_rim, radius_of
 from zwidth.operator import TypicalTouch
 from zwidth.quantity.exact import Exact
 
@@ -26,7 +26,7 @@ WALL = zw.Wall(14, 0.01)
 def test_the_same_touch_about_the_axis() -> None:
     """Simulated there, with a finger whose numbers are turned by hand, it has the scores that are told."""
     there = at_rim(KNOB, WALL, RADIUS)
-    found = about_axis(zw.compare(*there, {"wall": there[1]}), KNOB, WALL, RADIUS)
+    found = zw.compare(*there, {"wall": there[1]}).about_axis(KNOB, WALL, RADIUS)
     r, touch = float(RADIUS), TypicalTouch()
     finger = zw.operators.Finger(
         mass=touch.mass * r**2,

@@ -136,7 +136,7 @@ def test_an_environment_alone_is_put_on_the_device_that_is_shown() -> None:
     assert "wall, 12 N·m/rad" in state.loop().environment.describe("rotary")
     with pytest.raises(InputError, match="stiffness"):
         from_file(text, "stop.toml", starts.first())
-    with pytest.raises(InputError, match="neither"):
+    with pytest.raises(InputError, match="none of the tables"):
         from_file("", "stop.toml", wheel)
 
 

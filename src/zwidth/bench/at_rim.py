@@ -21,8 +21,6 @@ from zwidth.quantity.parameter import read_number
 if TYPE_CHECKING:
     import xarray as xr
 
-    from zwidth.bench.bench import LawComparison
-
 _TURNED = {"N/m": ("N*m/rad", 2), "N": ("N*m", 1), "m": ("rad", -1), "N*s/m": ("N*m*s/rad", 2)}
 """What a unit at the rim is about the axis, and the power of the radius that takes a value there."""
 
@@ -60,18 +58,8 @@ def at_rim(device: Device, wall: Wall, radius: Exact) -> tuple[Device, Wall]:
     return at_handle(device, radius), there
 
 
-def about_axis(found: LawComparison, device: Device, wall: Wall, radius: Exact) -> LawComparison:
-    """What was found at the rim, in torques and angles; traces and motions stay those of the rim."""
-    return replace(
-        found,
-        scores=_turned(found.scores, float(radius)),
-        device=device,
-        environment=wall,
-        radius=float(radius),
-    )
-
-
-def _turned(scores: xr.Dataset, radius: float) -> xr.Dataset:
+def about_axis(scores: xr.Dataset, radius: float) -> xr.Dataset:
+    """What was found at the rim, `radius` [m] from the axis, in torques and angles."""
     turned = scores.copy()
     for name, value in scores.data_vars.items():
         unit, power = _TURNED.get(value.attrs.get("units", ""), ("", 0))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
@@ -30,7 +30,7 @@ from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
 from zwidth.pairs import Pair
 from zwidth.passivity.result import Documented
-from zwidth.quantity.exact import RealLike
+from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import shown
 from zwidth.showing import Part
@@ -103,6 +103,14 @@ class LawComparison(Documented):
     device: Device
     environment: Wall
     radius: float | None = None
+
+    def about_axis(self, device: Device, wall: Wall, radius: Exact) -> LawComparison:
+        """What was found at the rim, `radius` [m] from the axis, of a device that turns and its wall.
+
+        Scores are torques and angles; traces and motions stay those of the rim.
+        """
+        scores, far = about_axis(self.scores, float(radius)), float(radius)
+        return replace(self, scores=scores, device=device, environment=wall, radius=far)
 
     @property
     def evidence(self) -> dict[str, str]:
@@ -235,7 +243,7 @@ def compare(
             )
         radius = radius_of(device, handle_radius)
         there = compare(*at_rim(device, wall, radius), fastest=fastest, progress=progress)
-        return about_axis(there, device, wall, radius)
+        return there.about_axis(device, wall, radius)
     if handle_radius is not None:
         raise InputError("handle_radius is of a device that turns, and this one is linear: leave it out")
     if device.mass is None:

@@ -105,7 +105,7 @@ def _of_a_rim(
     loop: Specification, radius: Exact, typed: str | None, yours: Mapping[str, Environment], fastest: float
 ) -> LawComparison:
     """The comparison at the rim, told about the axis."""
-    from zwidth.bench.at_rim import about_axis, at_rim
+    from zwidth.bench.at_rim import at_rim
     from zwidth.bench.laws import standard_laws, wall_to_render
     from zwidth.traces import compare
 
@@ -117,7 +117,7 @@ def _of_a_rim(
     wall = wall_to_render(loop.environment)
     there = at_rim(loop.device, wall, radius)
     found = compare(*there, _chosen(typed, standard_laws(*there), {}), fastest=fastest)
-    return about_axis(found, loop.device, wall, radius)
+    return found.about_axis(loop.device, wall, radius)
 
 
 def _few(found: LawComparison) -> Iterator[Part]:

@@ -65,10 +65,8 @@ def run(arguments: argparse.Namespace) -> int:
     if save is not None:
         found.save(save, force=True)
     if plot is not None:
-        from zwidth.diagnosis.picture import save_diagnosis  # matplotlib takes its time
-
         with writing(plot):
-            save_diagnosis(found, plot, overwrite=True)
+            found.plot(plot, force=True)
     if arguments.json:
         from zwidth.cli.diagnosis_report import command
 

@@ -16,13 +16,16 @@ from zwidth.plots.style import BLUE, GREY, LOOK, ORANGE, RED, heading, label, ne
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from zwidth.diagnosis.result import Diagnosis
+    from zwidth.diagnosis.evidence import Evidence
+    from zwidth.diagnosis.recording import Recording
 
 _CYCLES = 8
 """That are drawn as they went."""
 
 
-def save_diagnosis(found: Diagnosis, path: str | Path, overwrite: bool = False) -> None:
+def save_diagnosis(
+    recording: Recording, seen: Evidence | None, claim: str, path: str | Path, overwrite: bool = False
+) -> None:
     """Write `diagnosis_figure` to a file; its ending, png, svg or pdf, says how.
 
     Raises
@@ -30,11 +33,11 @@ def save_diagnosis(found: Diagnosis, path: str | Path, overwrite: bool = False) 
     InputError
         If the ending is another one, the file exists or cannot be written, or nothing vibrates.
     """
-    save_figure(lambda: diagnosis_figure(found), path, overwrite)
+    save_figure(lambda: diagnosis_figure(recording, seen, claim), path, overwrite)
 
 
 @rc_context(LOOK)
-def diagnosis_figure(found: Diagnosis) -> Figure:
+def diagnosis_figure(recording: Recording, seen: Evidence | None, claim: str) -> Figure:
     """Position and force over some cycles; the spectrum beside the energy of a cycle, term by term.
 
     Raises
@@ -42,24 +45,23 @@ def diagnosis_figure(found: Diagnosis) -> Figure:
     InputError
         If nothing vibrates: there is nothing to draw.
     """
-    if found.seen is None:
+    if seen is None:
         raise InputError("nothing vibrates in this recording, so there is no picture of a vibration")
     figure = new_figure(9.0, 6.6)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.1, 1.0))
-    _cycles(figure.add_subplot(grid[0, :]), found)
-    _spectrum(figure.add_subplot(grid[1, 0]), found)
-    _energy(figure.add_subplot(grid[1, 1]), found)
-    page_heading(figure, found.claim)
+    _cycles(figure.add_subplot(grid[0, :]), recording, seen)
+    _spectrum(figure.add_subplot(grid[1, 0]), recording, seen)
+    _energy(figure.add_subplot(grid[1, 1]), seen)
+    page_heading(figure, claim)
     return figure
 
 
-def _cycles(axes: Axes, found: Diagnosis) -> None:
-    assert found.seen is not None
-    recording, vibration = found.recording, found.seen.vibration
+def _cycles(axes: Axes, recording: Recording, seen: Evidence) -> None:
+    vibration = seen.vibration
     rows = max(8, int(_CYCLES / vibration.frequency / recording.period))
     part = slice(max(vibration.rows.start, vibration.rows.stop - rows), vibration.rows.stop)
     t = recording.time[part]
-    length, force = ("rad", "N*m") if found.seen.rotary else ("m", "N")
+    length, force = ("rad", "N*m") if seen.rotary else ("m", "N")
     factor, unit = scale(recording.position[part] - recording.position[part].mean(), length)
     axes.plot(t, factor * recording.position[part], color=BLUE, label="position")
     axes.set_xlabel("time [s]")
@@ -83,14 +85,13 @@ def _cycles(axes: Axes, found: Diagnosis) -> None:
     )
 
 
-def _spectrum(axes: Axes, found: Diagnosis) -> None:
-    assert found.seen is not None
-    recording, vibration = found.recording, found.seen.vibration
+def _spectrum(axes: Axes, recording: Recording, seen: Evidence) -> None:
+    vibration = seen.vibration
     x = recording.position[vibration.rows]
     y = (x - np.polyval(np.polyfit(np.arange(x.size), x, 1), np.arange(x.size))) * np.hanning(x.size)
     size = 2 * np.abs(np.fft.rfft(y)) / np.hanning(x.size).sum()
     frequencies = np.fft.rfftfreq(x.size, recording.period)
-    factor, unit = scale(size, "rad" if found.seen.rotary else "m")
+    factor, unit = scale(size, "rad" if seen.rotary else "m")
     axes.semilogy(frequencies[1:], factor * size[1:] + 1e-12, color=BLUE)
     axes.axvline(vibration.frequency, color=RED, linewidth=0.8)
     axes.set_xlim(0, min(frequencies[-1], 6 * vibration.frequency))
@@ -100,11 +101,10 @@ def _spectrum(axes: Axes, found: Diagnosis) -> None:
     heading(axes, f"{vibration.frequency:.4g} Hz")
 
 
-def _energy(axes: Axes, found: Diagnosis) -> None:
-    assert found.seen is not None
-    terms = {name: work for name, work in found.seen.supplied.items() if work}
-    if found.seen.lost is not None:
-        terms["friction"] = -found.seen.lost
+def _energy(axes: Axes, seen: Evidence) -> None:
+    terms = {name: work for name, work in seen.supplied.items() if work}
+    if seen.lost is not None:
+        terms["friction"] = -seen.lost
     factor, unit = scale(terms.values(), "J")
     names = list(terms)[::-1]
     colours = [RED if terms[name] > 0 else GREY for name in names]

@@ -191,8 +191,8 @@ class Diagnosis(Shown):
         from zwidth.diagnosis.picture import diagnosis_figure, save_diagnosis
 
         if path is not None:
-            save_diagnosis(self, Path(path), overwrite=force)
-        return diagnosis_figure(self)
+            save_diagnosis(self.recording, self.seen, self.claim, Path(path), overwrite=force)
+        return diagnosis_figure(self.recording, self.seen, self.claim)
 
 
 def _key(name: str, unit: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from matplotlib import rc_context
 from matplotlib.axes import Axes
@@ -10,17 +10,46 @@ from matplotlib.figure import Figure
 
 from zwidth.compiled import Array
 from zwidth.errors import InputError
+from zwidth.identification.tissue.model import Model
 from zwidth.plots.style import BLUE, GREY, LOOK, RED, heading, new_figure, page_heading, scale
 from zwidth.quantity.text import quantity_unit
-
-if TYPE_CHECKING:
-    from zwidth.identification.tissue.result import TissueFit
 
 MOST_DOTS = 4000
 
 
+class Fit(Protocol):
+    """What is drawn of a fit."""
+
+    @property
+    def time(self) -> Array | None:
+        """Of the samples [s]."""
+
+    @property
+    def output(self) -> Array:
+        """What was measured, in SI."""
+
+    @property
+    def residuals(self) -> Array:
+        """Measured less fitted, in SI."""
+
+    @property
+    def response(self) -> str:
+        """What was measured, force or position."""
+
+    @property
+    def motion(self) -> str:
+        """Linear or rotary."""
+
+    @property
+    def model(self) -> Model:
+        """Which model was fitted."""
+
+    def table(self) -> list[list[str]]:
+        """Its numbers, a line each, below a line of headings."""
+
+
 @rc_context(LOOK)
-def fit_figure(fit: TissueFit) -> Figure:
+def fit_figure(fit: Fit) -> Figure:
     """Measured and fitted against the time; below, what is left over.
 
     Raises
@@ -39,14 +68,14 @@ def fit_figure(fit: TissueFit) -> Figure:
     return figure
 
 
-def title(fit: TissueFit) -> str:
+def title(fit: Fit) -> str:
     """The model and its numbers, on a line."""
     rows = fit.table()[1 : 1 + len(fit.model.parameters)]
     numbers = ", ".join(f"{row[0].replace('_', ' ')} {float(row[1]):.4g} {row[3]}" for row in rows)
     return f"{fit.model.name}: {numbers}"
 
 
-def draw_fit(axes: Axes, fit: TissueFit, time: Array) -> None:
+def draw_fit(axes: Axes, fit: Fit, time: Array) -> None:
     """Dots measured, a line fitted."""
     factor, unit = scale(fit.output, quantity_unit(fit.response, fit.motion))
     every = slice(None, None, max(1, time.size // MOST_DOTS))
@@ -56,7 +85,7 @@ def draw_fit(axes: Axes, fit: TissueFit, time: Array) -> None:
     axes.legend(loc="best")
 
 
-def draw_left(axes: Axes, fit: TissueFit, time: Array) -> None:
+def draw_left(axes: Axes, fit: Fit, time: Array) -> None:
     """Measured less fitted: noise, if the model is right."""
     factor, unit = scale(fit.residuals, quantity_unit(fit.response, fit.motion))
     every = slice(None, None, max(1, time.size // MOST_DOTS))

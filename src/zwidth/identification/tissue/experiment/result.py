@@ -242,4 +242,4 @@ class TissueTest(Documented):
         """What `plot` returns: the test, the best fit, and what is left over."""
         from zwidth.identification.tissue.experiment.picture import test_figure  # matplotlib takes its time
 
-        return test_figure(self)
+        return test_figure(self.test, self.best)
