@@ -46,7 +46,7 @@ def test_a_map_shows_in_a_line() -> None:
     assert repr(space).endswith(f"Stiffest wall at every point: {space.largest_stiffness:.6g} N/m>")
 
 
-@pytest.mark.parametrize("name", BUILT_IN)
+@pytest.mark.parametrize("name", [name for name in BUILT_IN if name != "haply-2diy"])  # a minute; see below
 def test_the_advice_is_enough_and_little_more_than_fails(name: str) -> None:
     """With the damping it asks for, in all joints or in one, the region is proved; with less it is not."""
     space = _space(name, 2 * _space(name, 100).largest_stiffness)
