@@ -91,7 +91,7 @@ def _why(asked: Request, place: tuple[int, ...]) -> str:
 _MEANING = {
     "check": "what zwidth check says of each loop by closed forms, of every hand, for the contact and the "
     "encoder beside it; what is undecided, or passive in contact alone, zwidth check may decide by value "
-    "iteration. zwidth check -o writes the evidence of a loop",
+    "iteration. No proof and no motion is kept: zwidth check -o writes that of a loop, checked",
     "limit": "what zwidth limit finds by closed forms, of every hand; NaN where they find nothing",
     "simulate": "measures of one simulated touch: what this hand did, and nothing about another",
     "pair": "what zwidth pair says of each pair: two hands, one on each arm. zwidth pair -o writes the "
