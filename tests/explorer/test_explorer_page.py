@@ -97,6 +97,23 @@ def test_a_typed_number_is_exact_and_a_wrong_one_is_a_message(page: Page, addres
     assert held(page)["environment.stiffness"] == "300 N/m"
 
 
+def test_what_is_being_typed_is_not_written_over(page: Page, address: str) -> None:
+    """An answer comes when it comes: in the middle of a word, too."""
+    opened(page, address)
+    typed = entry(page, "stiffness")
+    before = page.url
+    typed.fill("300 banan")
+    slider(page, "stiffness").evaluate(
+        "one => { one.value = 900; one.dispatchEvent(new Event('input')); one.dispatchEvent(new Event('change')); }"
+    )
+    expect(page).not_to_have_url(before)  # so the answer is there
+    expect(typed).to_have_value("300 banan")
+    typed.press("End")
+    typed.press_sequentially("as")
+    typed.press("Enter")
+    expect(page.get_by_role("alert").first).to_contain_text("bananas")
+
+
 def test_a_file_is_read_and_what_is_downloaded_is_the_loop(page: Page, address: str, tmp_path: Path) -> None:
     """Its name is shown and not obeyed; the files are those that the command line writes."""
     opened(page, address)

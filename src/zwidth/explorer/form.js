@@ -16,6 +16,7 @@ export function render({ model, el }) {
   let busy = false;
   let number = model.told.heard || 0;
   let dragged = null;
+  let typing = null; // where somebody types nothing is written over until it is told
 
   const send = () => {
     if (busy || waiting.size === 0) return;
@@ -50,9 +51,14 @@ export function render({ model, el }) {
     const input = make("input", { type: "text", value: one.text, spellcheck: false, autocomplete: "off" });
     input.placeholder = one.required ? "" : "not given";
     input.setAttribute("aria-label", `${one.label}, typed with its unit`);
-    input.addEventListener("change", () => {
+    const done = () => {
+      if (typing !== one.path) return;
+      typing = null;
       if (input.value !== (input.closest(".row")?.dataset.text ?? one.text)) tell("typed", one.path, input.value);
-    }); // six digits are shown of what may have more: untouched it stays as it is
+    }; // six digits are shown of what may have more: untouched it stays as it is
+    input.addEventListener("input", () => (typing = one.path));
+    input.addEventListener("change", done);
+    input.addEventListener("keydown", (event) => event.key === "Enter" && done());
     return input;
   };
   let chosenFile; // kept while the rest is drawn again, so that the name of the file stays
@@ -122,6 +128,7 @@ export function render({ model, el }) {
   const draw = () => {
     const focused = el_active(form)?.closest(".row")?.dataset.path;
     const kind = el_active(form)?.type;
+    const unfinished = focused === typing ? el_active(form)?.value : undefined;
     const open = new Set([...body.querySelectorAll("details[open]")].map((one) => one.dataset.title));
     body.replaceChildren(
       ...model.groups.map((group) => {
@@ -138,7 +145,9 @@ export function render({ model, el }) {
     );
     if (focused !== undefined) {
       const row = body.querySelector(`[data-path="${CSS.escape(focused)}"]`);
-      (row?.querySelector(`[type="${kind}"]`) || row?.querySelector("select, input, button"))?.focus();
+      const next = row?.querySelector(`[type="${kind}"]`) || row?.querySelector("select, input, button");
+      if (next && unfinished !== undefined) next.value = unfinished;
+      next?.focus();
     }
   };
 
@@ -149,7 +158,7 @@ export function render({ model, el }) {
       const row = body.querySelector(`[data-path="${CSS.escape(path)}"]`);
       if (!row) continue;
       const [typed, range] = [row.querySelector("[type=text]"), row.querySelector("[type=range]")];
-      if (typed) typed.value = text;
+      if (typed && typing !== path) typed.value = text;
       row.dataset.text = text;
       if (row.matches(".number")) row.querySelector("small")?.remove();
       if (range && dragged !== path && !waiting.has(`move ${path}`)) range.value = Math.round(STEPS * place);
