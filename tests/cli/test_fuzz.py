@@ -21,7 +21,7 @@ from zwidth.cli.options import coupling_parameters, device_parameters, environme
 from zwidth.specification.environments import TYPES
 
 quick = settings(
-    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 COUPLING = [p.option for p in coupling_parameters()]
 OPTIONS = [p.option for p in (*device_parameters(), *environment_parameters())]
@@ -243,7 +243,7 @@ def _altered(data: st.DataObject, value: Any) -> Any:
     return [*value[:key], _altered(data, value[key]), *value[key + 1 :]]
 
 
-@settings(quick, max_examples=60)
+@settings(quick, max_examples=30)
 @given(st.data())
 def test_altered_evidence(saved: list[dict[str, Any]], data: st.DataObject) -> None:
     document = _altered(data, data.draw(st.sampled_from(saved)))

@@ -48,7 +48,7 @@ def test_a_wall_that_holds_everywhere(run: Run) -> None:
 
 
 def test_a_wall_that_fails_says_what_to_change(run: Run) -> None:
-    """Status 1, the motion, and the damping that would do; with it the status is 0."""
+    """Status 1, the motion, and damping with which the status is 0."""
     status, out, _ = run(*HAPLY, "--stiffness", "800", "--json")
     found = json.loads(out)
     assert (status, found["outcome"]) == (1, "active")
@@ -56,10 +56,6 @@ def test_a_wall_that_fails_says_what_to_change(run: Run) -> None:
     enough = 0.003 + found["addition_to_all_N_m_s_per_rad"]
     better = (*HAPLY[:3], str(enough), *HAPLY[4:])
     assert run(*better, "--stiffness", "800")[0] == 0
-    words = " ".join(run(*HAPLY, "--stiffness", "800", "--all")[1].split())
-    assert "take" in words
-    assert "what to change" in words
-    assert "all joints" in words
 
 
 def test_just_below_the_limit_is_undecided(run: Run) -> None:
@@ -318,6 +314,8 @@ def test_a_file_that_is_no_wall(run: Run, tmp_path: Path, text: str, words: str)
 def test_the_least_damping_is_shown(run: Run) -> None:
     """Which joints, how much each, and how much together."""
     words = " ".join(run(*HAPLY, "--stiffness", "800", "--all")[1].split())
+    assert "what to change" in words
+    assert "all joints" in words
     assert re.search(r"least in all .* in joint 1, .* in joint 2, together", words)
     one = run("workspace", "two-link", "--joint-damping", "0.02,0.012", "--stiffness", "800", "--all")[1]
     words = " ".join(one.split())

@@ -263,16 +263,16 @@ def stopped(done, total):
         time.sleep(3600)
 
 device, walls = zw.catalogue.device("haptic-paddle"), ((0, 30000), (0, 90))
-zw.z_width(device, *walls, cells=(500, 500), path=sys.argv[1], progress=stopped)
+zw.z_width(device, *walls, cells=(260, 260), path=sys.argv[1], progress=stopped)
 """
 """It goes no further than it is told, so that nobody need be quick to kill it there."""
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="there is no SIGKILL here")
 def test_a_map_killed_twice_loses_nothing(tmp_path: Path) -> None:
-    """SIGKILL at chunk 3, and again at chunk 7: what was done stays, and the end is the same to the bit."""
+    """SIGKILL at chunk 2, and again at chunk 5: what was done stays, and the end is the same to the bit."""
     path = tmp_path / "killed.zarr"
-    for at in (3, 7):
+    for at in (2, 5):
         command = [sys.executable, "-c", STOPPED, str(path), str(at)]
         process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         assert process.stdout is not None
@@ -284,9 +284,9 @@ def test_a_map_killed_twice_loses_nothing(tmp_path: Path) -> None:
         process.stdout.close()
         assert xr.open_zarr(path, consolidated=False)["done"].values.sum() == at
     left: list[int] = []
-    found = zw.z_width(PADDLE, *WIDE, cells=(500, 500), path=path, progress=lambda n, total: left.append(n))
-    assert left == list(range(8, 17))
-    assert same(found, zw.z_width(PADDLE, *WIDE, cells=(500, 500)))
+    found = zw.z_width(PADDLE, *WIDE, cells=(260, 260), path=path, progress=lambda n, total: left.append(n))
+    assert left == list(range(6, 10))
+    assert same(found, zw.z_width(PADDLE, *WIDE, cells=(260, 260)))
 
 
 def test_a_store_stopped_before_its_arrays_were_there(tmp_path: Path) -> None:

@@ -60,12 +60,12 @@ def positive_in(box: Cell, matrix: Function, fails: str = "the damping is not en
 def _part_to_halve(cell: Cell, matrix: Function, fails: str) -> int | None:
     """None where S is ≻ 0 in the cell, else the coordinate along which to halve it."""
     moving = [j for j, ends in enumerate(cell) if _moves(ends)]
-    _require_at_middle(cell, matrix, fails)
     try:
         if _at_corners(*_parted(_over(cell, matrix, moving), len(moving))):
             return None
     except NotPositive:
         pass
+    _require_at_middle(cell, matrix, fails)
     if not moving:
         raise Invalid(f"{fails} by so little that rounding hides it")
     return max(moving, key=lambda j: _moved_by(cell, matrix, j))

@@ -99,14 +99,16 @@ def legs_surplus(
     arm: Legs, need: list[list[Enclosed]]
 ) -> Callable[[Sequence[Enclosed]], list[list[Enclosed]]]:
     """δ − R at the hand, the rows from the diagonal on."""
+    enclosed = [_enclosed(leg) for leg in arm.legs]
+    damping = [[constant(x) for x in row] for row in arm.damping]
 
     def surplus(position: Sequence[Enclosed]) -> list[list[Enclosed]]:
         found = [[-r for r in row[i:]] for i, row in enumerate(need)]
-        normals, levers = zip(*(_normal(leg, position) for leg in arm.legs), strict=True)
+        normals, levers = zip(*(_normal(leg, position) for leg in enclosed), strict=True)
         for (i, normal), (j, other) in combinations_with_replacement(enumerate(normals), 2):
             if not arm.damping[i][j]:
                 continue
-            weight = _over_levers(arm.legs, levers, i, j) * constant(arm.damping[i][j])
+            weight = _over_levers(arm.legs, levers, i, j) * damping[i][j]
             for r, row in enumerate(found):
                 for k, c in enumerate(range(r, len(found))):
                     row[k] = row[k] + _pair(normal, other, r, c, i == j) * weight
@@ -128,22 +130,42 @@ def _pair(a: Sequence[Enclosed], b: Sequence[Enclosed], r: int, c: int, same: bo
     return a[r] * a[c] if same else a[r] * b[c] + b[r] * a[c]
 
 
-def _normal(leg: Leg, position: Sequence[Enclosed]) -> tuple[list[Enclosed], Enclosed]:
+class _Enclosed(NamedTuple):
+    """The numbers of a leg, as they meet the hand."""
+
+    base: list[Enclosed]
+    axes: list[list[Enclosed]]
+    length: Enclosed  # rod and offset
+    offset: Enclosed
+    link_squared: Enclosed
+    rod_squared: Enclosed
+    bend: int
+
+
+def _enclosed(leg: Leg) -> _Enclosed:
+    return _Enclosed(
+        [constant(x) for x in leg.base],
+        [[constant(x) for x in axis] for axis in leg.axes],
+        *map(constant, (leg.rod + leg.offset, leg.offset, leg.link**2, leg.rod**2)),
+        leg.bend,
+    )
+
+
+def _normal(leg: _Enclosed, position: Sequence[Enclosed]) -> tuple[list[Enclosed], Enclosed]:
     """n, and H²."""
-    seen = [p - constant(a) for p, a in zip(position, leg.base, strict=True)]
-    axes = [[constant(c) for c in axis] for axis in leg.axes]
-    u, w, *aside = (dot(seen, axis) for axis in axes)
-    length, across = constant(leg.rod + leg.offset), NOTHING
+    seen = [p - a for p, a in zip(position, leg.base, strict=True)]
+    u, w, *aside = (dot(seen, axis) for axis in leg.axes)
+    length, across = leg.length, NOTHING
     if aside:
-        straight = root(constant(leg.rod**2) - aside[0] * aside[0])
-        length = straight + constant(leg.offset)
+        straight = root(leg.rod_squared - aside[0] * aside[0])
+        length = straight + leg.offset
         across = length * aside[0] * inverse(straight)
     distance = u * u + w * w
-    a = (distance + constant(leg.link**2) - length * length).over(2)
-    lever = distance * constant(leg.link**2) - a * a
+    a = (distance + leg.link_squared - length * length).over(2)
+    lever = distance * leg.link_squared - a * a
     closer = inverse(distance)
     near, turned = a * closer, root(lever) * closer
     side = turned if leg.bend > 0 else -turned
     in_plane = [u - near * u + side * w, w - near * w - side * u]
-    parts = [*in_plane, across][: len(axes)]
-    return [dot(parts, [axis[k] for axis in axes]) for k in range(len(position))], lever
+    parts = [*in_plane, across][: len(leg.axes)]
+    return [dot(parts, [axis[k] for axis in leg.axes]) for k in range(len(position))], lever

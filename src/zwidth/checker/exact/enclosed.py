@@ -34,8 +34,10 @@ class Enclosed:
         a, b, bits = self.middle, other.middle, self.bits
         own, strange = self.reach, other.reach
         rest = abs(a) * other.radius + abs(b) * self.radius + own * strange
-        first, second = [b * s for s in self.slopes], [a * s for s in other.slopes]
-        slopes = _merged(tuple(first), tuple(second), 1)
+        if self.slopes and other.slopes:
+            slopes = [b * s + a * t for s, t in zip(self.slopes, other.slopes, strict=True)]
+        else:
+            slopes = [b * s for s in self.slopes] or [a * t for t in other.slopes]
         return _rounded(bits, a * b, slopes, rest, bits)
 
     def __neg__(self) -> Enclosed:
@@ -120,7 +122,7 @@ def dot(a: Iterable[Enclosed], b: Iterable[Enclosed]) -> Enclosed:
             if part:
                 moved = [factor * s for s in part]
                 slopes = [s + t for s, t in zip(slopes, moved, strict=True)] if slopes else moved
-    return _rounded(bits, middle, tuple(slopes), rest, bits)
+    return _rounded(bits, middle, slopes, rest, bits)
 
 
 def mapped(matrix: Iterable[Iterable[Enclosed]], vector: Sequence[Enclosed]) -> list[Enclosed]:
@@ -136,11 +138,11 @@ def _merged(a: Slopes, b: Slopes, sign: int) -> Slopes:
     return tuple(x + sign * y for x, y in zip(a, b, strict=True))
 
 
-def _rounded(bits: int, middle: int, slopes: Slopes, rest: int, down: int) -> Enclosed:
+def _rounded(bits: int, middle: int, slopes: Sequence[int], rest: int, down: int) -> Enclosed:
     """Over 2^down: one unit of radius for every number that has lost something."""
     mask = (1 << down) - 1
-    lost = bool(middle & mask) + sum(bool(s & mask) for s in slopes)
-    return Enclosed(bits, middle >> down, tuple(s >> down for s in slopes), -(-rest >> down) + lost)
+    lost = sum([s & mask != 0 for s in (middle, *slopes)])
+    return Enclosed(bits, middle >> down, tuple([s >> down for s in slopes]), -(-rest >> down) + lost)
 
 
 def in_z(in_zeta: list[Enclosed]) -> list[Enclosed]:

@@ -25,7 +25,7 @@ from zwidth.passivity.workspace.question import Question
 
 Array = npt.NDArray[np.float64]
 
-_STEPS = (1 / 32, 1 / 8, 1 / 2)
+_STEPS = (1 / 8, 1 / 2)
 """Of the way from what fails to what is enough."""
 
 _LEAST = 0.02
