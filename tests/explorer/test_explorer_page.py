@@ -9,7 +9,7 @@ from urllib.parse import parse_qsl, urlsplit
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from browser import PATIENCE
+from browser import PATIENCE, WIDE
 from playwright.sync_api import Browser, Locator, Page, expect
 
 import zwidth as zw
@@ -20,6 +20,9 @@ SCHEMES = {"Criterion": ("light", "dark"), "Touch": ("light",), "Motion": ("dark
 """Under which tabs axe looks: a picture, a choice of hands, a player, a form of its own."""
 
 expect.set_options(timeout=PATIENCE)
+
+one_size = pytest.mark.parametrize("page", [WIDE], indirect=True, ids=["1280x800"])
+"""For what a smaller screen does not change."""
 
 
 @pytest.fixture(scope="module")
@@ -83,6 +86,7 @@ def test_a_device_is_chosen_a_slider_moved_and_the_address_keeps_it(page: Page, 
     expect(entry(page, "stiffness")).to_have_value(stiffness)
 
 
+@one_size
 def test_a_typed_number_is_exact_and_a_wrong_one_is_a_message(page: Page, address: str) -> None:
     """What cannot be used changes nothing."""
     opened(page, address)
@@ -97,15 +101,16 @@ def test_a_typed_number_is_exact_and_a_wrong_one_is_a_message(page: Page, addres
     assert held(page)["environment.stiffness"] == "300 N/m"
 
 
+@one_size
 def test_what_is_being_typed_is_not_written_over(page: Page, address: str) -> None:
     """An answer comes when it comes: in the middle of a word, too."""
     opened(page, address)
     typed = entry(page, "stiffness")
     before = page.url
     typed.fill("300 banan")
-    slider(page, "stiffness").evaluate(
-        "one => { one.value = 900; one.dispatchEvent(new Event('input')); one.dispatchEvent(new Event('change')); }"
-    )
+    slider(page, "stiffness").evaluate("one => (one.value = 900)")
+    for happens in ("input", "change"):
+        slider(page, "stiffness").dispatch_event(happens)
     expect(page).not_to_have_url(before)  # so the answer is there
     expect(typed).to_have_value("300 banan")
     typed.press("End")
@@ -114,6 +119,7 @@ def test_what_is_being_typed_is_not_written_over(page: Page, address: str) -> No
     expect(page.get_by_role("alert").first).to_contain_text("bananas")
 
 
+@one_size
 def test_a_file_is_read_and_what_is_downloaded_is_the_loop(page: Page, address: str, tmp_path: Path) -> None:
     """Its name is shown and not obeyed; the files are those that the command line writes."""
     opened(page, address)
@@ -138,6 +144,7 @@ def test_a_file_is_read_and_what_is_downloaded_is_the_loop(page: Page, address: 
     assert zw.verify(json.loads(document)["certificate"]).valid
 
 
+@one_size
 def test_a_file_without_damping_is_shown_with_a_mark_and_no_other_verdict(
     page: Page, address: str, tmp_path: Path
 ) -> None:
@@ -174,6 +181,7 @@ def parsed_parts(text: str) -> tuple[zw.Device, object]:
     return loop.device, loop.environment
 
 
+@one_size
 def test_what_the_address_cannot_say_is_a_message(page: Page, address: str) -> None:
     """And the page begins with its own loop."""
     opened(
