@@ -24,7 +24,7 @@ from zwidth.explorer.scale import usual
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.specification.environments import build_environment
 from zwidth.specification.laws import ROW, with_laws
-from zwidth.specification.read import WITH_LAWS, Specification, build_device, tables_of
+from zwidth.specification.read import WITH_LAWS, Specification, build_device, keep_axis, tables_of
 from zwidth.specification.table import Table, plain, quoted
 from zwidth.specification.write import tables, toml
 
@@ -289,6 +289,8 @@ def from_file(text: str, name: str, shown: State) -> Given:
         return _rendered(found, shown)
     if not {"name", "catalogue"} & set(found["device"].values):
         found["device"].values["name"] = plain(name).removesuffix(".toml")
+    if "environment" in found:
+        keep_axis(found["device"], found["environment"].values)
     begun = completed(found["device"])
     device = build_device(found["device"])
     if "environment" not in found:

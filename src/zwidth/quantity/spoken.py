@@ -11,7 +11,7 @@ has one unit.  In Python nothing is noted: answers are in radians, or as `answer
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
@@ -79,6 +79,17 @@ def note(unit: str) -> None:
     noted = _NOTED.get()
     if noted is not None:
         noted.update(_WORDS[word] for word in _WORD.findall(unit) if word in _WORDS)
+
+
+def is_angular(value: object) -> bool:
+    """True of a text with an angle in its unit, and of a list or a table with one: "0.5 N*m/deg"."""
+    if isinstance(value, str):
+        words = _WORD.findall(value.replace("°", " deg "))
+        return any(word in _WORDS or word.removeprefix("m") == "rad" for word in words)
+    parts = (
+        value.values() if isinstance(value, Mapping) else value if isinstance(value, (list, tuple)) else ()
+    )
+    return any(is_angular(part) for part in parts)
 
 
 def spoken(unit: str) -> tuple[float, str]:
