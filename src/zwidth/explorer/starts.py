@@ -16,6 +16,7 @@ from zwidth.explorer.scale import usual
 from zwidth.explorer.state import State, Values, catalogued, completed
 from zwidth.quantity.kind import Kind
 from zwidth.quantity.parameter import Parameter
+from zwidth.quantity.spoken import angles_typed
 from zwidth.rendering import LAWS
 from zwidth.specification.environments import TYPES
 from zwidth.specification.laws import with_laws
@@ -104,7 +105,7 @@ def from_sources(
         device = specified_device(found, typed)
         environment = Wall(stiffness=_stiffness(device))
     law = with_laws(environment, found.get("law"), laws, device.motion)
-    return State.of(device, law).with_begun(begun)
+    return State.of(device, law).with_begun(begun).with_angles(angles_typed())
 
 
 def own_device(kind: str) -> Device:

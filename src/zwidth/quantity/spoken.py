@@ -81,15 +81,21 @@ def note(unit: str) -> None:
         noted.update(_WORDS[word] for word in _WORD.findall(unit) if word in _WORDS)
 
 
-def is_angular(value: object) -> bool:
-    """True of a text with an angle in its unit, and of a list or a table with one: "0.5 N*m/deg"."""
+def angles_in(value: object) -> frozenset[str]:
+    """The angles in the units of a text, a list or a table: {"deg"} of "0.5 N*m/deg"; rad, deg, turn, rpm."""
     if isinstance(value, str):
         words = _WORD.findall(value.replace("°", " deg "))
-        return any(word in _WORDS or word.removeprefix("m") == "rad" for word in words)
+        radians = {"rad" for word in words if word.removeprefix("m") == "rad"}
+        return frozenset({_WORDS[word] for word in words if word in _WORDS} | radians)
     parts = (
         value.values() if isinstance(value, Mapping) else value if isinstance(value, (list, tuple)) else ()
     )
-    return any(is_angular(part) for part in parts)
+    return frozenset().union(*map(angles_in, parts))
+
+
+def angles_typed() -> frozenset[str]:
+    """Those that were noted so far."""
+    return frozenset(_NOTED.get() or ())
 
 
 def spoken(unit: str) -> tuple[float, str]:

@@ -27,7 +27,7 @@ from zwidth.errors import InputError
 from zwidth.missing import did_you_mean, near_file
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.spoken import is_angular
+from zwidth.quantity.spoken import angles_in
 from zwidth.quantity.units import parse
 from zwidth.specification.environments import build_environment, option_keys
 from zwidth.specification.laws import NOT_PROVED, ROW
@@ -125,7 +125,7 @@ def keep_axis(device: Table, rendered: object) -> None:
 
     The radius only says where the same device is looked at: K [N·m/rad] about the axis is K/r² at the handle.
     """
-    if "handle_radius" in device.values and is_angular(rendered):
+    if "handle_radius" in device.values and angles_in(rendered):
         del device.values["handle_radius"]
         device.values.setdefault("motion", "rotary")
 

@@ -82,7 +82,7 @@ def _next(text: str, unknown: list[str], path: Path, motion: str) -> list[str]:
     name = shlex.quote(str(path))
     missing = [key for key in NEEDED if key in unknown]
     if missing:
-        stiffness = '"0.1 N*m/deg"' if motion == "rotary" else "100"
+        stiffness = "0.1Nm/deg" if motion == "rotary" else "100"
         tried = f"{name} {guessed(missing, motion)} --stiffness {stiffness}"
         first = [*(line for key in missing for line in _MEASURE[key]), "to try what if, with a guess:"]
     else:
@@ -100,7 +100,7 @@ def _next(text: str, unknown: list[str], path: Path, motion: str) -> list[str]:
 
 def guessed(missing: Iterable[str], motion: str) -> str:
     """Options with a guess of what a device must have and lacks; of one that turns about its axis."""
-    damping = '"0.01 N*m*s/rad"' if motion == "rotary" else "0.1"
+    damping = "0.01Nms/rad" if motion == "rotary" else "0.1"
     guesses = {"rate": '--rate "1 kHz"', "damping": f"--damping {damping}"}
     return " ".join(guesses[key] for key in missing)
 
@@ -119,8 +119,8 @@ def _stiffness(device: Device) -> str:
     largest = getattr(check(device, Wall(1)), "max_stiffness", None)
     turns = device.motion == "rotary"
     if largest is None or not 0 < largest < inf:
-        return '"0.1 N*m/deg"' if turns else "100"
+        return "0.1Nm/deg" if turns else "100"
     factor, told = spoken("N*m/rad") if turns else (1.0, "")
     unit = 10.0 ** (floor(log10(largest * factor)) - 1)
     number = f"{floor(largest * factor / unit) * unit:.4g}"
-    return f'"{number} {told}"' if turns else number
+    return f"{number}{told.replace('*', '')}" if turns else number
