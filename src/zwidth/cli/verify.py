@@ -27,8 +27,12 @@ _OF_BOUNDED_HANDS = "zwidth worst hand 1"
 _OF_TWO_ARMS = ("pair", "pair violation")
 """Proofs about arms that follow each other."""
 
-_ONE_BY_ONE = {"zwidth gains 1": "joints", "zwidth passive masses 1": "verdicts"}
-"""Documents that hold one for each joint, or for each of some masses, and where."""
+_ONE_BY_ONE = {
+    "zwidth gains 1": "joints",
+    "zwidth passive masses 1": "verdicts",
+    "zwidth each 1": "devices",
+}
+"""Documents that hold one for each joint, device, or of some masses, and where."""
 
 _BESIDE_A_KNOWN_ONE = "beside a known one"
 _OF_A_HELD_PAIR = "zwidth held pair 1"

@@ -82,7 +82,7 @@ def _next(text: str, unknown: list[str], path: Path, motion: str) -> list[str]:
     name = shlex.quote(str(path))
     missing = [key for key in NEEDED if key in unknown]
     if missing:
-        stiffness = "0.1Nm/deg" if motion == "rotary" else "100"
+        stiffness = "0.1Nm/deg" if motion == "rotary" and RADIUS.key not in text else "100"
         tried = f"{name} {guessed(missing, motion)} --stiffness {stiffness}"
         first = [*(line for key in missing for line in _MEASURE[key]), "to try what if, with a guess:"]
     else:
