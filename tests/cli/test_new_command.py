@@ -469,3 +469,26 @@ def test_the_missing_motion_is_said_before_what_does_not_fit(refused: Answered) 
     told = refused("environment", *options({**wall, "--motion": "rotary"}), "--no-questions")
     assert "--start: nothing asks for it" in told
     assert "--virtual-damping" in told
+
+
+def test_a_stop_keeps_the_degrees_that_were_typed(tmp_path: Path) -> None:
+    """From 450° to 470°, in degrees; hints of a wheel without damping are in torque and angle."""
+    stop = tmp_path / "stop.toml"
+    typed = ("--motion", "rotary", "--type", "bump-stop", "--start", "450 deg", "--depth", "20 deg")
+    more = ("--stiffness", "0.5 N*m/deg", "--hardening", "unknown", "--no-questions")
+    assert main(["new", "environment", str(stop), *typed, *more]) == 0
+    assert 'positions = ["450 deg", "470 deg"]' in stop.read_text(encoding="utf-8")
+
+
+def test_hints_for_a_wheel_are_in_torque_and_angle(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A bare number would be per radian, and too stiff."""
+    wheel = str(tmp_path / "wheel.toml")
+    for damping, hint in (
+        ("unknown", "--damping 0.01Nms/rad --stiffness 0.1Nm/deg"),
+        ("0.02", "Nm/rad"),
+    ):
+        typed = ("--motion", "rotary", "--rate", "1 kHz", "--damping", damping, "--no-questions", "--force")
+        assert main(["new", "device", wheel, *typed]) == 0
+        assert hint in " ".join(capsys.readouterr().out.split())

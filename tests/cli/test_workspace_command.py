@@ -347,7 +347,7 @@ def test_joints_that_damp_each_other_come_from_a_file(run: Run) -> None:
     Path("joints.toml").write_text(JOINTS)
     status, out, _ = run(*TWO_LINK, "--joints", "joints.toml", "-o", "proof.json")
     assert status == 0
-    assert "joint damping [[0.02, 0.005], [0.005, 0.01]] N, m, s, rad" in " ".join(out.split())
+    assert "joint damping [[0.02, 0.005], [0.005, 0.01]] N·m·s/rad" in " ".join(out.split())
     told = json.loads(Path("proof.json").read_text())
     assert told["joint_damping_N_m_s_rad"] == [[0.02, 0.005], [0.005, 0.01]]
     assert told["certificate"]["arm"]["damping_N_m_s_rad"] == [["0.02", "0.005"], ["0.005", "0.01"]]
@@ -393,4 +393,4 @@ def test_joints_by_file_and_by_options(run: Run) -> None:
     Path("joints.toml").write_text("[joints]\ncoulomb_friction = [0.01, 0.01]")
     status, out, _ = run(*TWO_LINK, "--joints", "joints.toml", "--joint-damping", "0.02,0.01")
     assert status == 0
-    assert "joint damping 0.02, 0.01 N, m, s, rad" in " ".join(out.split())
+    assert "joint damping 0.02, 0.01 N·m·s/rad" in " ".join(out.split())

@@ -199,3 +199,20 @@ def test_a_filter_of_the_velocity_is_a_word_and_its_numbers() -> None:
         shown = {one.path: one for one in controls_of(state, state.loop())}
         assert {f"environment.velocity_filter.{key}" for key in keys} <= shown.keys()
     assert shown["environment.velocity_filter"].text == "filter"
+
+
+def test_a_question_in_degrees_is_kept_in_the_address() -> None:
+    """With the loop, which is in SI; who types radians again reads radians."""
+    knob = {"device.damping": "0.02 N*m*s/rad", "device.rate": "1 kHz", "device.motion": "rotary"}
+    asked = from_query(
+        [*knob.items(), ("environment.type", "wall"), ("environment.stiffness", "0.5 N*m/deg")]
+    )
+    assert asked.angles == ("deg",)
+    pairs = dict(parse_qsl(asked.query()))
+    assert pairs["answers.angle"] == "deg"
+    assert pairs["environment.stiffness"].endswith("rad")
+    assert from_query([*pairs.items()]).angles == ("deg",)
+    assert asked.with_angles({"rad"}).angles == ()
+    assert asked.with_angles(set()).angles == ("deg",)
+    with pytest.raises(zw.InputError, match="told in rad, deg or turn"):
+        from_query([*{**pairs, "answers.angle": "gon"}.items()])

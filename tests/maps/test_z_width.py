@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 from contextlib import ExitStack
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,7 @@ from zwidth.maps.sustained import _exactly
 from zwidth.operator import Dowel, Finger
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.decision import decide
+from zwidth.passivity.storage.slow_hands import slow_hands
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 WIDE = ((0, 30000), (0, 90))
@@ -208,13 +210,39 @@ def test_the_kernel_never_believes_a_sign_that_rounding_made() -> None:
         assert answers[0.0] == UNKNOWN
 
 
-def test_a_delay_of_part_of_a_sample_is_not_called_passive() -> None:
+def test_a_filter_without_end_is_not_called_passive() -> None:
     """No condition for contact made and broken covers it; stability is decided all the same."""
-    found = zw.z_width(PADDLE.replace(delay="0.0005"), (0, 300), (0, 1), cells=(5, 5))
+    filtered = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
+    found = zw.z_width(PADDLE, (0, 300), (0, 1), cells=(5, 5), velocity_filter=filtered)
     assert not found["passive"].any()
     assert (found["admissible_speed"] == 0).all()
     assert found["stable_finger"].any()
     assert np.isnan(found["limit_passive"]).all()
+
+
+@pytest.mark.parametrize("delay", ["0.0005", "0.0014"])
+def test_a_delay_of_part_of_a_sample_ends_where_check_does(delay: str) -> None:
+    """The curve is where `check` stops proving contact made and broken; slow hands are proved beyond it."""
+    device = PADDLE.replace(delay=delay)
+    found = zw.z_width(device, (0, 300), (-0.1, 0.2), cells=(60, 6), hands={})
+    beyond = 0
+    for place, b in enumerate(found["virtual_damping"].values):
+        limit = float(found["limit_passive"][place])
+        if limit > 0:
+            for share, kind in ((1 - 1e-9, "contact"), (1 + 1e-9, "quantized")):
+                verdict = check_by_closed_forms(device, zw.Wall(limit * share, b))
+                assert verdict.certificate is None or verdict.certificate.kind == kind
+                assert (verdict.outcome == "passive") is (share < 1)
+        column = found.isel(virtual_damping=place)
+        layers = (column[name].values for name in ("stiffness", "admissible_speed", "passive"))
+        for k, speed, passive in zip(*layers, strict=True):
+            assert passive == (k <= limit)
+            if 0 < speed < np.inf and beyond < 6:
+                beyond += 1
+                assert slow_hands(device, zw.Wall(k, b), Fraction(float(speed))) is not None
+                assert slow_hands(device, zw.Wall(k, b), Fraction(float(speed) * (1 + 1e-9))) is None
+    assert beyond == 6
+    assert json.loads(found["quiet"].attrs["scope"])["hands"]["in_each_part_of_a_sample"]
 
 
 def test_regions_and_free_air() -> None:
@@ -391,9 +419,10 @@ def test_what_cannot_be_mapped(change: dict[str, object], message: str) -> None:
 
 
 def test_what_no_condition_covers_is_said_and_springs_are_decided() -> None:
-    """A delay of part of a sample: the column at B = 0 ends where `check` does, from both sides."""
+    """Of a filter without end the column at B = 0 ends where `check` does, from both sides."""
     device = PADDLE.replace(delay="0.0005", coulomb_friction=1)
-    found = zw.z_width(device, (0, 300), ("-0.5", "0.5"), cells=(300, 3), hands={})
+    filtered = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
+    found = zw.z_width(device, (0, 300), ("-0.5", "0.5"), cells=(300, 3), hands={}, velocity_filter=filtered)
     middle = found["passive"].values[:, 1]
     k = found["stiffness"].values
     limit = float(found["spring_limit"])
@@ -403,8 +432,8 @@ def test_what_no_condition_covers_is_said_and_springs_are_decided() -> None:
     assert np.isinf(found["admissible_speed"].values[middle, 1]).all()
     for share, outcome in ((1 - 1e-9, "passive"), (1 + 1e-6, "active")):
         assert check_by_closed_forms(device, zw.Wall(limit * share)).outcome == outcome
-    assert "part of a sample" in found.attrs["not_covered"]
-    assert zw.maps.z_width_certificate(device, found) is not None
+    assert "does not end" in found.attrs["not_covered"]
+    assert zw.maps.z_width_certificate(device, found, velocity_filter=filtered) is not None
     coarse = zw.z_width(device.replace(coulomb_friction="0.001"), (0, 300), (0, 1), cells=(4, 4), hands={})
     assert float(coarse["spring_limit"]) == pytest.approx(2 * 0.001 / 2.24e-5)
     assert zw.z_width(PADDLE, (0, 300), (0, 1), cells=(4, 4), hands={}).attrs["not_covered"] == ""

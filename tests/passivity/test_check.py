@@ -12,6 +12,7 @@ import scipy.signal
 import zwidth as zw
 from zwidth import checker
 from zwidth.passivity import gap
+from zwidth.passivity.advice import in_lines
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.document import to_json
 from zwidth.passivity.witness.motion import Motion
@@ -573,3 +574,17 @@ def test_a_rational_is_written_digit_for_digit(value):
     """However many digits that takes: a motion may hang on the last one."""
     (written,) = json.loads(to_json([value]), parse_float=str)
     assert Fraction(written) == value
+
+
+def test_what_is_proved_for_whole_samples_alone_is_not_called_a_limit() -> None:
+    """A solid a sample late: of delays between samples nothing is known, and the advice says no more."""
+    device = zw.Device(
+        damping="0.5", coulomb_friction="0.2", resolution="0.0005", sample_period="0.001", delay="0.001"
+    )
+    verdict = zw.check(device, zw.StandardLinearSolid(10, 2, "0.1"))
+    assert verdict.outcome == "passive"
+    told = {advice.parameter: advice for advice in verdict.advice}
+    assert [key for key, advice in told.items() if advice.is_alone] == ["rate", "delay"]
+    assert told["delay"].text == "delay is proved where it is, 1 ms, and for delays of whole samples alone"
+    lines = in_lines(verdict.advice, passive=True)
+    assert lines.at_limit == "proved where it is, and for delays of whole samples alone: rate, delay"

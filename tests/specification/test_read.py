@@ -449,3 +449,27 @@ def test_any_file_is_read_or_an_input_error(tmp_path: Path, content: bytes) -> N
     path = tmp_path / "fuzz.toml"
     path.write_bytes(content)
     assert outcome(lambda: load([path], {})).isprintable()
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "motion", "friction"),
+    [
+        ("0.5 N*m/deg", "rotary", 0.14),
+        ("20 N*m/rad", "rotary", 0.14),
+        ("300 N/m", "linear", 1.0),
+        ("300", "linear", 1.0),
+    ],
+)
+def test_a_question_in_angles_keeps_a_device_about_its_axis(
+    stiffness: str, motion: str, friction: float, tmp_path: Path
+) -> None:
+    """The radius says where one looks: at the hand in newtons, about the axis where one asks in angles."""
+    file = tmp_path / "wheel.toml"
+    friction_row = 'damping = "0.02 N*m*s/rad"\ncoulomb_friction = "0.14 N*m"'
+    text = f'[device]\n{friction_row}\nrate = "1 kHz"\nhandle_radius = "14 cm"\n'
+    file.write_text(text)
+    device = load([file], {"stiffness": stiffness}).device
+    assert device.motion == motion
+    assert float(device.exact("coulomb_friction")) == pytest.approx(friction)
+    file.write_text(f'{text}[environment]\ntype = "wall"\nstiffness = "{stiffness}"\n')
+    assert zw.load(file).device == device

@@ -3,7 +3,8 @@
 A corner is proved by itself.  What lies between is proved with them where all are one law but for N:
 with the same D, T, delay and device the criterion 2b/T |D|² + h(N) is affine in N, or with a delay of part of
 a sample concave; ‖h‖₁ is convex and H(1) affine.  So it holds for every mix of their laws.  The conditions of
-`contact`, (2d + 1) K T/2 + |B| Σ|w| and K + |B| ‖h_v‖₁, are convex in (K, B) for the same weights.
+`contact`, ½(Q + √(Q² + α(1 − α) S²)) with Q = (2d + 1 + 2α) K T/2 + |B| Σ|w| and S = K T + 2 |B| Σ|w|, and
+K + |B| ‖h_v‖₁, are convex in (K, B) for the same weights.
 """
 
 from __future__ import annotations

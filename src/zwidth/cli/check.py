@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from zwidth.cli.decision import asked, decided, exit_status
+from zwidth.cli.hands_alone import NAMES, with_hands
 from zwidth.cli.options import (
     Once,
     add_contact_option,
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
     from zwidth.passivity.over_ranges import OverRanges
     from zwidth.passivity.verdict import Verdict
     from zwidth.specification.read import Specification
+    from zwidth.stability import Stability
     from zwidth.stability.active_hand import ToleratedActivity
 
     Report: TypeAlias = FiniteStiffnessReplay | ToleratedActivity | OverRanges
@@ -32,7 +35,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth check`."""
     parser.usage = (
         "%(prog)s [SOURCE ...] [--law NAMES] [--PARAMETER VALUE ...] [--all] [--json] [--plot FILE] "
-        "[--replay] [--active-below FREQUENCY] [--contact KIND] [-o FILE] [--force]"
+        "[--replay] [--hands NAMES] [--active-below FREQUENCY] [--contact KIND] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -46,6 +49,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_in_full(output)
     output.add_argument(
         "--replay", action="store_true", help="replay the motion by hands of finite stiffness; needs a mass"
+    )
+    output.add_argument(
+        "--hands",
+        metavar="NAMES",
+        action=Once,
+        help=f"say besides whether hands that are known come to rest: {NAMES}; needs a mass",
     )
     output.add_argument(
         "--active-below",
@@ -62,20 +71,21 @@ def run(arguments: argparse.Namespace) -> int:
     loop = asked(arguments, in_range=True).loop
     _one_timing(loop)
     active = _tolerated(loop, arguments.active_below)
+    hands = with_hands(loop, arguments.hands)
     verdict = decided(loop, contact(arguments))
     ranges = _ranges(loop, verdict)
     if save is not None:
         with writing(save):
-            verdict.save(save, _reports(active_hand=active, ranges=ranges))
+            verdict.save(save, _reports(hands, active_hand=active, ranges=ranges))
     if plot is not None:
         verdict.plot(plot)
     replayed = _replayed(verdict) if arguments.replay else None
     if arguments.json:
-        print_json(_in_full(verdict, real_hand=replayed, active_hand=active, ranges=ranges))
+        print_json(_in_full(verdict, hands, real_hand=replayed, active_hand=active, ranges=ranges))
     else:
         from zwidth.cli.report import print_verdict
 
-        print_verdict(verdict, replayed, active, arguments.in_full, ranges)
+        print_verdict(verdict, replayed, active, arguments.in_full, ranges, hands)
         say_written(save, plot)
     return exit_status(verdict.outcome)
 
@@ -120,12 +130,13 @@ def _ranges(loop: Specification, verdict: Verdict) -> OverRanges | None:
     return over_ranges(DeviceInRange(loop.device, loop.ranges), loop.environment, verdict)
 
 
-def _in_full(verdict: Verdict, **reports: Report | None) -> str:
+def _in_full(verdict: Verdict, hands: Mapping[str, Stability], **reports: Report | None) -> str:
     from zwidth.passivity.document import to_json
 
-    return to_json({**verdict.to_dict(), **_reports(**reports)})
+    return to_json({**verdict.to_dict(), **_reports(hands, **reports)})
 
 
-def _reports(**reports: Report | None) -> dict[str, Any]:
+def _reports(hands: Mapping[str, Stability], **reports: Report | None) -> dict[str, Any]:
     """Those that were asked for, as plain data."""
-    return {name: report.to_dict() for name, report in reports.items() if report is not None}
+    found = {name: report.to_dict() for name, report in reports.items() if report is not None}
+    return found | ({"known_hands": {name: one.to_dict() for name, one in hands.items()}} if hands else {})

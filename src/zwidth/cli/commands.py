@@ -145,6 +145,18 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth gains so101.json --supply-voltage '7.4 V' --both\n"
             "  zwidth gains controllers.yaml --plant my-arm.toml",
         ),
+        "each": Command(
+            "the same question of each of several devices, in a table",
+            "Check one wall, or another law, on each of several devices: a class, a batch, one device as\n"
+            "several people measured it. On how many it is passive, up to where on each and on all of\n"
+            "them; beside it what was measured.",
+            "Devices with ranges, such as --damping '0.1 .. 0.2' in their files, count with all of them.\n\n"
+            "exit status: that of the worst device: 1 active, 3 undecided, 4 passive while contact is\n"
+            "kept, 0 all passive; 2 bad input\n\n"
+            "examples:\n"
+            "  zwidth each haptic-paddle hapkit --stiffness 200\n"
+            "  zwidth each paddle.toml hapkit.toml haptic-paddle --stiffness 150 -o class.csv",
+        ),
         "map": Command(
             "which walls can this device render?",
             "Map the Z-width: over stiffness and virtual damping, which walls are passive with every hand,\n"

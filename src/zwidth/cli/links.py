@@ -15,8 +15,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth links`."""
     parser.usage = (
         "%(prog)s SOURCE [SOURCE] [--delay TIME] [--jitter TIME] [--loss SHARE] [--burst N] "
-        "[--duplicates SHARE] [--seed N] [--impedance w] [--smoothing s] [--json] [--plot FILE] "
-        "[-o FILE] [--force]"
+        "[--duplicates SHARE] [--seed N] [--impedance w] [--smoothing s] [--hold-back] [--json] "
+        "[--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -37,6 +37,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="s",
         action=Once,
         help="time constant that smooths the force of the port with a ledger [s] (default: 0)",
+    )
+    parser.add_argument(
+        "--hold-back",
+        action="store_true",
+        help="of devices whose delay ends within a sample: their loops keep each force back until it ends",
     )
     add_output(parser, "the scores", "the plot", "the scores as JSON")
 
@@ -65,7 +70,11 @@ def run(arguments: argparse.Namespace) -> int:
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     devices = [load_device([source], {}) for source in arguments.sources]
     link = Schedule(**given(arguments, [p.key for p in link_parameters()]))
-    more = {"impedance": arguments.impedance, "smoothing": arguments.smoothing or 0}
+    more = {
+        "impedance": arguments.impedance,
+        "smoothing": arguments.smoothing or 0,
+        "hold_back": arguments.hold_back,
+    }
     warn_of_compiling_the_links()
     with progress_bar("ports") as progress:
         found = compare(devices[0], devices[-1], link, **more, progress=progress)

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from zwidth.cli.hands_alone import NAMES, named_hands
 from zwidth.cli.options import Once, add_all, device_parameters, given
 from zwidth.cli.output import print_json, print_message, print_report, say_written, targets, writing
 from zwidth.errors import InputError
@@ -17,8 +18,8 @@ from zwidth.quantity.text import shown, told_quantity, unit_text
 from zwidth.quantity.units import parse_number
 from zwidth.showing import Part
 from zwidth.showing import Table as ShownTable
-from zwidth.specification.read import LOOP_TABLES, read_tables, specified_device
-from zwidth.specification.table import Table, plain, quoted, suggestion
+from zwidth.specification.read import LOOP_TABLES, keep_axis, read_tables, specified_device
+from zwidth.specification.table import Table, plain, quoted
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,7 +51,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         (
             "--hands",
             "NAMES",
-            "known hands of none, finger, dowel; of a rotary device none, hands-on (default: all)",
+            f"known hands of {NAMES} (default: all)",
         ),
         ("--speed", "SPEED", "up to which a hand must not gain for a wall to count as quiet (default: 0.5)"),
     ):
@@ -84,6 +85,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     plot, proof = targets(arguments.plot, arguments.certify, arguments.force, "--certify")
     tables = read_tables(arguments.sources, LOOP_TABLES)
+    if "device" in tables:
+        keep_axis(tables["device"], [arguments.stiffness, arguments.virtual_damping])
     device = _device(arguments, tables)
     options = _options(arguments, device.motion, tables.get("environment"))
     warn_of_compiling_the_map()
@@ -144,7 +147,6 @@ def _filter_of(table: Table | None, motion: str) -> VelocityEstimator | None:
 
 def _options(arguments: argparse.Namespace, motion: str, environment: Table | None) -> dict[str, Any]:
     """The map as `z_width` takes it."""
-    from zwidth.maps.request import standard_hands
     from zwidth.specification.values import velocity_filter
 
     options: dict[str, Any] = {
@@ -160,11 +162,7 @@ def _options(arguments: argparse.Namespace, motion: str, environment: Table | No
     elif (filtered := _filter_of(environment, motion)) is not None:
         options["velocity_filter"] = filtered
     if arguments.hands is not None:
-        known, names = standard_hands(motion), [name.strip() for name in arguments.hands.split(",")]
-        for name in names:
-            if name not in known:
-                raise InputError(f"there is no hand {quoted(name)}; {suggestion(name, list(known))}")
-        options["hands"] = {name: known[name] for name in names}
+        options["hands"] = named_hands(arguments.hands, motion)
     if arguments.speed is not None:
         options["speed"] = float(
             parse_number(arguments.speed, GLOSSARY["velocity"].unit_for(motion), "speed")

@@ -5,7 +5,8 @@ Whatever narrows the claim is in the short report too.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rich.padding import Padding
@@ -15,6 +16,7 @@ from zwidth.cli.advice_lines import advice_rows, advice_section
 from zwidth.cli.bars import PICTURE
 from zwidth.cli.budget_bars import budget_bars
 from zwidth.cli.description import device_line, environment_line
+from zwidth.cli.hands_alone import hand_rows
 from zwidth.cli.motion import joules, motion_in_short, motion_lines
 from zwidth.cli.output import encodes
 from zwidth.cli.page import (
@@ -40,6 +42,7 @@ if TYPE_CHECKING:
 
     from zwidth.passivity.finite_stiffness import FiniteStiffnessReplay
     from zwidth.passivity.over_ranges import OverRanges
+    from zwidth.stability import Stability
     from zwidth.stability.active_hand import ToleratedActivity
 
 _FIRST = ("limit", "largest passive gain", "damping, contact broken too")
@@ -54,8 +57,9 @@ def print_verdict(
     active_hand: ToleratedActivity | None = None,
     in_full: bool = False,
     ranges: OverRanges | None = None,
+    hands: Mapping[str, Stability] = MappingProxyType({}),
 ) -> None:
-    """Print the report on standard output, with what was asked for of real and of active hands.
+    """Print the report on standard output, with what was asked for of real, known and active hands.
 
     `ranges` is what holds over the ranges of a device of the catalogue.
     """
@@ -66,6 +70,8 @@ def print_verdict(
         (_all if in_full else _few)(out, verdict, ranges is not None)
         if replayed is not None:
             section(out, "a real hand", [grid(replayed.rows())])
+        if hands:
+            section(out, "hands that are known", [grid(hand_rows(hands))])
         if active_hand is not None:
             section(out, "an active hand", [grid(active_hand.rows())])
         if not in_full:

@@ -27,8 +27,12 @@ _OF_BOUNDED_HANDS = "zwidth worst hand 1"
 _OF_TWO_ARMS = ("pair", "pair violation")
 """Proofs about arms that follow each other."""
 
-_ONE_BY_ONE = {"zwidth gains 1": "joints", "zwidth passive masses 1": "verdicts"}
-"""Documents that hold one for each joint, or for each of some masses, and where."""
+_ONE_BY_ONE = {
+    "zwidth gains 1": "joints",
+    "zwidth passive masses 1": "verdicts",
+    "zwidth each 1": "devices",
+}
+"""Documents that hold one for each joint, device, or of some masses, and where."""
 
 _BESIDE_A_KNOWN_ONE = "beside a known one"
 _OF_A_HELD_PAIR = "zwidth held pair 1"
@@ -94,6 +98,23 @@ def verifications(document: object) -> list[Part]:
     told = document if isinstance(document, Mapping) else {}
     if inside := _ONE_BY_ONE.get(str(told.get("format"))):
         return [part for one in _listed(told, inside) for part in verifications(one)]
+    found = _of_the_loop(document, told)
+    hands = told.get("known_hands")
+    return [*found, *(_of_hands(hands) if isinstance(hands, Mapping) else [])]
+
+
+def _of_hands(hands: Mapping[str, object]) -> Iterator[Part]:
+    """Of each hand that is known what is proved, and that it shows what is said of that hand."""
+    for one in hands.values():
+        if not isinstance(one, Mapping) or one.get("outcome") != "undecided":
+            for part in verifications(one):
+                outcome = one.get("outcome") if isinstance(one, Mapping) else None
+                covered = part.verification.scope
+                shows = None if covered is None else covered.shows
+                yield _refused(part, str(outcome), None if shows == outcome else "shows something else")
+
+
+def _of_the_loop(document: object, told: Mapping[str, Any]) -> list[Part]:
     found = [_with_law(Part(part, verify_document(part))) for part in evidence(document)]
     outcome = told.get("outcome")
     if outcome not in ("passive", "passive in contact", "active"):

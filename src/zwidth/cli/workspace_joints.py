@@ -11,13 +11,16 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import Once
 from zwidth.cli.workspace_wall import rows_in_words
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
 from zwidth.specification.table import located
+
+if TYPE_CHECKING:
+    from zwidth.arms.kinematics.arm import Arm
 
 _JOINT_OPTIONS = (
     ("--joint-damping", "damping", "N*m*s/rad", "viscous friction of the joints"),
@@ -73,14 +76,18 @@ def read_joints(path: Path) -> dict[str, Any]:
         return {key: _values(entry, key) for key, entry in table.values.items()}
 
 
-def damping_in_words(damping: Any) -> str:
+def damping_in_words(arm: Arm) -> str:
     """Of each joint, or the matrix of joints that damp each other."""
     import numpy as np
 
-    values = np.asarray(damping)
+    values, slides = np.asarray(arm.damping), arm.sliding
     if values.ndim == 2:
-        return f"{rows_in_words(values)} N, m, s, rad"
-    return ", ".join(f"{b:.6g}" for b in values) + " N, m, s, rad"
+        unit = "N·s/m" if all(slides) else "N·m·s/rad" if not any(slides) else "in N, m, s, rad"
+        return f"{rows_in_words(values)} {unit}"
+    if len(set(slides)) == 1:
+        return ", ".join(f"{b:.6g}" for b in values) + (" N·s/m" if slides[0] else " N·m·s/rad")
+    each = zip(values, slides, strict=True)
+    return ", ".join(f"{b:.6g} {'N·s/m' if slid else 'N·m·s/rad'}" for b, slid in each)
 
 
 def _values(entry: object, key: str) -> list[Any]:

@@ -24,7 +24,7 @@ def print_postures(found: PostureMap, in_full: bool = False, without: Sequence[s
         out.print(headline(found.outcome, TOLD[found.outcome].terminal, found.claim))
         about = [
             ("arm", f"{asked.arm.name}, {asked.arm.joint_count} joints, {shown(asked.rate, 'Hz')}"),
-            ("joint damping", damping_in_words(asked.arm.damping)),
+            ("joint damping", damping_in_words(asked.arm)),
             ("wall", wall_in_words(asked.wall)),
             *(("left out", text) for text in without),
         ]

@@ -78,7 +78,7 @@ def _asked(space: Workspace) -> Iterator[tuple[str, str]]:
     """What the verdict is about."""
     count = f"{space.arm.joint_count} joint{'s' if space.arm.joint_count > 1 else ''}"
     yield "arm", f"{space.arm.name}, {count}, {shown(1 / space.sample_period, 'Hz')}"
-    yield "joint damping", damping_in_words(space.arm.damping)
+    yield "joint damping", damping_in_words(space.arm)
     yield "region", space.region
     yield "wall", wall_in_words(space.wall)
     if space.delay_samples:

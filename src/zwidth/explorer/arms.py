@@ -14,8 +14,8 @@ from zwidth.explorer.scale import usual
 from zwidth.explorer.state import State
 from zwidth.explorer.verdict_card import headline
 from zwidth.passivity.pairs import PairVerdict, check_pair
-from zwidth.plots.style import scale
-from zwidth.quantity.text import in_words, quantity_unit
+from zwidth.plots.style import drawn_in, scale
+from zwidth.quantity.text import in_words
 from zwidth.showing import Html, Lines, Table, element, join
 from zwidth.specification.pairs import KEYS, pair_of
 
@@ -88,12 +88,13 @@ class LinkPicture:
         here = float(pair.there), float(pair.felt_stiffness)
         factor, unit = scale([delays[-1]], "s")
         ends = [factor * delay for delay in delays]
-        self._stairs.data = {"left": ends[:-1], "right": ends[1:], "top": stiffness[1:]}
-        self._here.data = {"delay": [factor * here[0]], "stiffness": [here[1]]}
+        up, k_unit = drawn_in("stiffness", pair.motion)
+        self._stairs.data = {"left": ends[:-1], "right": ends[1:], "top": [up * k for k in stiffness[1:]]}
+        self._here.data = {"delay": [factor * here[0]], "stiffness": [up * here[1]]}
         self._x.update(start=0, end=factor * delays[-1])
-        self._y.update(start=0, end=1.25 * max([*stiffness, here[1]]))
+        self._y.update(start=0, end=1.25 * up * max([*stiffness, here[1]]))
         self.figure.xaxis[0].axis_label = f"link delay, each way [{unit}]"
-        self.figure.yaxis[0].axis_label = f"stiffness [{quantity_unit('stiffness', pair.motion)}]"
+        self.figure.yaxis[0].axis_label = f"stiffness [{k_unit}]"
         return "Shaded: passive. A reading that is a sample older leaves less stiffness."
 
     def clear(self) -> None:

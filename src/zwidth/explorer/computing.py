@@ -5,6 +5,7 @@ What comes back is lists of numbers to draw, in SI.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from zwidth.passivity.check import check
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.parameter import parameters_of
+from zwidth.quantity.spoken import answers_in
 from zwidth.specification.pairs import pair_of
 from zwidth.specification.table import Table, quoted, suggestion
 
@@ -232,6 +234,12 @@ def advised(state: State) -> list[str]:
     """What to change of two arms, or how far each parameter may go."""
     verdict = check(pair_of(pair_tables(state)))
     return [one.text for one in verdict.advice if one.to is not None]
+
+
+def answered(work: Callable[[State], Any], state: State) -> Any:
+    """What some work finds of a state, in the angles in which its page answers."""
+    with answers_in(*state.angles):
+        return work(state)
 
 
 def reported(state: State) -> str:

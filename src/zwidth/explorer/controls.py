@@ -21,6 +21,7 @@ from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.kind import Kind
 from zwidth.quantity.parameter import Parameter, parameters_of
+from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import in_words, readable, shown, unit_text
 from zwidth.rendering import LAWS
 from zwidth.specification.environments import TYPES
@@ -88,7 +89,8 @@ class Control:
     def said(self, share: float) -> str:
         """What a place of the slider says, with its unit, as a specification reads it."""
         assert self.scale is not None
-        return f"{self.scale.value(share):.12g} {self.unit}".strip()
+        factor, unit = spoken(self.unit)
+        return f"{self.scale.value(share) * factor:.12g} {unit}".strip()
 
     def place_of(self, other: Control) -> float:
         """Where the number of another control stands on the slider of this one."""
@@ -198,7 +200,9 @@ def typed(value: Any, unit: str) -> str:
     if value is None:
         return ""
     if isinstance(value, Interval):
-        return f"{float(value.low):.6g} .. {float(value.high):.6g} {unit_text(unit)}".strip()
+        factor, told = spoken(unit)
+        ends = (float(end) * factor for end in (value.low, value.high))
+        return f"{' .. '.join(f'{end:.6g}' for end in ends)} {unit_text(told)}".strip()
     return readable(float(value), unit, 6) if unit in _SMALL else shown(value, unit, 6)
 
 

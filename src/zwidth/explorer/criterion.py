@@ -13,7 +13,8 @@ from zwidth.explorer.look import BLUE, GREY, RED, legend_above, new_figure
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.verdict import Verdict
 from zwidth.plots.criterion import damping_range, refined_curve
-from zwidth.quantity.text import in_unit, quantity_unit
+from zwidth.plots.style import drawn_in
+from zwidth.quantity.text import in_unit
 
 NAME = "Criterion"
 
@@ -67,21 +68,22 @@ class CriterionPicture:
         frequencies, needs = refined_curve(verdict)
         has, motion = float(verdict.decision.loop.damping), verdict.device.motion
         low, high = damping_range(needs, has)
-        finite = [need if isfinite(need) else high for need in needs]
+        factor, told = drawn_in("damping", motion)
+        finite = [factor * (need if isfinite(need) else high) for need in needs]
         self._x.update(start=0, end=0.5 / float(verdict.decision.loop.period))
-        self._y.update(start=low, end=high)
-        self.figure.yaxis[0].axis_label = f"damping [{quantity_unit('damping', motion)}]"
+        self._y.update(start=factor * low, end=factor * high)
+        self.figure.yaxis[0].axis_label = f"damping [{told}]"
         needed = array(finite)  # arrays are sent as they are, lists number by number
         self._curve.data = {
             "frequency": array(frequencies),
             "needed": needed,
-            "lacking": maximum(needed, has),
-            "has": full_like(needed, has),
+            "lacking": maximum(needed, factor * has),
+            "has": full_like(needed, factor * has),
         }
         most = verdict.budget.required
         self._peak.data = {
             "frequency": [verdict.critical_frequency],
-            "needed": [most if isfinite(most) else high],
+            "needed": [factor * (most if isfinite(most) else high)],
         }
         unit = verdict.device.unit("damping")
         return (

@@ -13,9 +13,8 @@ from zwidth.passivity.formulas.quantization import plane_point
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.verdict import Verdict
 from zwidth.plots.plane import complete_devices, ends_around, has_plane, largest_spring_of, place_at_limit
-from zwidth.plots.style import number
+from zwidth.plots.style import drawn_in, number
 from zwidth.quantity.exact import Exact
-from zwidth.quantity.text import quantity_unit
 
 NAME = "Stability plane"
 
@@ -97,7 +96,8 @@ def _of_the_catalogue(placed: int, known: int) -> str:
 
 
 def _stiffness(value: float, motion: str) -> str:
-    return f"{number(value)} {quantity_unit('stiffness', motion)}"
+    factor, unit = drawn_in("stiffness", motion)
+    return f"{number(value * factor)} {unit}"
 
 
 def _names(source: ColumnDataSource, column: str) -> LabelSet:

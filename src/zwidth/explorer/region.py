@@ -8,8 +8,7 @@ from bokeh.models import ColumnDataSource, LinearColorMapper, Range1d
 
 from zwidth.explorer.computing import Region
 from zwidth.explorer.look import BLUE, GREEN, GREY, ORANGE, RED, legend_above, new_figure
-from zwidth.plots.style import number
-from zwidth.quantity.text import quantity_unit
+from zwidth.plots.style import drawn_in, number
 
 NAME = "Z-width"
 
@@ -53,20 +52,21 @@ class RegionPicture:
         """Draw it; a sentence about what is seen."""
         import numpy as np
 
+        (across, b_unit), (up, k_unit) = (drawn_in(name, motion) for name in ("virtual_damping", "stiffness"))
         self._image.data = {
             "kinds": [np.array(region.kinds, dtype=np.uint8)],
-            "width": [region.most_damping],
-            "height": [region.stiffest],
+            "width": [across * region.most_damping],
+            "height": [up * region.stiffest],
         }
-        self._here.data = {"damping": [damping], "stiffness": [stiffness]}
-        self._x.update(start=0, end=region.most_damping)
-        self._y.update(start=0, end=region.stiffest)
-        units = [quantity_unit(name, motion) for name in ("virtual_damping", "stiffness", "velocity")]
-        self.figure.xaxis[0].axis_label = f"virtual damping B [{units[0]}]"
-        self.figure.yaxis[0].axis_label = f"virtual stiffness K [{units[1]}]"
+        self._here.data = {"damping": [across * damping], "stiffness": [up * stiffness]}
+        self._x.update(start=0, end=across * region.most_damping)
+        self._y.update(start=0, end=up * region.stiffest)
+        self.figure.xaxis[0].axis_label = f"virtual damping B [{b_unit}]"
+        self.figure.yaxis[0].axis_label = f"virtual stiffness K [{k_unit}]"
+        factor, unit = drawn_in("velocity", motion)
         said = (
             "Each cell stands for the wall at its middle. A quiet hand is slower than "
-            f"{number(region.speed)} {units[2]}."
+            f"{number(factor * region.speed)} {unit}."
         )
         return (
             f"{said} Not covered, contact made and broken: {region.not_covered}."

@@ -15,7 +15,7 @@ from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.explorer import starts
-from zwidth.explorer.computing import reported
+from zwidth.explorer.computing import answered, reported
 from zwidth.explorer.controls import Control
 from zwidth.explorer.form import Event, Form, Soon, words
 from zwidth.explorer.form_of_loop import controls_of, groups_of
@@ -27,6 +27,7 @@ from zwidth.explorer.views import views_of
 from zwidth.explorer.working import Answer, Workers
 from zwidth.passivity.document import to_json
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.spoken import angles_in, answers_in
 from zwidth.rendering import LAWS
 from zwidth.showing import element
 from zwidth.specification.environments import TYPES
@@ -59,6 +60,10 @@ class Session:
     def __init__(
         self, state: State, workers: Workers, soon: Soon, message: str = "", *, in_page: bool = True
     ) -> None:
+        with answers_in(*state.angles):
+            self._begin(state, workers, soon, message, in_page)
+
+    def _begin(self, state: State, workers: Workers, soon: Soon, message: str, in_page: bool) -> None:
         self.state = state
         self.verdict: Verdict | None = None
         self._note = ""
@@ -88,7 +93,12 @@ class Session:
 
     def listen(self, form: Form, hear: Callable[[Event], Mapping[str, Any]]) -> None:
         """Have the events of a form answered."""
-        form.listen(hear, self._soon)
+
+        def heard(event: Event) -> Mapping[str, Any]:
+            with answers_in(*self.state.angles):
+                return hear(event)
+
+        form.listen(heard, self._soon)
 
     def keep(self, state: State) -> Mapping[str, Any]:
         """Take another state whose loop is the same; what is told to the page."""
@@ -105,10 +115,11 @@ class Session:
 
         def come(answer: Answer) -> None:
             if state is self.state:
-                then(answer)
+                with answers_in(*state.angles):
+                    then(answer)
 
         self._workers.submit(
-            self._asker, kind, work, (state,), lambda answer: self._soon(partial(come, answer))
+            self._asker, kind, answered, (work, state), lambda answer: self._soon(partial(come, answer))
         )
 
     # what is moved
@@ -138,7 +149,10 @@ class Session:
         """One parameter, by its slider or as it was typed or chosen."""
         control, value = given(self._controls, event)
         state = self.state.changed(control.path, value).settled()
-        self._become(state, redraw=False)
+        if event.get("kind") != "move":
+            state = state.with_angles(angles_in(value))
+        with answers_in(*state.angles):
+            self._become(state, redraw=state.angles != self.state.angles)
         now = self._controls.get(control.path, control)
         told = {"values": {control.path: [now.text, now.place]}, "error": ""}
         if event.get("kind") == "move":
@@ -200,7 +214,8 @@ class Session:
 
     def _follow_if(self, state: State) -> None:
         if state is self.state:
-            self._follow()
+            with answers_in(*state.angles):
+                self._follow()
 
     def _follow(self) -> None:
         """Numbers, advice, scope and the line with the limit; a moment later the picture that is open."""
@@ -210,7 +225,8 @@ class Session:
 
     def _draw_if(self, state: State) -> None:
         if state is self.state:
-            self._open.moved()
+            with answers_in(*state.angles):
+                self._open.moved()
 
     # files
 
@@ -223,7 +239,8 @@ class Session:
                 state = starts.with_device(self.state, given.device, given.begun)
             else:
                 state = replace(state, extras={**self.state.extras, **state.extras}).with_begun(given.begun)
-            self._become(state, redraw=True)
+            with answers_in(*state.angles):
+                self._become(state, redraw=True)
         except InputError as error:
             still = self.state.loop().device.name
             raise InputError(f"{error}. The page still shows {plain(still)}, not this file.") from None

@@ -16,13 +16,16 @@ from zwidth.explorer.scale import usual
 from zwidth.explorer.state import State, Values, catalogued, completed
 from zwidth.quantity.kind import Kind
 from zwidth.quantity.parameter import Parameter
+from zwidth.quantity.spoken import angles_typed
 from zwidth.rendering import LAWS
-from zwidth.specification.environments import TYPES, build_environment
+from zwidth.specification.environments import TYPES
 from zwidth.specification.laws import with_laws
 from zwidth.specification.read import (
     DEVICE_KEYS,
     WITH_LAWS,
-    environment_table,
+    built,
+    keep_axis,
+    merged,
     read_tables,
     specified_device,
 )
@@ -89,15 +92,20 @@ def from_sources(
     found = read_tables(sources, WITH_LAWS)
     if not (found.keys() & {"device"} or typed.keys() & DEVICE_KEYS):
         found["device"] = Table(FIRST, {"catalogue": FIRST})
+    rendered = {key: text for key, text in typed.items() if key not in DEVICE_KEYS}
+    if "device" in found:
+        keep_axis(
+            found["device"], {**(found["environment"].values if "environment" in found else {}), **rendered}
+        )
     begun = completed(found["device"], typed) if "device" in found else {}
-    device = specified_device(found, {key: text for key, text in typed.items() if key in DEVICE_KEYS})
-    of_environment = {key: text for key, text in typed.items() if key not in DEVICE_KEYS}
-    if "environment" in found or of_environment:
-        environment = build_environment(environment_table(found, of_environment), device.motion)
+    if "environment" in found or rendered:
+        loop = built(*merged(found, typed))
+        device, environment = loop.device, loop.environment
     else:
+        device = specified_device(found, typed)
         environment = Wall(stiffness=_stiffness(device))
     law = with_laws(environment, found.get("law"), laws, device.motion)
-    return State.of(device, law).with_begun(begun)
+    return State.of(device, law).with_begun(begun).with_angles(angles_typed())
 
 
 def own_device(kind: str) -> Device:

@@ -2,6 +2,8 @@
 
     ?device.damping=0.15 N*s/m&device.rate=1 kHz&environment.type=wall&environment.stiffness=300 N/m
 
+The page answers in the angle of the question, which stands in the address too: answers.angle=deg.
+
 The keys are those of a specification with the name of their table before them, the values its texts with
 their units; a list or a table is written as TOML.  All of it is read by the specification's own reader.
 """
@@ -9,7 +11,7 @@ their units; a list or a table is written as TOML.  All of it is read by the spe
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
@@ -22,9 +24,10 @@ from zwidth.environment import Environment
 from zwidth.errors import InputError
 from zwidth.explorer.scale import usual
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.spoken import angles_in, answers_in
 from zwidth.specification.environments import build_environment
 from zwidth.specification.laws import ROW, with_laws
-from zwidth.specification.read import WITH_LAWS, Specification, build_device, tables_of
+from zwidth.specification.read import WITH_LAWS, Specification, build_device, keep_axis, tables_of
 from zwidth.specification.table import Table, plain, quoted
 from zwidth.specification.write import tables, toml
 
@@ -37,8 +40,11 @@ LARGEST_FILE = 64 * 1024
 BEGUN = "begun"
 """Names the table of those numbers of the device that nobody gave: the page begins with them, and says so."""
 
-EXTRAS = ("coupling", "operator", BEGUN)
-"""Tables beside those of the loop: what joins two of its arms, the hand that touches it, and `BEGUN`."""
+ANSWERS = "answers"
+"""Names the table with the `angle` in which the page answers."""
+
+EXTRAS = ("coupling", "operator", BEGUN, ANSWERS)
+"""Tables beside those of the loop: what joins two of its arms, the hand, `BEGUN` and `ANSWERS`."""
 
 Values = Mapping[str, object]
 
@@ -114,6 +120,19 @@ class State:
         """With these numbers of the device marked as nobody's measurement, and no others."""
         extras = {name: values for name, values in self.extras.items() if name != BEGUN}
         return replace(self, extras={**extras, BEGUN: dict(begun)} if begun else extras)
+
+    @property
+    def angles(self) -> tuple[str, ...]:
+        """In which angles the page answers: deg, turn, rpm; none are radians."""
+        return tuple(str(self.extras.get(ANSWERS, {}).get("angle", "")).split())
+
+    def with_angles(self, typed: Iterable[str]) -> State:
+        """Answering in these angles, if there are any; in radians if they are all that was typed."""
+        kept = sorted(set(typed) - {"rad"})
+        if not kept and not set(typed):
+            return self
+        extras = {name: values for name, values in self.extras.items() if name != ANSWERS}
+        return replace(self, extras={**extras, ANSWERS: {"angle": " ".join(kept)}} if kept else extras)
 
     def changed(self, path: str, value: object) -> State:
         """With one value in the place of another; None takes it out.
@@ -212,7 +231,11 @@ def from_query(query: Sequence[tuple[str, str]]) -> State:
     for name in ("device", "environment"):
         if name not in found:
             raise InputError(f"the address has no {name}: give a {name}.… as well")
-    return State(found["device"], found["environment"], laws, extras).settled()
+    state = State(found["device"], found["environment"], laws, extras)
+    if ANSWERS not in extras:
+        state = state.with_angles(angles_in([state.device, state.environment, *laws]))
+    with answers_in(*state.angles):  # what is no angle is refused
+        return state.settled()
 
 
 def _is_table(head: str) -> bool:
@@ -289,6 +312,8 @@ def from_file(text: str, name: str, shown: State) -> Given:
         return _rendered(found, shown)
     if not {"name", "catalogue"} & set(found["device"].values):
         found["device"].values["name"] = plain(name).removesuffix(".toml")
+    if "environment" in found:
+        keep_axis(found["device"], found["environment"].values)
     begun = completed(found["device"])
     device = build_device(found["device"])
     if "environment" not in found:
@@ -296,7 +321,8 @@ def from_file(text: str, name: str, shown: State) -> Given:
     row = found.get("law")
     environment = build_environment(found["environment"], device.motion)
     state = State.of(device, with_laws(environment, row, None, device.motion))
-    return Given(state.with_begun(begun), device, begun)
+    typed = angles_in([table.values for table in found.values()])
+    return Given(state.with_begun(begun).with_angles(typed), device, begun)
 
 
 def _rendered(found: Mapping[str, Table], shown: State) -> Given:

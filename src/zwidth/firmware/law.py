@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from zwidth.firmware.program import Cells, Program, Variable
 from zwidth.firmware.specialise import specialised
 from zwidth.loop.law import LIMIT, STEP, sampled_force, sampled_force_at
 from zwidth.passivity.bounding import is_bounded
+from zwidth.quantity.exact import Interval
+from zwidth.quantity.text import in_words
 from zwidth.servo.packing import pack
 
 MEMORY = "memory"
@@ -76,9 +78,10 @@ def law_program(device: Device, environment: Environment | object, *, single: bo
         can be emitted.
     """
     if not device.is_certain:
+        keys = (f.name for f in fields(device))
+        named = ", ".join(in_words(key) for key in keys if isinstance(getattr(device, key), Interval))
         raise InputError(
-            "a machine runs one law with one period: give single values for the intervals, those that "
-            "you take"
+            f"a machine runs one law with one period: give a single value, the one that you take, for {named}"
         )
     law = as_environment(environment)
     packed = pack(device, law, 0.0, _SMALL, single=single)

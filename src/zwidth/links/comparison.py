@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from math import isfinite
+from math import ceil, isfinite
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from zwidth.bench.scores import static_stiffness
 from zwidth.device import Device
+from zwidth.errors import InputError
 from zwidth.links.attack import most_taken
 from zwidth.links.feel import felt_stiffness
 from zwidth.links.held_waves import HeldWaves
@@ -29,7 +30,7 @@ from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.parameter import parameters_of, read_number
-from zwidth.quantity.text import unit_text
+from zwidth.quantity.text import readable, unit_text
 from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
@@ -62,6 +63,8 @@ class LinkComparison(Documented):
         The link.
     traces
         By port: `stroke` and `press`.
+    held_back
+        For how long the loops of leader and follower are to keep each force back [s]; () where they need not.
     """
 
     FORMAT: ClassVar[str] = "zwidth links 1"
@@ -70,6 +73,7 @@ class LinkComparison(Documented):
     scores: xr.Dataset
     schedule: Schedule
     traces: Mapping[str, Mapping[str, xr.Dataset]]
+    held_back: tuple[Fraction, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """The scores by port, a unit in every key of a physical quantity."""
@@ -83,7 +87,8 @@ class LinkComparison(Documented):
             }
             for name in self.scores["port"].values
         }
-        return {"format": self.FORMAT, "link": self.schedule.describe(), "ports": ports}
+        held = {"held_back_s": [float(time) for time in self.held_back]} if self.held_back else {}
+        return {"format": self.FORMAT, "link": self.schedule.describe(), **held, "ports": ports}
 
     def report(self) -> Iterable[Part]:
         """Which ports are passive over every such link, the link, and a table with a row for each port."""
@@ -100,6 +105,12 @@ class LinkComparison(Documented):
         passive = [cells[0] for cells in rows if cells[1] == "passive"]
         yield f"passive over every link that makes up no packets: {', '.join(passive) or 'none'}"
         yield f"the link of these numbers: {self.schedule.describe()}"
+        if self.held_back:
+            times = " and ".join(dict.fromkeys(readable(float(time), "s") for time in self.held_back))
+            yield (
+                f"each force is kept back by {times} more, until a sample ends: of loops that do so alone is "
+                "this proved"
+            )
         yield ""
         yield Table(heads=heads, rows=rows, lefts=2)
 
@@ -177,6 +188,7 @@ def compare(
     impedance: RealLike | None = None,
     smoothing: RealLike = 0,
     ports: Mapping[str, Ends] | None = None,
+    hold_back: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> LinkComparison:
     """Lead, press and attack two devices that are joined over one link by each kind of port.
@@ -193,16 +205,24 @@ def compare(
         Of the port with a ledger [s].
     ports
         By name, leader's and follower's, in the place of `standard_ports`.
+    hold_back
+        True for devices whose delay ends within a sample, in loops that keep each force back until it ends.
     progress
         Told (kinds of port done, kinds in all).
 
     Raises
     ------
     InputError
-        If the devices do not fit together, or have no mass.
+        If the devices do not fit together, or have no mass; or ports are given and hold_back.
     """
     link = Schedule() if schedule is None else schedule
     other = leader if follower is None else follower
+    held: tuple[Fraction, ...] = ()
+    if hold_back and ports is not None:
+        raise InputError("hold_back is for the standard ports: give ports of devices with the longer delay")
+    if hold_back:
+        (leader, near_time), (other, far_time) = (_held_back(device) for device in (leader, other))
+        held = (near_time, far_time) if near_time or far_time else ()
     kinds = standard_ports(leader, other, link, impedance, smoothing) if ports is None else ports
     rows: dict[str, dict[str, Any]] = {}
     traces = {}
@@ -212,7 +232,18 @@ def compare(
         check_ends(near, far)
         traces[name] = {"stroke": _stroke(near, far, link), "press": _press(near, far, link)}
         rows[name] = {**_taken(near, far, link), **_measured(traces[name])}
-    return LinkComparison(_dataset(rows, leader.motion), link, traces)
+    return LinkComparison(_dataset(rows, leader.motion), link, traces, held)
+
+
+def _held_back(device: Device) -> tuple[Device, Fraction]:
+    """The device in a loop that keeps each force back until a sample ends, and for how long [s].
+
+    With another delay it is another loop: that of the longer one is no bound for that of the shorter, in
+    which two forces act in one period.
+    """
+    delay, period = device.exact("delay"), device.exact("sample_period")
+    whole = ceil(delay / period) * period
+    return device.replace(delay=Exact(whole)), whole - delay
 
 
 def _taken(near: Port, far: Port, link: Schedule) -> dict[str, Any]:

@@ -183,7 +183,8 @@ def _samples_late(device: Device) -> int:
         raise InputError(
             f"from reading to force a port takes whole sample periods, at most {memory.MOST_LATE}, got "
             f"{float(late):g}: else two forces act in one period, whose two displacements are read as one; "
-            "keep each force back until the next reading, and give delay as that"
+            "let the loop keep each force back until the sample ends, which hold_back, or --hold-back, takes "
+            "for granted"
         )
     return int(late)
 

@@ -2,8 +2,9 @@
 
     b ≥ (2d + 1) K T/2 + |B| Σ|w_j|   and   f_c ≥ (K + |B| ‖h_v‖₁) Δ/2
 
-At one B both right sides grow with K: what holds at the largest K said to be passive holds at all 0 ≤ K
-below it.  So one certificate of that wall covers its column.
+At one B both right sides grow with K, and so does what a delay of part of a sample asks for: what holds
+at the largest K said to be passive holds at all 0 ≤ K below it.  So one certificate of that wall covers
+its column.
 """
 
 from __future__ import annotations

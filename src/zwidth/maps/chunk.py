@@ -40,7 +40,9 @@ def _speed(contact: Contact | None, k: Array, b: Array, passive: NDArray[np.bool
     stiff, damped = k[:, None] * (1 + _SHY), np.abs(b)[None, :] * (1 + _SHY)
     friction = (stiff + contact.variation * damped) * contact.half_step * (1 + _SHY)
     surplus = contact.friction * (1 - _SHY) - friction
-    deficit = (contact.hold * stiff + contact.gain * damped) * (1 + _SHY) - contact.damping * (1 - _SHY)
+    linear, asked = contact.hold * stiff + contact.gain * damped, contact.gain * damped
+    root = np.sqrt(linear**2 + contact.part * (contact.period * stiff + 2 * asked) ** 2)
+    deficit = (linear + root) / 2 * (1 + _SHY) - contact.damping * (1 - _SHY)
     with np.errstate(divide="ignore", invalid="ignore"):
         speed = np.where((surplus > 0) & (deficit > 0), surplus / deficit * (1 - _SHY), 0.0)
     return np.where(passive, np.inf, speed)

@@ -5,8 +5,13 @@
 
 with g = Σ|w_j| and v = T ‖h_v‖₁ of the velocity estimate: the two conditions for contact made and
 broken, and what is left of them for a hand of bounded speed (docs: contact made and broken).
-K_max is rational, so that a cell is passive by an exact comparison.  With a delay of part of a sample, or a
-filter whose response does not end, no condition covers a wall with damping; a spring alone is compared with
+K_max is rational, so that a cell is passive by an exact comparison.  With a delay of d + α samples,
+0 < α < 1, it is the root of
+
+    b (b − Q) = α(1 − α) (K T + 2 g|B|)²/4,    Q = (2d + 1 + 2α) K T/2 + g|B|,    2 b_need = Q + √(Q² + …),
+
+rounded down.  With a filter whose response does not end no condition covers a wall with damping; a spring
+alone is compared with
 
     b² − b (K T/2)(2d + 1 + 2α) − ¼ T² α(1 − α) K² ≥ 0,    2 b ≥ (K T/2)(2d + 1 + 2α),    f_c ≥ K Δ/2.
 """
@@ -27,12 +32,14 @@ from zwidth.maps.request import Array, Request
 from zwidth.maps.sustained import sustained_walls
 from zwidth.passivity.decision import decide
 from zwidth.passivity.formulas.delayed_spring import spring_stiffness
-from zwidth.passivity.linear.contact import damped_wall
+from zwidth.passivity.linear.contact import damped_wall, root_above
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact
 from zwidth.stability.known_hand.characteristic import Family, as_floats, bilinear, family
 from zwidth.stability.known_hand.coupled import motion_of
 from zwidth.stability.known_hand.crossing import last_stable, plain
+
+_NOT_COVERED = "walls with this velocity filter, whose response does not end"
 
 _BITS = 192
 """Of the coefficients before they are rounded to doubles."""
@@ -52,8 +59,10 @@ class HandPlan(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """The two conditions for contact made and broken as numbers: see above."""
+    """The two conditions for contact made and broken as numbers: see above; `part` is α(1 − α)."""
 
+    period: float
+    part: float
     hold: float
     gain: float
     variation: float
@@ -102,7 +111,7 @@ def plan(asked: Request) -> Plan:
         limit=np.array(ends),
         contact=None if contact is None else Contact(*(float(value) for value in contact)),
         hands=tuple(_hand(name, motion_of(asked.device, hand), velocity) for name, hand in asked.hands),
-        not_covered="" if contact is not None else _why(asked),
+        not_covered="" if contact is not None else _NOT_COVERED,
     )
 
 
@@ -127,22 +136,17 @@ def _spring_passes(asked: Request, stiffness: Fraction) -> bool:
     return viscous and 2 * device.exact("coulomb_friction") >= stiffness * device.exact("resolution")
 
 
-def _why(asked: Request) -> str:
-    late = asked.device.exact("delay") / asked.device.exact("sample_period")
-    if late.denominator != 1:
-        return "walls with damping and a delay of part of a sample"
-    return "walls with this velocity filter, whose response does not end"
-
-
 def _contact(asked: Request, period: Fraction) -> tuple[Fraction, ...] | None:
     """The numbers of `Contact`, exact; None where no condition covers the loop."""
     device = asked.device
     wall = Wall(1, 1, velocity_filter=asked.velocity_filter)
-    unit, whole = damped_wall(wall, period), device.exact("delay") / period
+    unit, late = damped_wall(wall, period), device.exact("delay") / period
     if unit is None or decide(device, wall).contact_damping is None:
         return None
     return (
-        (2 * whole + 1) * period / 2,
+        period,
+        late % 1 * (1 - late % 1),
+        (2 * late + 1) * period / 2,
         unit.estimate.gain,
         unit.estimate.variation / period,
         device.exact("damping"),
@@ -167,9 +171,22 @@ def _positive(velocity: RationalFunction) -> RationalFunction:
 
 def _limit(contact: tuple[Fraction, ...], b: Fraction) -> Fraction:
     """K_max for one |B|; below 0 where no stiffness will do."""
-    hold, gain, variation, damping, friction, half_step = contact
-    viscous = (damping - gain * b) / hold
+    period, part, hold, gain, variation, damping, friction, half_step = contact
+    viscous = _viscous_limit(period, part, hold, damping, gain * b)
     return viscous if half_step == 0 else min(viscous, friction / half_step - variation * b)
+
+
+def _viscous_limit(
+    period: Fraction, part: Fraction, hold: Fraction, damping: Fraction, asked: Fraction
+) -> Fraction:
+    """The larger root K of (part/4) T² K² + m K − n, rounded down; below 0 where no stiffness will do."""
+    left = damping - asked
+    if part == 0:
+        return left / hold
+    m, n = damping * hold + part * period * asked, damping * left - part * asked**2
+    if n <= 0 or left <= 0:
+        return min(n, left)
+    return 2 * n / (m + root_above(m**2 + part * period**2 * n))
 
 
 def _hand(name: str, motion: Motion, velocity: RationalFunction) -> HandPlan:

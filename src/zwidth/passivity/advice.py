@@ -64,7 +64,8 @@ class Advice:
 
     `kind` is "change" for a loop that is not passive and "slack" for one that
     is; `to` is None where no value of this parameter alone would do, and inf
-    ("any" as plain data) where it may have any value.
+    ("any" as plain data) where it may have any value.  `is_alone` where it is no limit
+    that keeps it where it is: of values beside it nothing is proved or refuted.
     """
 
     parameter: str
@@ -73,6 +74,7 @@ class Advice:
     unit: str
     kind: Literal["change", "slack"]
     text: str
+    is_alone: bool = False
 
     def to_dict(self) -> dict[str, object]:
         """As plain data: parameter, from, to, unit, kind, text."""
@@ -122,9 +124,18 @@ def in_lines(advice: Iterable[Advice], passive: bool) -> InLines:
     return InLines(
         "slack" if passive else "what to change, any one of",
         tuple(item.text for item in ordered if item.to is not None and item not in at_limit),
-        f"exactly at the limit: {_names(at_limit)}" if at_limit else "",
+        "; ".join(_where_it_is(at_limit)),
         f"{'no slack' if passive else 'no change alone would do'}: {_names(useless)}" if useless else "",
     )
+
+
+def _where_it_is(advice: Iterable[Advice]) -> Iterator[str]:
+    """Those at a limit, and those of whose neighbours nothing is known."""
+    sorted_out = {alone: [a for a in advice if a.is_alone is alone] for alone in (False, True)}
+    if sorted_out[False]:
+        yield f"exactly at the limit: {_names(sorted_out[False])}"
+    if sorted_out[True]:
+        yield f"proved where it is, and for delays of whole samples alone: {_names(sorted_out[True])}"
 
 
 def _rank(advice: Advice) -> int:
@@ -147,7 +158,8 @@ class Knob:
     """A number that one can turn: `holds` of a value that is proved; with `more`, more of it is safer.
 
     `parameter` is a name of the glossary, behind "leader." or "follower." where it is of one arm.  Where
-    its limit may be looked for first says `likely`.
+    its limit may be looked for first says `likely`; `in_samples`, that it is proved for delays of whole
+    samples alone.
     """
 
     parameter: str
@@ -156,6 +168,7 @@ class Knob:
     more: bool
     name: str
     likely: Likely = nowhere
+    in_samples: bool = False
 
 
 def advise(
@@ -202,10 +215,12 @@ class _Knobs:
     def every(self, stiffest: Likely) -> Iterator[Knob]:
         """All of them, from the device to the law."""
         period = self.device.exact("sample_period")
-        yield self._searched("rate", 1 / period, self._device("rate"), True, "rate", float(period))
-        yield from self._losses()
         delay = self.device.exact("delay")
-        yield self._searched("delay", delay, self._device("delay"), False, "delay", float(period))
+        rate = self._searched("rate", 1 / period, self._device("rate"), True, "rate", float(period))
+        yield replace(rate, in_samples=delay > 0 and self._in_samples)
+        yield from self._losses()
+        later = self._searched("delay", delay, self._device("delay"), False, "delay", float(period))
+        yield replace(later, in_samples=self._in_samples)
         if has_stiffness(self.environment):
             now, change = stiffness_of(self.environment).fraction, self._law("stiffness")
             yield Knob("stiffness", float(now), self._proved(change, now), False, "stiffness", stiffest)
@@ -261,6 +276,15 @@ class _Knobs:
         return lambda value: self._here if value == now else provable(change, value, self.contact)
 
     @cached_property
+    def _in_samples(self) -> bool:
+        """True where contact made and broken is proved, and with a delay half a sample longer never is."""
+        decision = decide(self.device, self.environment)
+        if decision.is_spring or not (self.contact or decision.is_clamped):
+            return False
+        longer = self.device.exact("delay") + self.device.exact("sample_period") / 2
+        return decide(self.device.replace(delay=Exact(longer)), self.environment).contact_damping is None
+
+    @cached_property
     def _here(self) -> bool:
         return provable(lambda _: (self.device, self.environment), Fraction(0), self.contact)
 
@@ -275,7 +299,8 @@ def turn(knob: Knob, motion: str, kind: Literal["change", "slack"], grain: int =
         to = None
     unit = GLOSSARY[knob.parameter.rpartition(".")[2]].unit_for(motion)
     shown = None if to is None else outward(to, knob, spoken(unit)[0])
-    return Advice(knob.parameter, knob.current, to, unit, kind, _text(knob, shown, unit, kind))
+    is_alone = knob.in_samples and to == knob.current
+    return Advice(knob.parameter, knob.current, to, unit, kind, _text(knob, shown, unit, kind), is_alone)
 
 
 def _last_proved(knob: Knob, grain: int) -> float | None:
@@ -326,6 +351,8 @@ def _text(knob: Knob, to: float | None, unit: str, kind: str) -> str:
         return f"{verb} the {knob.name} from {now} to {readable(to, unit, 6)}"
     if to is None or to == inf:
         return f"{knob.name} may take any value" if to == inf else f"{knob.name} has no slack"
+    if to == knob.current and knob.in_samples:
+        return f"{knob.name} is proved where it is, {now}, and for delays of whole samples alone"
     if to == knob.current:
         return f"{knob.name} is exactly at its limit, {now}"
     bound = "as low as" if knob.more else "up to"

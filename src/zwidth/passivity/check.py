@@ -241,7 +241,7 @@ def _proofs(
     if corners_decide(device, law, all(d.is_spring or d.covers_contact for d in decisions)):
         return [certify(d) for d in decisions]
     shortest, longest = ends(device.delay)
-    if any(d.is_clamped for d in decisions):  # contact is covered for delays of whole samples only
+    if any(d.is_clamped for d in decisions):  # contact is covered for certain delays only
         return None
     if shortest == longest or not corners_decide(device.replace(delay=Exact(shortest)), law):
         return None

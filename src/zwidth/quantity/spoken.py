@@ -11,7 +11,7 @@ has one unit.  In Python nothing is noted: answers are in radians, or as `answer
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
@@ -79,6 +79,23 @@ def note(unit: str) -> None:
     noted = _NOTED.get()
     if noted is not None:
         noted.update(_WORDS[word] for word in _WORD.findall(unit) if word in _WORDS)
+
+
+def angles_in(value: object) -> frozenset[str]:
+    """The angles in the units of a text, a list or a table: {"deg"} of "0.5 N*m/deg"; rad, deg, turn, rpm."""
+    if isinstance(value, str):
+        words = _WORD.findall(value.replace("°", " deg "))
+        radians = {"rad" for word in words if word.removeprefix("m") == "rad"}
+        return frozenset({_WORDS[word] for word in words if word in _WORDS} | radians)
+    parts = (
+        value.values() if isinstance(value, Mapping) else value if isinstance(value, (list, tuple)) else ()
+    )
+    return frozenset().union(*map(angles_in, parts))
+
+
+def angles_typed() -> frozenset[str]:
+    """Those that were noted so far."""
+    return frozenset(_NOTED.get() or ())
 
 
 def spoken(unit: str) -> tuple[float, str]:

@@ -14,7 +14,7 @@ from zwidth.errors import InputError
 from zwidth.specification.environments import build_environment
 from zwidth.specification.laws import with_laws
 from zwidth.specification.pairs import pair_of
-from zwidth.specification.read import PAIR_TABLES, WITH_LAWS, read_tables, specified_device
+from zwidth.specification.read import PAIR_TABLES, WITH_LAWS, keep_axis, read_tables, specified_device
 
 
 class Loaded(NamedTuple):
@@ -56,6 +56,8 @@ def load(*sources: Path | str) -> Loaded | Any:
         if len(sources) > 1:
             raise InputError(f"{joined[0].label}: a file of two arms that follow each other is read alone")
         return pair_of(tables)
+    if "environment" in tables and "device" in tables:
+        keep_axis(tables["device"], tables["environment"].values)
     device, laws = specified_device(tables, {}), tables.get("law")
     if "environment" not in tables:
         if laws is not None:

@@ -27,6 +27,7 @@ from zwidth.errors import InputError
 from zwidth.missing import did_you_mean, near_file
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.spoken import angles_in
 from zwidth.quantity.units import parse
 from zwidth.specification.environments import build_environment, option_keys
 from zwidth.specification.laws import NOT_PROVED, ROW
@@ -114,7 +115,19 @@ def merged(tables: Mapping[str, Table], overrides: Mapping[str, str] | None = No
     names = {key.replace("-", "_"): value for key, value in (overrides or {}).items()}
     device_names = {key: value for key, value in names.items() if key in DEVICE_KEYS}
     environment_names = {key: value for key, value in names.items() if key not in DEVICE_KEYS}
-    return _device_table(tables, device_names), environment_table(tables, environment_names)
+    device, environment = _device_table(tables, device_names), environment_table(tables, environment_names)
+    keep_axis(device, environment.values)
+    return device, environment
+
+
+def keep_axis(device: Table, rendered: object) -> None:
+    """Leave a device about its axis where what it renders is told in angles, not at the handle.
+
+    The radius only says where the same device is looked at: K [N·m/rad] about the axis is K/r² at the handle.
+    """
+    if "handle_radius" in device.values and angles_in(rendered):
+        del device.values["handle_radius"]
+        device.values.setdefault("motion", "rotary")
 
 
 def built(device_table: Table, environment: Table, in_range: bool = False) -> Specification:

@@ -1,4 +1,5 @@
-"""A damped wall touched and left: b ≥ (2d + 1) K T/2 + |B| Σ|w|  and  2 f_c ≥ (K + |B| ‖h_v‖₁) Δ.
+"""A damped wall touched and left: b ≥ (2d + 1) K T/2 + |B| Σ|w|  and  2 f_c ≥ (K + |B| ‖h_v‖₁) Δ; part of a
+sample late b ≥ ½ (Q + √(Q² + α(1 − α) S²)) with Q = (2d + 1 + 2α) K T/2 + |B| Σ|w|, S = K T + 2 |B| Σ|w|.
 
 H = K + B W(ζ) (1 − ζ)/T.  The weights (2, −1) have Σ|w| = 3 and ‖h_v‖₁ T = |2| + |−3| + |1| = 6; a pole p
 has 1
@@ -7,6 +8,7 @@ and 2 (1 − p).
 
 from __future__ import annotations
 
+from fractions import Fraction
 from importlib import import_module
 from typing import Any
 
@@ -30,7 +32,12 @@ FILTERED = contact(
     4, -3, {"pole": "3/4"}, ["5/2", "-3/2"], [1, "-3/4"],
     damping_N_s_per_m=4, sample_period_s="1/2", coulomb_friction_N=7, resolution_m=2,
 )  # fmt: skip
-LESS = "is below (2d + 1) K T/2"
+# T = ½, half a sample late: Q = 4, S = 6, b = ½ (4 + √(4² + 6²/4)) = 9/2
+HALF = contact(
+    4, 2, [1], [8, -4], [1, 0],
+    damping_N_s_per_m="9/2", delay_s="1/4", sample_period_s="1/2", coulomb_friction_N=6, resolution_m=1,
+)  # fmt: skip
+LESS = "is below what hold"
 OTHER = "is not the wall"
 
 
@@ -94,11 +101,8 @@ CASES = [
     accepted("a spring and no weights", contact(4, 0, [], [4], [1], damping_N_s_per_m=2)),
     accepted("a spring and B = 0", contact(4, 0, [1], [4], [1], damping_N_s_per_m=2)),
     refused("no surface", put(DAMPED, {"loop.unilateral": False}), "acts inside only"),
-    refused(
-        "part of a sample",
-        put(DAMPED, {"loop.delay_s": "1/4", "loop.damping_N_s_per_m": 99}),
-        "whole number of samples",
-    ),
+    *edge("half a sample late", HALF, put(HALF, {"loop.damping_N_s_per_m": Fraction(9, 2) - TINY}), LESS),
+    refused("half a sample late, undamped", put(HALF, {"loop.damping_N_s_per_m": 0}), LESS),
     refused("K < 0", contact(-1, 0, [], [-1], [1], damping_N_s_per_m=9), "stiffness_N_per_m must be ≥ 0"),
     accepted("K = 0", contact(0, 0, [], [0], [1])),
     # p = 1: W = 0, nothing is damped

@@ -96,6 +96,11 @@ class Arm(ABC):
         """m, the joints that have a motor or move freely."""
 
     @property
+    def sliding(self) -> tuple[bool, ...]:
+        """Of each joint whether it slides; the others turn."""
+        return (False,) * self.joint_count
+
+    @property
     def turns(self) -> int:
         """How many of the hand's coordinates, the last ones, are rotations; 0: the hand is a point."""
         return 0

@@ -131,6 +131,11 @@ class DescribedArm(Arm):
         links = [i for i in named if self.model.frames[i].type == pin.FrameType.BODY]
         return (links or named)[-1]
 
+    @property
+    def sliding(self) -> tuple[bool, ...]:
+        """Of each joint whether it slides; the others turn."""
+        return tuple(slides(self.model, i) for i in range(self.joint_count))
+
     def placements(self) -> tuple[list[Placed], Array]:
         """The joints between base and hand, z turned to each axis, and the hand in the last frame [m]."""
         data, joints, before = self.model.createData(), list[Placed](), np.eye(3)

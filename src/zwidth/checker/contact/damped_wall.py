@@ -10,7 +10,7 @@ from ..document.fields import Either, Number, Read, Record, document, numbers
 from ..document.refusal import Invalid
 from ..document.unit import DAMPING, STIFFNESS
 from ..exact.polynomial import add, multiply
-from ..loop.loop import LOOP, Loop, loop_of, require_law, require_surface, require_whole_delay
+from ..loop.loop import LOOP, Loop, loop_of, require_law, require_surface
 
 _POLE = Record({"pole": Number(least=0, below=1)})
 WALL = Record(
@@ -33,19 +33,22 @@ class _Estimate(NamedTuple):
 
 
 def contact(told: Read) -> str:
-    """b ≥ (2d+1) K T/2 + |B| Σ|w_j| and 2 f_c ≥ (K + |B| ‖h_v‖₁) Δ, with K ≥ 0.
+    """b (b − Q) ≥ α(1 − α) (K T + 2 |B| Σ|w_j|)²/4, b ≥ Q, and 2 f_c ≥ (K + |B| ‖h_v‖₁) Δ, with K ≥ 0.
 
-    Storage: ½ K max(x − Δ/2, 0)², and of each past move its square times what
-    the velocity estimate and the delay will still make of it.
+    Q = (2d + 1 + 2α) K T/2 + |B| Σ|w_j|.  Storage: ½ K max(x − Δ/2, 0)², and of each past move its
+    square times what the velocity estimate and the delay will still make of it.  Where a delay of d + α
+    samples changes the force inside one, the hand leans on the stronger of the two: what that is worth, the
+    square of their difference, is in the sum no more than the right side times that of the moves.
     """
     p, law = loop_of(told.loop), told.law
     require_surface(p)
-    require_whole_delay(p)
     k, b = law.stiffness, abs(law.virtual_damping)
     estimate = _estimate(law.weights)
     _require_same_law(p, k, law.virtual_damping, estimate)
-    if p.damping < (2 * p.whole + 1) * k * p.period / 2 + b * estimate.gain:
-        raise Invalid("the damping is below (2d + 1) K T/2 + |B| Σ|w|")
+    reach = k * p.period / 2 * (2 * p.whole + 1 + 2 * p.part) + b * estimate.gain
+    inside = p.part * (1 - p.part) / 4 * (k * p.period + 2 * b * estimate.gain) ** 2
+    if p.damping < reach or p.damping * (p.damping - reach) < inside:
+        raise Invalid("the damping is below what hold, delay and virtual damping of this wall need")
     if 2 * p.coulomb_friction < (k + b * estimate.variation / p.period) * p.resolution:
         raise Invalid("the Coulomb friction is below (K + |B| ‖h_v‖₁) Δ/2")
     return "b and f_c cover this wall, clamped or not, with contact made and broken"

@@ -27,6 +27,7 @@ from zwidth.cli.asking.written import Row, Written, table
 from zwidth.device import Device
 from zwidth.environment import Wall
 from zwidth.passivity.check import check
+from zwidth.quantity.spoken import spoken
 from zwidth.specification.read import build_device, tables_of
 
 __all__ = ["QUESTIONS", "described"]
@@ -52,7 +53,7 @@ def described(ask: Asker, path: Path) -> Written:
     rows += [sheet.get(key, row) for key, row in measured.items()]
     ask.finish("a device")
     text = table("device", _HEAD, rows)
-    return Written(text, _next(text, [row.key for row in rows if row.value is None], path))
+    return Written(text, _next(text, [row.key for row in rows if row.value is None], path, motion))
 
 
 def _motion(ask: Asker) -> str:
@@ -76,12 +77,13 @@ def _encoder(ask: Asker, motion: str) -> Row:
     return Row("resolution", None, question.unknown) if answer is None else read_encoder(answer, motion)
 
 
-def _next(text: str, unknown: list[str], path: Path) -> list[str]:
+def _next(text: str, unknown: list[str], path: Path, motion: str) -> list[str]:
     """What to type now: a check, or what must be measured before it."""
     name = shlex.quote(str(path))
     missing = [key for key in NEEDED if key in unknown]
     if missing:
-        tried = f"{name} {guessed(missing)} --stiffness 100"
+        stiffness = "0.1Nm/deg" if motion == "rotary" and RADIUS.key not in text else "100"
+        tried = f"{name} {guessed(missing, motion)} --stiffness {stiffness}"
         first = [*(line for key in missing for line in _MEASURE[key]), "to try what if, with a guess:"]
     else:
         device = build_device(tables_of(text, path.name, ("device",))["device"])
@@ -96,9 +98,10 @@ def _next(text: str, unknown: list[str], path: Path) -> list[str]:
     ]
 
 
-def guessed(missing: Iterable[str]) -> str:
-    """Options with a guess of what a device must have and lacks."""
-    guesses = {"rate": '--rate "1 kHz"', "damping": "--damping 0.1"}
+def guessed(missing: Iterable[str], motion: str) -> str:
+    """Options with a guess of what a device must have and lacks; of one that turns about its axis."""
+    damping = "0.01Nms/rad" if motion == "rotary" else "0.1"
+    guesses = {"rate": '--rate "1 kHz"', "damping": f"--damping {damping}"}
     return " ".join(guesses[key] for key in missing)
 
 
@@ -114,7 +117,10 @@ _MEASURE = {
 def _stiffness(device: Device) -> str:
     """A stiffness to begin with: near the largest passive one, cut to two digits."""
     largest = getattr(check(device, Wall(1)), "max_stiffness", None)
+    turns = device.motion == "rotary"
     if largest is None or not 0 < largest < inf:
-        return "100"
-    unit = 10.0 ** (floor(log10(largest)) - 1)
-    return f"{floor(largest / unit) * unit:g}"
+        return "0.1Nm/deg" if turns else "100"
+    factor, told = spoken("N*m/rad") if turns else (1.0, "")
+    unit = 10.0 ** (floor(log10(largest * factor)) - 1)
+    number = f"{floor(largest * factor / unit) * unit:.4g}"
+    return f"{number}{told.replace('*', '')}" if turns else number

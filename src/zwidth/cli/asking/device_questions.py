@@ -103,7 +103,8 @@ RADIUS = _question(
 def encoder(motion: str) -> Question:
     """What one count of the encoder is."""
     ask = (
-        "Encoder, at the axis of the handle? such as 65536 counts/turn, 2000 lines, 14 bit or 0.09 deg"
+        "Encoder, at the axis of the handle? such as 65536 counts/turn, 2000 lines, 14 bit or 0.09 deg; on a "
+        "motor that turns 17.45 times as often, 980 counts/turn x 17.45"
         if motion == "rotary"
         else "One step of the encoder, at the handle? such as 22.4 um"
     )

@@ -22,6 +22,9 @@ _COUNTED = re.compile(
     re.IGNORECASE,
 )
 
+_GEARED = re.compile(r"(?P<encoder>.+?)\s*(?:[x×]|\btimes\b)\s*(?P<ratio>[0-9.]+)\s*", re.IGNORECASE)
+"""An encoder on the motor, and the turns of the motor in one of the handle."""
+
 
 def read_encoder(answer: str, motion: str) -> Row:
     """The row of the file that says the size of one count.
@@ -41,6 +44,9 @@ def read_encoder(answer: str, motion: str) -> Row:
         need_unit(answer, step, "m", "resolution")
         Device(damping=0, rate=1, resolution=step)
         return Row("resolution", answer)
+    geared = _GEARED.fullmatch(answer)
+    if geared is not None:
+        return _of_the_motor(geared["encoder"], geared["ratio"])
     counted = _COUNTED.fullmatch(answer)
     if counted is None:
         rotary(damping=0, rate=1, resolution=parse_number(answer, "rad", "resolution"))
@@ -52,6 +58,24 @@ def read_encoder(answer: str, motion: str) -> Row:
             f'an encoder has 1 count in a turn or more, got "{answer[:40]}"; of an angle write the unit'
         )
     rotary(damping=0, rate=1, counts_per_turn=counts)
+    return Row("counts_per_turn", counts, remark)
+
+
+def _of_the_motor(encoder: str, typed: str) -> Row:
+    """The row of an encoder on a motor that turns several times in one turn of the handle."""
+    ratio = parse_number(typed, "1", "turns of the motor in one of the handle").fraction
+    if ratio <= 0:
+        raise InputError(f'the motor turns more than 0 times in one turn of the handle, got "{typed[:40]}"')
+    row = read_encoder(encoder, "rotary")
+    if row.key != "counts_per_turn":
+        raise InputError(
+            f'behind "x {typed[:20]}" stand the turns of the motor in one of the handle, and before it the '
+            f'counts in a turn of the motor, as in "980 counts/turn x 17.45"; got "{encoder[:40]}"'
+        )
+    counts = f"{float(parse_number(str(row.value), '1', 'counts').fraction * ratio):.12g}"
+    rotary(damping=0, rate=1, counts_per_turn=counts)
+    of_one = row.remark or f"{row.value} counts in a turn"
+    remark = f"{of_one} of the motor, which turns {typed} times in one of the handle"
     return Row("counts_per_turn", counts, remark)
 
 

@@ -18,6 +18,7 @@ from zwidth.cli.output import print_text
 from zwidth.device import Device
 from zwidth.environment import NonlinearSpring, Wall
 from zwidth.quantity.exact import ends
+from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import readable
 from zwidth.quantity.units import parse_number
 
@@ -49,13 +50,13 @@ def described(ask: Asker, path: Path) -> Written:
         print_text(f"{_DEVICE} is {motion} at the handle, so this is too; --motion says otherwise.")
     same = device if device is not None and device.motion == motion else None
     text = _FILES[kind](_Asked(ask, motion, same))
-    return Written(text, _next(path))
+    return Written(text, _next(path, motion))
 
 
-def _next(path: Path) -> list[str]:
+def _next(path: Path, motion: str) -> list[str]:
     """What to type now, with a guess of what the device lacks."""
     missing = lacking(_DEVICE)
-    guess = f" {guessed(missing)}" if missing else ""
+    guess = f" {guessed(missing, motion)}" if missing else ""
     first = [] if missing is not None else ["the device first:", "  zwidth new device"]
     head = f"next, with a guess of what {_DEVICE} lacks:" if missing else "next:"
     return [*first, head, f"  zwidth check {_DEVICE} {shlex.quote(str(path))}{guess}"]
@@ -114,7 +115,8 @@ def _depth(asked: _Asked, stiffness: str, hardening: str | None) -> tuple[str, s
     most = asked.device.force_limit if asked.device is not None else None
     if most is None or stiff <= 0 or hardening is not None:
         return with_unit(asked.ask.sure(question), unit), ""
-    deepest = f"{float(ends(most)[0] / stiff):.9g} {unit}"
+    factor, told = spoken(unit)
+    deepest = f"{float(ends(most)[0] / stiff) * factor:.9g} {told}"
     limit = readable(float(ends(most)[0]), asked.unit("peak"))
     offered = f"{question.ask}; Enter for {deepest}, where it is {limit}, the largest of {_DEVICE}"
     answer = asked.ask(
@@ -137,11 +139,11 @@ _FILES: dict[str, Callable[[_Asked], str]] = {
 
 
 def _spring(spring: NonlinearSpring, remark: str, motion: str) -> str:
-    """A nonlinear spring as its table."""
+    """A nonlinear spring as its table, in the angle that was typed."""
     way, force = ("rad", "N*m") if motion == "rotary" else ("m", "N")
     positions, forces = (
-        [f"{number:.9g} {unit}" for number in numbers]
-        for numbers, unit in ((spring.positions, way), (spring.forces, force))
+        [f"{number * factor:.9g} {told}" for number in numbers]
+        for numbers, (factor, told) in ((spring.positions, spoken(way)), (spring.forces, spoken(force)))
     )
     rows = [Row("type", "nonlinear-spring"), Row("positions", positions), Row("forces", forces)]
     return table("environment", f"{_HEAD} {remark}.", rows)

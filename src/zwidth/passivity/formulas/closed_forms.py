@@ -311,8 +311,8 @@ def damped_wall_damping(
     d = nonnegative("delay_samples", delay_samples, "a force follows its sample")
     if d.denominator != 1:
         raise InputError(
-            f"delay_samples is a whole number, got {delay_samples}: a force that changes inside a sample "
-            "is not covered"
+            f"delay_samples is a whole number, got {delay_samples}: with a force that changes inside a "
+            "sample a root is asked for, which check takes"
         )
     k = nonnegative("stiffness", stiffness, NEGATIVE_SPRING)
     t = positive("sample_period", sample_period, NO_CLOCK)

@@ -9,7 +9,6 @@ b_0 and f_0 cover contact made and broken by every hand: of a spring, or of a wa
 from __future__ import annotations
 
 from fractions import Fraction
-from math import isqrt
 from typing import Any
 
 from zwidth.device import Device
@@ -18,14 +17,10 @@ from zwidth.errors import InputError
 from zwidth.passivity.certificate import FORMAT, Certificate, wall_document
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.document import loop_document, unit_key
-from zwidth.passivity.linear.contact import DampedWall
-from zwidth.passivity.linear.loop import LinearLoop
+from zwidth.passivity.linear.contact import DampedWall, enough_damping
 from zwidth.quantity.text import exact_text
 
 KIND = "slow hands"
-
-_FINE = 10**12
-"""A root is taken to so many parts of itself, from above."""
 
 
 def slow_hands(device: Device, environment: Environment, speed: Fraction) -> Certificate | None:
@@ -49,7 +44,7 @@ def _enough(decision: Decision) -> tuple[Fraction, Fraction] | None:
     """b_0 and f_0 that cover every hand; None where none are known."""
     if decision.is_spring:
         spring = Fraction(decision.loop.numerator[0], decision.loop.denominator[0])
-        return _spring_damping(decision.loop, spring), spring * decision.setting.resolution / 2
+        return enough_damping(decision.loop, spring), spring * decision.setting.resolution / 2
     wall = decision.wall
     if not (isinstance(wall, DampedWall) and decision.setting.unilateral and wall.stiffness >= 0):
         return None
@@ -57,23 +52,6 @@ def _enough(decision: Decision) -> tuple[Fraction, Fraction] | None:
     if damping is None:
         return None
     return damping, wall.required_friction(decision.setting.resolution, decision.loop.period)
-
-
-def _spring_damping(loop: LinearLoop, stiffness: Fraction) -> Fraction:
-    """The damping for a spring behind a delay of d + α samples, rounded up where it is a root.
-
-    b² − b (KT/2)(2d + 1 + 2α) ≥ (T²/4) α (1 − α) K²
-    """
-    half = stiffness * loop.period / 2
-    linear = half * (2 * loop.whole_delay + 1 + 2 * loop.part_delay)
-    square = linear**2 + 4 * half**2 * loop.part_delay * (1 - loop.part_delay)
-    return linear if loop.part_delay == 0 else (linear + _root_above(square)) / 2
-
-
-def _root_above(square: Fraction) -> Fraction:
-    """√ of a number ≥ 0, rounded up."""
-    scaled = square.numerator * square.denominator * _FINE**2
-    return Fraction(isqrt(scaled) + 1, square.denominator * _FINE)
 
 
 def _covers(decision: Decision, damping: Fraction, friction: Fraction, speed: Fraction) -> bool:

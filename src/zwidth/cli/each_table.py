@@ -1,0 +1,221 @@
+"""Verdicts on several devices beside each other, and what was measured on them."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from io import StringIO
+from math import inf, isfinite
+from pathlib import Path
+from typing import Any, ClassVar
+
+from zwidth.errors import InputError
+from zwidth.passivity.document import unit_key
+from zwidth.passivity.result import Documented
+from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.spoken import spoken
+from zwidth.quantity.text import shown, unit_text
+from zwidth.quantity.units import parse_number
+from zwidth.showing import Part, Table
+from zwidth.specification.table import plain, quoted
+
+LARGEST_FILE = 1 << 20
+"""Bytes of a table of what was measured."""
+
+_UNIT = re.compile(r"\[([^]]*)\]")
+
+
+@dataclass(frozen=True, repr=False)
+class EachDevice(Documented):
+    """What is proved of each device.
+
+    Attributes
+    ----------
+    verdicts
+        By the name of the device, all of one motion.
+    measured
+        From which stiffness on it was seen to shake, where that was measured [N/m; N·m/rad].
+    """
+
+    FORMAT: ClassVar[str] = "zwidth each 1"
+
+    verdicts: Mapping[str, Verdict]
+    measured: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def motion(self) -> str:
+        """ "linear" or "rotary"."""
+        return next(iter(self.verdicts.values())).device.motion
+
+    def largest(self, name: str) -> float | None:
+        """The largest stiffness that is proved [N/m; N·m/rad]; None where none is, or the law has none."""
+        return getattr(self.verdicts[name], "max_stiffness", None)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The verdict on each, with its name and what was measured."""
+        key = f"measured_{unit_key('stiffness', self.motion)}"
+        devices = [
+            {
+                "device": name,
+                **({key: self.measured[name]} if name in self.measured else {}),
+                **verdict.to_dict(),
+            }
+            for name, verdict in self.verdicts.items()
+        ]
+        return {"format": self.FORMAT, "devices": devices}
+
+    def report(self) -> Iterator[Part]:
+        """On how many it is passive and up to where on all, the table, and what it rests on."""
+        yield self._outcomes()
+        yield from self._on_all()
+        yield from self._against_the_measured()
+        yield ""
+        yield Table(heads=self._heads(), rows=list(self._rows()), lefts=2)
+        yield ""
+        yield (
+            "of each device with everything in its ranges, by the closed forms; zwidth check of one says the "
+            "rest"
+        )
+
+    def csv(self) -> str:
+        """The table, units in the heads, for a spreadsheet."""
+        out = StringIO()
+        rows = csv.writer(out, lineterminator="\n")
+        _, unit = spoken(GLOSSARY["stiffness"].unit_for(self.motion))
+        heads = ["device", "outcome", f"largest passive stiffness [{unit}]", "limit"]
+        rows.writerow([*heads, *([f"shook from [{unit}]", "times what is proved"] if self.measured else [])])
+        for name in self.verdicts:
+            more = (
+                [_plain(self._told(self.measured.get(name))), _plain(self._times(name))]
+                if self.measured
+                else []
+            )
+            rows.writerow(
+                [*self._first(name), _plain(self._told(self.largest(name))), self._limit(name), *more]
+            )
+        return out.getvalue()
+
+    def _outcomes(self) -> str:
+        counted = Counter(verdict.outcome for verdict in self.verdicts.values())
+        told = ", ".join(f"{word} on {count}" for word, count in counted.most_common())
+        laws = {verdict.environment.describe(self.motion) for verdict in self.verdicts.values()}
+        law = laws.pop() if len(laws) == 1 else "what each file renders"
+        return f"{law}: {told} of {len(self.verdicts)} devices"
+
+    def _on_all(self) -> Iterator[str]:
+        limits = {name: self.largest(name) for name in self.verdicts}
+        known = {name: limit for name, limit in limits.items() if limit}
+        if len(known) < len(limits):
+            return
+        weakest = min(known, key=lambda name: known[name])
+        if isfinite(known[weakest]):
+            most = self._in_words(known[weakest])
+            yield f"passive on every one of them up to {most}, the limit of {weakest}"
+
+    def _against_the_measured(self) -> Iterator[str]:
+        times = {name: share for name in self.verdicts if (share := self._times(name)) is not None}
+        if not times:
+            return
+        below = [name for name, share in times.items() if share < 1]
+        yield f"shook from {min(times.values()):.3g} to {max(times.values()):.3g} times what is proved"
+        if below:
+            yield (
+                f"shook below what is proved: {', '.join(below)}. A number in its file is too favourable "
+                "(damping, delay), or its loop does something that the file does not say"
+            )
+
+    def _times(self, name: str) -> float | None:
+        limit, seen = self.largest(name), self.measured.get(name)
+        return seen / limit if seen is not None and limit and isfinite(limit) else None
+
+    def _heads(self) -> list[tuple[str, ...]]:
+        unit = unit_text(spoken(GLOSSARY["stiffness"].unit_for(self.motion))[1])
+        more = (("shook from", "times"), (unit, "")) if self.measured else ((), ())
+        return [("", "", "passive up to", *more[0]), ("", "", unit, *more[1])]
+
+    def _rows(self) -> Iterator[tuple[str, ...]]:
+        for name in self.verdicts:
+            more = [self._told(self.measured.get(name)), self._times(name)] if self.measured else []
+            numbers = [self._told(self.largest(name)), *more]
+            yield (
+                *self._first(name),
+                *("–" if n is None else "any" if n == inf else f"{n:.4g}" for n in numbers),
+            )
+
+    def _first(self, name: str) -> tuple[str, str]:
+        return name, self.verdicts[name].outcome
+
+    def _limit(self, name: str) -> str:
+        return str(getattr(self.verdicts[name], "limit", ""))
+
+    def _told(self, stiffness: float | None) -> float | None:
+        factor, _ = spoken(GLOSSARY["stiffness"].unit_for(self.motion))
+        return None if stiffness is None else stiffness * factor
+
+    def _in_words(self, stiffness: float) -> str:
+        return shown(stiffness, GLOSSARY["stiffness"].unit_for(self.motion))
+
+
+def _short(number: float | None) -> str:
+    return "–" if number is None else "any" if number == inf else f"{number:.4g}"
+
+
+def _plain(number: float | None) -> str:
+    return "" if number is None else f"{number:.6g}"
+
+
+def read_measured(path: Path, motion: str) -> dict[str, float]:
+    """From which stiffness on each device was seen to shake [N/m; N·m/rad].
+
+    A line for each device, its name and the stiffness, with a unit or in that of the head: "stiffness [N/m]".
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, a line has no such stiffness above 0, or names a device twice.
+    """
+    rows, unit = _lines(path), GLOSSARY["stiffness"].unit_for(motion)
+    bracket = _UNIT.search(" ".join(rows[0][1:2])) if rows else None
+    found: dict[str, float] = {}
+    for number, row in enumerate(rows, 1):
+        if number == 1 and len(row) > 1 and not any(map(str.isdigit, row[1])):
+            continue  # the head
+        where = f"{plain(path.name)}, line {number}"
+        if len(row) < 2:
+            raise InputError(
+                f'{where}: a device and a stiffness, such as "kit-1, 240 N/m"; got {quoted(",".join(row))}'
+            )
+        name, text = row[0].strip(), row[1].strip()
+        bare = not any(map(str.isalpha, text))
+        try:
+            value = float(
+                parse_number(f"{text} {bracket[1]}" if bracket and bare else text, unit, "stiffness")
+            )
+        except InputError as error:
+            raise InputError(f"{where}: {error}") from None
+        if not 0 < value < inf:
+            raise InputError(f"{where}: a stiffness at which it shook is > 0, got {quoted(text)}")
+        if name in found:
+            raise InputError(f"{where}: {quoted(name)} stands there twice")
+        found[name] = value
+    return found
+
+
+def _lines(path: Path) -> list[list[str]]:
+    try:
+        with path.open("rb") as file:
+            text = file.read(LARGEST_FILE + 1).decode("utf-8-sig")
+    except OSError as error:
+        raise InputError(f"{plain(str(path), 100)} cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{plain(str(path), 100)} is no text in UTF-8; save the table as CSV") from None
+    if len(text.encode()) > LARGEST_FILE:
+        raise InputError(f"{plain(str(path), 100)} is larger than a megabyte, and no table of a class is")
+    separator = ";" if ";" in text.partition("\n")[0] else ","
+    return [
+        row for row in csv.reader(StringIO(text), delimiter=separator) if any(cell.strip() for cell in row)
+    ]

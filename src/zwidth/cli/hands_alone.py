@@ -1,0 +1,75 @@
+"""Hands that are known, by name, for `zwidth map` and `zwidth check`; of each whether it is shaken."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from zwidth.errors import InputError
+from zwidth.specification.table import quoted, suggestion
+
+if TYPE_CHECKING:
+    from zwidth.specification.read import Specification
+    from zwidth.stability import Stability
+
+NAMES = "none, finger, dowel; of a rotary device none, hands-on"
+"""Of the hands, for a help."""
+
+ABOUT = "of each hand alone, as long as it keeps contact; dry friction and encoder steps left out"
+
+
+def named_hands(typed: str, motion: str) -> dict[str, Any]:
+    """The hands of a list of names.
+
+    Raises
+    ------
+    InputError
+        If one is not known.
+    """
+    from zwidth.maps.request import standard_hands
+
+    known, names = standard_hands(motion), [name.strip() for name in typed.split(",")]
+    for name in names:
+        if name not in known:
+            raise InputError(f"there is no hand {quoted(name)}; {suggestion(name, list(known))}")
+    return {name: known[name] for name in names}
+
+
+def with_hands(loop: Specification, typed: str | None) -> dict[str, Stability]:
+    """Of each hand whether it comes to rest against what is rendered; nothing where none is named.
+
+    Raises
+    ------
+    InputError
+        If a hand is not known, or the loop is not one that this is known of.
+    """
+    if typed is None:
+        return {}
+    from zwidth.stability import coupled_stability
+
+    hands = named_hands(typed, loop.device.motion)
+    return {name: coupled_stability(loop.device, loop.environment, hand) for name, hand in hands.items()}
+
+
+def hand_rows(found: Mapping[str, Stability]) -> Iterator[tuple[str, str]]:
+    """What is said of each, and of what it is said."""
+    for name, of_one in found.items():
+        yield name, "; ".join(_said(of_one))
+    yield "", ABOUT
+
+
+def _said(found: Stability) -> Iterator[str]:
+    from zwidth.quantity.text import in_unit, told_quantity
+
+    if found.outcome == "unstable" and found.frequency:
+        yield f"is shaken, at {in_unit(found.frequency, 'Hz')}"
+    else:
+        yield {"stable": "comes to rest", "unstable": "does not come to rest"}.get(
+            found.outcome, "not decided"
+        )
+    if found.max_stiffness:
+        most = told_quantity(found.max_stiffness, "stiffness", found.scope.motion, 4)
+        swing = (
+            "" if found.limit_frequency is None else f", beyond it swings at {found.limit_frequency:.4g} Hz"
+        )
+        yield f"does up to {most}{swing}"

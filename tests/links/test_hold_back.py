@@ -1,0 +1,42 @@
+"""A delay that ends within a sample: what a loop that keeps its forces back is told to do, and is told."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+import zwidth as zw
+from zwidth.links.comparison import LinkComparison, _dataset, _held_back
+
+WHEEL = zw.Device(
+    mass="0.03", damping="0.05", coulomb_friction="0.05", rate="1000", delay="0.0014", motion="rotary"
+)
+ROW = {"outcome": "passive", "taken": 0.0, "tracking_error": 0.02, "apart": 0.001, "felt_stiffness": 2.1}
+
+
+def test_the_force_acts_after_whole_samples() -> None:
+    """1.4 ms at 1 kHz are 2 ms, 0.6 ms more; 2 ms stay as they are."""
+    late, held = _held_back(WHEEL)
+    assert (late.exact("delay"), held) == (Fraction(2, 1000), Fraction(6, 10000))
+    assert _held_back(late) == (late, 0)
+    zw.links.WavePort(late)
+    with pytest.raises(zw.InputError, match="--hold-back"):
+        zw.links.WavePort(WHEEL)
+
+
+def test_the_answer_says_so() -> None:
+    """In the report and in the document, and only where it is so."""
+    scores, link = _dataset({"waves": ROW}, "rotary"), zw.links.Schedule()
+    held = LinkComparison(scores, link, {}, (Fraction(6, 10000), Fraction(0)))
+    assert held.to_dict()["held_back_s"] == [0.0006, 0.0]
+    assert any("kept back by 600 µs and 0 s more" in str(part) for part in held.report())
+    plain = LinkComparison(scores, link, {})
+    assert "held_back_s" not in plain.to_dict()
+    assert not any("kept back" in str(part) for part in plain.report())
+
+
+def test_ports_of_ones_own_have_their_own_devices() -> None:
+    """There hold_back would say something that is not so."""
+    with pytest.raises(zw.InputError, match="standard ports"):
+        zw.links.compare(WHEEL, ports={}, hold_back=True)
