@@ -105,7 +105,8 @@ def projector(jacobian: Array, regularization: float = 0.0) -> Array:
 def resisting(arm: Arm, spring: NullSpaceSpring, joints: Array, speeds: Array | float = 0.0) -> Array:
     """P (k (q − q_d) + d_n q̇), against which the hands work (…, m) [N·m]."""
     pulled = spring.stiffness * (joints - np.asarray(spring.rest)) + spring.damping * speeds
-    return np.einsum("...ij,...j->...i", projector(task_jacobian(arm, joints), spring.regularization), pulled)
+    inside = projector(task_jacobian(arm, joints), spring.regularization)
+    return np.asarray(np.einsum("...ij,...j->...i", inside, pulled))
 
 
 def replay_both(
