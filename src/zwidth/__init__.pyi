@@ -48,6 +48,7 @@ from zwidth.passivity.check import check as check
 from zwidth.passivity.finite_stiffness import replay as replay
 from zwidth.passivity.verdict import Verdict as Verdict
 from zwidth.passivity.witness.witness import Witness as Witness
+from zwidth.passivity.workspace import null_space as null_space
 from zwidth.passivity.workspace import stiffness_over_postures as stiffness_over_postures
 from zwidth.passivity.workspace import workspace as workspace
 from zwidth.quantity import Exact as Exact

@@ -51,6 +51,9 @@ cartesian_impedance_controller:
 COMPLIANCE = "c: {ros__parameters: {stiffness: {trans_x: 500, trans_y: 500, trans_z: 500}}}"
 
 
+FORCE = "c: {ros__parameters: {solver: {error_scale: 0.5}, pd_gains: {trans_x: {p: 0.05}, rot_z: {p: 1.5}}}}"
+
+
 def written(folder: Path, text: str, name: str = "controllers.yaml") -> Path:
     """A file."""
     path = folder / name
@@ -103,13 +106,18 @@ def test_an_impedance_is_a_wall_at_the_end(tmp_path: Path) -> None:
     assert one.damping[3:] == pytest.approx([2 * sqrt(k) for k in (20, 30, 40)])
     assert np.diag(one.wall(0).stiffness).tolist() == [200, 300, 400]
     assert one.wall(3).turns == 3
-    assert any("null-space spring of 10 N·m/rad is left out" in note for note in one.notes(3))
+    assert (one.nullspace, one.nullspace_damping) == (10, pytest.approx(2 * sqrt(10)))
+    assert any("null-space spring of 10 N·m/rad" in note for note in one.notes(3))
+    assert not any("null-space" in note for note in one.notes(3, with_null_space=True))
+    assert any("difference of two readings" in note for note in one.notes(0))
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (COMPLIANCE, "of an admittance"),
+        (COMPLIANCE, "stiffness: of an admittance"),
+        (FORCE, "pd_gains: of an admittance"),
+        (FORCE.replace("pd_", "pid_"), "pid_gains: of an admittance"),
         ("a: {ros__parameters: {x: 1}}", "no gains of a controller"),
         (TRAJECTORY.replace("[effort]", "[velocity]"), "where the command is an effort"),
         (CARTESIAN.replace(", z: 400.0", ""), "z is missing"),

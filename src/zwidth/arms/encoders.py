@@ -111,6 +111,35 @@ def encoder_steps(arm: Arm, wall: Wall | MatrixWall, period: float, sites: Sites
     return replace(found, covered=_covered(found, chain))
 
 
+def covered_factors(arm: Arm, wall: Wall | MatrixWall, period: float, jacobians: Array) -> Array:
+    """How many times as stiff the wall may be with friction covering the steps at each posture (…).
+
+    To first order in the steps and before next to no force of the wall:
+
+        f_c,i ≥ ½ Σ_j Δ_j (s |J_iᵀ K J_j| + (2/T) |J_iᵀ B J_j|)
+
+    0 where friction does not even cover the steps of the virtual damping, ∞ where the steps cost nothing.
+    Without virtual damping more stiffness than this gives energy out at a corner of the readings, where every
+    joint crosses an edge; the force of the wall asks for more friction.
+
+    Parameters
+    ----------
+    arm
+        With encoder steps.
+    wall, period
+        T [s].
+    jacobians
+        (…, n, m).
+    """
+    k, b = wall_matrices(wall, jacobians.shape[-2])
+    steps, turned = np.asarray(arm.resolution, dtype=np.float64), np.swapaxes(jacobians, -1, -2)
+    load = np.abs(turned @ k @ jacobians) @ steps / 2
+    left = np.asarray(arm.coulomb_friction or 0.0) - np.abs(turned @ b @ jacobians) @ steps / period
+    with np.errstate(divide="ignore", invalid="ignore"):
+        each = np.where(left < 0, 0.0, np.where(load > 0, left / load, inf))
+    return np.asarray(each.min(axis=-1))
+
+
 def with_encoders(arm: Arm) -> Chain | None:
     """The arm, if it has encoders that step and its second derivatives are bounded."""
     return arm if isinstance(arm, (PlanarChain, DescribedArm)) and moving_steps(arm).any() else None

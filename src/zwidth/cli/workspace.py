@@ -11,6 +11,7 @@ from zwidth.cli.options import Once, add_in_full, add_output
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.cli.workspace_arm import arm_of
 from zwidth.cli.workspace_joints import add_joint_options
+from zwidth.cli.workspace_null_space import NULL_OPTIONS, null_space_of, print_null_space, refuse_without
 from zwidth.cli.workspace_report import print_workspace
 from zwidth.cli.workspace_wall import WALL_OPTIONS, left_out, wall_of
 from zwidth.errors import InputError
@@ -28,7 +29,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.usage = (
         "%(prog)s ARM --stiffness K [--pose --rotational-stiffness K] [--wall FILE] [--joint-damping B] "
         "[--joint-friction F] [--joint-resolution STEP] [--joints FILE] [--largest-force FORCE] "
-        "[--rate RATE] [--virtual-damping B] [--delay TIME] [--points N] [--postures N] [--all] [--json] "
+        "[--rate RATE] [--virtual-damping B] [--delay TIME] [--points N] [--postures N] [--null-stiffness K] "
+        "[--null-rest JOINTS] [--within DISTANCE] [--all] [--json] "
         "[--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
@@ -64,6 +66,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
             "of a description: so many postures over the ranges of all joints in the place of a map of two, "
             "such as 20000",
         ),
+        *NULL_OPTIONS,
     ):
         parser.add_argument(option, metavar=metavar, action=Once, help=meaning)
     parser.add_argument(
@@ -85,6 +88,9 @@ def run(arguments: argparse.Namespace) -> int:
         )
     from zwidth.passivity.outcome import TOLD
 
+    if arguments.null_stiffness is not None:
+        return _null_space(arguments, plot, save)
+    refuse_without(arguments)
     if arguments.postures is not None:
         return _postures(arguments, plot, save)
     space = _verdict(arguments)
@@ -147,6 +153,26 @@ def _postures(arguments: argparse.Namespace, plot: Path | None, save: Path | Non
     else:
         print_postures(found, arguments.in_full, left_out(arguments, arm.turns))
         say_written(save, plot)
+    return TOLD[found.outcome].status
+
+
+def _null_space(arguments: argparse.Namespace, plot: Path | None, save: Path | None) -> int:
+    """Wall and null-space spring together; there is no map of it."""
+    from zwidth.passivity.document import to_json
+    from zwidth.passivity.outcome import TOLD
+
+    if plot is not None or (save is not None and save.suffix.lower() != ".json"):
+        raise InputError("of a null-space spring there is no map: leave out --plot, and save as .json")
+    found = null_space_of(arguments, float(parse_number(arguments.rate or _RATE, "Hz", "rate")))
+    without = left_out(arguments, found.question.arm.turns)
+    if save is not None:
+        with writing(save):
+            found.save(save)
+    if arguments.json:
+        print_json(to_json({**found.to_dict(), **({"wall_leaves_out": without} if without else {})}))
+    else:
+        print_null_space(found, arguments.in_full, without)
+        say_written(save, None)
     return TOLD[found.outcome].status
 
 

@@ -51,15 +51,16 @@ def _described(arguments: argparse.Namespace, joints: Mapping[str, Any]) -> Arm:
     return read_arm(
         path,
         frame=arguments.frame,
-        hold=_by_name(arguments.hold, "hold"),
+        hold=by_name(arguments.hold, "hold"),
         pose=arguments.pose,
-        rest={} if arguments.rest == "middle" else _by_name(arguments.rest, "rest"),
-        whole=arguments.postures is not None,
+        rest={} if arguments.rest == "middle" else by_name(arguments.rest, "rest"),
+        whole=arguments.postures is not None or arguments.null_stiffness is not None,
         **joints,
     )
 
 
-def _by_name(text: str | None, option: str) -> dict[str, float] | None:
+def by_name(text: str | None, option: str) -> dict[str, float] | None:
+    """Joints with values, as in wrist=0.2,grip=0."""
     if text is None:
         return None
     pairs = [part.partition("=") for part in text.split(",")]

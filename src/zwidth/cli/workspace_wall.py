@@ -10,6 +10,7 @@ Numbers are in N, m, s and rad.  In pose the last rows and columns are rotations
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,7 @@ from zwidth.specification.table import located
 if TYPE_CHECKING:
     from zwidth.arms.matrix_wall import MatrixWall
     from zwidth.environment.wall import Wall
+    from zwidth.gains.controllers import CartesianGains
     from zwidth.quantity.exact import Exact
 
 WALL_OPTIONS = (
@@ -35,6 +37,8 @@ WALL_OPTIONS = (
     ),
 )
 _CONTROLLERS = (".yaml", ".yml")
+_ROWS = 2
+"""Of a matrix that is shown whole even where it is diagonal."""
 _UNITS = {
     "stiffness": ("N/m", "N/rad", "N*m/rad"),
     "damping": ("N*s/m", "N*s/rad", "N*m*s/rad"),
@@ -57,7 +61,7 @@ def wall_of(arguments: argparse.Namespace, turns: int) -> Wall | MatrixWall:
             option = next(iter(given)).replace("_", "-")
             raise InputError(f"--wall FILE says what the wall is; leave out --{option}")
         path = Path(arguments.wall)
-        if path.suffix.lower() in _CONTROLLERS:
+        if is_of_controllers(path):
             return _of_controllers(path, turns, arguments.rate)
         return read_wall(path, turns)
     if not turns and (found := [key for key in given if key.startswith("rotational")]):
@@ -76,8 +80,19 @@ def wall_of(arguments: argparse.Namespace, turns: int) -> Wall | MatrixWall:
     return MatrixWall.in_pose(float(k), float(k_turn), float(b), float(b_turn), planar=turns == 1)
 
 
-def _of_controllers(path: Path, turns: int, rate: str | None) -> MatrixWall:
-    """The impedance of a parameter file of ros2_control."""
+def is_of_controllers(path: Path) -> bool:
+    """Whether the file is one of ros2_control."""
+    return path.suffix.lower() in _CONTROLLERS
+
+
+def cartesian_of(path: Path) -> CartesianGains:
+    """The impedance of a parameter file of ros2_control, with its rate, where the file says one.
+
+    Raises
+    ------
+    InputError
+        If there is not one.
+    """
     from zwidth.gains import read_controllers
 
     found, name = read_controllers(path), f"--wall {path.name}"
@@ -86,23 +101,25 @@ def _of_controllers(path: Path, turns: int, rate: str | None) -> MatrixWall:
             f"{name}: it has {len(found.cartesian)} Cartesian impedances, and a wall is one; joint gains are "
             "decided by zwidth gains"
         )
-    (one,) = found.cartesian
+    return replace(found.cartesian[0], rate=found.cartesian[0].rate or found.rate)
+
+
+def _of_controllers(path: Path, turns: int, rate: str | None) -> MatrixWall:
+    """The impedance as a wall; its rate is that of the loop, and is given there."""
+    one, name = cartesian_of(path), f"--wall {path.name}"
     if turns not in (0, len(one.stiffness) - 3):
         raise InputError(f"{name}: it has three rotations; a hand in the plane has one")
-    often = one.rate or found.rate
-    if rate is None and often is not None:
-        hertz = f"{float(often):g} Hz"
+    if rate is None and one.rate is not None:
+        hertz = f"{float(one.rate):g} Hz"
         raise InputError(f'{name}: its controller runs at {hertz}; give --rate "{hertz}"')
     return one.wall(turns)
 
 
 def left_out(arguments: argparse.Namespace, turns: int) -> list[str]:
     """What the wall of a controller's file leaves out of that controller."""
-    if arguments.wall is None or Path(arguments.wall).suffix.lower() not in _CONTROLLERS:
+    if arguments.wall is None or not is_of_controllers(Path(arguments.wall)):
         return []
-    from zwidth.gains import read_controllers
-
-    return [note for one in read_controllers(arguments.wall).cartesian for note in one.notes(turns)]
+    return list(cartesian_of(Path(arguments.wall)).notes(turns, arguments.null_stiffness is not None))
 
 
 def read_wall(path: Path, turns: int) -> MatrixWall:
@@ -150,8 +167,18 @@ def wall_in_words(wall: Wall | MatrixWall) -> str:
 
     units = ("N, m, rad", "N, m, s, rad") if wall.turns else ("N/m", "N·s/m")
     matrix = np.asarray(wall.damping)
-    more = f"; virtual damping {rows_in_words(matrix)} {units[1]}" if matrix.any() else ""
-    return f"stiffness {rows_in_words(np.asarray(wall.stiffness))} {units[0]}{more}"
+    more = f"; virtual damping {_matrix_in_words(matrix)} {units[1]}" if matrix.any() else ""
+    return f"stiffness {_matrix_in_words(np.asarray(wall.stiffness))} {units[0]}{more}"
+
+
+def _matrix_in_words(matrix: Any) -> str:
+    """A large one that is diagonal by its diagonal."""
+    import numpy as np
+
+    diagonal = matrix.diagonal()
+    if len(diagonal) > _ROWS and np.count_nonzero(matrix) == np.count_nonzero(diagonal):
+        return f"diag({', '.join(f'{x:g}' for x in diagonal)})"
+    return rows_in_words(matrix)
 
 
 def rows_in_words(matrix: Any) -> str:

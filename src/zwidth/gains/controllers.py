@@ -7,7 +7,7 @@
 To a hand that moves the arm while the target rests, each is a virtual wall on both sides of it.  Sources:
 ros-controls/ros2_controllers, joint_trajectory_controller_parameters.yaml; frankarobotics/franka_ros2,
 franka_bringup/config/controllers.yaml; matthias-mayr/Cartesian-Impedance-Controller, its parameters.yaml and
-cartesian_impedance_controller.cpp (dampingRule).
+cartesian_impedance_controller.cpp (dampingRule); fzi-forschungszentrum-informatik/cartesian_controllers.
 """
 
 from __future__ import annotations
@@ -28,8 +28,9 @@ from zwidth.quantity.text import shown
 from zwidth.specification.table import quoted
 
 _AXES = ("x", "y", "z")
-_COMPLIANCE = ("trans_x", "rot_x")
-"""Keys of an admittance: positions are commanded, no force."""
+_MOTIONS = tuple(f"{kind}_{axis}" for kind in ("trans", "rot") for axis in _AXES)
+_OF_ADMITTANCE = ("stiffness", "pd_gains", "pid_gains")
+"""Tables with keys for such motions are of FZI's cartesian_controllers: positions are commanded, no force."""
 
 _JOINT_NOTES = (
     "the target rests: each joint is a spring and a damper to the ground, on both sides",
@@ -60,8 +61,8 @@ class CartesianGains:
         [N/m], [N·m/rad].
     damping
         [N·s/m], [N·m·s/rad].
-    nullspace
-        Of the joints, projected into what does not move the end [N·m/rad]; 0: none.
+    nullspace, nullspace_damping
+        Of the joints, projected into what does not move the end [N·m/rad], [N·m·s/rad]; 0: none.
     rate
         Of the controller [Hz]; None where the file does not say.
     source
@@ -71,6 +72,7 @@ class CartesianGains:
     stiffness: tuple[float, ...]
     damping: tuple[float, ...]
     nullspace: float
+    nullspace_damping: float
     rate: Fraction | None
     source: str
 
@@ -79,21 +81,24 @@ class CartesianGains:
         size = 3 + turns
         return MatrixWall(np.diag(self.stiffness[:size]), np.diag(self.damping[:size]), turns=turns)
 
-    def notes(self, turns: int) -> Iterator[str]:
+    def notes(self, turns: int, with_null_space: bool = False) -> Iterator[str]:
         """What the wall leaves out of the controller."""
         if not turns and any(self.stiffness[3:]):
-            yield "its rotational springs are left out: ask in pose"
+            yield "its rotational springs: ask in pose"
         if turns:
             yield (
                 "its moments go with the rotation vector, the wall's with 2 sin(φ/2): the same at small "
                 "angles"
             )
-        if self.nullspace:
+        if any(self.damping):
             yield (
-                f"its null-space spring of {shown(self.nullspace, 'N*m/rad')} is left out: what is "
-                "projected by "
-                "1 − Jᵀ(Jᵀ)⁺ has no potential, and may give out energy by itself (Dietrich, Ott & "
-                "Stramigioli 2016)"
+                "how it makes speeds: a difference of two readings is taken; a robot that filters them is "
+                "another loop"
+            )
+        if self.nullspace and not with_null_space:
+            yield (
+                f"its null-space spring of {shown(self.nullspace, 'N*m/rad')}: it has no potential and may "
+                "give out energy by itself; --null-stiffness wall asks about both"
             )
 
 
@@ -138,6 +143,7 @@ class Controllers:
                     "damping_N_s_per_m": list(one.damping[:3]),
                     "rotational_damping_N_m_s_per_rad": list(one.damping[3:]),
                     "nullspace_stiffness_N_m_per_rad": one.nullspace,
+                    "nullspace_damping_N_m_s_per_rad": one.nullspace_damping,
                     "rate_Hz": None if one.rate is None else float(one.rate),
                     "source": one.source,
                 }
@@ -174,7 +180,7 @@ def is_of_controllers(table: GainTable) -> bool:
 
 
 def _fits(table: GainTable) -> bool:
-    return "k_gains" in table or _is_pid(table) or _is_cartesian(table) or _is_compliance(table)
+    return "k_gains" in table or _is_pid(table) or _is_cartesian(table) or _admittance(table) is not None
 
 
 def _is_pid(table: GainTable) -> bool:
@@ -187,17 +193,21 @@ def _is_cartesian(table: GainTable) -> bool:
     return isinstance(inner, dict) and "translation" in inner
 
 
-def _is_compliance(table: GainTable) -> bool:
-    inner = table.values.get("stiffness")
-    return isinstance(inner, dict) and any(key in inner for key in _COMPLIANCE)
+def _admittance(table: GainTable) -> str | None:
+    """The key by which an admittance is known."""
+    for key in _OF_ADMITTANCE:
+        inner = table.values.get(key)
+        if isinstance(inner, dict) and any(motion in inner for motion in _MOTIONS):
+            return key
+    return None
 
 
 def _joints(table: GainTable) -> Iterator[JointLaw]:
-    if _is_compliance(table):
+    if (key := _admittance(table)) is not None:
         raise InputError(
-            f"{table.where('stiffness')}: of an admittance: it commands positions from a force that is "
-            "measured, "
-            "and no wall of a spring and a damper is that controller; read are impedance controllers"
+            f"{table.where(key)}: of an admittance, as in FZI's cartesian_controllers: it commands "
+            "positions from a force that is measured, and no wall of a spring and a damper is that "
+            "controller; read are impedance controllers; of admittances the documentation has a page"
         )
     if "k_gains" in table:
         stiffness = table.numbers("k_gains", "N*m/rad")
@@ -233,18 +243,21 @@ def _cartesian(table: GainTable) -> CartesianGains:
         *_three(stiffness, "translation", "N/m"),
         *(_three(stiffness, "rotation", "N*m/rad") if "rotation" in stiffness else (0.0,) * 3),
     ]
-    factors = [1.0] * 6
+    factors = [1.0] * 7
     if "damping" in table:
         damping = table.table("damping")
+        if "nullspace_damping" in damping:
+            factors[6] = float(damping.number("nullspace_damping", "1"))
         for place, part in ((0, "translation"), (3, "rotation")):
             if part in damping:
                 factors[place : place + 3] = _three(damping, part, "1")
+    null = stiffness.number("nullspace_stiffness", "N*m/rad") if "nullspace_stiffness" in stiffness else 0
+    k.append(float(null))
     if min(k) < 0 or min(factors) < 0:
         raise InputError(f"{table.label}: stiffness and damping factors must be ≥ 0: a spring pulls back")
-    null = stiffness.number("nullspace_stiffness", "N*m/rad") if "nullspace_stiffness" in stiffness else 0
     rate = table.number("update_frequency", "Hz") if "update_frequency" in table else None
-    d = tuple(2 * factor * sqrt(value) for factor, value in zip(factors, k, strict=True))
-    return CartesianGains(tuple(k), d, float(null), rate, table.where("stiffness"))
+    *d, d_null = (2 * factor * sqrt(value) for factor, value in zip(factors, k, strict=True))
+    return CartesianGains(tuple(k[:6]), tuple(d), k[6], d_null, rate, table.where("stiffness"))
 
 
 def _three(table: GainTable, key: str, unit: str) -> Sequence[float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from described_arms import panda_like
 
 import zwidth as zw
 from zwidth import plots
+from zwidth.arms.encoders import covered_factors
 from zwidth.cli.main import main
 
 READY = (0, -np.pi / 4, 0, -3 * np.pi / 4, 0, np.pi / 2, np.pi / 4)
@@ -56,6 +58,31 @@ def test_beyond_it_a_motion_of_the_joints_takes_energy_out(panda: Path) -> None:
     assert over.motion.energy < 0
     assert "of hands that hold the links" in over.claim
     assert plots.postures_figure(over).axes[0].get_ylabel() == "height [m]"
+
+
+def test_friction_covers_the_encoder_steps_of_a_wall(panda: Path) -> None:
+    """At each posture the most that half a step of every joint, this way or that, changes in any torque."""
+    asked = {"coulomb_friction": (0.3, 0.3, 0.3, 0.2, 0.1, 0.1, 0.05), "resolution": (2e-4,)}
+    arm = zw.arms.read_arm(panda, whole=True, **asked)
+    found = zw.stiffness_over_postures(arm, zw.Wall(500), rate=1000, postures=300)
+    signs = np.array(list(product((-1, 1), repeat=7))) * 1e-4
+    low, high = np.array(arm.joint_range).T
+    least = []
+    for place in np.random.default_rng(3).uniform(low, high, (100, 7)):
+        jacobian = arm.jacobian(place)
+        torques = np.abs(signs @ jacobian.T @ jacobian).max(axis=0)  # of 1 N/m
+        least.append((np.array(arm.coulomb_friction)[:-1] / torques[:-1]).min())  # the last moves nothing
+        mine = covered_factors(arm, zw.Wall(500), 1e-3, jacobian)
+        assert mine * 500 == pytest.approx(least[-1])
+        damped = covered_factors(arm, zw.Wall(500, 0.5), 1e-3, jacobian)
+        assert damped == pytest.approx(max(mine - 2, 0))  # 2 B/T is another 1000 N/m
+    assert found.encoder_factor * 500 < np.median(least)
+    assert "a stiffer wall may buzz" in dict(found.rows())["encoder steps"]
+    assert found.data["encoder_factor"].min() == pytest.approx(found.encoder_factor)
+    bare = zw.arms.read_arm(panda, whole=True, resolution=(2e-4,))
+    alone = zw.stiffness_over_postures(bare, zw.Wall(500), rate=1000, postures=100)
+    assert (found.numbers()["encoder_factor"], alone.encoder_factor) == (found.encoder_factor, 0)
+    assert "no Coulomb friction is known" in dict(alone.rows())["encoder steps"]
 
 
 def test_in_pose_factors_are_told(panda: Path) -> None:

@@ -35,8 +35,9 @@ def claim(outcome: str, covers: Covers, account: Account, without: str, steps: E
         text = "At one point of this map a motion of the hand takes energy out."
         if not covers.can_be_refuted:
             text = (
-                "At one point of this map a motion of the joints takes energy out: of hands that hold the "
-                "links. A hand at the end alone does not hold every joint, and of it nothing is said."
+                "At one point of this map a motion of the joints takes energy out. It is made by hands that "
+                "hold the links, such as one at the elbow and one at the end; a hand at the end alone cannot make "
+                "every joint follow, and of it nothing is said."
             )
         if covers.encoder == "counted" and not covers.has_friction:
             text += " Coulomb friction is not given and taken as 0."

@@ -4,7 +4,8 @@
 
 Seven joints have no map of cells: postures are drawn evenly from their ranges, the worst are followed
 downhill, and what each gives is put where its hand is, by distance from the first axis and by height.  What
-is found is of these postures; between them nothing is proved.
+is found is of these postures; between them nothing is proved.  Where the joints' encoders step, the stiffest
+wall whose steps their Coulomb friction covers is mapped, too: a stiffer one may buzz.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from zwidth.arms import Arm, ArmMotion, DescribedArm
+from zwidth.arms.encoders import covered_factors
 from zwidth.arms.matrix_wall import MatrixWall
 from zwidth.arms.need import wall_need
 from zwidth.arms.replay import refuting_motion
@@ -58,13 +60,16 @@ class PostureMap(PassivityAnswer):
     data
         By `radius` from the first axis and `height`, the hand's [m]: the smallest and the largest
         `stiffness_factor` of the postures in a cell, of a wall at a point `largest_stiffness` [N/m] too, and
-        how many there are; nan where none is.
+        how many there are; nan where none is. With encoder steps the smallest `encoder_factor`, too.
     stiffness_factor
         How many times as stiff the wall may be at every posture that was tried.
     worst
         The joints at the posture where that is least [rad; m].
     motion
         What takes energy out there, if the wall is too stiff and one was found.
+    encoder_factor
+        How many times as stiff the wall may be with Coulomb friction covering the joints' encoder steps at
+        every posture drawn, to first order and before next to no force; None without steps.
     """
 
     FORMAT = "zwidth postures 1"
@@ -77,6 +82,7 @@ class PostureMap(PassivityAnswer):
     stiffness_factor: float
     worst: tuple[float, ...]
     motion: ArmMotion | None
+    encoder_factor: float | None = None
 
     @property
     def outcome(self) -> Outcome:
@@ -120,7 +126,12 @@ class PostureMap(PassivityAnswer):
     def rows(self) -> Iterator[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
         best = float(self.data["best_stiffness_factor"].max())
-        if self.largest_stiffness is None:
+        if not self.stiffness_factor:
+            yield (
+                "stiffness",
+                "none: at some posture its virtual damping alone is too much for the joints",
+            )
+        elif self.largest_stiffness is None:
             yield "stiffness", f"{self.stiffness_factor:.4g} times everywhere, {best:.4g} times at best"
         else:
             most = float(scaled_stiffness(self.question.wall, np.array(best), 3))
@@ -129,9 +140,24 @@ class PostureMap(PassivityAnswer):
                 "largest stiffness",
                 f"{everywhere} at every posture tried, {shown(most, 'N/m')} at the best",
             )
+        if self.encoder_factor is not None:
+            yield "encoder steps", self._steps(self.encoder_factor)
         yield "worst posture", ", ".join(f"{value:.3g}" for value in self.worst)
         if self.motion is not None:
-            yield "motion", f"{len(self.motion.joints)} samples take {shown(-self.motion.energy, 'J')} out"
+            often = shown(self.question.rate / len(self.motion.joints), "Hz")
+            taken = shown(-self.motion.energy, "J")
+            yield "motion", f"to and fro at {often}, {len(self.motion.joints)} samples, takes {taken} out"
+
+    def _steps(self, factor: float) -> str:
+        """Up to which stiffness Coulomb friction covers them."""
+        if not any(self.question.arm.coulomb_friction):
+            return "no Coulomb friction is known that covers them: any wall may buzz"
+        if not factor:
+            return "Coulomb friction does not cover those of the virtual damping: it may buzz"
+        most = f"{factor:.4g} times this stiffness"
+        if not self.question.arm.turns:
+            most = shown(float(scaled_stiffness(self.question.wall, np.array(factor), 3)), "N/m")
+        return f"Coulomb friction covers them up to {most}, by a light touch; a stiffer wall may buzz"
 
     def numbers(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
@@ -145,6 +171,7 @@ class PostureMap(PassivityAnswer):
             "stiffness_factor": finite(self.stiffness_factor),
             "largest_stiffness_N_per_m": self.largest_stiffness,
             "worst_joints_rad": list(self.worst),
+            "encoder_factor": None if self.encoder_factor is None else finite(self.encoder_factor),
             "motion": None if motion is None else motion_document(motion, arm.turns),
         }
 
@@ -186,7 +213,7 @@ def stiffness_over_postures(
         raise InputError(f"postures must be a whole number from 100 to {MOST_POSTURES}, got {postures!r}")
     question = asked_of(arm, wall, rate, delay, cells, None, None)
     places = _drawn(arm, postures)
-    factors, positions = _factors(question, places)
+    factors, positions, covered = _factors(question, places)
     worst = places[np.argsort(factors)[:_WORST]]
     followed, lowest = _followed(question, worst)
     at = int(np.argmin(lowest))
@@ -196,11 +223,16 @@ def stiffness_over_postures(
         question=question,
         tried=postures,
         data=_by_place(
-            question, np.concatenate([factors, more[0]]), np.concatenate([positions, more[1]]), cells
+            question,
+            np.concatenate([factors, more[0]]),
+            np.concatenate([positions, more[1]]),
+            np.concatenate([covered, more[2]]),
+            cells,
         ),
         stiffness_factor=float(lowest[at]),
         worst=tuple(followed[at].tolist()),
         motion=motion,
+        encoder_factor=float(min(covered.min(), more[2].min())) if any(arm.resolution) else None,
     )
 
 
@@ -212,17 +244,21 @@ def _drawn(arm: DescribedArm, count: int) -> Array:
     return np.asarray(low + (high - low) * qmc.Halton(len(low), scramble=False).random(count + 1)[1:])
 
 
-def _factors(question: Question, places: Array) -> tuple[Array, Array]:
-    """How many times as stiff the wall may be at each place, and where the hand is."""
+def _factors(question: Question, places: Array) -> tuple[Array, Array, Array]:
+    """How many times as stiff the wall may be at each place, where the hand is, and what the steps allow."""
     arm = question.arm
     assert isinstance(arm, DescribedArm)
     size = 3 + arm.turns
     need = wall_need(question.wall, question.period, question.delay_samples, size)
-    damping, found = question.damping(size), list[Array]()
+    damping, found, covered = question.damping(size), list[Array](), list[Array]()
     positions, jacobians = arm.placed(places)
     for start in range(0, len(places), _AT_ONCE):
-        found.append(stiffness_factors(damping, need, jacobians[start : start + _AT_ONCE]))
-    return np.concatenate(found), positions[:, :3]
+        some = jacobians[start : start + _AT_ONCE]
+        found.append(stiffness_factors(damping, need, some))
+        if any(arm.resolution):
+            covered.append(covered_factors(arm, question.wall, question.period, some))
+    steps = np.concatenate(covered) if covered else np.full(len(places), np.inf)
+    return np.concatenate(found), positions[:, :3], steps
 
 
 def _followed(question: Question, places: Array) -> tuple[Array, Array]:
@@ -252,7 +288,9 @@ def _refuted(question: Question, places: Array) -> ArmMotion | None:
     return next((motion for motion in found if motion is not None), None)
 
 
-def _by_place(question: Question, factors: Array, positions: Array, cells: int) -> xarray.Dataset:
+def _by_place(
+    question: Question, factors: Array, positions: Array, covered: Array, cells: int
+) -> xarray.Dataset:
     """The least and the most of the factors in each cell, and how many there are."""
     import xarray as xr
 
@@ -263,17 +301,22 @@ def _by_place(question: Question, factors: Array, positions: Array, cells: int) 
         for edge, v in zip(edges, (radius, height), strict=True)
     )
     least, most = np.full((cells, cells), np.inf), np.full((cells, cells), -np.inf)
+    steps = least.copy()
     count = np.zeros((cells, cells), dtype=np.int64)
     np.minimum.at(least, place, factors)
     np.maximum.at(most, place, factors)
+    np.minimum.at(steps, place, covered)
     np.add.at(count, place, 1)
-    least[count == 0] = most[count == 0] = np.nan
+    least[count == 0] = most[count == 0] = steps[count == 0] = np.nan
     dims = ("radius", "height")
     variables: dict[str, Any] = {
         "stiffness_factor": (dims, least, {"units": "1", "long_name": "least of the postures in this cell"}),
         "best_stiffness_factor": (dims, most, {"units": "1", "long_name": "most of them"}),
         "postures": (dims, count, {"units": "1", "long_name": "how many there are"}),
     }
+    if any(question.arm.resolution):
+        words = "least up to which Coulomb friction covers the encoder steps"
+        variables["encoder_factor"] = (dims, steps, {"units": "1", "long_name": words})
     if not question.arm.turns:
         values = np.where(count > 0, scaled_stiffness(question.wall, least, 3), np.nan)
         words = "stiffest wall that every posture in this cell bears"

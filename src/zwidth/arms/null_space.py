@@ -1,0 +1,235 @@
+"""The spring of the joints in the null space of the hand: what it does, and a loop that takes energy out.
+
+    τ = −P(q) (k (q − q_d) + d_n q̇),   P = 1 − Jᵀ (J Jᵀ + λ² 1)⁻¹ J
+
+P projects on motions of the joints that leave the hand where it is; λ = 0 is the pseudo-inverse, and
+controllers take some λ > 0 near singular positions.  P is symmetric, k P(q)(q − q_d) is no gradient: its
+curl is 0 at q_d and grows with the distance.  Once round a slow loop of the joints it gives the curl times
+the area, at any speed, while viscous friction takes the less the slower the loop is: no damping pays for it,
+and of Coulomb friction only as much as the length of the loop.
+(Dietrich, Ott & Stramigioli 2016.  Proofs: docs/theory/arms.md)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import ceil, pi
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from zwidth.arms.joints import as_matrix
+from zwidth.arms.kinematics import Arm, DescribedArm, PlanarChain, PosedArm
+from zwidth.arms.matrix_wall import MatrixWall
+from zwidth.arms.motion import ArmMotion
+from zwidth.arms.need import damping_at, wall_matrices
+from zwidth.arms.replay import replay_cycle
+from zwidth.environment.wall import Wall
+
+Array = npt.NDArray[np.float64]
+
+_STEP = 1e-5
+"""Of the joints, for the curl of the torque [rad; m]."""
+_DIRECTIONS = 40
+"""In which a loop is looked for at each distance."""
+_TRIED = 2
+"""Of these, those that should give most are replayed."""
+_LONGEST = 60_000
+"""Samples of the longest loop that is replayed."""
+_SHORTEST = 64
+_FAST = 64
+"""Samples of the longest cycle to and fro."""
+_AMPLITUDES = (1e-3, 3e-3, 1e-2, 3e-2)
+"""Of motions to and fro [rad; m]; larger ones only where Coulomb friction eats the small ones."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class NullSpaceSpring:
+    """A spring and a damper of the joints, projected on what does not move the hand.
+
+    Parameters
+    ----------
+    stiffness
+        k ≥ 0 of every joint [N·m/rad].
+    damping
+        d_n ≥ 0 of every joint [N·m·s/rad].
+    rest
+        q_d [rad; m].
+    regularization
+        λ ≥ 0 of the pseudo-inverse; metres and radians are mixed in it as in the controller's J.
+    """
+
+    stiffness: float
+    damping: float
+    rest: tuple[float, ...]
+    regularization: float = 0.0
+
+
+class Loop(NamedTuple):
+    """q(k) = centre + cosine cos(2πk/N) + sine sin(2πk/N) [rad; m]."""
+
+    centre: Array
+    cosine: Array
+    sine: Array
+    samples: int
+
+    def joints(self) -> Array:
+        """N × m."""
+        angle = 2 * pi / self.samples * np.arange(self.samples)[:, None]
+        return np.asarray(self.centre + np.cos(angle) * self.cosine + np.sin(angle) * self.sine)
+
+    def reach(self, rest: Sequence[float]) -> float:
+        """How far from the rest it goes, root of the sum of squares [rad]."""
+        return float(np.linalg.norm(self.joints() - np.asarray(rest), axis=1).max())
+
+
+def task_jacobian(arm: Arm, joints: npt.ArrayLike) -> Array:
+    """J of velocity, and in pose of angular velocity, whatever the wall's orientation of rest (…, n, m)."""
+    if isinstance(arm, PosedArm) and arm.rest is not None:
+        arm = arm.replace(rest=None)
+    return arm.placed(joints)[1] if isinstance(arm, DescribedArm) else arm.jacobian(joints)
+
+
+def projector(jacobian: Array, regularization: float = 0.0) -> Array:
+    """P (…, m, m)."""
+    turned = np.swapaxes(jacobian, -1, -2)
+    size, count = jacobian.shape[-2:]
+    if regularization:
+        inner = jacobian @ turned + regularization**2 * np.eye(size)
+        return np.asarray(np.eye(count) - turned @ np.linalg.solve(inner, jacobian))
+    return np.asarray(np.eye(count) - np.linalg.pinv(jacobian) @ jacobian)
+
+
+def resisting(arm: Arm, spring: NullSpaceSpring, joints: Array, speeds: Array | float = 0.0) -> Array:
+    """P (k (q − q_d) + d_n q̇), against which the hands work (…, m) [N·m]."""
+    pulled = spring.stiffness * (joints - np.asarray(spring.rest)) + spring.damping * speeds
+    inside = projector(task_jacobian(arm, joints), spring.regularization)
+    return np.asarray(np.einsum("...ij,...j->...i", inside, pulled))
+
+
+def replay_both(
+    arm: Arm,
+    wall: Wall | MatrixWall,
+    spring: NullSpaceSpring,
+    period: float,
+    delay_samples: int,
+    joints: Array,
+) -> ArmMotion:
+    """The energy of a closed path of the joints against wall and null-space spring together.
+
+    The wall is as of `replay_cycle`, at rest in the middle of the path; the spring's torque is computed
+    once a sample from the difference of two readings, `delay_samples` late, and held.
+    """
+    motion = replay_cycle(arm, wall, period, delay_samples, joints)
+    speeds = (joints - np.roll(joints, 1, axis=0)) / period
+    torque = np.roll(resisting(arm, spring, joints, speeds), delay_samples, axis=0)
+    moved = np.roll(joints, -1, axis=0) - joints
+    size = task_jacobian(arm, joints[0]).shape[0]
+    who = "links" if arm.joint_count > size else "end"
+    return replace(motion, work=motion.work + float((torque * moved).sum()), imposed_by=who)
+
+
+def null_space_need(
+    arm: Arm, spring: NullSpaceSpring, period: float, delay_samples: int, theta: float
+) -> Array:
+    """What motions of one frequency near the rest ask of the joints, m × m [N·m·s/rad]."""
+    inside = projector(task_jacobian(arm, spring.rest), spring.regularization)
+    kernel = np.sin((delay_samples + 0.5) * theta) / np.sin(theta / 2)
+    share = period / 2 * kernel * spring.stiffness - np.cos((delay_samples + 1) * theta) * spring.damping
+    return np.asarray(share * inside)
+
+
+def fast_motion(
+    arm: Arm, wall: Wall | MatrixWall, spring: NullSpaceSpring, period: float, delay_samples: int
+) -> ArmMotion | None:
+    """A small motion to and fro at the rest that takes energy out of both, replayed; None: none was found."""
+    at = np.asarray(spring.rest)
+    jacobian = task_jacobian(arm, at)
+    found: list[tuple[float, int, Array]] = []
+    for samples in range(2, _FAST + 1):
+        theta = 2 * pi / samples
+        hand = damping_at(theta, wall, period, delay_samples, len(jacobian))
+        need = jacobian.T @ hand @ jacobian + null_space_need(arm, spring, period, delay_samples, theta)
+        values, vectors = np.linalg.eigh(as_matrix(arm.damping) - need)
+        found.append((values[0] * (1 - np.cos(theta)), samples, vectors[:, 0]))
+    lowest, samples, shape = min(found, key=lambda item: item[0])
+    if lowest >= 0:
+        return None
+    turn = np.cos(2 * pi / samples * np.arange(samples))[:, None]
+    motions = (
+        replay_both(arm.resting(at), wall, spring, period, delay_samples, at + size * turn * shape)
+        for size in _AMPLITUDES
+    )
+    return next((motion for motion in motions if motion.takes_energy), None)
+
+
+def slow_loop(
+    arm: DescribedArm | PlanarChain,
+    wall: Wall | MatrixWall,
+    spring: NullSpaceSpring,
+    period: float,
+    delay_samples: int,
+    distance: float,
+) -> tuple[Loop, ArmMotion] | None:
+    """A slow loop about this far from the rest that takes energy out, replayed; None: none was found."""
+    centres = _centres(arm, spring, distance)
+    loops = [_loop_at(arm, wall, spring, period, centre, distance) for centre in centres]
+    found = [loop for loop in loops if loop is not None]
+    for _, loop in sorted(found, key=lambda item: -item[0])[:_TRIED]:
+        at = arm.resting(loop.centre)
+        motion = replay_both(at, wall, spring, period, delay_samples, loop.joints())
+        if motion.takes_energy:
+            return loop, motion
+    return None
+
+
+def _centres(arm: DescribedArm | PlanarChain, spring: NullSpaceSpring, distance: float) -> Array:
+    """Places at a distance from the rest and inside the ranges, the same every time."""
+    low, high = np.array(arm.joint_range).T
+    ways = np.random.default_rng(0).normal(size=(_DIRECTIONS, len(low))) * (high > low)
+    places = np.asarray(spring.rest) + distance * ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    return np.asarray(places[((places > low) & (places < high) | (low == high)).all(axis=1)])
+
+
+def _loop_at(
+    arm: DescribedArm | PlanarChain,
+    wall: Wall | MatrixWall,
+    spring: NullSpaceSpring,
+    period: float,
+    centre: Array,
+    distance: float,
+) -> tuple[float, Loop] | None:
+    """The loop in the plane of the largest curl, with what it should give [J], slow enough for half of it."""
+    moving = np.array([high > low for low, high in arm.joint_range], dtype=float)
+    steps = _STEP * np.diag(moving)
+    slopes = (resisting(arm, spring, centre + steps) - resisting(arm, spring, centre - steps)).T / (2 * _STEP)
+    curl = (slopes - slopes.T) * np.outer(moving, moving)
+    left, sizes, _ = np.linalg.svd(curl)
+    if not sizes[0] > 0:
+        return None
+    first = left[:, 0]
+    second = -curl @ first / sizes[0]  # round this way the torque helps
+    ways = np.hypot(first, second)
+    low, high = np.array(arm.joint_range).T
+    room = np.minimum(centre - low, high - centre) / np.maximum(ways, 1e-12)
+    radius = min(distance, float(room[ways > 1e-9].min()))
+    friction = np.asarray(arm.coulomb_friction or (0.0,) * len(ways))
+    gain = sizes[0] * pi * radius**2 - 4 * radius * float(friction @ ways)
+    if gain <= 0:
+        return None
+    brakes = _braking(arm, wall, spring, centre)
+    loss = 2 * (pi * radius) ** 2 * float(first @ brakes @ first + second @ brakes @ second)  # J·s
+    samples = max(_SHORTEST, ceil(2 * loss / (gain * period)))
+    if samples > _LONGEST:
+        return None
+    return gain, Loop(centre, radius * first, radius * second, samples)
+
+
+def _braking(arm: Arm, wall: Wall | MatrixWall, spring: NullSpaceSpring, at: Array) -> Array:
+    """All damping of the joints, virtual or not, in a slow motion [N·m·s/rad]."""
+    jacobian = task_jacobian(arm, at)
+    _, damper = wall_matrices(wall, len(jacobian))
+    inside = projector(jacobian, spring.regularization)
+    return np.asarray(as_matrix(arm.damping) + jacobian.T @ damper @ jacobian + spring.damping * inside)

@@ -1,0 +1,159 @@
+"""The null-space spring of a redundant arm: loops that take energy out, and how near its rest are none."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from described_arms import panda_like
+
+import zwidth as zw
+from zwidth.arms.null_space import NullSpaceSpring, replay_both, task_jacobian
+from zwidth.cli.main import main
+
+REST = (0.2, 1.0, 0.6)
+FINGER = zw.arms.PlanarChain(
+    links=(0.1, 0.08, 0.06),
+    damping=(0.05, 0.05, 0.05),
+    coulomb_friction=(0.01, 0.01, 0.01),
+    joint_range=((-2, 2), (0, 2.6), (-2, 2.6)),
+)
+"""Three joints in the plane, a hand at a point: one motion of the joints leaves it where it is."""
+
+ASKED: dict[str, Any] = {"rate": 1000, "stiffness": 0.5, "rest": REST}
+
+
+def still(joints: np.ndarray, regularization: float = 0.0) -> np.ndarray:
+    """P of the finger by its singular vectors."""
+    _, sizes, turned = np.linalg.svd(FINGER.jacobian(joints))
+    kept = sizes**2 / (sizes**2 + regularization**2)
+    return np.eye(3) - turned[:2].T @ np.diag(kept) @ turned[:2]
+
+
+@pytest.mark.parametrize("regularization", [0.0, 0.05])
+def test_the_energy_of_a_loop_is_the_integral_of_the_torque(regularization: float) -> None:
+    """Round a circle of many samples, by another rule and another projector; the wall gives next to none."""
+    spring = NullSpaceSpring(stiffness=0.5, damping=0, rest=REST, regularization=regularization)
+    centre, first, second = np.array([[0.5, 1.4, 0.2], [0.3, -0.2, 0.4], [0.1, 0.5, 0.2]])
+
+    def at(turn: float) -> np.ndarray:
+        return centre + np.cos(turn) * first + np.sin(turn) * second
+
+    turns = 2 * np.pi / 200 * np.arange(200)
+    path = np.array([at(turn) for turn in 2 * np.pi / 20_000 * np.arange(20_000)])
+    work = (
+        0.5
+        * sum(
+            (still(at(turn), regularization) @ (at(turn) - REST))
+            @ (np.cos(turn) * second - np.sin(turn) * first)
+            for turn in turns
+        )
+        * (2 * np.pi / 200)
+    )
+    motion = replay_both(FINGER, zw.Wall(1), spring, 1e-3, 0, path)
+    assert abs(work) > 0.01
+    assert motion.work == pytest.approx(work, rel=5e-3)  # the hold gives the rest
+    assert motion.imposed_by == "links"
+
+
+@pytest.mark.parametrize("regularization", [0.0, 0.05])
+def test_a_loop_beats_friction_and_not_more_of_it(regularization: float) -> None:
+    """It says so; what friction takes is in the energy, and the loop can be written down."""
+    found = zw.null_space(FINGER, zw.Wall(200), regularization=regularization, **ASKED)
+    assert found.outcome == "active"
+    assert "slow loop" in found.claim
+    assert "of a hand at the end alone nothing is said" in found.claim
+    spring = NullSpaceSpring(stiffness=0.5, damping=0, rest=REST, regularization=regularization)
+    again = replay_both(FINGER, zw.Wall(200), spring, 1e-3, 0, found.loop.joints())
+    assert again.energy == pytest.approx(found.slow.energy)
+    assert again.energy < 0 < again.loss
+    rough = FINGER.replace(coulomb_friction=(0.5, 0.5, 0.5))
+    assert zw.null_space(rough, zw.Wall(200), regularization=regularization, **ASKED).slow is None
+
+
+@pytest.mark.parametrize("regularization", [0.0, 0.1])
+def test_near_the_rest_friction_covers_it(regularization: float) -> None:
+    """Up to `covered`, a theorem; there no torque of the spring is farther from a spring's than friction."""
+    far = zw.null_space(FINGER, zw.Wall(200), regularization=regularization, **ASKED).covered
+    assert far > 0.01
+    for share, outcome in ((0.99, "theorem"), (1.01, "undecided")):
+        asked = {**ASKED, "within": share * far, "regularization": regularization}
+        assert zw.null_space(FINGER, zw.Wall(200), **asked).outcome == outcome
+    ways = np.random.default_rng(1).normal(size=(200, 3))
+    ways *= far / np.linalg.norm(ways, axis=1, keepdims=True)
+    first = still(np.array(REST), regularization)
+    lacks = [0.5 * (still(REST + way, regularization) - first) @ way for way in ways]
+    assert 0 < np.abs(lacks).max() <= 0.01
+
+
+def test_without_coulomb_friction_nothing_is_covered() -> None:
+    """And every distance has a loop: no damping pays for it."""
+    smooth = FINGER.replace(coulomb_friction=(), damping=(5.0, 5.0, 5.0))
+    found = zw.null_space(smooth, zw.Wall(200), rate=100, stiffness=20, rest=REST)
+    assert found.covered == 0
+    assert found.outcome == "active"
+    assert dict(found.rows())["friction covers"] == "nothing: a joint has no Coulomb friction that is known"
+
+
+@pytest.mark.parametrize(("share", "active"), [(0.98, False), (1.02, True)])
+def test_the_damper_is_paid_for_by_the_joints(share: float, active: bool) -> None:
+    """Its limit from both sides: beyond it a motion to and fro is found, with or without a spring."""
+    asked: dict[str, Any] = {"rate": 1000, "stiffness": 0.2, "rest": REST}
+    limit = zw.null_space(FINGER, zw.Wall(50), **asked).largest_damping
+    most = 0.05 - 0.0005 * 0.2  # damped alike, and P is as stiff in no direction as in the one it leaves
+    assert limit <= most * (1 + 1e-12)
+    found = zw.null_space(FINGER, zw.Wall(50), damping=share * limit, **asked)
+    assert (found.fast is not None) is active
+    frictionless = FINGER.replace(coulomb_friction=())
+    damper = zw.null_space(frictionless, zw.Wall(50), rate=1000, stiffness=0, damping=0.04, rest=REST)
+    assert damper.slow is None
+
+
+def test_on_the_command_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A Panda and a file of gains: a loop near the ready posture, the document, and what is refused."""
+    pytest.importorskip("pinocchio")
+    monkeypatch.chdir(tmp_path)
+    arm = str(panda_like(tmp_path / "panda.urdf"))
+    ready = "j2=-0.785,j4=-2.356,j6=1.571,j7=0.785"
+    asked = ["workspace", arm, "--pose", "--joint-friction", "0.2"]
+    wall = ["--stiffness", "600", "--rotational-stiffness", "30"]
+    null = ["--null-stiffness", "20", "--null-rest", ready]
+    assert main([*asked, *wall, *null, "--within", "1.2 deg"]) == 4
+    assert "THEOREM No motion of the hands" in " ".join(capsys.readouterr().out.split())
+    assert main([*asked, *wall, *null, "-o", "found.json", "--json"]) == 1
+    told = json.loads(capsys.readouterr().out)
+    assert told["slow_loop"]["energy_J"] < 0
+    assert told == json.loads((tmp_path / "found.json").read_text(encoding="utf-8"))
+    (tmp_path / "c.yaml").write_text(
+        "c: {ros__parameters: {stiffness: {translation: {x: 600, y: 600, z: 600}, rotation: {x: 30, y: 30, "
+        "z: 30}, nullspace_stiffness: 20}, damping: {translation: {x: 0, y: 0, z: 0}, rotation: {x: 0, y: 0, "
+        "z: 0}, nullspace_damping: 0}}}"
+    )
+    file = [*asked, "--wall", "c.yaml", "--null-stiffness", "wall", "--null-rest", ready]
+    assert main([*file, "--within", "1.2 deg", "--json"]) == 4
+    assert json.loads(capsys.readouterr().out)["covered_rad"] == told["covered_rad"]
+    for wrong, message in (
+        ([*asked, *wall, "--within", "1 deg"], "--within is of a null-space spring"),
+        ([*asked, *wall, *null, "--points", "9"], "--points is not asked with --null-stiffness"),
+        ([*asked, *wall, *null, "--plot", "a.png"], "there is no map"),
+        ([*asked, *wall, "--null-stiffness", "wall"], "takes the gains of a .yaml file"),
+        ([*asked, *wall, "--null-stiffness", "5", "--null-rest", "j9=1"], "there is no joint 'j9'"),
+        ([*asked, *wall, "--null-stiffness", "5", "--null-rest", "j2=9"], "j2 can be from -1.7628"),
+        (["workspace", "two-link", "--joint-damping", "1", *wall[:2], *null[:2]], "no motion of the joints"),
+    ):
+        assert main(wrong) == 2
+        assert message in " ".join(capsys.readouterr().err.split())
+
+
+def test_the_jacobian_of_the_task_knows_no_orientation_of_rest(tmp_path: Path) -> None:
+    """P is that of the controller wherever the wall rests."""
+    pytest.importorskip("pinocchio")
+    arm = zw.arms.read_arm(panda_like(tmp_path / "panda.urdf"), whole=True, pose=True)
+    at = [0.1, -0.7, 0.2, -2.0, 0.3, 1.4, 0.5]
+    turned = arm.resting([0.5, 0.3, 0.1, -1.0, 0.2, 0.9, 0.1])
+    assert task_jacobian(turned, at) == pytest.approx(task_jacobian(arm, at), abs=1e-12)
