@@ -27,6 +27,7 @@ from zwidth.cli.asking.written import Row, Written, table
 from zwidth.device import Device
 from zwidth.environment import Wall
 from zwidth.passivity.check import check
+from zwidth.quantity.glossary import GLOSSARY
 from zwidth.specification.read import build_device, tables_of
 
 __all__ = ["QUESTIONS", "described"]
@@ -51,8 +52,9 @@ def described(ask: Asker, path: Path) -> Written:
     sheet = motor.derived(ask, motion, [key for key, row in measured.items() if row.value is None])
     rows += [sheet.get(key, row) for key, row in measured.items()]
     ask.finish("a device")
+    at_handle = "linear" if any(row.key == RADIUS.key for row in rows) else motion
     text = table("device", _HEAD, rows)
-    return Written(text, _next(text, [row.key for row in rows if row.value is None], path))
+    return Written(text, _next(text, [row.key for row in rows if row.value is None], path, motion, at_handle))
 
 
 def _motion(ask: Asker) -> str:
@@ -76,16 +78,16 @@ def _encoder(ask: Asker, motion: str) -> Row:
     return Row("resolution", None, question.unknown) if answer is None else read_encoder(answer, motion)
 
 
-def _next(text: str, unknown: list[str], path: Path) -> list[str]:
+def _next(text: str, unknown: list[str], path: Path, motion: str, at_handle: str) -> list[str]:
     """What to type now: a check, or what must be measured before it."""
     name = shlex.quote(str(path))
     missing = [key for key in NEEDED if key in unknown]
     if missing:
-        tried = f"{name} {guessed(missing)} --stiffness 100"
+        tried = f"{name} {guessed(missing, motion)} {_typed('stiffness', '100', at_handle)}"
         first = [*(line for key in missing for line in _MEASURE[key]), "to try what if, with a guess:"]
     else:
         device = build_device(tables_of(text, path.name, ("device",))["device"])
-        tried, first = f"{name} --stiffness {_stiffness(device)}", ["next, a wall:"]
+        tried, first = f"{name} {_typed('stiffness', _stiffness(device), device.motion)}", ["next, a wall:"]
     return [
         *first,
         f"  zwidth check {tried}",
@@ -96,10 +98,15 @@ def _next(text: str, unknown: list[str], path: Path) -> list[str]:
     ]
 
 
-def guessed(missing: Iterable[str]) -> str:
+def guessed(missing: Iterable[str], motion: str) -> str:
     """Options with a guess of what a device must have and lacks."""
-    guesses = {"rate": '--rate "1 kHz"', "damping": "--damping 0.1"}
+    guesses = {"rate": '--rate "1 kHz"', "damping": _typed("damping", "0.1", motion)}
     return " ".join(guesses[key] for key in missing)
+
+
+def _typed(key: str, value: str, motion: str) -> str:
+    """An option with its unit, as a shell takes it."""
+    return f'--{key} "{value} {GLOSSARY[key].unit_for(motion)}"'
 
 
 _MEASURE = {
