@@ -20,7 +20,7 @@ def compiled_before() -> Iterator[None]:
 def ctrl_c_is_heard() -> Iterator[None]:
     """Also where the tests are started in the background of a script, which has them ignore it.
 
-    So would what they start; a handler, unlike a signal that is ignored, is not handed on to a process that is started.
+    So would what they start: a signal that is ignored is handed on, a handler is not.
     """
     before = signal.getsignal(signal.SIGINT)
     if before is signal.SIG_IGN:
