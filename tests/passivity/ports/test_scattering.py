@@ -124,6 +124,14 @@ def test_an_unstable_network_is_active():
     assert found.to_dict()["largest_gain"] == np.inf
 
 
+def test_a_hidden_mode_that_grows_is_told():
+    """No wave from rest shows it, and so the network is passive; what is hidden is said."""
+    found = zw.ports.scattering_passivity(control.ss([[1.0]], [[1.0]], [[0.0]], [[0.5]]))
+    assert found.passive
+    assert not found.hidden_modes_decay
+    assert "does not decay" in repr(found)
+
+
 def table(*gains, **more):
     """One port, samples from 1 GHz on."""
     s = np.reshape(np.array(gains, complex), (-1, 1, 1))

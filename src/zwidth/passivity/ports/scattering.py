@@ -79,6 +79,11 @@ class ScatteringPassivity(PassivityAnswer):
         return self.input.bands()
 
     @property
+    def hidden_modes_decay(self) -> bool:
+        """False when a mode that cancels between poles and zeros does not decay: no wave shows it."""
+        return self.input.port.hidden_modes_decay
+
+    @property
     def certificate(self) -> Certificate | None:
         """The proof that S is bounded real: of u → y; None if it is not."""
         return self.input.certificate(0) if self.passive else None
@@ -112,6 +117,8 @@ class ScatteringPassivity(PassivityAnswer):
         rows = [("largest gain", self.gain.describe().replace("R = ", "‖S‖ = "))]
         if self.bands:
             rows.append(("violated", in_words(self.bands)))
+        if not self.hidden_modes_decay:
+            rows.append(("hidden", "a cancelled mode does not decay"))
         return rows
 
     def numbers(self) -> dict[str, Any]:
