@@ -68,7 +68,7 @@ def _of_a_table(system: Any) -> str:
     """What to do with a measured response, which python-control has as a system too."""
     if not hasattr(system, "frdata"):
         return ""
-    return "; of a measured response fit one: between its points a table proves nothing"
+    return "; of a measured response zw.ports.response_table says what it shows, and for a proof fit one"
 
 
 def time_of(system: Any) -> tuple[Literal["continuous", "discrete", "unsaid"], Fraction | None]:
