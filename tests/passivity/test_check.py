@@ -573,3 +573,15 @@ def test_a_rational_is_written_digit_for_digit(value):
     """However many digits that takes: a motion may hang on the last one."""
     (written,) = json.loads(to_json([value]), parse_float=str)
     assert Fraction(written) == value
+
+
+def test_what_was_looked_for_below_is_not_denied_above() -> None:
+    """A lead asks for less damping behind a part of a sample: no lower delay would do, and a higher does."""
+    device = zw.Device(damping=0.3, sample_period=1e-3)
+    lead = zw.ContinuousTransferFunction([0.33, 150], [0.0005, 1], discretization="tustin")
+    verdict = zw.check(device, lead)
+    (told,) = [advice for advice in verdict.advice if advice.parameter == "delay"]
+    assert verdict.outcome == "active"
+    assert told.to is None
+    assert told.text == "no lower delay was found that would do alone"
+    assert zw.check(device.replace(delay=1e-4), lead).passive
