@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import shlex
 import subprocess
 import sys
 from collections.abc import Callable
@@ -457,9 +458,38 @@ def test_what_to_type_next_can_be_typed(capsys: pytest.CaptureFixture[str]) -> N
     assert main(["new", "device", *options(device), "--no-questions"]) == 0
     capsys.readouterr()
     assert main(["new", "environment", *options(wall), "--no-questions", "--force"]) == 0
-    _, *command = capsys.readouterr().out.splitlines()[-1].split()
+    _, *command = shlex.split(capsys.readouterr().out.splitlines()[-1])
     assert "--damping" in command
     assert main(command) == 0
+
+
+@pytest.mark.parametrize(
+    ("known", "damping", "stiffness"),
+    [
+        ({"--motion": "linear"}, "0.1 N*s/m", "100 N/m"),
+        ({"--motion": "rotary"}, "0.01 N*m*s/rad", "0.1 N*m/deg"),
+        ({"--motion": "rotary", "--handle-radius": "10 cm"}, "0.01 N*m*s/rad", "100 N/m"),
+    ],
+)
+def test_a_guess_has_its_unit(
+    known: dict[str, str], damping: str, stiffness: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of a handle on a lever the damping is that of its shaft, and a wall is met by the handle."""
+    assert (
+        main(
+            [
+                "new",
+                "device",
+                *options({**known, "--rate": "1 kHz", "--damping": "unknown"}),
+                "--no-questions",
+            ]
+        )
+        == 0
+    )
+    line = next(line for line in capsys.readouterr().out.splitlines() if "zwidth check" in line)
+    _, *command = shlex.split(line)
+    assert command[2:] == ["--damping", damping, "--stiffness", stiffness]
+    assert main(command) in (0, 1)
 
 
 def test_the_missing_motion_is_said_before_what_does_not_fit(refused: Answered) -> None:
@@ -484,11 +514,7 @@ def test_hints_for_a_wheel_are_in_torque_and_angle(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A bare number would be per radian, and too stiff."""
-    wheel = str(tmp_path / "wheel.toml")
-    for damping, hint in (
-        ("unknown", "--damping 0.01Nms/rad --stiffness 0.1Nm/deg"),
-        ("0.02", "Nm/rad"),
-    ):
-        typed = ("--motion", "rotary", "--rate", "1 kHz", "--damping", damping, "--no-questions", "--force")
-        assert main(["new", "device", wheel, *typed]) == 0
-        assert hint in " ".join(capsys.readouterr().out.split())
+    typed = ("--motion", "rotary", "--rate", "1 kHz", "--damping", "0.02", "--no-questions")
+    assert main(["new", "device", str(tmp_path / "wheel.toml"), *typed]) == 0
+    line = next(line for line in capsys.readouterr().out.splitlines() if "zwidth check" in line)
+    assert line.endswith((' N*m/rad"', ' N*m/deg"'))

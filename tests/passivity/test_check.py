@@ -588,3 +588,15 @@ def test_what_is_proved_for_whole_samples_alone_is_not_called_a_limit() -> None:
     assert told["delay"].text == "delay is proved where it is, 1 ms, and for delays of whole samples alone"
     lines = in_lines(verdict.advice, passive=True)
     assert lines.at_limit == "proved where it is, and for delays of whole samples alone: rate, delay"
+
+
+def test_what_was_looked_for_below_is_not_denied_above() -> None:
+    """A lead asks for less damping behind a part of a sample: no lower delay would do, and a higher does."""
+    device = zw.Device(damping=0.3, sample_period=1e-3)
+    lead = zw.ContinuousTransferFunction([0.33, 150], [0.0005, 1], discretization="tustin")
+    verdict = zw.check(device, lead)
+    (told,) = [advice for advice in verdict.advice if advice.parameter == "delay"]
+    assert verdict.outcome == "active"
+    assert told.to is None
+    assert told.text == "no lower delay was found that would do alone"
+    assert zw.check(device.replace(delay=1e-4), lead).passive

@@ -16,6 +16,9 @@ HOST = "127.0.0.1"
 USUAL_PORT = 5007
 """Where the page is if nothing else is there."""
 
+_PIECE = 0.2
+"""How long Ctrl-C may go unheard [s]."""
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth explore`."""
@@ -69,8 +72,19 @@ def run(arguments: argparse.Namespace) -> int:
             print(f"exploring at {page.address} ; Ctrl-C ends it", file=sys.stderr, flush=True)
         if not arguments.no_browser:
             webbrowser.open(page.address)
-        Event().wait()
+        until_ctrl_c()
     return 0
+
+
+def until_ctrl_c() -> None:
+    """Wait for KeyboardInterrupt.
+
+    In pieces: the system may hand a signal to any thread of a process, and one that waits without end in the
+    main thread is not woken where another takes it.
+    """
+    never = Event()
+    while not never.wait(_PIECE):
+        pass
 
 
 def _port(typed: str | None) -> int | None:

@@ -90,10 +90,8 @@ def run(arguments: argparse.Namespace) -> int:
     if save is not None:
         found.identified.save(save, confidence, force=True, **found.others)
     if plot is not None:
-        from zwidth.identification.device.picture import save_identification  # matplotlib takes its time
-
         with writing(plot):
-            save_identification(found.identified, plot, overwrite=True)
+            found.identified.plot(plot, force=True)
     if arguments.json:
         print_json(_json(found))
     else:

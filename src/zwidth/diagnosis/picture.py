@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +9,6 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from zwidth.errors import InputError
-from zwidth.plots.files import save_figure
 from zwidth.plots.style import BLUE, GREY, LOOK, ORANGE, RED, heading, label, new_figure, page_heading, scale
 
 if TYPE_CHECKING:
@@ -21,19 +19,6 @@ if TYPE_CHECKING:
 
 _CYCLES = 8
 """That are drawn as they went."""
-
-
-def save_diagnosis(
-    recording: Recording, seen: Evidence | None, claim: str, path: str | Path, overwrite: bool = False
-) -> None:
-    """Write `diagnosis_figure` to a file; its ending, png, svg or pdf, says how.
-
-    Raises
-    ------
-    InputError
-        If the ending is another one, the file exists or cannot be written, or nothing vibrates.
-    """
-    save_figure(lambda: diagnosis_figure(recording, seen, claim), path, overwrite)
 
 
 @rc_context(LOOK)

@@ -188,11 +188,13 @@ class Diagnosis(Shown):
         force
             Replace a file that exists.
         """
-        from zwidth.diagnosis.picture import diagnosis_figure, save_diagnosis
+        from zwidth.diagnosis.picture import diagnosis_figure
+        from zwidth.plots.files import save_figure
 
+        figure = diagnosis_figure(self.recording, self.seen, self.claim)
         if path is not None:
-            save_diagnosis(self.recording, self.seen, self.claim, Path(path), overwrite=force)
-        return diagnosis_figure(self.recording, self.seen, self.claim)
+            save_figure(lambda: figure, Path(path), overwrite=force)
+        return figure
 
 
 def _key(name: str, unit: str) -> str:

@@ -64,8 +64,8 @@ def read_matrix_system(system: Any) -> MatrixSystem:
     outputs, inputs = size_of(system)
     if outputs != inputs:
         raise InputError(
-            f"the system has {inputs} inputs and {outputs} outputs; a port has as many of both, each output "
-            "times its own input a power: leave out what is not part of the port"
+            f"the system has {_count(inputs, 'input')} and {_count(outputs, 'output')}; a port has as many "
+            "of both, each output times its own input a power: leave out what is not part of the port"
         )
     if all(hasattr(system, name) for name in ("A", "B", "C", "D")):
         entries, state = _from_state_space(system)
@@ -76,6 +76,10 @@ def read_matrix_system(system: Any) -> MatrixSystem:
             "TransferFunction or StateSpace of python-control or harold, or a StateSpace of scipy.signal"
         )
     return MatrixSystem(_from_transfer_functions(system), *time_of(system), None)
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}" + ("" if number == 1 else "s")
 
 
 def _from_transfer_functions(system: Any) -> Entries:

@@ -59,8 +59,16 @@ def read_system(system: Any) -> LinearSystem:
         raise InputError(
             f"a system of type {type(system).__name__} is not read; give a TransferFunction, StateSpace or "
             "ZerosPolesGain system of python-control, scipy.signal or harold, or the coefficients themselves"
+            + _of_a_table(system)
         )
     return LinearSystem(num, den, *time_of(system))
+
+
+def _of_a_table(system: Any) -> str:
+    """What to do with a measured response, which python-control has as a system too."""
+    if not hasattr(system, "frdata"):
+        return ""
+    return "; of a measured response zw.ports.response_table says what it shows, and for a proof fit one"
 
 
 def time_of(system: Any) -> tuple[Literal["continuous", "discrete", "unsaid"], Fraction | None]:
@@ -84,9 +92,9 @@ def _of_scipy(system: object) -> bool:
 
 def number_of(value: Any, key: str) -> Fraction:
     """A coefficient as the shortest decimal of its double."""
-    if isinstance(value, complex) or getattr(value, "imag", 0) != 0:
+    if getattr(value, "imag", 0) != 0:
         raise InputError(f"{key} has the complex coefficient {value}; a force law is real")
-    number = float(value)
+    number = float(getattr(value, "real", value))
     if not math.isfinite(number):
         raise InputError(f"{key} holds {number}; expected finite numbers")
     return Fraction(Decimal(repr(number)))

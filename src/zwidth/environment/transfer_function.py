@@ -208,6 +208,12 @@ def as_environment(thing: object, discretization: Discretization | None = None) 
             "the system has dt=None and so does not say whether it is H(s) or H(z); give it a dt, or write "
             "PulseTransferFunction(system) or ContinuousTransferFunction(system, discretization=…)"
         )
+    if discretization is None:
+        raise InputError(
+            "a continuous system needs a discretization, for the verdict depends on it: "
+            "ContinuousTransferFunction(system, discretization=…), or discretization=… where that is an "
+            f"argument, with one of {choices()}; or discretize it yourself"
+        )
     return ContinuousTransferFunction(system, discretization=discretization)
 
 

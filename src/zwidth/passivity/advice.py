@@ -63,8 +63,8 @@ class Advice:
     """One parameter, where it is and where it may or must go, both in `unit`.
 
     `kind` is "change" for a loop that is not passive and "slack" for one that
-    is; `to` is None where no value of this parameter alone would do, and inf
-    ("any" as plain data) where it may have any value.  `is_alone` where it is no limit
+    is; `to` is None where no value on the safer side was found that would do
+    alone, and inf ("any" as plain data) where it may have any value.  `is_alone` where it is no limit
     that keeps it where it is: of values beside it nothing is proved or refuted.
     """
 
@@ -121,11 +121,12 @@ def in_lines(advice: Iterable[Advice], passive: bool) -> InLines:
     ordered = sorted(advice, key=_rank)
     useless = [a for a in ordered if a.to is None and a.current != 0]
     at_limit = [a for a in ordered if a.kind == "slack" and a.to is not None and a.to == a.current]
+    none = "no slack" if passive else "no change found that would do alone"
     return InLines(
         "slack" if passive else "what to change, any one of",
         tuple(item.text for item in ordered if item.to is not None and item not in at_limit),
         "; ".join(_where_it_is(at_limit)),
-        f"{'no slack' if passive else 'no change alone would do'}: {_names(useless)}" if useless else "",
+        f"{none}: {_names(useless)}" if useless else "",
     )
 
 
@@ -346,7 +347,7 @@ def _text(knob: Knob, to: float | None, unit: str, kind: str) -> str:
     now = readable(knob.current, unit)
     if kind == "change":
         if to is None:
-            return f"no value of {knob.name} alone would do"
+            return f"no {'higher' if knob.more else 'lower'} {knob.name} was found that would do alone"
         verb = "raise" if knob.more else "lower"
         return f"{verb} the {knob.name} from {now} to {readable(to, unit, 6)}"
     if to is None or to == inf:

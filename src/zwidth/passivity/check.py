@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
+from zwidth.environment.system import is_system
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.pairs import Pair
@@ -164,7 +165,7 @@ def _check_arm(arm: Any, wall: Any, further: Mapping[str, Any]) -> Workspace:
     from zwidth.arms import Arm  # numpy takes its time
 
     if not isinstance(arm, Arm):
-        raise InputError(f"the first argument is a Device or an arm, got {type(arm).__name__}")
+        raise InputError(f"the first argument is a Device or an arm, {_instead_of_one(arm)}")
     from zwidth.passivity.workspace import workspace
 
     if "rate" not in further:
@@ -228,7 +229,7 @@ def _touched(device: Device, law: Environment, verdict: LinearVerdict) -> Linear
 def _as_law(device: Device, environment: Environment | Any) -> Environment:
     """The environment, once what comes first is a device."""
     if not isinstance(device, Device):
-        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
+        raise InputError(f"the first argument is a Device, {_instead_of_one(device)}")
     if type(environment).__name__ == "MatrixWall":
         raise InputError("a MatrixWall is of several coordinates: give an arm in the place of the device")
     return as_environment(environment)
@@ -390,3 +391,14 @@ def _undecided(
 def _as_evidence(shown: Evidence | None) -> dict[str, Any]:
     """Where a verdict keeps it."""
     return {"violation": shown} if isinstance(shown, Violation) else {"motion": shown}
+
+
+def _instead_of_one(thing: object) -> str:
+    """What was given; and what a plant is as a device."""
+    got = f"got {type(thing).__name__}"
+    if not is_system(thing):
+        return got
+    return (
+        f"{got}: a plant 1/(m s² + b s) is Device(mass=m, damping=b, sample_period=T); of another one the "
+        "damping is the input index of its impedance, velocity → force: zw.ports.passivity_indices(Z).input"
+    )

@@ -339,7 +339,7 @@ def test_sampled_damping_of_a_continuous_law():
     ("arguments", "message"),
     [
         ((control.tf([1, 0, 0], [1, 2], 0.1),), "more zeros than poles"),
-        ((control.ss(-np.eye(2), np.eye(2), [[1, 1]], [[0, 0]]),), "2 inputs and 1 outputs"),
+        ((control.ss(-np.eye(2), np.eye(2), [[1, 1]], [[0, 0]]),), "2 inputs and 1 output;"),
         ((control.tf([1], [1, 1], None),), "dt=None"),
         ((3.0,), "a port is a system"),
         ((zw.Wall(100),), "give the device"),
@@ -424,3 +424,18 @@ def test_it_says_what_it_found():
     assert "burst" in found.witness._repr_html_()
     assert repr(found.input).startswith("<PassivityIndex input ν")
     assert found.input.describe() in found.input._repr_html_()
+
+
+def test_what_is_given_is_told_what_to_do_with_it():
+    """A plant is a device, a measured response is fitted, a law is discretized; complex zeros are real."""
+    device, s = zw.Device(damping=0.3, rate=1000), control.tf("s")
+    for call, said in (
+        (lambda: zw.check(1 / (0.1 * s**2 + 0.3 * s), zw.Wall(stiffness=100)), "Device(mass=m, damping=b"),
+        (lambda: zw.check(device, 100 + 0.1 * s), "ContinuousTransferFunction(system, discretization=…)"),
+        (lambda: zw.ports.passivity_indices(control.frd([1 + 1j, 2], [1, 2])), "response_table"),
+    ):
+        with pytest.raises(zw.InputError) as caught:
+            call()
+        assert said in str(caught.value)
+    system = scipy.signal.TransferFunction([1 + 0j, 2], [1, 1])
+    assert zw.ports.passivity_indices(system).input.exact == 1

@@ -317,7 +317,7 @@ def test_hidden_modes_of_several_axes(g, decay, why):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((control.ss(-np.eye(2), np.eye(2), [[1, 2]], [[0, 0]]),), "2 inputs and 1 outputs"),
+        ((control.ss(-np.eye(2), np.eye(2), [[1, 2]], [[0, 0]]),), "2 inputs and 1 output;"),
         ((control.ss(-np.eye(2), np.eye(2), np.eye(2), np.zeros((2, 2)), None),), "dt=None"),
         ((matrix([[([1, 0, 0], [1, 2]), NOTHING], [NOTHING, LAG]], 0.1),), "more zeros than poles"),
         ((control.ss(-np.eye(2), np.eye(2), np.eye(2), np.eye(2) * np.nan),), "finite"),

@@ -61,6 +61,53 @@ def test_the_waves_answer_each_other():
     assert answer == pytest.approx(b, abs=1e-4)
 
 
+@pytest.mark.parametrize("period", [0, 1])
+@pytest.mark.parametrize(
+    "state_space",
+    [
+        ([[-0.9]], [[1.64]], [[0.2934]], [[1.0]]),
+        ([[-0.5]], [[-1.18, -1.78]], [[1.29], [-0.136]], [[1.0, 0.0], [0.0, 1.0]]),
+        ([[-0.5]], [[1.0, 2.0]], [[1.0], [-1.0]], [[1.0, 0.0], [0.0, -1.0]]),
+        (
+            [[-0.5, 0.3], [-0.3, -0.5]],
+            [[1.0, 2.0], [0.0, 1.0]],
+            [[1.0, 0.5], [0.0, 1.0]],
+            [[0.6, 0.8], [-0.8, 0.6]],
+        ),
+    ],
+)
+def test_a_network_that_passes_on_all_at_high_frequency(state_space, period):
+    """S(∞) has singular values of 1, so that 1 − ΣS(∞) has no inverse for some signs: others serve."""
+    system = control.ss(*state_space, period)
+    found = zw.ports.scattering_passivity(system)
+    omega = np.linspace(0, np.pi, 500) if period else np.geomspace(1e-3, 1e3, 500)
+    values = [system(np.exp(1j * w) if period else 1j * w, squeeze=False) for w in omega]
+    assert found.outcome == "active"
+    assert found.gain.value == pytest.approx(max(np.linalg.norm(v, 2) for v in values), rel=1e-3)
+    assert found.gain.certificate().verify()
+
+
+@pytest.mark.parametrize("gain", [0.703, -0.703, [[0.7, 0.0], [0.0, -0.7]], [[0.3, 0.0], [0.0, 0.5]]])
+def test_a_constant_gain_has_its_proof(gain):
+    """All that comes in comes back by the same part: R − ΣS vanishes for some signs."""
+    found = zw.ports.scattering_passivity(control.ss([], [], [], gain))
+    size = np.abs(gain).max()
+    assert found.gain.value == size
+    assert found.gain.certificate().verify()
+    assert not found.gain.at_most(size - 1e-9)
+    with pytest.raises(zw.InputError, match="higher level"):
+        found.gain.certificate(size - 1e-9)
+
+
+def test_the_relative_index_of_an_improper_port():
+    """diag(s, 1): at infinity one axis alone is rigid; all of its wave comes back."""
+    one, s = [1], [1, 0]
+    g = control.tf([[s, [0]], [[0], one]], [[one, one], [one, one]])
+    found = zw.ports.passivity_indices(g).relative(2)
+    assert found.value == 1
+    assert found.certificate().verify()
+
+
 @pytest.mark.parametrize("system", [PASSIVE["gyrator"], ACTIVE["one way"][0]])
 def test_what_is_saved_is_verified(system, tmp_path, capsys):
     """`zwidth verify` accepts the proof and the waves for what the document says."""
@@ -75,6 +122,14 @@ def test_an_unstable_network_is_active():
     assert found.outcome == "active"
     assert found.bands == ()
     assert found.to_dict()["largest_gain"] == np.inf
+
+
+def test_a_hidden_mode_that_grows_is_told():
+    """No wave from rest shows it, and so the network is passive; what is hidden is said."""
+    found = zw.ports.scattering_passivity(control.ss([[1.0]], [[1.0]], [[0.0]], [[0.5]]))
+    assert found.passive
+    assert not found.hidden_modes_decay
+    assert "does not decay" in repr(found)
 
 
 def table(*gains, **more):

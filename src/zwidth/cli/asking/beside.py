@@ -8,6 +8,7 @@ from zwidth.cli.asking.device_questions import NEEDED
 from zwidth.device import Device
 from zwidth.errors import InputError
 from zwidth.specification.read import load_device, read_tables
+from zwidth.specification.table import Table
 
 _ANY = {"rate": "1 kHz", "damping": "0"}
 """In the place of what the file lacks: motion and largest force do not depend on it."""
@@ -26,11 +27,21 @@ def beside(name: str) -> Device | None:
 
 def lacking(name: str) -> list[str] | None:
     """What the file of a device has to say for a proof and does not; None where there is no such file."""
-    try:
-        table = read_tables([Path(name)], ("device",)).get("device")
-    except InputError:
-        return None
+    table = _table(name)
     if table is None:
         return None
     given = {"rate" if key == "sample_period" else key for key in table.values}
     return [] if "catalogue" in given else [key for key in NEEDED if key not in given]
+
+
+def told_as(name: str) -> str:
+    """The motion in which the file of a device has its numbers: of a handle on a lever those of its shaft."""
+    table = _table(name)
+    return "linear" if table is None else str(table.values.get("motion", "linear"))
+
+
+def _table(name: str) -> Table | None:
+    try:
+        return read_tables([Path(name)], ("device",)).get("device")
+    except InputError:
+        return None

@@ -52,8 +52,9 @@ def described(ask: Asker, path: Path) -> Written:
     sheet = motor.derived(ask, motion, [key for key, row in measured.items() if row.value is None])
     rows += [sheet.get(key, row) for key, row in measured.items()]
     ask.finish("a device")
+    at_handle = "linear" if any(row.key == RADIUS.key for row in rows) else motion
     text = table("device", _HEAD, rows)
-    return Written(text, _next(text, [row.key for row in rows if row.value is None], path, motion))
+    return Written(text, _next(text, [row.key for row in rows if row.value is None], path, motion, at_handle))
 
 
 def _motion(ask: Asker) -> str:
@@ -77,17 +78,16 @@ def _encoder(ask: Asker, motion: str) -> Row:
     return Row("resolution", None, question.unknown) if answer is None else read_encoder(answer, motion)
 
 
-def _next(text: str, unknown: list[str], path: Path, motion: str) -> list[str]:
+def _next(text: str, unknown: list[str], path: Path, motion: str, at_handle: str) -> list[str]:
     """What to type now: a check, or what must be measured before it."""
     name = shlex.quote(str(path))
     missing = [key for key in NEEDED if key in unknown]
     if missing:
-        stiffness = "0.1Nm/deg" if motion == "rotary" and RADIUS.key not in text else "100"
-        tried = f"{name} {guessed(missing, motion)} --stiffness {stiffness}"
+        tried = f"{name} {guessed(missing, motion)} {_GUESSES['stiffness'][at_handle]}"
         first = [*(line for key in missing for line in _MEASURE[key]), "to try what if, with a guess:"]
     else:
         device = build_device(tables_of(text, path.name, ("device",))["device"])
-        tried, first = f"{name} --stiffness {_stiffness(device)}", ["next, a wall:"]
+        tried, first = f"{name} {_stiffness(device)}", ["next, a wall:"]
     return [
         *first,
         f"  zwidth check {tried}",
@@ -99,12 +99,15 @@ def _next(text: str, unknown: list[str], path: Path, motion: str) -> list[str]:
 
 
 def guessed(missing: Iterable[str], motion: str) -> str:
-    """Options with a guess of what a device must have and lacks; of one that turns about its axis."""
-    damping = "0.01Nms/rad" if motion == "rotary" else "0.1"
-    guesses = {"rate": '--rate "1 kHz"', "damping": f"--damping {damping}"}
+    """Options with a guess of what a device must have and lacks."""
+    guesses = {"rate": '--rate "1 kHz"', "damping": _GUESSES["damping"][motion]}
     return " ".join(guesses[key] for key in missing)
 
 
+_GUESSES = {
+    "stiffness": {"linear": '--stiffness "100 N/m"', "rotary": '--stiffness "0.1 N*m/deg"'},
+    "damping": {"linear": '--damping "0.1 N*s/m"', "rotary": '--damping "0.01 N*m*s/rad"'},
+}
 _MEASURE = {
     "rate": ("measure the rate of your loop; what this machine can keep says", "  zwidth doctor"),
     "damping": (
@@ -115,12 +118,10 @@ _MEASURE = {
 
 
 def _stiffness(device: Device) -> str:
-    """A stiffness to begin with: near the largest passive one, cut to two digits."""
+    """The option of a stiffness to begin with: near the largest passive one, cut to two digits."""
     largest = getattr(check(device, Wall(1)), "max_stiffness", None)
-    turns = device.motion == "rotary"
     if largest is None or not 0 < largest < inf:
-        return "0.1Nm/deg" if turns else "100"
-    factor, told = spoken("N*m/rad") if turns else (1.0, "")
-    unit = 10.0 ** (floor(log10(largest * factor)) - 1)
-    number = f"{floor(largest * factor / unit) * unit:.4g}"
-    return f"{number}{told.replace('*', '')}" if turns else number
+        return _GUESSES["stiffness"][device.motion]
+    factor, unit = spoken("N*m/rad") if device.motion == "rotary" else (1.0, "N/m")
+    digit = 10.0 ** (floor(log10(largest * factor)) - 1)
+    return f'--stiffness "{floor(largest * factor / digit) * digit:.4g} {unit}"'

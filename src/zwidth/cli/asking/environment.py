@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-from zwidth.cli.asking.beside import beside, lacking
+from zwidth.cli.asking.beside import beside, lacking, told_as
 from zwidth.cli.asking.device import guessed
 from zwidth.cli.asking.device_questions import MOTION, motion_of
 from zwidth.cli.asking.environment_questions import QUESTIONS, TYPE, kind_of, questions_of, units_of
@@ -56,7 +56,7 @@ def described(ask: Asker, path: Path) -> Written:
 def _next(path: Path, motion: str) -> list[str]:
     """What to type now, with a guess of what the device lacks."""
     missing = lacking(_DEVICE)
-    guess = f" {guessed(missing, motion)}" if missing else ""
+    guess = f" {guessed(missing, told_as(_DEVICE))}" if missing else ""
     first = [] if missing is not None else ["the device first:", "  zwidth new device"]
     head = f"next, with a guess of what {_DEVICE} lacks:" if missing else "next:"
     return [*first, head, f"  zwidth check {_DEVICE} {shlex.quote(str(path))}{guess}"]

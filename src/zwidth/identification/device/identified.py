@@ -73,11 +73,13 @@ class Identified(Shown, IdentifiedNumbers):
         force
             Replace a file that exists.
         """
-        from zwidth.identification.device.picture import identification_figure, save_identification
+        from zwidth.identification.device.picture import identification_figure
+        from zwidth.plots.files import save_figure
 
+        figure = identification_figure(self)
         if path is not None:
-            save_identification(self, Path(path), overwrite=force)
-        return identification_figure(self)
+            save_figure(lambda: figure, Path(path), overwrite=force)
+        return figure
 
     def to_dict(self, confidence: float = 0.99) -> dict[str, Any]:
         """Everything but the points, units in the keys, as `zwidth identify --json` prints it."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
 
@@ -17,7 +16,6 @@ from zwidth.identification.device.limits import percent
 from zwidth.identification.device.numbers import BINS, IdentifiedNumbers
 from zwidth.identification.device.pulses import PIECES, pulse
 from zwidth.identification.device.table import rows, title
-from zwidth.plots.files import save_figure
 from zwidth.plots.style import BLACK, BLUE, GREY, LOOK, ORANGE, RED, low_index, new_figure, page_heading
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import quantity_unit
@@ -39,17 +37,6 @@ _MOST = 6000
 
 _SECONDS = 3.0
 """Of the log, that are drawn as they went [s]."""
-
-
-def save_identification(identified: IdentifiedNumbers, path: str | Path, overwrite: bool = False) -> None:
-    """Write `identification_figure` to a file; its ending, png, svg or pdf, says how.
-
-    Raises
-    ------
-    InputError
-        If the ending is another one, or the file exists or cannot be written.
-    """
-    save_figure(lambda: identification_figure(identified), path, overwrite)
 
 
 @rc_context(LOOK)

@@ -13,23 +13,22 @@ level 0; so one decision and one kind of proof serve here too.  The largest is f
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
-from math import inf, nextafter, sqrt
+from functools import partial
+from math import inf, isfinite, nextafter, sqrt
 from typing import Any
 
 import numpy as np
-from flint import fmpq_poly
 
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.ports.bands import Band, bands
 from zwidth.passivity.ports.documents import proof_document, system_document
-from zwidth.passivity.ports.leverrier import leverrier, multiplied
-from zwidth.passivity.ports.port import Polynomials, Port, in_lowest_terms
+from zwidth.passivity.ports.port import Port
 from zwidth.passivity.ports.positive_real import OFFSET, is_stable, prove_level
-from zwidth.passivity.ports.reading import from_polynomials
+from zwidth.passivity.ports.waves import direct_power_of, power_of, waves_of
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.showing import Part, Shown
 
@@ -84,11 +83,11 @@ class RelativeIndex(Shown):
 
     def at_most(self, level: RealLike) -> bool:
         """Whether R is at most this level, decided exactly."""
-        return _holds(self.port, self.reference, _positive(level))
+        return _holds(waves_of(self.port, self.reference), _positive(level))
 
     def bands(self, level: RealLike = 1) -> tuple[Band, ...]:
         """Where more than this level comes back: the bands of violation at level 1."""
-        return bands(_turned(self.port, self.reference, _positive(level)), Fraction(0))
+        return bands(power_of(waves_of(self.port, self.reference), _positive(level)), Fraction(0))
 
     def certificate(self, level: RealLike | None = None) -> Certificate:
         """The proof that R is at most the level, by default `value`: of the port (u', y') that it makes.
@@ -101,15 +100,15 @@ class RelativeIndex(Shown):
         if level is None and self.bounds is None:
             raise InputError("the relative index is without bound; there is nothing to certify")
         at = Fraction(repr(self.value)) if level is None else _positive(level)
-        turned = direct(_turned(self.port, self.reference, at))
-        proof = None if turned is None else prove_level(turned, Fraction(0))
-        if turned is None or proof is None:
+        _, port = direct_power_of(waves_of(self.port, self.reference), at)
+        proof = prove_level(port, Fraction(0))
+        if proof is None:
             raise InputError(
                 f"the relative index is {self.value:.17g}, so {float(at):.17g} cannot be certified; "
                 "give a higher level"
             )
         evidence = proof_document(proof)
-        claim = {"index": "input", "level": "0", "system": system_document(turned)}
+        claim = {"index": "input", "level": "0", "system": system_document(port)}
         return Certificate(({"format": FORMAT, "kind": evidence["kind"], **claim, **evidence},))
 
     def describe(self) -> str:
@@ -143,23 +142,35 @@ def relative_index(port: Port, reference: RealLike = 1) -> RelativeIndex:
         )
     if not is_stable(port, OFFSET - z):
         return RelativeIndex(port, z, None, None)
-    cosine = max((Fraction(1), Fraction(0), Fraction(-1)), key=lambda c: _reflected(port, z, c))
-    low = _lower(_reflected(port, z, cosine))
+    waves = waves_of(port, z)
+    cosine = max((Fraction(1), Fraction(0), Fraction(-1)), key=partial(_reflected, waves))
+    low = _lower(_reflected(waves, cosine))
     for _ in range(_MOST_ROUNDS):
         high = low * (1 + _CLOSE)
-        above = bands(_turned(port, z, high), Fraction(0))
+        above = bands(power_of(waves, high), Fraction(0))
         if not above:
             break
-        cosine = max((band.middle for band in above), key=lambda c: _reflected(port, z, c))
-        low = max(high, _lower(_reflected(port, z, cosine)))
-    while not _holds(port, z, high):
-        high *= 1 + _CLOSE
-    while low > _SMALLEST and _holds(port, z, low):  # a rounding above what is reached
-        low *= 1 - _CLOSE
+        cosine = max((band.middle for band in above), key=partial(_reflected, waves))
+        low = max(high, _lower(_reflected(waves, cosine)))
+    low, high = _narrowed(partial(_holds, waves), low, high)
     simple = high.limit_denominator(_SIMPLE)
-    if low <= simple < high and _holds(port, z, simple):
+    if low <= simple < high and _holds(waves, simple):
         high = simple
     return RelativeIndex(port, z, (Fraction(0) if low <= _SMALLEST else low, high), cosine)
+
+
+def _narrowed(holds: Callable[[Fraction], bool], low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
+    """Both ends where rounding had put them on the wrong side: `high` holds, `low` does not, or is least."""
+    step = _CLOSE
+    while not holds(high):
+        low, high, step = high, high * (1 + step), 4 * step
+    step = _CLOSE
+    while low > _SMALLEST and holds(low):
+        low, high, step = max(low * (1 - min(step, Fraction(1, 2))), _SMALLEST), low, 4 * step
+    while high - low > 2 * _CLOSE * high and high > _SMALLEST:
+        middle = Fraction(f"{float((low + high) / 2):.15g}")
+        low, high = (low, middle) if holds(middle) else (middle, high)
+    return low, high
 
 
 def _positive(level: RealLike) -> Fraction:
@@ -176,53 +187,27 @@ def _lower(value: float) -> Fraction:
     return max(Fraction(f"{value:.15g}"), _SMALLEST)
 
 
-def _holds(port: Port, z: Fraction, level: Fraction) -> bool:
+def _holds(waves: Port, level: Fraction) -> bool:
     """‖S‖∞ ≤ level, and S is stable."""
-    return prove_level(_turned(port, z, level), Fraction(0)) is not None
+    return prove_level(power_of(waves, level), Fraction(0)) is not None
 
 
-def _turned(port: Port, z: Fraction, level: Fraction) -> Port:
-    """The port of u' = R a − b and y' = R a + b, in whole numbers."""
-    top, bottom = level.numerator, level.denominator
-    more, less = top + bottom, top - bottom
+def _reflected(waves: Port, cosine: Fraction) -> float:
+    """The largest singular value of S at c, to rounding; of an S that is stable.
 
-    def mixed(of_n: int, of_d: int) -> Polynomials:
-        return tuple(
-            tuple(_sum(n, of_n * z.denominator, d, of_d * z.numerator) for n, d in zip(*rows, strict=True))
-            for rows in zip(port.outputs, port.inputs, strict=True)
-        )
-
-    outputs, inputs = mixed(more, less), mixed(less, more)
-    denominator = inputs[0][0] if port.axes == 1 else port.denominator
-    return Port(outputs, inputs, denominator, port.time, port.period, port.hidden_modes_decay)
+    Beside it where the waves in are not independent, as at c = −1 of polynomials of unlike degrees.
+    """
+    for beside in (Fraction(0), Fraction(1, 2**20), Fraction(1, 2**12)):
+        found = _size_at(waves, cosine * (1 - beside))
+        if isfinite(found):
+            return found
+    return 0.0
 
 
-def _sum(n: tuple[int, ...], of_n: int, d: tuple[int, ...], of_d: int) -> tuple[int, ...]:
-    size = max(len(n), len(d))
-    first, second = ((*p, *(0,) * (size - len(p))) for p in (n, d))
-    total = [x * of_n + y * of_d for x, y in zip(first, second, strict=True)]
-    while len(total) > 1 and not total[-1]:
-        total.pop()
-    return tuple(total)
-
-
-def direct(port: Port) -> Port | None:
-    """The same port as N/d, as a document has it; None where u' has no inverse."""
-    if port.axes == 1:
-        return port if any(port.inputs[0][0]) else None
-    n, d = ([[fmpq_poly(list(p)) for p in row] for row in side] for side in (port.outputs, port.inputs))
-    found = leverrier(d, fmpq_poly([1]))
-    fraction = in_lowest_terms(multiplied(n, found.adjugate), found.minors[-1])
-    if fraction is None:
-        return None
-    return from_polynomials(fraction[1], fraction[0], port.time, port.period, port.hidden_modes_decay)
-
-
-def _reflected(port: Port, z: Fraction, cosine: Fraction) -> float:
-    """The largest singular value of S at c, to rounding."""
+def _size_at(waves: Port, cosine: Fraction) -> float:
     zeta = complex(float(cosine), -sqrt(max(float(1 - cosine**2), 0.0)))
-    n, d = port.on_circle
-    bits = max(c.bit_length() for side in (n, d) for row in side for p in row for c in p)
+    back, into = waves.on_circle
+    bits = max(c.bit_length() for side in (back, into) for row in side for p in row for c in p)
 
     def at(side: Any) -> Any:
         shift = max(bits - 900, 0)
@@ -230,9 +215,8 @@ def _reflected(port: Port, z: Fraction, cosine: Fraction) -> float:
             [[np.polyval([float(c >> shift) for c in p[::-1]], zeta) for p in row] for row in side]
         )
 
-    outputs, inputs = at(n), at(d) * float(z)
     try:
-        waves = np.linalg.solve((outputs + inputs).T, (outputs - inputs).T)
+        scattering = np.linalg.solve(at(into).T, at(back).T)
     except np.linalg.LinAlgError:
         return inf
-    return float(np.linalg.norm(waves, 2))
+    return float(np.linalg.norm(scattering, 2))

@@ -9,13 +9,10 @@ is positive real, which is decided, proved and refuted as for every other port.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
-from itertools import product
 from typing import Any
-
-from flint import fmpq_poly
 
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.outcome import Outcome
@@ -23,9 +20,9 @@ from zwidth.passivity.ports.bands import Band, in_words
 from zwidth.passivity.ports.extracting_input import ExtractingInput
 from zwidth.passivity.ports.index import PassivityIndex, evidenced
 from zwidth.passivity.ports.largest import largest_level
-from zwidth.passivity.ports.port import Port
 from zwidth.passivity.ports.reading import read_port
-from zwidth.passivity.ports.relative import RelativeIndex, direct, relative_index
+from zwidth.passivity.ports.relative import RelativeIndex, relative_index
+from zwidth.passivity.ports.waves import direct_power_of
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
 
@@ -82,6 +79,11 @@ class ScatteringPassivity(PassivityAnswer):
         return self.input.bands()
 
     @property
+    def hidden_modes_decay(self) -> bool:
+        """False when a mode that cancels between poles and zeros does not decay: no wave shows it."""
+        return self.input.port.hidden_modes_decay
+
+    @property
     def certificate(self) -> Certificate | None:
         """The proof that S is bounded real: of u → y; None if it is not."""
         return self.input.certificate(0) if self.passive else None
@@ -115,6 +117,8 @@ class ScatteringPassivity(PassivityAnswer):
         rows = [("largest gain", self.gain.describe().replace("R = ", "‖S‖ = "))]
         if self.bands:
             rows.append(("violated", in_words(self.bands)))
+        if not self.hidden_modes_decay:
+            rows.append(("hidden", "a cancelled mode does not decay"))
         return rows
 
     def numbers(self) -> dict[str, Any]:
@@ -145,23 +149,5 @@ def scattering_passivity(system: Any) -> ScatteringPassivity:
     InputError
         As `passivity_indices`.
     """
-    waves = read_port(system)
-    for signs in product((1, -1), repeat=waves.axes):
-        port = direct(_powers(waves, signs))
-        if port is not None:
-            return ScatteringPassivity(signs, PassivityIndex("input", port, largest_level(port)))
-    raise AssertionError("1 − ΣS is invertible for some signs Σ")
-
-
-def _powers(waves: Port, signs: Sequence[int]) -> Port:
-    """u = a − Σb, y = a + Σb."""
-    size = range(waves.axes)
-    a, b = ([[fmpq_poly(list(p)) for p in row] for row in side] for side in (waves.inputs, waves.outputs))
-
-    def mixed(sign: int) -> tuple[tuple[tuple[int, ...], ...], ...]:
-        entries = ((a[i][j] + sign * signs[i] * b[i][j] for j in size) for i in size)
-        return tuple(tuple(tuple(int(c) for c in p.coeffs()) or (0,) for p in row) for row in entries)
-
-    inputs = mixed(-1)
-    denominator = inputs[0][0] if waves.axes == 1 else waves.denominator
-    return Port(mixed(1), inputs, denominator, waves.time, waves.period, waves.hidden_modes_decay)
+    signs, port = direct_power_of(read_port(system), Fraction(1))
+    return ScatteringPassivity(signs, PassivityIndex("input", port, largest_level(port)))
