@@ -79,7 +79,7 @@ def test_options_make_the_device_that_they_say(capsys: pytest.CaptureFixture[str
     assert device.replace(name="device") == same
     assert device.assumed == ()
     assert "zwidth new environment" in out
-    check, report = (line.split() for line in out.splitlines() if "--stiffness" in line)
+    check, report = (shlex.split(line) for line in out.splitlines() if "--stiffness" in line)
     assert check[:2] + report[:2] == ["zwidth", "check", "zwidth", "report"]
     assert main(check[1:]) == 0  # a stiffness at which it is passive
     assert main(report[1:]) == 0
