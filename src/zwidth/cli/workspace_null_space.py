@@ -86,7 +86,7 @@ def print_null_space(found: NullSpace, in_full: bool, without: Sequence[str]) ->
     rest = ", ".join(f"{value:.3g}" for value in spring.rest)
     about = [
         ("arm", f"{asked.arm.name}, {asked.arm.joint_count} joints, {shown(asked.rate, 'Hz')}"),
-        ("joint damping", damping_in_words(asked.arm.damping)),
+        ("joint damping", damping_in_words(asked.arm)),
         ("wall", wall_in_words(asked.wall)),
         (
             "null space",

@@ -146,7 +146,10 @@ def _enclosed(leg: Leg) -> _Enclosed:
     return _Enclosed(
         [constant(x) for x in leg.base],
         [[constant(x) for x in axis] for axis in leg.axes],
-        *map(constant, (leg.rod + leg.offset, leg.offset, leg.link**2, leg.rod**2)),
+        constant(leg.rod + leg.offset),
+        constant(leg.offset),
+        constant(leg.link**2),
+        constant(leg.rod**2),
         leg.bend,
     )
 
