@@ -58,7 +58,7 @@ def test_each_has_the_verdict_of_check(capsys: pytest.CaptureFixture[str]) -> No
 
 
 def test_what_was_measured_stands_beside_it(capsys: pytest.CaptureFixture[str]) -> None:
-    """In units of the head or its own; what shook below the proof is named."""
+    """In units of the head or its own; what shook below the proof is named, the unmeasured has none."""
     _, out, _ = run(capsys, *KITS, "--stiffness", "100", "--measured", "class.csv", "-o", "table.csv")
     assert "shook from 0.9 to 1.58 times what is proved" in out
     assert "shook below what is proved: kit-2." in out

@@ -166,16 +166,20 @@ def test_a_region_without_walls_has_no_largest_one(capsys: pytest.CaptureFixture
 
 
 def test_not_covered_is_not_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A wheel with a delay of part of a sample: report, JSON and picture say so and name the spring."""
+    """A velocity filter whose response does not end: report, JSON and picture say so and name the spring."""
     wheel = tmp_path / "wheel.toml"
     wheel.write_text(
         '[device]\nmotion = "rotary"\ninertia = "0.0001 kg*m^2"\ndamping = "0.03 N*m*s/rad"\n'
         'coulomb_friction = "0.1 N*m"\nresolution = "0.0015 rad"\nrate = "1 kHz"\ndelay = "0.5 ms"\n',
         encoding="utf-8",
     )
+    filtered = '{ type = "filter", numerator = [1, 0, 0], denominator = [1, -0.5, 0.06] }'
+    wall = tmp_path / "wall.toml"
+    wall.write_text(f'[environment]\ntype = "wall"\nstiffness = 1\nvelocity_filter = {filtered}\n')
     asked = [
         "map",
         str(wheel),
+        str(wall),
         "--stiffness",
         "0:100",
         "--virtual-damping",

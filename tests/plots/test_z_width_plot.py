@@ -10,6 +10,8 @@ import zwidth as zw
 from zwidth import plots
 
 PADDLE = zw.catalogue.device("haptic-paddle")
+WITHOUT_END = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
+"""A velocity filter whose response does not end."""
 
 
 def words(figure: Figure) -> list[str]:
@@ -61,8 +63,8 @@ def test_speeds_are_written_on_their_contours() -> None:
 
 
 def test_a_close_up_without_speeds_says_so() -> None:
-    """With a part of a sample of delay none is known: what is passive while contact lasts is all."""
-    found = zw.z_width(PADDLE.replace(delay=0.0005), (0, 3000), (0, 5), (300, 300))
+    """With a filter without end none is known: what is passive while contact lasts is all."""
+    found = zw.z_width(PADDLE, (0, 3000), (0, 5), (300, 300), velocity_filter=WITHOUT_END)
     _, near = plots.z_width_figure(found).axes
     assert near.get_title(loc="left") == "close-up of what is passive"
     assert not near.texts
@@ -75,8 +77,8 @@ def test_only_maps_are_drawn() -> None:
 
 
 def test_what_is_not_covered_stands_in_the_legend() -> None:
-    """A delay of part of a sample: no region, and the reason for it; without one no such words."""
-    found = zw.z_width(PADDLE.replace(delay="0.0005"), (0, 300), (0, 1), (8, 8), hands={})
+    """A filter without end: no region, and the reason for it; without one no such words."""
+    found = zw.z_width(PADDLE, (0, 300), (0, 1), (8, 8), hands={}, velocity_filter=WITHOUT_END)
     assert "passive with every hand: not covered" in words(plots.z_width_figure(found))
     found = zw.z_width(PADDLE, (400, 600), (0, 1), (8, 8), hands={"none": None})
     assert not any("not covered" in word for word in words(plots.z_width_figure(found)))
