@@ -69,7 +69,9 @@ def print_cartesian(controllers: Controllers, path: str) -> None:
             section(out, "of it", items(one.notes(3), "dim"))
         rate = controllers.cartesian[0].rate or controllers.rate
         often = f' --rate "{float(rate):g} Hz"' if rate is not None else ""
-        section(out, "next", [Text(f"zwidth workspace ARM.urdf --pose --wall {path}{often}")])
+        section(
+            out, "next", [Text(f"zwidth workspace ARM.urdf --pose --wall {path}{often} --postures 20000")]
+        )
 
 
 _COORDINATES = ("x", "y", "z", "about x", "about y", "about z")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.workspace_joints import joints_of
 from zwidth.errors import InputError
+from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
@@ -23,6 +24,13 @@ def arm_of(arguments: argparse.Namespace) -> Arm:
     if arguments.rest is not None and not arguments.pose:
         raise InputError("--rest is where the rotation of a wall in pose rests; add --pose")
     return (_built_in if arguments.arm in BUILT_IN else _described)(arguments, joints)
+
+
+def arm_in_words(arm: Arm, rate: float) -> str:
+    """Its name, how many joints it has, of a description where the hand is, and the rate [Hz]."""
+    count = f"{arm.joint_count} joint{'s' if arm.joint_count > 1 else ''}"
+    frame = getattr(arm, "frame", None)
+    return ", ".join([arm.name, count, shown(rate, "Hz"), *([f"hand at {frame}"] if frame else [])])
 
 
 def _built_in(arguments: argparse.Namespace, joints: Mapping[str, Any]) -> Arm:

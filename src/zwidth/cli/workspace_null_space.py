@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.workspace_arm import arm_of, by_name
+from zwidth.cli.workspace_arm import arm_in_words, arm_of, by_name
 from zwidth.cli.workspace_joints import damping_in_words
 from zwidth.cli.workspace_wall import cartesian_of, is_of_controllers, wall_in_words, wall_of
 from zwidth.errors import InputError
@@ -85,7 +85,7 @@ def print_null_space(found: NullSpace, in_full: bool, without: Sequence[str]) ->
     asked, spring = found.question, found.spring
     rest = ", ".join(f"{value:.3g}" for value in spring.rest)
     about = [
-        ("arm", f"{asked.arm.name}, {asked.arm.joint_count} joints, {shown(asked.rate, 'Hz')}"),
+        ("arm", arm_in_words(asked.arm, asked.rate)),
         ("joint damping", damping_in_words(asked.arm)),
         ("wall", wall_in_words(asked.wall)),
         (

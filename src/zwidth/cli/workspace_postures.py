@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from zwidth.cli.workspace_arm import arm_in_words
 from zwidth.cli.workspace_joints import damping_in_words
 from zwidth.cli.workspace_wall import wall_in_words
-from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     from zwidth.passivity.workspace import PostureMap
@@ -23,7 +23,7 @@ def print_postures(found: PostureMap, in_full: bool = False, without: Sequence[s
     with page() as out:
         out.print(headline(found.outcome, TOLD[found.outcome].terminal, found.claim))
         about = [
-            ("arm", f"{asked.arm.name}, {asked.arm.joint_count} joints, {shown(asked.rate, 'Hz')}"),
+            ("arm", arm_in_words(asked.arm, asked.rate)),
             ("joint damping", damping_in_words(asked.arm)),
             ("wall", wall_in_words(asked.wall)),
             *(("left out", text) for text in without),

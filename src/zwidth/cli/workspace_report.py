@@ -7,6 +7,7 @@ from itertools import islice
 from math import isfinite
 from typing import TYPE_CHECKING
 
+from zwidth.cli.workspace_arm import arm_in_words
 from zwidth.cli.workspace_joints import damping_in_words
 from zwidth.cli.workspace_wall import wall_in_words
 from zwidth.quantity.text import shown
@@ -19,6 +20,9 @@ _FIRST = ("motion", "largest stiffness", "stiffness", "encoder steps")
 _IN_SCOPE = ("region",)
 _FEW = 3
 """What a short report has of the numbers; what it says in what is assumed; how many changes."""
+
+_MAPPED = 2
+"""Joints of a map of cells."""
 
 _SHOWN = 1e-6
 """Of the sum: what one joint gets less than this is the room for rounding."""
@@ -42,6 +46,8 @@ def print_workspace(space: Workspace, in_full: bool = False, without: Sequence[s
         changes = islice(_changes(space), _FEW)  # each of them is a proof: no more than are shown
         do = [("or" if place else "change", f"{name}: {text}") for place, (name, text) in enumerate(changes)]
         arm = [row for row in _asked(space) if row[0] not in _IN_SCOPE]
+        if len(getattr(space.arm, "joint_range", ())) > _MAPPED and hasattr(space.arm, "frame"):
+            arm.append(("all joints", "--postures 20000 asks of all of them over their ranges"))
         arm += [("left out", text) for text in without]
         assumed = ("assumes", small_print(in_short(space.scope, space.outcome)))
         blocks(out, [*first, *do], [*arm, assumed])
@@ -76,8 +82,7 @@ def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
 
 def _asked(space: Workspace) -> Iterator[tuple[str, str]]:
     """What the verdict is about."""
-    count = f"{space.arm.joint_count} joint{'s' if space.arm.joint_count > 1 else ''}"
-    yield "arm", f"{space.arm.name}, {count}, {shown(1 / space.sample_period, 'Hz')}"
+    yield "arm", arm_in_words(space.arm, 1 / space.sample_period)
     yield "joint damping", damping_in_words(space.arm)
     yield "region", space.region
     yield "wall", wall_in_words(space.wall)

@@ -60,6 +60,24 @@ def test_beyond_it_a_motion_of_the_joints_takes_energy_out(panda: Path) -> None:
     assert plots.postures_figure(over).axes[0].get_ylabel() == "height [m]"
 
 
+def test_the_damper_is_told_what_the_joints_pay_for(panda: Path) -> None:
+    """With less of it no posture fails, with more one does; what gains is no slower than is said."""
+    arm = zw.arms.read_arm(panda, whole=True)
+    found = zw.stiffness_over_postures(arm, zw.Wall(300, 5), rate=1000, postures=300)
+    share = found.damping_factor
+    assert 0 < share < 1
+    for times, holds in ((0.98, True), (1.02, False)):
+        again = zw.stiffness_over_postures(arm, zw.Wall(300, 5 * times * share), rate=1000, postures=300)
+        assert (again.stiffness_factor >= 1) is holds
+    assert found.stiffness_factor == 0
+    assert dict(found.rows())["stiffness"].startswith("none")
+    said = dict(found.rows())["virtual damping"]
+    slowest = float(said.split("slower than ")[1].split(" Hz")[0])
+    worst = float(np.linalg.norm(arm.jacobian(found.worst), 2)) ** 2
+    assert 0.8 / worst > 0.15 - 5 * np.cos(2 * np.pi * 0.99 * slowest / 1000)
+    assert zw.stiffness_over_postures(arm, zw.Wall(300), rate=1000, postures=100).damping_factor is None
+
+
 def test_friction_covers_the_encoder_steps_of_a_wall(panda: Path) -> None:
     """At each posture the most that half a step of every joint, this way or that, changes in any torque."""
     asked = {"coulomb_friction": (0.3, 0.3, 0.3, 0.2, 0.1, 0.1, 0.05), "resolution": (2e-4,)}

@@ -73,7 +73,8 @@ def read_arm(
     if not np.any(b):
         raise InputError(
             f"{path.name} gives no joint any damping, and without damping no wall is passive; "
-            "measure it and give damping, or write <dynamics damping=…/> in the description"
+            "measure it and give damping, on the command line --joint-damping, or write "
+            "<dynamics damping=…/> in the description"
         )
     limits = tuple(model.effortLimit) if torque_limit is None else tuple(_for_each(torque_limit, m))
     given: dict[str, Any] = {

@@ -4,7 +4,8 @@
     enough   what the bounds between the points ask for: more than is needed, most of all of parallel arms
 
 Between the two the independent checker decides, which cuts cells where it must: the first of a few steps
-from `fails` to `enough` that it proves is told.
+from `fails` to `enough` that it proves is told.  Of an arm with many joints such proofs take long,
+and there it is the bounds that decide.
 """
 
 from __future__ import annotations
@@ -27,6 +28,9 @@ Array = npt.NDArray[np.float64]
 
 _STEPS = (1 / 8, 1 / 2)
 """Of the way from what fails to what is enough."""
+
+_MOST_PROVED = 4
+"""Joints of an arm of which the checker is asked."""
 
 _LEAST = 0.02
 """Of what fails: nearer to it the checker would need too many cells."""
@@ -86,6 +90,8 @@ class Additions:
         fails = needed(self.points)
         if not all(map(isfinite, fails)):
             return Addition(_numbers(fails), _numbers(fails))
+        if self._joints > _MOST_PROVED:
+            return Addition(_numbers(enough), _numbers(fails))
         far = np.where(np.isfinite(enough), enough, 4 * fails)  # the bounds alone may ask for no end of it
         for share in _STEPS:
             tried = np.maximum(fails + share * (far - fails), (1 + _LEAST) * fails)

@@ -36,8 +36,8 @@ def claim(outcome: str, covers: Covers, account: Account, without: str, steps: E
         if not covers.can_be_refuted:
             text = (
                 "At one point of this map a motion of the joints takes energy out. It is made by hands that "
-                "hold the links, one at the elbow and one at the end; a hand at the end alone cannot make "
-                "every joint follow, and of it nothing is said."
+                "hold the links, such as one at the elbow and one at the end; a hand at the end alone cannot "
+                "make every joint follow, and of it nothing is said."
             )
         if covers.encoder == "counted" and not covers.has_friction:
             text += " Coulomb friction is not given and taken as 0."

@@ -10,9 +10,10 @@ wall whose steps their Coulomb friction covers is mapped, too: a stiffer one may
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
+from math import acos, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,8 +21,9 @@ import numpy.typing as npt
 
 from zwidth.arms import Arm, ArmMotion, DescribedArm
 from zwidth.arms.encoders import covered_factors
+from zwidth.arms.joints import largest_scale, surplus
 from zwidth.arms.matrix_wall import MatrixWall
-from zwidth.arms.need import wall_need
+from zwidth.arms.need import wall_matrices, wall_need
 from zwidth.arms.replay import refuting_motion
 from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
@@ -67,6 +69,9 @@ class PostureMap(PassivityAnswer):
         The joints at the posture where that is least [rad; m].
     motion
         What takes energy out there, if the wall is too stiff and one was found.
+    damping_factor
+        How many times its virtual damping the wall may have, as stiff as it is, at every posture tried; None
+        without virtual damping.
     encoder_factor
         How many times as stiff the wall may be with Coulomb friction covering the joints' encoder steps at
         every posture drawn, to first order and before next to no force; None without steps.
@@ -82,6 +87,7 @@ class PostureMap(PassivityAnswer):
     stiffness_factor: float
     worst: tuple[float, ...]
     motion: ArmMotion | None
+    damping_factor: float | None = None
     encoder_factor: float | None = None
 
     @property
@@ -140,6 +146,8 @@ class PostureMap(PassivityAnswer):
                 "largest stiffness",
                 f"{everywhere} at every posture tried, {shown(most, 'N/m')} at the best",
             )
+        if self.damping_factor is not None:
+            yield "virtual damping", self._damping(self.damping_factor)
         if self.encoder_factor is not None:
             yield "encoder steps", self._steps(self.encoder_factor)
         yield "worst posture", ", ".join(f"{value:.3g}" for value in self.worst)
@@ -147,6 +155,15 @@ class PostureMap(PassivityAnswer):
             often = shown(self.question.rate / len(self.motion.joints), "Hz")
             taken = shown(-self.motion.energy, "J")
             yield "motion", f"to and fro at {often}, {len(self.motion.joints)} samples, takes {taken} out"
+
+    def _damping(self, factor: float) -> str:
+        """How much of it the joints pay for, and from which frequency on more of it gains."""
+        text = f"the joints pay for {factor:.4g} times this much of it at every posture tried"
+        slow = acos(-factor) / (2 * pi) * self.question.rate if 0 < factor < 1 else 0.0
+        _, damper = wall_matrices(self.question.wall, 3 + self.question.arm.turns)
+        if not slow or self.question.delay_samples or np.linalg.eigvalsh(damper)[0] < 0:
+            return text
+        return f"{text}; no small motion there slower than {shown(slow, 'Hz')} gains"
 
     def _steps(self, factor: float) -> str:
         """Up to which stiffness Coulomb friction covers them."""
@@ -171,6 +188,7 @@ class PostureMap(PassivityAnswer):
             "stiffness_factor": finite(self.stiffness_factor),
             "largest_stiffness_N_per_m": self.largest_stiffness,
             "worst_joints_rad": list(self.worst),
+            "damping_factor": None if self.damping_factor is None else finite(self.damping_factor),
             "encoder_factor": None if self.encoder_factor is None else finite(self.encoder_factor),
             "motion": None if motion is None else motion_document(motion, arm.turns),
         }
@@ -215,7 +233,7 @@ def stiffness_over_postures(
     places = _drawn(arm, postures)
     factors, positions, covered = _factors(question, places)
     worst = places[np.argsort(factors)[:_WORST]]
-    followed, lowest = _followed(question, worst)
+    followed, lowest = _followed(question, worst, lambda near: _factors(question, near)[0])
     at = int(np.argmin(lowest))
     more = _factors(question, followed)
     motion = _refuted(question, followed[np.argsort(lowest)]) if lowest[at] < 1 else None
@@ -232,6 +250,7 @@ def stiffness_over_postures(
         stiffness_factor=float(lowest[at]),
         worst=tuple(followed[at].tolist()),
         motion=motion,
+        damping_factor=_least_damping_factor(question, places),
         encoder_factor=float(min(covered.min(), more[2].min())) if any(arm.resolution) else None,
     )
 
@@ -261,17 +280,43 @@ def _factors(question: Question, places: Array) -> tuple[Array, Array, Array]:
     return np.concatenate(found), positions[:, :3], steps
 
 
-def _followed(question: Question, places: Array) -> tuple[Array, Array]:
-    """Downhill from some places, inside the ranges."""
+def _least_damping_factor(question: Question, places: Array) -> float | None:
+    """Of the places, and downhill from the worst of them; None without virtual damping."""
+    if not wall_need(
+        question.wall, question.period, question.delay_samples, 3 + question.arm.turns
+    ).bound.any():
+        return None
+    factors = _damping_factors(question, places)
+    worst = places[np.argsort(factors)[:_WORST]]
+    return float(_followed(question, worst, partial(_damping_factors, question))[1].min())
+
+
+def _damping_factors(question: Question, places: Array) -> Array:
+    """How many times |B| the joints pay for beside K.
+
+    s = it: with B ⪰ 0 and no delay δ_m − Jᵀ(KT/2 − B cos θ)J ⪰ 0 wherever −cos θ ≤ s.
+    """
+    arm = question.arm
+    assert isinstance(arm, DescribedArm)
+    size = 3 + arm.turns
+    need = wall_need(question.wall, question.period, question.delay_samples, size)
+    jacobians = arm.placed(places)[1]
+    load = np.swapaxes(jacobians, -1, -2) @ need.bound @ jacobians
+    base = surplus(jacobians, question.damping(size), need.stiffness_share)
+    return largest_scale(base, load)
+
+
+def _followed(question: Question, places: Array, measure: Callable[[Array], Array]) -> tuple[Array, Array]:
+    """Downhill of a measure from some places, inside the ranges, with its values there."""
     arm = question.arm
     assert isinstance(arm, DescribedArm)
     low, high = np.array(arm.joint_range).T
     steps = np.random.default_rng(0).normal(size=(_ROUNDS, _AROUND, len(low)))
-    lowest = _factors(question, places)[0]
+    lowest = measure(places)
     for turn in range(_ROUNDS):
         near = places[:, None] + _FIRST * 0.5**turn * (high - low) * steps[turn]
         near = np.clip(near, low, high).reshape(-1, len(low))
-        values = _factors(question, near)[0].reshape(len(places), _AROUND)
+        values = measure(near).reshape(len(places), _AROUND)
         best = values.argmin(axis=1)
         rows = np.arange(len(places))
         better = values[rows, best] < lowest
