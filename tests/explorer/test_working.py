@@ -9,7 +9,7 @@ from functools import partial
 from itertools import count
 from pathlib import Path
 from queue import Queue
-from threading import local
+from threading import Thread, local
 from typing import Any
 
 import pytest
@@ -63,7 +63,7 @@ def slow(value: Path) -> int:
 def test_a_process_that_does_not_start_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     """As in a script that starts itself again; the next job is answered too."""
 
-    def fails() -> None:
+    def fails(_: object) -> None:
         raise EOFError
 
     monkeypatch.setattr("zwidth.explorer.working._Process", fails)
@@ -101,6 +101,17 @@ def asked(workers: Workers, compute: Any, value: object) -> Answer:
     answers: Queue[Answer] = Queue()
     workers.submit(1, "job", compute, (value,), answers.put)
     return answers.get(timeout=600)
+
+
+def test_nobody_waits_for_a_process_that_is_still_starting(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All of it ends, also while a process imports what it needs: this one is never done with that."""
+    monkeypatch.setattr("zwidth.explorer.working._serve", endless)
+    workers = Workers(count=1)
+    workers.submit(1, "any", doubled, (1,), lambda _: None)
+    ending = Thread(target=workers.close, daemon=True)
+    ending.start()
+    ending.join(timeout=300)
+    assert not ending.is_alive()
 
 
 def test_an_answer_a_message_and_a_mistake(workers: Workers) -> None:

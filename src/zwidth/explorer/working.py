@@ -133,7 +133,7 @@ class Workers:
         process: _Process | None = None
         while (job := self._next()) is not None:
             try:
-                process = process or _Process()
+                process = process or _Process(lambda: self._closed)
             except (EOFError, OSError, RuntimeError):
                 if self._is_wanted(job):
                     job.then(Answer(None, _NO_PROCESS))
@@ -178,17 +178,22 @@ class Workers:
 
 
 class _Process:
-    """One process, which does one job after the other."""
+    """One process, which does one job after the other.
 
-    def __init__(self) -> None:
+    EOFError where it ends, or is given up, before it is ready.
+    """
+
+    def __init__(self, is_given_up: Callable[[], bool]) -> None:
         context = multiprocessing.get_context("spawn")
         self._here, there = context.Pipe()
         self._process = context.Process(target=_serve, args=(there,), daemon=True)
         self._process.start()
         there.close()
-        self.alive = (
-            self._here.recv() if self._here.poll(None) else False
-        )  # it is ready: its time counts from now
+        while not self._here.poll(_STEP):
+            if is_given_up():
+                self.end()
+                raise EOFError
+        self.alive = self._here.recv()  # it is ready: its time counts from now
 
     def send(self, compute: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
         self._here.send((compute, arguments))

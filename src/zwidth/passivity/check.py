@@ -129,6 +129,11 @@ def check(
         if asked == "kept":
             raise InputError("contact: the wall of an arm acts on both sides of its rest; leave it out")
         return _check_arm(device, environment, of_an_arm)
+    if "discretization" in of_an_arm:
+        raise InputError(
+            "the discretization belongs to the law: check(device, ContinuousTransferFunction(system, "
+            "discretization=…)); a discrete system has its own H(z)"
+        )
     if of_an_arm:
         raise InputError(
             f"{', '.join(of_an_arm)}: of an arm; a device of one axis has its rate and delay in itself"

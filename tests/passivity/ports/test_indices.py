@@ -432,6 +432,7 @@ def test_what_is_given_is_told_what_to_do_with_it():
     for call, said in (
         (lambda: zw.check(1 / (0.1 * s**2 + 0.3 * s), zw.Wall(stiffness=100)), "Device(mass=m, damping=b"),
         (lambda: zw.check(device, 100 + 0.1 * s), "ContinuousTransferFunction(system, discretization=…)"),
+        (lambda: zw.check(device, 100 + 0.1 * s, discretization="tustin"), "belongs to the law"),
         (lambda: zw.ports.passivity_indices(control.frd([1 + 1j, 2], [1, 2])), "response_table"),
     ):
         with pytest.raises(zw.InputError) as caught:

@@ -71,9 +71,10 @@ def parameter_of(device: Device, environment: Environment, name: str) -> Paramet
         return _of_environment(device, environment, key)
     if owner in ("", "device") and key in in_device:
         return _of_device(device, environment, key)
+    gain = "" if met.scaled(Fraction(1)) is None else ", and gain, a factor on its force"
     raise InputError(
-        f"no parameter {name!r}: the environment has {', '.join(sorted(in_environment))}; the device has "
-        f"{', '.join(sorted(in_device))}"
+        f"no parameter {name!r}: the environment has {', '.join(sorted(in_environment))}{gain}; the device "
+        f"has {', '.join(sorted(in_device))}"
     )
 
 
