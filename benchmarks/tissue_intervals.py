@@ -1,6 +1,7 @@
 """How often do the 95 % intervals of `zwidth tissue` hold the truth, and how often is the model right?
 
-    python benchmarks/tissue_intervals.py [--tests 1000] [--choices 260] [--seed 0] [--jobs 1] [--csv FILE]
+    python benchmarks/tissue_intervals.py [--tests 1000] [--choices 260] [--seed 0] [--kind relaxation]
+        [--jobs 1] [--csv FILE]
 
 Each test draws a kind (relaxation, creep, loading), a model (Kelvin–Voigt, Maxwell, standard linear solid,
 generalized Maxwell of two branches; of loading a Hunt–Crossley contact too), its numbers, and a record:
@@ -118,6 +119,12 @@ def smooth(t: Array) -> Array:
     return s**3 * (10 - 15 * s + 6 * s**2)
 
 
+def slope(t: Array) -> Array:
+    """The derivative of `smooth`."""
+    s = np.clip(t, 0.0, 1.0)
+    return 30 * s**2 * (1 - s) ** 2
+
+
 def drawn(kind: str, name: str, rng: Rng) -> tuple[Truth, tuple[Array, Array, Array]]:
     """A test: the truth, and its times, depths and forces as they are recorded."""
     model = as_model(name, None, "force")
@@ -168,29 +175,35 @@ def response(
         force = log_uniform(rng, 0.2, 5.0) * smooth(since / ramp)
         return model.predict(values, Record(time, np.zeros_like(time), force, "position", 0.0)), force
     returns = model.name != "maxwell"  # what has relaxed to nothing lets the probe go
-    path = far * smooth(since / ramp) if kind == "relaxation" else strokes(since, far, span, returns, rng)
+    if kind == "relaxation":
+        path, speed = far * smooth(since / ramp), far * slope(since / ramp) / ramp
+    else:
+        path, speed = strokes(since, far, span, returns, rng)
     outside = far * rng.uniform(0.05, 0.3) if before and rng.random() < 0.5 else 0.0
     if model.name == "kelvin-voigt" and not TOUCH:
         outside = 0.0
     depth = path * (1 + outside / far) - outside
     inside = np.maximum(depth, 0.0)
+    if model.name == "kelvin-voigt":  # a difference of two instants is the speed of neither
+        return depth, values[0] * inside + values[1] * speed * (1 + outside / far) * (depth > 0)
     force = model.predict(values, Record(time, inside, np.zeros_like(time), "force", None))
     return depth, force
 
 
-def strokes(since: Array, far: float, span: float, returns: bool, rng: Rng) -> Array:
-    """In at two speeds, and, if it returns, some way out in between, never all the way."""
+def strokes(since: Array, far: float, span: float, returns: bool, rng: Rng) -> tuple[Array, Array]:
+    """In at two speeds, and, if it returns, some way out in between, never all the way; and its speed."""
     slow, quick = span * rng.uniform(0.25, 0.4), span * rng.uniform(0.04, 0.1)
-    path, at, level = np.zeros_like(since), 0.0, 0.0
+    path, speed, at, level = np.zeros_like(since), np.zeros_like(since), 0.0, 0.0
     for k in range(40):
         duration = slow if k % 3 == 0 else quick
         deep, out = rng.uniform(0.7, 1.0), rng.uniform(0.3, 0.5)
         goal = far * (deep if k % 2 == 0 else out) if returns else level + 0.2 * far * deep
         path += (goal - level) * smooth((since - at) / duration)
+        speed += (goal - level) * slope((since - at) / duration) / duration
         at, level = at + duration, goal
         if at > since[-1]:
             break
-    return path
+    return path, speed
 
 
 def noise(time: Array, memory: float, rng: Rng) -> Array:
@@ -206,10 +219,12 @@ def noise(time: Array, memory: float, rng: Rng) -> Array:
     return found
 
 
-def tried(seed: tuple[int, int], choices: int) -> list[dict[str, Any]]:
+def tried(
+    seed: tuple[int, int], choices: int, cases: tuple[tuple[str, str], ...] = CASES
+) -> list[dict[str, Any]]:
     """One test: a row for each parameter."""
     rng = np.random.default_rng(seed)
-    kind, name = CASES[seed[1] % len(CASES)]
+    kind, name = cases[seed[1] % len(cases)]
     choosing = seed[1] < choices
     truth, arrays = drawn(kind, name, rng)
     common = {
@@ -257,13 +272,15 @@ def main() -> None:
     parser.add_argument("--tests", type=int, default=1000)
     parser.add_argument("--choices", type=int, default=260)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--kind", choices=sorted({kind for kind, _ in CASES}))
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--csv", type=Path)
     parser.add_argument("--touch", action="store_true")
     arguments = parser.parse_args()
     seeds = [(arguments.seed, k) for k in range(arguments.tests)]
+    cases = tuple(case for case in CASES if arguments.kind in (None, case[0]))
     with ProcessPoolExecutor(arguments.jobs) as pool:
-        found = pool.map(partial(tried, choices=arguments.choices), seeds, chunksize=5)
+        found = pool.map(partial(tried, choices=arguments.choices, cases=cases), seeds, chunksize=5)
         rows = [row for each in found for row in each]
     if arguments.csv:
         write(arguments.csv, rows)

@@ -110,7 +110,8 @@ def test_several_trials_are_said_and_chosen_between(run: Run, tmp_path: Path) ->
     for head, first in (("trial,time_s,indentation_mm,force_N", 0), ("time_s,indentation_mm,force_N", 1)):
         sheet(tmp_path, head, np.concatenate(trials)[:, first:])
         found = [json.loads(run("a.csv", *ONE, "--json", "--trial", n).out) for n in ("1", "2")]
-        assert "holds 2 trials; this is trial 2" in " ".join(found[1]["findings"])
+        assert [(each["trial"], len(each["trials"])) for each in found] == [(1, 2), (2, 2)]
+        assert "the trials differ in stiffness" in found[0]["doubts"][0]
         once, twice = (each["best"]["parameters"]["stiffness"]["value"] for each in found)
         assert twice == pytest.approx(2 * once, rel=1e-4)
     assert "has 2 trials, and trial 3 is wanted" in run("a.csv", "--trial", "3").err.replace("\n", " ")

@@ -19,7 +19,7 @@ from zwidth.quantity.text import shown
 _FEW = 4
 """Findings in a short report."""
 
-_FIRST = ("trials", "loaded", "hole", "surface", "sign", "unit")
+_FIRST = ("loaded", "hole", "surface", "sign", "unit")
 """Kinds of findings that a short report has before others."""
 
 
@@ -39,6 +39,8 @@ def print_tissue(found: Result, in_full: bool = False) -> None:
     with page() as out:
         out.print(_headline(test))
         section(out, "the tissue", [_columns(test.parameters())])
+        if test.trials:
+            section(out, f"{len(test.trials)} trials, each by itself", [_columns(test.of_trials())])
         section(out, "what to doubt", items(test.doubts))
         rows = [*_wall(found.wall), *([] if in_full else [("models", _models(test))])]
         blocks(out, rows)
@@ -70,6 +72,8 @@ def _headline(test: TissueTest) -> Padding:
 def _claim(test: TissueTest) -> str:
     name = _SPOKEN[test.names[test.chosen]]
     kind = f"A {test.test.kind} test"
+    if test.trials:
+        kind += f" (trial {test.number} of {len(test.trials)}; --trial N for another)"
     if test.seen_as != test.test.kind:
         kind += f" as you say (the data look like {test.seen_as})"
     if not test.is_noise:

@@ -27,7 +27,6 @@ RANDOM = np.random.default_rng(1).bytes(20000)
         (RANDOM, "no text|no table"),
         (b"time_s,position_mm\n", "no table of numbers"),
         (b"once upon a time\nthere was a wall\n", "no table of numbers"),
-        (GOOD.encode("utf-16"), "UTF-16"),
         (GOOD.replace("time_s", "when").encode(), 'known to be the time.*"when"'),
         (GOOD.replace("position_mm", "where_mm").encode(), 'known to be the position.*"where_mm"'),
         (GOOD.replace("force_N", "pos_mm").encode(), "may each be the position"),

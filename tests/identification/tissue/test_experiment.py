@@ -9,10 +9,11 @@ from scipy.stats import binom
 
 import zwidth as zw
 from zwidth.identification.tissue.experiment.choice import Tried, not_told_apart, taken
+from zwidth.identification.tissue.experiment.estimate import covariance
 from zwidth.identification.tissue.experiment.history import history_of
 from zwidth.identification.tissue.experiment.kind import kind_of
 from zwidth.identification.tissue.experiment.noise import likelihood, noise_of, with_memory
-from zwidth.identification.tissue.experiment.prediction import Task, derivatives, fine_of, predicted
+from zwidth.identification.tissue.experiment.prediction import Task, derivatives, fines_of, predicted
 from zwidth.identification.tissue.experiment.tidy import Trial
 from zwidth.identification.tissue.model import as_model
 
@@ -109,7 +110,7 @@ def test_derivatives_are_those_of_differences(name):
     """With a surface, a zero, and two holes."""
     time, x, f = strokes()
     history = history_of(Trial(time, x, f, ()), "loading", "here")._replace(begins=(150, 250))
-    task = Task(as_model(name, None, "force"), history, fine_of(history), True)
+    task = Task(as_model(name, None, "force"), history, fines_of(history)[0], True)
     values = {"kelvin-voigt": (400, 20), "maxwell": (400, 90), "hunt-crossley": (4000, 1.4, 5)}
     own = values.get(name, (420, 200, 10, 260, 90))
     point = np.concatenate([np.log(own), [0.02], [0.15], np.full(task.held, 0.1)])
@@ -152,7 +153,7 @@ def test_a_memory_is_seen_and_white_noise_has_none():
 def candidate(name: str, branches: int | None, criterion: float) -> Tried:
     time, x, f = relaxation(40)
     history = history_of(Trial(time, x, f, ()), "relaxation", "here")
-    task = Task(as_model(name, branches, "force"), history, fine_of(history), True)
+    task = Task(as_model(name, branches, "force"), history, fines_of(history)[0], True)
     return Tried(task, None, criterion)  # type: ignore[arg-type]  # nothing here looks at the fit
 
 
@@ -219,3 +220,52 @@ def test_a_fit_is_drawn():
     assert len(figure.axes) == 2
     line = figure.axes[0].lines[1].get_ydata()
     assert line == pytest.approx(test.best.output - test.best.residuals)
+
+
+def viscous(ramp: float, count: int = 200, slow: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A spring with a damper under 4 mm within a smooth ramp, and a hold."""
+    time = np.linspace(0, 4, count)
+    s = np.clip((time - slow) / ramp, 0, 1)
+    depth = 0.004 * s**3 * (10 - 15 * s + 6 * s**2)
+    speed = 0.004 * 30 * s**2 * (1 - s) ** 2 / ramp
+    return time, depth, 400 * depth + 30 * speed
+
+
+@pytest.mark.parametrize("slow", [0.0, 0.5])
+def test_between_the_samples_of_a_quick_smooth_ramp_the_speed_is_that_of_a_smooth_curve(slow):
+    """Eight samples: by a monotone cubic, or a spline that is not at rest before, the damper is 2 % off."""
+    test = zw.tissue.fit_test(*viscous(0.16, slow=slow), models=("kelvin-voigt",))
+    assert test.best["damping"] == pytest.approx(30, rel=5e-3)
+    assert test.best["stiffness"] == pytest.approx(400, rel=2e-3)
+
+
+def test_a_curve_that_fits_nearly_as_well_widens_the_interval():
+    """Noise of 2 %: which curve the probe took is not seen, and the damper depends on it."""
+    time, x, f = viscous(0.16, slow=0.5)
+    f = f + np.random.default_rng(3).normal(0, 0.02 * f.max(), f.size)
+    test = zw.tissue.fit_test(time, x, f, models=("kelvin-voigt",))
+    own = test.tried[0]
+    alone = covariance(own.found)[0]
+    assert test.best.covariance[1, 1] == pytest.approx(alone[1, 1] + own.apart[1, 1])
+    assert own.apart[1, 1] > 0
+
+
+def test_what_is_held_with_less_noise_is_what_the_machine_held():
+    """A spring with a damper rests within 0.1 s: depth and force are held for as long."""
+    time, x, f = viscous(0.16, 400)
+    noise = np.random.default_rng(1).normal(size=f.size)
+    assert kind_of(time, x, f + 0.01 * f.max() * noise) == "relaxation"
+    assert kind_of(time, x + 0.01 * x.max() * noise, f) == "creep"
+
+
+def test_noise_with_a_memory_is_no_touch():
+    """It strays for some samples together, before the probe touches: the surface is found all the same."""
+    time, x, _ = relaxation(400)
+    depth = 1.2 * x - 0.0008
+    rng = np.random.default_rng(12)
+    noise = np.zeros(400)
+    for k in range(1, 400):
+        noise[k] = 0.8 * noise[k - 1] + 0.6 * rng.normal()
+    force = zw.tissue.force_response(SOLID, time, np.maximum(depth, 0)) + 0.02 * noise
+    history = history_of(Trial(time, depth, force, ()), "relaxation", "here")
+    assert history.surface == pytest.approx(0.0008, abs=3e-4)

@@ -6,40 +6,33 @@ What stands above is a header, a line of units below it, or a preamble.
 
 from __future__ import annotations
 
+import csv
 import re
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 from zwidth.errors import InputError
+from zwidth.identification.logs.cells import (
+    decimal_of,
+    is_clock,
+    is_date,
+    is_nothing,
+    is_number,
+)
 from zwidth.identification.logs.scales import is_unit
-
-SNIFFED = 2**16
-"""[bytes] at the start of a file that its layout is read from."""
 
 _DELIMITERS = (",", ";", "\t", "|", " ")
 _COMMENTS = ("#", "%", "//")
-_NUMBER = re.compile(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eEdD][+-]?\d+)?\Z")
-_NOTHING = {
-    "",
-    "nan",
-    "-nan",
-    "inf",
-    "-inf",
-    "+inf",
-    "infinity",
-    "-infinity",
-    "null",
-    "none",
-    "na",
-    "n/a",
-    "#n/a",
-    "-",
-    "true",
-    "false",
-}
+MOST_SAMPLED = 2000
+"""Rows at the start by which it is judged how numbers are written."""
+
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
-_BYTES = re.compile(r"[\x00-\x08\x0e-\x1a\x1c-\x1f]")
+_NUMBER_AND_UNIT = re.compile(r"[+-]?\d[\d.,]*\s*[^\W\d_]+\Z")
+
+
+Kind = Literal["float", "int", "date", "calendar", "clock", "text"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,8 +43,8 @@ class Layout:
     ----------
     delimiter
         One character; a space stands for any white space.
-    comma
-        The decimal sign is a comma.
+    decimal
+        The decimal sign of columns that do not say it themselves.
     names
         Of the columns; "column 1" … where there is no header.
     units
@@ -67,7 +60,7 @@ class Layout:
     """
 
     delimiter: str
-    comma: bool
+    decimal: str
     names: tuple[str, ...]
     units: Mapping[str, str]
     skipped: int
@@ -75,71 +68,97 @@ class Layout:
     sample: tuple[tuple[str, ...], ...]
     comments: tuple[str, ...]
 
-    def kind(self, column: str) -> str:
-        """What the first rows of a column hold: "float", "int" too long for a float, "date" or "text"."""
-        values = [row[self.names.index(column)].strip().strip('"') for row in self.sample]
+    def kind(self, column: str) -> Kind:
+        """What the first rows of a column hold; "int" is too long for a float, a "date" in ISO 8601."""
+        values = [field for field in self.fields(column) if not is_nothing(field)]
+        if not values:
+            return "float"
         if all(_DATE.match(value) for value in values):
             return "date"
         if all(re.fullmatch(r"\d{16,19}", value) for value in values):
             return "int"
-        return "float" if all(_is_number(value) for value in values) else "text"
+        shares: dict[Kind, int] = {
+            "float": sum(map(is_number, values)),
+            "clock": sum(map(is_clock, values)),
+            "calendar": sum(map(is_date, values)),
+        }
+        kind = max(shares, key=lambda each: shares[each])
+        return kind if 2 * shares[kind] > len(values) else "text"
+
+    def fields(self, column: str) -> list[str]:
+        """The first rows of a column."""
+        return [row[self.names.index(column)] for row in self.sample]
 
 
-def layout_of(start: bytes, source: str, whole: bool) -> Layout:
+def layout_of(text: str, source: str, whole: bool) -> Layout:
     """The layout of a text that starts so; `whole` says that this is all of it."""
-    text = _decoded(start, source)
     lines = text.splitlines()
     if not whole and len(lines) > 1:
         lines = lines[:-1]  # the last is cut in the middle
     if not text.strip():
-        raise InputError(f"{source} is empty: {len(start)} bytes, none of them a number")
+        raise InputError(f"{source} is empty: {len(text)} characters, none of them a number")
     ranked = sorted((_ranked(lines, d) for d in _DELIMITERS), key=lambda found: found[:2], reverse=True)
     columns, _, delimiter, first = ranked[0]
     if first < 0:
-        raise InputError(
-            f"{source} holds no table of numbers: no line splits into numbers at , ; tab | or space"
-        )
-    return _layout(lines, delimiter, columns, first)
+        raise InputError(f"{source} holds no table of numbers: {_why_none(lines)}")
+    _refuse_rows_for_columns(lines, delimiter, columns, source)
+    return _layout(lines, delimiter, columns, first, source)
 
 
-def _decoded(start: bytes, source: str) -> str:
-    if start[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        raise InputError(f"{source} is UTF-16 text; save it as UTF-8")
-    try:
-        text = start.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        last = error.start >= len(start) - 4 and error.reason == "unexpected end of data"
-        text = start[: error.start].decode("utf-8-sig") if last else start.decode("latin-1")
-    odd = len(_BYTES.findall(text[:4096]))
-    if odd:
-        raise InputError(f"{source} is no text: its first bytes hold control characters; which format is it?")
-    return text
-
-
-def _split(line: str, delimiter: str) -> list[str]:
+def split(line: str, delimiter: str) -> list[str]:
+    """The fields of a line, without their quotes."""
     if delimiter == " ":
         return line.split()
-    return [field.strip().strip('"') for field in line.split(delimiter)]
+    if '"' in line:
+        try:
+            found = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
+        except csv.Error:
+            found = line.split(delimiter)
+        return [field.strip().strip('"') for field in found]
+    return [field.strip() for field in line.split(delimiter)]
 
 
-def _is_number(field: str) -> bool:
-    return bool(_NUMBER.match(field)) or field.lower() in _NOTHING
+def is_comment(line: str) -> bool:
+    """True where a line is no row."""
+    return line.lstrip().startswith(_COMMENTS)
+
+
+def _why_none(lines: list[str]) -> str:
+    with_unit = next((f for line in lines for f in split(line, ",") if _NUMBER_AND_UNIT.match(f)), None)
+    if with_unit is not None:
+        return f'cells such as "{with_unit[:40]}" hold a unit; write it once, in the header: "force [N]"'
+    return "no line splits into numbers at , ; tab | or space"
+
+
+def _refuse_rows_for_columns(lines: list[str], delimiter: str, columns: int, source: str) -> None:
+    """A sheet in which each quantity is a row."""
+    rows = [split(line, delimiter) for line in lines if line.strip() and not is_comment(line)]
+    named = sum(_is_text(row[0]) for row in rows if len(row) == columns)
+    if columns > 3 * len(rows) and len(rows) <= 8 and named == len(rows):
+        raise InputError(
+            f"{source} has {len(rows)} rows of {columns} fields, each with a name: the quantities are its "
+            "rows; transpose the sheet, so that each is a column with its name above it"
+        )
+
+
+def _is_text(field: str) -> bool:
+    return not (_is_value(field) or is_nothing(field))
 
 
 def _is_value(field: str) -> bool:
-    return _is_number(field) or bool(_DATE.match(field))
+    return is_number(field) or is_clock(field) or is_date(field) or bool(_DATE.match(field))
 
 
 def _numeric(fields: list[str]) -> bool:
-    """A row of a table: it begins or goes on with numbers, and text is rare in it."""
+    """A row of a table: numbers stand in it, and text is rare."""
     values = sum(map(_is_value, fields))
-    return any(_NUMBER.match(f) or _DATE.match(f) for f in fields) and values * 2 > len(fields)
+    return values > 0 and 2 * (values + sum(map(is_nothing, fields))) > len(fields)
 
 
 def _ranked(lines: list[str], delimiter: str) -> tuple[int, int, str, int]:
     """Columns, preference, delimiter and first line of numbers (−1: none) if the lines are split so."""
     rows = [
-        (k, _split(line, delimiter)) for k, line in enumerate(lines) if line.strip() and not _comment(line)
+        (k, split(line, delimiter)) for k, line in enumerate(lines) if line.strip() and not is_comment(line)
     ]
     numeric = [(k, fields) for k, fields in rows if _numeric(fields)]
     preference = -_DELIMITERS.index(delimiter)
@@ -152,31 +171,30 @@ def _ranked(lines: list[str], delimiter: str) -> tuple[int, int, str, int]:
     good = sum(len(fields) == common and _numeric(fields) for fields in following)
     if good < 0.8 * len(following):
         return 0, preference, delimiter, -1
-    if delimiter == "," and any(";" in line or "\t" in line for line in lines[first : first + 9]):
+    if delimiter == "," and any(sign in line for line in lines[first : first + 9] for sign in ";\t"):
         return 0, preference, delimiter, -1  # the comma is the decimal sign
     return common, preference, delimiter, first
 
 
-def _comment(line: str) -> bool:
-    return line.lstrip().startswith(_COMMENTS)
-
-
-def _layout(lines: list[str], delimiter: str, columns: int, first: int) -> Layout:
+def _layout(lines: list[str], delimiter: str, columns: int, first: int, source: str) -> Layout:
     above = [line for line in lines[:first] if line.strip()]
-    comments = tuple(line.strip() for line in above if _comment(line))
-    plain = [line for line in above if not _comment(line)]
-    header, units_line = _header(plain, comments, delimiter, columns)
-    names = _split(header.lstrip("#%/ "), delimiter) if header else []
-    names = _distinct([name or f"column {k + 1}" for k, name in enumerate(names or [""] * columns)])
-    units = {n: u.strip("[]() ") for n, u in zip(names, units_line, strict=False) if u.strip("[]() -")}
+    comments = tuple(line.strip() for line in above if is_comment(line))
+    plain = [line for line in above if not is_comment(line)]
     body = [
-        _split(line, delimiter) for line in lines[first : first + 200] if line.strip() and not _comment(line)
+        split(line, delimiter)
+        for line in lines[first : first + MOST_SAMPLED]
+        if line.strip() and not is_comment(line)
     ]
     sample = tuple(tuple(fields) for fields in body if len(fields) == columns and _numeric(fields))
-    comma = delimiter != "," and any("," in field for fields in sample for field in fields)
+    header, names, units_line = _header(plain, comments, delimiter, columns, _empty_at_end(sample, columns))
+    if not header and delimiter == ",":
+        _refuse_two_commas(plain, columns, source)
+    names = _distinct([name or f"column {k + 1}" for k, name in enumerate(names or [""] * columns)])
+    units = {n: u.strip("[]() ") for n, u in zip(names, units_line, strict=False) if u.strip("[]() -")}
     return Layout(
         delimiter=delimiter,
-        comma=comma,
+        decimal=decimal_of(field for row in sample for field in row)
+        or ("," if delimiter != "," and _commas(sample) else "."),
         names=tuple(names),
         units=units,
         skipped=first,
@@ -186,27 +204,58 @@ def _layout(lines: list[str], delimiter: str, columns: int, first: int) -> Layou
     )
 
 
+def _commas(sample: tuple[tuple[str, ...], ...]) -> bool:
+    return any("," in field for fields in sample for field in fields)
+
+
+def _empty_at_end(sample: tuple[tuple[str, ...], ...], columns: int) -> int:
+    """Columns at the end in which nothing stands: of delimiters that end each row."""
+    filled = [k for row in sample for k, field in enumerate(row) if field]
+    return columns - 1 - max(filled, default=columns - 1)
+
+
+def _refuse_two_commas(plain: list[str], columns: int, source: str) -> None:
+    if any(2 * len(split(line, ",")) == columns for line in plain[-2:]):
+        raise InputError(
+            f"{source}: the header has {columns // 2} names and each row {columns} fields: the comma is the "
+            "decimal sign and stands between the columns as well; save the sheet with semicolons, or with "
+            "decimal points"
+        )
+
+
 def _header(
-    plain: list[str], comments: tuple[str, ...], delimiter: str, columns: int
-) -> tuple[str, list[str]]:
-    """The line with the names, and the fields of the line of units below it."""
-    fitting = [line for line in plain if len(_split(line, delimiter)) == columns]
-    below = _split(fitting[-1], delimiter) if fitting else []
-    if (
-        len(fitting) >= 2
-        and plain[-2:] == fitting[-2:]
-        and all(is_unit(field.strip("[]() -")) for field in below)
-    ):
-        return fitting[-2], below
-    if fitting and fitting[-1] == plain[-1]:
-        return fitting[-1], []
+    plain: list[str], comments: tuple[str, ...], delimiter: str, columns: int, empty: int
+) -> tuple[str, list[str], list[str]]:
+    """The line with the names, its fields, and the fields of the line of units below it."""
+
+    def fields_of(line: str) -> list[str] | None:
+        for fields in _ways_to_split(line, delimiter):
+            bare = fields[:columns] if not any(fields[columns:]) else fields
+            if columns - empty <= len(bare) <= columns:
+                return bare + [""] * (columns - len(bare))
+        return None
+
+    if plain and (below := fields_of(plain[-1])) is not None:
+        names = fields_of(plain[-2]) if len(plain) > 1 else None
+        if names is not None and any(below) and all(is_unit(field.strip("[]() -")) for field in below):
+            return plain[-2], names, below
+        return plain[-1], below, []
     for other in _DELIMITERS[:-1]:
-        if plain and len(_split(plain[-1], other)) == columns > 1:
-            return plain[-1].replace(other, delimiter), []
+        if plain and len(split(plain[-1], other)) == columns > 1:
+            return plain[-1], split(plain[-1], other), []
     for line in reversed(comments):
-        if len(_split(line.lstrip("#%/ "), delimiter)) == columns and not line.startswith("# {"):
-            return line, []
-    return "", []
+        found = fields_of(line.lstrip("#%/ "))
+        if found is not None and not line.startswith("# {"):
+            return line, found, []
+    return "", [], []
+
+
+def _ways_to_split(line: str, delimiter: str) -> list[list[str]]:
+    """Where white space separates, names may hold some: before a bracket, or one space of several."""
+    if delimiter != " ":
+        return [split(line, delimiter)]
+    bare = line.strip()
+    return [bare.split(), re.split(r"\s+(?![\[(])", bare), re.split(r"\t+|\s{2,}", bare)]
 
 
 def _distinct(names: list[str]) -> list[str]:

@@ -1,6 +1,6 @@
 """Which column is which: "position_mm", "enc (counts)" and "force [N]" are recognised, or named by the user.
 
-A unit stands at the end of a name, in brackets or after an underscore.  What
+A unit stands at the end of a name, in brackets, after a slash or an underscore.  What
 is left is compared with the words below, the last part of a path alone
 ("log/left/position" is "position").  Two candidates are never chosen between.
 """
@@ -18,21 +18,26 @@ from zwidth.identification.logs.table import listed
 QUANTITIES = ("time", "position", "hand_force", "actuator_force")
 
 _WORDS: dict[str, tuple[str, ...]] = {
-    "time": ("time t timestamp timestamps stamp elapsed elapsed_time time_stamp datetime seconds sec clock",),
+    "time": (
+        "time t timestamp timestamps stamp elapsed elapsed_time time_stamp datetime seconds sec clock "
+        "zeit uhrzeit zeitstempel temps heure tiempo hora tempo ora",
+    ),
     "position": (
         "measured_position",
         "position pos x displacement encoder enc encoder_position enc_pos encoder_pos encoder_counts "
-        "enc_counts counts ticks angle theta joint_position stroke",
+        "enc_counts counts ticks angle theta joint_position stroke "
+        "weg lage stellung auslenkung winkel déplacement posición ángulo posizione spostamento",
     ),
     "hand_force": (
-        "hand_force f_h fh f_hand hand_torque tau_h",
+        "hand_force f_h fh f_hand hand_torque tau_h handkraft handmoment",
         "force f load_cell loadcell load_cell_force force_sensor measured_force external_force contact_force "
-        "interaction_force user_force torque measured_torque load_cell_torque",
+        "interaction_force user_force torque measured_torque load_cell_torque kraft drehmoment moment effort "
+        "fuerza forza",
     ),
     "actuator_force": (
-        "actuator_force actuator_torque f_a fa motor_force motor_torque tau_m",
+        "actuator_force actuator_torque f_a fa motor_force motor_torque tau_m motorkraft motormoment",
         "commanded_force commanded_torque command_force force_command force_commanded f_cmd force_cmd "
-        "cmd_force torque_cmd torque_command tau_cmd desired_force",
+        "cmd_force torque_cmd torque_command tau_cmd desired_force sollkraft sollmoment",
     ),
 }
 """Words for each quantity, the better ones first: the encoder's reading before any other position."""
@@ -82,6 +87,9 @@ def name_and_unit(column: str, quantity: str) -> tuple[str, str | None]:
     if bracketed is not None:
         unit = next(g for g in bracketed.groups()[1:] if g is not None).strip()
         return _word(bracketed[1]), unit or None
+    name, slash, last = bare.partition("/")
+    if slash and last in _SUFFIXES[quantity].split():  # "t/s", as German sheets have it, and no path
+        return _word(name), last
     word = re.split(r"[/.]", bare)[-1]
     for suffix in sorted(_SUFFIXES[quantity].split(), key=len, reverse=True):
         if word.endswith("_" + suffix) and len(word) > len(suffix) + 1:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from zwidth.errors import InputError
 from zwidth.identification.logs.block import Motion
 from zwidth.identification.logs.names import check_quantity, name_and_unit
+from zwidth.identification.logs.outside import measured_in
 from zwidth.identification.logs.table import Table
 from zwidth.quantity.dimension import PI, Dimension, Unit, unit_of
 from zwidth.quantity.exact import Exact
@@ -91,7 +92,7 @@ def is_unit(text: str) -> bool:
     """True where a text spells a unit, a count, or nothing."""
     unit = spelled(text)
     try:
-        unit_of(unit)
+        measured_in(unit)
     except InputError:
         return _is_counts(unit)
     return True
@@ -247,7 +248,7 @@ def _by_unit(where: str, quantity: str, unit: str | None, wanted: Dimension, kin
 
 def _known(text: str, where: str) -> Unit:
     try:
-        return unit_of(text)
+        return measured_in(text)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
 

@@ -6,7 +6,7 @@ import json
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -14,39 +14,36 @@ import pyarrow.csv as pc
 
 from zwidth.errors import InputError
 from zwidth.identification.logs.block import Finding
-from zwidth.identification.logs.layout import SNIFFED, Layout, layout_of
+from zwidth.identification.logs.cells import is_nothing, is_number
+from zwidth.identification.logs.encoded import SNIFFED, opened_text, plain_lines, text_of
+from zwidth.identification.logs.layout import Layout, layout_of
+from zwidth.identification.logs.sheet import Sheet
 from zwidth.identification.logs.table import Table, Values
-from zwidth.reading import Bounded
 
 _PIECE = 2**23
 _NULLS = ["", "NaN", "nan", "NAN", "-nan", "null", "NULL", "None", "none", "NA", "N/A", "#N/A", "-"]
+_UNITS = {"date": "ns", "calendar": "ns", "clock": "s"}
+"""Of what is read from times that are written out."""
+
 _MOST_BROKEN = 0.01
 """Share of rows of another length beyond which the file is not what it seems."""
 
 
 def text_table(path: Path) -> Table:
     """The table in a text file."""
-    with _opened(path) as file:
+    with opened_text(path) as file:
         start = file.read(SNIFFED)
         whole = not file.read(1)
-    layout = layout_of(start, str(path), whole)
+    layout = layout_of(text_of(start, str(path)), str(path), whole)
     _refuse_one_column(layout, path)
     attributes = _attributes(layout)
     table = Table(
         source=str(path),
-        units={
-            name: "ns" if layout.kind(name) == "date" else layout.units.get(name) for name in layout.names
-        },
+        units={name: _UNITS.get(layout.kind(name), layout.units.get(name)) for name in layout.names},
         read=lambda names: _read(path, layout, names, table.notes),
         attributes=attributes,
     )
     return table
-
-
-def _opened(path: Path) -> IO[bytes] | Bounded:
-    if path.suffix.lower() in (".gz", ".bz2", ".zst"):
-        return Bounded(path, pa.input_stream(str(path), compression="detect"))
-    return open(path, "rb")
 
 
 def _refuse_one_column(layout: Layout, path: Path) -> None:
@@ -75,7 +72,7 @@ def _read(
     path: Path, layout: Layout, names: tuple[str, ...], notes: dict[str, Finding]
 ) -> Iterator[tuple[Values, ...]]:
     parser = _Parser(path, layout, names)
-    with _opened(path) as file:
+    with opened_text(path) as file:
         rest, above = b"", layout.skipped
         while piece := file.read(_PIECE):
             if above:
@@ -120,7 +117,10 @@ class _Parser:
         for name in names:
             if layout.kind(name) == "text":
                 raise InputError(f'{path}: column "{name}" holds text, such as "{self._example(name)}"')
-        self.types = {name: kinds[layout.kind(name)] for name in names}
+        self.types = {name: kinds[kind] for name in names if (kind := layout.kind(name)) in kinds}
+        self._sheet = Sheet(str(path), layout, names)
+        self._by_cells = len(self.types) < len(set(names))
+        self.notes, self.first_note = 0, ""
 
     def parse(self, lines: bytes) -> Iterator[tuple[Values, ...]]:
         """The columns of these lines."""
@@ -128,18 +128,37 @@ class _Parser:
             return
         cleaned = self._cleaned(lines)
         if cleaned.strip():
-            try:
-                batch = self._parsed(cleaned)
-            except pa.ArrowInvalid as error:
-                raise self._refusal(cleaned, error) from None
-            self.rows += batch.num_rows
+            parts = self._quickly(cleaned)
+            if parts is None:
+                self._by_cells = True
+                parts = self._cell_by_cell(cleaned)
             if self.broken > 20 and self.broken > _MOST_BROKEN * (self.rows + self.broken):
                 raise InputError(
                     f"{self.path}: {self.broken} of {self.rows + self.broken} rows have another number of "
                     f"columns than {len(self.layout.names)}; it is no table"
                 )
-            for part in batch.to_batches():
-                yield tuple(_numbers(part.column(name)) for name in self.names)
+            yield from parts
+
+    def _quickly(self, lines: bytes) -> list[tuple[Values, ...]] | None:
+        """None where a cell is not written as the quick reader has it."""
+        if self._by_cells:
+            return None
+        broken = self.broken
+        try:
+            table = self._parsed(lines)
+        except pa.ArrowInvalid:
+            self.broken = broken
+            return None
+        self.rows += table.num_rows
+        return [tuple(_numbers(part.column(name)) for name in self.names) for part in table.to_batches()]
+
+    def _cell_by_cell(self, lines: bytes) -> list[tuple[Values, ...]]:
+        piece = self._sheet.read(lines.decode(), self._line)
+        self.rows += piece.columns[0].size
+        self.broken += piece.broken
+        self.notes += piece.notes
+        self.first_note = self.first_note or piece.first_note
+        return [piece.columns]
 
     def report(self, notes: dict[str, Finding]) -> None:
         """Write down what was left out."""
@@ -150,6 +169,10 @@ class _Parser:
             columns = len(self.layout.names)
             text = f"{self.broken} rows have another number of columns than {columns}; they are left out"
             notes["broken"] = Finding(kind="broken rows", text=text, samples=self.broken)
+        if self.notes:
+            lines = "1 line" if self.notes == 1 else f"{self.notes} lines"
+            text = f'{lines} of text below the table left out: "{self.first_note}"'
+            notes["text"] = Finding(kind="text", text=text)
         if self.headers:
             text = (
                 f"the header stands in the rows again, {self.headers} ×: files were put one after the other"
@@ -165,7 +188,7 @@ class _Parser:
             convert_options=pc.ConvertOptions(
                 include_columns=list(dict.fromkeys(self.names)),
                 column_types=self.types,
-                decimal_point="," if layout.comma else ".",
+                decimal_point=layout.decimal,
                 null_values=_NULLS,
                 strings_can_be_null=True,
             ),
@@ -177,8 +200,7 @@ class _Parser:
 
     def _cleaned(self, lines: bytes) -> bytes:
         """Without comments, repeated headers and, where white space separates, more than one of it."""
-        if not lines.isascii():
-            lines = lines.decode("utf-8", "replace").encode()
+        lines = plain_lines(lines)
         for sign in (b"#", b"%", b"//"):
             if sign[:1] in lines:  # one byte is searched for far quicker than two
                 lines = re.sub(rb"(?m)^" + sign + rb"[^\n]*\n?", b"", lines)
@@ -191,37 +213,13 @@ class _Parser:
             lines = re.sub(rb"(?m)^ | ?\r?$", b"", lines)
         return lines
 
-    def _refusal(self, lines: bytes, error: Exception) -> InputError:
-        """The field that is no number, and where it stands."""
-        for k, line in enumerate(lines.decode("utf-8", "replace").splitlines()):
-            fields = [f.strip() for f in line.split(self.layout.delimiter)]
-            if len(fields) != len(self.layout.names):
-                continue
-            for name, value in zip(self.layout.names, fields, strict=True):
-                if name in self.names and value not in _NULLS and not _converts(value, self.layout.comma):
-                    return InputError(
-                        f'{self.path}: column "{name}" holds text near line {self._line + k + 1}: '
-                        f'"{value[:40]}"'
-                    )
-        return InputError(
-            f"{self.path} cannot be read near line {self._line + 1}: {str(error).splitlines()[0][:200]}"
-        )
-
     @property
     def _line(self) -> int:
         return self.layout.skipped + self.rows + self.broken
 
     def _example(self, name: str) -> str:
-        index = self.layout.names.index(name)
-        return next((row[index] for row in self.layout.sample if not _converts(row[index], True)), "")[:40]
-
-
-def _converts(value: str, comma: bool) -> bool:
-    try:
-        float(value.replace(",", ".") if comma else value)
-    except ValueError:
-        return False
-    return True
+        fields = self.layout.fields(name)
+        return next((field for field in fields if not (is_number(field) or is_nothing(field))), "")[:40]
 
 
 def _numbers(column: pa.Array) -> Values:

@@ -17,10 +17,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy import stats
 
+from zwidth.compiled import Array
 from zwidth.errors import InputError
 from zwidth.identification.tissue.experiment.estimate import Solved, solved
 from zwidth.identification.tissue.experiment.history import History, about_surface
-from zwidth.identification.tissue.experiment.prediction import Task, fine_of
+from zwidth.identification.tissue.experiment.prediction import Fine, Task, fines_of, predicted
 from zwidth.identification.tissue.model import Model, as_model
 
 APART = 6.0
@@ -38,6 +39,9 @@ MODELS = (
 SEEN = 2.0
 """Of AICc, by which a surface must do better than none."""
 
+FELT = 0.1
+"""Standard deviations, below which nobody asks which curve the probe took between samples."""
+
 UNLIKELY = 1e-3
 """Chance below which what is left over is no noise."""
 
@@ -45,23 +49,33 @@ LAGS = 8
 
 
 class Tried(NamedTuple):
-    """A model as it was fitted, and its AICc."""
+    """A model as it was fitted, its AICc, and how far curves between the samples that fit nearly as well
+    move the numbers: Σ w d dᵀ, w the Akaike weights (Buckland, Burnham & Augustin, Biometrics 53, 1997)."""
 
     task: Task
     found: Solved
     criterion: float
+    apart: Array | None = None
 
 
-def touching(test: History, zero: bool) -> History:
-    """The test with a surface where a standard linear solid does better with one, else without."""
+def understood(test: History, zero: bool) -> History:
+    """The test with a surface where a standard linear solid does better with one, else without.
+
+    Where that leaves more than noise, two branches decide: one too few takes a branch for a surface.
+    """
     if test.surface is None:
         return test
-    alone, fine = test._replace(surface=None), fine_of(test)
-    model = as_model("standard-linear-solid", None, "force")
-    without, found = (criterion(solved(Task(model, each, fine, zero))) for each in (alone, test))
-    if without - found < SEEN:
+    alone, fines = test._replace(surface=None), fines_of(test)
+    for name, branches in (("standard-linear-solid", None), ("generalized-maxwell", 2)):
+        model = as_model(name, branches, "force")
+        without, with_one = (_tried(model, each, fines, zero) for each in (alone, test))
+        better = with_one.criterion + SEEN <= without.criterion
+        if leftover((with_one if better else without).found) > UNLIKELY:
+            break
+    depth = float(with_one.found.point[with_one.task.own + zero]) * with_one.task.way
+    if not better or depth <= 0:
         return alone
-    return test._replace(findings=(*test.findings, about_surface(test.surface)))
+    return test._replace(surface=depth, findings=(*test.findings, about_surface(depth)))
 
 
 def tried(test: History, zero: bool, names: tuple[str, ...] = ()) -> list[Tried]:
@@ -70,14 +84,14 @@ def tried(test: History, zero: bool, names: tuple[str, ...] = ()) -> list[Tried]
     A third branch is tried where the second was worth its numbers.
     """
     every: list[Tried] = []
-    fine = fine_of(test)
+    fines = fines_of(test)
     for model in _models(test):
         if names and not {label(model), model.name} & set(names):
             continue
         if not names and model.branches > 2 and not _gained(every):
             continue
         try:
-            every.append(_tried(Task(model, test, fine, zero)))
+            every.append(_tried(model, test, fines, zero))
         except InputError:  # a contact that does not push in four samples has no place to begin
             if names:
                 raise
@@ -104,9 +118,30 @@ def label(model: Model) -> str:
     return f"{model.name}-{model.branches}" if model.name == "generalized-maxwell" else model.name
 
 
-def _tried(task: Task) -> Tried:
-    found = solved(task)
-    return Tried(task, found, criterion(found))
+def _tried(model: Model, test: History, fines: list[Fine], zero: bool) -> Tried:
+    """With the curve between the samples that leaves least, where it matters which.
+
+    Each but the first, which is smooth, must do better than it by more than `SEEN`.
+    """
+    task = Task(model, test, fines[0], zero)
+    every = [Tried(task, found := solved(task), criterion(found) - SEEN)]
+    for fine in fines[1:]:
+        other = task._replace(fine=fine)
+        if all(_matters(one.task, other, one.found) for one in every):
+            again = solved(other, found)
+            every.append(Tried(other, again, criterion(again)))
+    best = min(every, key=lambda each: each.criterion)
+    weights = [np.exp(0.5 * (best.criterion - each.criterion)) for each in every]
+    moved = [each.found.point - best.found.point for each in every]
+    apart = sum(w / sum(weights) * np.outer(d, d) for w, d in zip(weights, moved, strict=True))
+    return best._replace(criterion=criterion(best.found), apart=np.asarray(apart))
+
+
+def _matters(one: Task, other: Task, found: Solved) -> bool:
+    """Whether two curves may move a number by more than `FELT` of its standard deviation."""
+    apart = found.noise.whitened(predicted(one, found.point) - predicted(other, found.point))
+    left, _ = found.whitened
+    return float(apart @ apart) > FELT**2 * float(left @ left) / left.size
 
 
 def criterion(found: Solved) -> float:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from zwidth.errors import InputError
 from zwidth.identification.logs.block import Finding
+from zwidth.identification.logs.outside import POUND, WEIGHT, measured_in
 from zwidth.identification.logs.table import Table, listed
 from zwidth.quantity.dimension import Dimension, unit_of
 from zwidth.quantity.exact import Exact
@@ -28,7 +29,9 @@ _DIMENSIONS: Mapping[str, Dimension] = {
 }
 
 _WORDS: Mapping[str, tuple[str, ...]] = {
-    "time": ("time zeit temps tiempo tempo elapsed timestamp seconds sec t",),
+    "time": (
+        "time zeit uhrzeit zeitstempel temps heure tiempo hora tempo ora elapsed timestamp seconds sec t",
+    ),
     "indentation": (
         "indentation depth penetration eindringtiefe eindringung tiefe enfoncement indentación profundidad",
         "displacement disp deflection compression extension elongation stroke travel weg standardweg "
@@ -51,22 +54,19 @@ _TRIAL_WORDS = "trial trials sample specimen run test cycle repeat repetition re
 _TRIALS = frozenset(_TRIAL_WORDS.split())
 """Words of a column that numbers the trials."""
 
-_WEIGHT = 9.80665
-_OLD: Mapping[str, tuple[str, float]] = {
-    **dict.fromkeys(("gf", "g", "pond"), ("force", _WEIGHT / 1000)),
-    **dict.fromkeys(("kgf", "kg", "kp"), ("force", _WEIGHT)),
-    **dict.fromkeys(("lbf", "lb", "lbs"), ("force", 4.4482216152605)),
-    **dict.fromkeys(("in", "inch", "inches"), ("indentation", 0.0254)),
-    **dict.fromkeys(("h", "hr", "hours"), ("time", 3600.0)),
-    **dict.fromkeys(("minutes", "mins"), ("time", 60.0)),
+_MASSES: Mapping[str, float] = {
+    "g": float(WEIGHT / 1000),
+    "kg": float(WEIGHT),
+    **dict.fromkeys(("lb", "lbs"), float(POUND)),
 }
-"""Units outside the SI that spreadsheets hold; a force in g is the weight of so much."""
-
-_MASSES = ("g", "kg", "lb", "lbs")
+"""A force in g is the weight of so much [N]."""
 
 _BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 _SLASH = re.compile(r"^(?P<name>.+?)\s*/\s*(?P<unit>[^/]+)$")
 _LAST = re.compile(r"^(?P<name>.+?)[\s_,]+(?P<unit>[^\s_,]+)$")
+_AGAIN = re.compile(r" \(\d+\)$")
+"""Behind a name that stands in the header more than once."""
+
 _WORD = re.compile(r"[^\W\d_]+")
 
 
@@ -78,19 +78,25 @@ class Column(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """The column of each quantity, that which numbers the trials, and what was guessed."""
+    """The column of each quantity, that which numbers the trials, what was guessed, and of how many tests
+    that stand side by side these are one."""
 
     time: Column
     indentation: Column
     force: Column
     trial: str | None
     findings: tuple[Finding, ...]
+    beside: int = 1
 
 
 def recognised(
-    table: Table, chosen: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None
+    table: Table,
+    chosen: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
+    number: int = 1,
 ) -> Columns:
-    """The columns of a test: first what was chosen, then by name, then by unit.
+    """The columns of a test: first what was chosen, then by name, then by unit; of several side by side that
+    of a number from 1.
 
     Raises
     ------
@@ -103,6 +109,9 @@ def recognised(
             if key not in QUANTITIES:
                 raise InputError(f"{what}: there is no quantity {key!r}; there are {', '.join(QUANTITIES)}")
     found: dict[str, str] = {}
+    beside = {} if chosen else _side_by_side(table)
+    tests = max(map(len, beside.values()), default=1)
+    chosen |= {quantity: names[min(number, len(names)) - 1] for quantity, names in beside.items()}
     for quantity in QUANTITIES:
         found[quantity] = _column(table, quantity, chosen, [*found.values(), *chosen.values()])
     _refuse_without_unit(table, found, units)
@@ -115,7 +124,27 @@ def recognised(
         force,
         numbered[0] if len(numbered) == 1 else None,
         tuple(_guessed(table, found, chosen, units)),
+        tests,
     )
+
+
+def _side_by_side(table: Table) -> dict[str, list[str]]:
+    """The columns of several tests beside each other, named alike but for a number; {} where there are not.
+
+    They may have one column of time together.
+    """
+    found: dict[str, list[str]] = {}
+    for quantity in QUANTITIES:
+        taken = [name for names in found.values() for name in names]
+        found[quantity] = _candidates(table, quantity, [name for name in table.units if name not in taken])
+    tests = max(map(len, found.values()))
+    alike = all(len({_stem(name) for name in names}) == 1 for names in found.values())
+    own = len(found["indentation"]) == len(found["force"]) == tests
+    return found if tests > 1 and alike and own and len(found["time"]) in (1, tests) else {}
+
+
+def _stem(name: str) -> str:
+    return re.sub(r"\s*\d+", "", _AGAIN.sub("", name)).lower()
 
 
 def _column(table: Table, quantity: str, chosen: Mapping[str, str], taken: list[str]) -> str:
@@ -163,7 +192,7 @@ def _words(column: str) -> list[str]:
 
 def _split(column: str) -> tuple[str, str | None]:
     """Name and unit; None where no unit stands there."""
-    bare = column.strip().strip('"')
+    bare = _AGAIN.sub("", column.strip().strip('"'))
     for pattern in (_BRACKETS, _SLASH, _LAST):
         found = pattern.match(bare)
         if found and (_is_unit(found["unit"]) or pattern is _BRACKETS):
@@ -184,12 +213,12 @@ def _kind(unit: str | None, quantity: str) -> str | None:
     if unit is None:
         return None
     bare = spelled(unit)
-    if bare in _OLD and (bare not in _MASSES or quantity == "force"):
-        return _OLD[bare][0]
+    if quantity == "force" and bare in _MASSES:
+        return "force"
     if not bare:
         return None
     try:
-        dimension = unit_of(bare).dimension
+        dimension = measured_in(bare).dimension
     except InputError:
         return None
     return next((name for name, own in _DIMENSIONS.items() if own == dimension), "")
@@ -201,7 +230,8 @@ def _refuse_without_unit(table: Table, found: Mapping[str, str], units: Mapping[
     if lacking:
         names = listed([found[q] for q in lacking])
         asked = " ".join(f'units={{"{q}": "{_EXAMPLES[q]}"}}' for q in lacking)
-        raise InputError(f"{table.source}: nobody says in which unit {names} is; state it with {asked}")
+        days = ' (units={"time": "days"} if they are such as 45987.43)' if "time" in lacking else ""
+        raise InputError(f"{table.source}: nobody says in which unit {names} is; state it with {asked}{days}")
 
 
 _EXAMPLES = {"time": "s", "indentation": "mm", "force": "N"}
@@ -219,9 +249,9 @@ def _factor(table: Table, quantity: str, column: str, given: str | None) -> floa
             f'with units={{"{quantity}": "{_EXAMPLES[quantity]}"}}'
         )
     bare = spelled(unit)
-    if bare in _OLD:
-        return _OLD[bare][1]
-    return float(Exact(unit_of(bare).scale))
+    if quantity == "force" and bare in _MASSES:
+        return _MASSES[bare]
+    return float(Exact(measured_in(bare).scale))
 
 
 _KINDS = {"time": "time", "indentation": "length", "force": "force"}

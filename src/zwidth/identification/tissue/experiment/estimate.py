@@ -28,6 +28,10 @@ REACH = 14.0
 AGREED = 0.05
 """Relative change of the memory below which fit and noise agree."""
 
+SHARES = (1.0, 0.4, 1.6)
+"""Of the depth where the surface seems to be, from which it is searched: after a ramp of few samples several
+depths leave less than those beside them."""
+
 ROUNDS = 4
 FIRST, MOST = 8, 60
 """Evaluations of a search from each start, and of that from the best of them."""
@@ -57,12 +61,15 @@ class Solved(NamedTuple):
         return self.point.size + 1 + bool(self.noise.memory)
 
 
-def solved(task: Task) -> Solved:
-    """The fit of a task."""
+def solved(task: Task, near: Solved | None = None) -> Solved:
+    """The fit of a task, from that of one much like it where there is one."""
     white = with_memory(task.test.time, 0.0)
-    first = [_searched(task, start, white, FIRST) for start in _starts(task)]
-    best = min(first, key=lambda each: each[1])[0]
-    found = _with_noise(task, _searched(task, best, white)[0])
+    if near is None:
+        first = [_searched(task, start, white, FIRST) for start in _starts(task)]
+        best = min(first, key=lambda each: each[1])[0]
+        found = _with_noise(task, _searched(task, best, white)[0])
+    else:
+        found = _with_noise(task, _searched(task, near.point, near.noise)[0])
     for _ in range(ROUNDS):
         if not found.noise.memory and not _changed(found.noise, white):
             break
@@ -85,7 +92,19 @@ def _with_noise(task: Task, point: Array) -> Solved:
 
 
 def _starts(task: Task) -> list[Array]:
-    surface = task.test.surface if task.surface else None
+    """Of the place where the surface seems to be all starts, of others the first."""
+    if not task.surface:
+        return _starts_at(task, None)
+    surface = task.test.surface
+    assert surface is not None
+    return [
+        start
+        for k, share in enumerate(SHARES)
+        for start in _starts_at(task, share * surface)[: None if k == 0 else 1]
+    ]
+
+
+def _starts_at(task: Task, surface: float | None) -> list[Array]:
     record = task.record(surface or 0.0)
     further = [0.0] * task.zero + ([surface / task.way] if surface is not None else []) + [0.0] * task.held
     return [np.append(np.log(start), further) for start in starting_points(task.model, record)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from os import PathLike
 from typing import TYPE_CHECKING, Literal
 
@@ -16,15 +17,15 @@ from zwidth.identification.tissue.experiment.choice import (
     label,
     not_told_apart,
     taken,
-    touching,
     tried,
+    understood,
 )
 from zwidth.identification.tissue.experiment.estimate import covariance
 from zwidth.identification.tissue.experiment.history import history_of
 from zwidth.identification.tissue.experiment.kind import KINDS, Kind, kind_of
-from zwidth.identification.tissue.experiment.reading import Raw, read_columns
+from zwidth.identification.tissue.experiment.reading import Raw, read_tests
 from zwidth.identification.tissue.experiment.result import TissueTest
-from zwidth.identification.tissue.experiment.tidy import one_trial
+from zwidth.identification.tissue.experiment.tidy import one_trial, places
 from zwidth.identification.tissue.model import as_model
 from zwidth.identification.tissue.result import TissueFit
 
@@ -32,6 +33,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 Zero = Literal["fitted", "exact"]
+
+MOST_TRIALS = 50
+"""Of a file, that are fitted beside the one that is asked for."""
 
 
 def read_test(
@@ -57,7 +61,8 @@ def read_test(
     kind
         "relaxation", "creep" or "loading"; None: as the data say.
     trial
-        Which of several in the file, from 1; None: the first.
+        Which of several in the file, from 1; None: the first.  The model that it takes is fitted to the
+        others too (`TissueTest.trials`).
     models
         Names of those to be fitted; none: all that such a test allows.
     zero
@@ -68,7 +73,14 @@ def read_test(
     InputError
         If the file cannot be read, a column or its unit is not known, or no tissue was pushed.
     """
-    return _fitted(read_columns(path, columns, units), kind, trial, models, zero)
+    every = places(read_tests(path, columns, units))
+    number = 1 if trial is None else trial
+    if not 1 <= number <= len(every):
+        raise InputError(f"{path} has {len(every)} trials, and trial {number} is wanted")
+    own = _fitted(*every[number - 1], kind, models, zero)
+    if len(every) == 1:
+        return own
+    return replace(own, number=number, trials=_beside(own, every, number, zero))
 
 
 def fit_test(
@@ -103,18 +115,32 @@ def fit_test(
         shapes = ", ".join(str(values.shape) for values in arrays)
         raise InputError(f"time, indentation and force are three arrays of one length; got {shapes}")
     t, x, f = arrays
-    return _fitted(Raw("arrays", t, x, f, None, ()), kind, None, models, zero)
+    return _fitted(Raw("arrays", t, x, f, None, ()), 1, kind, models, zero)
 
 
-def _fitted(
-    raw: Raw, kind: Kind | None, number: int | None, models: tuple[str, ...], zero: Zero
-) -> TissueTest:
+def _beside(
+    own: TissueTest, every: list[tuple[Raw, int]], number: int, zero: Zero
+) -> tuple[TissueFit | str, ...]:
+    """The model that was taken, fitted to each trial of the file; why not, where it is not."""
+    found: list[TissueFit | str] = []
+    for k, (raw, place) in enumerate(every[:MOST_TRIALS], 1):
+        if k == number:
+            found.append(own.best)
+            continue
+        try:
+            found.append(_fitted(raw, place, own.test.kind, (own.names[own.chosen],), zero).best)
+        except InputError as error:
+            found.append(str(error))
+    return tuple(found)
+
+
+def _fitted(raw: Raw, place: int, kind: Kind | None, models: tuple[str, ...], zero: Zero) -> TissueTest:
     _check(kind, models, zero)
-    trial = one_trial(raw, number)
+    trial = one_trial(raw, place)
     found = kind_of(trial.time, trial.indentation, trial.force)
     seen = history_of(trial, kind or found, raw.source)
     zeroed = zero == "fitted" and not seen.starts_loaded
-    test = touching(seen, zeroed)
+    test = understood(seen, zeroed)
     every = tried(test, zeroed, models)
     if not every:
         raise InputError(f"none of the models {', '.join(models)} is fitted to a {test.kind} test")
@@ -145,6 +171,8 @@ def _fit(each: Tried, findings: tuple[Finding, ...]) -> TissueFit:
     """What was found, as every fit of a tissue is given."""
     task, found = each.task, each.found
     spread, condition = covariance(found)
+    if each.apart is not None:
+        spread = spread + each.apart
     own = task.own + task.zero
     order = _slow_last(each)
     scale = np.ones(own)

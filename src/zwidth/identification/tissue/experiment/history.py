@@ -202,16 +202,24 @@ def _end(x: Array, f: Array) -> int:
 
 
 def _surface(x: Array, f: Array) -> float | None:
-    """The depth at which the force begins, where the probe came from outside."""
-    noise = noise_of_differences(f)
-    touches = f > max(TOUCH * noise, SMALL * float(f.max()))
-    first = int(np.argmax(touches))
-    if first < 2 or x[first - 1] < SMALL * float(x.max()):
+    """The depth at which the force begins, where the probe may have come from outside."""
+    touches = f > max(TOUCH * _noise_before(x, f), SMALL * float(f.max()))
+    stays = touches & np.append(touches[1:], True) & np.append(touches[2:], [True, True])
+    first = int(np.argmax(stays))
+    if first < 2 or x[first] < SMALL * float(x.max()):
         return None
     after = slice(first, min(first + 6, x.size))
     slope, level = np.polyfit(x[after], f[after], 1) if np.ptp(x[after]) > 0 else (0.0, 0.0)
     guess = -level / slope if slope > 0 else x[first - 1]
-    return float(np.clip(guess, 0.0, x[first]))
+    return float(np.clip(guess, 0.05 * x[first], x[first]))
+
+
+def _noise_before(x: Array, f: Array) -> float:
+    """Of the force, also where it is no quick one: as it was before the probe moved."""
+    still = np.flatnonzero(np.abs(x) > SMALL * float(x.max()))
+    before = f[: still[0]] if still.size else f
+    quick = noise_of_differences(f)
+    return max(quick, float(np.std(before))) if before.size >= 5 else quick
 
 
 def about_surface(surface: float) -> Finding:

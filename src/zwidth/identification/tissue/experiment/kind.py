@@ -4,7 +4,9 @@ relaxation   the probe is held, and the force fades
 creep        the force is held, and the probe sinks in
 loading      neither is: the probe goes in, or in and out
 
-Held is what stays in a narrow band for most of the time; where both do, it is what stays there longer.
+Held is what stays in a narrow band for most of the time.  Where both do, it is what stays there longer; where
+they do for nearly as long, as a force that has faded quickly does, it is the quieter: what a machine holds it
+holds by what it measures well.
 """
 
 from __future__ import annotations
@@ -24,6 +26,9 @@ BAND = 0.03
 MOST = 0.45
 """Of the time, for which something is held in a relaxation or creep test."""
 
+ALIKE = 0.05
+"""Of the time; what is held for so little longer is not told apart by it."""
+
 NOISES = 6.0
 """Times its noise, within which a quantity never changes."""
 
@@ -33,6 +38,8 @@ def kind_of(time: Array, indentation: Array, force: Array) -> Kind:
     probe, push = held_for(time, indentation), held_for(time, force)
     if max(probe, push) < MOST:
         return "loading"
+    if abs(probe - push) < ALIKE:
+        return "relaxation" if _noise(indentation) <= _noise(force) else "creep"
     return "relaxation" if probe >= push else "creep"
 
 
@@ -48,6 +55,12 @@ def held_for(time: Array, values: Array) -> float:
     ordered, total = values[order], np.concatenate([[0.0], np.cumsum(weight[order])])
     ends = np.searchsorted(ordered, ordered + width, side="right")
     return float((total[ends] - total[: ordered.size]).max() / total[-1])
+
+
+def _noise(values: Array) -> float:
+    """Of a quantity, as a share of its range."""
+    span = float(np.ptp(values))
+    return noise_of_differences(values) / span if span else 0.0
 
 
 def noise_of_differences(values: Array) -> float:

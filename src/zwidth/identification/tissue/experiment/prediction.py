@@ -2,8 +2,8 @@
 
 Between samples the history is a curve, looked at `FINER` times as finely: a quick ramp of few samples is
 neither a step nor a chain of straight lines.  Velocities are its slopes.  Where the motion is smooth the
-curve is a cubic spline, where it has corners a monotone cubic (Fritsch & Carlson, 1980): whichever of the
-two, laid through every other sample, comes nearer to those between.
+curve is a cubic spline, at rest before the first sample or not, where it has corners a monotone cubic
+(Fritsch & Carlson, 1980).  Samples of the motion alone do not tell which; the response does (`choice`).
 
     f = K u + B u̇ + Σ μᵢ y(1/τᵢ),     ẏ = u̇ − r y,   u = max(x − surface, 0)
     f = K uⁿ (1 + λ u̇)                                                    Hunt–Crossley
@@ -15,7 +15,7 @@ hole.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -41,25 +41,18 @@ class Fine(NamedTuple):
     slope: Array
 
 
-def fine_of(test: History) -> Fine:
-    """The given quantity of a test, `FINER` times as finely as it was sampled."""
-    given = test.force if test.kind == "creep" else test.depth
-    count = test.time.size
-    time = np.interp(np.arange(FINER * (count - 1) + 1) / FINER, np.arange(count), test.time)
-    curve = _curve(test.time, given)
-    return Fine(time, curve(time), curve(time, 1))
-
-
-def _curve(time: Array, given: Array) -> Any:
-    """A spline or a monotone cubic, whichever foretells every other sample."""
+def fines_of(test: History) -> list[Fine]:
+    """The given quantity of a test, `FINER` times as finely as it was sampled, by each of the curves."""
     from scipy.interpolate import CubicSpline, PchipInterpolator
 
-    between = slice(1, time.size - 1 - time.size % 2, 2)
-    kinds = (CubicSpline, PchipInterpolator)
-    missed = [
-        float(np.sum((kind(time[::2], given[::2])(time[between]) - given[between]) ** 2)) for kind in kinds
-    ]
-    return kinds[int(missed[1] <= missed[0])](time, given)
+    at, given = test.time, test.force if test.kind == "creep" else test.depth
+    fine = np.interp(np.arange(FINER * (at.size - 1) + 1) / FINER, np.arange(at.size), at)
+    curves = (
+        CubicSpline(at, given),
+        CubicSpline(at, given, bc_type=((1, 0.0), "not-a-knot")),
+        PchipInterpolator(at, given),
+    )
+    return [Fine(fine, curve(fine), curve(fine, 1)) for curve in curves]
 
 
 class Task(NamedTuple):

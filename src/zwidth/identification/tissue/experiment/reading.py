@@ -21,7 +21,8 @@ MOST_ROWS = 10**6
 
 
 class Raw(NamedTuple):
-    """Columns in SI units as they stand in the file, and the number of the trial in each row."""
+    """Columns in SI units as they stand in the file, the number of the trial in each row, and how many other
+    trials stand beside it."""
 
     source: str
     time: Array
@@ -29,24 +30,36 @@ class Raw(NamedTuple):
     force: Array
     trial: Array | None
     findings: tuple[Finding, ...]
+    beside: int = 1
 
 
-def read_columns(
+def read_tests(
     path: str | PathLike[str],
     columns: Mapping[str, str] | None = None,
     units: Mapping[str, str] | None = None,
-) -> Raw:
-    """The columns of a file: text, Parquet, HDF5, MATLAB, …
+) -> list[Raw]:
+    """Every test in a file that stands beside the others; one after the other they are still together.
 
     Raises
     ------
     InputError
         If it cannot be read, or a column or its unit is not known.
     """
+    first = _read(path, columns, units, 1)
+    return [first, *(_read(path, columns, units, number) for number in range(2, first.beside + 1))]
+
+
+def _read(
+    path: str | PathLike[str],
+    columns: Mapping[str, str] | None,
+    units: Mapping[str, str] | None,
+    number: int,
+) -> Raw:
+    """The columns of a file: text, Parquet, HDF5, MATLAB, …; of tests side by side that of a number."""
     source = Path(path)
     with readable(str(source)):
         table = table_of_file(source)
-        known = recognised(table, columns, units)
+        known = recognised(table, columns, units, number)
         names = [known.time.name, known.indentation.name, known.force.name]
         wanted = [*names, known.trial] if known.trial else names
         pieces = list(table.read(tuple(wanted)))
@@ -60,6 +73,7 @@ def read_columns(
         whole[2].astype(float) * known.force.factor,
         whole[3].astype(float) if known.trial else None,
         (*known.findings, *table.notes.values()),
+        known.beside,
     )
 
 

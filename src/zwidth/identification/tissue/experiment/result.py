@@ -7,6 +7,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from scipy.stats import chi2
+
 from zwidth.environment.discretization import Discretization
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
@@ -43,6 +46,11 @@ class TissueTest(Documented):
         The place of the one that is taken.
     as_good
         The places of others that this test does not tell from it.
+    number
+        Which trial of the file it is, from 1.
+    trials
+        The model that is taken, fitted to each trial of the file by itself, or why it was not; none where
+        the file holds one.
     """
 
     source: str
@@ -52,6 +60,8 @@ class TissueTest(Documented):
     fits: tuple[TissueFit, ...]
     chosen: int
     as_good: tuple[int, ...]
+    number: int = 1
+    trials: tuple[TissueFit | str, ...] = ()
 
     @property
     def best(self) -> TissueFit:
@@ -93,12 +103,46 @@ class TissueTest(Documented):
                 "a Kelvin–Voigt solid that is met from outside jumps at the touch, between two samples: its "
                 "intervals are too narrow"
             )
+        apart = self.apart()
+        if apart:
+            said.append(
+                f"the trials differ in {', '.join(apart)} by more than their intervals: the tissue changed, "
+                "or was not met at the same place; an interval is of one trial"
+            )
         if not self.is_noise:
             said.append(
                 "what is left over is not noise: none of these models is the tissue to within the "
                 "noise, and the intervals are too narrow"
             )
         return tuple(said)
+
+    def apart(self) -> list[str]:
+        """The parameters in which the trials differ by more than noise makes them: Σ (θ − θ̄)²/s², 0.1 %."""
+        fits = [fit for fit in self.trials if not isinstance(fit, str)]
+        found = []
+        for k, name in enumerate(self.best.model.parameters if len(fits) > 1 else ()):
+            at = np.array([fit.estimates[k] for fit in fits])
+            weight = np.array([max(fit.covariance[k, k], 1e-300) for fit in fits]) ** -1.0
+            mean = float(at @ weight / weight.sum())
+            if chi2.sf(float((at - mean) ** 2 @ weight), len(fits) - 1) < UNLIKELY:
+                found.append(name)
+        return found
+
+    def of_trials(self) -> list[list[str]]:
+        """Headings, then one line of text for each trial, then the mean and what they spread by."""
+        names = self.best.model.parameters
+        fits = [fit for fit in self.trials if not isinstance(fit, str)]
+        lines = [["trial", *names]]
+        for k, fit in enumerate(self.trials, 1):
+            mark = " ←" if k == self.number else ""
+            cells = ["not fitted"] if isinstance(fit, str) else [f"{fit[name]:.4g}" for name in names]
+            lines.append([f"{k}{mark}", *cells, *[""] * (len(names) - len(cells))])
+        if len(fits) > 1:
+            table = np.array([[fit[name] for name in names] for fit in fits])
+            spread = table.std(axis=0, ddof=1)
+            both = zip(table.mean(axis=0), spread, strict=True)
+            lines.append(["mean ± SD", *(f"{m:.4g} ± {s:.2g}" for m, s in both)])
+        return lines
 
     def environment(
         self, discretization: Discretization = "backward", *, level: float | None = None
@@ -203,6 +247,9 @@ class TissueTest(Documented):
         yield f"{self.test.kind} test, {self.test.time.size} samples: {self.claim()}"
         head, *rows = self.parameters()
         yield Table(heads=[head], rows=rows)
+        if self.trials:
+            head, *rows = self.of_trials()
+            yield Table(heads=[head], rows=rows)
         yield from self.remarked()
         head, *rows = self.table()
         yield Table(heads=[head], rows=rows)
@@ -225,6 +272,8 @@ class TissueTest(Documented):
             "not_told_apart": list(self.rivals),
             "left_over_is_noise": self.is_noise,
             "best": self.best.to_dict(),
+            "trial": self.number,
+            "trials": [{"not_fitted": fit} if isinstance(fit, str) else fit.to_dict() for fit in self.trials],
             "models": [
                 {
                     "model": self.names[k],

@@ -28,36 +28,39 @@ class Trial(NamedTuple):
     findings: tuple[Finding, ...]
 
 
-def one_trial(raw: Raw, wanted: int | None = None) -> Trial:
-    """The trial that is wanted, by number from 1; the first where none is.
+def one_trial(raw: Raw, number: int = 1) -> Trial:
+    """The trial of a number from 1, of those that come one after the other.
 
     Raises
     ------
     InputError
-        If there is none of that number, or it has too few samples.
+        If it has too few samples.
     """
     said = list(raw.findings)
-    table = np.stack([raw.time, raw.indentation, raw.force])
-    finite = np.isfinite(table).all(axis=0)
-    if not finite.all():
-        gone = int(np.count_nonzero(~finite))
-        text = f"{gone} of {finite.size} rows lack a number and are left out"
+    parts, gone = _parts(raw)
+    if gone:
+        text = f"{gone} of {raw.time.size} rows lack a number and are left out"
         said.append(Finding(kind="missing", text=text, samples=gone))
-    parts = _trials(table[:, finite], None if raw.trial is None else raw.trial[finite])
-    number = 1 if wanted is None else wanted
-    if not 1 <= number <= len(parts):
-        raise InputError(f"{raw.source} has {len(parts)} trials, and trial {number} is wanted")
-    if len(parts) > 1:
-        text = f"the file holds {len(parts)} trials; this is trial {number}"
-        said.append(Finding(kind="trials", text=text))
-    part = parts[number - 1]
-    part, more = _in_order(part)
+    part, more = _in_order(parts[number - 1])
     said.extend(more)
     if part.shape[1] < FEWEST:
         raise InputError(
             f"{raw.source}: {part.shape[1]} samples are left; a fit of a tissue needs {FEWEST} at the least"
         )
     return Trial(part[0] - part[0, 0], part[1], part[2], tuple(said))
+
+
+def places(raws: list[Raw]) -> list[tuple[Raw, int]]:
+    """Every trial: where it stands, and its number there."""
+    return [(raw, k + 1) for raw in raws for k in range(len(_parts(raw)[0]))]
+
+
+def _parts(raw: Raw) -> tuple[list[Array], int]:
+    """The rows of each trial, and how many rows lack a number."""
+    table = np.stack([raw.time, raw.indentation, raw.force])
+    finite = np.isfinite(table).all(axis=0)
+    label = None if raw.trial is None else raw.trial[finite]
+    return _trials(table[:, finite], label), int(np.count_nonzero(~finite))
 
 
 def _trials(table: Array, label: Array | None) -> list[Array]:
