@@ -10,6 +10,7 @@ With a hand of spring and damper the limits were bisected on the poles of the ex
 from __future__ import annotations
 
 from importlib import import_module
+from itertools import product
 from typing import Any
 
 from . import TINY, Case, Fraction, accepted, put, refused, without
@@ -65,6 +66,9 @@ LIMITS = {
     (1, 1, 0, 1, "1/3"): Fraction("1.387849461396"),
     (1, 3, 12, 1, 0): Fraction("7.655791537445"),
 }
+# its worst value is without hand, limit 1.189…: M = 1, D = 1/2, k = 1
+NEAR = LIMITS[1, "1/2", 1, 1, 0]
+WIDE = {"mass_kg": [1, 1], "damping_N_s_per_m": ["1/2", 2], "stiffness_N_per_m": 1}
 BOX = hand("stability", *spring("0.4"), damping_N_s_per_m=["1/2", "3/5"], stiffness_N_per_m=[1, "6/5"])
 
 # unit T²/M = ⅓: a pair of roots at 3/5 ± 4j/5, 4/5 ± 3j/5 or 12/13 ± 5j/13, by the linear equations for
@@ -118,6 +122,29 @@ def the_polynomial_is_enclosed() -> str:
     return ""
 
 
+def a_box_encloses_its_values() -> str:
+    """P of values in a box, times M/M₀, beside what is told of all of them at once."""
+    rest, motions = (import_module(f"zwidth.checker.known_hand.{name}") for name in ("rest", "held_motion"))
+
+    def told(ends: Any, late: Any) -> Any:
+        ranges = [tuple(map(Fraction, pair)) for pair in ends]
+        motion = motions.motion_of(*ranges, Fraction(1), Fraction(late))
+        return rest._characteristic(rest.Loop(motion, [3, 1], [1, 1]), 128)
+
+    for ends in (((1, 2), (0, 3), (0, 1)), ((1, 2), (1, 1), (0, 0)), ((3, 3), (1, 2), (2, 5))):
+        for late, shares in product((0, Fraction(1, 3)), product((0, Fraction(1, 3), 1), repeat=3)):
+            values = [a + (b - a) * s for (a, b), s in zip(ends, shares, strict=True)]
+            heavy = 2 * values[0] / Fraction(sum(ends[0]))
+            one = told([(v, v) for v in values], late)
+            for x, y in zip(told(ends, late), one, strict=True):
+                shared, own = x.slopes[:3], x.slopes[3:]
+                moved = sum(s * (2 * share - 1) for s, share in zip(shared, shares, strict=bool(shared)))
+                off = abs(y.middle * heavy - x.middle - moved)
+                if off > x.radius + sum(map(abs, own)) + y.radius * heavy + 1:
+                    return f"{ends}, {late}, {shares}"
+    return ""
+
+
 def within(k: Any, wide: Any) -> Any:
     """A spring before a held device, some of it within bounds."""
     return hand("stability", *spring(k), **{**HELD, **wide})
@@ -125,6 +152,7 @@ def within(k: Any, wide: Any) -> Any:
 
 CASES = [
     Case("the polynomial is enclosed", the_polynomial_is_enclosed, ""),
+    Case("a box encloses its values", a_box_encloses_its_values, ""),
     accepted(
         "a free mass",
         RESTS,
@@ -238,6 +266,16 @@ CASES = [
         "not of intervals",
     ),
     accepted("every value of a box", BOX, "for every value in the intervals"),
+    accepted(
+        "a box whose worst value is a millionth below its limit",
+        hand("stability", *spring(NEAR * (1 - Fraction(1, 10**6))), **WIDE),
+        "for every value in the intervals",
+    ),
+    refused(
+        "a box whose worst value is a billionth above its limit",
+        hand("stability", *spring(NEAR * (1 + Fraction(1, 10**9))), **WIDE),
+        "was not confirmed",
+    ),
     accepted("an interval of one number", put(RESTS, {"loop.mass_kg": [1, 1]}), "after every disturbance"),
     refused(
         "an interval turned round",

@@ -208,19 +208,17 @@ def test_an_interval_with_one_unstable_hand_names_it() -> None:
 
 
 def test_an_interval_that_touches_the_limit_is_undecided() -> None:
-    """Just below the largest stiffness of its worst corner a box is neither proved nor refuted."""
+    """A billionth below the largest stiffness of its worst corner; a millionth below it is proved, and
+    above it is refuted."""
     limit = zw.stability.coupled_stability(
         PADDLE, zw.Wall(1000, 1), zw.stability.HandImpedance(stiffness=1000)
     ).max_stiffness
+    assert limit is not None
     box = zw.stability.HandImpedance(mass=(0, "0.02"), stiffness=(0, 1000), damping=(0, 3))
-    assert (
-        zw.stability.coupled_stability(PADDLE, zw.Wall((limit or 0) * (1 - 1e-6), 1), box).outcome
-        == "undecided"
-    )
-    assert (
-        zw.stability.coupled_stability(PADDLE, zw.Wall((limit or 0) * (1 + 1e-6), 1), box).outcome
-        == "unstable"
-    )
+    for off, outcome in ((-1e-6, "stable"), (-1e-9, "undecided"), (1e-6, "unstable")):
+        found = zw.stability.coupled_stability(PADDLE, zw.Wall(limit * (1 + off), 1), box)
+        assert found.outcome == outcome
+        assert found.verify() == (outcome != "undecided")
 
 
 def test_other_velocity_filters_and_laws() -> None:

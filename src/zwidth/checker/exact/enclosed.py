@@ -107,6 +107,19 @@ def between(low: Fraction, high: Fraction, place: int, places: int, bits: int) -
     return Enclosed(bits, middle.middle, slopes if high > low else (), middle.radius + half.radius)
 
 
+def apart(numbers: Sequence[Enclosed]) -> list[Enclosed]:
+    """The same numbers, the radius of each now an ε of its own, which cancels where it is subtracted."""
+    shared = max(len(x.slopes) for x in numbers)
+    if not shared:
+        return list(numbers)
+    found = []
+    for place, x in enumerate(numbers):
+        own = [0] * len(numbers)
+        own[place] = x.radius
+        found.append(Enclosed(x.bits, x.middle, (*(x.slopes or (0,) * shared), *own)))
+    return found
+
+
 def dot(a: Iterable[Enclosed], b: Iterable[Enclosed]) -> Enclosed:
     """Σ a_i b_i of numbers with one `bits`, rounded once; at least one of each."""
     middle = rest = bits = 0

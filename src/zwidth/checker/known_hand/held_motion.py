@@ -15,11 +15,12 @@ with s = η γ₁(1) + δ γ₂(1),
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 from ..document.refusal import Invalid
-from ..exact.enclosed import Enclosed, between, known
+from ..exact.enclosed import Enclosed, apart, between, known
 
 MOST_LATE = 300
 LARGEST_NORM = 500
@@ -28,9 +29,9 @@ Range = tuple[Fraction, Fraction]
 
 
 class Motion(NamedTuple):
-    """1/M, D and k, each from … to; T, and the delay in samples."""
+    """M, D and k, each from … to; T, and the delay in samples."""
 
-    inverse_mass: Range
+    mass: Range
     damping: Range
     stiffness: Range
     period: Fraction
@@ -44,18 +45,24 @@ class Motion(NamedTuple):
     @property
     def norm(self) -> Fraction:
         """The largest η + δ."""
-        return (self.stiffness[1] * self.period + self.damping[1]) * self.period * self.inverse_mass[1]
+        return (self.stiffness[1] * self.period + self.damping[1]) * self.period / self.mass[0]
 
     @property
     def middle(self) -> Motion:
         """One of them, itself where it is certain."""
-        inverse, damping, stiffness = (((a + b) / 2,) * 2 for a, b in self[:3])
-        return self._replace(inverse_mass=inverse, damping=damping, stiffness=stiffness)
+        mass, damping, stiffness = (((a + b) / 2,) * 2 for a, b in self[:3])
+        return self._replace(mass=mass, damping=damping, stiffness=stiffness)
 
-    def halves(self, whole: Motion) -> list[Motion]:
-        """Cut in two across the side that is longest as a part of the whole."""
+    def halves(self, whole: Motion, wall: Fraction) -> list[Motion]:
+        """Cut in two across the side that is longest beside where it lies; the spring lies beside the wall's.
+
+        Damping counts twice: how much there is of it is what most limits hang on.  It decides only how many
+        boxes it takes; every side is cut in the end, for none is longer than 128 times its part of the whole.
+        """
+        beside = (1, Fraction(1, 2), 1), (0, 0, 4 * abs(wall))
         shares = [
-            (b - a) / (d - c) if c < d else 0 for (a, b), (c, d) in zip(self[:3], whole[:3], strict=True)
+            (b - a) / ((a + b) * less + more + (d - c) / 64) if c < d else 0
+            for (a, b), (c, d), less, more in zip(self[:3], whole[:3], *beside, strict=True)
         ]
         name = self._fields[shares.index(max(shares))]
         low, high = getattr(self, name)
@@ -77,34 +84,49 @@ def motion_of(mass: Range, damping: Range, stiffness: Range, period: Fraction, d
     late = delay / period
     if late > MOST_LATE:
         raise Invalid(f"the delay is more than {MOST_LATE} samples")
-    return Motion((1 / mass[1], 1 / mass[0]), damping, stiffness, period, late)
+    return Motion(mass, damping, stiffness, period, late)
 
 
 def sampled(motion: Motion, bits: int) -> Sampled:
-    """The exact hold of every motion in the bounds."""
-    inverse, damping, stiffness = (between(*ends, place, 3, bits) for place, ends in enumerate(motion[:3]))
-    period = known(motion.period, bits)
-    unit = inverse * period * period
-    spring, loss = unit * stiffness, inverse * period * damping
+    """The exact hold of every motion in the bounds, above and below times M/M₀, M₀ the middle of M.
+
+    So what enters it once enters to first order alone, and what is left of each number may cancel.
+    """
+    usual = sum(motion.mass) / 2
+    heavy, light = _near_1([m / usual for m in motion.mass], bits)
+    damping, stiffness = (between(*motion[place], place, 3, bits) for place in (1, 2))
+    unit = known(motion.period**2 / usual, bits)
+    pull, drag = unit * stiffness, known(motion.period / usual, bits) * damping
+    spring, loss = light * pull, light * drag
     whole, part = int(motion.late), motion.late % 1
     first, second = _pushed(spring, loss, Fraction(1), bits)
     slow = spring * first + loss * second
 
-    def row(moved: tuple[Enclosed, Enclosed]) -> list[Enclosed]:
-        return [unit * moved[0], unit * (slow * moved[0] + second * moved[1])]
+    def row(speed: Enclosed, way: Enclosed) -> list[Enclosed]:
+        return [unit * speed, unit * (slow * speed + second * way)]
 
-    one = known(Fraction(1), bits)
-    denominator = [one, slow + spring * first, spring * (slow * first + second * second)]
-    now = row((first, second))
-    if part == 0:
-        return Sampled(now, denominator, whole)
-    rest = row(_pushed(spring, loss, 1 - part, bits))
-    return Sampled([rest[0], rest[1] + now[0], now[1]], denominator, whole + 1)
+    rest = row(*_pushed(spring, loss, 1 - part, bits)) if part else []
+    bent, slowed, drawn = pull * first, drag * second, pull * (slow * first + second * second)
+    numbers = [heavy, bent, slowed, drawn, *row(first, second), *rest]
+    heavy, bent, slowed, drawn, *moved = apart(numbers)
+    denominator = [heavy, bent + slowed + bent, drawn]
+    if not part:
+        return Sampled(moved, denominator, whole)
+    now, then, rest_now, rest_then = moved
+    return Sampled([rest_now, rest_then + now, then], denominator, whole + 1)
+
+
+def _near_1(ends: Sequence[Fraction], bits: int) -> tuple[Enclosed, Enclosed]:
+    """Every 1 + ρε between these ends, and 1/(1 + ρε) = 1 − ρε + ρ²ε²/(1 + ρε)."""
+    part = (ends[1] - ends[0]) / 2
+    half = part**2 / (1 - part) / 2
+    inverse = known(1 + half, bits).widened(half) - between(-part, part, 0, 3, bits)
+    return between(*ends, 0, 3, bits), inverse
 
 
 def sampled_free(motion: Motion) -> Sampled:
     """The same of a certain mass without spring and damper, exact."""
-    unit, rest = motion.inverse_mass[0] * motion.period**2, 1 - motion.late % 1
+    unit, rest = motion.period**2 / motion.mass[0], 1 - motion.late % 1
     now, denominator = [unit / 2, unit], [Fraction(1), Fraction(0), Fraction(0)]
     if rest == 1:
         return Sampled(now, denominator, int(motion.late))

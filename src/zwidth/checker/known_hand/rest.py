@@ -23,7 +23,7 @@ from ..exact.schur_cohn import decays
 from .held_motion import Motion, Sampled, motion_of, sampled, sampled_free
 
 MOST_ORDER = 300
-MOST_BOXES = 4000
+MOST_BOXES = 1000
 MOST_HALVINGS = 45
 MOST_EFFORT = 5_000_000
 SERIES = 150
@@ -71,7 +71,8 @@ def stability(told: Read) -> str:
     if middle == loop.motion:
         return "device, hand and wall come to rest after every disturbance, contact kept"
     boxes = _covered(loop)
-    return f"device, hand and wall come to rest for every value in the intervals, contact kept, {boxes} boxes"
+    count = "1 box" if boxes == 1 else f"{boxes} boxes"
+    return f"device, hand and wall come to rest for every value in the intervals, contact kept, {count}"
 
 
 def instability(told: Read) -> str:
@@ -132,6 +133,7 @@ def _covered(loop: Loop) -> int:
     """In how many boxes no root was found to meet the circle."""
     order = len(loop.below) + 1 + int(loop.motion.late) + (loop.motion.late % 1 > 0)
     most = min(MOST_BOXES, MOST_EFFORT // (order**3 + ceil(SERIES * loop.motion.norm)))
+    wall = Fraction(loop.above[-1], loop.below[-1]) if loop.below[-1] else Fraction(0)  # H at z = 1
     left, tried, shown = [(loop.motion, 0)], 0, 0
     while left:
         box, halved = left.pop()
@@ -141,5 +143,5 @@ def _covered(loop: Loop) -> int:
         if never_crosses(_characteristic(loop._replace(motion=box), BOX_BITS)):
             shown += 1
         else:
-            left += [(half, halved + 1) for half in box.halves(loop.motion)]
+            left += [(half, halved + 1) for half in box.halves(loop.motion, wall)]
     return shown

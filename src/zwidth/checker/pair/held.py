@@ -67,7 +67,9 @@ def held_pair(told: Read) -> str:
     if not comes_to_rest(_alone(held)):
         raise Invalid("that the held arm comes to rest in its hand could not be confirmed")
     boxes = _covered(held)
-    hands = "the hand on the other arm" if boxes == 1 else f"every such hand, in {boxes} boxes, the other one"
+    hands = "the hand on the other arm"
+    if held.motion != held.motion.middle:
+        hands = f"every such hand, in {boxes} {'box' if boxes == 1 else 'boxes'}, the other one"
     return f"with the {told.held.arm} held, the work of {hands} is nowhere negative"
 
 
@@ -113,6 +115,7 @@ def _alone(held: Held) -> Loop:
 def _covered(held: Held) -> int:
     """In how many boxes all was shown."""
     left, tried, shown = [(held.motion, 0)], 0, 0
+    coupling = Fraction(sum(held.taps[2]), held.scale)
     while left:
         box, halved = left.pop()
         tried += 1
@@ -125,7 +128,7 @@ def _covered(held: Held) -> int:
                 raise Invalid(
                     f"that it holds for every such hand was not confirmed in {tried} boxes"
                 ) from None
-            left += [(half, halved + 1) for half in box.halves(held.motion)]
+            left += [(half, halved + 1) for half in box.halves(held.motion, coupling)]
     return shown
 
 
