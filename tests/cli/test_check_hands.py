@@ -32,8 +32,8 @@ def test_each_hand_is_told_in_degrees(capsys: pytest.CaptureFixture[str]) -> Non
     assert main(ASKED) == 1
     out = " ".join(capsys.readouterr().out.split())
     assert "K = 0.5 N·m/deg" in out
-    assert "none is shaken, at 4.91" in out
-    assert "hands-on comes to rest; does up to 2.763 N·m/deg" in out
+    assert "none is shaken, at 4.912 Hz; comes to rest up to 0.09187 N·m/deg" in out
+    assert "hands-on comes to rest, up to 2.763 N·m/deg" in out
     assert "of each hand alone, as long as it keeps contact; dry friction and encoder steps left out" in out
 
 

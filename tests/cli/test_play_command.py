@@ -70,7 +70,7 @@ def test_a_browser_opens_the_page(
     ("given", "named"),
     [
         (["-o", "wall.png"], ".html"),
-        (["--damping", "0.1 .. 0.2"], "single values"),
+        (["--damping", "0.1 .. 0.2"], "a single value, the one that you take, for damping"),
         (["--delay", "1000 s"], "at most 10 s"),
     ],
 )

@@ -54,22 +54,20 @@ def with_hands(loop: Specification, typed: str | None) -> dict[str, Stability]:
 def hand_rows(found: Mapping[str, Stability]) -> Iterator[tuple[str, str]]:
     """What is said of each, and of what it is said."""
     for name, of_one in found.items():
-        yield name, "; ".join(_said(of_one))
+        yield name, _said(of_one)
     yield "", ABOUT
 
 
-def _said(found: Stability) -> Iterator[str]:
-    from zwidth.quantity.text import in_unit, told_quantity
+def _said(found: Stability) -> str:
+    from zwidth.quantity.text import told_quantity
 
-    if found.outcome == "unstable" and found.frequency:
-        yield f"is shaken, at {in_unit(found.frequency, 'Hz')}"
-    else:
-        yield {"stable": "comes to rest", "unstable": "does not come to rest"}.get(
-            found.outcome, "not decided"
-        )
-    if found.max_stiffness:
-        most = told_quantity(found.max_stiffness, "stiffness", found.scope.motion, 4)
-        swing = (
-            "" if found.limit_frequency is None else f", beyond it swings at {found.limit_frequency:.4g} Hz"
-        )
-        yield f"does up to {most}{swing}"
+    most = found.max_stiffness
+    up_to = f"up to {told_quantity(most, 'stiffness', found.scope.motion, 4)}" if most else ""
+    if found.outcome == "stable":
+        return f"comes to rest{', ' if up_to else ''}{up_to}"
+    rest = f"; comes to rest {up_to}" if up_to else ""
+    if found.outcome == "undecided":
+        return f"not decided{rest}"
+    return (
+        f"is shaken, at {found.frequency:.4g} Hz{rest}" if found.frequency else f"does not come to rest{rest}"
+    )

@@ -110,7 +110,7 @@ def test_a_hand_that_lets_go(tmp_path: Path) -> None:
 
 def test_what_cannot_be_played_is_refused() -> None:
     """Each with one message: an interval, no mass, compensation of friction, a delay of minutes."""
-    with pytest.raises(zw.InputError, match="single values"):
+    with pytest.raises(zw.InputError, match="single value, the one that you take"):
         play(_device(damping=(0.1, 0.2)), zw.Wall(100))
     with pytest.raises(zw.InputError, match="mass"):
         play(zw.Device(damping=0.1, rate=1000), zw.Wall(100))
