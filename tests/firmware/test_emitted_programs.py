@@ -170,6 +170,15 @@ def test_a_header_compiles_alone(tmp_path: Path, number: str) -> None:
         called([*line, "-O2", "-fsyntax-only", "-include", str(tmp_path / "wall.h"), "/dev/null"])
 
 
+def test_a_header_of_laws_compiles_as_cpp(tmp_path: Path) -> None:
+    """None of their names is a word of C++, such as new."""
+    require("host")
+    laws = zw.rendering.DualRate(samples=17), zw.rendering.ForceBounding()
+    emit(HAPKIT, zw.render(zw.Wall(300), *laws)).write(tmp_path)
+    line = [tool("g++"), "-std=gnu++11", *PEDANTIC, "-x", "c++", "-fsyntax-only"]
+    called([*line, "-include", str(tmp_path / "law.h"), "/dev/null"])
+
+
 @pytest.mark.parametrize("target", ["c99", "arduino", "javascript"])
 def test_the_header_names_its_proof(tmp_path: Path, target: str) -> None:
     """SHA-256 of the certificate's file, which the checker accepts; another byte has another one."""

@@ -14,8 +14,17 @@ Real = Literal["double", "float"]
 
 _LIBRARY = {"abs": "fabs", "floor": "floor", "ceil": "ceil", "sqrt": "sqrt"}
 
+_OF_CPP = (
+    "alignas alignof and and_eq asm bitand bitor catch char16_t char32_t class compl concept const_cast "
+    "constexpr decltype delete dynamic_cast explicit export friend mutable namespace new noexcept not not_eq "
+    "nullptr operator or or_eq private protected public reinterpret_cast requires static_assert static_cast "
+    "template this thread_local throw try typeid typename using virtual wchar_t xor xor_eq"
+)
+"""Words that C++ keeps for itself: a header is included there, too."""
+
 KEYWORDS = frozenset(
     [
+        *_OF_CPP.split(),
         "auto",
         "break",
         "case",
