@@ -440,3 +440,17 @@ def test_what_is_given_is_told_what_to_do_with_it():
         assert said in str(caught.value)
     system = scipy.signal.TransferFunction([1 + 0j, 2], [1, 1])
     assert zw.ports.passivity_indices(system).input.exact == 1
+
+
+@pytest.mark.parametrize("size", [1, 2])
+def test_a_discrete_system_that_does_not_say_its_period(size):
+    """The device says it; where nobody does, frequencies are about samples of 1 s, and that is told."""
+    system = control.ss(0.5 * np.eye(size), np.eye(size), np.eye(size), 2 * np.eye(size), True)
+    alone = zw.ports.passivity_indices(system)
+    assert alone.input.frequency == 0.5
+    assert "samples of 1 s" in alone.assumptions[0]
+    assert "samples of 1 s" in zw.ports.scattering_passivity(system).assumptions[1]
+    found = zw.ports.passivity_indices(system, zw.Device(damping=1, rate=1000))
+    assert found.input.frequency == pytest.approx(500)
+    assert found.assumptions == ()
+    assert zw.ports.passivity_indices(control.ss(*control.ssdata(system), 0.001)).assumptions == ()

@@ -25,7 +25,7 @@ from zwidth.passivity.ports.bands import Band, in_words
 from zwidth.passivity.ports.extracting_input import ExtractingInput
 from zwidth.passivity.ports.index import PassivityIndex, evidenced
 from zwidth.passivity.ports.largest import largest_level
-from zwidth.passivity.ports.reading import read_port
+from zwidth.passivity.ports.reading import assumed_period, read_port
 from zwidth.passivity.ports.relative import RelativeIndex, relative_index
 from zwidth.passivity.ports.sampled import SampledDamping, sampled_damping
 from zwidth.passivity.result import PassivityAnswer
@@ -43,6 +43,8 @@ class PassivityIndices(PassivityAnswer):
         The input feedforward index ν and the output feedback index ρ.
     sampled_damping
         What H(z) needs of a device; None where no sample period is known.
+    assumed
+        What is assumed of the sample period; () where it is said.
     """
 
     FORMAT = "zwidth indices 1"
@@ -51,6 +53,7 @@ class PassivityIndices(PassivityAnswer):
     input: PassivityIndex
     output: PassivityIndex
     sampled_damping: SampledDamping | None
+    assumed: tuple[str, ...] = ()
 
     @cached_property
     def outcome(self) -> Outcome:
@@ -68,8 +71,8 @@ class PassivityIndices(PassivityAnswer):
 
     @property
     def assumptions(self) -> tuple[str, ...]:
-        """Nothing: a port by itself has neither hand nor actuator."""
-        return ()
+        """Nothing but a sample period that nobody says: a port by itself has neither hand nor actuator."""
+        return self.assumed
 
     @property
     def margin(self) -> float:
@@ -171,11 +174,13 @@ def passivity_indices(
     Bao & Lee, Process Control: The Passive Systems Approach, 2007.  Kottenstette, McCourt, Xia,
     Gupta & Antsaklis, Automatica 50(4), 2014.
     """
-    port = read_port(system, None if device is None else device.exact("sample_period"))
+    period = None if device is None else device.exact("sample_period")
+    port = read_port(system, period)
     damping = sampled_damping(system, port, device, discretization)
     back = port.inverse()
     return PassivityIndices(
         PassivityIndex("input", port, largest_level(port)),
         PassivityIndex("output", back, None if back.is_zero else largest_level(back, "zero")),
         damping,
+        assumed_period(system, period),
     )

@@ -11,7 +11,7 @@ from flint import fmpq, fmpq_poly, fmpz_poly
 
 from zwidth.environment.environment import Environment
 from zwidth.environment.matrix_system import MatrixSystem, hidden_modes, read_matrix_system, size_of
-from zwidth.environment.system import Polynomial, is_system, read_system
+from zwidth.environment.system import LinearSystem, Polynomial, is_system, read_system, time_of
 from zwidth.errors import InputError
 from zwidth.passivity.linear.loop import LARGEST_DEGREE
 from zwidth.passivity.ports.circle import Time
@@ -27,6 +27,8 @@ _NOT_CAUSAL = "G(z) has more zeros than poles: it would need samples that are st
 
 def read_port(thing: Environment | Any, period: Fraction | None = None) -> Port:
     """A port from a square system of python-control, scipy.signal or harold, or from an environment's H(z).
+
+    `period` is that of an environment, and of a discrete system that says none.
 
     Raises
     ------
@@ -44,10 +46,23 @@ def read_port(thing: Environment | Any, period: Fraction | None = None) -> Port:
             f"a port is a system of python-control, scipy.signal or harold, or an environment; got {thing!r}"
         )
     if size_of(thing) != (1, 1):
-        return _of_several_axes(thing)
+        return _of_several_axes(thing, period)
     system = read_system(thing)
     time = _said_time(system.time, (system.numerator, system.denominator))
-    return _of_one_axis(system.numerator, system.denominator, time, system.sample_period or Fraction(1))
+    return _of_one_axis(system.numerator, system.denominator, time, _period(system, period))
+
+
+def _period(system: LinearSystem | MatrixSystem, period: Fraction | None) -> Fraction:
+    """T [s]; 1 where nobody says it, or there is none."""
+    other = None if system.time == "continuous" else period
+    return system.sample_period or other or Fraction(1)
+
+
+def assumed_period(thing: Environment | Any, period: Fraction | None = None) -> tuple[str, ...]:
+    """What is assumed of the sample period where neither a discrete system nor anything else says it."""
+    if period is not None or not is_system(thing) or time_of(thing) != ("discrete", None):
+        return ()
+    return ("samples of 1 s, for the system does not say how long they are: frequencies are about that",)
 
 
 def _of_one_axis(numerator: Polynomial, denominator: Polynomial, time: Time, period: Fraction) -> Port:
@@ -77,7 +92,7 @@ def _said_time(time: Time | Literal["unsaid"], polynomials: Iterable[Polynomial]
     return "discrete" if time == "discrete" else "continuous"
 
 
-def _of_several_axes(system: Any) -> Port:
+def _of_several_axes(system: Any, period: Fraction | None) -> Port:
     _bounded(size_of(system)[0], len(getattr(system, "A", ())))
     read = read_matrix_system(system)
     time = _said_time(read.time, [p for row in read.entries for entry in row for p in entry])
@@ -88,7 +103,7 @@ def _of_several_axes(system: Any) -> Port:
             common = common * (d // fmpq_poly(common.numer().gcd(d.numer())))
     numerators = [[n * (common // d) for n, d in row] for row in entries]
     decay = _hidden_modes_decay(read, common, time)
-    port = from_polynomials(numerators, common, time, read.sample_period or Fraction(1), decay)
+    port = from_polynomials(numerators, common, time, _period(read, period), decay)
     _bounded(port.axes, port.order)
     return port
 

@@ -20,7 +20,7 @@ from zwidth.passivity.ports.bands import Band, in_words
 from zwidth.passivity.ports.extracting_input import ExtractingInput
 from zwidth.passivity.ports.index import PassivityIndex, evidenced
 from zwidth.passivity.ports.largest import largest_level
-from zwidth.passivity.ports.reading import read_port
+from zwidth.passivity.ports.reading import assumed_period, read_port
 from zwidth.passivity.ports.relative import RelativeIndex, relative_index
 from zwidth.passivity.ports.waves import direct_power_of
 from zwidth.passivity.result import PassivityAnswer
@@ -37,12 +37,15 @@ class ScatteringPassivity(PassivityAnswer):
         Σ: which sign each b has in u = a − Σb and y = a + Σb.
     input
         The input index of u → y; ≥ 0 where S is bounded real.
+    assumed
+        What is assumed of the sample period; () where it is said.
     """
 
     FORMAT = "zwidth scattering 1"
 
     signs: tuple[int, ...]
     input: PassivityIndex
+    assumed: tuple[str, ...] = ()
 
     @cached_property
     def outcome(self) -> Outcome:
@@ -60,8 +63,8 @@ class ScatteringPassivity(PassivityAnswer):
 
     @property
     def assumptions(self) -> tuple[str, ...]:
-        """That of which S is the waves."""
-        return ("every port has a positive real reference, which S was made with",)
+        """That of which S is the waves; and a sample period that nobody says."""
+        return ("every port has a positive real reference, which S was made with", *self.assumed)
 
     @cached_property
     def gain(self) -> RelativeIndex:
@@ -150,4 +153,6 @@ def scattering_passivity(system: Any) -> ScatteringPassivity:
         As `passivity_indices`.
     """
     signs, port = direct_power_of(read_port(system), Fraction(1))
-    return ScatteringPassivity(signs, PassivityIndex("input", port, largest_level(port)))
+    return ScatteringPassivity(
+        signs, PassivityIndex("input", port, largest_level(port)), assumed_period(system)
+    )
