@@ -193,10 +193,10 @@ def test_two_branches_are_told_from_one_and_a_misfit_is_said():
 
 
 def test_intervals_hold_the_truth_as_often_as_they_say():
-    """40 tests with noise of a memory of 3 samples: misses as a fair binomial may have them."""
+    """24 tests with noise of a memory of 3 samples: misses as a fair binomial may have them."""
     rng = np.random.default_rng(11)
     time, x, clean = relaxation(200)
-    runs, held = 40, dict.fromkeys(("stiffness", "branch_stiffness", "branch_damping"), 0)
+    runs, held = 24, dict.fromkeys(("stiffness", "branch_stiffness", "branch_damping"), 0)
     rho = np.exp(-1 / 3)
     for _ in range(runs):
         white = rng.normal(0, 0.01, 200)

@@ -59,21 +59,17 @@ class Tried(NamedTuple):
 
 
 def understood(test: History, zero: bool) -> History:
-    """The test with a surface where a standard linear solid does better with one, else without.
+    """The test with a surface where two branches do better with one, else without.
 
-    Where that leaves more than noise, two branches decide: one too few takes a branch for a surface.
+    A model with a branch too few would take the other for a surface.
     """
     if test.surface is None:
         return test
     alone, fines = test._replace(surface=None), fines_of(test)
-    for name, branches in (("standard-linear-solid", None), ("generalized-maxwell", 2)):
-        model = as_model(name, branches, "force")
-        without, with_one = (_tried(model, each, fines, zero) for each in (alone, test))
-        better = with_one.criterion + SEEN <= without.criterion
-        if leftover((with_one if better else without).found) > UNLIKELY:
-            break
+    model = as_model("generalized-maxwell", 2, "force")
+    without, with_one = (_tried(model, each, fines, zero) for each in (alone, test))
     depth = float(with_one.found.point[with_one.task.own + zero]) * with_one.task.way
-    if not better or depth <= 0:
+    if without.criterion - with_one.criterion < SEEN or depth <= 0:
         return alone
     return test._replace(surface=depth, findings=(*test.findings, about_surface(depth)))
 

@@ -18,19 +18,17 @@ from typing import NamedTuple
 import numpy as np
 
 from zwidth.compiled import Array
+from zwidth.errors import InputError
 from zwidth.identification.tissue.experiment.noise import Noise, likelihood, noise_of, with_memory
 from zwidth.identification.tissue.experiment.prediction import Task, derivatives, predicted
 from zwidth.identification.tissue.start import starting_points
 
-REACH = 14.0
-"""How far the logarithm of a parameter may go from where it began."""
-
 AGREED = 0.05
 """Relative change of the memory below which fit and noise agree."""
 
-SHARES = (1.0, 0.4, 1.6)
-"""Of the depth where the surface seems to be, from which it is searched: after a ramp of few samples several
-depths leave less than those beside them."""
+SHARES = (0.4, 1.6)
+"""Of the depth where the surface seems to be, from which it is searched too: after a ramp of few samples
+several depths leave less than those beside them."""
 
 ROUNDS = 4
 FIRST, MOST = 8, 60
@@ -62,8 +60,20 @@ class Solved(NamedTuple):
 
 
 def solved(task: Task, near: Solved | None = None) -> Solved:
-    """The fit of a task, from that of one much like it where there is one."""
+    """The fit of a task, from that of one much like it where there is one.
+
+    Raises
+    ------
+    InputError
+        If the test has fewer samples than there are numbers.
+    """
     white = with_memory(task.test.time, 0.0)
+    numbers = task.own + task.zero + task.surface + task.held
+    if numbers >= task.test.time.size:
+        raise InputError(
+            f"{numbers} numbers are not fitted to {task.test.time.size} samples: take a model with fewer "
+            "branches, or give a part with fewer holes in time"
+        )
     if near is None:
         first = [_searched(task, start, white, FIRST) for start in _starts(task)]
         best = min(first, key=lambda each: each[1])[0]
@@ -92,22 +102,17 @@ def _with_noise(task: Task, point: Array) -> Solved:
 
 
 def _starts(task: Task) -> list[Array]:
-    """Of the place where the surface seems to be all starts, of others the first."""
-    if not task.surface:
-        return _starts_at(task, None)
-    surface = task.test.surface
-    assert surface is not None
-    return [
-        start
-        for k, share in enumerate(SHARES)
-        for start in _starts_at(task, share * surface)[: None if k == 0 else 1]
-    ]
+    """Where the surface seems to be, several tissues; at other depths, the first of them."""
+    surface = task.test.surface if task.surface else None
+    tissues = [np.log(start) for start in starting_points(task.model, task.record(surface or 0.0))]
+    if surface is None:
+        return [_start(task, tissue, []) for tissue in tissues]
+    at = [(tissue, 1.0) for tissue in tissues] + [(tissues[0], share) for share in SHARES]
+    return [_start(task, tissue, [share * surface / task.way]) for tissue, share in at]
 
 
-def _starts_at(task: Task, surface: float | None) -> list[Array]:
-    record = task.record(surface or 0.0)
-    further = [0.0] * task.zero + ([surface / task.way] if surface is not None else []) + [0.0] * task.held
-    return [np.append(np.log(start), further) for start in starting_points(task.model, record)]
+def _start(task: Task, tissue: Array, surface: list[float]) -> Array:
+    return np.concatenate([tissue, np.zeros(int(task.zero)), surface, np.zeros(task.held)])
 
 
 def _searched(task: Task, start: Array, noise: Noise, most: int = MOST) -> tuple[Array, float]:
@@ -115,16 +120,14 @@ def _searched(task: Task, start: Array, noise: Noise, most: int = MOST) -> tuple
     from scipy.optimize import least_squares
 
     output = task.output / task.size
-    low, high = start - np.inf, start + np.inf
-    low[: task.own], high[: task.own] = start[: task.own] - REACH, start[: task.own] + REACH
     found = least_squares(
         lambda p: noise.whitened(predicted(task, p) - output),
         start,
         jac=lambda p: noise.whitened(derivatives(task, p)),
-        bounds=(low, high),
+        method="lm",
         x_scale="jac",
         xtol=1e-9,
-        ftol=1e-9,
+        ftol=1e-7,
         gtol=1e-12,
         max_nfev=most,
     )

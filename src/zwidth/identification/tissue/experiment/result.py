@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from zwidth.errors import InputError
 from zwidth.identification.tissue.experiment.choice import UNLIKELY, Tried, label, leftover
 from zwidth.identification.tissue.experiment.history import History
 from zwidth.identification.tissue.experiment.kind import Kind
+from zwidth.identification.tissue.experiment.slowest import Slowest, slowest_of
 from zwidth.identification.tissue.result import TissueFit
 from zwidth.passivity.result import Documented
 from zwidth.quantity.text import shown
@@ -98,6 +100,8 @@ class TissueTest(Documented):
     def doubts(self) -> tuple[str, ...]:
         """What a reader should know before trusting the numbers."""
         said = list(self.best.remarks)
+        if self.slowest is not None:
+            said.append(self._too_short(self.slowest))
         if self.best.model.name == "kelvin-voigt" and self.test.surface is not None:
             said.append(
                 "a Kelvin–Voigt solid that is met from outside jumps at the touch, between two samples: its "
@@ -115,6 +119,26 @@ class TissueTest(Documented):
                 "noise, and the intervals are too narrow"
             )
         return tuple(said)
+
+    @cached_property
+    def slowest(self) -> Slowest | None:
+        """What is known of the slowest relaxation time, where it is longer than the test; else None."""
+        own = self.tried[self.chosen]
+        return slowest_of(own.task, own.found)
+
+    def _too_short(self, slowest: Slowest) -> str:
+        length, fitted = (shown(value, "s", 3) for value in (float(self.test.time[-1]), slowest.fitted))
+        known = [
+            f"at {which} {shown(value, 's', 3)}"
+            for which, value in (("least", slowest.at_least), ("most", slowest.at_most))
+            if value is not None
+        ]
+        known += ["without an upper bound"] * (slowest.at_most is None)
+        return (
+            f"the test ends after {length}, before the tissue has relaxed: by the likelihood that takes "
+            f"{' and '.join(known)} (each 95 %; fitted {fitted}); the stiffness in the end is an "
+            "extrapolation: hold for longer"
+        )
 
     def apart(self) -> list[str]:
         """The parameters in which the trials differ by more than noise makes them: Σ (θ − θ̄)²/s², 0.1 %."""
@@ -272,6 +296,7 @@ class TissueTest(Documented):
             "not_told_apart": list(self.rivals),
             "left_over_is_noise": self.is_noise,
             "best": self.best.to_dict(),
+            "slowest_relaxation_time_s": None if self.slowest is None else self.slowest._asdict(),
             "trial": self.number,
             "trials": [{"not_fitted": fit} if isinstance(fit, str) else fit.to_dict() for fit in self.trials],
             "models": [
