@@ -2,20 +2,25 @@
 
     python benchmarks/diagnosis_training.py FOLDER [--faults 900] [--seed 100] [--write]
 
-FOLDER keeps the logs that were drawn, so that a second call goes on where the first one was stopped.  The
-seed must be another than that of `diagnosis.py`.  Printed: how often the right cause is the likeliest, and
-what a threshold costs, by five-fold cross-validation.
+FOLDER keeps the logs that were drawn and what was seen in them, so that a second call goes on where the
+first one was stopped; after a change of what is seen, remove its `*-seen.pkl`.  The seed must be another
+than that of `diagnosis.py`.  There is a table of weights for files with both forces, with the command alone
+and with the motor's force alone; a file with both is learnt from in all three ways.  Printed: how
+often the right cause is the likeliest, and what a threshold costs, by five-fold cross-validation.
 """
 
 from __future__ import annotations
 
 import argparse
 import pickle
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from diagnosis import kept
 from scipy.optimize import minimize
-from shaken import CAUSES, Logged, draw, write_log
+from shaken import CAUSES, Logged
 
 from zwidth.diagnosis import evidence, features, recording, vibration
 
@@ -35,39 +40,59 @@ def main() -> None:
     parser.add_argument("--write", action="store_true", help="into the package, not only printed")
     given = parser.parse_args()
     given.folder.mkdir(exist_ok=True, parents=True)
-    looked = [
-        found for k in range(given.faults) if (found := _looked(given.folder, given.seed, k)) is not None
+    looked = [seen for k in range(given.faults) for seen in _looked(given.folder, given.seed, k)]
+    lines = [
+        f"# Learnt by benchmarks/diagnosis_training.py from {given.faults} simulated faults "
+        f"of seed {given.seed}",
+        ",".join(["recorded", "feature", "middle", "spread", *CAUSES]),
     ]
+    for kind in ("both", "command", "motor"):
+        own = [(cause, numbers) for recorded, cause, numbers in looked if recorded == kind]
+        print(f"{kind}:", end=" ")
+        lines += [f"{kind},{line}" for line in _learnt(own)]
+    if given.write:
+        Path(evidence.__file__).with_name("weights.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _learnt(looked: list[tuple[str, dict[str, float]]]) -> list[str]:
+    """Lines of the table of one kind of file."""
     names = tuple(sorted({name for _, numbers in looked for name in numbers}))
     table = np.array([features.vector(numbers, names) for _, numbers in looked])
     truth = np.array([CAUSES.index(cause) for cause, _ in looked])
-    middle, spread = table.mean(axis=0), table.std(axis=0) + 1e-9
-    z = np.column_stack([np.ones(len(table)), np.clip((table - middle) / spread, -FURTHEST, FURTHEST)])
+    middle, spread = np.nanmean(table, axis=0), np.nanstd(table, axis=0) + 1e-9
+    z = np.clip(np.nan_to_num((table - middle) / spread), -FURTHEST, FURTHEST)
+    z = np.column_stack([np.ones(len(table)), z])
     _cross_validate(z, truth)
     weights = learn(z, truth)
-    text = "\n".join(_lines(names, middle, spread, weights, len(looked), given.seed)) + "\n"
-    if given.write:
-        Path(evidence.__file__).with_name("weights.csv").write_text(text, encoding="utf-8")
+    rows = [("constant", 0.0, 1.0), *zip(names, middle, spread, strict=True)]
+    return [
+        ",".join([name, f"{m:.6g}", f"{s:.6g}", *(f"{w:.4f}" for w in row)])
+        for (name, m, s), row in zip(rows, weights, strict=True)
+    ]
 
 
-def _looked(folder: Path, seed: int, k: int) -> tuple[str, dict[str, float]] | None:
-    kept = folder / f"{k}.pkl"
-    if kept.exists():
-        thing, logged = pickle.loads(kept.read_bytes())
-    else:
-        rng = np.random.default_rng([seed, k])
-        thing, made = draw(rng, CAUSES[k % len(CAUSES)])
-        logged = write_log(rng, thing, made, folder / f"{k}.csv")
-        kept.write_bytes(pickle.dumps((thing, logged)))
-    numbers = look(logged)
-    return None if numbers is None else (thing.cause, numbers)
+def _looked(folder: Path, seed: int, k: int) -> Iterator[tuple[str, str, dict[str, float]]]:
+    """What is recorded, the cause, the features: of the file as it is, and without either of two forces."""
+    file = folder / f"{k}-seen.pkl"
+    if not file.exists():
+        thing, logged = kept(folder, seed, k)
+        file.write_bytes(pickle.dumps([(*seen, thing.cause) for seen in look(logged)]))
+    for recorded, numbers, cause in pickle.loads(file.read_bytes()):
+        yield recorded, cause, numbers
 
 
-def look(logged: Logged) -> dict[str, float] | None:
-    """The features of a log; None where it does not vibrate."""
+def look(logged: Logged) -> Iterator[tuple[str, dict[str, float]]]:
+    """The features of a log; none where it does not vibrate."""
     read = recording.read(logged.path)
     shaking = vibration.find(read.time, read.position, read.period)
-    return None if shaking is None else features.features(evidence.gather(read, shaking, logged.device))
+    if shaking is None:
+        return
+    files = [read]
+    if read.commanded is not None and read.applied is not None:
+        files += [replace(read, applied=None), replace(read, commanded=None)]
+    for one in files:
+        seen = evidence.gather(one, shaking, logged.device)
+        yield seen.recorded, features.features(seen)
 
 
 def learn(z: np.ndarray, truth: np.ndarray) -> np.ndarray:
@@ -108,14 +133,6 @@ def _cross_validate(z: np.ndarray, truth: np.ndarray) -> None:
         if inside.any():
             good = 100 * (likeliest == truth)[inside].mean()
             print(f"  p of {low:.1f} to {low + 0.1:.1f}: {inside.sum()}, right {good:.0f} %")
-
-
-def _lines(names, middle, spread, weights, count, seed):  # type: ignore[no-untyped-def]
-    yield f"# Learnt by benchmarks/diagnosis_training.py from {count} simulated faults of seed {seed}"
-    yield ",".join(["feature", "middle", "spread", *CAUSES])
-    yield ",".join(["constant", "0", "1", *(f"{w:.4f}" for w in weights[0])])
-    for k, name in enumerate(names):
-        yield ",".join([name, f"{middle[k]:.6g}", f"{spread[k]:.6g}", *(f"{w:.4f}" for w in weights[k + 1])])
 
 
 if __name__ == "__main__":

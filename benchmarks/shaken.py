@@ -224,6 +224,8 @@ def _integrate(p: Array, window: int, late: int, steps: int) -> Array:
         held = command[k - late] if k >= late else 0.0
         out[0, k], out[1, k] = r, u
         out[2, k] = held + Bd * drive_speed
+        if limit > 0.0:
+            out[2, k] = min(max(out[2, k], -limit), limit)
         out[3, k] = v2 if on_handle > 0 else v
         for i in range(FINE):
             t = k * T + i * dt

@@ -21,6 +21,7 @@ from zwidth.device import amplifier as amplifiers
 from zwidth.device import catalogue as catalogue
 from zwidth.device.rotary import rotary as rotary
 from zwidth.diagnosis import diagnose as diagnose
+from zwidth.diagnosis import diagnose_pair as diagnose_pair
 from zwidth.environment import ContinuousTransferFunction as ContinuousTransferFunction
 from zwidth.environment import GeneralizedMaxwell as GeneralizedMaxwell
 from zwidth.environment import HuntCrossley as HuntCrossley

@@ -6,6 +6,7 @@ other files of the reader's.  Both are refused before anything is expanded or op
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from math import prod
 from pathlib import Path
@@ -113,6 +114,10 @@ def inflated(pieces: Iterable[bytes], most: int) -> int:
     return total
 
 
+_LIST = re.compile(r"\.list\.(element|item)$")
+"""What Parquet puts behind the name of a column of lists."""
+
+
 def check_parquet(path: Path, columns: set[str] | None = None) -> None:
     """Refuse a file of Parquet that declares more than it can hold, in these columns or in all."""
     import pyarrow.parquet as pq  # takes its time
@@ -122,7 +127,7 @@ def check_parquet(path: Path, columns: set[str] | None = None) -> None:
         part
         for k in range(about.num_row_groups)
         for part in map(about.row_group(k).column, range(about.num_columns))
-        if columns is None or part.path_in_schema in columns
+        if columns is None or _LIST.sub("", part.path_in_schema) in columns
     ]
     width = about.num_columns if columns is None else len(columns)
     check_expansion(path, max(8 * width * about.num_rows, sum(p.total_uncompressed_size for p in parts)))

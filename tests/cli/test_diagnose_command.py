@@ -6,6 +6,7 @@ import json
 import shlex
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import zwidth as zw
@@ -98,3 +99,27 @@ def test_bad_input_ends_in_one_message(argv: list[str], message: str, there: Pat
     said = capsys.readouterr().err
     assert message in said
     assert said.startswith("zwidth: ")
+
+
+def test_two_arms_in_one_file(there: Path, capsys) -> None:
+    """Two joints that follow each other over a link of 6 ms: the cause, and a pair to check as typed."""
+    t = np.arange(1200) * 0.001
+    own, other = 0.05 * np.sin(60 * t), -0.04 * np.sin(60 * t + 0.1)
+    lines = ["time_s,leader_angle_rad,follower_angle_rad,leader_torque_cmd_N_m,follower_torque_cmd_N_m"]
+    late = [np.interp(t - 0.006, t, x) for x in (own, other)]
+    torques = 20 * (own - late[1]), 20 * (other - late[0])
+    lines += [",".join(f"{x:.9f}" for x in row) for row in zip(t, own, other, *torques, strict=True)]
+    Path("arms.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    Path("joint.toml").write_text(
+        "[device]\nmotion = 'rotary'\ninertia = '0.01 kg*m^2'\ndamping = '0.04 N*m*s/rad'\n"
+        "coulomb_friction = '0.001 N*m'\nrate = '1 kHz'\n",
+        encoding="utf-8",
+    )
+    assert main(["diagnose", "arms.csv", "joint.toml", "-o", "mended.toml"]) == 0
+    said = capsys.readouterr().out
+    assert "LINK DELAY" in said
+    assert "$ zwidth pair mended.toml" in said
+    assert max(map(len, said.splitlines())) <= 80
+    assert main(["pair", "mended.toml"]) == 0
+    assert main(["diagnose", "arms.csv", "--mass", "1"]) == 2
+    assert "two arms" in capsys.readouterr().err

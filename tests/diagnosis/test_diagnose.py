@@ -99,6 +99,35 @@ def test_the_command_alone_does_not_show_what_lies_behind_it(tmp_path: Path) -> 
     assert "motor's own force" in found.record[0]
 
 
+def test_one_command_of_an_unknown_device_is_of_two_causes(tmp_path: Path) -> None:
+    """The same file, to the last digit, from a late force and from a damper inside the drive: not told.
+
+    x = X cos ωt and f = K x satisfy the motion of both loops, m ẍ + b ẋ + K x(t − τ) = 0 with one mass, and
+    m' ẍ + b' ẋ + K x + B v(t − σ) = 0 with another.  The mass, or the motor's force, would tell.
+    """
+    stiffness, w, late, old = 150.0, 2 * np.pi * 9.0, 0.004, 0.035
+    mass, damping = stiffness * np.cos(w * late) / w**2, stiffness * np.sin(w * late) / w
+    drives = 3.0
+    heavier = (stiffness + drives * w * np.sin(w * old)) / w**2
+    other = -drives * np.cos(w * old)
+    s = 1j * w
+    assert min(mass, damping, heavier, other) > 0
+    assert abs(mass * s**2 + damping * s + stiffness * np.exp(-s * late)) < 1e-9
+    assert abs(heavier * s**2 + other * s + stiffness + drives * s * np.exp(-s * old)) < 1e-9
+    assert heavier > 1.5 * mass
+    t = np.arange(2000) * PERIOD
+    x = np.round(0.01 * np.cos(w * t) / 5e-6) * 5e-6
+    path = tmp_path / "log.csv"
+    header = "time_s,position_m,commanded_force_N"
+    np.savetxt(
+        path, np.stack([t, x, stiffness * x], axis=1), fmt="%.9f", delimiter=",", header=header, comments=""
+    )
+    found = zw.diagnose(path)
+    assert found.cause is None
+    assert "motor's own force" in found.record[0]
+    assert "the device's numbers" in found.record[1]
+
+
 def test_rest_is_no_vibration(tmp_path: Path) -> None:
     """A wall that comes to rest: no cause, and what to record."""
     trace = released(paddle(damping=1.5), centring(300))

@@ -159,3 +159,57 @@ def test_a_force_counted_the_other_way_is_turned_round() -> None:
     assert other.law is not None
     assert other.law.stiffness == pytest.approx(one.law.stiffness)
     assert other.total == pytest.approx(one.total)
+
+
+def test_a_wheel_that_wobbles_slowly_vibrates() -> None:
+    """0.8 Hz, six cycles, quantized; a hand that goes to and fro as slowly is not so regular."""
+    t = np.arange(round(8 / PERIOD)) * PERIOD
+    wobble = (
+        np.round((0.4 * np.sin(2 * np.pi * 0.8 * t) + 0.03 * np.sin(2 * np.pi * 2.4 * t + 1)) / 1e-3) * 1e-3
+    )
+    found = vibration.find(t, wobble, PERIOD)
+    assert found is not None
+    assert found.frequency == pytest.approx(0.8, rel=0.02)
+    hand = sum(0.1 * np.sin(2 * np.pi * f * t + p) for f, p in ((0.31, 0), (0.52, 1), (0.83, 2), (1.21, 3)))
+    assert vibration.find(t, np.asarray(hand), PERIOD) is None
+
+
+def test_a_frequency_that_drifts_is_looked_at_where_it_stays() -> None:
+    """From 20 to 26 Hz in a second: the stretch is shortened until harmonics describe it."""
+    t = np.arange(800) * PERIOD
+    found = vibration.find(t, np.sin(2 * np.pi * (20 * t + 3 * t**2)), PERIOD)
+    assert found is not None
+    assert found.regular > 0.9
+    assert found.rows.stop - found.rows.start < 500
+    middle = 0.5 * (found.rows.start + found.rows.stop) * PERIOD
+    assert found.frequency == pytest.approx(20 + 6 * middle, rel=0.03)
+    assert found.around.stop - found.around.start >= found.rows.stop - found.rows.start
+
+
+@pytest.mark.parametrize(("factor", "late"), [(1.0, 0), (1.0, 4), (1.6, 0)])
+def test_the_motion_shows_the_force_behind_a_command(factor: float, late: int) -> None:
+    """Of a device whose mass is known: how much larger than the command, and how far behind it."""
+    position = shaken(drift=0.0)
+    w = 2 * np.pi * FREQUENCY
+    acts = 640 * np.sinc(w * PERIOD / 2 / np.pi)  # through the hold
+    device = Device(mass=factor * acts / w**2, damping=0, coulomb_friction=0, sample_period=PERIOD)
+    whole = vibration.find(np.arange(position.size) * PERIOD, position, PERIOD)
+    assert whole is not None
+    early = np.interp(np.arange(position.size) + late + 0.5, np.arange(position.size), position)
+    seen = gather(recorded(position, commanded=640 * early), whole, device)
+    assert seen.moves_as is not None
+    assert abs(seen.moves_as) == pytest.approx(factor, rel=0.02)
+    assert np.angle(seen.moves_as) == pytest.approx(-w * late * PERIOD, abs=0.01)
+    assert seen.recorded == "command"
+
+
+def test_corners_of_a_force() -> None:
+    """Third harmonic against the first: a triangle has a ninth, a square minus a third."""
+    position = shaken(drift=0.0)
+    phase = 2 * np.pi * FREQUENCY * np.arange(position.size) * PERIOD + 0.4
+    whole = vibration.find(np.arange(position.size) * PERIOD, position, PERIOD)
+    assert whole is not None
+    held = np.sinc(3 * FREQUENCY * PERIOD) / np.sinc(FREQUENCY * PERIOD)
+    for wave, bend in ((np.arcsin(np.sin(phase)), 1 / 9), (np.sign(np.sin(phase)), -1 / 3)):
+        seen = gather(recorded(position, applied=wave), whole, None)
+        assert seen.force_bend.real == pytest.approx(bend * held, rel=0.1)

@@ -14,7 +14,8 @@ from zwidth.specification.table import quoted
 
 if TYPE_CHECKING:
     from zwidth.device import Device
-    from zwidth.diagnosis import Diagnosis
+    from zwidth.diagnosis import Diagnosis, PairDiagnosis
+    from zwidth.pairs import Pair
 
 _READING = (
     ("--column", "columns", "QUANTITY=NAME", "column of time, position, commanded_force, actuator_force"),
@@ -23,7 +24,12 @@ _READING = (
 )
 """Options that may come several times: name, argument of `diagnose`, what stands for the value, help."""
 
-_QUANTITIES = ("time", "position", "commanded_force", "actuator_force")
+_OF_AN_ARM = ("position", "commanded_force", "actuator_force")
+_QUANTITIES = (
+    "time",
+    *_OF_AN_ARM,
+    *(f"{arm}_{name}" for arm in ("leader", "follower") for name in _OF_AN_ARM),
+)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -37,7 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "sources",
         metavar="SOURCE",
         nargs="*",
-        help="device of the catalogue, or TOML file with a [device] table",
+        help="device of the catalogue, or TOML file with a [device] table; of two arms as for zwidth pair",
     )
     reading = parser.add_argument_group("log")
     for option, name, metavar, meaning in _READING:
@@ -48,7 +54,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--log-rate", metavar="1/T", action=Once, help="rows per second, where the log has no time [Hz]"
     )
     output = add_output(
-        parser, "the numbers", "the plot", "the loop with the number changed as TOML, for zwidth check"
+        parser,
+        "the numbers",
+        "the plot",
+        "the loop with the number changed as TOML, for zwidth check (zwidth pair)",
     )
     add_in_full(output)
     add_all(
@@ -79,14 +88,15 @@ def run(arguments: argparse.Namespace) -> int:
     return 0 if found.cause is not None else 3
 
 
-def _json(found: Diagnosis, command: str | None) -> str:
+def _json(found: Diagnosis | PairDiagnosis, command: str | None) -> str:
     import json
 
     return json.dumps({**found.to_dict(), "command": command}, indent=2, ensure_ascii=False)
 
 
-def _diagnosed(arguments: argparse.Namespace) -> Diagnosis:
-    from zwidth.diagnosis import diagnose
+def _diagnosed(arguments: argparse.Namespace) -> Diagnosis | PairDiagnosis:
+    from zwidth.diagnosis import diagnose, diagnose_pair
+    from zwidth.diagnosis.pairs.recording import holds_two_arms
 
     reading: dict[str, Any] = {}
     for option, name, _, _ in _READING:
@@ -97,13 +107,29 @@ def _diagnosed(arguments: argparse.Namespace) -> Diagnosis:
             reading[name] = {k: None if name == "columns" and v == "none" else v for k, v in pairs}
     if arguments.log_rate is not None:
         reading["sample_rate"] = arguments.log_rate
-    device = _device(arguments)
-    if device is not None and device.resolution != 0:
-        reading["resolution"] = device.resolution
     try:
+        if holds_two_arms(Path(arguments.log), reading.get("columns")):
+            return diagnose_pair(Path(arguments.log), _pair_of_arms(arguments), **reading)
+        device = _device(arguments)
+        if device is not None and device.resolution != 0:
+            reading["resolution"] = device.resolution
         return diagnose(Path(arguments.log), device, **reading)
     except InputError as error:
         raise InputError(_as_typed(str(error))) from None
+
+
+def _pair_of_arms(arguments: argparse.Namespace) -> Pair | None:
+    """Both arms; whatever spring joins them is not taken from there."""
+    if words := given(arguments, [p.key for p in device_parameters()]):
+        raise InputError(
+            f"--{next(iter(words)).replace('_', '-')}: {Path(arguments.log).name} holds two arms; give their "
+            "numbers as SOURCE, one file for both or leader and follower"
+        )
+    if not arguments.sources:
+        return None
+    from zwidth.specification.pairs import load_pair
+
+    return load_pair(arguments.sources, {"stiffness": "1"})
 
 
 _PYTHON = re.compile(r"(columns|units|scale)=\{[\"'](\w+)[\"']: (?:\"([^\"]*)\"|(\w+|…))\}")

@@ -16,14 +16,15 @@ from zwidth.passivity.outcome import TOLD
 from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
-    from zwidth.diagnosis import Diagnosis
+    from zwidth.diagnosis import Diagnosis, PairDiagnosis
     from zwidth.diagnosis.change import Change
+    from zwidth.diagnosis.pairs.change import PairChange
 
 _OPTIONS = {"stiffness": "--stiffness", "damping": "--virtual-damping", "delay": "--delay"}
 """Changes that one command line can ask `check` about."""
 
 
-def print_diagnosis(found: Diagnosis, arguments: argparse.Namespace) -> None:
+def print_diagnosis(found: Diagnosis | PairDiagnosis, arguments: argparse.Namespace) -> None:
     """Print the report on standard output."""
     with page() as out:
         out.print(_headline(found))
@@ -41,7 +42,7 @@ def print_diagnosis(found: Diagnosis, arguments: argparse.Namespace) -> None:
         out.print(small_print(*_supposed(found)))
 
 
-def _headline(found: Diagnosis) -> Padding:
+def _headline(found: Diagnosis | PairDiagnosis) -> Padding:
     if found.cause is None:
         badge = "NO VIBRATION" if found.seen is None else "CANNOT TELL"
         return headline(badge, "yellow", found.claim)
@@ -56,7 +57,9 @@ def _energy(work: float) -> str:
     return f"{shown(work, 'J', 2)} a cycle"
 
 
-def _change(change: Change, found: Diagnosis, arguments: argparse.Namespace) -> Iterator[Text]:
+def _change(
+    change: Change | PairChange, found: Diagnosis | PairDiagnosis, arguments: argparse.Namespace
+) -> Iterator[Text]:
     outcome = change.verdict.outcome
     yield Text.assemble(f"· {change.text}: ", (outcome.upper(), TOLD[outcome].terminal))
     typed = command(found, arguments)
@@ -64,15 +67,24 @@ def _change(change: Change, found: Diagnosis, arguments: argparse.Namespace) -> 
         yield Text(f"$ {typed}")
 
 
-def command(found: Diagnosis, arguments: argparse.Namespace) -> str | None:
+def command(found: Diagnosis | PairDiagnosis, arguments: argparse.Namespace) -> str | None:
     """The line that asks `check` about the loop with the number changed."""
+    from zwidth.diagnosis.change import Change
+    from zwidth.diagnosis.result import Diagnosis
+
     change = found.change
     if change is None:
         return None
+    asks = "check" if isinstance(change, Change) else "pair"
     if arguments.save is not None:
-        return f"zwidth check {shlex.quote(arguments.save)}"
+        return f"zwidth {asks} {shlex.quote(arguments.save)}"
+    if not isinstance(change, Change):
+        reading = [word for pair in _read_with(arguments) for word in pair]
+        typed = ["zwidth", "diagnose", arguments.log, *arguments.sources, *reading, "-o", "mended.toml"]
+        return f"{shlex.join(typed)} && zwidth pair mended.toml"
     if change.parameter not in _OPTIONS:
         return f"zwidth diagnose {shlex.quote(arguments.log)} … -o mended.toml && zwidth check mended.toml"
+    assert isinstance(found, Diagnosis)
     assert found.seen is not None
     assert found.seen.law is not None
     words = ["zwidth", "check", *arguments.sources]
@@ -92,6 +104,21 @@ def command(found: Diagnosis, arguments: argparse.Namespace) -> str | None:
     return shlex.join(words)
 
 
-def _supposed(found: Diagnosis) -> Iterator[str]:
-    yield "one degree of freedom; the hand is passive"
+def _read_with(arguments: argparse.Namespace) -> Iterator[tuple[str, str]]:
+    """The options that say how the log is read, as they were typed."""
+    for option, name in (("--column", "columns"), ("--unit", "units"), ("--scale", "scale")):
+        yield from ((option, typed) for typed in getattr(arguments, name) or ())
+    if arguments.log_rate is not None:
+        yield "--log-rate", arguments.log_rate
+
+
+def _supposed(found: Diagnosis | PairDiagnosis) -> Iterator[str]:
+    from zwidth.diagnosis.result import Diagnosis
+
+    two = not isinstance(found, Diagnosis)
+    yield (
+        "one joint of each arm; the hands are passive"
+        if two
+        else "one degree of freedom; the hand is passive"
+    )
     yield "the confidence is that of simulated faults like those of the docs page"

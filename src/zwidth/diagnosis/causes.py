@@ -4,9 +4,11 @@ How likely each one is comes from the features of the recording by a multinomial
 
     log p_i = c_i + Σ_f w_if (φ_f − m_f)/s_f − log Σ,
 
-whose weights are learnt from simulated faults (`benchmarks/diagnosis_training.py`).  A cause is named only
-where its p is large *and* the file holds what shows it: without the motor's own force nobody can see a
-delay behind the command, and what is likely for want of anything better is no finding.
+whose weights are learnt from simulated faults (`benchmarks/diagnosis_training.py`), for files with both
+forces, with the command alone and with the motor's force alone.  A cause is named only where its p is large
+*and* the file holds what shows it.  What lies behind a command that is recorded alone is seen in the motion:
+a device of a known mass takes a force to move so, and that comes later than the command (a delay, a limit of
+rate) or is larger (a damper inside the drive).  What is likely for want of anything better is no finding.
 """
 
 from __future__ import annotations
@@ -30,6 +32,11 @@ if TYPE_CHECKING:
 
 SURE = 0.6
 """A cause that is less likely than this is not named."""
+
+SURER = 0.8
+"""Nor one that lies behind a command which is recorded alone: the motion shows that something does, less
+well what.
+"""
 
 _FURTHEST = 4.0
 """Spreads from the middle of what was simulated beyond which a feature counts no more."""
@@ -60,23 +67,34 @@ class Cause:
     record: str
 
 
+def is_named(cause: str, p: float, seen: Evidence) -> bool:
+    """Whether a cause is likely enough, and the file holds what shows it."""
+    unseen = seen.recorded == "command" and cause in ("delay", "drive damping", "actuator limit")
+    return p >= (SURER if unseen else SURE) and CAUSES[cause].shown(seen)
+
+
 def likelihoods(seen: Evidence) -> dict[str, float]:
-    """p of each cause, from the features alone."""
-    names, middle, spread, weights = _learnt()
-    z = np.clip((vector(features(seen), names) - middle) / spread, -_FURTHEST, _FURTHEST)
+    """p of each cause, from the features alone; what the recording does not say counts as the usual."""
+    names, middle, spread, weights = _learnt()[seen.recorded]
+    z = (vector(features(seen), names) - middle) / spread
+    z = np.clip(np.nan_to_num(z), -_FURTHEST, _FURTHEST)
     scores = weights[0] + z @ weights[1:]
     odds = np.exp(scores - scores.max())
     return dict(zip(CAUSES, map(float, odds / odds.sum()), strict=True))
 
 
 @cache
-def _learnt() -> tuple[tuple[str, ...], Array, Array, Array]:
-    """Names of the features, their middle and spread, and the weights: a row of constants, then one each."""
+def _learnt() -> dict[str, tuple[tuple[str, ...], Array, Array, Array]]:
+    """For each kind of file: names of the features, middle, spread, and weights, a row of constants first."""
     lines = files("zwidth.diagnosis").joinpath("weights.csv").read_text(encoding="utf-8").splitlines()
-    rows = [line.split(",") for line in lines if line and not line.startswith("#")]
-    assert rows[0][3:] == list(CAUSES)
-    numbers = np.array([[float(cell) for cell in row[1:]] for row in rows[1:]])
-    return tuple(row[0] for row in rows[2:]), numbers[1:, 0], numbers[1:, 1], numbers[:, 2:]
+    head, *rows = [line.split(",") for line in lines if line and not line.startswith("#")]
+    assert head[4:] == list(CAUSES)
+    learnt = {}
+    for kind in dict.fromkeys(row[0] for row in rows):
+        own = [row for row in rows if row[0] == kind]
+        numbers = np.array([[float(cell) for cell in row[2:]] for row in own])
+        learnt[kind] = tuple(row[1] for row in own[1:]), numbers[1:, 0], numbers[1:, 1], numbers[:, 2:]
+    return learnt
 
 
 def _force(seen: Evidence) -> str:
@@ -105,10 +123,19 @@ def _delay(seen: Evidence) -> Iterator[str]:
         )
         yield f"it gives {_share(seen, 'delay')}"
     else:
+        yield _moves(seen)
         yield (
             "the commanded force gives less than the device's friction takes: the rest is put in behind it, "
             "most likely by a delay"
         )
+
+
+def _moves(seen: Evidence) -> str:
+    """What the motion itself says of the force behind a command."""
+    assert seen.moves_as is not None
+    size, angle = abs(seen.moves_as), float(np.degrees(np.angle(seen.moves_as)))
+    where = f"{abs(angle):.0f} deg {'behind' if angle < 0 else 'before'} it"
+    return f"to move so, the device takes {size:.2g} times the commanded force, {where}"
 
 
 def _velocity(seen: Evidence) -> Iterator[str]:
@@ -135,6 +162,7 @@ def _encoder(seen: Evidence) -> Iterator[str]:
 
 def _drive(seen: Evidence) -> Iterator[str]:
     if seen.drive is None:
+        yield from _drive_unseen(seen)
         return
     d = seen.drive
     yield (
@@ -142,6 +170,29 @@ def _drive(seen: Evidence) -> Iterator[str]:
         f"the speed of {shown(d.damping_lag, 's', 3)} ago"
     )
     yield f"that leaves {100 * d.by_damper:.2g} % of its force unexplained, a delay {100 * d.by_delay:.2g} %"
+
+
+def _drive_unseen(seen: Evidence) -> Iterator[str]:
+    if seen.by_inside is not None:
+        yield (
+            "the motor's force is that of a spring and of an old speed, which leaves "
+            f"{100 * seen.by_inside:.2g} % of it unexplained"
+        )
+    else:
+        yield _moves(seen)
+        yield "so something behind the command pushes with it, as a damper inside the drive does that is late"
+
+
+def _limit_unseen(seen: Evidence) -> Iterator[str]:
+    if seen.recorded == "motor":
+        yield (
+            f"the motor's force changes at one rate for {100 * (seen.ramps or 0):.0f} % of the time, a sine "
+            f"37 %; its third harmonic is {seen.force_bend.real:.2f} of the first: a triangle has 0.11, a "
+            "force that is cut off less than 0"
+        )
+    else:
+        yield _moves(seen)
+        yield "so the force behind the command is smaller or later, as of a motor that cannot follow"
 
 
 def _compensation(seen: Evidence) -> Iterator[str]:
@@ -164,6 +215,7 @@ def _weakening(seen: Evidence) -> Iterator[str]:
 
 def _limit(seen: Evidence) -> Iterator[str]:
     if seen.drive is None:
+        yield from _limit_unseen(seen)
         return
     d = seen.drive
     yield (
@@ -187,6 +239,33 @@ def _missing(seen: Evidence) -> bool:
     return seen.lost is not None and seen.energy < seen.lost
 
 
+def _behind(seen: Evidence) -> bool:
+    """The command alone, and the device moves as under a force that comes later than that."""
+    late = seen.moves_as is not None and np.angle(seen.moves_as) < 0
+    return seen.recorded == "command" and bool(late) and _missing(seen)
+
+
+def _adds(seen: Evidence) -> bool:
+    """The command alone, and the device moves as under a larger force."""
+    return seen.recorded == "command" and seen.moves_as is not None and abs(seen.moves_as) > _LARGER
+
+
+_LARGER = 1.3
+"""A stated mass may be wrong by 15 %."""
+
+
+def _climbs_straight(seen: Evidence) -> bool:
+    """The motor's force alone, and it changes at one rate, or has the corners of a triangle."""
+    straight = (seen.ramps or 0.0) > _STRAIGHT or seen.force_bend.real > _POINTED
+    return seen.recorded == "motor" and straight
+
+
+_STRAIGHT = 0.42
+"""Share of the time in which it changes as fast as it ever does, ± 15 %; a sine does so for 0.37."""
+
+_POINTED = 0.02
+"""Third harmonic of a force against its first: 1/9 of a triangle, below 0 of a force that is cut off."""
+
 _STICKS = 0.15
 """Share of the time that it stands still; a sine does so for 0.06.  Behind a command alone
 anything may put in what is missing, so there it must be seen to stick."""
@@ -208,10 +287,7 @@ CAUSES: Mapping[str, Cause] = {
         Cause(
             "delay",
             "the force comes late: it still pushes out where a spring would have let go",
-            lambda s: (
-                (s.sees_delay and s.delay > 0)
-                or (s.drive is None and "applied" not in s.roles and _missing(s))
-            ),
+            lambda s: (s.sees_delay and s.delay > 0) or _behind(s),
             _delay,
             _BOTH,
         ),
@@ -232,7 +308,7 @@ CAUSES: Mapping[str, Cause] = {
         Cause(
             "drive damping",
             "the drive damps by itself, from a speed that is old, and so drives the motion",
-            lambda s: s.drive is not None,
+            lambda s: s.recorded == "both" or s.recorded == "motor" or _adds(s),
             _drive,
             _BOTH,
         ),
@@ -253,7 +329,7 @@ CAUSES: Mapping[str, Cause] = {
         Cause(
             "actuator limit",
             "the motor cannot follow: its force comes late because it changes no faster",
-            lambda s: s.drive is not None,
+            lambda s: s.recorded == "both" or _climbs_straight(s) or _behind(s),
             _limit,
             _BOTH,
         ),

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import floor, log10
+from typing import Protocol
 
 from zwidth.device import Device
 from zwidth.diagnosis.evidence import Evidence
@@ -75,6 +76,14 @@ class Change:
         }
 
 
+class Judged(Protocol):
+    """A verdict of any kind of loop."""
+
+    @property
+    def outcome(self) -> str:
+        """As of `check`."""
+
+
 @dataclass(frozen=True)
 class _Loop:
     """The loop in a recording: every number that a change may be of."""
@@ -124,7 +133,8 @@ class _Loop:
 
 def change_for(cause: str, seen: Evidence, device: Device) -> Change | None:
     """The change that takes a cause away; None where no single number of the loop does, or none is proved."""
-    if seen.law is None or cause not in _PARAMETERS or (cause == "delay" and not seen.sees_delay):
+    unseen = (cause == "delay" and not seen.sees_delay) or (cause == "actuator limit" and seen.drive is None)
+    if seen.law is None or cause not in _PARAMETERS or unseen:
         return None
     loop = _loop(seen, device, cause)
     for key in _PARAMETERS[cause]:
@@ -132,9 +142,10 @@ def change_for(cause: str, seen: Evidence, device: Device) -> Change | None:
         if current <= 0:
             continue
         top = current
-        if cause == "actuator limit" and seen.drive is not None:
+        if cause == "actuator limit":
+            assert seen.drive is not None
             top = min(current, seen.drive.rate / (seen.vibration.angular * seen.amplitude))
-        to = _largest(lambda value, key=key: loop.decided(**{key: value}), top)  # type: ignore[misc]
+        to = largest(lambda value, key=key: loop.decided(**{key: value}), top)  # type: ignore[misc]
         if to is None:
             continue
         built = loop.built(**{key: to})
@@ -191,7 +202,7 @@ def _loop(seen: Evidence, device: Device, cause: str) -> _Loop:
     )
 
 
-def _largest(decided: Callable[[float], Verdict | None], current: float) -> float | None:
+def largest(decided: Callable[[float], Judged | None], current: float) -> float | None:
     """The largest value up to the current one that is passive, of a few digits; None where only 0 is, or
     none.
     """
@@ -208,8 +219,13 @@ def _largest(decided: Callable[[float], Verdict | None], current: float) -> floa
     for _ in range(_HALVINGS if low < high else 0):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if passive(middle) else (low, middle)
-    to = _rounded(_MARGIN * low)
+    to = with_margin(low)
     return to if to > 1e-3 * current and passive(to) else None
+
+
+def with_margin(limit: float) -> float:
+    """Four fifths of a limit, of a few digits."""
+    return _rounded(_MARGIN * limit)
 
 
 def _rounded(value: float) -> float:

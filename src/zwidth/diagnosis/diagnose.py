@@ -12,11 +12,11 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from zwidth.device import Device
-from zwidth.diagnosis.causes import CAUSES, likelihoods
+from zwidth.diagnosis.causes import CAUSES, is_named, likelihoods
 from zwidth.diagnosis.change import change_for
 from zwidth.diagnosis.evidence import Evidence, gather
 from zwidth.diagnosis.recording import Recording, read
-from zwidth.diagnosis.result import Diagnosis, is_sure
+from zwidth.diagnosis.result import Diagnosis
 from zwidth.diagnosis.vibration import find
 from zwidth.errors import InputError
 from zwidth.identification.logs import Log
@@ -85,7 +85,7 @@ def _still(taken: Recording) -> Diagnosis:
 def _named(taken: Recording, seen: Evidence, device: Device | None) -> Diagnosis:
     likely = dict(sorted(likelihoods(seen).items(), key=lambda item: -item[1]))
     first, p = next(iter(likely.items()))
-    cause = first if is_sure(p) and CAUSES[first].shown(seen) else None
+    cause = first if is_named(first, p, seen) else None
     change = change_for(cause, seen, device) if cause is not None and device is not None else None
     return Diagnosis(
         cause=cause,
@@ -108,11 +108,12 @@ def _record(
 ) -> list[str]:
     """What would say more: for the two likeliest, and what every diagnosis is better with."""
     if cause is not None:
-        behind = [CAUSES["delay"].record] if cause == "delay" and not seen.sees_delay else []
+        inside = cause in ("delay", "drive damping", "actuator limit")
+        unseen = seen.recorded == "command" or (seen.recorded == "motor" and cause == "drive damping")
+        behind = [CAUSES[cause].record] if inside and unseen else []
         return behind if device is not None else [*behind, _DEVICE]
-    wanted = [CAUSES[name].record for name in list(likely)[:2]]
-    if len(seen.roles) < 2:
-        wanted.insert(0, CAUSES["delay"].record)
+    wanted = [CAUSES["delay"].record] if len(seen.roles) < 2 else []
     if device is None:
         wanted.append(_DEVICE)
+    wanted += [CAUSES[name].record for name in list(likely)[:2]]
     return list(dict.fromkeys(w for w in wanted if not w.startswith("nothing more")))[:3]

@@ -40,8 +40,6 @@ class Drive:
         B_d [N·s/m; N·m·s/rad], positive where it brakes, and τ_d [s].
     rate
         [N/s; N·m/s] R.
-    ramps
-        Share of the time in which the force changes about as fast as it ever does.
     applied
         [N; N·m] the applied force in each row.
     """
@@ -54,7 +52,6 @@ class Drive:
     damping: float
     damping_lag: float
     rate: float
-    ramps: float
     applied: Array = field(repr=False)
 
 
@@ -78,21 +75,56 @@ def account(
     best, damping, damping_lag = np.inf, 0.0, 0.0
     speed = np.gradient(position, row_period)
     short = [lag for lag in lags if lag <= max(step, 0.0) * 1.01]
+    free = _free(applied, used)
     for late in short:
-        missing = applied - delayed[late]
+        asked = _late(commanded, times, late)
+        missing = applied - asked
         for lag in lags:
             v = _late(speed, times, lag)
-            power = float(np.mean(v[used] ** 2))
-            gain = float(np.mean((missing * v)[used])) / power if power else 0.0
-            rest = left(delayed[late] + gain * v)
+            power = float(np.mean(v[free] ** 2))
+            gain = float(np.mean((missing * v)[free])) / power if power else 0.0
+            rest = left(np.clip(asked + gain * v, -top, top))
             if gain > 0 and rest < best:
                 best, damping, damping_lag = rest, gain, lag
     rate, by_rate = _rate(commanded, applied, times, step, left)
     return Drive(
         delay=delay, by_nothing=left(np.clip(commanded, -top, top)), by_delay=left(delayed[delay]),
         by_damper=min(best, 1.0), by_rate=by_rate, damping=damping, damping_lag=damping_lag, rate=rate,
-        ramps=_ramps(applied), applied=applied,
+        applied=applied,
     )  # fmt: skip
+
+
+def inside(applied: Array, position: Array, row_period: float, cycle: float) -> float:
+    """Share of an applied force's variance that a spring and a damper inside the drive leave over,
+
+        f_a(t) = a + K x(t) + B_d v(t − τ_d),    K and B_d > 0, cut off where the file's own ends;
+
+    1 where no such pair is found.  For a file that does not hold the command.
+    """
+    times = np.arange(applied.size, dtype=np.float64) * row_period
+    used = slice(min(max(2, int(0.8 * cycle / row_period)), applied.size // 4), None)
+    free = _free(applied, used)
+    reach = max(1, round(cycle / 24 / row_period))
+    speed = np.gradient(position, row_period)
+    if position.size > 2 * reach:
+        speed[reach:-reach] = (position[2 * reach :] - position[: -2 * reach]) / (2 * reach * row_period)
+    ends = float(applied.min()), float(applied.max())
+    spread, best = float(np.var(applied[used])) or 1.0, 1.0
+    for lag in _lags(cycle, row_period):
+        table = np.stack([position, _late(speed, times, lag), np.ones_like(times)], axis=1)
+        terms = np.linalg.lstsq(table[free], applied[free], rcond=None)[0]
+        if (terms[:2] > 0).all():
+            rest = applied - np.clip(table @ terms, *ends)
+            best = min(best, float(np.mean(rest[used] ** 2)) / spread)
+    return best
+
+
+def _free(applied: Array, used: slice) -> NDArray[np.intp]:
+    """Rows in which a force does not stand at its limit; all of them, where hardly any would be left."""
+    rows = np.arange(applied.size)[used]
+    size = np.abs(applied[rows])
+    free = rows[size < 0.97 * size.max()]
+    return free if free.size > 0.2 * rows.size else rows
 
 
 def _lags(cycle: float, step: float) -> list[float]:
@@ -136,7 +168,8 @@ def _followed(commanded: Array, start: float, most: float) -> Array:
     return followed
 
 
-def _ramps(applied: Array) -> float:
+def ramps(applied: Array) -> float:
+    """Share of the time in which a force changes about as fast as it ever does."""
     steep = np.abs(np.diff(applied))
     top = float(np.percentile(steep, 97))
     return float((np.abs(steep - top) < 0.15 * top).mean()) if top else 0.0

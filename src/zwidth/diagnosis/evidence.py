@@ -21,7 +21,7 @@ come in: where the known terms fall short, something that was not recorded feeds
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -120,6 +120,23 @@ class Evidence:
         Share of the time in which it stands, where a sine does so for a sixteenth.
     distortion
         Harmonics of the motion against its frequency.
+    roles
+        Which forces the file holds: "commanded", "applied", or both.
+    known
+        The device's numbers.
+    rotary
+        Of a wheel, a knob, a joint.
+    moves_as
+        The force that a rigid device of these numbers would take to move so, over the force in the file, as
+        amplitude and phase at ω: 1 where nothing else acts.  None where nobody said the mass.
+    bend, force_bend
+        Third harmonic of the force that the motion takes, and of the one in the file, F₃ (F₁*)³/|F₁|⁴: 1/9 of
+        a triangle, −1/3 of a square.
+    by_inside
+        Share of the motor's force that a spring and a damper inside the drive leave over, where the command
+        is not in the file.
+    ramps
+        Share of the time in which the motor's force changes about as fast as it ever does; None without it.
     """
 
     vibration: Vibration
@@ -139,6 +156,16 @@ class Evidence:
     roles: tuple[str, ...]
     known: Known
     rotary: bool
+    moves_as: complex | None
+    bend: complex
+    force_bend: complex
+    by_inside: float | None
+    ramps: float | None
+
+    @property
+    def recorded(self) -> str:
+        """Which forces there are: "both", "command" or "motor"."""
+        return "both" if len(self.roles) == 2 else "command" if "commanded" in self.roles else "motor"
 
     @property
     def sees_delay(self) -> bool:
@@ -158,22 +185,31 @@ class Evidence:
 def gather(recording: Recording, vibration: Vibration, device: Device | None) -> Evidence:
     """Measure everything."""
     known = Known.of(device)
-    rows, period = vibration.rows, recording.period
-    x = recording.position[rows]
-    commanded = None if recording.commanded is None else recording.commanded[rows]
-    applied = None if recording.applied is None else recording.applied[rows]
+    around, period = vibration.around, recording.period
+    steady = slice(vibration.rows.start - around.start, vibration.rows.stop - around.start)
+    x = recording.position[around]
+    commanded = None if recording.commanded is None else recording.commanded[around]
+    applied = None if recording.applied is None else recording.applied[around]
     loop_period = known.period or _loop_period(commanded, period)
     seen = commanded if commanded is not None else applied
     assert seen is not None
-    sign = _sign(x, seen)
+    sign = _sign(x[steady], seen[steady])
     commanded, applied = (None if f is None else sign * f for f in (commanded, applied))
     cycle = 1 / vibration.frequency
     found = None
     if np.ptp(seen):
-        found = law.fit(x, sign * seen, period, loop_period, _lags(commanded is not None, cycle, loop_period))
+        lags = _lags(commanded is not None, cycle, loop_period)
+        found = law.fit(x, sign * seen, period, loop_period, lags)
+    if found is not None:
+        found = replace(found, compensated=found.compensated[steady])
     between = None
     if commanded is not None and applied is not None:
         between = drive.account(commanded, applied, x, period, loop_period, cycle)
+        between = replace(between, applied=between.applied[steady])
+    alone = commanded is None and applied is not None
+    by_inside = drive.inside(applied, x, period, cycle) if alone and applied is not None else None
+    x, seen = x[steady], seen[steady]
+    commanded, applied = (None if f is None else f[steady] for f in (commanded, applied))
     omega = vibration.angular
     xs = phasors(x, vibration.frequency, period)
     xs[0] = xs[0] or np.finfo(float).tiny
@@ -184,6 +220,7 @@ def gather(recording: Recording, vibration: Vibration, device: Device | None) ->
     motion = _Motion(xs, omega, loop_period, vibration.frequency, period)
     F = motion.phasors(force) * (1 if applied is not None else motion.late(delay))
     supplied = _terms(found, between, motion, delay, sign * seen)
+    needed = motion.needed(known)
     lost = None
     if known.damping is not None:
         viscous = np.pi * omega * known.damping * float((np.abs(motion.orders * xs) ** 2).sum())
@@ -210,6 +247,11 @@ def gather(recording: Recording, vibration: Vibration, device: Device | None) ->
         ),
         known=known,
         rotary=recording.motion == "rotary",
+        moves_as=_moves_as(needed, motion.phasors(force), known),
+        bend=_bend(needed),
+        force_bend=_bend(motion.phasors(force)),
+        by_inside=by_inside,
+        ramps=None if applied is None else drive.ramps(applied),
     )
 
 
@@ -237,6 +279,18 @@ class _Motion(NamedTuple):
         held = phasors(force, self.frequency, self.period) * np.sinc(half / np.pi) * np.exp(-1j * half)
         return np.asarray(held)
 
+    def needed(self, known: Known) -> NDArray[np.complex128]:
+        """The force under which a rigid device alone would move so, −m ẍ − b ẋ − f_c sgn ẋ; of any mass,
+        where nobody said which.
+        """
+        n = self.orders * self.omega
+        ahead = 1j * self.xs[0] / abs(self.xs[0])
+        square = np.zeros_like(self.xs)
+        square[0], square[2] = 4 / np.pi * ahead, -4 / (3 * np.pi) * ahead**3
+        mass = known.mass or 1.0
+        rubs = (known.damping or 0.0, known.coulomb or 0.0) if known.mass else (0.0, 0.0)
+        return np.asarray((mass * n**2 - 1j * n * rubs[0]) * self.xs - rubs[1] * square)
+
     def work(self, force: NDArray[np.complex128]) -> float:
         """[J] in a cycle, −π Σ n Im(F_n X_n*)."""
         return float(-np.pi * (self.orders * np.imag(force * np.conj(self.xs))).sum())
@@ -251,6 +305,19 @@ class _Motion(NamedTuple):
         """The same through the hold."""
         half = 0.5 * self.orders * self.omega * self.loop_period
         return np.asarray(asked * np.sinc(half / np.pi) * np.exp(-1j * half))
+
+
+def _moves_as(needed: NDArray[np.complex128], given: NDArray[np.complex128], known: Known) -> complex | None:
+    """Force that the motion takes, over the force in the file; None where the mass is not known."""
+    if known.mass is None or not abs(given[0]):
+        return None
+    return complex(needed[0] / given[0])
+
+
+def _bend(force: NDArray[np.complex128]) -> complex:
+    """Third harmonic against the first, F₃ (F₁*)³/|F₁|⁴: 1/9 of a triangle, −1/3 of a square."""
+    size = abs(force[0])
+    return complex(force[2] / size * (np.conj(force[0]) / size) ** 3) if size else 0j
 
 
 def _along(x: Array, force: Array, late: int) -> float:

@@ -10,7 +10,7 @@ from zwidth.diagnosis.evidence import TERMS, Evidence
 
 
 def features(seen: Evidence) -> dict[str, float]:
-    """Every number on which a cause may be weighed; 0 where the recording does not say."""
+    """Every number on which a cause may be weighed, as far as the recording says them."""
     v, k, T = seen.vibration, seen.known, seen.loop_period
     found = seen.law
     supply = sum(max(0.0, w) for w in seen.supplied.values())
@@ -19,32 +19,38 @@ def features(seen: Evidence) -> dict[str, float]:
     numbers: dict[str, float] = {f"{term} share": max(0.0, seen.supplied[term]) / scale for term in TERMS}
     numbers["net"] = seen.total / scale
     numbers["law takes"] = min(0.0, sum(seen.supplied.values())) / scale
-    numbers["log counts"] = (
-        np.clip(np.log10(max(seen.counts, 0.1)), -1, 3) if np.isfinite(seen.counts) else 3.0
-    )
-    numbers["few counts"] = 1.0 / (1.0 + (seen.counts / 6.0) ** 2) if np.isfinite(seen.counts) else 0.0
-    ratio = 0.0
+    if np.isfinite(seen.counts):
+        numbers["log counts"] = np.clip(np.log10(max(seen.counts, 0.1)), -1, 3)
+        numbers["few counts"] = 1.0 / (1.0 + (seen.counts / 6.0) ** 2)
+    numbers["has mass"] = float(bool(k.mass))
+    numbers["pushes wrong way"] = float(seen.apparent_mass < 0)
     if k.mass:
         ratio = seen.apparent_mass / k.mass
-    numbers["has mass"] = float(bool(k.mass))
-    numbers["light"] = max(0.0, 1 - ratio) if k.mass else 0.0
-    numbers["pushes wrong way"] = float(seen.apparent_mass < 0)
-    numbers["heavy"] = np.clip(np.log(max(ratio, 1e-2)), 0, 3) if k.mass else 0.0
+        numbers["light"] = max(0.0, 1 - ratio)
+        numbers["heavy"] = np.clip(np.log(max(ratio, 1e-2)), 0, 3)
+    if seen.moves_as is not None:
+        numbers["moves as size"] = np.clip(np.log(abs(seen.moves_as) + 1e-6), -3, 3)
+        numbers["moves as angle"] = np.angle(seen.moves_as) / np.pi
+    for name, bend in (("bend", seen.bend), ("force bend", seen.force_bend)):
+        numbers[f"{name} even"] = np.clip(bend.real, -0.5, 0.5)
+        numbers[f"{name} odd"] = np.clip(bend.imag, -0.5, 0.5)
     numbers["standing"] = seen.standing
     numbers["distortion"] = min(seen.distortion, 1.0)
     numbers["irregular"] = 1 - v.regular
     numbers["frequency"] = v.frequency * T
-    numbers["both forces"] = float(seen.drive is not None)
     if seen.drive is not None:
         d = seen.drive
         for name, left in (("delay", d.by_delay), ("damper", d.by_damper), ("rate", d.by_rate)):
             numbers[f"by {name}"] = -np.log10(max(left, 1e-4)) / 4
-        numbers["ramps"] = d.ramps
         numbers["as commanded"] = -np.log10(max(d.by_nothing, 1e-4)) / 4
         numbers["delay samples"] = min(d.delay / T, 10.0) / 10
-    numbers["law unexplained"] = np.log10(max(found.unexplained, 1e-6)) / 6 if found else 0.0
+    if seen.ramps is not None:
+        numbers["ramps"] = seen.ramps
+    if seen.by_inside is not None:
+        numbers["by inside"] = -np.log10(max(seen.by_inside, 1e-6)) / 6
     numbers["no law"] = float(found is None)
     if found is not None:
+        numbers["law unexplained"] = np.log10(max(found.unexplained, 1e-6)) / 6
         numbers["lag samples"] = min(found.lag / T, 10.0) / 10
         numbers["limited"] = found.limited
         if k.damping:
@@ -63,5 +69,5 @@ def features(seen: Evidence) -> dict[str, float]:
 
 
 def vector(numbers: Mapping[str, float], names: tuple[str, ...]) -> np.ndarray:
-    """In the order of names; 0 where there is none."""
-    return np.array([numbers.get(name, 0.0) for name in names])
+    """In the order of names; not a number where the recording does not say."""
+    return np.array([numbers.get(name, np.nan) for name in names])

@@ -15,7 +15,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from zwidth.diagnosis.evidence import Evidence
+    from zwidth.diagnosis.pairs.energy import PairEvidence
+    from zwidth.diagnosis.pairs.recording import PairRecording
     from zwidth.diagnosis.recording import Recording
+    from zwidth.diagnosis.vibration import Vibration
 
 _CYCLES = 8
 """That are drawn as they went."""
@@ -41,10 +44,42 @@ def diagnosis_figure(recording: Recording, seen: Evidence | None, claim: str) ->
     return figure
 
 
+@rc_context(LOOK)
+def pair_figure(recording: PairRecording, seen: PairEvidence | None, claim: str) -> Figure:
+    """Both arms over some cycles; the spectrum of the one that swings further beside the energy of a cycle.
+
+    Raises
+    ------
+    InputError
+        If nothing vibrates: there is nothing to draw.
+    """
+    if seen is None:
+        raise InputError("nothing vibrates in this recording, so there is no picture of a vibration")
+    figure = new_figure(9.0, 6.6)
+    grid = figure.add_gridspec(2, 2, height_ratios=(1.1, 1.0))
+    axes = figure.add_subplot(grid[0, :])
+    part = _last(seen.vibration, recording.leader.period)
+    moved = [arm.position[part] for arm in recording.arms]
+    factor, unit = scale(np.concatenate([x - x.mean() for x in moved]), "rad" if seen.rotary else "m")
+    for x, colour, name in zip(moved, (BLUE, ORANGE), ("leader", "follower"), strict=True):
+        axes.plot(recording.leader.time[part], factor * x, color=colour, label=name)
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel(label("position", recording.leader.motion, unit=unit))
+    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, fontsize=8)
+    _spectrum(figure.add_subplot(grid[1, 0]), recording.arms[seen.leading], seen)
+    _energy(figure.add_subplot(grid[1, 1]), seen)
+    page_heading(figure, claim)
+    return figure
+
+
+def _last(vibration: Vibration, period: float) -> slice:
+    """Some cycles at the end of the stretch."""
+    rows = max(8, int(_CYCLES / vibration.frequency / period))
+    return slice(max(vibration.rows.start, vibration.rows.stop - rows), vibration.rows.stop)
+
+
 def _cycles(axes: Axes, recording: Recording, seen: Evidence) -> None:
-    vibration = seen.vibration
-    rows = max(8, int(_CYCLES / vibration.frequency / recording.period))
-    part = slice(max(vibration.rows.start, vibration.rows.stop - rows), vibration.rows.stop)
+    part = _last(seen.vibration, recording.period)
     t = recording.time[part]
     length, force = ("rad", "N*m") if seen.rotary else ("m", "N")
     factor, unit = scale(recording.position[part] - recording.position[part].mean(), length)
@@ -70,7 +105,7 @@ def _cycles(axes: Axes, recording: Recording, seen: Evidence) -> None:
     )
 
 
-def _spectrum(axes: Axes, recording: Recording, seen: Evidence) -> None:
+def _spectrum(axes: Axes, recording: Recording, seen: Evidence | PairEvidence) -> None:
     vibration = seen.vibration
     x = recording.position[vibration.rows]
     y = (x - np.polyval(np.polyfit(np.arange(x.size), x, 1), np.arange(x.size))) * np.hanning(x.size)
@@ -86,7 +121,7 @@ def _spectrum(axes: Axes, recording: Recording, seen: Evidence) -> None:
     heading(axes, f"{vibration.frequency:.4g} Hz")
 
 
-def _energy(axes: Axes, seen: Evidence) -> None:
+def _energy(axes: Axes, seen: Evidence | PairEvidence) -> None:
     terms = {name: work for name, work in seen.supplied.items() if work}
     if seen.lost is not None:
         terms["friction"] = -seen.lost

@@ -22,6 +22,7 @@ from zwidth.identification.logs import Log
 from zwidth.identification.logs.block import Block, Motion, whole_runs
 from zwidth.identification.logs.names import role_of_force
 from zwidth.identification.logs.read import log_of, opened
+from zwidth.identification.logs.table import Table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -93,7 +94,19 @@ def read(
         names = [str(name) for name in recording.variables]
         return _read(names, "the Dataset", lambda **given: Log.from_arrays(recording, **given), *told)
     with opened(recording) as table:
-        return _read(list(table.units), table.source, lambda **given: log_of(table, **given), *told)
+        return read_of_table(table, *told)
+
+
+def read_of_table(
+    table: Table,
+    columns: Mapping[str, str | None],
+    units: Mapping[str, str],
+    scale: Mapping[str, object],
+    reading: Mapping[str, Any],
+) -> Recording:
+    """The same of the table of a file that is open."""
+    told = (dict(columns), units, scale, reading)
+    return _read(list(table.units), table.source, lambda **given: log_of(table, **given), *told)
 
 
 def _read(
@@ -142,7 +155,7 @@ def _roles(names: list[str], source: str, wanted: Mapping[str, str | None]) -> d
                 roles[role] = column
         elif len(found.get(role, ())) == 1:
             roles[role] = found[role][0]
-        elif found.get(role):
+        elif found.get(role) and not any(wanted.get(other) for other in (COMMANDED, "actuator_force")):
             raise InputError(
                 f"{source}: {', '.join(found[role])} may each be the {role.replace('_', ' ')}; "
                 f'say which with columns={{"{role}": "{found[role][0]}"}}'

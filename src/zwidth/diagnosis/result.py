@@ -9,10 +9,11 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zwidth.diagnosis.causes import CAUSES, SURE
+from zwidth.diagnosis.causes import CAUSES
 from zwidth.diagnosis.change import Change
 from zwidth.diagnosis.evidence import Evidence
 from zwidth.diagnosis.recording import Recording
+from zwidth.diagnosis.vibration import nothing
 from zwidth.quantity.text import shown
 from zwidth.showing import Part, Shown, Table
 from zwidth.writing import check_target, writing_whole
@@ -70,7 +71,7 @@ class Diagnosis(Shown):
     def claim(self) -> str:
         """The answer in one sentence."""
         if self.seen is None:
-            return "Nothing goes to and fro in this recording: no vibration of five cycles or more."
+            return nothing(self.recording.time)
         at = f"{shown(self.frequency, 'Hz', 3)}"
         if self.cause is None:
             first, second, *_ = self.likely
@@ -199,8 +200,3 @@ class Diagnosis(Shown):
 
 def _key(name: str, unit: str) -> str:
     return f"{name}_{unit.replace('/', '_per_').replace('*', '_')}"
-
-
-def is_sure(p: float) -> bool:
-    """Whether a cause is likely enough to be named."""
-    return p >= SURE

@@ -21,14 +21,30 @@ if TYPE_CHECKING:
     Phasors = NDArray[np.complex128]
 
 LOWEST = 1.5
-"""[Hz] what is slower is a movement of the hand."""
+"""[Hz] what is slower may be a movement of the hand, and must be regular to be a vibration."""
+
+SLOWEST = 0.4
+"""[Hz] of a regular one."""
+
+_ROUNDING = 1e-9
+"""Of the position: what is smaller is no motion."""
+
+_REGULAR, _IRREGULAR = 0.85, 0.5
+"""Share of the variance in the frequency and its harmonics."""
 
 HARMONICS = 5
 MOST_CYCLES = 25
 FEWEST_CYCLES = 5
+SHORTEST_CYCLES = 4
+STEADY = 0.95
+"""Share of the variance in the frequency and its harmonics from which a stretch is looked at as it is."""
+
 
 _BLOCK = 0.2
 """[s] pieces in which the size of the motion is looked at."""
+
+_DRIFT = 0.7
+"""[s] over which a mean is taken for the drift."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +54,9 @@ class Vibration:
     Parameters
     ----------
     rows
-        Which of its rows.
+        Which of its rows: those in which the frequency stays.
+    around
+        Those in which it vibrates, these and more: a law is found where more happens.
     frequency, frequency_spread
         [Hz] and how far it is known, one standard deviation.
     swing
@@ -50,6 +68,7 @@ class Vibration:
     """
 
     rows: slice
+    around: slice
     frequency: float
     frequency_spread: float
     swing: float
@@ -63,34 +82,91 @@ class Vibration:
 
 
 def find(time: Array, position: Array, period: float) -> Vibration | None:
-    """The stretch that vibrates; None where nothing goes to and fro often enough."""
-    moving = position - _drift(position, period)
-    rows = _stretch(moving, period)
+    """The stretch that vibrates; None where nothing goes to and fro often enough.
+
+    A slow one, a wheel that wobbles, is looked for where no faster one is found that is regular, and must
+    itself be so.
+    """
+    found = _above(LOWEST, position, period)
+    if found is None or found.regular < _IRREGULAR:
+        slow = _above(SLOWEST, position, period)
+        if slow is not None and slow.frequency < LOWEST and slow.regular > _REGULAR:
+            return slow
+    return found
+
+
+def nothing(time: Array) -> str:
+    """What is said of a recording in which nothing vibrates, and what it would take."""
+    seconds = float(time[-1] - time[0])
+    least = max(SLOWEST, FEWEST_CYCLES / seconds) if seconds else SLOWEST
+    return (
+        f"Nothing goes to and fro {FEWEST_CYCLES} times or more in the longest stretch without a gap, "
+        f"{seconds:.2g} s: a vibration would have to be faster than {least:.2g} Hz to be seen in it."
+    )
+
+
+def _above(lowest: float, position: Array, period: float) -> Vibration | None:
+    """The vibration of no less than so many hertz."""
+    slower = LOWEST / lowest
+    moving = position - _drift(position, period, _DRIFT * slower)
+    rows = _stretch(moving, period, _BLOCK * slower)
     if rows.stop - rows.start < 16:
         return None
     y = _without_line(position[rows])
-    if not y.any():
+    if np.std(y) <= _ROUNDING * np.abs(position).max():
         return None
-    frequency = peak(y, period)
+    frequency = peak(y, period, lowest)
     length = int(MOST_CYCLES / frequency / period)
     if rows.stop - rows.start > length >= 64:
         rows = slice(rows.stop - length, rows.stop)
         y = _without_line(position[rows])
-        frequency = peak(y, period)
+        frequency = peak(y, period, lowest)
     if frequency * y.size * period < FEWEST_CYCLES:
         return None
-    pieces = [peak(_without_line(part), period) for part in np.array_split(y, 4)]
+    around = rows
+    rows, frequency = _steadiest(position, rows, frequency, period, lowest)
+    y = _without_line(position[rows])
+    pieces = [peak(_without_line(part), period, lowest) for part in np.array_split(y, 4)]
     spread = max(float(np.std(pieces)) / 2, 0.02 / (y.size * period))
     _, rest = fitted(y, frequency, period)
     low, high = np.percentile(y - _slow(y, frequency, period), (5, 95))
     return Vibration(
         rows=rows,
+        around=around,
         frequency=frequency,
         frequency_spread=spread,
         swing=float(high - low) / float(np.cos(np.pi * 0.05)),
         regular=float(1 - np.var(rest) / np.var(y)),
         growth=_growth(y),
     )
+
+
+def _steadiest(
+    position: Array, rows: slice, frequency: float, period: float, lowest: float
+) -> tuple[slice, float]:
+    """A shorter stretch where the frequency drifts in the whole one: half of it, down to so many cycles."""
+    best = _share(position, rows, frequency, period)
+    while best < STEADY:
+        whole = rows.stop - rows.start
+        half = max(whole // 2, int(np.ceil(SHORTEST_CYCLES / frequency / period)), 16)
+        if half > 0.8 * whole:
+            break
+        tried = []
+        for start in np.unique(np.linspace(rows.start, rows.stop - half, 5).astype(int)):
+            part = slice(int(start), int(start) + half)
+            own = peak(_without_line(position[part]), period, lowest)
+            if abs(own - frequency) < 0.3 * frequency:
+                tried.append((_share(position, part, own, period), part, own))
+        if not tried or max(share for share, _, _ in tried) <= best:
+            break
+        best, rows, frequency = max(tried, key=lambda one: one[0])
+    return rows, frequency
+
+
+def _share(position: Array, rows: slice, frequency: float, period: float) -> float:
+    """Of the motion's variance in the frequency and its harmonics."""
+    y = _without_line(position[rows])
+    return float(1 - np.var(fitted(y, frequency, period)[1]) / (np.var(y) or 1.0))
 
 
 def phasors(values: Array, frequency: float, period: float) -> Phasors:
@@ -112,13 +188,13 @@ def fitted(values: Array, frequency: float, period: float) -> tuple[Phasors, Arr
     return found, values - table @ solution
 
 
-def peak(values: Array, period: float) -> float:
+def peak(values: Array, period: float, lowest: float = LOWEST) -> float:
     """[Hz] of the highest peak of the spectrum, weighted between position and velocity."""
     size = 4 * values.size
     spectrum = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(values.size), size))
     frequencies = np.fft.rfftfreq(size, period)
     weighted = spectrum * frequencies**0.75
-    weighted[frequencies < max(LOWEST, 2.5 / (values.size * period))] = 0.0
+    weighted[frequencies < max(lowest, 2.5 / (values.size * period))] = 0.0
     k = int(np.argmax(weighted))
     if not 0 < k < weighted.size - 1:
         return float(frequencies[max(k, 1)])
@@ -128,9 +204,9 @@ def peak(values: Array, period: float) -> float:
     return float(frequencies[k] + np.clip(shift, -1, 1) * (frequencies[1] - frequencies[0]))
 
 
-def _drift(position: Array, period: float) -> Array:
-    """A mean over about 0.7 s."""
-    half = max(1, min(int(0.35 / period), position.size // 4))
+def _drift(position: Array, period: float, seconds: float) -> Array:
+    """A mean over so long."""
+    half = max(1, min(int(0.5 * seconds / period), position.size // 4))
     padded = np.pad(position, half, mode="edge")
     total = np.concatenate([[0.0], np.cumsum(padded)])
     mean: Array = (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)
@@ -146,11 +222,11 @@ def _slow(y: Array, frequency: float, period: float) -> Array:
     return mean
 
 
-def _stretch(moving: Array, period: float) -> slice:
+def _stretch(moving: Array, period: float, block: float) -> slice:
     """The longest stretch whose blocks stay above a third of the size of the large ones; the later of
     equals.
     """
-    size = max(8, round(_BLOCK / period))
+    size = max(8, round(block / period))
     blocks = moving.size // size
     if blocks < 3:
         return slice(0, moving.size)

@@ -46,7 +46,7 @@ def tables(device: Device, environment: Environment) -> Tables:
     chain = getattr(environment, "laws", ())
     inner = environment.environment if chain else environment  # type: ignore[attr-defined]
     laws = tuple(_law(link, LAWS, device.motion) for link in chain)
-    return Tables(_device(device), _environment(inner, device.motion), laws)
+    return Tables(device_table(device), _environment(inner, device.motion), laws)
 
 
 def written(device: Device, environment: Environment) -> str:
@@ -65,7 +65,7 @@ def written(device: Device, environment: Environment) -> str:
     values = tables(device, environment)
     rows = [("[device]", values.device), ("[environment]", values.environment)]
     rows += [("[[law]]", law) for law in values.laws]
-    text = "\n".join(line for head, row in rows for line in (head, *_lines(row), ""))
+    text = "\n".join(line for head, row in rows for line in (head, *lines(row), ""))
     again = parsed(text)
     if (again.device.replace(name=device.name), again.environment) != (device, environment):
         raise InputError(f"a specification cannot say all of this: {environment.describe(device.motion)}")
@@ -80,7 +80,7 @@ def written_environment(environment: Environment, motion: str = "linear") -> str
     InputError
         If a specification has no words for it.
     """
-    text = "\n".join(["[environment]", *_lines(_environment(environment, motion)), ""])
+    text = "\n".join(["[environment]", *lines(_environment(environment, motion)), ""])
     again = build_environment(tables_of(text, "environment")["environment"], motion)
     if again != environment:
         raise InputError(f"a specification cannot say all of this: {environment.describe(motion)}")
@@ -101,14 +101,15 @@ def parsed(text: str, name: str = "specification") -> Specification:
     return Specification(loop.device, with_laws(loop.environment, row, None, loop.device.motion))
 
 
-def _lines(values: Mapping[str, object]) -> Iterator[str]:
+def lines(values: Mapping[str, object]) -> Iterator[str]:
+    """A table, a line for each key."""
     return (f"{key} = {toml(value)}" for key, value in values.items())
 
 
 def toml(value: object) -> str:
     """A text, a flag, a list or a table as TOML has it on one line."""
     if isinstance(value, Mapping):
-        return f"{{ {', '.join(_lines(value))} }}"
+        return f"{{ {', '.join(lines(value))} }}"
     if isinstance(value, list):
         return f"[{', '.join(map(toml, value))}]"
     if isinstance(value, bool):
@@ -117,19 +118,20 @@ def toml(value: object) -> str:
     return json.dumps("".join(c if c.isprintable() else "?" for c in value), ensure_ascii=False)
 
 
-def _device(device: Device) -> dict[str, object]:
+def device_table(device: Device) -> dict[str, object]:
+    """The numbers of a device, each a text with its unit."""
     values: dict[str, object] = {"name": device.name, "motion": device.motion}
     for key, value in device.parameters().items():
         name = "inertia" if key == "mass" and device.motion == "rotary" else key
         if key not in device.assumed:
-            values[name] = _quantity(value, GLOSSARY[key].unit_for(device.motion))
+            values[name] = quantity_text(value, GLOSSARY[key].unit_for(device.motion))
     return values
 
 
-def _quantity(value: Exact | Interval | int, unit: str) -> object:
+def quantity_text(value: Exact | Interval | int, unit: str) -> object:
     """One value with its unit; an interval is a list of two."""
     if isinstance(value, Interval):
-        return [_quantity(end, unit) for end in (value.low, value.high)]
+        return [quantity_text(end, unit) for end in (value.low, value.high)]
     number = str(value) if isinstance(value, int) else exact_text(value.fraction)
     return number if unit in ("", "1") else f"{number} {unit}"
 
@@ -156,13 +158,13 @@ def _environment(environment: Environment, motion: str) -> dict[str, object]:
 
 def _value(value: Any, unit: str) -> object:
     if isinstance(value, tuple):
-        return [_quantity(one, unit) for one in value]
-    return value if isinstance(value, str | bool) else _quantity(value, unit)
+        return [quantity_text(one, unit) for one in value]
+    return value if isinstance(value, str | bool) else quantity_text(value, unit)
 
 
 def _branch(branch: Any, motion: str) -> list[object]:
     units = (GLOSSARY[key].unit_for(motion) for key in ("branch_stiffness", "branch_damping"))
-    return [_quantity(value, unit) for value, unit in zip(branch, units, strict=True)]
+    return [quantity_text(value, unit) for value, unit in zip(branch, units, strict=True)]
 
 
 def _filter(estimate: object) -> dict[str, object]:
@@ -171,7 +173,7 @@ def _filter(estimate: object) -> dict[str, object]:
     if isinstance(estimate, Window):
         return {"type": "window", "samples": str(estimate.samples)}
     if isinstance(estimate, OnePole):
-        return {"type": "one-pole", "time_constant": _quantity(estimate.time_constant, "s")}
+        return {"type": "one-pole", "time_constant": quantity_text(estimate.time_constant, "s")}
     if isinstance(estimate, VelocityFilter):
         sides = {key: _value(getattr(estimate, key), "1") for key in ("numerator", "denominator")}
         return {"type": "filter", **sides}

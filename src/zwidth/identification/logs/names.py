@@ -106,7 +106,7 @@ def role_of_force(column: str) -> str | None:
         return None
     given, asked = (tier.split() for tier in _WORDS["actuator_force"])
     unsaid = _WORDS["hand_force"][1].split()
-    if word in given:
+    if word in given or word == "effort":  # of a joint state: what the motor gives
         return "actuator_force"
     return (
         "commanded_force"

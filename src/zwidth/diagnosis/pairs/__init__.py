@@ -1,0 +1,1 @@
+"""Why did two arms shake that follow each other?"""

@@ -1,0 +1,66 @@
+"""Why two arms may shake: each reason with what happens, and how likely it is.
+
+The energy of a cycle comes apart into terms W_i (`energy`), and
+
+    p_i = W_i^γ / Σ_j W_j^γ        over what they give beyond what pays for them
+
+with γ fitted to simulated pairs that shake for one reason (`benchmarks/diagnosis_pairs.py`).  Viscous
+friction and terms that take pay for what grows with the square of the motion, Coulomb friction pays for its
+compensation, as far as the devices are known.  Where nothing is left over, something that is not in the file
+feeds the motion, and nothing is named.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from zwidth.diagnosis.pairs.energy import PairEvidence
+
+PAIR_CAUSES: Mapping[str, str] = {
+    "link delay": "each arm is pulled to where the other one was when its reading was sent",
+    "sampling": "the spring is held from sample to sample and so pushes out harder than it was pressed in",
+    "delay": "the forces come late after the arms' own readings",
+    "damping": "damping against the other arm's speed comes so late that it drives the motion",
+    "local damping": "damping of each arm's own speed comes so late, or has such a sign, that it drives",
+    "friction compensation": "more friction is compensated than there is: the compensation drives the motion",
+}
+"""The terms of `energy`, in words."""
+
+STEEPNESS = 6.1
+"""γ."""
+
+SURELY = 0.8
+"""Share of what friction is stated to take that is counted on: an owner may be wrong by so much."""
+
+MOST_UNEXPLAINED = 0.05
+"""Share of a force's variance that its law may leave over."""
+
+_DRY = "friction compensation"
+
+
+def likelihoods(seen: PairEvidence) -> dict[str, float]:
+    """p of each cause; empty where no term gives more than friction takes."""
+    gives = _beyond(seen)
+    most = max(gives.values(), default=0.0)
+    odds = {
+        name: (max(0.0, gives.get(name, 0.0)) / most) ** STEEPNESS if most > 0 else 0.0
+        for name in PAIR_CAUSES
+    }
+    whole = sum(odds.values())
+    return {name: p / whole for name, p in odds.items()} if whole else {}
+
+
+def followed(seen: PairEvidence) -> bool:
+    """Whether both forces are known as laws of both arms."""
+    return all(law is not None and law.unexplained < MOST_UNEXPLAINED for law in seen.laws)
+
+
+def _beyond(seen: PairEvidence) -> dict[str, float]:
+    """[J] of each term beyond what pays for it: viscous friction, and the terms that take, for all that grow
+    with the motion's square; Coulomb friction for the force along the motion.
+    """
+    viscous, dry = seen.rubs or (0.0, 0.0)
+    gives = {name: work for name, work in seen.supplied.items() if work > 0 and name != _DRY}
+    pays = SURELY * viscous - sum(work for name, work in seen.supplied.items() if work < 0 and name != _DRY)
+    share = max(0.0, 1 - pays / sum(gives.values())) if gives else 0.0
+    return {name: share * work for name, work in gives.items()} | {_DRY: seen.supplied[_DRY] - SURELY * dry}

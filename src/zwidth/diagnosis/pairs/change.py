@@ -1,0 +1,168 @@
+"""The one number of a coupling to change: four fifths of the largest value that is proved passive."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from statistics import fmean
+
+from zwidth.diagnosis.change import PASSIVE, largest, with_margin
+from zwidth.diagnosis.pairs.energy import PairEvidence
+from zwidth.errors import InputError
+from zwidth.pairs.pair import Pair
+from zwidth.passivity.check import check
+from zwidth.passivity.pairs.verdict import PairVerdict
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import shown
+from zwidth.rendering.force.friction_compensation import FrictionCompensation
+
+_PARAMETERS = {
+    "link delay": ("stiffness", "damping"),
+    "sampling": ("stiffness", "damping"),
+    "delay": ("stiffness", "damping"),
+    "damping": ("damping", "stiffness"),
+    "local damping": ("local_damping", "stiffness"),
+    "friction compensation": ("compensation",),
+}
+_NAMES = {
+    "stiffness": ("stiffness of the coupling", "stiffness"),
+    "damping": ("damping against the other arm", "virtual_damping"),
+    "local_damping": ("local damping", "virtual_damping"),
+    "compensation": ("compensated Coulomb friction", "coulomb_friction"),
+}
+_SLOWEST = 0.05
+"""Of the usual speed of the arms: over which a sign becomes a tanh, for a proof."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairChange:
+    """One number of the coupling, from where it is to where it may be.
+
+    Parameters
+    ----------
+    parameter
+        Its key.
+    current, to
+        In `unit`.
+    unit
+        SI.
+    text
+        In words.
+    pair
+        With that number changed.
+    verdict
+        What `check` says to it.
+    """
+
+    parameter: str
+    current: float
+    to: float
+    unit: str
+    text: str
+    pair: Pair
+    verdict: PairVerdict
+
+    def to_dict(self) -> dict[str, object]:
+        """As plain data."""
+        return {
+            "parameter": self.parameter,
+            "from": self.current,
+            "to": self.to,
+            "unit": self.unit,
+            "text": self.text,
+            "outcome": self.verdict.outcome,
+        }
+
+
+def change_for(cause: str, seen: PairEvidence, pair: Pair) -> PairChange | None:
+    """The change that takes a cause away; None where no single number does, or none is proved."""
+    gains = _gains(seen)
+    for key in _PARAMETERS[cause]:
+        current = gains[key]
+        if current <= 0:
+            continue
+        to = _limit(pair, gains, seen) if key == "stiffness" else None
+        if to is None:
+            to = largest(lambda value, key=key: _verdict(pair, gains | {key: value}, seen), current)  # type: ignore[misc]
+        if to is None:
+            continue
+        changed = _built(pair, gains | {key: to}, seen)
+        name, quantity = _NAMES[key]
+        unit = GLOSSARY[quantity].unit_for("rotary" if seen.rotary else "linear")
+        return PairChange(
+            parameter=key,
+            current=current,
+            to=to,
+            unit=unit,
+            text=f"lower the {name} from {shown(current, unit, 3)} to {shown(to, unit, 3)}",
+            pair=changed,
+            verdict=check(changed),
+        )
+    return None
+
+
+def _limit(pair: Pair, gains: dict[str, float], seen: PairEvidence) -> float | None:
+    """The stiffness by the verdict's own limit, where it is proved with it; None where that helps nothing."""
+    verdict = _verdict(pair, gains, seen)
+    limit = None if verdict is None else verdict.largest_stiffness
+    if not limit:
+        return None
+    to = with_margin(min(limit, gains["stiffness"]))
+    softer = _verdict(pair, gains | {"stiffness": to}, seen) if to > 1e-3 * gains["stiffness"] else None
+    return to if softer is not None and softer.outcome in PASSIVE else None
+
+
+def _gains(seen: PairEvidence) -> dict[str, float]:
+    """Of the leader's side; a term that hardly does anything in a cycle is none."""
+    leader = seen.laws[0]
+    assert leader is not None
+    most = max(abs(work) for work in seen.supplied.values())
+    found = {
+        "stiffness": leader.stiffness,
+        "damping": leader.damping,
+        "local_damping": leader.local_damping,
+        "compensation": leader.compensation,
+    }
+    terms = {"damping": "damping", "local_damping": "local damping", "compensation": "friction compensation"}
+    return {
+        key: 0.0 if key in terms and abs(seen.supplied[terms[key]]) < 0.01 * most else value
+        for key, value in found.items()
+    }
+
+
+def _built(pair: Pair, gains: dict[str, float], seen: PairEvidence) -> Pair:
+    leader, follower = seen.laws
+    assert leader is not None
+    assert follower is not None
+    devices = [
+        device if late is None else device.replace(delay=_text(late))
+        for device, late in zip((pair.leader, pair.follower), seen.delays, strict=True)
+    ]
+    ratio = follower.stiffness / leader.stiffness
+    helped = gains["compensation"]
+    return Pair(
+        *devices,
+        stiffness=_text(gains["stiffness"]),
+        damping=_text(gains["damping"]),
+        local_damping=_text(gains["local_damping"]),
+        follower_stiffness=_text(ratio * gains["stiffness"]) if abs(ratio - 1) > 0.02 else None,
+        delay=(_text(follower.link_delay), _text(leader.link_delay)),
+        compensation=FrictionCompensation(coulomb=_text(helped), speed=_text(_speed(seen)))
+        if helped
+        else None,
+    )
+
+
+def _speed(seen: PairEvidence) -> float:
+    return _SLOWEST * seen.vibration.angular * fmean(seen.amplitudes)
+
+
+def _verdict(pair: Pair, gains: dict[str, float], seen: PairEvidence) -> PairVerdict | None:
+    try:
+        return check(_built(pair, gains, seen))
+    except InputError:
+        return None
+
+
+def _text(value: float) -> str:
+    """The decimal that is meant."""
+    return f"{value:.6g}"

@@ -1,0 +1,222 @@
+"""Two arms that shake for one reason: what the diagnosis says, from every kind of file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from two_arms import PERIOD, arms, moved, written
+
+import zwidth as zw
+from zwidth.diagnosis import PAIR_CAUSES
+from zwidth.diagnosis.pairs import law
+from zwidth.specification.pairs import load_pair
+from zwidth.specification.write_pair import written_pair
+
+LATE_LINK = {"link": 4, "viscous": 0.05, "limit": 3.0}
+RNG = np.random.default_rng(5)
+
+FAULTS: dict[str, tuple[dict[str, Any], dict[str, float]]] = {
+    "link delay": (LATE_LINK, {"damping": 0.05}),
+    "sampling": ({"stiffness": 60.0, "viscous": 0.008}, {"damping": 0.008}),
+    "delay": ({"late": 3, "viscous": 0.04, "limit": 3.0}, {"damping": 0.04}),
+    "damping": ({"link": 4, "damping": 1.2, "viscous": 0.12}, {"damping": 0.12}),
+    "friction compensation": ({"compensation": 0.03, "viscous": 0.03}, {"damping": 0.03}),
+}
+"""How it is, and what its owner knows."""
+
+
+@pytest.fixture(scope="module")
+def shaken() -> dict[str, np.ndarray]:
+    """Two arms that a link makes shake that is 4 ms late."""
+    return moved(**LATE_LINK)
+
+
+@pytest.mark.parametrize("cause", FAULTS)
+def test_the_reason_is_named(cause: str, tmp_path: Path) -> None:
+    """Sure, with numbers, and more energy than friction takes."""
+    how, known = FAULTS[cause]
+    found = zw.diagnose_pair(written(tmp_path / "arms.csv", moved(**how)), arms(**known))
+    assert found.cause == cause
+    assert found.confidence > 0.8
+    assert set(found.likely) == set(PAIR_CAUSES)
+    assert (
+        cause.split()[-1] in found.evidence[0] or "hold" in found.evidence[0] or "damper" in found.evidence[0]
+    )
+    assert found.seen is not None
+    for fitted in found.seen.laws:
+        assert fitted is not None
+        assert fitted.stiffness == pytest.approx(how.get("stiffness", 20.0), rel=1e-3)
+        assert fitted.link_delay == pytest.approx(PERIOD * how.get("link", 0))
+
+
+def test_the_change_is_proved_and_makes_the_arms_quiet(shaken: dict[str, np.ndarray], tmp_path: Path) -> None:
+    """The spring that is advised is passive, is written as a pair, and lets the arms come to rest."""
+    found = zw.diagnose_pair(written(tmp_path / "arms.csv", shaken), arms(damping=0.05))
+    assert found.change is not None
+    assert found.change.parameter == "stiffness"
+    assert found.change.to < found.change.current
+    found.save(tmp_path / "mended.toml")
+    pair = load_pair([tmp_path / "mended.toml"])
+    assert pair == found.change.pair
+    assert zw.check(pair).outcome == "passive" == found.to_dict()["change"]["outcome"]
+    softer = moved(**(LATE_LINK | {"stiffness": found.change.to}))
+    apart = [
+        columns["leader_position_rad"] - columns["follower_position_rad"] for columns in (softer, shaken)
+    ]
+    assert np.ptp(apart[0][-300:]) < 0.2 * np.ptp(apart[1][-300:])
+
+
+def test_what_is_not_in_the_file_is_not_named(tmp_path: Path) -> None:
+    """A delay behind the command: by the command alone, less goes in than friction takes."""
+    columns = moved(late=3, viscous=0.04, limit=3.0)
+    command = {name: values for name, values in columns.items() if "motor" not in name}
+    found = zw.diagnose_pair(written(tmp_path / "arms.csv", command), arms(damping=0.04))
+    assert found.cause is None
+    assert found.change is None
+    assert any("motor's own" in words for words in found.record)
+
+
+def test_arms_that_are_moved_slowly_do_not_shake(tmp_path: Path) -> None:
+    """They say how long was looked, and what could have been seen."""
+    t = np.arange(600) * PERIOD
+    columns = {"time_s": t, "leader_position_rad": 0.05 * t, "follower_position_rad": 0.045 * t}
+    columns |= {f"{arm}_torque_N_m": sign * 0.1 * t for arm, sign in (("leader", 1), ("follower", -1))}
+    found = zw.diagnose_pair(written(tmp_path / "arms.csv", columns))
+    assert found.cause is None
+    assert "0.6 s" in found.claim
+    assert "8.3 Hz" in found.claim
+
+
+def test_lists_in_parquet_as_a_robot_learning_dataset_has_them(
+    shaken: dict[str, np.ndarray], tmp_path: Path
+) -> None:
+    """Second joint of observation.state and of action; the stamps of an episode are seconds."""
+    rows = shaken["time_s"].size
+
+    def joints(values: np.ndarray) -> pa.Array:
+        both = np.stack([np.zeros(rows), values], axis=1)
+        return pa.FixedSizeListArray.from_arrays(pa.array(both.ravel()), 2)
+
+    columns = {
+        "action": joints(shaken["leader_position_rad"]),
+        "observation.state": joints(shaken["follower_position_rad"]),
+        "action.effort": joints(shaken["leader_motor_torque_N_m"]),
+        "observation.effort": joints(shaken["follower_motor_torque_N_m"]).cast(pa.list_(pa.float64())),
+        "timestamp": shaken["time_s"].astype(np.float32),
+        "frame_index": np.arange(rows),
+        "episode_index": np.zeros(rows, int),
+    }
+    pq.write_table(pa.table(columns), tmp_path / "episode.parquet")
+    found = zw.diagnose_pair(
+        tmp_path / "episode.parquet",
+        columns={
+            "leader_position": "action[1]",
+            "follower_position": "observation.state[1]",
+            "leader_actuator_force": "action.effort[1]",
+            "follower_actuator_force": "observation.effort[1]",
+        },
+        units={"position": "rad", "actuator_force": "N*m"},
+    )
+    assert found.cause == "link delay"
+    assert found.frequency == pytest.approx(9.5, rel=0.02)
+    with pytest.raises(zw.InputError, match=r"action\[0\]"):
+        zw.diagnose(
+            tmp_path / "episode.parquet",
+            columns={"position": "action[2]", "actuator_force": "action.effort[0]"},
+        )
+
+
+@pytest.mark.parametrize("storage", ["MCAP", "SQLITE3"])
+def test_a_bag_with_the_joint_states_of_both_arms(
+    storage: str, shaken: dict[str, np.ndarray], tmp_path: Path
+) -> None:
+    """A topic each, the follower's stamps a little later."""
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    time_type, header = store.types["builtin_interfaces/msg/Time"], store.types["std_msgs/msg/Header"]
+    joint, none = store.types["sensor_msgs/msg/JointState"], np.empty(0)
+    with Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin[storage]) as writer:
+        topics = {
+            arm: writer.add_connection(f"/{arm}/joint_states", joint.__msgtype__, typestore=store)
+            for arm in ("leader", "follower")
+        }
+        for k, t in enumerate(shaken["time_s"]):
+            for arm, connection in topics.items():
+                now = 1_700_000_000_000_000_000 + round(t * 1e9) + (arm == "follower") * 90_000
+                x, f = (shaken[f"{arm}_{name}"][k] for name in ("position_rad", "motor_torque_N_m"))
+                stamp = header(stamp=time_type(*divmod(now, 10**9)), frame_id="")
+                message = joint(stamp, ["elbow"], np.array([x]), none, np.array([f]))
+                writer.write(connection, now, store.serialize_cdr(message, joint.__msgtype__))
+    units = {"position": "rad", "actuator_force": "N*m"}
+    found = zw.diagnose_pair(tmp_path / "bag", units=units)
+    assert found.cause == "link delay"
+    one = zw.diagnose(
+        tmp_path / "bag",
+        columns={
+            "position": "/leader/joint_states.position[0]",
+            "actuator_force": "/leader/joint_states.effort[0]",
+        },
+        units=units,
+    )
+    assert one.frequency == pytest.approx(found.frequency, rel=0.02)
+
+
+def test_one_arm_of_a_file_and_an_arm_too_few(shaken: dict[str, np.ndarray], tmp_path: Path) -> None:
+    """An arm without a force, a wheel's arms as sliders: one message each."""
+    bare = {name: values for name, values in shaken.items() if "follower" not in name or "position" in name}
+    with pytest.raises(zw.InputError, match="actuator's force"):
+        zw.diagnose_pair(written(tmp_path / "bare.csv", bare))
+    path = written(tmp_path / "arms.csv", shaken)
+    slider = zw.Device(mass=0.1, damping=1, coulomb_friction=0, sample_period=PERIOD)
+    with pytest.raises(zw.InputError, match="which is meant"):
+        zw.diagnose_pair(path, zw.Pair(slider, slider, stiffness=1))
+
+
+def test_a_picture_of_both_arms(shaken: dict[str, np.ndarray], tmp_path: Path) -> None:
+    """Drawn, and refused where nothing shakes."""
+    found = zw.diagnose_pair(written(tmp_path / "arms.csv", shaken))
+    found.plot(tmp_path / "why.svg")
+    assert (tmp_path / "why.svg").stat().st_size > 1000
+    assert "leader: stiffness" in dict(found.rows())
+
+
+def test_the_law_of_an_arm() -> None:
+    """Stiffness, both dampings, compensation and both lags from noise that moves both arms."""
+    own, other = (np.cumsum(RNG.normal(size=800)) * 1e-3 for _ in range(2))
+    back = [
+        np.concatenate([np.full(n, x[0]), x[: x.size - n]])
+        for x, n in ((own, 1), (own, 2), (other, 4), (other, 5))
+    ]
+    v, its = (back[0] - back[1]) / PERIOD, (back[2] - back[3]) / PERIOD
+    force = 31.0 * (back[0] - back[2]) + 0.2 * (v - its) + 0.05 * v - 0.3 * np.sign(v)
+    lags = [k * PERIOD for k in range(4)]
+    found = law.fit(own, other, force, PERIOD, PERIOD, lags, [k * PERIOD for k in range(6)])
+    assert found is not None
+    assert (found.lag, found.link_delay) == pytest.approx((PERIOD, 3 * PERIOD))
+    gains = found.stiffness, found.damping, found.local_damping, found.compensation
+    assert gains == pytest.approx((31.0, 0.2, 0.05, 0.3), rel=1e-4)
+    assert found.unexplained < 1e-6
+
+
+def test_a_pair_is_written_as_it_is_read(tmp_path: Path) -> None:
+    """Every number of a coupling, digit for digit."""
+    pair = arms().replace(
+        stiffness="12.5 N*m/rad",
+        damping="0.01 N*m*s/rad",
+        local_damping="-0.003 N*m*s/rad",
+        follower_stiffness=20,
+        compensation=zw.FrictionCompensation(coulomb="0.004 N*m", speed="0.2 rad/s"),
+    )
+    (tmp_path / "pair.toml").write_text(written_pair(pair), encoding="utf-8")
+    again = load_pair([tmp_path / "pair.toml"])
+    assert again == load_pair([tmp_path / "pair.toml"])
+    assert (again.stiffness, again.follower_stiffness, again.compensation) == (
+        pair.stiffness, pair.follower_stiffness, pair.compensation,
+    )  # fmt: skip
