@@ -8,7 +8,8 @@ from zwidth.passivity.decision import Decision
 from zwidth.passivity.found import Found
 from zwidth.passivity.linear.linear import LinearRefutation
 from zwidth.passivity.wording import claim_of_passivity, describe_hands, intervals, lines
-from zwidth.quantity.text import in_words
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import in_unit, in_words
 
 
 def claim(verdict: Found) -> str:
@@ -116,8 +117,10 @@ def _undecided(verdict: Found) -> str:
 def _not_found(verdict: Found) -> str:
     """What is known of a law without H(z)."""
     found = "Neither a proof for every hand nor a motion that takes energy out was found"
+    unit = verdict.device.unit
     lacking = [
-        f"{in_words(need.name)} of {need.needed:.6g} is proved enough, and there is {need.has:.6g}"
+        f"{in_words(need.name)} of {in_unit(need.needed, unit(need.name))} is proved enough, and there is "
+        f"{in_unit(need.has, unit(need.name))}"
         for need in verdict.needs
         if need.has < need.needed
     ]
@@ -147,15 +150,17 @@ def _open(decision: Decision) -> str:
         )
     need, least = decision.sufficient_friction, decision.necessary_friction
     has = float(decision.setting.coulomb_friction)
-    enough = "no amount is proved enough" if need is None else f"{float(need):.6g} is enough"
+    unit = GLOSSARY["coulomb_friction"].unit_for(decision.setting.motion)
+    enough = "no amount is proved enough" if need is None else f"{in_unit(float(need), unit)} is enough"
+    edge = in_unit(least, unit)
     below = (
-        f"straddling an encoder edge should gain below {least:.6g}, yet no such motion was found short enough"
+        f"straddling an encoder edge should gain below {edge}, yet no such motion was found short enough"
         if has < least
-        else f"straddling an encoder edge gains only below {least:.6g}"
+        else f"straddling an encoder edge gains only below {edge}"
     )
     return (
         "Viscous damping is enough, but for an encoder with this law no exact condition on Coulomb friction "
-        f"is proved: {enough}, {below}, and the device has {has:.6g}."
+        f"is proved: {enough}, {below}, and the device has {in_unit(has, unit)}."
     )
 
 
@@ -165,9 +170,11 @@ def _clamped(decision: Decision) -> str:
     if damping is None or friction is None:
         known = "and no other condition is known for this law and delay."
     else:
-        loop, has = decision.loop, float(decision.setting.coulomb_friction)
+        loop, has, motion = decision.loop, float(decision.setting.coulomb_friction), decision.setting.motion
+        b, f = (GLOSSARY[name].unit_for(motion) for name in ("damping", "coulomb_friction"))
         known = (
-            f"and what is proved enough is not there: damping of {float(damping):.6g}, the device has "
-            f"{float(loop.damping):.6g}; Coulomb friction of {float(friction):.6g}, it has {has:.6g}."
+            f"and what is proved enough is not there: damping of {in_unit(float(damping), b)}, the device "
+            f"has {in_unit(float(loop.damping), b)}; Coulomb friction of {in_unit(float(friction), f)}, it "
+            f"has {in_unit(has, f)}."
         )
     return f"The linear criterion does not cover a law whose force is clamped, {known}"

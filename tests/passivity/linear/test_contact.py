@@ -449,3 +449,11 @@ def test_intervals(name):
     assert verdict.certificate.covered().contact == ("made and broken" if covered else "kept")
     assert verdict.scope.contact == verdict.certificate.covered().contact
     assert verify_document(verdict.certificate.to_dict()).valid
+
+
+def test_what_is_enough_is_said_with_its_unit():
+    """Of a clamped wall that is not proved: damping and friction, asked for and there."""
+    loop, law = STILL_SUSTAINED["a filter that needs less"]
+    claim = check_by_closed_forms(loop, law.replace(clamped=True)).claim
+    assert " N·s/m, the device has 0.2 N·s/m; Coulomb friction of " in claim
+    assert claim.endswith(" N, it has 0.2 N.")
