@@ -10,6 +10,7 @@ import pytest
 import zwidth as zw
 from zwidth.arms import built_in, least_additions
 from zwidth.arms.joints import single_additions
+from zwidth.passivity.workspace.additions import Additions
 
 Array = npt.NDArray[np.float64]
 
@@ -32,6 +33,21 @@ def test_it_is_enough_and_the_least(cells: int, joints: int) -> None:
         assert bound <= added.sum() <= bound * (1 + 1e-6)
         assert bound > 0
         assert np.linalg.eigvalsh(1e-3 * matrices + np.diag(0.999 * added)).min() < 0
+
+
+def test_of_an_arm_with_many_joints_the_bounds_decide() -> None:
+    """Each bracket goes from what the points ask for to what the cells do, and nothing is proved."""
+    points = _matrices(4, 20, 6)
+    cells = points - 0.01 * np.eye(6)
+    space = zw.workspace(built_in("two-link", damping=0.1), zw.Wall(1), rate=1000, points=2)
+    added = Additions(question=space.added.question, points=points, cells=cells)
+    for found, ask in ((added.least, least_additions), (added.to_all, _in_each)):
+        assert found.enough == pytest.approx(ask(cells)[0])
+        assert found.fails == pytest.approx(ask(points)[0])
+
+
+def _in_each(matrices: Array) -> tuple[Array]:
+    return (np.full(matrices.shape[-1], -np.linalg.eigvalsh(matrices).min()),)
 
 
 def test_it_is_that_of_a_semidefinite_solver() -> None:

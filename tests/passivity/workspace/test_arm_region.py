@@ -363,7 +363,8 @@ def test_a_redundant_arm_is_refuted_by_hands_on_its_links() -> None:
     assert (space.outcome, space.can_be_refuted) == ("active", False)
     assert space.motion is not None
     assert space.motion.imposed_by == "links"
-    assert "of hands that hold the links" in space.claim
+    assert "by hands that hold the links" in space.claim
+    assert "a hand at the end alone" in space.claim
     assert zw.workspace(built_in("two-link", damping=0.1), zw.Wall(1), rate=1000, points=20).can_be_refuted
 
 
