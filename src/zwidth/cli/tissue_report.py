@@ -19,6 +19,9 @@ from zwidth.quantity.text import shown
 _FEW = 4
 """Findings in a short report."""
 
+_MOST_TRIALS = 8
+"""Of a file, in a short report."""
+
 _FIRST = ("loaded", "hole", "surface", "sign", "unit")
 """Kinds of findings that a short report has before others."""
 
@@ -40,7 +43,7 @@ def print_tissue(found: Result, in_full: bool = False) -> None:
         out.print(_headline(test))
         section(out, "the tissue", [_columns(test.parameters())])
         if test.trials:
-            section(out, f"{len(test.trials)} trials, each by itself", [_columns(test.of_trials())])
+            section(out, f"{len(test.trials)} trials, each by itself", [_columns(_of_trials(test, in_full))])
         section(out, "what to doubt", items(test.doubts))
         rows = [*_wall(found.wall), *([] if in_full else [("models", _models(test))])]
         blocks(out, rows)
@@ -50,6 +53,15 @@ def print_tissue(found: Result, in_full: bool = False) -> None:
             section(out, "assumes", items(_assumed(test), "dim"))
             return
         more_with_all(out, "every model, what the file shows, what the intervals assume")
+
+
+def _of_trials(test: TissueTest, in_full: bool) -> list[list[str]]:
+    """Every trial; in short the first of many, and the mean of all."""
+    lines = test.of_trials()
+    if in_full or len(lines) <= _MOST_TRIALS + 2:
+        return lines
+    left = len(lines) - _MOST_TRIALS - 2
+    return [*lines[: _MOST_TRIALS + 1], [f"{left} more with --all", *[""] * (len(lines[0]) - 1)], lines[-1]]
 
 
 def _findings(test: TissueTest, in_full: bool) -> list[Finding]:
@@ -132,7 +144,7 @@ def _assumed(test: TissueTest) -> Iterator[str]:
     memory = test.tried[test.chosen].found.noise.memory
     noise = f"with a memory of {shown(memory, 's', 2)}" if memory else "white"
     yield f"the model is right, the noise is on the {response}, {noise}, and none on the {given}"
-    yield "at rest before the first sample; straight from sample to sample"
+    yield "at rest before the first sample; from sample to sample a smooth or a monotone curve"
     yield (
         "taken is the model of fewest numbers whose AICc, with the noise's memory in the likelihood, is "
         "within 6 of the smallest"

@@ -122,8 +122,11 @@ class TissueTest(Documented):
 
     @cached_property
     def slowest(self) -> Slowest | None:
-        """What is known of the slowest relaxation time, where it is longer than the test; else None."""
+        """What is known of the slowest relaxation time, where it is longer than the test; else None, as where
+        the model leaves more than noise."""
         own = self.tried[self.chosen]
+        if not self.is_noise:
+            return None
         return slowest_of(own.task, own.found)
 
     def _too_short(self, slowest: Slowest) -> str:
@@ -156,7 +159,9 @@ class TissueTest(Documented):
         """Headings, then one line of text for each trial, then the mean and what they spread by."""
         names = self.best.model.parameters
         fits = [fit for fit in self.trials if not isinstance(fit, str)]
-        lines = [["trial", *names]]
+        units = [row[-1] for row in self.parameters()[1:]]
+        heads = (f"{name.replace('_', ' ')} [{unit}]" for name, unit in zip(names, units, strict=False))
+        lines = [["trial", *heads]]
         for k, fit in enumerate(self.trials, 1):
             mark = " ←" if k == self.number else ""
             cells = ["not fitted"] if isinstance(fit, str) else [f"{fit[name]:.4g}" for name in names]

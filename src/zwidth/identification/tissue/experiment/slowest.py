@@ -64,6 +64,8 @@ def slowest_of(task: Task, found: Solved) -> Slowest | None:
 
     low = _crossing(missed, own, min(own, log(length * 1e-3)))
     high = _crossing(missed, own, max(own, log(length * FURTHEST)))
+    if high is not None and exp(high) < length:
+        return None  # a spring beside the Maxwell body: the end is seen, and it is another model
     return Slowest(fitted, None if low is None else exp(low), None if high is None else exp(high))
 
 
