@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import sys
 from collections.abc import Callable
 from math import inf, nextafter
 from pathlib import Path
@@ -113,6 +114,48 @@ def test_springs_are_decided_as_by_check(seed: int) -> None:
     layers = compute(asked, (0,) * len(vary))
     for name, expected in one_by_one(asked).items():
         np.testing.assert_array_equal(layers[name], expected, err_msg=name)
+
+
+@pytest.mark.parametrize(
+    ("delay", "velocity"),
+    [
+        ("0", zw.rendering.BackwardDifference()),
+        ("0.001", zw.rendering.Window(3)),
+        ("0.0003", zw.rendering.OnePole("0.002")),
+    ],
+)
+def test_walls_are_decided_as_by_check(delay: str, velocity: Any) -> None:
+    """A line of stiffnesses, in no order, at both limits and beside them too: the same words and numbers."""
+    device, wall = PADDLE.replace(delay=delay), zw.Wall(1, "0.05", velocity)
+    limits = [
+        check_by_closed_forms(device, wall, contact=contact).max_stiffness or 1.0
+        for contact in ("made and broken", "kept")
+    ]
+    near = [limit * (1 + off) for limit in limits for off in (-1e-3, -1e-9, 0, 1e-9, 1e-3)]
+    values = {*near, *(nextafter(limit, inf) for limit in limits), *(3.0 * n for n in (1, 33, 20, 150, 600))}
+    asked = request("check", Loop(device, wall), {"stiffness": sorted(values, key=lambda k: k % 7)})
+    assert asked.of_walls
+    layers = compute(asked, (0,))
+    for name, expected in one_by_one(asked).items():
+        np.testing.assert_array_equal(layers[name], expected, err_msg=name)
+
+
+def test_of_a_line_of_walls_few_are_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All but the first of each part, and those about which doubles are in doubt."""
+    module = sys.modules["zwidth.sweeps.questions"]
+    asked = request("check", Loop(PADDLE, zw.Wall(1, "0.05")), {"stiffness": "10:400:200"})
+    told: list[Loop] = []
+
+    def counted(loop: Loop, line: Line) -> Any:
+        told.append(loop)
+        return checked(loop, line)
+
+    question = asked.question._replace(answer=counted)
+    monkeypatch.setattr(module, "QUESTIONS", {**module.QUESTIONS, "check": question})
+    monkeypatch.setattr(requests, "QUESTIONS", module.QUESTIONS)
+    layers = compute(asked, (0,))
+    assert set(np.unique(layers["outcome"])) == {1, asked.columns["outcome"].kept("active")}
+    assert len(told) < 10
 
 
 def test_the_largest_spring_is_a_double_at_its_limit() -> None:

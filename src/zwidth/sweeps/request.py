@@ -22,6 +22,7 @@ from zwidth.sweeps.columns import OF_EVERY_SWEEP, Columns
 from zwidth.sweeps.loops import Loop, Parameter, changed, parameter
 from zwidth.sweeps.questions import QUESTIONS, Question
 from zwidth.sweeps.springs import Springs, springs
+from zwidth.sweeps.walls import is_of_walls
 
 FORMAT = "zwidth sweep 1"
 
@@ -31,7 +32,7 @@ MOST_LOOPS = 20_000_000
 MOST_AXES = 8
 """Parameters that are varied at once."""
 
-BY_CLOSED_FORMS, ONE_BY_ONE, SLOW = 16_384, 64, 4
+BY_CLOSED_FORMS, BY_LINES, ONE_BY_ONE, SLOW = 16_384, 4096, 64, 4
 """Loops that are computed and kept at a time, by how long one of them takes."""
 
 _SLOW = ("limit", "simulate", "pair")
@@ -73,6 +74,13 @@ class Request:
     def springs(self) -> Springs | None:
         """The loops as springs, where all of them are."""
         return springs(self.loop, self.parameters, self.axes) if self.of == "check" else None
+
+    @property
+    def of_walls(self) -> bool:
+        """Whether loops that differ in their stiffness alone are walls."""
+        return (
+            self.of == "check" and self.stiffness_axis is not None and is_of_walls(self.loop, self.parameters)
+        )
 
     @property
     def size(self) -> int:
@@ -172,7 +180,9 @@ def request(of: str, loop: Loop, vary: Mapping[str, object]) -> Request:
 def _at_once(asked: Request) -> int:
     if asked.of in _SLOW:
         return SLOW
-    return ONE_BY_ONE if asked.springs is None else BY_CLOSED_FORMS
+    if asked.springs is not None:
+        return BY_CLOSED_FORMS
+    return BY_LINES if asked.of_walls else ONE_BY_ONE
 
 
 def _refuse_the_same(parameters: Iterable[Parameter]) -> None:
