@@ -32,7 +32,7 @@ STEEPNESS = 6.1
 SURELY = 0.8
 """Share of what friction is stated to take that is counted on: an owner may be wrong by so much."""
 
-MOST_UNEXPLAINED = 0.05
+MOST_UNEXPLAINED = 0.01
 """Share of a force's variance that its law may leave over."""
 
 _DRY = "friction compensation"
@@ -51,8 +51,11 @@ def likelihoods(seen: PairEvidence) -> dict[str, float]:
 
 
 def followed(seen: PairEvidence) -> bool:
-    """Whether both forces are known as laws of both arms."""
-    return all(law is not None and law.unexplained < MOST_UNEXPLAINED for law in seen.laws)
+    """Whether both forces are known as laws of both arms, and nothing unseen need feed the motion: the forces
+    of the motors are in the file, or at least it is known what friction takes.
+    """
+    known = all(law is not None and law.unexplained < MOST_UNEXPLAINED for law in seen.laws)
+    return known and (seen.rubs is not None or None not in seen.delays)
 
 
 def _beyond(seen: PairEvidence) -> dict[str, float]:
