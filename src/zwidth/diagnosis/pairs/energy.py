@@ -196,7 +196,9 @@ def _arm(
     delay: float | None = None if arm.applied is None or best is None else best.lag
     if arm.commanded is not None and arm.applied is not None:
         asked, given = (sign * values[rows] for values in (arm.commanded, arm.applied))
-        delay = drive.account(asked, given, arm.position[rows], arm.period, loop_period, cycle).delay
+        delay = drive.account(
+            asked, given, arm.position[rows], arm.period, loop_period, cycle
+        ).delay_to_a_sample
     acts = arm.applied if arm.applied is not None else seen
     return sign * acts[rows], best, delay
 
