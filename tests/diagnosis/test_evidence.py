@@ -114,6 +114,15 @@ def test_what_lies_between_two_forces() -> None:
             assert found.rate == pytest.approx(0.15 / PERIOD, rel=0.05)
 
 
+def test_a_long_delay_of_a_slow_wobble_is_known_to_a_sample() -> None:
+    """37 samples of a cycle of 1000, where lags are tried 19 apart."""
+    position = 0.3 * np.sin(2 * np.pi * 0.8 * np.arange(6400) * PERIOD)
+    command = 0.5 * position
+    found = drive.account(command, held(command, 37), position, PERIOD, PERIOD, 1 / 0.8)
+    assert found.delay_to_a_sample == pytest.approx(37 * PERIOD)
+    assert abs(found.delay - 37 * PERIOD) < 10 * PERIOD
+
+
 @pytest.mark.parametrize("late", [0, 3])
 def test_the_energy_of_a_cycle_is_that_of_the_held_force_along_the_motion(late: int) -> None:
     """−∮ f dx by sums over the exact moves between samples; the terms add up to it."""

@@ -33,7 +33,9 @@ class Drive:
     Parameters
     ----------
     delay
-        [s] τ of the best pure delay.
+        [s] τ of the best pure delay, of some forty in three quarters of a cycle.
+    delay_to_a_sample
+        [s] the best one near that, to a sample of the loop.
     by_delay, by_damper, by_rate, by_nothing
         Share of the applied force's variance that is left over by each; 0 is a full account.
     damping, damping_lag
@@ -45,6 +47,7 @@ class Drive:
     """
 
     delay: float
+    delay_to_a_sample: float
     by_nothing: float
     by_delay: float
     by_damper: float
@@ -72,6 +75,9 @@ def account(
     top = float(np.abs(applied).max())
     delayed = {lag: np.clip(_late(commanded, times, lag), -top, top) for lag in lags}
     delay = min(lags, key=lambda lag: left(delayed[lag]))
+    stride = round((lags[1] - lags[0]) / step)
+    near = [delay + k * step for k in range(-stride + 1, stride) if delay + k * step > -0.5 * step]
+    finer = min(near, key=lambda lag: left(np.clip(_late(commanded, times, lag), -top, top)))
     best, damping, damping_lag = np.inf, 0.0, 0.0
     speed = np.gradient(position, row_period)
     short = [lag for lag in lags if lag <= max(step, 0.0) * 1.01]
@@ -88,7 +94,8 @@ def account(
                 best, damping, damping_lag = rest, gain, lag
     rate, by_rate = _rate(commanded, applied, times, step, left)
     return Drive(
-        delay=delay, by_nothing=left(np.clip(commanded, -top, top)), by_delay=left(delayed[delay]),
+        delay=delay, delay_to_a_sample=finer, by_nothing=left(np.clip(commanded, -top, top)),
+        by_delay=left(delayed[delay]),
         by_damper=min(best, 1.0), by_rate=by_rate, damping=damping, damping_lag=damping_lag, rate=rate,
         applied=applied,
     )  # fmt: skip

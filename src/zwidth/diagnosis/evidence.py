@@ -364,7 +364,7 @@ def _lags(commanded: bool, cycle: float, loop_period: float) -> list[float]:
 
 def _delay(known: Known, found: Law | None, between: Drive | None, commanded: bool) -> float:
     if between is not None:
-        return between.delay
+        return between.delay_to_a_sample
     if not commanded and found is not None:
         return found.lag
     return known.delay

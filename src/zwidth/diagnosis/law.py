@@ -88,7 +88,7 @@ def fit(
     position: Array, force: Array, row_period: float, loop_period: float, lags: Sequence[float]
 ) -> Law | None:
     """The law of a force in a stretch; None where it does not follow the motion at all."""
-    sides = at_ends(force)
+    sides = _at_ends(force)
     away = np.abs(force) < 0.01 * np.abs(force).max()
     out = away if away.mean() > 0.05 else np.zeros_like(away)
     first = int(np.ceil((max(lags) + max(WINDOWS) * loop_period) / row_period)) + 1
@@ -215,7 +215,7 @@ def _compensated(best: _Tried, position: Array, times: Array, loop_period: float
     return force
 
 
-def at_ends(force: Array) -> Rows:
+def _at_ends(force: Array) -> Rows:
     """Rows where the force stands still at its largest: exactly, or in noise for more of the time than a
     sine.
     """

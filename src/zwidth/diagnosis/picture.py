@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from matplotlib import rc_context
@@ -15,10 +16,29 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from zwidth.diagnosis.evidence import Evidence
-    from zwidth.diagnosis.pairs.energy import PairEvidence
-    from zwidth.diagnosis.pairs.recording import PairRecording
     from zwidth.diagnosis.recording import Recording
     from zwidth.diagnosis.vibration import Vibration
+
+
+class Shaking(Protocol):
+    """What is drawn of any vibration."""
+
+    @property
+    def vibration(self) -> Vibration:
+        """Where, how fast, how far."""
+
+    @property
+    def rotary(self) -> bool:
+        """Of what turns."""
+
+    @property
+    def supplied(self) -> Mapping[str, float]:
+        """[J] by each term in a cycle."""
+
+    @property
+    def lost(self) -> float | None:
+        """[J] that friction takes in a cycle."""
+
 
 _CYCLES = 8
 """That are drawn as they went."""
@@ -38,48 +58,20 @@ def diagnosis_figure(recording: Recording, seen: Evidence | None, claim: str) ->
     figure = new_figure(9.0, 6.6)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.1, 1.0))
     _cycles(figure.add_subplot(grid[0, :]), recording, seen)
-    _spectrum(figure.add_subplot(grid[1, 0]), recording, seen)
-    _energy(figure.add_subplot(grid[1, 1]), seen)
+    draw_spectrum(figure.add_subplot(grid[1, 0]), recording, seen)
+    draw_energy(figure.add_subplot(grid[1, 1]), seen)
     page_heading(figure, claim)
     return figure
 
 
-@rc_context(LOOK)
-def pair_figure(recording: PairRecording, seen: PairEvidence | None, claim: str) -> Figure:
-    """Both arms over some cycles; the spectrum of the one that swings further beside the energy of a cycle.
-
-    Raises
-    ------
-    InputError
-        If nothing vibrates: there is nothing to draw.
-    """
-    if seen is None:
-        raise InputError("nothing vibrates in this recording, so there is no picture of a vibration")
-    figure = new_figure(9.0, 6.6)
-    grid = figure.add_gridspec(2, 2, height_ratios=(1.1, 1.0))
-    axes = figure.add_subplot(grid[0, :])
-    part = _last(seen.vibration, recording.leader.period)
-    moved = [arm.position[part] for arm in recording.arms]
-    factor, unit = scale(np.concatenate([x - x.mean() for x in moved]), "rad" if seen.rotary else "m")
-    for x, colour, name in zip(moved, (BLUE, ORANGE), ("leader", "follower"), strict=True):
-        axes.plot(recording.leader.time[part], factor * x, color=colour, label=name)
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel(label("position", recording.leader.motion, unit=unit))
-    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, fontsize=8)
-    _spectrum(figure.add_subplot(grid[1, 0]), recording.arms[seen.leading], seen)
-    _energy(figure.add_subplot(grid[1, 1]), seen)
-    page_heading(figure, claim)
-    return figure
-
-
-def _last(vibration: Vibration, period: float) -> slice:
+def last_cycles(vibration: Vibration, period: float) -> slice:
     """Some cycles at the end of the stretch."""
     rows = max(8, int(_CYCLES / vibration.frequency / period))
     return slice(max(vibration.rows.start, vibration.rows.stop - rows), vibration.rows.stop)
 
 
 def _cycles(axes: Axes, recording: Recording, seen: Evidence) -> None:
-    part = _last(seen.vibration, recording.period)
+    part = last_cycles(seen.vibration, recording.period)
     t = recording.time[part]
     length, force = ("rad", "N*m") if seen.rotary else ("m", "N")
     factor, unit = scale(recording.position[part] - recording.position[part].mean(), length)
@@ -105,7 +97,8 @@ def _cycles(axes: Axes, recording: Recording, seen: Evidence) -> None:
     )
 
 
-def _spectrum(axes: Axes, recording: Recording, seen: Evidence | PairEvidence) -> None:
+def draw_spectrum(axes: Axes, recording: Recording, seen: Shaking) -> None:
+    """Amplitude against frequency, up to six times that of the vibration."""
     vibration = seen.vibration
     x = recording.position[vibration.rows]
     y = (x - np.polyval(np.polyfit(np.arange(x.size), x, 1), np.arange(x.size))) * np.hanning(x.size)
@@ -121,7 +114,8 @@ def _spectrum(axes: Axes, recording: Recording, seen: Evidence | PairEvidence) -
     heading(axes, f"{vibration.frequency:.4g} Hz")
 
 
-def _energy(axes: Axes, seen: Evidence | PairEvidence) -> None:
+def draw_energy(axes: Axes, seen: Shaking) -> None:
+    """A bar for each term of the energy of a cycle."""
     terms = {name: work for name, work in seen.supplied.items() if work}
     if seen.lost is not None:
         terms["friction"] = -seen.lost

@@ -6,8 +6,8 @@ The energy of a cycle comes apart into terms W_i (`energy`), and
 
 with γ fitted to simulated pairs that shake for one reason (`benchmarks/diagnosis_pairs.py`).  Viscous
 friction and terms that take pay for what grows with the square of the motion, Coulomb friction pays for its
-compensation, as far as the devices are known.  Where nothing is left over, something that is not in the file
-feeds the motion, and nothing is named.
+compensation, as far as the devices are known; p is the mean over what an owner may be wrong by.  Where
+nothing is left over, something that is not in the file feeds the motion, and nothing is named.
 """
 
 from __future__ import annotations
@@ -29,38 +29,47 @@ PAIR_CAUSES: Mapping[str, str] = {
 STEEPNESS = 6.1
 """γ."""
 
-SURELY = 0.8
-"""Share of what friction is stated to take that is counted on: an owner may be wrong by so much."""
+STATED = (0.85, 1.0, 1.15)
+"""What friction takes, over what the stated numbers say: owners may be wrong by so much."""
 
-MOST_UNEXPLAINED = 0.05
+MOST_UNEXPLAINED = 0.01
 """Share of a force's variance that its law may leave over."""
 
 _DRY = "friction compensation"
 
 
 def likelihoods(seen: PairEvidence) -> dict[str, float]:
-    """p of each cause; empty where no term gives more than friction takes."""
-    gives = _beyond(seen)
-    most = max(gives.values(), default=0.0)
-    odds = {
-        name: (max(0.0, gives.get(name, 0.0)) / most) ** STEEPNESS if most > 0 else 0.0
-        for name in PAIR_CAUSES
-    }
-    whole = sum(odds.values())
-    return {name: p / whole for name, p in odds.items()} if whole else {}
+    """p of each cause, the mean over what friction may take; empty where no term ever gives more."""
+    mean = dict.fromkeys(PAIR_CAUSES, 0.0)
+    for viscous in STATED:
+        for dry in STATED:
+            gives = _beyond(seen, viscous, dry)
+            most = max(gives.values())
+            if most > 0:
+                odds = {name: (max(0.0, work) / most) ** STEEPNESS for name, work in gives.items()}
+                for name, p in odds.items():
+                    mean[name] += p / sum(odds.values()) / len(STATED) ** 2
+    return mean if any(mean.values()) else {}
 
 
 def followed(seen: PairEvidence) -> bool:
-    """Whether both forces are known as laws of both arms."""
-    return all(law is not None and law.unexplained < MOST_UNEXPLAINED for law in seen.laws)
+    """Whether both forces are known as laws of both arms, and nothing unseen need feed the motion: the forces
+    of the motors are in the file, or at least it is known what friction takes.
+    """
+    known = all(law is not None and law.unexplained < MOST_UNEXPLAINED for law in seen.laws)
+    return known and (seen.rubs is not None or None not in seen.delays)
 
 
-def _beyond(seen: PairEvidence) -> dict[str, float]:
+def _beyond(seen: PairEvidence, viscous_share: float, dry_share: float) -> dict[str, float]:
     """[J] of each term beyond what pays for it: viscous friction, and the terms that take, for all that grow
     with the motion's square; Coulomb friction for the force along the motion.
     """
     viscous, dry = seen.rubs or (0.0, 0.0)
     gives = {name: work for name, work in seen.supplied.items() if work > 0 and name != _DRY}
-    pays = SURELY * viscous - sum(work for name, work in seen.supplied.items() if work < 0 and name != _DRY)
+    pays = viscous_share * viscous - sum(
+        work for name, work in seen.supplied.items() if work < 0 and name != _DRY
+    )
     share = max(0.0, 1 - pays / sum(gives.values())) if gives else 0.0
-    return {name: share * work for name, work in gives.items()} | {_DRY: seen.supplied[_DRY] - SURELY * dry}
+    return {name: share * work for name, work in gives.items()} | {
+        _DRY: seen.supplied[_DRY] - dry_share * dry
+    }

@@ -44,7 +44,7 @@ TERMS = ("link delay", "sampling", "delay", "damping", "local damping", "frictio
 _MOST_ROWS = 20_000
 """Up to the end of the vibration, for the law."""
 
-_EXPLAINED = 0.05
+_EXPLAINED = 0.01
 """Share of a force's variance that may be left over in the whole run."""
 
 _LONGEST_LINK = 0.6
@@ -140,8 +140,8 @@ def gather(
         if fitted is None:
             continue
         helped = phasors(fitted.helped, vibration.frequency, period) * hold
-        for name, force in _terms(fitted, delays[k], xs[k], xs[1 - k], hold, orders * omega, loop_period):
-            supplied[name] += weight * _work(force, xs[k], orders)
+        for name, part in _terms(fitted, delays[k], xs[k], xs[1 - k], hold, orders * omega, loop_period):
+            supplied[name] += weight * _work(part, xs[k], orders)
         supplied["friction compensation"] += weight * _work(helped, xs[k], orders)
     rubs = None
     if all(k.damping is not None for k in known):
@@ -196,7 +196,9 @@ def _arm(
     delay: float | None = None if arm.applied is None or best is None else best.lag
     if arm.commanded is not None and arm.applied is not None:
         asked, given = (sign * values[rows] for values in (arm.commanded, arm.applied))
-        delay = drive.account(asked, given, arm.position[rows], arm.period, loop_period, cycle).delay
+        delay = drive.account(
+            asked, given, arm.position[rows], arm.period, loop_period, cycle
+        ).delay_to_a_sample
     acts = arm.applied if arm.applied is not None else seen
     return sign * acts[rows], best, delay
 

@@ -14,8 +14,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from zwidth.diagnosis.law import at_ends
-
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -24,6 +22,9 @@ if TYPE_CHECKING:
 _MOST_ROWS = 2000
 _FEWEST_ROWS = 30
 _EXACT = 1e-9
+_FREE = 0.8
+"""Of the largest force: what is larger may have been cut off."""
+
 _MODELS = ((0,), (0, 1), (0, 2), (0, 3), (0, 1, 2), (0, 1, 3), (0, 2, 3), (0, 1, 2, 3))
 """Terms that are tried together: K, B, D, F."""
 
@@ -70,7 +71,7 @@ def fit(
     """The law of one arm in a stretch; None where its force does not follow the arms."""
     times = np.arange(own.size, dtype=np.float64) * row_period
     first = int(np.ceil((max(lags) + max(links) + loop_period) / row_period)) + 1
-    rows = np.flatnonzero(~at_ends(force))
+    rows = np.flatnonzero(np.abs(force) < _FREE * np.abs(force).max())
     rows = rows[rows >= min(first, own.size // 2)]
     if rows.size < _FEWEST_ROWS or not np.ptp(force[rows]):
         return None
@@ -106,7 +107,7 @@ def _read(position: Array, times: Array, at: Array, loop_period: float) -> tuple
 
 
 def _fitted(table: Array, y: Array) -> list[tuple[tuple[int, ...], Array, float]]:
-    """Each model with K > 0 and F > 0: its terms, and what they leave over."""
+    """Each model with K, B and F > 0: its terms, and what they leave over."""
     centred, wanted = table - table.mean(axis=0), y - y.mean()
     size = float(wanted @ wanted)
     norm = np.sqrt((centred**2).sum(axis=0))
@@ -118,7 +119,7 @@ def _fitted(table: Array, y: Array) -> list[tuple[tuple[int, ...], Array, float]
         index = list(model)
         system = gram[np.ix_(index, index)] + 1e-12 * np.eye(len(index))
         terms = np.linalg.solve(system, answer[index])
-        if terms[0] > 0 and (3 not in model or terms[-1] > 0):
+        if all(value > 0 for term, value in zip(model, terms, strict=True) if term != 2):
             left = max(size - float(terms @ answer[index]), 0.0) / size
             found.append((model, terms / norm[index], left))
     return found

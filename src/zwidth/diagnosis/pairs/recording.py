@@ -111,7 +111,7 @@ def _of_arm(
         elif not _PREFIX[other].match(name):
             original.setdefault(name, name)
     chosen: dict[str, str | None] = _own(columns, arm, other)
-    original |= {name: name for name in chosen.values() if name in table.units}
+    original |= {name: name for name in chosen.values() if name is not None and name in table.units}
     return original, chosen
 
 

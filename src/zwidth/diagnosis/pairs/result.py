@@ -190,7 +190,7 @@ class PairDiagnosis(Shown):
         force
             Replace a file that exists.
         """
-        from zwidth.diagnosis.picture import pair_figure
+        from zwidth.diagnosis.pairs.picture import pair_figure
         from zwidth.plots.files import save_figure
 
         if path is not None:
