@@ -34,7 +34,7 @@ FILTERED = contact(
 )  # fmt: skip
 # T = ½, half a sample late: Q = 4, S = 6, b = ½ (4 + √(4² + 6²/4)) = 9/2
 HALF = contact(
-    4, 2, [1], [8, -4], [1, 0],
+    4, "2/3", [2, -1], ["20/3", -4, "4/3"], [1, 0, 0],
     damping_N_s_per_m="9/2", delay_s="1/4", sample_period_s="1/2", coulomb_friction_N=6, resolution_m=1,
 )  # fmt: skip
 LESS = "is below what hold"
@@ -103,6 +103,7 @@ CASES = [
     refused("no surface", put(DAMPED, {"loop.unilateral": False}), "acts inside only"),
     *edge("half a sample late", HALF, put(HALF, {"loop.damping_N_s_per_m": Fraction(9, 2) - TINY}), LESS),
     refused("half a sample late, undamped", put(HALF, {"loop.damping_N_s_per_m": 0}), LESS),
+    refused("undamped", put(DAMPED, {"loop.damping_N_s_per_m": 0}), LESS),
     refused("K < 0", contact(-1, 0, [], [-1], [1], damping_N_s_per_m=9), "stiffness_N_per_m must be ≥ 0"),
     accepted("K = 0", contact(0, 0, [], [0], [1])),
     # p = 1: W = 0, nothing is damped
