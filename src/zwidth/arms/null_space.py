@@ -92,6 +92,15 @@ def task_jacobian(arm: Arm, joints: npt.ArrayLike) -> Array:
     return arm.placed(joints)[1] if isinstance(arm, DescribedArm) else arm.jacobian(joints)
 
 
+def moving(arm: Arm) -> npt.NDArray[np.intp]:
+    """The joints that are not held: no motion that is asked about moves the others."""
+    return np.array([i for i, (low, high) in enumerate(_ranges(arm)) if high > low], dtype=np.intp)
+
+
+def _ranges(arm: Arm) -> Sequence[tuple[float, float]]:
+    return arm.joint_range if isinstance(arm, (DescribedArm, PlanarChain)) else [(0, 1)] * arm.joint_count
+
+
 def projector(jacobian: Array, regularization: float = 0.0) -> Array:
     """P (…, m, m)."""
     turned = np.swapaxes(jacobian, -1, -2)
@@ -146,14 +155,16 @@ def fast_motion(
 ) -> ArmMotion | None:
     """A small motion to and fro at the rest that takes energy out of both, replayed; None: none was found."""
     at = np.asarray(spring.rest)
-    jacobian = task_jacobian(arm, at)
+    jacobian, free = task_jacobian(arm, at), moving(arm)
     found: list[tuple[float, int, Array]] = []
     for samples in range(2, _FAST + 1):
         theta = 2 * pi / samples
         hand = damping_at(theta, wall, period, delay_samples, len(jacobian))
         need = jacobian.T @ hand @ jacobian + null_space_need(arm, spring, period, delay_samples, theta)
-        values, vectors = np.linalg.eigh(as_matrix(arm.damping) - need)
-        found.append((values[0] * (1 - np.cos(theta)), samples, vectors[:, 0]))
+        values, vectors = np.linalg.eigh((as_matrix(arm.damping) - need)[np.ix_(free, free)])
+        shape = np.zeros(len(at))
+        shape[free] = vectors[:, 0]
+        found.append((values[0] * (1 - np.cos(theta)), samples, shape))
     lowest, samples, shape = min(found, key=lambda item: item[0])
     if lowest >= 0:
         return None
@@ -202,10 +213,11 @@ def _loop_at(
     distance: float,
 ) -> tuple[float, Loop] | None:
     """The loop in the plane of the largest curl, with what it should give [J], slow enough for half of it."""
-    moving = np.array([high > low for low, high in arm.joint_range], dtype=float)
-    steps = _STEP * np.diag(moving)
+    free = np.zeros(arm.joint_count)
+    free[moving(arm)] = 1
+    steps = _STEP * np.diag(free)
     slopes = (resisting(arm, spring, centre + steps) - resisting(arm, spring, centre - steps)).T / (2 * _STEP)
-    curl = (slopes - slopes.T) * np.outer(moving, moving)
+    curl = (slopes - slopes.T) * np.outer(free, free)
     left, sizes, _ = np.linalg.svd(curl)
     if not sizes[0] > 0:
         return None

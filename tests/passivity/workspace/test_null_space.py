@@ -150,6 +150,21 @@ def test_on_the_command_line(
         assert message in " ".join(capsys.readouterr().err.split())
 
 
+def test_a_joint_that_is_held_does_not_move(tmp_path: Path) -> None:
+    """Held, the last joint is in no motion, and its friction and damping do not count."""
+    pytest.importorskip("pinocchio")
+    arm = panda_like(tmp_path / "panda.urdf")
+    asked: dict[str, Any] = {"whole": True, "hold": {"j7": 0.3}}
+    held = zw.arms.read_arm(arm, coulomb_friction=(0.2,) * 6 + (0,), damping=(1,) * 6 + (0.1,), **asked)
+    found = zw.null_space(held, zw.Wall(300, 1), rate=1000, stiffness=20, damping=3)
+    assert found.fast is not None
+    assert (found.fast.joints[:, 6] == 0.3).all()
+    assert found.fast.joints[:, :6].std() > 0
+    soft = zw.null_space(held, zw.Wall(300), rate=1000, stiffness=20, damping=0.5)
+    assert 0.5 < soft.largest_damping < 1
+    assert soft.covered > 0
+
+
 def test_the_jacobian_of_the_task_knows_no_orientation_of_rest(tmp_path: Path) -> None:
     """P is that of the controller wherever the wall rests."""
     pytest.importorskip("pinocchio")

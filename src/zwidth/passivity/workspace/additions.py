@@ -39,8 +39,8 @@ _LEAST = 0.02
 class Addition(NamedTuple):
     """Damping to be added to each joint [N·m·s/rad]; ∞ where none is enough.
 
-    With it the region is proved, of an arm with more than four joints in doubles alone; with `fails`, or less in
-    these proportions, the condition fails at a point.
+    With it the region is proved, of an arm with more than four joints in doubles alone; with `fails`, or
+    less in these proportions, the condition fails at a point.
     """
 
     enough: tuple[float, ...]

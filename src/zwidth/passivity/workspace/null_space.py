@@ -27,6 +27,7 @@ from zwidth.arms.null_space import (
     Loop,
     NullSpaceSpring,
     fast_motion,
+    moving,
     projector,
     slow_loop,
     task_jacobian,
@@ -174,7 +175,7 @@ class NullSpace(PassivityAnswer):
         if self.covered:
             far = shown(self.covered, "rad")
             return f"the spring's want of a potential up to {far} from the rest, by a bound that is not tight"
-        if self.spring.stiffness and not min(self.question.arm.coulomb_friction or (0.0,)):
+        if self.spring.stiffness and not _least_friction(self.question.arm):
             return "nothing: a joint has no Coulomb friction that is known"
         return "nothing: at the rest wall and null space ask for more damping than the joints have"
 
@@ -300,12 +301,13 @@ def _rest(
 
 def _has_null_space(arm: Arm, spring: NullSpaceSpring) -> None:
     jacobian = task_jacobian(arm, spring.rest)
-    size, count = jacobian.shape
+    size = len(jacobian)
+    count = np.count_nonzero(jacobian[:, moving(arm)].any(axis=0))  # no fingers beside the hand
     if count <= size:
         pose = "; in pose it has none, held at a point it may" if arm.turns else ""
         raise InputError(
-            f"{arm.name} has {count} joints for {size} coordinates of the hand: no motion of the joints "
-            f"leaves the hand where it is, and no null-space spring does anything{pose}"
+            f"{arm.name} has {count} joints that move the hand, for {size} coordinates of it: no motion of "
+            f"the joints leaves the hand where it is, and no null-space spring does anything{pose}"
         )
     if not spring.regularization and np.linalg.matrix_rank(jacobian) < size:
         raise InputError(
@@ -329,7 +331,7 @@ def _slow(
 def _covered(question: Question, spring: NullSpaceSpring) -> float:
     """The largest ρ of the theorem, from below [rad]."""
     arm = question.arm
-    friction = min(arm.coulomb_friction or (0.0,))
+    friction = _least_friction(arm)
     slope = _slope(arm, spring)
 
     def holds(far: float) -> bool:
@@ -343,6 +345,11 @@ def _covered(question: Question, spring: NullSpaceSpring) -> float:
         middle = (low + high) / 2
         low, high = (middle, high) if holds(middle) else (low, middle)
     return low if holds(low) and low > 1e-9 else 0.0
+
+
+def _least_friction(arm: Arm) -> float:
+    """Of the joints that are not held."""
+    return min((arm.coulomb_friction[i] for i in moving(arm)), default=0.0) if arm.coulomb_friction else 0.0
 
 
 def _slope(arm: Arm, spring: NullSpaceSpring) -> float:
@@ -394,7 +401,8 @@ def _margin(question: Question, spring: NullSpaceSpring, far: float, eta: float)
     damper = spring.damping * (inside + eta * np.eye(len(inside)))
     left = as_matrix(question.arm.damping) - needed - damper
     rounding = _ROUNDING * (_size(as_matrix(question.arm.damping)) + _size(needed) + _size(damper))
-    return float(np.linalg.eigvalsh(left)[0]) - lost - rounding
+    free = moving(question.arm)
+    return float(np.linalg.eigvalsh(left[np.ix_(free, free)])[0]) - lost - rounding
 
 
 def _size(matrix: Array) -> float:
@@ -406,12 +414,14 @@ def _factor(question: Question, spring: NullSpaceSpring) -> float:
     jacobian = task_jacobian(question.arm, spring.rest)
     need = wall_need(question.wall, question.period, question.delay_samples, len(jacobian))
     base = as_matrix(question.arm.damping) - jacobian.T @ need.bound @ jacobian
-    return float(largest_scale(base, jacobian.T @ need.stiffness_share @ jacobian))
+    free = np.ix_(moving(question.arm), moving(question.arm))
+    return float(largest_scale(base[free], (jacobian.T @ need.stiffness_share @ jacobian)[free]))
 
 
 def _largest_damping(question: Question, spring: NullSpaceSpring) -> float:
     _, _, inside, needed = _needs(question, spring)
-    return float(largest_scale(as_matrix(question.arm.damping) - needed, inside))
+    free = np.ix_(moving(question.arm), moving(question.arm))
+    return float(largest_scale((as_matrix(question.arm.damping) - needed)[free], inside[free]))
 
 
 def _loop(loop: Loop, motion: ArmMotion) -> dict[str, Any]:
