@@ -269,3 +269,11 @@ def test_noise_with_a_memory_is_no_touch():
     force = zw.tissue.force_response(SOLID, time, np.maximum(depth, 0)) + 0.02 * noise
     history = history_of(Trial(time, depth, force, ()), "relaxation", "here")
     assert history.surface == pytest.approx(0.0008, abs=3e-4)
+
+
+def test_a_branch_of_nothing_is_no_end_of_a_search():
+    """It relaxes and creeps at one rate, as floats go: a search that strays there is told to come back."""
+    history = history_of(Trial(*creep(), ()), "creep", "here")
+    task = Task(as_model("standard-linear-solid", None, "force"), history, fines_of(history)[0], True)
+    found = predicted(task, np.append(np.log([420, 2.6e-38, 9e-39]), 0.0))
+    assert (found == 0).all()

@@ -23,6 +23,9 @@ from zwidth.identification.tissue.experiment.noise import Noise, likelihood, noi
 from zwidth.identification.tissue.experiment.prediction import Task, derivatives, predicted
 from zwidth.identification.tissue.start import starting_points
 
+REACH = 14.0
+"""How far the logarithm of a parameter may go from where it began."""
+
 AGREED = 0.05
 """Relative change of the memory below which fit and noise agree."""
 
@@ -120,10 +123,15 @@ def _searched(task: Task, start: Array, noise: Noise, most: int = MOST) -> tuple
     from scipy.optimize import least_squares
 
     output = task.output / task.size
+    reach = np.where(np.arange(start.size) < task.own, REACH, np.inf)
+
+    def within(point: Array) -> Array:
+        return np.asarray(np.clip(point, start - reach, start + reach))
+
     found = least_squares(
-        lambda p: noise.whitened(predicted(task, p) - output),
+        lambda p: noise.whitened(predicted(task, within(p)) - output),
         start,
-        jac=lambda p: noise.whitened(derivatives(task, p)),
+        jac=lambda p: noise.whitened(derivatives(task, within(p))),
         method="lm",
         x_scale="jac",
         xtol=1e-9,
@@ -131,7 +139,7 @@ def _searched(task: Task, start: Array, noise: Noise, most: int = MOST) -> tuple
         gtol=1e-12,
         max_nfev=most,
     )
-    return found.x, float(found.cost)
+    return within(found.x), float(found.cost)
 
 
 def covariance(found: Solved) -> tuple[Array, float]:
