@@ -10,6 +10,8 @@ import pytest
 
 import zwidth as zw
 from zwidth.diagnosis import CAUSES
+from zwidth.diagnosis.recording import read_of_table
+from zwidth.identification.logs.table import Table, in_pieces
 
 PERIOD = 0.001
 RNG = np.random.default_rng(3)
@@ -182,6 +184,22 @@ def test_a_file_without_the_force_it_takes_is_refused(tmp_path: Path, text: str,
     path.write_text(text + "\n".join(rows) + "\n", encoding="utf-8")
     with pytest.raises(zw.InputError, match=message):
         zw.diagnose(path)
+
+
+def test_both_forces_of_a_served_loop_are_known() -> None:
+    """What the law wished for and what was given, by the names that a recording of `zwidth serve` has."""
+    columns = {name: np.arange(600) * 1e-3 for name in ("time_s", "position_m", "wished_force_N", "force_N")}
+    columns["position_m"] = np.round(1e6 * np.sin(60 * columns["time_s"])) * 1e-8
+    table = Table(
+        source="run.mcap",
+        units=dict.fromkeys(columns),
+        read=lambda names: in_pieces("run.mcap", columns, names),
+        means={"time": "time_s", "position": "position_m", "hand_force": None, "actuator_force": "force_N"},
+    )
+    taken = read_of_table(table, {}, {}, {}, {})
+    assert taken.commanded is not None
+    assert taken.applied is not None
+    assert not any("taken as the force" in finding for finding in taken.findings)
 
 
 def test_a_wheel_is_no_paddle() -> None:

@@ -174,6 +174,10 @@ def test_one_arm_of_a_file_and_an_arm_too_few(shaken: dict[str, np.ndarray], tmp
     with pytest.raises(zw.InputError, match="actuator's force"):
         zw.diagnose_pair(written(tmp_path / "bare.csv", bare))
     path = written(tmp_path / "arms.csv", shaken)
+    with pytest.raises(zw.InputError, match="diagnose_pair"):
+        zw.diagnose(path)
+    with pytest.raises(zw.InputError, match="no columns of a leader"):
+        zw.diagnose_pair(zw.samples.path("shaking.csv"))
     slider = zw.Device(mass=0.1, damping=1, coulomb_friction=0, sample_period=PERIOD)
     with pytest.raises(zw.InputError, match="which is meant"):
         zw.diagnose_pair(path, zw.Pair(slider, slider, stiffness=1))

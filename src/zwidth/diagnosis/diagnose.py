@@ -15,6 +15,7 @@ from zwidth.device import Device
 from zwidth.diagnosis.causes import CAUSES, is_named, likelihoods
 from zwidth.diagnosis.change import change_for
 from zwidth.diagnosis.evidence import Evidence, gather
+from zwidth.diagnosis.pairs.recording import holds_two_arms
 from zwidth.diagnosis.recording import Recording, read
 from zwidth.diagnosis.result import Diagnosis
 from zwidth.diagnosis.vibration import find
@@ -63,6 +64,11 @@ def diagnose(
     InputError
         If the recording cannot be read, holds no force of the actuator, or moves otherwise than the device.
     """
+    if not isinstance(recording, Log) and "position" not in (columns or {}) and holds_two_arms(recording):
+        raise InputError(
+            "there are two arms in this recording: ask zwidth.diagnose_pair, or say whose columns are meant "
+            'with columns={"position": …}'
+        )
     taken = read(recording, columns=columns, units=units, scale=scale, **reading)
     if device is not None and device.motion != taken.motion:
         raise InputError(

@@ -105,7 +105,8 @@ def read_of_table(
     reading: Mapping[str, Any],
 ) -> Recording:
     """The same of the table of a file that is open."""
-    told = (dict(columns), units, scale, reading)
+    given = table.means.get("actuator_force")
+    told = (({} if given is None else {"actuator_force": given}) | dict(columns), units, scale, reading)
     return _read(list(table.units), table.source, lambda **given: log_of(table, **given), *told)
 
 

@@ -87,6 +87,11 @@ def read_pair(
 
 def _both(table: Table, columns: Mapping[str, str | None], *told: Any) -> PairRecording:
     """Both arms by one clock: that of the leader's position, where each has its own."""
+    if not _of_both(list(table.units), columns):
+        raise InputError(
+            f"{table.source}: there are no columns of a leader and of a follower; say which with "
+            'columns={"leader_position": …} and so on, or name them so'
+        )
     original, chosen = _of_arm(table, "leader", columns)
     named = {**chosen, "hand_force": None, "actuator_force": None}
     named.pop("commanded_force", None)

@@ -110,7 +110,7 @@ def role_of_force(column: str) -> str | None:
         return "actuator_force"
     return (
         "commanded_force"
-        if word in asked
+        if word in asked or word == "wished_force"  # of a served loop
         else "force"
         if word in ("force", "f", "torque") and word in unsaid
         else None
