@@ -15,7 +15,6 @@ with s = η γ₁(1) + δ γ₂(1),
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -56,13 +55,14 @@ class Motion(NamedTuple):
     def halves(self, whole: Motion, wall: Fraction) -> list[Motion]:
         """Cut in two across the side that is longest beside where it lies; the spring lies beside the wall's.
 
-        Damping counts twice: how much there is of it is what most limits hang on.  It decides only how many
-        boxes it takes; every side is cut in the end, for none is longer than 128 times its part of the whole.
+        Damping counts twice: how much there is of it is what most limits hang on.  The choice decides only
+        how many boxes it takes; every side is cut in the end, for what counts goes to 0 with its length.
         """
-        beside = (1, Fraction(1, 2), 1), (0, 0, 4 * abs(wall))
+        beside = (Fraction(0), Fraction(0), 4 * abs(wall))
+        counts = (1, 2, 1)
         shares = [
-            (b - a) / ((a + b) * less + more + (d - c) / 64) if c < d else 0
-            for (a, b), (c, d), less, more in zip(self[:3], whole[:3], *beside, strict=True)
+            count * (b - a) / (a + b + more + (d - c) / 64) if c < d else 0
+            for (a, b), (c, d), more, count in zip(self[:3], whole[:3], beside, counts, strict=True)
         ]
         name = self._fields[shares.index(max(shares))]
         low, high = getattr(self, name)
@@ -92,9 +92,10 @@ def sampled(motion: Motion, bits: int) -> Sampled:
 
     So what enters it once enters to first order alone, and what is left of each number may cancel.
     """
-    usual = sum(motion.mass) / 2
-    heavy, light = _near_1([m / usual for m in motion.mass], bits)
-    damping, stiffness = (between(*motion[place], place, 3, bits) for place in (1, 2))
+    low, high = motion.mass
+    usual = (low + high) / 2
+    heavy, light = _near_1(low / usual, high / usual, bits)
+    damping, stiffness = between(*motion.damping, 1, 3, bits), between(*motion.stiffness, 2, 3, bits)
     unit = known(motion.period**2 / usual, bits)
     pull, drag = unit * stiffness, known(motion.period / usual, bits) * damping
     spring, loss = light * pull, light * drag
@@ -116,12 +117,12 @@ def sampled(motion: Motion, bits: int) -> Sampled:
     return Sampled([rest_now, rest_then + now, then], denominator, whole + 1)
 
 
-def _near_1(ends: Sequence[Fraction], bits: int) -> tuple[Enclosed, Enclosed]:
+def _near_1(low: Fraction, high: Fraction, bits: int) -> tuple[Enclosed, Enclosed]:
     """Every 1 + ρε between these ends, and 1/(1 + ρε) = 1 − ρε + ρ²ε²/(1 + ρε)."""
-    part = (ends[1] - ends[0]) / 2
+    part = (high - low) / 2
     half = part**2 / (1 - part) / 2
     inverse = known(1 + half, bits).widened(half) - between(-part, part, 0, 3, bits)
-    return between(*ends, 0, 3, bits), inverse
+    return between(low, high, 0, 3, bits), inverse
 
 
 def sampled_free(motion: Motion) -> Sampled:
