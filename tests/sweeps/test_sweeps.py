@@ -279,7 +279,9 @@ def test_a_touch_is_simulated_as_by_itself() -> None:
 
 def test_what_an_outcome_is_about_stands_beside_it() -> None:
     """No claim without its contact and encoder; what all have in common is in the scope."""
-    found = zw.sweep(PADDLE, zw.Wall(30, "0.05"), vary={"delay": "0, 0.3 ms"}, workers=1)
+    found = zw.sweep(
+        PADDLE, zw.Wall(90, "0.03", zw.rendering.OnePole("1 ms")), vary={"delay": "0, 1 ms"}, workers=1
+    )
     assert found.outcome.values.tolist() == ["passive", "passive in contact"]
     assert found.contact.values.tolist() == ["made and broken", "kept"]
     assert set(found.encoder.values.tolist()) == {"counted"}
