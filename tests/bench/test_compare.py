@@ -211,7 +211,7 @@ def test_what_it_refuses(device, wall, options, said):
 
 def test_a_proof_of_sustained_contact_alone_is_not_called_passive():
     """The touches make and break contact: what covers only a hand that stays is undecided here."""
-    late, law = PADDLE.replace(delay="0.0004"), zw.Wall(20, damping="0.02")
+    late, law = PADDLE.replace(delay="0.0004"), zw.Wall(120, damping="0.03")
     assert zw.check(late, law).outcome == "passive in contact"
     found = zw.compare(late, zw.Wall(20), {"slow": law})
     assert found.scores["status"].item() == "undecided"

@@ -38,7 +38,7 @@ NUMBERS = {
     "plot_storage_of_an_arm": "the lemma loses 0.00125 mJ of 1.94 mJ of heat in the joints",
     "plot_tracking_tissue": "found again 3.4 s after the change",
     "plot_velocity_filter": "N = 20: b ≥ 0.248 B, tightest at 35 Hz",
-    "plot_workspace": "0.667 mN·m·s/rad more in the first joint, or 0.615 in both",
+    "plot_workspace": "0.678 mN·m·s/rad more in the first joint, or 0.626 in both",
     "plot_worst_case": "admissible speed at 770 N/m: 0.474 m/s",
 }
 

@@ -134,8 +134,8 @@ def test_every_picture_says_what_is_in_it(active_page: str) -> None:
 
 
 LOOPS = {
-    "passive in contact": (zw.Device(damping=0.3, rate=1000, delay=0.0004), zw.Wall(100, 0.03)),
-    "undecided": (zw.Device(damping=0.3, rate=1000, delay=0.0004), zw.Wall(100, 0.03, clamped=True)),
+    "passive in contact": (zw.Device(damping=0.12, rate=1000, delay=0.0004), zw.Wall(100, 0.03)),
+    "undecided": (zw.Device(damping=0.12, rate=1000, delay=0.0004), zw.Wall(100, 0.03, clamped=True)),
     "passive": (PADDLE.replace(damping=(0.14, 0.2)), zw.Wall((200, 250))),
     "active": (zw.rotary(damping=0.05, coulomb_friction=0.1, counts_per_turn=2400, rate=1000), zw.Wall(80)),
 }

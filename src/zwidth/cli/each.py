@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from zwidth.cli.options import Once, add_parameters, overrides
-from zwidth.cli.output import print_json, print_report, say_written, targets, writing
+from zwidth.cli.output import print_json, print_report, say_written, targets
 from zwidth.errors import InputError
 from zwidth.quantity.spoken import angles_in
 from zwidth.specification.table import plain, quoted
+from zwidth.writing import writing_whole
 
 if TYPE_CHECKING:
     from zwidth.cli.each_table import EachDevice
@@ -89,8 +90,8 @@ def _save(found: EachDevice, save: Path | None) -> None:
     if save.suffix.lower() == ".json":
         found.save(save)
     else:
-        with writing(save):
-            save.write_text(found.csv(), encoding="utf-8")
+        with writing_whole(save) as file:
+            file.write(found.csv().encode())
 
 
 def _loops(sources: list[str], typed: Mapping[str, str]) -> Iterator[Specification]:

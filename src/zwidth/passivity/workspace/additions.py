@@ -32,8 +32,8 @@ _STEPS = (1 / 8, 1 / 2)
 _MOST_PROVED = 4
 """Joints of an arm of which the checker is asked."""
 
-_LEAST = 0.02
-"""Of what fails: nearer to it the checker would need too many cells."""
+_NEAR = 0.06
+"""Of what fails, tried first where the steps are longer: nearer to it the checker needs many cells."""
 
 
 class Addition(NamedTuple):
@@ -94,8 +94,9 @@ class Additions:
         if self._joints > _MOST_PROVED:
             return Addition(_numbers(enough), _numbers(fails))
         far = np.where(np.isfinite(enough), enough, 4 * fails)  # the bounds alone may ask for no end of it
-        for share in _STEPS:
-            tried = np.maximum(fails + share * (far - fails), (1 + _LEAST) * fails)
+        steps = [fails + share * (far - fails) for share in _STEPS]
+        near = (1 + _NEAR) * fails
+        for tried in steps if steps[0].sum() < near.sum() else [near, *steps]:
             if self._proves(tried):
                 return Addition(_numbers(tried), _numbers(fails))
         return Addition(_numbers(enough), _numbers(fails))
