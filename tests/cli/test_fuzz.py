@@ -21,7 +21,7 @@ from zwidth.cli.options import coupling_parameters, device_parameters, environme
 from zwidth.specification.environments import TYPES
 
 quick = settings(
-    max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    max_examples=20, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 COUPLING = [p.option for p in coupling_parameters()]
 OPTIONS = [p.option for p in (*device_parameters(), *environment_parameters())]

@@ -219,6 +219,7 @@ def test_nothing_is_wider_than_the_screen_and_everybody_can_use_it(page: Page, a
             assert not bad, [(v["id"], [n["html"] for n in v["nodes"]]) for v in bad]
 
 
+@one_size
 def test_tabs_go_by_arrows(page: Page, address: str) -> None:
     """To the next, around the end, and the address says which is open."""
     opened(page, address)
