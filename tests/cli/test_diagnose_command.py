@@ -51,7 +51,7 @@ def test_json_says_the_same(there: Path, capsys) -> None:
     assert main(["diagnose", "shaking.csv", "wheel.toml", "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert document["cause"] == "delay"
-    assert document["command"].startswith("zwidth check wheel.toml --stiffness 20")
+    assert document["command"].startswith("zwidth check wheel.toml --stiffness '20 N*m/rad'")
     assert document["change"]["parameter"] == "delay"
 
 

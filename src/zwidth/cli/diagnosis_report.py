@@ -13,6 +13,7 @@ from rich.text import Text
 from zwidth.cli.options import device_parameters, given
 from zwidth.cli.page import below, grid, headline, items, more_with_all, page, section, small_print
 from zwidth.passivity.outcome import TOLD
+from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
@@ -94,13 +95,14 @@ def command(found: Diagnosis | PairDiagnosis, arguments: argparse.Namespace) -> 
     law = found.seen.law
     stiffness = change.to if change.parameter == "stiffness" else law.stiffness
     damping = change.to if change.parameter == "damping" else law.damping
-    words += ["--stiffness", f"{stiffness:.6g}"]
+    motion = change.device.motion
+    words += ["--stiffness", f"{stiffness:.6g} {GLOSSARY['stiffness'].unit_for(motion)}"]
     if damping:
-        words += ["--virtual-damping", f"{damping:.6g}"]
+        words += ["--virtual-damping", f"{damping:.6g} {GLOSSARY['damping'].unit_for(motion)}"]
         if law.window > 1:
             words += ["--velocity-filter", f"window {law.window}"]
     if float(change.device.exact("delay")):
-        words += ["--delay", f"{float(change.device.exact('delay')):.6g}"]
+        words += ["--delay", f"{1000 * float(change.device.exact('delay')):.6g} ms"]
     return shlex.join(words)
 
 
