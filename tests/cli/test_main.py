@@ -354,6 +354,10 @@ def test_interrupt(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
             "from zwidth.cli.main import main; main(['check', 'phantom', '--stiffness', '300', '--json'])",
             ("numpy", "scipy", "matplotlib", "rich"),
         ),
+        (
+            "import zwidth; zwidth.simulate, zwidth.traces.load_trace",
+            ("scipy.stats", "matplotlib", "zwidth.identification", "zwidth.bench.bench"),
+        ),
     ],
 )
 def test_nothing_is_imported_before_it_is_needed(code: str, absent: tuple[str, ...]) -> None:

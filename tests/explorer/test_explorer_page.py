@@ -60,6 +60,7 @@ def held(page: Page) -> dict[str, str]:
     return dict(parse_qsl(urlsplit(page.url).query))
 
 
+@one_size
 def test_a_device_is_chosen_a_slider_moved_and_the_address_keeps_it(page: Page, address: str) -> None:
     """The verdict is that of `zwidth.check` for the numbers shown, and again after a reload."""
     opened(page, address)

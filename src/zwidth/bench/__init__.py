@@ -1,6 +1,5 @@
 """Rendering laws on one bench: the same touches, the same adversary, the same scores."""
 
-from zwidth.bench.bench import LawComparison, compare
-from zwidth.bench.laws import standard_laws
+from zwidth.lazy import attach
 
-__all__ = ["LawComparison", "compare", "standard_laws"]
+__getattr__, __dir__, __all__ = attach(__name__)

@@ -76,8 +76,7 @@ def decided(loop: Specification, contact: str = "made and broken") -> Verdict:
         if contact == "kept" or not has_gap(device, law, closed):
             return closed
     from zwidth.cli.compile_notice import warn_of_compiling_the_iteration
-    from zwidth.traces.progress import progress_bar
-    from zwidth.traces.run import falling
+    from zwidth.traces.progress import falling, progress_bar
 
     warn_of_compiling_the_iteration()
     with progress_bar("states") as progress:

@@ -34,6 +34,18 @@ def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
         bar.close()
 
 
+def falling(progress: Callable[[int, int], None]) -> Callable[[int], None]:
+    """Progress for a number that falls to 0, not always steadily: the most there were, less what is left."""
+    most = 0
+
+    def report(left: int) -> None:
+        nonlocal most
+        most = max(most, left)
+        progress(most - left, most)
+
+    return report
+
+
 class _Bar:
     def __init__(self, what: str) -> None:
         self._what = what

@@ -23,7 +23,6 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.linalg import expm
 
 from zwidth.compiled import Array, compiled
 from zwidth.environment.wall import wall_of
@@ -171,6 +170,8 @@ class Modelled(RenderingLaw):
 
 @lru_cache(maxsize=64)  # a law asks for the same at every touch
 def _held(plant: Plant, time: float) -> tuple[Matrix, Matrix]:
+    from scipy.linalg import expm  # scipy takes its time
+
     both = np.zeros((3, 3))
     both[:2, :2] = plant.matrix()
     both[1, 2] = -1 / plant.mass

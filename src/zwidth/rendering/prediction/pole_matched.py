@@ -24,7 +24,6 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from scipy.linalg import expm
 
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
@@ -77,6 +76,8 @@ class PoleMatched(Modelled):
 
 def matched(plant: Plant, stiffness: float, damping: float, period: float) -> tuple[float, float]:
     """(g_x, g_v) of the equations above."""
+    from scipy.linalg import expm  # scipy takes its time
+
     phi, gamma = plant.held(period)
     goal = expm(plant.matrix(stiffness, damping) * period)
     (ff, fv), (vf, vv) = phi

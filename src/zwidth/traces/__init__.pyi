@@ -1,0 +1,12 @@
+from zwidth.traces.accessor import TraceAccessor as TraceAccessor
+from zwidth.traces.comparison import Comparison as Comparison
+from zwidth.traces.comparison import compare_traces as compare_traces
+from zwidth.traces.files import load_trace as load_trace
+from zwidth.traces.files import save_trace as save_trace
+from zwidth.traces.sound import save_sound as save_sound
+from zwidth.traces.with_bar.available_storage import available_storage as available_storage
+from zwidth.traces.with_bar.compare import compare as compare
+from zwidth.traces.with_bar.identify import identify as identify
+from zwidth.traces.with_bar.passive_limit import passive_limit as passive_limit
+from zwidth.traces.with_bar.simulate import simulate as simulate
+from zwidth.traces.with_bar.simulate_batch import simulate_batch as simulate_batch
