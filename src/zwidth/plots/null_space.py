@@ -1,7 +1,8 @@
-"""A null-space spring: the loop that takes energy out, and how many joules a loop of each size gives and takes."""
+"""A null-space spring: the loop that takes energy out, and the joules of a loop of each size."""
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -152,6 +153,14 @@ def _draw_joules(axes: Axes, found: NullSpace, shape: Shape | None) -> None:
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlabel("distance from the rest [rad]")
     axes.set_ylabel("energy of one turn [J]")
-    axes.legend(loc="upper left", fontsize=7.5)
+    axes.legend(loc="upper left", fontsize=7.5, frameon=True, framealpha=0.9, edgecolor="none")
+    known = (found.covered, found.loop.reach(found.spring.rest) if found.loop is not None else most)
+    edges = (least, max(least, known[0]), known[1], most)
+    for word, (start, end) in zip(("proved", "not known", "active"), pairwise(edges), strict=True):
+        if end > 1.5 * start:
+            middle = float(np.sqrt(start * end))
+            axes.text(
+                middle, 0.02, word, ha="center", fontsize=8, color=GREY, transform=axes.get_xaxis_transform()
+            )
     low, high = axes.get_ylim()
     axes.set_ylim(low, high * (high / low) ** 0.45)  # room for the legend

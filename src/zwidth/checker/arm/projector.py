@@ -104,7 +104,10 @@ def _inverse(columns: Rows) -> Rows:
 
 
 def _bounded(place: Place, back: Rows, inside: Rows, row_space: Rows, far: Fraction) -> Near:
-    free = place.moving
+    free, joints = place.moving, range(len(place.chain.joints))
+    here = [[inside[i][k] for k in joints] for i in joints]
+    if not free:
+        return Near(here, Fraction(0), [Fraction(0) for _ in joints])
     first = [_seen(back, _first(place, j)) for j in free]
     pairs = {(k, j): _seen(back, _second(place, k, j)) for k in free for j in free if k <= j}
     second = [[pairs[min(k, j), max(k, j)] for j in free] for k in free]
@@ -123,12 +126,11 @@ def _bounded(place: Place, back: Rows, inside: Rows, row_space: Rows, far: Fract
     outer, inner = left + z**3, z**2 + z**4
     along = far * root_above(outer**2 + z**4)
     across = far * root_above(outer**2 + inner**2)
-    joints = range(len(place.chain.joints))
     lacks = [
         _form(y_1, i, free) * far**2 + _root(row_space[i][i]) * along + _root(inside[i][i]) * across
         for i in joints
     ]
-    return Near([[inside[i][k] for k in joints] for i in joints], z, lacks)
+    return Near(here, z, lacks)
 
 
 def _first(place: Place, j: int) -> Rows:

@@ -90,7 +90,7 @@ class NullSpace(PassivityAnswer):
 
     @property
     def outcome(self) -> Outcome:
-        """ "active" with a motion; "passive" with a certificate, without encoder steps where the arm has some."""
+        """ "active" with a motion; "passive" with a certificate, of an arm with steps without them."""
         if self.slow is not None or self.fast is not None:
             return "active"
         if self.certificate is None:
