@@ -46,8 +46,8 @@ _PLACES = 64
 _LONGEST = 30_000
 """Samples of the longest loop that is replayed."""
 _SHORTEST = 64
-_SIZES = (1.0, 1.02, 1.05, 1.1, 1.2, 1.4, 1.8, 2.5)
-"""Times the size at which a loop begins to gain: a larger one is quicker."""
+_SIZES = 60
+"""Between that at which a loop begins to gain and the largest: a larger one is quicker."""
 _HALVINGS = 12
 _SMALLEST, _LADDER = 1 / 64, 16
 """Of the room that there is, the first size that is tried, and how many up to all of it."""
@@ -191,12 +191,11 @@ def _of(
             continue
         size, turned = begins
         one = one if turned else one._replace(sine=-one.sine)
-        for times in _SIZES:
-            if times * size <= most:
-                samples = _slow_enough(arm, wall, spring, period, one, times * size)
-                if samples is not None:
-                    yield one.at(spring.rest, times * size, samples)
-                    break
+        for larger in np.geomspace(size, most, _SIZES):
+            samples = _slow_enough(arm, wall, spring, period, one, float(larger))
+            if samples is not None:
+                yield one.at(spring.rest, float(larger), samples)
+                break
 
 
 def _room(shape: Shape, rest: Sequence[float], low: Array, high: Array, within: float | None) -> float:

@@ -85,6 +85,8 @@ CASES = [
         **{f"arm.joints.{i}.coulomb_friction_N_m": 0 for i in range(3)}})),
     accepted("no friction where nothing moves", put(rubbing("a joint that is held", LARGER),
                                                     {"arm.joints.2.coulomb_friction_N_m": 0})),
+    accepted("no damping where nothing moves", put(rubbing("a joint that is held", LARGER),
+                                                   {"arm.joints.2.damping_N_m_s_per_rad": 0})),
     accepted("no spring, no friction", put(POINT, {"spring.stiffness_N_m_per_rad": 0, **{
         f"arm.joints.{i}.coulomb_friction_N_m": 0 for i in range(3)}})),
     accepted("ranges narrower than the distance", put(POINT, {

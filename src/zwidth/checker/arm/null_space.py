@@ -19,7 +19,7 @@ from ..document.number import about, up
 from ..document.refusal import Invalid
 from ..document.unit import SECONDS, always
 from ..exact.enclosed import Enclosed
-from .cells import BITS, positive_in
+from .cells import BITS, Function, positive_in
 from .chain import CHAIN, MOST_JOINTS, Chain, chain_of, chain_surplus
 from .damping import Matrix, constant
 from .pose import axes_of, for_every_rest, in_words, pose_of, square, turning
@@ -66,7 +66,8 @@ def null_space(told: Read) -> tuple[str, tuple[tuple[float, ...], ...]]:
         require_no_rest(machine)
     need = [[constant(x) for x in row] for row in for_every_rest(need_of(*given, loop), pose)]
     left = chain._replace(damping=_left(chain.damping, around, loop, spring))
-    matrix = chain_surplus(left, need, Fraction(0), turning(machine, chain, pose) if pose.turns else None)
+    turned = turning(machine, chain, pose) if pose.turns else None
+    matrix = _of_moving(chain, chain_surplus(left, need, Fraction(0), turned))
     box = tuple(outward(low, high) for low, high in _box(chain, spring))
     cells = positive_in(box, matrix)
     middle = matrix([Enclosed(BITS, (low + high) // 2) for low, high in box])
@@ -116,6 +117,17 @@ def _left(damping: Matrix, around: Near, loop: Read, spring: Read) -> Matrix:
         ]
         for i, (row, inside) in enumerate(zip(damping, around.inside, strict=True))
     ]
+
+
+def _of_moving(chain: Chain, matrix: Function) -> Function:
+    """The same of the joints that move: no motion has a speed of the others."""
+    free = [i for i, joint in enumerate(chain.joints) if joint.low < joint.high]
+
+    def found(joints: Sequence[Enclosed]) -> list[list[Enclosed]]:
+        rows = matrix(joints)
+        return [[rows[i][k - i] for k in free if k >= i] for i in free]
+
+    return found
 
 
 def _box(chain: Chain, spring: Read) -> list[tuple[Fraction, Fraction]]:

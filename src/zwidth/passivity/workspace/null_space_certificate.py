@@ -141,7 +141,8 @@ def _is_of(document: dict[str, Any], question: Question, spring: NullSpaceSpring
     damping = as_matrix(arm.damping)
     taken = jacobian.T @ (need.stiffness_share + need.bound) @ jacobian
     taken += share * projector(jacobian, spring.regularization)
-    expected = (damping - taken)[np.ix_(own, own)]
+    free = [i for i in own if i in moving(arm)]
+    expected = (damping - taken)[np.ix_(free, free)]
     upper = np.concatenate([row[i:] for i, row in enumerate(expected)])
     size = np.abs(damping).max() + np.abs(taken).max()
     return bool(np.abs(np.concatenate(rows) - upper).max() <= _SAME * size)
