@@ -110,12 +110,11 @@ def _bounded(place: Place, back: Rows, inside: Rows, row_space: Rows, far: Fract
         return Near(here, Fraction(0), [Fraction(0) for _ in joints])
     first = [_seen(back, _first(place, j)) for j in free]
     pairs = {(k, j): _seen(back, _second(place, k, j)) for k in free for j in free if k <= j}
-    second = [[pairs[min(k, j), max(k, j)] for j in free] for k in free]
     rest = _third(place, back) * far**3
     y_1 = [_after(f, inside) for f in first]
     y, x = (
         far * _norm([[_after(f, side)] for f in first])
-        + far**2 / 2 * _norm([[_after(f, side) for f in row] for row in second])
+        + far**2 / 2 * _norm(_of_pairs({pair: _after(f, side) for pair, f in pairs.items()}, free))
         + rest
         for side in (inside, row_space)
     )
@@ -185,6 +184,11 @@ def _after(rows: Rows, side: Rows) -> Rows:
     """F times P₀ or Q₀, of which F meets the first rows."""
     columns = list(zip(*side[: len(rows[0])], strict=True))
     return [[dot(row, column) for column in columns] for row in rows]
+
+
+def _of_pairs(pairs: dict[tuple[int, int], Rows], free: list[int]) -> list[list[Rows]]:
+    """Second derivatives, which come in any order."""
+    return [[pairs[min(k, j), max(k, j)] for j in free] for k in free]
 
 
 def _form(y_1: list[Rows], i: int, moving: list[int]) -> Fraction:

@@ -56,7 +56,8 @@ class NullSpace(PassivityAnswer):
         How far from the rest was asked about, root of the sum of squares of the joints [rad]; None: the
         ranges of all joints.
     covered
-        So far from it no motion takes energy out, as the checker has proved; 0 where it proves nothing [rad].
+        So far from it no motion takes energy out, as the checker has proved: `within` where it proves that,
+        else the largest distance to some 5 %; 0 where it proves nothing [rad].
     why_not_more
         What the checker said of a region that is a little larger, or of every region.
     certificate
@@ -180,8 +181,8 @@ class NullSpace(PassivityAnswer):
 
     @property
     def margin(self) -> float | None:
-        """How much farther than asked a proof goes [rad]; None where no region is asked about."""
-        return None if self.within is None else self.covered - self.within
+        """How much less far than asked a proof goes, < 0 [rad]; None where it goes as far."""
+        return None if self.within is None or self.certificate else self.covered - self.within
 
     def numbers(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
@@ -198,6 +199,7 @@ class NullSpace(PassivityAnswer):
             "delay_samples": self.question.delay_samples,
             "within_rad": self.within,
             "covered_rad": self.covered,
+            "why_not_more": self.why_not_more,
             "wall_factor": finite(self.wall_factor),
             "largest_null_damping_N_m_s_per_rad": finite(self.largest_damping),
             "fast_motion": None if self.fast is None else motion_document(self.fast, turns),
@@ -256,7 +258,7 @@ def null_space(
     _has_null_space(arm, spring)
     far = None if within is None else _not_negative(within, "rad", "within")
     certificate = None if far is None else null_space_certificate(question, spring, far)[0]
-    covered, why = largest_certified(question, spring, far if certificate else None)
+    covered, why = (far or 0.0, "") if certificate else largest_certified(question, spring)
     found = slow_loop(arm, question.wall, spring, question.period, question.delay_samples, far)
     return NullSpace(
         question=question,

@@ -51,18 +51,12 @@ def null_space_certificate(
     return _certified(document, distance)
 
 
-def largest_certified(
-    question: Question, spring: NullSpaceSpring, proved: float | None = None
-) -> tuple[float, str]:
-    """A distance from the rest that is proved [rad], the largest to some 5 %; or 0, and why no more is.
-
-    `proved`: one that is known to be.
-    """
+def largest_certified(question: Question, spring: NullSpaceSpring) -> tuple[float, str]:
+    """A distance from the rest that is proved [rad], the largest to some 5 %; or 0, and why no more is."""
     document, lacks = _begun(question, spring)
     if document is None:
         return 0.0, lacks
-    low, high, why = proved or 0.0, _MOST, ""
-    distance = _STEP * proved if proved else _FIRST
+    low, high, distance, why = 0.0, _MOST, _FIRST, ""
     while _LEAST < distance < high and high > _CLOSE * low:
         found, said = _certified(document, distance)
         if found:
