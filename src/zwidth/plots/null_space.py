@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -32,6 +33,8 @@ from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     from zwidth.passivity.workspace import NullSpace
+
+Array = npt.NDArray[np.float64]
 
 _SIZES = 24
 _SPAN = 1.8
@@ -92,12 +95,12 @@ def _draw_loop(axes: Axes, found: NullSpace, shape: Shape | None) -> None:
         start = _ROUND // 8
         axes.annotate(
             "",
-            xy=joints[start + 4, [first, second]],
-            xytext=joints[start, [first, second]],
+            xy=_pair(joints[start + 4], first, second),
+            xytext=_pair(joints[start], first, second),
             arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.4},
         )
     axes.plot(rest[first], rest[second], "+", color=BLACK, ms=9)
-    axes.annotate("rest", rest[[first, second]], xytext=(4, 4), textcoords="offset points", fontsize=8)
+    axes.annotate("rest", _pair(rest, first, second), xytext=(4, 4), textcoords="offset points", fontsize=8)
     names = [verbatim(name) for name in _names(found)]
     axes.set_xlabel(f"{names[first]} [rad]")
     axes.set_ylabel(f"{names[second]} [rad]")
@@ -108,6 +111,10 @@ def _draw_loop(axes: Axes, found: NullSpace, shape: Shape | None) -> None:
     others = [i for i in np.argsort(-np.abs(shape.centre)) if i not in (first, second)]
     away = [f"{names[i]} {number(round(size * shape.centre[i], 2))}" for i in others[:2]]
     heading(axes, f"{told}; off its rest by {', '.join(away)} rad", size=8.5)
+
+
+def _pair(joints: Array, first: int, second: int) -> tuple[float, float]:
+    return float(joints[first]), float(joints[second])
 
 
 def _names(found: NullSpace) -> list[str]:
