@@ -15,6 +15,7 @@ import numpy as np
 from attack.referee import needed
 
 from .fresh_held_pairs import FRESH_HELD_PAIRS
+from .fresh_null_space import FRESH_NULL_SPACE
 from .fresh_pairs import FRESH_PAIRS
 from .judges.arms import Chain
 from .judges.hands import held, radius
@@ -866,6 +867,7 @@ _FRESH: dict[str, Callable[[Random], Document]] = {
     "extraction": _extraction,
     **FRESH_PAIRS,
     **FRESH_HELD_PAIRS,
+    **FRESH_NULL_SPACE,
 }
 
 KINDS = tuple(_FRESH)

@@ -100,7 +100,7 @@ def write(seed: int, seeds: Mapping[str, Valid], only: str | None = None) -> Wri
         document, how = seeds[kind].one(rng), "a seed"
         for _ in range(rng.choices((1, 2, 3), (6, 3, 1))[0]):
             how = f"{how}, {_changed(rng, document, seeds[kind])}"
-    if kind != "arm" and rng.random() < ROTARY:
+    if kind not in ("arm", "null space") and rng.random() < ROTARY:
         document, how = turned(document), f"{how}, rotary"
     if rng.random() < ILL_FORMED:
         words = _spoilt(rng, document)

@@ -8,7 +8,20 @@ from typing import Any
 import numpy as np
 
 from ..opinion import Opinion, cannot_say, first
-from . import arms, boards, closed, hands, held_pairs, loops, mixes, motions, pair_motions, pairs, ports
+from . import (
+    arms,
+    boards,
+    closed,
+    hands,
+    held_pairs,
+    loops,
+    mixes,
+    motions,
+    null_space,
+    pair_motions,
+    pairs,
+    ports,
+)
 
 Judge = Callable[[dict[str, Any], np.random.Generator], Opinion]
 
@@ -20,6 +33,7 @@ JUDGES: dict[str, Judge] = {
     **hands.JUDGES,
     **ports.JUDGES,
     **arms.JUDGES,
+    **null_space.JUDGES,
     **pairs.JUDGES,
     **pair_motions.JUDGES,
     **held_pairs.JUDGES,

@@ -74,22 +74,24 @@ def surplus(jacobian: Array, damping: npt.ArrayLike, need: Array) -> Array:
 
 
 def single_additions(matrices: Array) -> Array:
-    """The damping that, given to joint i alone, makes a symmetric matrix ⪰ 0 (…, m); ∞ where none does.
+    """The damping that, given to joint i alone, makes a symmetric matrix ⪰ 0 (…, m); ∞ where none does."""
+    return np.stack([single_addition(matrices, i) for i in range(matrices.shape[-1])], axis=-1)
+
+
+def single_addition(matrices: Array, joint: int) -> Array:
+    """The damping that, given to one joint alone, makes a symmetric matrix ⪰ 0 (…); ∞ where none does.
 
     A matrix with M + t eᵢeᵢᵀ ⪰ 0 for some t has the rest of it, without row i, ⪰ 0; and then
     t is what its Schur complement lacks.
     """
     m = matrices.shape[-1]
-    additions = np.empty(matrices.shape[:-1])
-    for i in range(m):
-        rest = [k for k in range(m) if k != i]
-        own, row = matrices[..., i, i], matrices[..., i, rest]
-        others = matrices[..., rest, :][..., rest]
-        good = np.linalg.eigvalsh(others)[..., 0] > 0 if rest else np.ones(own.shape, dtype=bool)
-        safe = np.where(good[..., None, None], others, np.eye(m - 1))
-        taken = (row * np.linalg.solve(safe, row[..., None])[..., 0]).sum(axis=-1)
-        additions[..., i] = np.where(good, np.maximum(taken - own, 0.0), np.inf)
-    return additions
+    rest = [k for k in range(m) if k != joint]
+    own, row = matrices[..., joint, joint], matrices[..., joint, rest]
+    others = matrices[..., rest, :][..., rest]
+    good = np.linalg.eigvalsh(others)[..., 0] > 0 if rest else np.ones(own.shape, dtype=bool)
+    safe = np.where(good[..., None, None], others, np.eye(m - 1))
+    taken = (row * np.linalg.solve(safe, row[..., None])[..., 0]).sum(axis=-1)
+    return np.where(good, np.maximum(taken - own, 0.0), np.inf)
 
 
 def largest_scale(base: Array, load: Array) -> Array:

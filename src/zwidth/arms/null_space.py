@@ -1,4 +1,4 @@
-"""The spring of the joints in the null space of the hand: what it does, and a loop that takes energy out.
+"""The spring of the joints in the null space of the hand: what it does, replayed beside a wall.
 
     τ = −P(q) (k (q − q_d) + d_n q̇),   P = 1 − Jᵀ (J Jᵀ + λ² 1)⁻¹ J
 
@@ -14,8 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import ceil, pi
-from typing import NamedTuple
+from math import pi
 
 import numpy as np
 import numpy.typing as npt
@@ -24,21 +23,12 @@ from zwidth.arms.joints import as_matrix
 from zwidth.arms.kinematics import Arm, DescribedArm, PlanarChain, PosedArm
 from zwidth.arms.matrix_wall import MatrixWall
 from zwidth.arms.motion import ArmMotion
-from zwidth.arms.need import damping_at, wall_matrices
+from zwidth.arms.need import damping_at
 from zwidth.arms.replay import replay_cycle
 from zwidth.environment.wall import Wall
 
 Array = npt.NDArray[np.float64]
 
-_STEP = 1e-5
-"""Of the joints, for the curl of the torque [rad; m]."""
-_DIRECTIONS = 40
-"""In which a loop is looked for at each distance."""
-_TRIED = 2
-"""Of these, those that should give most are replayed."""
-_LONGEST = 60_000
-"""Samples of the longest loop that is replayed."""
-_SHORTEST = 64
 _FAST = 64
 """Samples of the longest cycle to and fro."""
 _AMPLITUDES = (1e-3, 3e-3, 1e-2, 3e-2)
@@ -67,24 +57,6 @@ class NullSpaceSpring:
     regularization: float = 0.0
 
 
-class Loop(NamedTuple):
-    """q(k) = centre + cosine cos(2πk/N) + sine sin(2πk/N) [rad; m]."""
-
-    centre: Array
-    cosine: Array
-    sine: Array
-    samples: int
-
-    def joints(self) -> Array:
-        """N × m."""
-        angle = 2 * pi / self.samples * np.arange(self.samples)[:, None]
-        return np.asarray(self.centre + np.cos(angle) * self.cosine + np.sin(angle) * self.sine)
-
-    def reach(self, rest: Sequence[float]) -> float:
-        """How far from the rest it goes, root of the sum of squares [rad]."""
-        return float(np.linalg.norm(self.joints() - np.asarray(rest), axis=1).max())
-
-
 def task_jacobian(arm: Arm, joints: npt.ArrayLike) -> Array:
     """J of velocity, and in pose of angular velocity, whatever the wall's orientation of rest (…, n, m)."""
     if isinstance(arm, PosedArm) and arm.rest is not None:
@@ -94,10 +66,11 @@ def task_jacobian(arm: Arm, joints: npt.ArrayLike) -> Array:
 
 def moving(arm: Arm) -> npt.NDArray[np.intp]:
     """The joints that are not held: no motion that is asked about moves the others."""
-    return np.array([i for i, (low, high) in enumerate(_ranges(arm)) if high > low], dtype=np.intp)
+    return np.array([i for i, (low, high) in enumerate(ranges(arm)) if high > low], dtype=np.intp)
 
 
-def _ranges(arm: Arm) -> Sequence[tuple[float, float]]:
+def ranges(arm: Arm) -> Sequence[tuple[float, float]]:
+    """Both ends of each joint [rad; m]."""
     return arm.joint_range if isinstance(arm, (DescribedArm, PlanarChain)) else [(0, 1)] * arm.joint_count
 
 
@@ -174,74 +147,3 @@ def fast_motion(
         for size in _AMPLITUDES
     )
     return next((motion for motion in motions if motion.takes_energy), None)
-
-
-def slow_loop(
-    arm: DescribedArm | PlanarChain,
-    wall: Wall | MatrixWall,
-    spring: NullSpaceSpring,
-    period: float,
-    delay_samples: int,
-    distance: float,
-) -> tuple[Loop, ArmMotion] | None:
-    """A slow loop about this far from the rest that takes energy out, replayed; None: none was found."""
-    centres = _centres(arm, spring, distance)
-    loops = [_loop_at(arm, wall, spring, period, centre, distance) for centre in centres]
-    found = [loop for loop in loops if loop is not None]
-    for _, loop in sorted(found, key=lambda item: -item[0])[:_TRIED]:
-        at = arm.resting(loop.centre)
-        motion = replay_both(at, wall, spring, period, delay_samples, loop.joints())
-        if motion.takes_energy:
-            return loop, motion
-    return None
-
-
-def _centres(arm: DescribedArm | PlanarChain, spring: NullSpaceSpring, distance: float) -> Array:
-    """Places at a distance from the rest and inside the ranges, the same every time."""
-    low, high = np.array(arm.joint_range).T
-    ways = np.random.default_rng(0).normal(size=(_DIRECTIONS, len(low))) * (high > low)
-    places = np.asarray(spring.rest) + distance * ways / np.linalg.norm(ways, axis=1, keepdims=True)
-    return np.asarray(places[((places > low) & (places < high) | (low == high)).all(axis=1)])
-
-
-def _loop_at(
-    arm: DescribedArm | PlanarChain,
-    wall: Wall | MatrixWall,
-    spring: NullSpaceSpring,
-    period: float,
-    centre: Array,
-    distance: float,
-) -> tuple[float, Loop] | None:
-    """The loop in the plane of the largest curl, with what it should give [J], slow enough for half of it."""
-    free = np.zeros(arm.joint_count)
-    free[moving(arm)] = 1
-    steps = _STEP * np.diag(free)
-    slopes = (resisting(arm, spring, centre + steps) - resisting(arm, spring, centre - steps)).T / (2 * _STEP)
-    curl = (slopes - slopes.T) * np.outer(free, free)
-    left, sizes, _ = np.linalg.svd(curl)
-    if not sizes[0] > 0:
-        return None
-    first = left[:, 0]
-    second = -curl @ first / sizes[0]  # round this way the torque helps
-    ways = np.hypot(first, second)
-    low, high = np.array(arm.joint_range).T
-    room = np.minimum(centre - low, high - centre) / np.maximum(ways, 1e-12)
-    radius = min(distance, float(room[ways > 1e-9].min()))
-    friction = np.asarray(arm.coulomb_friction or (0.0,) * len(ways))
-    gain = sizes[0] * pi * radius**2 - 4 * radius * float(friction @ ways)
-    if gain <= 0:
-        return None
-    brakes = _braking(arm, wall, spring, centre)
-    loss = 2 * (pi * radius) ** 2 * float(first @ brakes @ first + second @ brakes @ second)  # J·s
-    samples = max(_SHORTEST, ceil(2 * loss / (gain * period)))
-    if samples > _LONGEST:
-        return None
-    return gain, Loop(centre, radius * first, radius * second, samples)
-
-
-def _braking(arm: Arm, wall: Wall | MatrixWall, spring: NullSpaceSpring, at: Array) -> Array:
-    """All damping of the joints, virtual or not, in a slow motion [N·m·s/rad]."""
-    jacobian = task_jacobian(arm, at)
-    _, damper = wall_matrices(wall, len(jacobian))
-    inside = projector(jacobian, spring.regularization)
-    return np.asarray(as_matrix(arm.damping) + jacobian.T @ damper @ jacobian + spring.damping * inside)

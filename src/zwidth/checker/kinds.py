@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from . import scope
+from .arm.null_space import NULL_SPACE, null_space
 from .arm.region import ARM, arm
 from .bounded_hand.active_hand import ACTIVE_HAND, active_hand
 from .bounded_hand.slow_hands import SLOW_HANDS, slow_hands
@@ -65,9 +66,14 @@ def _proof(check: Callable[[Read], str]) -> Callable[[Read], Found]:
     return lambda told: Found(check(told))
 
 
-def _arm(told: Read) -> Found:
-    reason, surplus = arm(told)
-    return Found(reason, surplus=surplus)
+def _with_surplus(
+    check: Callable[[Read], tuple[str, tuple[tuple[float, ...], ...]]],
+) -> Callable[[Read], Found]:
+    def found(told: Read) -> Found:
+        reason, surplus = check(told)
+        return Found(reason, surplus=surplus)
+
+    return found
 
 
 def _taken(check: Callable[[Read], tuple[str, Fraction]]) -> Callable[[Read], Found]:
@@ -157,7 +163,8 @@ KINDS: dict[str, Kind] = {
     "held pair motion": Kind(
         HELD_MOTION, _motion(held_motion_energy, _nothing), scope.of_a_held_pair(ACTIVE)
     ),
-    "arm": Kind(ARM, _arm, scope.of_an_arm),
+    "arm": Kind(ARM, _with_surplus(arm), scope.of_an_arm),
+    "null space": Kind(NULL_SPACE, _with_surplus(null_space), scope.of_a_null_space),
     "violation": Kind(VIOLATION, _proof(violation), _of_every_hand(KEPT, ACTIVE)),
     "motion": Kind(MOTION, _motion(motion_energy, stored_at_start), scope.of_a_motion),
     "touching motion": Kind(

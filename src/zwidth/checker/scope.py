@@ -149,6 +149,11 @@ def of_an_arm(told: Read) -> Scope:
     return Scope(PASSIVE, encoder=told.loop.encoder)
 
 
+def of_a_null_space(told: Read) -> Scope:
+    """No steps are counted."""
+    return Scope(PASSIVE)
+
+
 def of_a_pair(shows: str) -> Callable[[Read], Scope]:
     """Two hands, one on each arm; the spring between the arms has no surface."""
 

@@ -246,7 +246,8 @@ def _head(covered: Scope, kind: str) -> str:
         return f"No hand of this activity goes on gaining energy from the loop below{kept}, proved"
     if kind == "corners":
         return f"Every corner, as the one below, is passive{kept}, proved"
-    return f"The {'arm' if kind == 'arm' else 'loop'} below is passive{kept}, proved"
+    what = "arm" if kind in ("arm", "null space") else "loop"
+    return f"The {what} below is passive{kept}, proved"
 
 
 def _rows(part: Part) -> Iterator[tuple[str, str]]:

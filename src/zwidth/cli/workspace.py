@@ -157,22 +157,24 @@ def _postures(arguments: argparse.Namespace, plot: Path | None, save: Path | Non
 
 
 def _null_space(arguments: argparse.Namespace, plot: Path | None, save: Path | None) -> int:
-    """Wall and null-space spring together; there is no map of it."""
+    """Wall and null-space spring together; there is no map of it to save."""
     from zwidth.passivity.document import to_json
     from zwidth.passivity.outcome import TOLD
 
-    if plot is not None or (save is not None and save.suffix.lower() != ".json"):
-        raise InputError("of a null-space spring there is no map: leave out --plot, and save as .json")
+    if save is not None and save.suffix.lower() != ".json":
+        raise InputError(f"of a null-space spring there is no map: save as .json, got {save.name!r}")
     found = null_space_of(arguments, float(parse_number(arguments.rate or _RATE, "Hz", "rate")))
     without = left_out(arguments, found.question.arm.turns)
     if save is not None:
         with writing(save):
             found.save(save)
+    if plot is not None:
+        found.plot(plot)
     if arguments.json:
         print_json(to_json({**found.to_dict(), **({"wall_leaves_out": without} if without else {})}))
     else:
         print_null_space(found, arguments.in_full, without)
-        say_written(save, None)
+        say_written(save, plot)
     return TOLD[found.outcome].status
 
 

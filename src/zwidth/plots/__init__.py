@@ -19,6 +19,7 @@ from zwidth.plots.indices import draw_index, indices
 from zwidth.plots.lateness import draw_lateness, plot_lateness
 from zwidth.plots.limit import limit_figure
 from zwidth.plots.links import draw_links, plot_links
+from zwidth.plots.null_space import null_space_figure
 from zwidth.plots.pair import draw_pair_damping, draw_pair_link, plot_pair
 from zwidth.plots.pair_motion import draw_pair_energy, draw_pair_motion
 from zwidth.plots.plane import draw_plane, plane
@@ -61,6 +62,7 @@ __all__ = [
     "draw_z_width",
     "indices",
     "limit_figure",
+    "null_space_figure",
     "plane",
     "plot_held_pair",
     "plot_lateness",

@@ -12,7 +12,9 @@ from described_arms import panda_like
 
 import zwidth as zw
 from zwidth.arms.null_space import NullSpaceSpring, replay_both, task_jacobian
+from zwidth.arms.null_space_loop import Loop, Shape, gain, shapes
 from zwidth.cli.main import main
+from zwidth.passivity.certificate import read_document, verify_document
 
 REST = (0.2, 1.0, 0.6)
 FINGER = zw.arms.PlanarChain(
@@ -75,18 +77,68 @@ def test_a_loop_beats_friction_and_not_more_of_it(regularization: float) -> None
 
 
 @pytest.mark.parametrize("regularization", [0.0, 0.1])
-def test_near_the_rest_friction_covers_it(regularization: float) -> None:
-    """Up to `covered`, a theorem; there no torque of the spring is farther from a spring's than friction."""
-    far = zw.null_space(FINGER, zw.Wall(200), regularization=regularization, **ASKED).covered
-    assert far > 0.01
-    for share, outcome in ((0.99, "theorem"), (1.01, "undecided")):
-        asked = {**ASKED, "within": share * far, "regularization": regularization}
-        assert zw.null_space(FINGER, zw.Wall(200), **asked).outcome == outcome
+def test_near_the_rest_friction_covers_it(regularization: float, tmp_path: Path) -> None:
+    """Up to `covered`, with a certificate; there no torque of the spring is farther from a spring's."""
+    asked = {**ASKED, "regularization": regularization}
+    found = zw.null_space(FINGER, zw.Wall(200), **asked)
+    far = found.covered
+    assert far > 0.03
+    assert found.outcome == "active"
+    assert found.certificate is None
+    inside = zw.null_space(FINGER, zw.Wall(200), within=0.9 * far, **asked)
+    assert inside.passive
+    assert inside.margin is None
+    inside.save(tmp_path / "proof.json")
+    assert verify_document(read_document(tmp_path / "proof.json")).valid
+    beyond = zw.null_space(FINGER, zw.Wall(200), within=1.1 * far, **asked)
+    assert (beyond.outcome, beyond.certificate) == ("undecided", None)
+    assert beyond.margin < 0
     ways = np.random.default_rng(1).normal(size=(200, 3))
     ways *= far / np.linalg.norm(ways, axis=1, keepdims=True)
     first = still(np.array(REST), regularization)
     lacks = [0.5 * (still(REST + way, regularization) - first) @ way for way in ways]
-    assert 0 < np.abs(lacks).max() <= 0.01
+    assert 0.001 < np.abs(lacks).max() <= 0.01
+
+
+def test_of_an_arm_with_encoders_it_is_without_their_steps() -> None:
+    """They are in no proof, and the outcome says so."""
+    read = FINGER.replace(resolution=(1e-4,) * 3)
+    found = zw.null_space(read, zw.Wall(200), within=0.02, **ASKED)
+    assert found.outcome == "passive without encoder steps"
+    assert "Encoder steps are not counted." in found.claim
+
+
+def test_no_smaller_loop_gains() -> None:
+    """Of the ellipse that was found, none of many a little smaller and a little different does."""
+    spring = NullSpaceSpring(stiffness=0.5, damping=0, rest=REST)
+    best = shapes(FINGER, spring)[0]
+
+    def begins(shape: Shape) -> float:
+        """Friction over gain at a small size, by the curl near the rest."""
+        given, lost = gain(FINGER, spring, shape, 1e-3)
+        return 1e-3 * float(np.sqrt(lost / abs(given)))
+
+    others = np.random.default_rng(0).normal(size=(100, 3, 3))
+    for share in (0.1, 1):
+        for other in others:
+            parts = np.array(best) + share * other
+            reach = Loop(*parts, 64).reach((0, 0, 0))
+            assert begins(best) <= begins(Shape(*(parts / reach))) * 1.01
+
+
+def test_the_picture_shows_what_is_known(tmp_path: Path) -> None:
+    """The loop, joules over the size, and both ends of what is not known; saved where asked."""
+    found = zw.null_space(FINGER, zw.Wall(200), **ASKED)
+    loop, joules = found.plot(tmp_path / "a.png").axes
+    assert (tmp_path / "a.png").stat().st_size > 1000
+    words = {text.get_text() for text in joules.get_legend().get_texts()}
+    assert f"proved up to {found.covered:.3g} rad" in words
+    assert {"proved", "not known", "active"} <= {text.get_text() for text in joules.texts}
+    assert "replayed" in loop.get_title(loc="left")
+    inside = zw.null_space(FINGER, zw.Wall(200), within=0.02, **ASKED)
+    assert "if larger" in inside.plot().axes[0].get_title(loc="left")
+    damper = zw.null_space(FINGER, zw.Wall(20), rate=1000, stiffness=0, damping=0.01, rest=REST)
+    assert not damper.plot().axes[0].lines
 
 
 def test_without_coulomb_friction_nothing_is_covered() -> None:
@@ -123,8 +175,17 @@ def test_on_the_command_line(
     asked = ["workspace", arm, "--pose", "--joint-friction", "0.2"]
     wall = ["--stiffness", "600", "--rotational-stiffness", "30"]
     null = ["--null-stiffness", "20", "--null-rest", ready]
-    assert main([*asked, *wall, *null, "--within", "1.2 deg"]) == 4
-    assert "THEOREM No motion of the hands" in " ".join(capsys.readouterr().out.split())
+    near = [*asked, *wall, *null, "--within", "1.2 deg"]
+    assert main([*near, "-o", "proof.json", "--plot", "a.png"]) == 0
+    assert "PASSIVE No motion of the hands" in " ".join(capsys.readouterr().out.split())
+    assert (tmp_path / "a.png").exists()
+    assert main(["verify", "proof.json"]) == 0
+    assert "wherever they hold the arm" in " ".join(capsys.readouterr().out.split())
+    proof = json.loads((tmp_path / "proof.json").read_text(encoding="utf-8"))
+    proof["certificate"]["spring"]["distance_rad"] = "0.5"
+    (tmp_path / "false.json").write_text(json.dumps(proof), encoding="utf-8")
+    assert main(["verify", "false.json"]) == 1
+    capsys.readouterr()
     assert main([*asked, *wall, *null, "-o", "found.json", "--json"]) == 1
     told = json.loads(capsys.readouterr().out)
     assert told["slow_loop"]["energy_J"] < 0
@@ -135,12 +196,12 @@ def test_on_the_command_line(
         "z: 0}, nullspace_damping: 0}}}"
     )
     file = [*asked, "--wall", "c.yaml", "--null-stiffness", "wall", "--null-rest", ready]
-    assert main([*file, "--within", "1.2 deg", "--json"]) == 4
-    assert json.loads(capsys.readouterr().out)["covered_rad"] == told["covered_rad"]
+    assert main([*file, "--within", "1.2 deg", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["certificate"]["spring"]["stiffness_N_m_per_rad"] == "20"
     for wrong, message in (
         ([*asked, *wall, "--within", "1 deg"], "--within is of a null-space spring"),
         ([*asked, *wall, *null, "--points", "9"], "--points is not asked with --null-stiffness"),
-        ([*asked, *wall, *null, "--plot", "a.png"], "there is no map"),
+        ([*asked, *wall, *null, "-o", "a.nc"], "there is no map: save as .json"),
         ([*asked, *wall, "--null-stiffness", "wall"], "takes the gains of a .yaml file"),
         ([*asked, *wall, "--null-stiffness", "5", "--null-rest", "j9=1"], "there is no joint 'j9'"),
         ([*asked, *wall, "--null-stiffness", "5", "--null-rest", "j2=9"], "j2 can be from -1.7628"),

@@ -122,23 +122,14 @@ def chain_surplus(
 ) -> Callable[[Sequence[Enclosed]], list[list[Enclosed]]]:
     """δ_m − c − JᵀRJ, its rows from the diagonal on; R of the hand's first coordinates, c of every joint.
     `turning` gives what comes after the point in each column of J."""
-    fixed = _placements(chain)
     own = [
         [constant(x - price if k == 0 else x) for k, x in enumerate(row[i:])]
         for i, row in enumerate(chain.damping)
     ]
-    end = [constant(x) for x in chain.end]
+    columns_at = jacobian(chain, len(need), turning)
 
     def surplus(joints: Sequence[Enclosed]) -> list[list[Enclosed]]:
-        point, columns = end, list[list[Enclosed]]()
-        for joint, q, (rotation, translation) in from_end(chain.joints, joints, fixed):
-            vectors = _moved(joint.slides, q, point, columns)
-            point, *columns = [mapped(rotation, v) for v in vectors]
-            point = [x + t for x, t in zip(point, translation, strict=True)]
-        turned = turning(joints) if turning else [[] for _ in joints]
-        columns = [
-            [*column[: len(need) - len(more)], *more] for column, more in zip(columns, turned, strict=True)
-        ]
+        columns = columns_at(joints)
         loads = [mapped(need, v) for v in columns]
         return [
             [damping - dot(v, load) for damping, load in zip(own[i], loads[i:], strict=True)]
@@ -146,6 +137,27 @@ def chain_surplus(
         ]
 
     return surplus
+
+
+def jacobian(
+    chain: Chain,
+    size: int,
+    turning: Callable[[Sequence[Enclosed]], list[list[Enclosed]]] | None = None,
+) -> Callable[[Sequence[Enclosed]], list[list[Enclosed]]]:
+    """The columns of J of the hand's coordinates, `size` of them; the last ones are those of `turning`."""
+    fixed = _placements(chain)
+    end = [constant(x) for x in chain.end]
+
+    def columns_at(joints: Sequence[Enclosed]) -> list[list[Enclosed]]:
+        point, columns = end, list[list[Enclosed]]()
+        for joint, q, (rotation, translation) in from_end(chain.joints, joints, fixed):
+            vectors = _moved(joint.slides, q, point, columns)
+            point, *columns = [mapped(rotation, v) for v in vectors]
+            point = [x + t for x, t in zip(point, translation, strict=True)]
+        turned = turning(joints) if turning else [[] for _ in joints]
+        return [[*column[: size - len(more)], *more] for column, more in zip(columns, turned, strict=True)]
+
+    return columns_at
 
 
 def from_end(*listed: Sequence[Any]) -> list[tuple[Any, ...]]:

@@ -86,6 +86,17 @@ def turning(machine: Read, chain: Chain, pose: Pose) -> Columns:
     return _from_rest(chain, placed, rest)
 
 
+def square(chain: Chain) -> Chain:
+    """The chain with rotations that are rotations to the last digit."""
+    joints = [joint._replace(rotation=_rotation(_quaternion(joint.rotation))) for joint in chain.joints]
+    return chain._replace(joints=joints)
+
+
+def axes_of(chain: Chain) -> Columns:
+    """The axis of each joint in the base."""
+    return _axes(chain, [_quaternion(joint.rotation) for joint in chain.joints])
+
+
 def turning_bend(chain: Chain, pose: Pose) -> Fraction:
     """h_e with |Σ ∂²e/∂q_i∂q_j w_i w_j| ≤ h_e |w|²: each second derivative is at most ½ long."""
     return Fraction(sum(not j.slides for j in chain.joints), 2) if pose.turns == 3 else Fraction(0)

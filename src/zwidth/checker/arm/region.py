@@ -48,10 +48,11 @@ _POSE = _wall("N_m_rad", "N_m_s_rad", 6).extended(
     turns=Choice(1, 3), rest=Choice("every orientation", "given")
 )
 
+WALL = Either(_POSE, _POINT, lambda value: "turns" in value)
 ARM = document(
     {
         "arm": OneOf("geometry", {"chain": CHAIN, "legs": LEGS}),
-        "wall": Either(_POSE, _POINT, lambda value: "turns" in value),
+        "wall": WALL,
         "loop": Record(
             {
                 "sample_period": Number(SECONDS, above=0),
@@ -79,7 +80,7 @@ class Claim(NamedTuple):
 def arm(told: Read) -> tuple[str, tuple[tuple[float, ...], ...]]:
     """What was proved; and S at the middle of the region, to look at, its rows from the diagonal on."""
     claim = claim_of(told)
-    box = tuple(_outward(low, high) for low, high in claim.box)
+    box = tuple(outward(low, high) for low, high in claim.box)
     cells = positive_in(box, claim.matrix)
     if claim.columns is not None:
         cells += positive_in(box, claim.columns, "a column of the Jacobian is longer than it is said to be")
@@ -88,7 +89,8 @@ def arm(told: Read) -> tuple[str, tuple[tuple[float, ...], ...]]:
     return f"{claim.words}; {cells} cells", surplus
 
 
-def _outward(low: Fraction, high: Fraction) -> Range:
+def outward(low: Fraction, high: Fraction) -> Range:
+    """Both ends in whole numbers."""
     if max(abs(low), abs(high)) > LARGEST:
         raise Invalid("a number is too large")
     return floor(low * 2**BITS), ceil(high * 2**BITS)
@@ -98,8 +100,8 @@ def claim_of(told: Read) -> Claim:
     """What is to be shown, and the words for it."""
     machine, wall, loop = told.arm, told.wall, told.loop
     pose, held, counted = pose_of(wall), _is_held(loop), loop.encoder == "counted"
-    given = _matrices(wall, pose)
-    need = [[constant(x) for x in row] for row in for_every_rest(_need(*given, loop), pose)]
+    given = matrices_of(wall, pose)
+    need = [[constant(x) for x in row] for row in for_every_rest(need_of(*given, loop), pose)]
     limits = _limits(loop, pose, held or counted)
     only_if(held, loop.curvature, "curvature_m_per_rad2")
     words = "no motion of the hand with {} takes energy out, " + _how(held, counted, limits, pose)
@@ -114,7 +116,7 @@ def claim_of(told: Read) -> Claim:
     else:
         require_no_encoders(machine)
     if pose.turns != 3 or pose.anywhere:
-        _require_no_rest(machine)
+        require_no_rest(machine)
     price = _price(chain, loop, limits, pose) if held else Fraction(0)
     box = [(joint.low, joint.high) for joint in chain.joints]
     matrix = chain_surplus(chain, need, price, turning(machine, chain, pose) if pose.turns else None)
@@ -134,7 +136,8 @@ def _of_legs(machine: Read, need: list[list[Enclosed]], words: str, pose: Pose, 
     return Claim(box, legs_surplus(legs, need), words.format("its position in the box"))
 
 
-def _require_no_rest(machine: Read) -> None:
+def require_no_rest(machine: Read) -> None:
+    """Refuse an orientation of rest where none plays a part."""
     for joint in machine.joints:
         only_if(False, getattr(joint, "rest", None), "rest_rad")
 
@@ -164,12 +167,12 @@ def _limits(loop: Read, pose: Pose, bounded: bool) -> tuple[Fraction, Fraction]:
     return force or Fraction(0), moment or Fraction(0)
 
 
-def _need(stiffness: Matrix, _damping: Matrix, bound: Matrix, loop: Read) -> Matrix:
+def need_of(stiffness: Matrix, _damping: Matrix, bound: Matrix, loop: Read) -> Matrix:
     """R [N·s/m; in pose N·s/rad and N·m·s/rad, too]."""
     return _sum(bound, stiffness, (2 * loop.delay_samples + 1) * loop.sample_period / 2)
 
 
-def _matrices(wall: Read, pose: Pose) -> tuple[Matrix, Matrix, Matrix]:
+def matrices_of(wall: Read, pose: Pose) -> tuple[Matrix, Matrix, Matrix]:
     """K ⪰ 0, B, and A with A ± B ⪰ 0."""
     told = (wall.stiffness, wall.virtual_damping, wall.damping_bound)
     stiffness, damping, bound = (_symmetric(rows, pose.sizes) for rows in told)

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.arms.joints import as_matrix, single_additions
+from zwidth.arms.joints import as_matrix, single_addition
 from zwidth.arms.least import least_additions
 from zwidth.passivity.workspace.certificate import arm_certificate
 from zwidth.passivity.workspace.question import Question
@@ -115,7 +115,7 @@ def _to_all(matrices: Array) -> Array:
 
 def _alone(joint: int, matrices: Array) -> Array:
     found = np.zeros(matrices.shape[-1])
-    found[joint] = single_additions(matrices)[:, joint].max()
+    found[joint] = single_addition(matrices, joint).max()
     return found
 
 

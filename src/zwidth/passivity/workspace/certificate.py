@@ -58,13 +58,13 @@ def arm_certificate(
     """
     if not isinstance(arm, (LeggedArm, PlanarChain, DescribedArm)):
         return None, "arms of this kind have no certificate"
-    if _beside(arm):
+    if beside(arm):
         return None, "joints on the way to the hand are damped together with joints beside it"
     document: dict[str, Any] = {
         "format": FORMAT,
         "kind": "arm",
-        "arm": _legs_document(arm) if isinstance(arm, LeggedArm) else _chain_document(arm),
-        "wall": _wall_document(wall, arm.sites(2).jacobians.shape[-2]) | _pose_of(arm),
+        "arm": _legs_document(arm) if isinstance(arm, LeggedArm) else chain_document(arm),
+        "wall": wall_matrices_document(wall, arm.sites(2).jacobians.shape[-2]) | pose_document(arm),
         "loop": _loop_document(arm, rate, delay_samples, held),
     }
     free = {**document, "loop": _loop_document(arm, rate, delay_samples, ())}
@@ -109,7 +109,7 @@ def _is_of(
 
 def _resting(machine: dict[str, Any], place: Array) -> dict[str, Any]:
     """The arm of a document, its region one place."""
-    told = _texts(place)
+    told = texts(place)
     if machine["geometry"] == "legs":
         return {**machine, "low_m": told, "high_m": told}
     joints = [
@@ -123,22 +123,23 @@ def _legs_document(arm: LeggedArm) -> dict[str, Any]:
     low, high = arm.box()
     legs = [
         {
-            "base_m": _texts(leg.base),
-            "out": _texts(leg.out),
-            "up": _texts(leg.up),
-            "link_m": _text(leg.link),
-            "rod_m": _text(leg.rod),
-            "offset_m": _text(leg.offset),
+            "base_m": texts(leg.base),
+            "out": texts(leg.out),
+            "up": texts(leg.up),
+            "link_m": text(leg.link),
+            "rod_m": text(leg.rod),
+            "offset_m": text(leg.offset),
             "bend": leg.bend,
             **_own_damping(arm, i, "N_m_s_per_rad"),
         }
         for i, leg in enumerate(arm.legs)
     ]
-    corners = {"low_m": _texts(low), "high_m": _texts(high)}
+    corners = {"low_m": texts(low), "high_m": texts(high)}
     return {"geometry": "legs", "legs": legs, **corners, **_shared_damping(arm, "N_m_s_per_rad")}
 
 
-def _chain_document(arm: PlanarChain | DescribedArm) -> dict[str, Any]:
+def chain_document(arm: PlanarChain | DescribedArm) -> dict[str, Any]:
+    """The joints between base and hand, and the hand."""
     placements, end = arm.placements()
     joints = []
     for at in placements:
@@ -146,19 +147,19 @@ def _chain_document(arm: PlanarChain | DescribedArm) -> dict[str, Any]:
         unit, per = ("m", "N_s_per_m") if at.slides else ("rad", "N_m_s_per_rad")
         joint = {
             "kind": "prismatic" if at.slides else "revolute",
-            "rotation": [_texts(row) for row in at.rotation],
-            "translation_m": _texts(at.translation),
-            f"low_{unit}": _text(low),
-            f"high_{unit}": _text(high),
+            "rotation": [texts(row) for row in at.rotation],
+            "translation_m": texts(at.translation),
+            f"low_{unit}": text(low),
+            f"high_{unit}": text(high),
             **_own_damping(arm, at.joint, per),
         }
         rest = arm.rest if isinstance(arm, PosedArm) else None
-        joints.append(joint if rest is None or at.slides else {**joint, "rest_rad": _text(rest[at.joint])})
+        joints.append(joint if rest is None or at.slides else {**joint, "rest_rad": text(rest[at.joint])})
     own = [at.joint for at in placements]
     return {
         "geometry": "chain",
         "joints": joints,
-        "end_m": _texts(end),
+        "end_m": texts(end),
         **_shared_damping(arm, "N_m_s_rad", own),
     }
 
@@ -166,7 +167,7 @@ def _chain_document(arm: PlanarChain | DescribedArm) -> dict[str, Any]:
 def _own_damping(arm: Arm, joint: int, unit: str) -> dict[str, str]:
     """Of one joint; nothing where joints damp each other."""
     b = np.asarray(arm.damping)
-    return {f"damping_{unit}": _text(b[joint])} if b.ndim == 1 else {}
+    return {f"damping_{unit}": text(b[joint])} if b.ndim == 1 else {}
 
 
 def _shared_damping(arm: Arm, unit: str, own: Sequence[int] | None = None) -> dict[str, list[list[str]]]:
@@ -176,7 +177,7 @@ def _shared_damping(arm: Arm, unit: str, own: Sequence[int] | None = None) -> di
     return {f"damping_{unit}": _matrix(rows)} if b.ndim == 2 else {}
 
 
-def _beside(arm: Written) -> bool:
+def beside(arm: Written) -> bool:
     """Whether a joint that moves the hand is damped together with one that does not.
 
     Then the part of the matrix that a document has is more than is lost: the other joint may go along.
@@ -193,18 +194,18 @@ def _add_steps(document: dict[str, Any], arm: Chain, steps: EncoderSteps, limits
     friction = arm.coulomb_friction
     for joint, at in zip(document["arm"]["joints"], arm.placements()[0], strict=True):
         unit, per = ("m", "N") if at.slides else ("rad", "N_m")
-        joint[f"resolution_{unit}"] = _text(moving_steps(arm)[at.joint])
-        joint[f"coulomb_friction_{per}"] = _text(friction[at.joint])
+        joint[f"resolution_{unit}"] = text(moving_steps(arm)[at.joint])
+        joint[f"coulomb_friction_{per}"] = text(friction[at.joint])
         if not at.slides:
-            joint["largest_column_m_per_rad"] = _text(steps.columns[at.joint])
+            joint["largest_column_m_per_rad"] = text(steps.columns[at.joint])
     loop = document["loop"]
     loop["encoder"] = "counted"
     loop["torque"] = {"follows the arm": "follows the readings"}.get(loop["torque"], loop["torque"])
     for key, limit in zip(("largest_force_N", "largest_moment_N_m"), limits, strict=False):
-        loop[key] = _text(limit)
+        loop[key] = text(limit)
 
 
-def _pose_of(arm: Arm) -> dict[str, Any]:
+def pose_document(arm: Arm) -> dict[str, Any]:
     """How many coordinates of the wall are rotations, and where it rests: nothing of a point."""
     if not arm.turns:
         return {}
@@ -212,7 +213,8 @@ def _pose_of(arm: Arm) -> dict[str, Any]:
     return {"turns": arm.turns, "rest": "given" if given else "every orientation"}
 
 
-def _wall_document(wall: Wall | MatrixWall, size: int) -> dict[str, Any]:
+def wall_matrices_document(wall: Wall | MatrixWall, size: int) -> dict[str, Any]:
+    """K, B and what stands for |B|."""
     if isinstance(wall, Wall):
         spring, damper = certain(wall.stiffness, "stiffness"), certain(wall.damping, "damping")
         matrices = [_scalar(x, size) for x in (spring, damper, abs(damper))]
@@ -237,7 +239,7 @@ def _absolute(matrix: Array, turns: int) -> Array:
 
 def _is_semidefinite(matrix: Array) -> bool:
     """True when no principal minor of the decimals is negative."""
-    exact = [[flint.fmpq(*_exact(x).as_integer_ratio()) for x in row] for row in matrix]
+    exact = [[flint.fmpq(*decimal_of(x).as_integer_ratio()) for x in row] for row in matrix]
     places = range(len(matrix))
     return all(
         flint.fmpq_mat([[exact[i][k] for k in chosen] for i in chosen]).det() >= 0
@@ -256,7 +258,7 @@ def _raised(matrix: Array, turns: int) -> Array:
 
 def _loop_document(arm: Arm, rate: float, delay_samples: int, held: tuple[float, ...]) -> dict[str, Any]:
     loop: dict[str, Any] = {
-        "sample_period_s": exact_text(1 / _exact(rate)),
+        "sample_period_s": exact_text(1 / decimal_of(rate)),
         "delay_samples": delay_samples,
         "encoder": "ideal",
         "torque": "held" if held else "follows the arm",
@@ -264,10 +266,10 @@ def _loop_document(arm: Arm, rate: float, delay_samples: int, held: tuple[float,
     if held:
         assert arm.curvature is not None
         force, *moment = held
-        loop["largest_force_N"] = _text(force)
-        loop["curvature_m_per_rad2"] = _text(arm.curvature * (1 + _CURVED))
+        loop["largest_force_N"] = text(force)
+        loop["curvature_m_per_rad2"] = text(arm.curvature * (1 + _CURVED))
         if moment:
-            loop["largest_moment_N_m"] = _text(moment[0])
+            loop["largest_moment_N_m"] = text(moment[0])
     return loop
 
 
@@ -276,17 +278,19 @@ def _scalar(value: Fraction, size: int) -> list[list[str]]:
 
 
 def _matrix(rows: Array) -> list[list[str]]:
-    return [_texts(row) for row in (rows + rows.T) / 2]
+    return [texts(row) for row in (rows + rows.T) / 2]
 
 
-def _texts(values: npt.ArrayLike) -> list[str]:
-    return [_text(v) for v in np.asarray(values, dtype=np.float64)]
+def texts(values: npt.ArrayLike) -> list[str]:
+    """Each the decimal that a double is written as."""
+    return [text(v) for v in np.asarray(values, dtype=np.float64)]
 
 
-def _text(value: float) -> str:
-    return exact_text(_exact(value))
+def text(value: float) -> str:
+    """The decimal that a double is written as."""
+    return exact_text(decimal_of(value))
 
 
-def _exact(value: float) -> Fraction:
+def decimal_of(value: float) -> Fraction:
     """The decimal that a double is written as."""
     return Fraction(repr(float(value)))

@@ -2,12 +2,13 @@
 
     τ = −P(q) (k (q − q_d) + d_n q̇)
 
-With P₀ = P(q_d) and |q − q_d| ≤ ρ, the spring is one with a potential, k P₀, and a rest of no more than
-k η(ρ) ρ in each joint, η ≥ ‖P(q) − P₀‖.  What Coulomb friction has above the rest takes it:
+With P₀ = P(q_d) the spring is one with a potential, k P₀, and what lacks to it.  Within ρ of the rest Coulomb
+friction takes whatever that moves:
 
-    f_c,i ≥ k η ρ   and   δ_m ⪰ JᵀRJ + (2d + 1) T/2 k P₀ + d_n (P₀ + η 1)
+    f_c,i ≥ k |((P − P₀)(q − q_d))_i|   and   δ_m ≻ JᵀRJ + (2d + 1) T/2 k P₀ + d_n (P₀ + η 1),   η ≥ ‖P − P₀‖
 
-Beyond, loops are looked for on which the rest gives more than friction takes.
+The independent checker bounds both.  Beyond, loops are looked for on which the lack gives more than
+friction takes.
 """
 
 from __future__ import annotations
@@ -23,20 +24,15 @@ from zwidth.arms import Arm, ArmMotion, DescribedArm, PlanarChain
 from zwidth.arms.joints import as_matrix, largest_scale
 from zwidth.arms.matrix_wall import MatrixWall
 from zwidth.arms.need import wall_need
-from zwidth.arms.null_space import (
-    Loop,
-    NullSpaceSpring,
-    fast_motion,
-    moving,
-    projector,
-    slow_loop,
-    task_jacobian,
-)
+from zwidth.arms.null_space import NullSpaceSpring, fast_motion, moving, projector, task_jacobian
+from zwidth.arms.null_space_loop import Loop, slow_loop
 from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
+from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
+from zwidth.passivity.workspace.null_space_certificate import largest_certified, null_space_certificate
 from zwidth.passivity.workspace.question import Question, asked_of
 from zwidth.passivity.workspace.report import finite, motion_document, wall_document
 from zwidth.quantity.exact import RealLike
@@ -44,13 +40,6 @@ from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
 
 Array = npt.NDArray[np.float64]
-
-_DISTANCES = (0.05, 0.1, 0.2, 0.4, 0.8, 1.6)
-"""At which loops are looked for [rad]; of a smaller region, in parts of it."""
-_PARTS = (0.35, 0.6)
-_HALVINGS = 50
-_ROUNDING = 1e-12
-"""Of the matrices: a margin below it may be rounding."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -67,7 +56,12 @@ class NullSpace(PassivityAnswer):
         How far from the rest was asked about, root of the sum of squares of the joints [rad]; None: the
         ranges of all joints.
     covered
-        So far from it no motion takes energy out, by the theorem; 0 where it says nothing [rad].
+        So far from it no motion takes energy out, as the checker has proved: `within` where it proves that,
+        else the largest distance to some 5 %; 0 where it proves nothing [rad].
+    why_not_more
+        What the checker said of a region that is a little larger, or of every region.
+    certificate
+        The proof of the region that was asked about; None: there is none.
     wall_factor
         How many times as stiff the wall alone may be at the rest.
     largest_damping
@@ -80,38 +74,46 @@ class NullSpace(PassivityAnswer):
     """
 
     FORMAT = "zwidth null space 1"
-    certificate = witness = None
+    PICTURE = "null_space_figure"
+    witness = None  # its motions are reckoned in doubles, and no evidence
 
     question: Question
     spring: NullSpaceSpring
     within: float | None
     covered: float
+    why_not_more: str
     wall_factor: float
     largest_damping: float
     fast: ArmMotion | None
     loop: Loop | None
     slow: ArmMotion | None
+    certificate: Certificate | None = None
 
     @property
     def outcome(self) -> Outcome:
-        """ "active" with a motion, "theorem" where all that was asked about is covered."""
+        """ "active" with a motion; "passive" with a certificate, of an arm with steps without them."""
         if self.slow is not None or self.fast is not None:
             return "active"
-        return "theorem" if self.within is not None and self.within <= self.covered else "undecided"
+        if self.certificate is None:
+            return "undecided"
+        return "passive without encoder steps" if any(self.question.arm.resolution) else "passive"
 
     @property
     def claim(self) -> str:
         """What was found, of whom, and of what."""
         if self.outcome == "active":
             return f"{' '.join(self._motions())} {self._by_whom()}"
-        near = f"within {shown(self.covered, 'rad')} of the rest of the null-space spring"
-        if self.outcome == "theorem":
-            near = f"within {shown(self.within or 0.0, 'rad')} of the rest of the null-space spring"
+        if self.within is not None and self.certificate is not None:
             steps = " Encoder steps are not counted." if any(self.question.arm.resolution) else ""
-            return f"No motion of the hands takes energy out {near}, by a proof on paper.{steps}"
+            return f"No motion of the hands takes energy out {self._near(self.within)}.{steps}"
         if self.covered:
-            return f"No motion was found that takes energy out; that there is none is known {near} alone."
-        return "No motion was found that takes energy out, and that there is none is known nowhere."
+            near = self._near(self.covered)
+            return f"No motion was found that takes energy out; that there is none is proved {near} alone."
+        return "No motion was found that takes energy out, and that there is none is proved nowhere."
+
+    @staticmethod
+    def _near(distance: float) -> str:
+        return f"within {shown(distance, 'rad')} of the rest of the null-space spring"
 
     def _motions(self) -> Iterator[str]:
         if self.loop is not None and self.slow is not None:
@@ -171,18 +173,16 @@ class NullSpace(PassivityAnswer):
             )
 
     def _covers(self) -> str:
-        """How far from the rest the theorem goes, or why it goes nowhere."""
+        """How far from the rest it is proved, or why nowhere."""
         if self.covered:
             far = shown(self.covered, "rad")
-            return f"the spring's want of a potential up to {far} from the rest, by a bound that is not tight"
-        if self.spring.stiffness and not _least_friction(self.question.arm):
-            return "nothing: a joint has no Coulomb friction that is known"
-        return "nothing: at the rest wall and null space ask for more damping than the joints have"
+            return f"the spring's want of a potential up to {far} from the rest, proved"
+        return f"nothing: {self.why_not_more}"
 
     @property
     def margin(self) -> float | None:
-        """How much farther than asked the theorem goes [rad]; None where no region is asked about."""
-        return None if self.within is None else self.covered - self.within
+        """How much less far than asked a proof goes, < 0 [rad]; None where it goes as far."""
+        return None if self.within is None or self.certificate else self.covered - self.within
 
     def numbers(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
@@ -199,6 +199,7 @@ class NullSpace(PassivityAnswer):
             "delay_samples": self.question.delay_samples,
             "within_rad": self.within,
             "covered_rad": self.covered,
+            "why_not_more": self.why_not_more,
             "wall_factor": finite(self.wall_factor),
             "largest_null_damping_N_m_s_per_rad": finite(self.largest_damping),
             "fast_motion": None if self.fast is None else motion_document(self.fast, turns),
@@ -256,17 +257,21 @@ def null_space(
     )
     _has_null_space(arm, spring)
     far = None if within is None else _not_negative(within, "rad", "within")
-    found = _slow(arm, question, spring, far)
+    certificate = None if far is None else null_space_certificate(question, spring, far)[0]
+    covered, why = (far or 0.0, "") if certificate else largest_certified(question, spring)
+    found = slow_loop(arm, question.wall, spring, question.period, question.delay_samples, far)
     return NullSpace(
         question=question,
         spring=spring,
         within=far,
-        covered=_covered(question, spring),
+        covered=covered,
+        why_not_more=why,
         wall_factor=_factor(question, spring),
         largest_damping=_largest_damping(question, spring),
         fast=fast_motion(arm, question.wall, spring, question.period, question.delay_samples),
         loop=None if found is None else found[0],
         slow=None if found is None else found[1],
+        certificate=certificate,
     )
 
 
@@ -316,68 +321,6 @@ def _has_null_space(arm: Arm, spring: NullSpaceSpring) -> None:
         )
 
 
-def _slow(
-    arm: DescribedArm | PlanarChain, question: Question, spring: NullSpaceSpring, within: float | None
-) -> tuple[Loop, ArmMotion] | None:
-    """The first loop that takes energy out, those near the rest first."""
-    distances = _DISTANCES if within is None else tuple(part * within for part in _PARTS)
-    for distance in distances:
-        found = slow_loop(arm, question.wall, spring, question.period, question.delay_samples, distance)
-        if found is not None and (within is None or found[0].reach(spring.rest) <= within):
-            return found
-    return None
-
-
-def _covered(question: Question, spring: NullSpaceSpring) -> float:
-    """The largest ρ of the theorem, from below [rad]."""
-    arm = question.arm
-    friction = _least_friction(arm)
-    slope = _slope(arm, spring)
-
-    def holds(far: float) -> bool:
-        eta = slope * far
-        if eta >= 1 or spring.stiffness * eta * far > friction * (1 - _ROUNDING):
-            return False
-        return _margin(question, spring, far, eta) > 0
-
-    low, high = 0.0, 1.0
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        low, high = (middle, high) if holds(middle) else (low, middle)
-    return low if holds(low) and low > 1e-9 else 0.0
-
-
-def _least_friction(arm: Arm) -> float:
-    """Of the joints that are not held."""
-    return min((arm.coulomb_friction[i] for i in moving(arm)), default=0.0) if arm.coulomb_friction else 0.0
-
-
-def _slope(arm: Arm, spring: NullSpaceSpring) -> float:
-    """L with ‖P(q) − P(q_d)‖ ≤ L |q − q_d|."""
-    jacobian = task_jacobian(arm, spring.rest)
-    moves, turns = _changes(arm, jacobian)
-    if not spring.regularization:
-        inverse = np.linalg.pinv(jacobian)
-        point = len(jacobian) - arm.turns
-        size = [
-            float(np.linalg.norm(part, 2)) if part.size else 0.0 for part in np.split(inverse, [point], 1)
-        ]
-        return size[0] * moves + size[1] * turns
-    values = np.linalg.svd(jacobian, compute_uv=False)
-    extra = float((values / (values**2 + spring.regularization**2)).max())
-    return float(np.hypot(moves, turns)) * (0.5 / spring.regularization + extra)
-
-
-def _changes(arm: Arm, jacobian: Array) -> tuple[float, float]:
-    """‖J_p(q) − J_p(q_d)‖ and the same of the turn, each for |q − q_d| = 1."""
-    assert isinstance(arm, (DescribedArm, PlanarChain))
-    moves = float(np.linalg.norm(arm.second_derivatives, 2))
-    if arm.turns != 3:
-        return moves, 0.0
-    turning = np.linalg.norm(jacobian[-3:], axis=0) > 0.5  # an axis turns with the joints before it
-    return moves, float(np.linalg.norm(np.tril(np.outer(turning, turning), -1), 2))
-
-
 def _needs(question: Question, spring: NullSpaceSpring) -> tuple[Array, Array, Array, Array]:
     """R, J and P at the rest, and what wall and spring ask of the joints there."""
     arm = question.arm
@@ -387,26 +330,6 @@ def _needs(question: Question, spring: NullSpaceSpring) -> tuple[Array, Array, A
     share = (2 * question.delay_samples + 1) * question.period / 2 * spring.stiffness
     hand = need.stiffness_share + need.bound
     return hand, jacobian, inside, jacobian.T @ hand @ jacobian + share * inside
-
-
-def _margin(question: Question, spring: NullSpaceSpring, far: float, eta: float) -> float:
-    """What the joints have beyond need wherever |q − q_d| ≤ far, from below [N·m·s/rad]."""
-    hand, jacobian, inside, needed = _needs(question, spring)
-    values, vectors = np.linalg.eigh(hand)
-    root = (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
-    moves, turns = _changes(question.arm, jacobian)
-    point = len(jacobian) - question.arm.turns
-    change = far * (_size(root[:, :point]) * moves + _size(root[:, point:]) * turns)
-    lost = 2 * _size(root @ jacobian) * change + change**2
-    damper = spring.damping * (inside + eta * np.eye(len(inside)))
-    left = as_matrix(question.arm.damping) - needed - damper
-    rounding = _ROUNDING * (_size(as_matrix(question.arm.damping)) + _size(needed) + _size(damper))
-    free = moving(question.arm)
-    return float(np.linalg.eigvalsh(left[np.ix_(free, free)])[0]) - lost - rounding
-
-
-def _size(matrix: Array) -> float:
-    return float(np.linalg.norm(matrix, 2)) if matrix.size else 0.0
 
 
 def _factor(question: Question, spring: NullSpaceSpring) -> float:
