@@ -221,7 +221,7 @@ def compare(
     if hold_back and ports is not None:
         raise InputError("hold_back is for the standard ports: give ports of devices with the longer delay")
     if hold_back:
-        (leader, near_time), (other, far_time) = (_held_back(device) for device in (leader, other))
+        (leader, near_time), (other, far_time) = (held_back(device) for device in (leader, other))
         held = (near_time, far_time) if near_time or far_time else ()
     kinds = standard_ports(leader, other, link, impedance, smoothing) if ports is None else ports
     rows: dict[str, dict[str, Any]] = {}
@@ -235,7 +235,7 @@ def compare(
     return LinkComparison(_dataset(rows, leader.motion), link, traces, held)
 
 
-def _held_back(device: Device) -> tuple[Device, Fraction]:
+def held_back(device: Device) -> tuple[Device, Fraction]:
     """The device in a loop that keeps each force back until a sample ends, and for how long [s].
 
     With another delay it is another loop: that of the longer one is no bound for that of the shorter, in
