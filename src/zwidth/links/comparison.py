@@ -30,6 +30,7 @@ from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.parameter import parameters_of, read_number
+from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import readable, unit_text
 from zwidth.showing import Part, Table
 
@@ -92,15 +93,19 @@ class LinkComparison(Documented):
 
     def report(self) -> Iterable[Part]:
         """Which ports are passive over every such link, the link, and a table with a row for each port."""
-        told = [self.scores[key].attrs for key in _SCORES]
+        about = [self.scores[key].attrs for key in _SCORES]
+        told = [spoken(one["units"]) for one in about]
         heads = [
-            ("", "any link", *(about["long_name"] for about in told)),
-            ("", "", *(unit_text(about["units"]) for about in told)),
+            ("", "any link", *(one["long_name"] for one in about)),
+            ("", "", *(unit_text(unit) for _, unit in told)),
         ]
         rows = []
         for name in self.scores["port"].values:
             numbers = [self._number(key, name) for key in _SCORES]
-            cells = ["–" if number is None else f"{number:.3g}" for number in numbers]
+            cells = [
+                "–" if number is None else f"{factor * number:.3g}"
+                for number, (factor, _) in zip(numbers, told, strict=True)
+            ]
             rows.append((str(name), str(self.scores["outcome"].sel(port=name).item()), *cells))
         passive = [cells[0] for cells in rows if cells[1] == "passive"]
         yield f"passive over every link that makes up no packets: {', '.join(passive) or 'none'}"
