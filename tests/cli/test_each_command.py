@@ -54,6 +54,8 @@ def test_each_has_the_verdict_of_check(capsys: pytest.CaptureFixture[str]) -> No
     for name in ("kit-1", "kit-2", "kit-3"):
         verdict = zw.check(zw.load(f"{name}.toml").device, zw.Wall(210), iterate=False)
         assert f"{name} {verdict.outcome} {verdict.max_stiffness:.4g}" in out
+        assert f"{verdict.limit}: " in out
+    assert "delay not given, taken as 0: kit-1, kit-2, kit-3" in out
     assert run(capsys, *KITS, "--stiffness", "40")[0] == 0
 
 

@@ -63,7 +63,7 @@ def test_a_bounded_hand_stands_beside_every_hand(run: Run) -> None:
     """Slow hands allow stiffer walls; the report says how slow, and what every hand allows."""
     text = words(run(*BOUNDED, "--all"))
     assert "this hand every hand" in text
-    assert "0.3 m/s over one sample (13.39 counts a sample), up to 0.0005152 m (23 counts)" in text
+    assert "0.3 m/s over one sample (13.39 counts a sample), up to 515.2 µm (23 counts)" in text
     assert "per cycle" in text
     document = json.loads(run(*BOUNDED, "--json").out)
     assert document["proved_passive_N_per_m"] > 2 * document["every_hand_N_per_m"][1]

@@ -1,11 +1,14 @@
 """`zwidth network`: what its file may say, and real processes over real sockets, one of them killed."""
 
 import json
+import math
 import os
 import re
 import signal
 import subprocess
 import sys
+from fractions import Fraction
+from pathlib import Path
 
 import pytest
 from free_channels import free_ports
@@ -147,7 +150,7 @@ def test_a_plan_says_what_runs_where_and_what_a_line_adds(tmp_path, capsys):
         ),
         (SCENE.replace('port = ""', 'port = "bed"') + NETWORK, 'nobody would move the port "bed"'),
         (SCENE + SECOND_END + NETWORK, 'two line ends are called "paddle"'),
-        (SCENE + NETWORK.replace("haptic-paddle", "rotary.toml"), "a network's scene moves along an axis"),
+        (SCENE + NETWORK.replace("haptic-paddle", "rotary.toml"), r"impedance is in N\*m\*s/rad"),
         (SCENE + NETWORK + line("paddle", 1, 2) + line("paddle", 3, 4), 'line 2].*two of the name "paddle"'),
         (SCENE + NETWORK.replace('sample_period = "5 ms"', ""), "sample_period is missing"),
         (SCENE + NETWORK.replace('"5 ms"', '"-5 ms"'), "sample_period"),
@@ -247,3 +250,42 @@ def test_steps_longer_than_a_report_are_told_one_by_one(tmp_path, capsys):
     peer = Peer(plan.runs("far", Exact(3)), {"spring tool–bed": Nobody()}, 3)
     _Watch(peer, "far")(0)
     assert "far at 3 s, spring tool–bed: nothing has come" in capsys.readouterr().err
+
+
+WHEEL_SCENE = SCENE.replace("N*s/m", "N*m*s/rad").replace("50 g", "0.01 kg*m^2").replace("N/m", "N*m/deg")
+
+WHEEL = """[device]
+motion = "rotary"
+inertia = "0.006 kg*m^2"
+damping = "0.2 N*m*s/rad"
+rate = "1 kHz"
+delay = "0.4 ms"
+"""
+
+
+def test_a_scene_that_turns(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Its numbers are read and told about the axis; forces wait for whole samples."""
+    (tmp_path / "wheel.toml").write_text(WHEEL, encoding="utf-8")
+    network = NETWORK.replace(
+        '"haptic-paddle"', f'"{(tmp_path / "wheel.toml").as_posix()}"\nhold_back = true'
+    )
+    network = re.sub(r"operator = .*\n", "", network)
+    room = tmp_path / "room.toml"
+    room.write_text(WHEEL_SCENE + network, encoding="utf-8")
+    assert main(["network", str(room), "--plan"]) == 0
+    out = capsys.readouterr().out
+    assert "100 N·m/deg" in out
+    assert "143.2 g" not in out
+    assert f"{100 * 180 / math.pi * 0.005**2:.4g} kg·m²" in out  # K τ²
+    assert "wheel, each force held back for 600 µs (hand: hands on)" in out
+    assert load_plan(room).devices["paddle"].device.exact("delay") == Fraction(1, 1000)
+
+
+def test_a_scene_has_one_axis(tmp_path: Path) -> None:
+    """One device turns and one slides: a radius would tell both at their handles."""
+    (tmp_path / "wheel.toml").write_text(WHEEL, encoding="utf-8")
+    more = f'\n[[network.device]]\nname = "wheel"\nsource = "{(tmp_path / "wheel.toml").as_posix()}"\n'
+    room = tmp_path / "room.toml"
+    room.write_text(SCENE + NETWORK + more, encoding="utf-8")
+    with pytest.raises(InputError, match=r"wheel turns and paddle slides.*handle_radius"):
+        load_plan(room)

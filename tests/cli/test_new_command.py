@@ -518,3 +518,25 @@ def test_hints_for_a_wheel_are_in_torque_and_angle(
     assert main(["new", "device", str(tmp_path / "wheel.toml"), *typed]) == 0
     line = next(line for line in capsys.readouterr().out.splitlines() if "zwidth check" in line)
     assert line.endswith((' N*m/rad"', ' N*m/deg"'))
+
+
+def test_the_device_of_an_environment_may_have_any_name(
+    refused: Answered, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its motion and its largest torque are taken; the file of a device is not written over."""
+    assert main(["new", "device", "my-wheel.toml", *options(WHEEL), "--no-questions"]) == 0
+    assert "zwidth new environment --device my-wheel.toml" in capsys.readouterr().out
+    stop = options({"--type": "stop", "--start": "450 deg", "--stiffness": "1 N*m/deg"})
+    assert (
+        main(["new", "environment", "stop.toml", *stop, "--device", "my-wheel.toml", "--no-questions"]) == 0
+    )
+    out = capsys.readouterr().out
+    assert "my-wheel.toml is rotary" in out
+    assert "zwidth check my-wheel.toml stop.toml" in out
+    assert "the largest of my-wheel.toml" in Path("stop.toml").read_text(encoding="utf-8")
+    before = Path("my-wheel.toml").read_bytes()
+    for force in ([], ["--force"]):
+        told = refused("environment", "my-wheel.toml", *stop, "--no-questions", *force)
+        assert "--device my-wheel.toml" in told
+    assert Path("my-wheel.toml").read_bytes() == before
+    assert "my-weel.toml" in refused("environment", *stop, "--device", "my-weel.toml", "--no-questions")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -232,3 +233,22 @@ def test_what_is_said_of_a_port_needs_evidence_at_that_level() -> None:
         {**saved, "format": "zwidth verdict 1"},
     ):
         assert [part.verification.valid for part in verifications(document)] == [False]
+
+
+def test_a_document_about_a_wheel_is_told_in_degrees_too(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """π/180 of what is about a radian; what the document has stands before it, and no other line changes."""
+    wheel = zw.rotary(damping="0.02 N*m*s/rad", rate="1 kHz")
+    found = zw.check(wheel, zw.Wall("20 N*m/rad")).certificate
+    assert found is not None
+    file = tmp_path / "wheel.json"
+    file.write_text(to_json(found.to_dict()), encoding="utf-8")
+    assert main(["verify", str(file)]) == 0
+    plainly = capsys.readouterr().out
+    assert main(["verify", str(file), "--angles", "deg"]) == 0
+    told = capsys.readouterr().out
+    assert f"0.02 N·m·s/rad = {0.02 * math.pi / 180:.6g} N·m·s/deg" in told
+    assert [line.partition(" = ")[0] for line in told.splitlines()] == plainly.splitlines()
+    assert main(["verify", str(file), "--angles", "degrees"]) == 2
+    assert "deg, turn, rad, rpm" in capsys.readouterr().err

@@ -7,7 +7,9 @@ from fractions import Fraction
 import pytest
 
 import zwidth as zw
-from zwidth.links.comparison import LinkComparison, _dataset, _held_back
+from zwidth.links import held_back
+from zwidth.links.comparison import LinkComparison, _dataset
+from zwidth.quantity.spoken import answers_in
 
 WHEEL = zw.Device(
     mass="0.03", damping="0.05", coulomb_friction="0.05", rate="1000", delay="0.0014", motion="rotary"
@@ -17,9 +19,9 @@ ROW = {"outcome": "passive", "taken": 0.0, "tracking_error": 0.02, "apart": 0.00
 
 def test_the_force_acts_after_whole_samples() -> None:
     """1.4 ms at 1 kHz are 2 ms, 0.6 ms more; 2 ms stay as they are."""
-    late, held = _held_back(WHEEL)
+    late, held = held_back(WHEEL)
     assert (late.exact("delay"), held) == (Fraction(2, 1000), Fraction(6, 10000))
-    assert _held_back(late) == (late, 0)
+    assert held_back(late) == (late, 0)
     zw.links.WavePort(late)
     with pytest.raises(zw.InputError, match="--hold-back"):
         zw.links.WavePort(WHEEL)
@@ -34,6 +36,17 @@ def test_the_answer_says_so() -> None:
     plain = LinkComparison(scores, link, {})
     assert "held_back_s" not in plain.to_dict()
     assert not any("kept back" in str(part) for part in plain.report())
+
+
+def test_scores_are_told_in_the_angle_that_was_asked_for() -> None:
+    """0.02 rad are 1.15 deg, 2.1 N·m/rad are 0.0367 N·m/deg; the document stays SI."""
+    found = LinkComparison(_dataset({"waves": ROW}, "rotary"), zw.links.Schedule(), {})
+    with answers_in("deg"):
+        text = str(found)
+    for part in ("deg", "1.15", "0.0573", "N·m/deg", "0.0367"):
+        assert part in text
+    assert "rad" not in text
+    assert found.to_dict()["ports"]["waves"]["tracking_error_rad"] == 0.02
 
 
 def test_ports_of_ones_own_have_their_own_devices() -> None:

@@ -61,6 +61,8 @@ def test_a_port_refuses_what_it_cannot_book() -> None:
         port.receive([PACKET.to_bytes()])
     with pytest.raises(zw.InputError, match="whole number of counts"):
         port.send(1.5e-5)
+    port.receive()
+    assert port.send(3e10).position == pytest.approx(3e10)  # so far out a double is no whole number of counts
     with pytest.raises(zw.InputError, match="finite"):
         port.send(float("nan"))
     with pytest.raises(zw.InputError, match="whole sample periods"):

@@ -19,7 +19,7 @@ SAID: dict[str, list[tuple[dict[str, Any], str]]] = {
     "hands": [
         ({"hands": Hands(speed=0.5)}, "only hands of up to 0.5 m/s over one sample"),
         ({"hands": Hands(speed=0.5, in_each_part=True)}, "over each part of a sample"),
-        ({"hands": Hands(inside=0.002, outside=0.001)}, "up to 0.002 m inside and 0.001 m outside"),
+        ({"hands": Hands(inside=0.002, outside=0.001)}, "up to 2 mm inside and 1 mm outside"),
         ({"hands": Hands(impedance="a mass of 1 kg")}, "only a hand that is known: a mass of 1 kg"),
         ({"hands": Hands(activity=0.05, below=10)}, "give out at most 0.05 N·s/m below 10 Hz"),
     ],

@@ -6,7 +6,16 @@ from math import inf
 
 import pytest
 
-from zwidth.quantity.text import in_a_table, in_unit, in_words, quantity_unit, readable, shown, unit_text
+from zwidth.quantity.text import (
+    alike,
+    in_a_table,
+    in_unit,
+    in_words,
+    quantity_unit,
+    readable,
+    shown,
+    unit_text,
+)
 
 
 @pytest.mark.parametrize(
@@ -75,3 +84,12 @@ def test_a_number_in_a_table() -> None:
 def test_a_prefix_takes_the_place_of_an_exponent(value: float, unit: str, text: str) -> None:
     """Where the unit has prefixes; of a number that is read easily the unit stays as it is."""
     assert readable(value, unit) == text
+
+
+def test_values_of_one_line_have_one_prefix() -> None:
+    """Torques and angles that of the smallest, unless another is far above; lengths each their own."""
+    assert alike("N*m*s/rad", (0, 3.781e-5), (4, 6)) == ("0 µN·m·s/rad", "37.81 µN·m·s/rad")
+    assert alike("N*m*s/rad", (0.00125, 3.7e-5), (4, 6)) == ("1250 µN·m·s/rad", "37 µN·m·s/rad")
+    assert alike("N*m", (0.0027471, 0.05), (4, 4)) == ("2.747 mN·m", "50 mN·m")
+    assert alike("N*m*s/rad", (2.0, 3.7e-5), (4, 4)) == ("2 N·m·s/rad", "37 µN·m·s/rad")
+    assert alike("m", (0.3, 0.0001), (4, 4)) == ("0.3 m", "100 µm")

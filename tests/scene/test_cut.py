@@ -38,7 +38,7 @@ def test_a_body_in_two_parts_becomes_a_line_as_heavy_that_gives_way():
     (line,) = made.lines
     assert (line.parts, line.nodes, line.in_place_of) == (("near", "far"), ("m1", "m1 in far"), "mass m1")
     assert line.mass == pytest.approx(0.1)
-    assert line.adds == f"{1e3 * 0.002**2 / 0.1:.4g} mm/N"
+    assert line.adds() == f"{1e3 * 0.002**2 / 0.1:.4g} mm/N"
     near, far = made.parts
     assert [e.title for e in near.scene.elements] == [
         "mass m1",

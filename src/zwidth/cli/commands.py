@@ -217,7 +217,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "Reach the device, measure this machine and the link with force 0, prove the wall passive with\n"
             "what was measured, and render it until the time is over, Ctrl-C, or a fault. The force is 0\n"
             "before, after, and whenever something is wrong.",
-            "Without --connection the device is simulated, in the hand of --operator (default: a finger).\n"
+            "Without --connection the device is simulated, in the hand of --operator (default:\n"
+            "a finger; of what turns fingers on a knob, or from 0.0003 kg*m^2 on hands on a wheel).\n"
             "A plain number is SI; others carry a unit. What is not proved passive is refused.\n\n"
             "exit status: 0 served to the end; 2 bad input; 5 a fault ended the force or the recording;\n"
             "not served: 1 active, 3 undecided, 4 passive while contact is kept\n\n"

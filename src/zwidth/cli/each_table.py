@@ -18,7 +18,7 @@ from zwidth.passivity.result import Documented
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import shown, unit_text
+from zwidth.quantity.text import in_words, shown, unit_text
 from zwidth.quantity.units import parse_number
 from zwidth.showing import Part, Table
 from zwidth.specification.table import plain, quoted
@@ -76,6 +76,8 @@ class EachDevice(Documented):
         yield ""
         yield Table(heads=self._heads(), rows=list(self._rows()), lefts=2)
         yield ""
+        yield from self._what_limits()
+        yield from self._taken_as_nothing()
         yield (
             "of each device with everything in its ranges, by the closed forms; zwidth check of one says the "
             "rest"
@@ -127,6 +129,19 @@ class EachDevice(Documented):
                 f"shook below what is proved: {', '.join(below)}. A number in its file is too favourable "
                 "(damping, delay), or its loop does something that the file does not say"
             )
+
+    def _what_limits(self) -> Iterator[str]:
+        """Which devices are held back by the same."""
+        for limit in dict.fromkeys(map(self._limit, self.verdicts)):
+            if limit:
+                yield f"{limit}: {', '.join(n for n in self.verdicts if self._limit(n) == limit)}"
+
+    def _taken_as_nothing(self) -> Iterator[str]:
+        """Numbers that a file does not give and a limit rests on."""
+        for key in ("coulomb_friction", "resolution", "delay"):
+            names = [name for name, verdict in self.verdicts.items() if key in verdict.scope.assumed]
+            if names:
+                yield f"{in_words(key)} not given, taken as 0: {', '.join(names)}"
 
     def _times(self, name: str) -> float | None:
         limit, seen = self.largest(name), self.measured.get(name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 
-from zwidth.cli.options import Once, Parameter, add_all, add_output, given
+from zwidth.cli.options import Once, Parameter, add_all, add_angles, add_output, given, heed_angles
 from zwidth.cli.output import give_out, targets
 from zwidth.errors import InputError
 from zwidth.specification.read import load_device
@@ -43,6 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="of devices whose delay ends within a sample: their loops keep each force back until it ends",
     )
+    add_angles(parser)
     add_output(parser, "the scores", "the plot", "the scores as JSON")
 
 
@@ -68,6 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
     from zwidth.traces.progress import progress_bar
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
+    heed_angles(arguments)
     devices = [load_device([source], {}) for source in arguments.sources]
     link = Schedule(**given(arguments, [p.key for p in link_parameters()]))
     more = {

@@ -20,13 +20,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.simulation_tables import build_hand
 from zwidth.device import Device
 from zwidth.errors import InputError
-from zwidth.links import Schedule, WavePort
+from zwidth.links import Schedule, WavePort, held_back
 from zwidth.network.channel import Channel
 from zwidth.network.device_run import DeviceRun
 from zwidth.network.lossy import Lossy
@@ -34,6 +35,7 @@ from zwidth.network.open import open_channel
 from zwidth.network.part_run import PartRun
 from zwidth.network.peer import Peer
 from zwidth.operator.operator import Operator
+from zwidth.operator.usual import usual_kind
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import parameters_of, read_number
@@ -56,7 +58,7 @@ _LONGEST_WAIT = 20.0
 _WORSE = parameters_of(Schedule)
 _KINDS = {
     "part": ("name", "nodes", "sample_period"),
-    "device": ("name", "source", "operator", "connection", "safety"),
+    "device": ("name", "source", "hold_back", "operator", "connection", "safety"),
     "line": ("name", "channel", "impedance", *_WORSE),
 }
 _LONGEST = "longest_period"
@@ -90,11 +92,17 @@ class Held:
     device: Device
     hand: Operator | None
     reached: Reached | None = None
+    wait: Fraction = Fraction(0)
+    """For so long the loop keeps each force back, until a sample ends [s]."""
 
     def describe(self) -> str:
-        """Which device, and how it is reached."""
+        """Which device, and how it is reached, or which hand holds it."""
         name = self.device.name or "device"
-        return name if self.reached is None else f"{name}, {self.reached.connection.describe()}"
+        held = f", each force held back for {shown(Exact(self.wait), 's')}" if self.wait else ""
+        if self.reached is not None:
+            return f"{name}{held}, {self.reached.connection.describe()}"
+        assert self.hand is not None
+        return f"{name}{held} (hand: {self.hand.describe(self.device.motion).partition(',')[0]})"
 
     def runs(self, port: WavePort, duration: Exact, line: str) -> DeviceRun | PortRun:
         """What its process steps; a real device is not reached yet."""
@@ -180,7 +188,11 @@ def load_plan(path: Path) -> Plan:
                 f"{path}: there is no [{needed}] table; a network has the scene and who runs what"
             )
     table = tables["network"]
-    scene = build_environment(tables["environment"], "linear")
+    table.check_keys(_KEYS, "a network")
+    rows = {kind: list(_rows(table, kind)) for kind in _KINDS}
+    devices = dict(map(_device, rows["device"]))
+    motion = _motion(table, devices)
+    scene = build_environment(tables["environment"], motion)
     if not isinstance(scene, Scene):
         raise InputError(f'{tables["environment"].label}: a network runs a scene, type = "scene"')
     if scene.port:
@@ -188,9 +200,6 @@ def load_plan(path: Path) -> Plan:
             f'{tables["environment"].label}: nobody would move the port "{scene.port}": '
             'write port = "", and a line-end where a device comes in'
         )
-    table.check_keys(_KEYS, "a network")
-    rows = {kind: list(_rows(table, kind)) for kind in _KINDS}
-    devices = dict(map(_device, rows["device"]))
     names, periods = _parts(scene, table, rows["part"])
     both = next((name for name in devices if name in names), None)
     if both is not None:
@@ -199,7 +208,7 @@ def load_plan(path: Path) -> Plan:
         )
     delay = _number(table, "delay", "delay") if "delay" in table.values else max(periods.values())
     with located(table.label):
-        made = cut_scene(scene, names, delay, dict(_impedances(rows["line"])))
+        made = cut_scene(scene, names, delay, dict(_impedances(rows["line"], motion)), motion)
     for line in made.lines:
         one, other = (periods[part].fraction for part in line.parts)
         if line.delay < (one + other) / 2:
@@ -209,6 +218,17 @@ def load_plan(path: Path) -> Plan:
                 f'"{line.name}" as late'
             )
     return Plan(made, periods, devices, _lines(made, devices, rows["line"], path.stem))
+
+
+def _motion(table: Table, devices: Mapping[str, Held]) -> str:
+    """That of the axis of the scene, which is that of every device."""
+    found = {held.device.motion: name for name, held in devices.items()}
+    if len(found) > 1:
+        raise InputError(
+            f"{table.label}: {found['rotary']} turns and {found['linear']} slides; a scene has one axis: "
+            "give the one that turns a handle_radius, and it is felt at its handle, in newtons and metres"
+        )
+    return next(iter(found), "linear")
 
 
 def _rows(table: Table, kind: str) -> Iterator[Table]:
@@ -230,10 +250,16 @@ def _rows(table: Table, kind: str) -> Iterator[Table]:
 
 
 def _number(
-    table: Table, key: str, quantity: str, bound: str = "> 0", why: str = "a step takes time"
+    table: Table,
+    key: str,
+    quantity: str,
+    why: str = "a step takes time",
+    motion: str = "linear",
 ) -> Exact:
     with located(table.where(key)):
-        found: Exact = read_number(table.values[key], GLOSSARY[quantity], key, bound=bound, why=why)
+        found: Exact = read_number(
+            table.values[key], GLOSSARY[quantity], key, bound="> 0", why=why, motion=motion
+        )
     return found
 
 
@@ -281,17 +307,19 @@ def _device(row: Table) -> tuple[str, Held]:
             f"{row.label}: source is missing: a device of the catalogue, or a file with a [device]"
         )
     device = load_device([row.text("source")], {})
-    if device.motion != "linear":
-        raise InputError(f"{row.label}: the device is {device.motion}; a network's scene moves along an axis")
+    wait = Fraction(0)
+    if _flag(row, "hold_back"):
+        device, wait = held_back(device)
     if "connection" in row.values:
-        return row.text("name"), _real(row, device)
+        return row.text("name"), _real(row, device, wait)
     if "safety" in row.values:
         raise InputError(f"{row.label}: safety is of a real device, and this one has no connection")
-    hand = _inner(row, "operator", '{ type = "finger" }', {"type": "finger"})
-    return row.text("name"), Held(device, build_hand(hand, device.motion))
+    usual = usual_kind(device)
+    hand = _inner(row, "operator", f'{{ type = "{usual}" }}', {"type": usual})
+    return row.text("name"), Held(device, build_hand(hand, device.motion), wait=wait)
 
 
-def _real(row: Table, device: Device) -> Held:
+def _real(row: Table, device: Device, wait: Fraction) -> Held:
     """A device with a connection."""
     from zwidth.servo.connection import Placement
     from zwidth.servo.devices.registry import build_connection
@@ -310,7 +338,15 @@ def _real(row: Table, device: Device) -> Held:
         waits = max(connection.late, 1)
         device = device.replace(delay=Exact(waits * device.exact("sample_period")))
     safety = read_safety(_inner(row, "safety", '{ force = "2 N" }', {}), device.motion)
-    return Held(device, None, Reached(connection, Placement.read(place, device.motion), safety, longest))
+    reached = Reached(connection, Placement.read(place, device.motion), safety, longest)
+    return Held(device, None, reached, wait)
+
+
+def _flag(row: Table, key: str) -> bool:
+    found = row.values.get(key, False)
+    if not isinstance(found, bool):
+        raise InputError(f"{row.where(key)}: {key} is true or false, got {found!r}")
+    return found
 
 
 def _inner(row: Table, key: str, example: str, default: Mapping[str, Any] | None = None) -> Table:
@@ -321,11 +357,11 @@ def _inner(row: Table, key: str, example: str, default: Mapping[str, Any] | None
     return Table(f"{row.label} {key}", dict(given))
 
 
-def _impedances(rows: list[Table]) -> Iterator[tuple[str, Exact]]:
+def _impedances(rows: list[Table], motion: str) -> Iterator[tuple[str, Exact]]:
     for row in rows:
         if "impedance" in row.values:
             why = "a wave of no impedance carries no force"
-            yield row.text("name"), _number(row, "impedance", "wave_impedance", why=why)
+            yield row.text("name"), _number(row, "impedance", "wave_impedance", why, motion)
 
 
 def _lines(made: Cut, devices: Mapping[str, Any], rows: list[Table], stem: str) -> dict[str, Line]:

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from zwidth.device.rotary import ROTARY
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY, Quantity
+from zwidth.quantity.spoken import ANGLES, note
 from zwidth.rendering import LAWS
 from zwidth.specification import pairs
 from zwidth.specification.environments import TYPES, option_keys
@@ -104,6 +105,30 @@ def add_in_full(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> No
     parser.add_argument(
         "--all", action="store_true", dest="in_full", help="print the report in full, not the short one"
     )
+
+
+def add_angles(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
+    """The option --angles of a command to which nobody types an angle."""
+    parser.add_argument(
+        "--angles",
+        metavar="UNIT",
+        action=Once,
+        help="tell angles in deg, turn or rad, speeds with rpm too (default: as the files have them)",
+    )
+
+
+def heed_angles(arguments: argparse.Namespace) -> None:
+    """Answer in the angles that were asked for.
+
+    Raises
+    ------
+    InputError
+        If there are none of that name.
+    """
+    if arguments.angles is not None:
+        if arguments.angles not in ANGLES:
+            raise InputError(f"--angles is one of {', '.join(ANGLES)}, got {arguments.angles[:40]!r}")
+        note(arguments.angles)
 
 
 def add_parameters(parser: argparse.ArgumentParser) -> None:

@@ -242,13 +242,20 @@ def _hand(
     arguments: argparse.Namespace, tables: Mapping[str, Table], motion: str, connection: Connection | None
 ) -> Any:
     from zwidth.cli.simulation_tables import build_hand, operator_parameters
+    from zwidth.operator import HandsOff
 
     typed = given(arguments, [p.key for p in operator_parameters()])
     if OPERATOR not in tables and not typed:
         return None
     if connection is not None:
         raise InputError(f"[{OPERATOR}] holds the simulated device; a real one is held by a person: drop it")
-    return build_hand(merged(tables.get(OPERATOR), typed, OPERATOR), motion, OPERATOR)
+    hand = build_hand(merged(tables.get(OPERATOR), typed, OPERATOR), motion, OPERATOR)
+    if isinstance(hand, HandsOff):
+        raise InputError(
+            "hands-off moves nothing, and a served device begins at rest; one that is let go on its way: "
+            "zwidth simulate … --operator hands-off --initial-velocity '360 deg/s'"
+        )
+    return hand
 
 
 def _target(arguments: argparse.Namespace) -> Path | None:

@@ -4,7 +4,8 @@
     [connection]            [follower_connection]
     [operator]              [follower_operator]
 
-An arm without a connection is simulated, the leader in the hand of a finger, the follower in nobody's.
+An arm without a connection is simulated, the leader in its usual hand, a finger or hands
+on a wheel, the follower in nobody's.
 """
 
 from __future__ import annotations
@@ -87,12 +88,12 @@ def _hand(
 ) -> Any:
     """What holds a simulated arm."""
     from zwidth.cli.simulation_tables import build_hand, operator_parameters
-    from zwidth.operator import ConstantForce, Finger
+    from zwidth.operator import HandsOff, usual_hand
 
     name = OPERATOR if leads else FOLLOWER_OPERATOR
     typed = given(arguments, [p.key for p in operator_parameters()]) if leads else {}
     if name not in tables and not typed:
-        return Finger() if leads else ConstantForce(0)
+        return usual_hand(pair.leader) if leads else HandsOff()
     if not simulated:
         raise InputError(f"[{name}] holds a simulated arm; a real one is held by a person: drop it")
     return build_hand(merged(tables.get(name), typed, name), pair.motion, name)

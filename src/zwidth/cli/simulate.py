@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,8 @@ from zwidth.cli.output import check_new, print_json, say_written, writing
 from zwidth.cli.simulate_pair import pair_measures, simulated_pair
 from zwidth.environment import Environment, NonlinearSpring
 from zwidth.errors import InputError
+from zwidth.operator.parameter import ParametricOperator
+from zwidth.operator.usual import usual_kind
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import shown
@@ -31,6 +34,9 @@ from zwidth.specification.table import Table
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from zwidth.device import Device
+    from zwidth.operator import Operator
 
 PICTURES = (".png", ".svg", ".pdf")
 SAVED = (".nc", ".parquet", ".csv")
@@ -76,7 +82,9 @@ def run(arguments: argparse.Namespace) -> int:
     plot, sound, save = _targets(arguments)
     tables = read_tables(arguments.sources, (*TABLES, *PAIR_TABLES, FOLLOWER))
     pair = any(name in tables for name in PAIR_TABLES)
-    trace, missed = (simulated_pair(arguments, tables), "") if pair else _simulated(arguments, tables)
+    trace, missed, hand = (
+        (simulated_pair(arguments, tables), "", "") if pair else _simulated(arguments, tables)
+    )
     if save is not None:
         save_trace(trace.assign_attrs(_angles()), save, force=True)
     if sound is not None:
@@ -93,13 +101,13 @@ def run(arguments: argparse.Namespace) -> int:
         if pair:
             print_pair_trace(trace, arguments.in_full)
         else:
-            print_trace(trace, arguments.in_full, missed)
+            print_trace(trace, arguments.in_full, missed, hand)
         say_written(save, plot, sound)
     return INTERRUPTED if "interrupted_at_s" in trace.attrs else 0
 
 
-def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tuple[xr.Dataset, str]:
-    """The touch, and what is to be said where it met nothing."""
+def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tuple[xr.Dataset, str, str]:
+    """The touch, and what is to be said where it met nothing, and where the hand is one of another device."""
     from zwidth.cli.compile_notice import warn_of_compiling
     from zwidth.cli.simulation_tables import (
         FOLLOWER,
@@ -125,13 +133,30 @@ def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tu
         duration = own_duration(touch.operator, float(loop.device.exact("sample_period")))
     warn_of_compiling()
     trace = simulate(loop.device, environment, touch.operator, duration, **touch.options)
-    return trace, never_reached(trace, environment.met, loop.device.motion)
+    return (
+        trace,
+        never_reached(trace, environment.met, loop.device.motion),
+        made_for_a_handle(touch.operator, loop.device),
+    )
 
 
 def _angles() -> dict[str, str]:
     """In which unit angles were asked for, for whoever reads the trace: its numbers are SI."""
     unit = spoken("rad")[1]
     return {} if unit == "rad" else {ANGLES: unit}
+
+
+def made_for_a_handle(operator: Operator, device: Device) -> str:
+    """That a hand has the mass of one on a handle that slides, in kg·m², and which to take; "" of others."""
+    if device.motion == "linear" or not isinstance(operator, ParametricOperator) or operator.motion:
+        return ""
+    usual = [field.default for field in fields(operator) if field.name == "mass"]
+    if not usual or operator.mass != usual[0]:  # type: ignore[attr-defined]
+        return ""
+    return (
+        "These numbers are of a handle that slides, read in N·m and rad: give those of a hand on this "
+        f"device, or take --operator {usual_kind(device)}."
+    )
 
 
 def never_reached(trace: xr.Dataset, met: Environment, motion: str) -> str:

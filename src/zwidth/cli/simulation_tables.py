@@ -43,6 +43,7 @@ IN_A_WORD: Mapping[str, str] = MappingProxyType(
         "cycle": "in and out each sample",
         "dowel": "a stick pressed on",
         "finger": "a finger of your numbers",
+        "fingers-on": "thumb and finger on a knob",
         "guide": "a motor that pushes in",
         "hands-off": "let go",
         "hands-on": "two hands on a wheel",
@@ -54,6 +55,9 @@ IN_A_WORD: Mapping[str, str] = MappingProxyType(
     }
 )
 """What each hand is."""
+
+_BEGIN = {"linear": "typical", "rotary": "hands-on"}
+"""The hand to begin with, by the motion of the device."""
 
 AMPLIFIERS = ("current", "ideal", "voltage-limited", "lag")
 
@@ -93,7 +97,11 @@ def operator_parameters() -> Iterator[Parameter]:
     """The options of an operator."""
     before = f"{OPERATOR}."
     kinds = ", ".join((*OPERATORS, RECORD, WITNESS))
-    yield Parameter(OPERATOR, "TYPE", f"the hand, or that on the leader; begin with typical: {kinds}")
+    yield Parameter(
+        OPERATOR,
+        "TYPE",
+        f"the hand, or that on the leader; begin with typical, of what turns hands-on: {kinds}",
+    )
     yield Parameter(before + "file", "FILE", f"of a {RECORD} or {WITNESS}")
     yield Parameter(before + "column", "COLUMN", f"of the file of a {RECORD}, where it has several")
     yield Parameter(before + "rounds", "N", f"how often a {WITNESS} does its cycle (default: 100 at most)")
@@ -206,10 +214,10 @@ def build_hand(table: Table, motion: str, option: str = OPERATOR) -> Operator:
         As `build_touch`.
     """
     if "type" not in table.values:
-        kinds = "; ".join(f"{name}, {IN_A_WORD[name]}" for name in (*OPERATORS, RECORD, WITNESS))
+        kinds = "; ".join(f"{name}, {IN_A_WORD[name]}" for name in _fitting(motion))
         flag = f"--{option.replace('_', '-')}"
         raise InputError(
-            f"no hand is given: begin with {flag} typical --duration '2 s', or take one of: {kinds}"
+            f"no hand is given: begin with {flag} {_BEGIN[motion]} --duration '2 s', or take one of: {kinds}"
         )
     kind = table.text("type")
     if kind == RECORD:
@@ -217,13 +225,13 @@ def build_hand(table: Table, motion: str, option: str = OPERATOR) -> Operator:
     if kind == WITNESS:
         return _witness(table)
     if kind not in OPERATORS:
-        known = (*OPERATORS, RECORD, WITNESS)
-        hint = f"{suggestion(kind, known)}; begin with typical"
+        hint = f"{suggestion(kind, _fitting(motion))}; begin with {_BEGIN[motion]}"
         raise InputError(f"{table.where('type')}: there is no hand {quoted(kind)}; {hint}")
     build: type[ParametricOperator] = OPERATORS[kind]
     if build.motion not in ("", motion):
         raise InputError(
-            f"{table.where('type')}: {kind} holds a device that turns, this one is {motion}: take typical"
+            f"{table.where('type')}: {kind} holds a device that turns, this one is {motion}: take "
+            f"{_BEGIN[motion]}"
         )
     parameters = build.parameters()
     table.check_keys(("type", *parameters), f"the hand {quoted(kind)}")
@@ -236,6 +244,11 @@ def build_hand(table: Table, motion: str, option: str = OPERATOR) -> Operator:
             return build(**values)
         except InputError as error:
             raise InputError(_in_their_words(str(error), table.values, values)) from None
+
+
+def _fitting(motion: str) -> tuple[str, ...]:
+    """The hands that can hold a device that moves so."""
+    return (*(name for name, one in OPERATORS.items() if one.motion in ("", motion)), RECORD, WITNESS)
 
 
 def _in_their_words(message: str, typed: Mapping[str, object], read: Mapping[str, float]) -> str:

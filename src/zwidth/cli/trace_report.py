@@ -26,16 +26,16 @@ _FEW = ("deepest position", "largest actuator force", "contacts made", "at the e
 """Of the measures: what a short report has."""
 
 
-def print_trace(trace: xr.Dataset, in_full: bool = False, missed: str = "") -> None:
-    """Print the report of one trace; `missed` says that the hand met nothing, where it did not."""
+def print_trace(trace: xr.Dataset, in_full: bool = False, missed: str = "", hand: str = "") -> None:
+    """Print the report of one trace; `missed` says that the hand met nothing, `hand` which would suit."""
     with page() as out:
         out.print(headline("missed", "yellow", missed) if missed else trace_headline(trace))
         if not in_full:
             few = [name for name in _FEW if not (missed and name == "contacts made")]
-            blocks(out, [row for row in _measures(trace) if row[0] in few], _about(trace))
+            blocks(out, [row for row in _measures(trace) if row[0] in few], _about(trace, hand))
             more_with_all(out, "every measure, where each joule went")
             return
-        out.print(below(grid(_about(trace))))
+        out.print(below(grid(_about(trace, hand))))
         out.print(below(grid(_measures(trace))))
         out.print(Text("energy", style="bold"))
         out.print(grid((text, shown(value, "J")) for text, value in trace.zwidth.energy.rows()))
@@ -76,11 +76,13 @@ def trace_headline(trace: xr.Dataset) -> Padding:
     return headline("touch", "blue", f"{words} That proves nothing of other hands: see zwidth check.")
 
 
-def _about(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
+def _about(trace: xr.Dataset, hand: str) -> Iterator[tuple[str, str]]:
     about = trace.attrs
     yield "device", plain(str(about["device"]), 60)
     yield "environment", plain(str(about["environment"]), 200)
     yield "hand", plain(str(about["operator"]), 200)
+    if hand:
+        yield "", hand
     yield "amplifier", str(about["amplifier"])
     if about["timing"] != "regular":
         yield "clock", str(about["timing"])

@@ -9,12 +9,13 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from zwidth.checker import Scope, Verified
-from zwidth.cli.options import Once
+from zwidth.cli.options import Once, heed_angles
 from zwidth.cli.output import print_json
 from zwidth.cli.page import below, grid, headline, page
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import evidence, read_document, verify_document
 from zwidth.passivity.result import EVIDENCE
+from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import shown
 from zwidth.specification.table import plain
 
@@ -44,7 +45,7 @@ _OF_A_PORT = ("zwidth indices 1", "zwidth scattering 1")
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth verify`."""
-    parser.usage = "%(prog)s FILE\n       %(prog)s --schema KIND"
+    parser.usage = "%(prog)s FILE [--angles UNIT]\n       %(prog)s --schema KIND"
     parser.add_argument(
         "file", metavar="FILE", nargs="?", help="certificate, witness, verdict or limit saved as JSON"
     )
@@ -54,6 +55,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action=Once,
         help="print the JSON Schema of the documents of a kind, such as spring or corners",
     )
+    parser.add_argument(
+        "--angles",
+        metavar="UNIT",
+        action=Once,
+        help="beside what the file has, in rad, tell it in deg, turn or rpm",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -62,6 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
         return _schema(arguments)
     if arguments.file is None:
         raise InputError("which FILE is to be checked? Or --schema KIND for what one must look like")
+    heed_angles(arguments)
     found = verifications(read_document(arguments.file))
     print_verifications(found)
     return 0 if all(part.verification.valid for part in found) else 1
@@ -266,7 +274,18 @@ def _rows(part: Part) -> Iterator[tuple[str, str]]:
         if row.told and part.law is not None:
             continue
         name = "told, not checked" if row.told else plain(row.name)
-        yield name, plain(f"{row.text} {row.unit}".rstrip(), 300)
+        yield name, plain(f"{row.text} {row.unit}".rstrip(), 300) + _in_other_words(row.text, row.unit)
+
+
+def _in_other_words(number: str, unit: str) -> str:
+    """The same, rounded, in the angle that was asked for; "" where that is what the document has."""
+    factor, said = spoken(unit)
+    if factor == 1.0:
+        return ""
+    try:
+        return f" = {factor * float(number):.6g} {said}"
+    except ValueError:  # a list of numbers
+        return ""
 
 
 def _joules(energy: Fraction) -> str:

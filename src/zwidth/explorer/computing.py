@@ -15,6 +15,7 @@ from zwidth.errors import InputError
 from zwidth.explorer.starts import first
 from zwidth.explorer.state import State
 from zwidth.operator import OPERATORS, Finger, ParametricOperator
+from zwidth.operator.usual import usual_kind
 from zwidth.passivity.check import check
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, Interval, ends
@@ -74,7 +75,7 @@ class Row(NamedTuple):
 
 
 def operator_of(state: State) -> ParametricOperator:
-    """The hand that touches the loop; a finger where none is chosen.
+    """The hand that touches the loop; the usual one of its device where none is chosen.
 
     Raises
     ------
@@ -82,12 +83,19 @@ def operator_of(state: State) -> ParametricOperator:
         If there is no such hand, or a number of it cannot be used.
     """
     values = dict(state.extras.get("operator", {}))
-    name = str(values.pop("type", "finger"))
+    values.pop("type", None)
+    name = hand_kind_of(state)
     if name not in OPERATORS:
         raise InputError(f"there is no hand {quoted(name)}; {suggestion(name, OPERATORS)}")
     kind: type[ParametricOperator] = OPERATORS[name]
     Table("operator", values).check_keys(parameters_of(kind), f"the hand {quoted(name)}")
     return kind(**values)
+
+
+def hand_kind_of(state: State) -> str:
+    """The name of that hand."""
+    chosen = state.extras.get("operator", {}).get("type")
+    return usual_kind(state.loop().device) if chosen is None else str(chosen)
 
 
 def touched(state: State) -> Touch:

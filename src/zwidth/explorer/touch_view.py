@@ -25,21 +25,29 @@ class Touches:
         self._page, self._pictures = page, touch.TouchPictures()
         self._captions = [words(element("p")), words(element("p"))]
         self._controls: dict[str, Control] = {}
+        self._drawn: tuple[object, ...] = ()
         self.form = Form(sizing_mode="stretch_width")
         pictures = self._pictures
         parts = [self.form, wide(pictures.position), wide(pictures.force), self._captions[0]]
-        self.view = View("touch", touch.TOUCH, parts, lambda: None, self._released)
+        self.view = View("touch", touch.TOUCH, parts, self._follow, self._released)
         energy = [wide(pictures.energy), self._captions[1]]
-        self.energy_view = View("energy", touch.ENERGY, energy, lambda: None, self._released)
+        self.energy_view = View("energy", touch.ENERGY, energy, self._follow, self._released)
         self._draw(page.state)
         page.listen(self.form, self.hear)
 
     def _draw(self, state: State) -> None:
-        kind = str(state.extras.get("operator", {}).get("type", "finger"))
+        self._drawn = _drawn_of(state)
+        kind = computing.hand_kind_of(state)
         made = _controls(computing.operator_of(state), state.motion)
         self._controls = {one.path: one for one in made}
-        options = [(name, name.replace("-", " ")) for name in OPERATORS]
+        holding = (name for name, one in OPERATORS.items() if one.motion in ("", state.motion))
+        options = [(name, name.replace("-", " ")) for name in holding]
         self.form.groups = [group("Hand", [choice("operator", "kind", options, kind), *map(shown, made)])]
+
+    def _follow(self) -> None:
+        """Another device may have another hand, or its numbers other units."""
+        if _drawn_of(self._page.state) != self._drawn:
+            self._draw(self._page.state)
 
     def hear(self, event: Event) -> Mapping[str, Any]:
         """What is moved of the hand."""
@@ -80,6 +88,11 @@ class Touches:
         texts = self._pictures.show(answer.value, self._page.state.motion)
         for caption, text in zip(self._captions, texts, strict=True):
             said(caption, text)
+
+
+def _drawn_of(state: State) -> tuple[object, ...]:
+    """What the sliders of the hand depend on, beside their own places."""
+    return computing.hand_kind_of(state), state.motion, state.angles
 
 
 def _controls(hand: ParametricOperator, motion: str) -> list[Control]:

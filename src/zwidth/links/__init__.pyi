@@ -2,6 +2,7 @@ from zwidth.links.attack import LinkWitness as LinkWitness
 from zwidth.links.attack import most_taken as most_taken
 from zwidth.links.comparison import LinkComparison as LinkComparison
 from zwidth.links.comparison import compare as compare
+from zwidth.links.comparison import held_back as held_back
 from zwidth.links.comparison import standard_ports as standard_ports
 from zwidth.links.feel import felt_mass as felt_mass
 from zwidth.links.feel import felt_stiffness as felt_stiffness

@@ -30,6 +30,7 @@ from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.parameter import parameters_of, read_number
+from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import readable, unit_text
 from zwidth.showing import Part, Table
 
@@ -92,15 +93,19 @@ class LinkComparison(Documented):
 
     def report(self) -> Iterable[Part]:
         """Which ports are passive over every such link, the link, and a table with a row for each port."""
-        told = [self.scores[key].attrs for key in _SCORES]
+        about = [self.scores[key].attrs for key in _SCORES]
+        told = [spoken(one["units"]) for one in about]
         heads = [
-            ("", "any link", *(about["long_name"] for about in told)),
-            ("", "", *(unit_text(about["units"]) for about in told)),
+            ("", "any link", *(one["long_name"] for one in about)),
+            ("", "", *(unit_text(unit) for _, unit in told)),
         ]
         rows = []
         for name in self.scores["port"].values:
             numbers = [self._number(key, name) for key in _SCORES]
-            cells = ["–" if number is None else f"{number:.3g}" for number in numbers]
+            cells = [
+                "–" if number is None else f"{factor * number:.3g}"
+                for number, (factor, _) in zip(numbers, told, strict=True)
+            ]
             rows.append((str(name), str(self.scores["outcome"].sel(port=name).item()), *cells))
         passive = [cells[0] for cells in rows if cells[1] == "passive"]
         yield f"passive over every link that makes up no packets: {', '.join(passive) or 'none'}"
@@ -221,7 +226,7 @@ def compare(
     if hold_back and ports is not None:
         raise InputError("hold_back is for the standard ports: give ports of devices with the longer delay")
     if hold_back:
-        (leader, near_time), (other, far_time) = (_held_back(device) for device in (leader, other))
+        (leader, near_time), (other, far_time) = (held_back(device) for device in (leader, other))
         held = (near_time, far_time) if near_time or far_time else ()
     kinds = standard_ports(leader, other, link, impedance, smoothing) if ports is None else ports
     rows: dict[str, dict[str, Any]] = {}
@@ -235,7 +240,7 @@ def compare(
     return LinkComparison(_dataset(rows, leader.motion), link, traces, held)
 
 
-def _held_back(device: Device) -> tuple[Device, Fraction]:
+def held_back(device: Device) -> tuple[Device, Fraction]:
     """The device in a loop that keeps each force back until a sample ends, and for how long [s].
 
     With another delay it is another loop: that of the longer one is no bound for that of the shorter, in

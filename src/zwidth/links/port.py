@@ -24,6 +24,8 @@ _TINY = 1e-6
 """Way over an edge of the encoder [counts]."""
 _WHOLE = 1e-3
 """How far a displacement may be from whole counts [counts]."""
+_ULP = 2.0**-51
+"""Of so many counts: the difference of two readings far out is rounded, and so is its quotient."""
 
 
 @dataclass(frozen=True)
@@ -147,7 +149,7 @@ class Port(Parametric):
             raise InputError(f"displacement must be finite, got {displacement!r}")
         step = self.numbers[memory.RESOLUTION]
         counts = round(moved / step) if step > 0 else 0
-        if step > 0 and abs(moved / step - counts) > _WHOLE:
+        if step > 0 and abs(moved / step - counts) > _WHOLE + _ULP * abs(counts):
             raise InputError(
                 f"displacement is a whole number of counts of {step:g}, got {moved:g}: give the "
                 "difference of two readings as they are, not filtered"

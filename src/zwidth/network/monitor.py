@@ -18,6 +18,7 @@ from zwidth.errors import InputError
 from zwidth.links import Packet
 from zwidth.network.channel import Channel
 from zwidth.network.frame import Frame
+from zwidth.quantity.text import shown
 from zwidth.showing import Part, Shown, Table
 
 _REMEMBERED = 4096
@@ -81,7 +82,7 @@ class LinkReport(Shown):
 
     def row(self, name: str) -> list[str]:
         """One row of a table of links."""
-        energies = (f"{1e3 * e:.4g} mJ" for e in (self.energy_sent, self.energy_received))
+        energies = (shown(e, "J") for e in (self.energy_sent, self.energy_received))
         return [name, str(self.sent), str(self.received), self._share, self._trips, *energies]
 
     @property
@@ -110,7 +111,7 @@ class LinkReport(Shown):
             ["lost", f"{self.lost} ({self._share}), {self.doubled} twice, {self.late} late"],
             ["foreign", f"{self.foreign} datagrams"],
             ["there and back", f"{self._trips}: median, 99 %"],
-            ["energy", f"{self.energy_sent:.4g} J sent, {self.energy_received:.4g} J received"],
+            ["energy", f"{shown(self.energy_sent, 'J')} sent, {shown(self.energy_received, 'J')} received"],
             ["silent", f"for {self.silent:.3g} s" if self.received else "from the start"],
         ]
 

@@ -10,6 +10,7 @@ from zwidth.operator.cycle import Cycle
 from zwidth.operator.dowel import Dowel
 from zwidth.operator.finger import Finger
 from zwidth.operator.guide import Guide
+from zwidth.operator.on_a_knob import FingersOn
 from zwidth.operator.on_a_wheel import HandsOff, HandsOn
 from zwidth.operator.operator import LinearHand, Operator, Signals
 from zwidth.operator.parameter import ParametricOperator
@@ -18,6 +19,7 @@ from zwidth.operator.recorded_force import RecordedForce
 from zwidth.operator.soft_touch import SoftTouch
 from zwidth.operator.touches import MaliciousTouch, TypicalTouch
 from zwidth.operator.tracking import Tracking
+from zwidth.operator.usual import usual_hand
 from zwidth.operator.witness_motion import WitnessMotion
 
 OPERATORS: Mapping[str, type[ParametricOperator]] = MappingProxyType(
@@ -26,6 +28,7 @@ OPERATORS: Mapping[str, type[ParametricOperator]] = MappingProxyType(
         "cycle": Cycle,
         "dowel": Dowel,
         "finger": Finger,
+        "fingers-on": FingersOn,
         "guide": Guide,
         "hands-off": HandsOff,
         "hands-on": HandsOn,
@@ -42,6 +45,7 @@ __all__ = [
     "Cycle",
     "Dowel",
     "Finger",
+    "FingersOn",
     "Guide",
     "HandsOff",
     "HandsOn",
@@ -56,4 +60,5 @@ __all__ = [
     "Tracking",
     "TypicalTouch",
     "WitnessMotion",
+    "usual_hand",
 ]

@@ -36,7 +36,7 @@ from zwidth.passivity.parameter_limits import has_stiffness, is_of_high_degree, 
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import in_words, readable
+from zwidth.quantity.text import alike, in_words, readable
 
 _NEVER_NOTHING = ("stiffness", "resolution", "link_delay")
 """What nobody can set to 0 and keep what it is there for."""
@@ -349,7 +349,8 @@ def _text(knob: Knob, to: float | None, unit: str, kind: str) -> str:
         if to is None:
             return f"no {'higher' if knob.more else 'lower'} {knob.name} was found that would do alone"
         verb = "raise" if knob.more else "lower"
-        return f"{verb} the {knob.name} from {now} to {readable(to, unit, 6)}"
+        now, wanted = alike(unit, (knob.current, to), (4, 6))
+        return f"{verb} the {knob.name} from {now} to {wanted}"
     if to is None or to == inf:
         return f"{knob.name} may take any value" if to == inf else f"{knob.name} has no slack"
     if to == knob.current and knob.in_samples:
@@ -357,7 +358,8 @@ def _text(knob: Knob, to: float | None, unit: str, kind: str) -> str:
     if to == knob.current:
         return f"{knob.name} is exactly at its limit, {now}"
     bound = "as low as" if knob.more else "up to"
-    return f"{knob.name} may go {bound} {readable(to, unit, 6)} (now {now})"
+    now, most = alike(unit, (knob.current, to), (4, 6))
+    return f"{knob.name} may go {bound} {most} (now {now})"
 
 
 def _estimators(device: Device, wall: Wall, contact: bool, grain: int) -> Iterator[Advice]:

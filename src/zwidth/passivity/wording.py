@@ -225,9 +225,7 @@ def describe_hands(hands: Hands, motion: str) -> str:
         )
     if hands.inside is not None:
         counts = _counts(hands.counts_inside)
-        bounds.append(
-            f"up to {told_quantity(hands.inside, 'position', motion, 4)}{counts} {_sides(hands, motion)}"
-        )
+        bounds.append(f"up to {_far(hands.inside, motion)}{counts} {_sides(hands, motion)}")
     return f"hands of {', '.join(bounds)}" if bounds else "every hand"
 
 
@@ -241,4 +239,8 @@ def _sides(hands: Hands, motion: str) -> str:
         return "inside and any distance outside"
     if hands.inside is not None and hands.outside == hands.inside:
         return "on either side"
-    return f"inside and {told_quantity(hands.outside, 'position', motion, 4)} outside"
+    return f"inside and {_far(hands.outside, motion)} outside"
+
+
+def _far(way: float, motion: str) -> str:
+    return shown(way, GLOSSARY["position"].unit_for(motion))

@@ -31,6 +31,8 @@ _WORDS = {
     **dict.fromkeys(("turn", "turns", "rev", "revs"), "turn"),
     "rpm": "rpm",
 }
+ANGLES = (*_ANGLES, "rpm")
+"""In which an answer may be."""
 _WORD = re.compile(r"[A-Za-z]+")
 _RADIAN = re.compile(r"\brad(?:\^([0-9.]+))?(?![A-Za-z])")
 
@@ -58,7 +60,7 @@ def answers_in(*units: str) -> Iterator[None]:
     InputError
         If it is none of them.
     """
-    unknown = [unit for unit in units if unit not in (*_ANGLES, "rpm")]
+    unknown = [unit for unit in units if unit not in ANGLES]
     if unknown:
         raise InputError(f"an angle is told in rad, deg or turn, a speed also in rpm; got {unknown[0]!r}")
     with _noting(set(units)):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from decimal import Decimal
 from fractions import Fraction
 from math import floor, inf, log10
@@ -15,6 +16,9 @@ PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 _PREFIXED = ("m", "s", "J", "N", "Hz", "m/s")
 """Units that people prefix in text; N·s/m stays as it is, and 300 N/m too."""
+
+_READABLE = (*_PREFIXED, "rad", "N*m", "N·m", "rad/s")
+"""Those that `readable` prefixes."""
 
 _FAR = 1e4
 """How many times the smaller end of an interval the larger is, for both to have the prefix of the smaller."""
@@ -111,14 +115,33 @@ def readable(value: float, unit: str, digits: int = 4) -> str:
     """A value with its unit; a prefix replaces an exponent and noughts: "0.15 J", and "1.5 mJ"."""
     factor, unit = spoken(unit)
     value *= factor
+    power, name = _readable_prefix(value, unit, digits)
+    return f"{value / 10.0**power:.{digits}g} {name}".rstrip()
+
+
+def alike(unit: str, values: Sequence[float], digits: Sequence[int]) -> tuple[str, ...]:
+    """Values of one line as `readable` has them, each to its digits; torques and angles with one prefix.
+
+    It is that of the smallest value that is not 0, unless another is far above.
+    """
+    factor, said = spoken(unit)
+    numbers = [value * factor for value in values]
+    sizes = sorted(abs(number) for number in numbers if number)
+    if not sizes or sizes[-1] >= _FAR * sizes[0] or not said.startswith(_NO_EXPONENT):
+        return tuple(readable(value, unit, n) for value, n in zip(values, digits, strict=True))
+    power, name = _readable_prefix(sizes[0], said, min(digits))
+    return tuple(
+        f"{_rounded(number / 10.0**power, n)} {name}" for number, n in zip(numbers, digits, strict=True)
+    )
+
+
+def _readable_prefix(value: float, unit: str, digits: int) -> tuple[int, str]:
     text = f"{value:.{digits}g}"
-    prefixed = (*_PREFIXED, "rad", "N*m", "N·m", "rad/s")
     is_long = "e" in text or 0.0 < abs(value) < 0.01
-    power = 3 * floor(log10(abs(value)) / 3) if is_long and unit in prefixed else 0
-    if power not in PREFIXES or not power:
-        power, name = _instead_of_exponent(value, unit, digits) if value else (0, unit_text(unit))
-        return f"{value / 10.0**power:.{digits}g} {name}".rstrip()
-    return f"{value / 10.0**power:.{digits}g} {PREFIXES[power]}{unit_text(unit)}"
+    power = 3 * floor(log10(abs(value)) / 3) if is_long and unit in _READABLE else 0
+    if power in PREFIXES and power:
+        return power, f"{PREFIXES[power]}{unit_text(unit)}"
+    return _instead_of_exponent(value, unit, digits) if value else (0, unit_text(unit))
 
 
 def in_unit(value: float | None, unit: str) -> str:

@@ -22,6 +22,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import read_number
+from zwidth.quantity.text import readable, told_quantity
 from zwidth.scene.element import GROUND, Element
 from zwidth.scene.line_end import LineEnd
 from zwidth.scene.scene import Scene
@@ -50,9 +51,11 @@ class Line(NamedTuple):
         """w/τ, of the line at rest [N/m; N·m/rad]."""
         return float(self.impedance.fraction / self.delay)
 
-    @property
-    def adds(self) -> str:
+    def adds(self, motion: str = "linear") -> str:
         """The mass of a line, or how far the one of a body gives way, in words."""
+        if motion == "rotary":
+            gives = self.keeps == "mass"
+            return readable(1 / self.stiffness, "rad/N/m") if gives else readable(self.mass, "kg*m^2")
         if self.keeps == "mass":
             return f"{1e3 / self.stiffness:.4g} mm/N"
         return f"{1e3 * self.mass:.4g} g"
@@ -82,6 +85,8 @@ class Cut(Shown):
 
     parts: tuple[Part, ...]
     lines: tuple[Line, ...]
+    motion: str = "linear"
+    """Whether its axis is one that things move along, or "rotary", turn about."""
 
     def report(self) -> Iterable[Shows]:
         """The parts, then the lines with what they add."""
@@ -101,10 +106,10 @@ class Cut(Shown):
                     [
                         line.name,
                         line.in_place_of or "—",
-                        f"{float(line.impedance):.4g} N·s/m",
+                        told_quantity(line.impedance, "wave_impedance", self.motion, 4),
                         f"{1e3 * float(line.delay):.4g} ms",
-                        f"{line.stiffness:.4g} N/m",
-                        line.adds,
+                        told_quantity(line.stiffness, "stiffness", self.motion, 4),
+                        line.adds(self.motion),
                     ]
                     for line in self.lines
                 ],
@@ -117,6 +122,7 @@ def cut_scene(
     parts: Mapping[str, Iterable[str]],
     delay: RealLike,
     impedances: Mapping[str, RealLike] | None = None,
+    motion: str = "linear",
 ) -> Cut:
     """The scene in parts, joined by lines of the delay τ.
 
@@ -132,6 +138,8 @@ def cut_scene(
     impedances
         w > 0 [N·s/m; N·m·s/rad] by the name of an element that is cut.  A spring needs none: its line
         is as stiff as it was; nor does a damper, whose B is taken.
+    motion
+        "linear", or "rotary": in which units numbers are read and told.
 
     Raises
     ------
@@ -142,7 +150,14 @@ def cut_scene(
     tau = read_number(delay, GLOSSARY["delay"], "delay", bound="> 0", why="a wave takes time").fraction
     titled, home, lines = _split(scene, _homes(scene, parts), tau)
     given = {
-        name: read_number(w, GLOSSARY["wave_impedance"], f"impedance of {name}", bound="> 0", why=_NO_FORCE)
+        name: read_number(
+            w,
+            GLOSSARY["wave_impedance"],
+            f"impedance of {name}",
+            bound="> 0",
+            why=_NO_FORCE,
+            motion=motion,
+        )
         for name, w in (impedances or {}).items()
     }
     inside: dict[str, list[Element]] = {name: [] for name in parts}
@@ -181,6 +196,7 @@ def cut_scene(
             for name in parts
         ),
         tuple(lines),
+        motion,
     )
 
 

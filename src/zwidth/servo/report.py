@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.text import shown
 from zwidth.servo import cycle
 from zwidth.servo.connection import STATUS, Connection
 from zwidth.servo.loop import Shared
@@ -119,9 +120,9 @@ class ServoReport(Shown):
             ("late by, in 99 %", late[1]),
             ("late by, in 99.9 %", late[2]),
             ("late by, at most", late[3]),
-            ("the actuator gave the handle", f"{self.energy_out:.4g} J"),
-            ("friction took at least", f"{self.friction_loss:.4g} J"),
-            ("least that the hand had put in, as the encoder saw it", f"{self.least:.4g} J"),
+            ("the actuator gave the handle", shown(self.energy_out, "J")),
+            ("friction took at least", shown(self.friction_loss, "J")),
+            ("least that the hand had put in, as the encoder saw it", shown(self.least, "J")),
         ]
         yield Table(rows=rows, lefts=1)
         if self.recorded is not None:

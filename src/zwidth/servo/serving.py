@@ -12,7 +12,7 @@ from typing import Any
 
 from zwidth.device.device import Device
 from zwidth.errors import InputError
-from zwidth.operator import OPERATORS
+from zwidth.operator import usual_hand
 from zwidth.operator.operator import Operator
 from zwidth.quantity.exact import RealLike
 from zwidth.servo.connection import Connection, Placement
@@ -62,7 +62,8 @@ def serve(
     connection
         How the device is reached, see `servo.devices`; None: the device itself, simulated.
     hand
-        What holds the simulated device, see `zwidth.operators`; by default a finger.
+        What holds the simulated device, see `zwidth.operators`; by default that of `usual_hand`: a finger, or
+        fingers on a knob, or two hands on a wheel.
     duration
         How long [s]; None: until it is ended; a simulated device for 10 s.
     safety, placement, contact, decide, real_time
@@ -88,7 +89,7 @@ def serve(
     """
     if connection is None:
         length = _SIMULATED_FOR if duration is None else duration
-        held = OPERATORS["finger"]() if hand is None else hand
+        held = usual_hand(device) if hand is None else hand
         connection = Simulated(device=device, hand=held, duration=length)
     elif hand is not None:
         raise InputError("a hand is scripted for the simulated device; a real one is held by a person")

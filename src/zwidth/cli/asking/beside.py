@@ -1,8 +1,6 @@
-"""The device in whose folder an environment is described: its motion, its largest force, what it lacks."""
+"""The device that is to render an environment: its motion, its largest force, what it lacks."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 from zwidth.cli.asking.device_questions import NEEDED
 from zwidth.device import Device
@@ -15,14 +13,22 @@ _ANY = {"rate": "1 kHz", "damping": "0"}
 
 
 def beside(name: str) -> Device | None:
-    """The device of a file, whose rate and damping may be made up; None where there is none to read."""
-    missing = lacking(name)
-    if missing is None:
-        return None
+    """As `device_of`; None where there is none to read."""
     try:
-        return load_device([Path(name)], {key: _ANY[key] for key in missing})
+        return device_of(name)
     except InputError:
         return None
+
+
+def device_of(name: str) -> Device:
+    """The device of a file or of the catalogue, whose rate and damping may be made up.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or has no device.
+    """
+    return load_device([name], {key: _ANY[key] for key in lacking(name) or ()})
 
 
 def lacking(name: str) -> list[str] | None:
@@ -42,6 +48,6 @@ def told_as(name: str) -> str:
 
 def _table(name: str) -> Table | None:
     try:
-        return read_tables([Path(name)], ("device",)).get("device")
+        return read_tables([name], ("device",)).get("device")
     except InputError:
         return None

@@ -94,7 +94,7 @@ def _next(text: str, unknown: list[str], path: Path, motion: str, at_handle: str
         "the same as a page to hand on:",
         f"  zwidth report {tried} -o {shlex.quote(str(path.with_suffix('.html')))}",
         "a file of what it renders, a wall, detents or a stop:",
-        "  zwidth new environment",
+        f"  zwidth new environment --device {name}",
     ]
 
 

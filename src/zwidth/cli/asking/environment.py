@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-from zwidth.cli.asking.beside import beside, lacking, told_as
+from zwidth.cli.asking.beside import beside, device_of, lacking, told_as
 from zwidth.cli.asking.device import guessed
 from zwidth.cli.asking.device_questions import MOTION, motion_of
 from zwidth.cli.asking.environment_questions import QUESTIONS, TYPE, kind_of, questions_of, units_of
@@ -17,6 +17,7 @@ from zwidth.cli.asking.written import Row, Written, table
 from zwidth.cli.output import print_text
 from zwidth.device import Device
 from zwidth.environment import NonlinearSpring, Wall
+from zwidth.errors import InputError
 from zwidth.quantity.exact import ends
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import readable
@@ -24,7 +25,7 @@ from zwidth.quantity.units import parse_number
 
 __all__ = ["QUESTIONS", "described"]
 
-_DEVICE = "my-device.toml"
+DEVICE = "my-device.toml"
 """The file that zwidth new device writes, where nobody names another."""
 
 _HEAD = "As zwidth new environment was told."
@@ -33,41 +34,80 @@ _POINTS = 26
 """Of a stop that hardens: the chords are close to the curve."""
 
 
-def described(ask: Asker, path: Path) -> Written:
+def described(ask: Asker, path: Path, named: str | None = None) -> Written:
     """Ask about an environment; its file, and what to do next.
+
+    Parameters
+    ----------
+    ask
+        Whoever answers.
+    path
+        Where the file will be.
+    named
+        The device that is to render it, a file or a name in the catalogue; None: `DEVICE`, where it is there.
 
     Raises
     ------
     InputError
-        If an answer cannot be used, or one is missing.
+        If the device cannot be read, an answer cannot be used, or one is missing.
     """
     kind = kind_of(ask.sure(TYPE))
-    device = None if ask.piped else beside(_DEVICE)
+    whose = DEVICE if named is None else named
+    device = _device(ask, named)
     if "motion" in ask or device is None:
+        if ask.in_terminal and "motion" not in ask:
+            print_text(f"There is no device in {DEVICE} here; --device FILE names another.")
         motion = motion_of(ask.sure(MOTION))
     else:
         motion = device.motion
-        print_text(f"{_DEVICE} is {motion} at the handle, so this is too; --motion says otherwise.")
+        print_text(f"{whose} is {motion} at the handle, so this is too; --motion says otherwise.")
     same = device if device is not None and device.motion == motion else None
-    text = _FILES[kind](_Asked(ask, motion, same))
-    return Written(text, _next(path, motion))
+    text = _FILES[kind](_Asked(ask, motion, same, whose))
+    return Written(text, _next(path, whose))
 
 
-def _next(path: Path, motion: str) -> list[str]:
+def _device(ask: Asker, named: str | None) -> Device | None:
+    if named is not None:
+        return device_of(named)
+    return None if ask.piped else beside(DEVICE)  # what a pipe answers does not depend on the folder
+
+
+def _next(path: Path, whose: str) -> list[str]:
     """What to type now, with a guess of what the device lacks."""
-    missing = lacking(_DEVICE)
-    guess = f" {guessed(missing, told_as(_DEVICE))}" if missing else ""
-    first = [] if missing is not None else ["the device first:", "  zwidth new device"]
-    head = f"next, with a guess of what {_DEVICE} lacks:" if missing else "next:"
-    return [*first, head, f"  zwidth check {_DEVICE} {shlex.quote(str(path))}{guess}"]
+    missing = lacking(whose)
+    guess = f" {guessed(missing, told_as(whose))}" if missing else ""
+    first = (
+        []
+        if missing is not None
+        else ["the device first, or --device FILE if it has another name:", "  zwidth new device"]
+    )
+    head = f"next, with a guess of what {whose} lacks:" if missing else "next:"
+    return [*first, head, f"  zwidth check {shlex.quote(whose)} {shlex.quote(str(path))}{guess}"]
+
+
+def refuse_a_device(path: Path) -> None:
+    """Refuse to write over the file of a device: its name was most likely meant as the device.
+
+    Raises
+    ------
+    InputError
+        If there is a device in it.
+    """
+    if path.exists() and lacking(str(path)) is not None:
+        name = shlex.quote(str(path))
+        raise InputError(
+            f"{path} describes a device, and an environment is a file of its own; to describe what that "
+            f"device renders: zwidth new environment --device {name}"
+        )
 
 
 class _Asked(NamedTuple):
-    """Whoever answers, in the units of a motion; the device beside the file, if it moves so."""
+    """Whoever answers, in the units of a motion; the device if it moves so, and where it is described."""
 
     ask: Asker
     motion: str
     device: Device | None
+    whose: str
 
     def unit(self, key: str) -> str:
         """The unit of an answer."""
@@ -118,13 +158,13 @@ def _depth(asked: _Asked, stiffness: str, hardening: str | None) -> tuple[str, s
     factor, told = spoken(unit)
     deepest = f"{float(ends(most)[0] / stiff) * factor:.9g} {told}"
     limit = readable(float(ends(most)[0]), asked.unit("peak"))
-    offered = f"{question.ask}; Enter for {deepest}, where it is {limit}, the largest of {_DEVICE}"
+    offered = f"{question.ask}; Enter for {deepest}, where it is {limit}, the largest of {asked.whose}"
     answer = asked.ask(
         question._replace(ask=offered, enter=deepest, unknown=f"{deepest}, then.", needed=False)
     )
     if answer is not None and answer != deepest:
         return with_unit(answer, unit), ""
-    return deepest, f", where the force is {limit}, the largest of {_DEVICE}"
+    return deepest, f", where the force is {limit}, the largest of {asked.whose}"
 
 
 def _harder(hardening: str | None) -> str:

@@ -20,16 +20,10 @@ from zwidth.firmware.module import module
 from zwidth.loop.pair.setup import prepare_pair
 from zwidth.loop.plant import Plant
 from zwidth.loop.setup import frame_of
-from zwidth.operator import LinearHand, Tracking
+from zwidth.operator import LinearHand, Tracking, usual_hand
 from zwidth.pairs import Pair
 from zwidth.passivity.check import check
 from zwidth.passivity.result import Answer
-
-FINGER = LinearHand(mass=0.006, stiffness=500.0, damping=1.7)
-"""Of `operators.Finger`: it holds the handle of a linear device [kg, N/m, N·s/m]."""
-
-BANDWIDTH = 8.0
-"""Of the hand that turns a wheel [Hz]."""
 
 LONGEST_DELAY = 10
 """[s]: nobody plays with more."""
@@ -68,7 +62,7 @@ def played(
     name
         What the page calls it; by default what the environment says of itself.
     hand
-        By default a finger, or a hand of 8 Hz on a wheel.
+        By default that of `zwidth.operators.usual_hand`: a finger, or fingers on a knob, or hands on a wheel.
     start
         Where handle and hand begin [m; rad]; by default outside a wall, or at 0.
     reach
@@ -85,7 +79,7 @@ def played(
     """
     law = as_environment(environment)
     text = module(law_program(device, law), about=["The law that is played."], numbers=())
-    holding = hand or _default_hand(device)
+    holding = hand or usual_hand(device).hand
     period = device.exact("sample_period")
     shown = _REACH[device.motion] if reach is None else reach
     begin = (_OUTSIDE * shown if law.unilateral else 0.0) if start is None else start
@@ -137,7 +131,7 @@ def played_pair(
     """
     if any(pair.compensations):
         raise InputError("a page plays pairs without compensation of friction: leave compensation out")
-    holding, other = hand or _default_hand(pair.leader), follower or LinearHand()
+    holding, other = hand or usual_hand(pair.leader).hand, follower or LinearHand()
     tick = pair.sample_period / pair.own_readings
     setup = prepare_pair(
         pair,
@@ -170,15 +164,6 @@ def played_pair(
 def _still(hand: LinearHand) -> Tracking:
     """A hand that stays where it is: what it is made of is all that is asked for."""
     return Tracking([0.0], mass=hand.mass, stiffness=hand.stiffness, damping=hand.damping)
-
-
-def _default_hand(device: Device) -> LinearHand:
-    if device.motion == "linear":
-        return FINGER
-    if device.mass is None:
-        raise InputError("a page moves the device, which takes its inertia: give mass")
-    inertia = float(device.exact("mass"))
-    return Tracking.of_bandwidth([0.0], frequency=BANDWIDTH, moved_mass=inertia).hand
 
 
 def _arm(device: Device, period: Fraction, plant: Plant, hand: LinearHand, start: float) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from zwidth.identification.logs.runs import Cutter
 from zwidth.identification.logs.stamps import settled
 from zwidth.identification.logs.stops import at_ends
 from zwidth.identification.logs.survey import Survey
+from zwidth.quantity.text import told
 
 _LITTLE, _LOT = 1e-4, 0.02
 """Between them a stated period that differs from the stamps' is used and reported; beyond, refused."""
@@ -145,7 +146,7 @@ def position(survey: Survey, wrap: float, unit: str) -> Iterator[Finding]:
         times = grid.step / stated
         multiple = times > 1.5 and abs(times - round(times)) < 1e-3
         whole = f", {round(times)} times that: the steps between are never seen" if multiple else ""
-        text = f"resolution {grid.step:.6g} {unit} by the positions; stated is {stated:.6g} {unit}{whole}"
+        text = f"resolution {told(grid.step, unit)} by the positions; stated is {told(stated, unit)}{whole}"
         yield Finding(kind="stated resolution", text=text)
     else:
         how = (
@@ -153,7 +154,7 @@ def position(survey: Survey, wrap: float, unit: str) -> Iterator[Finding]:
             if stated is None
             else "as stated" + (", and by the positions" if found else "")
         )
-        yield Finding(kind="resolution", text=f"resolution {grid.step:.6g} {unit} {how}")
+        yield Finding(kind="resolution", text=f"resolution {told(grid.step, unit)} {how}")
     if grid is not None and grid.offset:
         text = f"the positions are whole steps plus {grid.offset:.4g} {unit}, which is taken off"
         yield Finding(kind="offset", text=text)

@@ -320,4 +320,4 @@ class Simulated(CompiledConnection):
     def describe(self) -> str:
         """The device and its hand."""
         kind = self.hand.describe(self.device.motion).partition(",")[0]
-        return f"the simulated {self.device.name}, in the hand of a {kind}"
+        return f"the simulated {self.device.name} (hand: {kind})"
