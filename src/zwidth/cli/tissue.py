@@ -31,9 +31,9 @@ LEVEL = 0.95
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth tissue`."""
     parser.usage = (
-        "%(prog)s TEST [DEVICE] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] [--kind KIND] "
-        "[--trial N] [--model MODEL ...] [--zero KIND] [--discretization RULE] [--scaled] [--all] [--json] "
-        "[--plot FILE] [-o FILE] [--force]"
+        "%(prog)s TEST [DEVICE] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] [--sheet NAME] "
+        "[--kind KIND] [--trial N] [--model MODEL ...] [--zero KIND] [--discretization RULE] [--scaled] "
+        "[--all] [--json] [--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
         "test", metavar="TEST", help="what a probe in tissue measured, in a file of any format"
@@ -57,6 +57,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         reading.add_argument(option, dest=dest, metavar=metavar, action="append", help=meaning)
     for option, metavar, meaning in (
         ("--kind", "KIND", f"{', '.join(KINDS)} (default: as the data say)"),
+        ("--sheet", "NAME", "of a workbook (default: each that holds a test is a trial)"),
         ("--trial", "N", "which of several in the file, from 1 (default: 1)"),
         ("--zero", "KIND", "of the force, and of the depth in creep: fitted (default) or exact"),
     ):
@@ -132,6 +133,7 @@ def _found(arguments: argparse.Namespace) -> Result:
             trial=_number(arguments.trial),
             models=tuple(arguments.model or ()),
             zero=arguments.zero or "fitted",
+            sheet=arguments.sheet,
         )
     rule: Any = arguments.discretization or DISCRETIZATIONS[0]
     return Result(test, rule, None if device is None else _wall(test, device, rule))

@@ -47,6 +47,7 @@ def read_test(
     trial: int | None = None,
     models: tuple[str, ...] = (),
     zero: Zero = "fitted",
+    sheet: str | None = None,
 ) -> TissueTest:
     """A relaxation, creep or loading test from a spreadsheet: which tissue, and how well it is known.
 
@@ -67,13 +68,15 @@ def read_test(
         Names of those to be fitted; none: all that such a test allows.
     zero
         "fitted" (default): the zero of the response may be off by a constant; "exact": it is not.
+    sheet
+        The name of the sheet of a workbook; None: of several that hold a test each is a trial.
 
     Raises
     ------
     InputError
         If the file cannot be read, a column or its unit is not known, or no tissue was pushed.
     """
-    every = places(read_tests(path, columns, units))
+    every = places(read_tests(path, columns, units, sheet))
     number = 1 if trial is None else trial
     if not 1 <= number <= len(every):
         raise InputError(f"{path} has {len(every)} trials, and trial {number} is wanted")
