@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from openpyxl import Workbook
 
 import zwidth as zw
 from zwidth.cli.main import main
@@ -171,6 +172,21 @@ def test_two_columns_that_may_be_the_force_are_not_chosen_between(run: Run, tmp_
     sheet(tmp_path, "time_s,z_mm,force_1_N,force_2_N", np.stack([time, 1e3 * depth, force, force], axis=1))
     assert "--column force=force_1_N" in run("a.csv").err
     assert run("a.csv", *ONE, "--column", "force=force_2_N").status == 0
+
+
+def test_a_workbook_and_a_device_by_its_parameters(run: Run, tmp_path: Path) -> None:
+    """Its sheets are trials, one may be named, and what the catalogue does not know of a device is typed."""
+    book = Workbook()
+    for sheet in (book.active, book.create_sheet("Probe 2")):
+        sheet.append(["Prüfzeit [s]", "Standardweg [mm]", "Standardkraft [N]"])
+        for t, x, f in zip(*relaxed(count=150), strict=True):
+            sheet.append([float(t), 1e3 * float(x), float(f)])
+    book.save(tmp_path / "a.xlsx")
+    found = json.loads(run("a.xlsx", *ONE, "--json").out)
+    assert (len(found["trials"]), holds_the_truth(found)) == (2, True)
+    assert json.loads(run("a.xlsx", *ONE, "--sheet", "probe 2", "--json").out)["trials"] == []
+    said = run("a.xlsx", "omega.3", "--damping", "2 N*s/m").err
+    assert "no source gives the rate" in " ".join(said.split())
 
 
 def test_a_workbook_of_an_old_program_is_refused_with_what_to_do(run: Run, tmp_path: Path) -> None:

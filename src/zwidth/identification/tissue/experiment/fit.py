@@ -23,6 +23,7 @@ from zwidth.identification.tissue.experiment.choice import (
 from zwidth.identification.tissue.experiment.estimate import covariance
 from zwidth.identification.tissue.experiment.history import history_of
 from zwidth.identification.tissue.experiment.kind import KINDS, Kind, kind_of
+from zwidth.identification.tissue.experiment.profile import bends
 from zwidth.identification.tissue.experiment.reading import Raw, read_tests
 from zwidth.identification.tissue.experiment.result import TissueTest
 from zwidth.identification.tissue.experiment.tidy import one_trial, places
@@ -153,7 +154,9 @@ def _fitted(raw: Raw, place: int, kind: Kind | None, models: tuple[str, ...], ze
         test=test,
         seen_as=found,
         tried=tuple(every),
-        fits=tuple(_fit(each, (*trial.findings, *test.findings)) for each in every),
+        fits=tuple(
+            _fit(each, (*trial.findings, *test.findings), shaped=k == best) for k, each in enumerate(every)
+        ),
         chosen=best,
         as_good=not_told_apart(every, best),
     )
@@ -170,9 +173,10 @@ def _check(kind: object, models: tuple[str, ...], zero: object) -> None:
             raise InputError(f"there is no model {name!r} of a tissue; there are {', '.join(known)}")
 
 
-def _fit(each: Tried, findings: tuple[Finding, ...]) -> TissueFit:
-    """What was found, as every fit of a tissue is given."""
+def _fit(each: Tried, findings: tuple[Finding, ...], shaped: bool) -> TissueFit:
+    """What was found, as every fit of a tissue is given; `shaped`: with the ends of its intervals."""
     task, found = each.task, each.found
+    ends = bends(task, found) if shaped else []
     spread, condition = covariance(found)
     if each.apart is not None:
         spread = spread + each.apart
@@ -195,6 +199,7 @@ def _fit(each: Tried, findings: tuple[Finding, ...]) -> TissueFit:
         findings=findings,
         position=task.test.depth,
         time=task.test.time,
+        bends=tuple(ends[k] for k in order[: task.own]) if ends else (),
     )
 
 
