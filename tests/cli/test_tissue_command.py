@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from openpyxl import Workbook
 
 import zwidth as zw
 from zwidth.cli.main import main
@@ -173,14 +174,29 @@ def test_two_columns_that_may_be_the_force_are_not_chosen_between(run: Run, tmp_
     assert run("a.csv", *ONE, "--column", "force=force_2_N").status == 0
 
 
-@pytest.mark.parametrize(
-    ("name", "start"), [("a.xlsx", b"PK\x03\x04"), ("a.xls", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")]
-)
-def test_a_workbook_is_refused_with_what_to_do(name: str, start: bytes, run: Run, tmp_path: Path) -> None:
-    (tmp_path / name).write_bytes(start + bytes(600))
-    result = run(name)
-    assert result.status == 2
-    assert "save the sheet as CSV" in " ".join(result.err.split())
+def test_a_workbook_and_a_device_by_its_parameters(run: Run, tmp_path: Path) -> None:
+    """Its sheets are trials, one may be named, and what the catalogue does not know of a device is typed."""
+    book = Workbook()
+    for sheet in (book.active, book.create_sheet("Probe 2")):
+        sheet.append(["Prüfzeit [s]", "Standardweg [mm]", "Standardkraft [N]"])
+        for t, x, f in zip(*relaxed(count=150), strict=True):
+            sheet.append([float(t), 1e3 * float(x), float(f)])
+    book.save(tmp_path / "a.xlsx")
+    found = json.loads(run("a.xlsx", *ONE, "--json").out)
+    assert (len(found["trials"]), holds_the_truth(found)) == (2, True)
+    assert json.loads(run("a.xlsx", *ONE, "--sheet", "probe 2", "--json").out)["trials"] == []
+    said = run("a.xlsx", "omega.3", "--damping", "2 N*s/m").err
+    assert "no source gives the rate" in " ".join(said.split())
+
+
+def test_a_workbook_of_an_old_program_is_refused_with_what_to_do(run: Run, tmp_path: Path) -> None:
+    """Locked workbooks begin alike."""
+    start = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600)
+    for content, says in ((b"", "save it as .xlsx"), ("EncryptedPackage".encode("utf-16-le"), "a password")):
+        (tmp_path / "a.xls").write_bytes(start + content)
+        result = run("a.xls")
+        assert result.status == 2
+        assert says in " ".join(result.err.split())
 
 
 @pytest.mark.parametrize("column", [1, 2])

@@ -9,6 +9,9 @@ from contextlib import contextmanager
 from zwidth.errors import InputError
 from zwidth.specification.table import quoted, suggestion
 
+SHEET = "of a workbook, where several hold a recording"
+"""Help of --sheet."""
+
 
 def pairs_of(option: str, typed: Sequence[str] | None, quantities: Sequence[str]) -> dict[str, str]:
     """What an option that may come several times says of each quantity.
@@ -44,7 +47,12 @@ def as_options() -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        raise InputError(_PYTHON.sub(_as_option, _plain_options(str(error)))) from None
+        raise InputError(_PYTHON.sub(_as_option, _plain_options(sheet_option(str(error))))) from None
+
+
+def sheet_option(text: str) -> str:
+    """The name of a sheet, in a message, as it is typed here."""
+    return re.sub(r'\bsheet=("[^"]*")', r"--sheet \1", text)
 
 
 def _as_option(found: re.Match[str]) -> str:

@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from zwidth.cli.column_options import SHEET, sheet_option
 from zwidth.cli.options import Once, add_all, add_in_full, add_output, device_parameters, given
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
@@ -36,7 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth diagnose`."""
     parser.usage = (
         "%(prog)s LOG [SOURCE ...] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] "
-        "[--PARAMETER VALUE ...] [--all] [--json] [--plot FILE] [-o FILE] [--force]"
+        "[--sheet NAME] [--PARAMETER VALUE ...] [--all] [--json] [--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument("log", metavar="LOG", help="a recording of it shaking, in a file of any format")
     parser.add_argument(
@@ -53,6 +54,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     reading.add_argument(
         "--log-rate", metavar="1/T", action=Once, help="rows per second, where the log has no time [Hz]"
     )
+    reading.add_argument("--sheet", metavar="NAME", action=Once, help=SHEET)
     output = add_output(
         parser,
         "the numbers",
@@ -107,8 +109,10 @@ def _diagnosed(arguments: argparse.Namespace) -> Diagnosis | PairDiagnosis:
             reading[name] = {k: None if name == "columns" and v == "none" else v for k, v in pairs}
     if arguments.log_rate is not None:
         reading["sample_rate"] = arguments.log_rate
+    if arguments.sheet is not None:
+        reading["sheet"] = arguments.sheet
     try:
-        if holds_two_arms(Path(arguments.log), reading.get("columns")):
+        if holds_two_arms(Path(arguments.log), reading.get("columns"), arguments.sheet):
             return diagnose_pair(Path(arguments.log), _pair_of_arms(arguments), **reading)
         device = _device(arguments)
         if device is not None and device.resolution != 0:
@@ -138,7 +142,7 @@ _OPTION = {name: option for option, name, _, _ in _READING}
 
 def _as_typed(text: str) -> str:
     """What to try, in a message, as it is typed here."""
-    text = text.replace("sample_rate or sample_period", "--log-rate")
+    text = sheet_option(text.replace("sample_rate or sample_period", "--log-rate"))
     return _PYTHON.sub(lambda found: f"{_OPTION[found[1]]} {found[2]}={found[3] or found[4]}", text)
 
 

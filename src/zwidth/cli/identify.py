@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from zwidth.cli.column_options import as_options, pairs_of
+from zwidth.cli.column_options import SHEET, as_options, pairs_of
 from zwidth.cli.decision import decided, exit_status
 from zwidth.cli.identification_result import Result
 from zwidth.cli.options import BEHIND, Once, add_all, add_in_full, add_output, environment_parameters, given
@@ -32,6 +32,7 @@ _READING = (
     ("--sample-period", "sample_period", "T", "time between two samples, instead [s]"),
     ("--resolution", "resolution", "Δ", "one encoder count [m; rotary rad]"),
     ("--counts-per-turn", "counts_per_turn", "N", "encoder counts in one turn, instead"),
+    ("--sheet", "sheet", "NAME", SHEET),
     ("--motion", "motion", "MOTION", "linear or rotary, where the unit of the position does not say it"),
 )
 """Options of how to read: the same."""

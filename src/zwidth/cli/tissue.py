@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.column_options import as_options, pairs_of
 from zwidth.cli.decision import decided, exit_status
-from zwidth.cli.options import Once, add_in_full, add_output
+from zwidth.cli.options import Once, add_all, add_in_full, add_output, device_parameters, given
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
 from zwidth.specification.table import quoted, suggestion
@@ -31,9 +31,9 @@ LEVEL = 0.95
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth tissue`."""
     parser.usage = (
-        "%(prog)s TEST [DEVICE] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] [--kind KIND] "
-        "[--trial N] [--model MODEL ...] [--zero KIND] [--discretization RULE] [--scaled] [--all] [--json] "
-        "[--plot FILE] [-o FILE] [--force]"
+        "%(prog)s TEST [DEVICE] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] [--sheet NAME] "
+        "[--kind KIND] [--trial N] [--model MODEL ...] [--zero KIND] [--discretization RULE] [--scaled] "
+        "[--PARAMETER VALUE ...] [--all] [--json] [--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
         "test", metavar="TEST", help="what a probe in tissue measured, in a file of any format"
@@ -57,6 +57,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         reading.add_argument(option, dest=dest, metavar=metavar, action="append", help=meaning)
     for option, metavar, meaning in (
         ("--kind", "KIND", f"{', '.join(KINDS)} (default: as the data say)"),
+        ("--sheet", "NAME", "of a workbook (default: each that holds a test is a trial)"),
         ("--trial", "N", "which of several in the file, from 1 (default: 1)"),
         ("--zero", "KIND", "of the force, and of the depth in creep: fitted (default) or exact"),
     ):
@@ -78,6 +79,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     saved = "the tissue as an environment in TOML, for zwidth check"
     add_in_full(add_output(parser, "the numbers", "the plot", saved))
+    add_all(
+        parser.add_argument_group("device", "override what DEVICE says, or replace it"), device_parameters()
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -111,7 +115,7 @@ def _check(arguments: argparse.Namespace, save: Path | None) -> None:
             raise InputError(f"{option}: there is no {quoted(value)}; {suggestion(value, allowed)}")
     if save is not None and save.suffix.lower() != ".toml":
         raise InputError(f"--save: a tissue is saved as TOML, my-tissue.toml; got {quoted(save.name)}")
-    if arguments.scaled and (arguments.device is None or save is None):
+    if arguments.scaled and (not _names_device(arguments) or save is None):
         raise InputError("--scaled is of a file and a device: give DEVICE, and -o FILE")
 
 
@@ -119,7 +123,7 @@ def _found(arguments: argparse.Namespace) -> Result:
     from zwidth.cli.tissue_result import Result
     from zwidth.identification.tissue import read_test
 
-    device = None if arguments.device is None else _device(arguments.device)
+    device = _device(arguments) if _names_device(arguments) else None
     options: dict[str, Any] = {
         "columns": pairs_of("--column", arguments.columns, QUANTITIES),
         "units": pairs_of("--unit", arguments.units, QUANTITIES),
@@ -132,18 +136,29 @@ def _found(arguments: argparse.Namespace) -> Result:
             trial=_number(arguments.trial),
             models=tuple(arguments.model or ()),
             zero=arguments.zero or "fitted",
+            sheet=arguments.sheet,
         )
     rule: Any = arguments.discretization or DISCRETIZATIONS[0]
     return Result(test, rule, None if device is None else _wall(test, device, rule))
 
 
-def _device(source: str) -> Device:
-    from zwidth.specification.read import read_tables, specified_device
+def _names_device(arguments: argparse.Namespace) -> bool:
+    return arguments.device is not None or bool(_words(arguments))
 
-    device = specified_device(read_tables([source], ("device",)), {})
+
+def _words(arguments: argparse.Namespace) -> dict[str, str]:
+    """What was typed of the device."""
+    return given(arguments, [parameter.key for parameter in device_parameters()])
+
+
+def _device(arguments: argparse.Namespace) -> Device:
+    from zwidth.specification.read import load_device
+
+    sources = [] if arguments.device is None else [arguments.device]
+    device = load_device(sources, _words(arguments))
     if device.motion != "linear":
         raise InputError(
-            f"{source} turns, and a tissue is pushed along a line: give a device whose motion is linear"
+            f"{device.name} turns, and a tissue is pushed along a line: give a device whose motion is linear"
         )
     return device
 

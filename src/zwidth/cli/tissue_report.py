@@ -22,7 +22,7 @@ _FEW = 4
 _MOST_TRIALS = 8
 """Of a file, in a short report."""
 
-_FIRST = ("loaded", "hole", "surface", "sign", "unit")
+_FIRST = ("loaded", "hole", "other table", "surface", "sign", "unit", "sheet")
 """Kinds of findings that a short report has before others."""
 
 

@@ -64,7 +64,11 @@ def diagnose(
     InputError
         If the recording cannot be read, holds no force of the actuator, or moves otherwise than the device.
     """
-    if not isinstance(recording, Log) and "position" not in (columns or {}) and holds_two_arms(recording):
+    if (
+        not isinstance(recording, Log)
+        and "position" not in (columns or {})
+        and holds_two_arms(recording, sheet=reading.get("sheet"))
+    ):
         raise InputError(
             "there are two arms in this recording: ask zwidth.diagnose_pair, or say whose columns are meant "
             'with columns={"position": …}'

@@ -89,11 +89,12 @@ def read(
         if columns or units or scale or reading:
             raise InputError("a log has been read already: give columns, units and scale to read_log")
         return _recording(recording, None, recording, ())
+    sheet = reading.pop("sheet", None)
     told = (dict(columns or {}), units or {}, scale or {}, reading)
     if not isinstance(recording, str | PathLike):
         names = [str(name) for name in recording.variables]
         return _read(names, "the Dataset", lambda **given: Log.from_arrays(recording, **given), *told)
-    with opened(recording) as table:
+    with opened(recording, sheet, columns) as table:
         return read_of_table(table, *told)
 
 

@@ -251,7 +251,7 @@ def test_a_bag_that_grows_on_the_disk_is_refused(tmp_path: Path) -> None:
 
 
 def test_zip_archives_and_arrays_of_objects_are_not_read(tmp_path: Path) -> None:
-    """Neither spreadsheets nor NumPy's own files are logs: nothing in them is expanded or run."""
+    """NumPy's own files are no logs: nothing in them is expanded or run."""
     for name in ("log.npz", "log.npy"):
         path = tmp_path / name
         np_file = {"position_mm": np.array([{"run": "this"}], dtype=object)}

@@ -5,15 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.linalg import cholesky, solve_triangular
+from scipy.optimize import least_squares
 from scipy.stats import binom
 
 import zwidth as zw
 from zwidth.identification.tissue.experiment.choice import Tried, not_told_apart, taken
-from zwidth.identification.tissue.experiment.estimate import covariance
+from zwidth.identification.tissue.experiment.estimate import covariance, solved
 from zwidth.identification.tissue.experiment.history import history_of
 from zwidth.identification.tissue.experiment.kind import kind_of
 from zwidth.identification.tissue.experiment.noise import likelihood, noise_of, with_memory
 from zwidth.identification.tissue.experiment.prediction import Task, derivatives, fines_of, predicted
+from zwidth.identification.tissue.experiment.profile import bends
 from zwidth.identification.tissue.experiment.tidy import Trial
 from zwidth.identification.tissue.model import as_model
 
@@ -277,3 +279,36 @@ def test_a_branch_of_nothing_is_no_end_of_a_search():
     task = Task(as_model("standard-linear-solid", None, "force"), history, fines_of(history)[0], True)
     found = predicted(task, np.append(np.log([420, 2.6e-38, 9e-39]), 0.0))
     assert (found == 0).all()
+
+
+def test_the_ends_of_a_number_that_is_hardly_known():
+    """A branch that relaxes within a sample: at both ends the fit, by another road, is as much worse."""
+
+    def motion(time: np.ndarray) -> np.ndarray:
+        s = np.clip(time / 0.5, 0, 1)
+        return 0.003 * s**3 * (10 - 15 * s + 6 * s**2) + 0.0006 * (1 - np.cos(31 * time))
+
+    def left(point: np.ndarray) -> np.ndarray:
+        tissue = zw.StandardLinearSolid(*np.exp(point[:3]))
+        return zw.tissue.force_response(tissue, fine, motion(fine))[::8] + point[3] - measured
+
+    time = 0.02 * np.arange(300)
+    fine, measured = np.linspace(0, time[-1], 8 * 299 + 1), 0.0
+    measured = left(np.append(np.log([400, 300, 6]), 0.0)) + np.random.default_rng(4).normal(0, 0.08, 300)
+    test = history_of(Trial(time, motion(time), measured, ()), "loading", "here")._replace(surface=None)
+    task = Task(as_model("standard-linear-solid", None, "force"), test, fines_of(test)[0], True)
+    found = solved(task)
+    best = 2 * least_squares(left, found.point).cost
+
+    def worse(away: float) -> float:
+        """Standard deviations."""
+        branch, others = found.point[1] + away, found.point[[0, 2, 3]]
+        cost = 2 * least_squares(lambda point: left(np.insert(point, 1, branch)), others).cost
+        return float(np.sqrt((cost - best) / (best / 296)))
+
+    sigma, t = float(np.sqrt(covariance(found)[0][1, 1])), 1.968
+    below, above = bends(task, found)[1]
+    assert 0.1 < sigma < 0.4
+    assert worse(-t * sigma * (1 + below * t)) == pytest.approx(t, rel=0.08)
+    assert worse(t * sigma * (1 + above * t)) == pytest.approx(t, rel=0.08)
+    assert worse(t * sigma) < 0.9 * t

@@ -54,12 +54,14 @@ class PairRecording:
 
 
 def holds_two_arms(
-    recording: str | PathLike[str] | xr.Dataset, columns: Mapping[str, str | None] | None = None
+    recording: str | PathLike[str] | xr.Dataset,
+    columns: Mapping[str, str | None] | None = None,
+    sheet: str | None = None,
 ) -> bool:
     """Whether columns of both arms are in a recording, by their names or as the user says."""
     if not isinstance(recording, str | PathLike):
         return "arm" in recording.dims or _of_both(list(map(str, recording.variables)), columns)
-    with opened(recording) as table:
+    with opened(recording, sheet, columns) as table:
         return _of_both(list(table.units), columns)
 
 
@@ -78,10 +80,11 @@ def read_pair(
     InputError
         If one of the arms cannot be read, or the two do not have the same rows.
     """
+    sheet = reading.pop("sheet", None)
     told = (columns or {}, units or {}, scale or {}, reading)
     if not isinstance(recording, str | PathLike):
         return _both(_of_dataset(recording), *told)
-    with opened(recording) as table:
+    with opened(recording, sheet, columns) as table:
         return _both(table, *told)
 
 

@@ -102,7 +102,7 @@ def layout_of(text: str, source: str, whole: bool) -> Layout:
     if first < 0:
         raise InputError(f"{source} holds no table of numbers: {_why_none(lines)}")
     _refuse_rows_for_columns(lines, delimiter, columns, source)
-    return _layout(lines, delimiter, columns, first, source)
+    return laid_out(lines, delimiter, columns, first, source)
 
 
 def split(line: str, delimiter: str) -> list[str]:
@@ -142,16 +142,17 @@ def _refuse_rows_for_columns(lines: list[str], delimiter: str, columns: int, sou
 
 
 def _is_text(field: str) -> bool:
-    return not (_is_value(field) or is_nothing(field))
+    return not (is_value(field) or is_nothing(field))
 
 
-def _is_value(field: str) -> bool:
+def is_value(field: str) -> bool:
+    """True where a cell is a number, a time of day or a date."""
     return is_number(field) or is_clock(field) or is_date(field) or bool(_DATE.match(field))
 
 
 def _numeric(fields: list[str]) -> bool:
     """A row of a table: numbers stand in it, and text is rare."""
-    values = sum(map(_is_value, fields))
+    values = sum(map(is_value, fields))
     return values > 0 and 2 * (values + sum(map(is_nothing, fields))) > len(fields)
 
 
@@ -176,7 +177,8 @@ def _ranked(lines: list[str], delimiter: str) -> tuple[int, int, str, int]:
     return common, preference, delimiter, first
 
 
-def _layout(lines: list[str], delimiter: str, columns: int, first: int, source: str) -> Layout:
+def laid_out(lines: list[str], delimiter: str, columns: int, first: int, source: str) -> Layout:
+    """The layout of lines of which it is known how they split, and where the numbers begin."""
     above = [line for line in lines[:first] if line.strip()]
     comments = tuple(line.strip() for line in above if is_comment(line))
     plain = [line for line in above if not is_comment(line)]

@@ -11,9 +11,9 @@ from zwidth.errors import InputError
 from zwidth.identification.logs.block import Motion
 from zwidth.identification.logs.build import contents, stated_period
 from zwidth.identification.logs.log import Log
-from zwidth.identification.logs.names import recognise
+from zwidth.identification.logs.names import QUANTITIES, recognise
 from zwidth.identification.logs.scales import meaning_of
-from zwidth.identification.logs.table import Table, readable
+from zwidth.identification.logs.table import Table, listed, readable, understood_sheets
 from zwidth.missing import did_you_mean
 
 
@@ -28,8 +28,10 @@ def read_log(
     resolution: object = None,
     counts_per_turn: object = None,
     motion: Motion | None = None,
+    sheet: str | None = None,
 ) -> Log:
-    """A log from a file: text, Parquet, NetCDF, HDF5, MATLAB, MCAP, ROS bags, telemetry, what zwidth wrote.
+    """A log from a file: text, workbook, Parquet, NetCDF, HDF5, MATLAB, MCAP, ROS bags, telemetry, what
+    zwidth wrote.
 
     Parameters
     ----------
@@ -50,13 +52,15 @@ def read_log(
         Of a rotary encoder, instead of the resolution.
     motion
         "linear" or "rotary", where the unit of the position does not say it.
+    sheet
+        The name of the sheet of a workbook, where several hold a recording.
 
     Raises
     ------
     InputError
         If the file cannot be read, a column or its unit is not known, or nothing can be learnt from it.
     """
-    with opened(path) as table:
+    with opened(path, sheet, columns) as table:
         return log_of(
             table,
             columns=columns,
@@ -70,17 +74,42 @@ def read_log(
         )
 
 
+_LOOKED_AT = 2**24
+"""[bytes] Of a locked workbook, among which it says that it is locked."""
+
+
 @contextmanager
-def opened(path: str | PathLike[str]) -> Iterator[Table]:
+def opened(
+    path: str | PathLike[str], sheet: str | None = None, columns: Mapping[str, str | None] | None = None
+) -> Iterator[Table]:
     """The table of a file, from which several logs may be made; what cannot be read inside is refused.
+
+    Of a workbook it is that of the sheet, or of the one sheet that has these columns and a position.
 
     Raises
     ------
     InputError
-        If the file cannot be read.
+        If the file cannot be read, or several sheets may be meant.
     """
     with readable(str(path)):
-        yield table_of_file(Path(path))
+        yield _one_sheet(table_of_file(Path(path), sheet), columns or {})
+
+
+def _one_sheet(table: Table, columns: Mapping[str, str | None]) -> Table:
+    """The sheet that holds a recording; the longest where none is known to."""
+    chosen = {quantity: name for quantity, name in columns.items() if quantity in QUANTITIES}
+
+    def holds(each: Table) -> None:
+        recognise(each.units, chosen, each.source)
+
+    found = understood_sheets(table, holds)
+    if len(found) > 1:
+        names = [each.sheet for each in found]
+        raise InputError(
+            f"{table.source}: the sheets {listed(names)} each hold a recording; say which with "
+            f'sheet="{names[0]}"'
+        )
+    return found[0]
 
 
 def log_of(
@@ -110,13 +139,13 @@ def log_of(
     return Log(**contents(table, meaning, period))
 
 
-def table_of_file(path: Path) -> Table:
+def table_of_file(path: Path, sheet: str | None = None) -> Table:
     """The table of a file, by its first bytes: the libraries take their time to load.
 
     Raises
     ------
     InputError
-        If there is no such file, or it is none that is read.
+        If there is no such file or sheet, or it is none that is read.
     """
     if path.is_dir() and not (path / "metadata.yaml").is_file():
         if (table := _recorded(path)) is not None:
@@ -128,6 +157,12 @@ def table_of_file(path: Path) -> Table:
     if not path.exists():
         raise InputError(f"{path} cannot be read: there is no such file{did_you_mean(path)}")
     start = b"" if path.is_dir() else _first_bytes(path)
+    if start[:4] == b"PK\x03\x04":
+        return _in_archive(path, sheet)
+    if start[:8] == b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1":
+        raise InputError(f"{path} is {_old_office(path)}")
+    if sheet is not None:
+        raise InputError(f'{path} is no workbook and has no sheets: leave sheet="{sheet}" out')
     if start[:4] == b"PAR1":
         from zwidth.identification.logs.parquet import parquet_table
 
@@ -148,16 +183,6 @@ def table_of_file(path: Path) -> Table:
         return bag_table(path)
     if start[:3] == b"CDF":
         raise InputError(f"{path} is NetCDF 3; write it as NetCDF 4, for example with nccopy -k nc4")
-    if start[:2] == b"PK":
-        sheet = path.suffix.lower() in (".xlsx", ".xlsm", ".ods")
-        how = (
-            "a spreadsheet with formulas and styles; save the sheet as CSV"
-            if sheet
-            else ("a zip archive or a spreadsheet; unpack it, or save it as CSV")
-        )
-        raise InputError(f"{path} is {how}")
-    if start[:8] == b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1":
-        raise InputError(f"{path} is a spreadsheet of an old office program; save the sheet as CSV")
     if b"zW" in start:
         from zwidth.identification.logs.telemetry.table import is_telemetry, telemetry_table
 
@@ -166,6 +191,33 @@ def table_of_file(path: Path) -> Table:
     from zwidth.identification.logs.text import text_table
 
     return text_table(path)
+
+
+def _in_archive(path: Path, sheet: str | None) -> Table:
+    """The table of a zip archive, if it is a workbook."""
+    from zwidth.identification.logs.archive import kind_of_archive
+
+    kind = kind_of_archive(path)
+    if kind == "workbook":
+        from zwidth.identification.logs.workbook import workbook_table
+
+        return workbook_table(path, sheet)
+    said = {
+        "binary": "a binary workbook; save it as an ordinary .xlsx, or the sheet as CSV",
+        "open document": "an OpenDocument spreadsheet; save it as .xlsx, or the sheet as CSV",
+    }
+    raise InputError(f"{path} is {said.get(kind, 'a zip archive and no workbook; unpack it')}")
+
+
+def _old_office(path: Path) -> str:
+    """What a file of an old office program is, and what to do: it locks the new workbooks too."""
+    with open(path, "rb") as file:
+        locked = "EncryptedPackage".encode("utf-16-le") in file.read(_LOOKED_AT)
+    return (
+        "a workbook locked by a password; open it and save it without one, or save the sheet as CSV"
+        if locked
+        else "a spreadsheet of an old office program; save it as .xlsx, or the sheet as CSV"
+    )
 
 
 def _recorded(path: Path) -> Table | None:

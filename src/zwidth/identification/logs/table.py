@@ -39,6 +39,10 @@ class Table:
         What was odd in the file; complete after `read` came to its end.
     means
         The column of each quantity, None where there is none, if the format says which: nobody guesses then.
+    sheet
+        Name of the sheet of a workbook; else "".
+    sheets
+        Of a workbook with several tables all of them, this one too: the longest; else empty.
     """
 
     source: str
@@ -47,6 +51,20 @@ class Table:
     attributes: Mapping[str, Any] = field(default_factory=dict)
     notes: dict[str, Finding] = field(default_factory=dict)
     means: Mapping[str, str | None] = field(default_factory=dict)
+    sheet: str = ""
+    sheets: tuple[Table, ...] = ()
+
+
+def understood_sheets(table: Table, understood: Callable[[Table], Any]) -> list[Table]:
+    """The sheets of a workbook that are understood; of another file its one table, unasked."""
+    found = []
+    for each in table.sheets:
+        try:
+            understood(each)
+        except InputError:
+            continue
+        found.append(each)
+    return found or [table]
 
 
 def in_pieces(

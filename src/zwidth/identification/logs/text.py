@@ -39,11 +39,16 @@ def text_table(path: Path) -> Table:
     attributes = _attributes(layout)
     table = Table(
         source=str(path),
-        units={name: _UNITS.get(layout.kind(name), layout.units.get(name)) for name in layout.names},
+        units={name: unit_in(layout, name) for name in layout.names},
         read=lambda names: _read(path, layout, names, table.notes),
         attributes=attributes,
     )
     return table
+
+
+def unit_in(layout: Layout, name: str) -> str | None:
+    """The unit of a column: of times that are written out, or as the line below the header says."""
+    return _UNITS.get(layout.kind(name), layout.units.get(name))
 
 
 def _refuse_one_column(layout: Layout, path: Path) -> None:
@@ -71,7 +76,7 @@ def _attributes(layout: Layout) -> dict[str, Any]:
 def _read(
     path: Path, layout: Layout, names: tuple[str, ...], notes: dict[str, Finding]
 ) -> Iterator[tuple[Values, ...]]:
-    parser = _Parser(path, layout, names)
+    parser = Parser(str(path), layout, names)
     with opened_text(path) as file:
         rest, above = b"", layout.skipped
         while piece := file.read(_PIECE):
@@ -104,11 +109,11 @@ def _without_lines(piece: bytes, count: int) -> bytes:
     return piece[start:]
 
 
-class _Parser:
+class Parser:
     """Parses whole lines, and counts what it had to leave out."""
 
-    def __init__(self, path: Path, layout: Layout, names: tuple[str, ...]) -> None:
-        self.path, self.layout, self.names = path, layout, names
+    def __init__(self, source: str, layout: Layout, names: tuple[str, ...]) -> None:
+        self.source, self.layout, self.names = source, layout, names
         self.rows = self.broken = self.headers = 0
         self.unfinished = False
         letters = re.sub(r"[^a-zA-Z]|[eEdDnNaAiIfF]", "", layout.header)
@@ -116,9 +121,9 @@ class _Parser:
         kinds = {"float": pa.float64(), "int": pa.int64(), "date": pa.timestamp("ns")}
         for name in names:
             if layout.kind(name) == "text":
-                raise InputError(f'{path}: column "{name}" holds text, such as "{self._example(name)}"')
+                raise InputError(f'{source}: column "{name}" holds text, such as "{self._example(name)}"')
         self.types = {name: kinds[kind] for name in names if (kind := layout.kind(name)) in kinds}
-        self._sheet = Sheet(str(path), layout, names)
+        self._sheet = Sheet(source, layout, names)
         self._by_cells = len(self.types) < len(set(names))
         self.notes, self.first_note = 0, ""
 
@@ -134,7 +139,7 @@ class _Parser:
                 parts = self._cell_by_cell(cleaned)
             if self.broken > 20 and self.broken > _MOST_BROKEN * (self.rows + self.broken):
                 raise InputError(
-                    f"{self.path}: {self.broken} of {self.rows + self.broken} rows have another number of "
+                    f"{self.source}: {self.broken} of {self.rows + self.broken} rows have another number of "
                     f"columns than {len(self.layout.names)}; it is no table"
                 )
             yield from parts

@@ -79,8 +79,10 @@ def draw_fit(axes: Axes, fit: Fit, time: Array) -> None:
     """Dots measured, a line fitted."""
     factor, unit = scale(fit.output, quantity_unit(fit.response, fit.motion))
     every = slice(None, None, max(1, time.size // MOST_DOTS))
-    axes.plot(time[every], factor * fit.output[every], ".", ms=3, color=GREY, mew=0, label="measured")
-    axes.plot(time, factor * (fit.output - fit.residuals), color=BLUE, label=f"{fit.model.name}, fitted")
+    axes.plot(time[every], factor * fit.output[every], ".", ms=5, color=GREY, mew=0, label="measured")
+    axes.plot(
+        time, factor * (fit.output - fit.residuals), color=BLUE, lw=1.4, label=f"{fit.model.name}, fitted"
+    )
     axes.set_ylabel(f"{'force' if fit.response == 'force' else 'depth'} [{unit}]")
     axes.legend(loc="best")
 

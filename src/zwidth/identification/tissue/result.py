@@ -37,6 +37,9 @@ LARGEST_SPREAD = 0.5
 
 _LARGEST_LOG = 700.0
 
+_USUAL = 1.96
+"""Standard deviations at 95 %."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class TissueFit(Documented):
@@ -72,6 +75,9 @@ class TissueFit(Documented):
         As it was read [m; rad]; None where it is not known.
     time
         Of the samples that count [s]; None where it is not known, and then there is no picture.
+    bends
+        Of each parameter how much further its interval goes below and above, in the logarithm, than the usual
+        one: by t σ times 1 + c t; empty where none was asked for.
     """
 
     model: Model
@@ -88,6 +94,7 @@ class TissueFit(Documented):
     findings: tuple[Finding, ...] = ()
     position: Array | None = None
     time: Array | None = None
+    bends: tuple[tuple[float, float], ...] = ()
 
     @cached_property
     def values(self) -> Mapping[str, float]:
@@ -112,7 +119,7 @@ class TissueFit(Documented):
         return {name: float(d) for name, d in zip(self.values, deviations, strict=True)}
 
     def interval(self, name: str, level: float = LEVEL) -> tuple[float, float]:
-        """The confidence interval of one parameter, by Student's t of its logarithm.
+        """The confidence interval of one parameter, by Student's t of its logarithm, and its likelihood.
 
         Parameters
         ----------
@@ -132,11 +139,14 @@ class TissueFit(Documented):
             raise InputError(f"there is no parameter {name!r}; there are {', '.join(self.values)}")
         if not 0.0 < level < 1.0:
             raise InputError(f"level is > 0 and < 1, such as 0.95; got {level!r}")
-        middle = float(self.estimates[list(self.values).index(name)])
-        reach = float(t.ppf(0.5 + level / 2, self.degrees_of_freedom)) * self.spreads[name]
+        place = list(self.values).index(name)
+        middle = float(self.estimates[place])
+        sure = float(t.ppf(0.5 + level / 2, self.degrees_of_freedom))
+        reach = sure * self.spreads[name]
         if name == "offset":
             return middle - reach, middle + reach
-        return _exp(middle - reach), _exp(middle + reach)
+        below, above = self.bends[place] if self.bends else (0.0, 0.0)
+        return _exp(middle - reach * _stretch(below, sure)), _exp(middle + reach * _stretch(above, sure))
 
     @property
     def degrees_of_freedom(self) -> float:
@@ -319,6 +329,11 @@ class TissueFit(Documented):
             yield Lines(self.remarks, mark="!")
         if self.findings:
             yield Lines(self.findings)
+
+
+def _stretch(bend: float, sure: float) -> float:
+    """1 + c t; an end that comes nearer was found at 95 %, and comes no nearer beyond."""
+    return 1.0 + bend * (sure if bend > 0 else min(sure, _USUAL))
 
 
 def _exp(value: float) -> float:

@@ -30,12 +30,13 @@ _DIMENSIONS: Mapping[str, Dimension] = {
 
 _WORDS: Mapping[str, tuple[str, ...]] = {
     "time": (
-        "time zeit uhrzeit zeitstempel temps heure tiempo hora tempo ora elapsed timestamp seconds sec t",
+        "time zeit uhrzeit prüfzeit messzeit zeitstempel temps heure tiempo hora tempo ora elapsed timestamp "
+        "seconds sec t",
     ),
     "indentation": (
         "indentation depth penetration eindringtiefe eindringung tiefe enfoncement indentación profundidad",
         "displacement disp deflection compression extension elongation stroke travel weg standardweg "
-        "verschiebung auslenkung "
+        "prüfweg traversenweg verschiebung auslenkung "
         "déplacement deplacement desplazamiento spostamento",
         "position pos crosshead traverse distance height z x",
     ),

@@ -23,6 +23,7 @@ from zwidth.identification.tissue.experiment.choice import (
 from zwidth.identification.tissue.experiment.estimate import covariance
 from zwidth.identification.tissue.experiment.history import history_of
 from zwidth.identification.tissue.experiment.kind import KINDS, Kind, kind_of
+from zwidth.identification.tissue.experiment.profile import bends
 from zwidth.identification.tissue.experiment.reading import Raw, read_tests
 from zwidth.identification.tissue.experiment.result import TissueTest
 from zwidth.identification.tissue.experiment.tidy import one_trial, places
@@ -47,6 +48,7 @@ def read_test(
     trial: int | None = None,
     models: tuple[str, ...] = (),
     zero: Zero = "fitted",
+    sheet: str | None = None,
 ) -> TissueTest:
     """A relaxation, creep or loading test from a spreadsheet: which tissue, and how well it is known.
 
@@ -67,13 +69,15 @@ def read_test(
         Names of those to be fitted; none: all that such a test allows.
     zero
         "fitted" (default): the zero of the response may be off by a constant; "exact": it is not.
+    sheet
+        The name of the sheet of a workbook; None: of several that hold a test each is a trial.
 
     Raises
     ------
     InputError
         If the file cannot be read, a column or its unit is not known, or no tissue was pushed.
     """
-    every = places(read_tests(path, columns, units))
+    every = places(read_tests(path, columns, units, sheet))
     number = 1 if trial is None else trial
     if not 1 <= number <= len(every):
         raise InputError(f"{path} has {len(every)} trials, and trial {number} is wanted")
@@ -150,7 +154,9 @@ def _fitted(raw: Raw, place: int, kind: Kind | None, models: tuple[str, ...], ze
         test=test,
         seen_as=found,
         tried=tuple(every),
-        fits=tuple(_fit(each, (*trial.findings, *test.findings)) for each in every),
+        fits=tuple(
+            _fit(each, (*trial.findings, *test.findings), shaped=k == best) for k, each in enumerate(every)
+        ),
         chosen=best,
         as_good=not_told_apart(every, best),
     )
@@ -167,9 +173,10 @@ def _check(kind: object, models: tuple[str, ...], zero: object) -> None:
             raise InputError(f"there is no model {name!r} of a tissue; there are {', '.join(known)}")
 
 
-def _fit(each: Tried, findings: tuple[Finding, ...]) -> TissueFit:
-    """What was found, as every fit of a tissue is given."""
+def _fit(each: Tried, findings: tuple[Finding, ...], shaped: bool) -> TissueFit:
+    """What was found, as every fit of a tissue is given; `shaped`: with the ends of its intervals."""
     task, found = each.task, each.found
+    ends = bends(task, found) if shaped else []
     spread, condition = covariance(found)
     if each.apart is not None:
         spread = spread + each.apart
@@ -192,6 +199,7 @@ def _fit(each: Tried, findings: tuple[Finding, ...]) -> TissueFit:
         findings=findings,
         position=task.test.depth,
         time=task.test.time,
+        bends=tuple(ends[k] for k in order[: task.own]) if ends else (),
     )
 
 

@@ -13,7 +13,7 @@ from zwidth.compiled import Array
 from zwidth.errors import InputError
 from zwidth.identification.logs.block import Finding
 from zwidth.identification.logs.read import table_of_file
-from zwidth.identification.logs.table import readable
+from zwidth.identification.logs.table import Table, readable, understood_sheets
 from zwidth.identification.tissue.experiment.columns import recognised
 
 MOST_ROWS = 10**6
@@ -37,37 +37,40 @@ def read_tests(
     path: str | PathLike[str],
     columns: Mapping[str, str] | None = None,
     units: Mapping[str, str] | None = None,
+    sheet: str | None = None,
 ) -> list[Raw]:
-    """Every test in a file that stands beside the others; one after the other they are still together.
+    """Every test in a file that stands beside the others, or on another sheet of a workbook; one after the
+    other they are still together.
 
     Raises
     ------
     InputError
         If it cannot be read, or a column or its unit is not known.
     """
-    first = _read(path, columns, units, 1)
-    return [first, *(_read(path, columns, units, number) for number in range(2, first.beside + 1))]
+    with readable(str(path)):
+        table = table_of_file(Path(path), sheet)
+        found = []
+        for each in understood_sheets(table, lambda each: recognised(each, columns, units)):
+            first = _read(each, columns, units, 1)
+            found += [first, *(_read(each, columns, units, k) for k in range(2, first.beside + 1))]
+    return found
 
 
 def _read(
-    path: str | PathLike[str],
-    columns: Mapping[str, str] | None,
-    units: Mapping[str, str] | None,
-    number: int,
+    table: Table, columns: Mapping[str, str] | None, units: Mapping[str, str] | None, number: int
 ) -> Raw:
-    """The columns of a file: text, Parquet, HDF5, MATLAB, …; of tests side by side that of a number."""
-    source = Path(path)
-    with readable(str(source)):
-        table = table_of_file(source)
-        known = recognised(table, columns, units, number)
-        names = [known.time.name, known.indentation.name, known.force.name]
-        wanted = [*names, known.trial] if known.trial else names
-        pieces = list(table.read(tuple(wanted)))
-        whole = [np.concatenate([piece[k] for piece in pieces]) for k in range(len(wanted))]
+    """The columns of a table; of tests side by side that of a number."""
+    known = recognised(table, columns, units, number)
+    names = [known.time.name, known.indentation.name, known.force.name]
+    wanted = [*names, known.trial] if known.trial else names
+    pieces = list(table.read(tuple(wanted)))
+    whole = [np.concatenate([piece[k] for piece in pieces]) for k in range(len(wanted))]
     if not pieces or whole[0].size > MOST_ROWS:
-        raise InputError(f"{source} has {len(pieces) and whole[0].size} rows; a test has 1 to {MOST_ROWS}")
+        raise InputError(
+            f"{table.source} has {len(pieces) and whole[0].size} rows; a test has 1 to {MOST_ROWS}"
+        )
     return Raw(
-        str(source),
+        table.source,
         _seconds(whole[0], known.time.factor),
         whole[1].astype(float) * known.indentation.factor,
         whole[2].astype(float) * known.force.factor,
