@@ -4,6 +4,7 @@ from zwidth.gains.arms import ArmGains
 from zwidth.gains.controllers import Controllers, JointLaw, read_controllers
 from zwidth.gains.held_joints import HeldJoints, check_controllers
 from zwidth.gains.joint import Gains, JointGains
+from zwidth.gains.passive import PassiveGains, passive_gains
 from zwidth.gains.read import read_gains
 from zwidth.gains.verdict import GainsVerdict, JointVerdict, check_gains
 
@@ -16,8 +17,10 @@ __all__ = [
     "JointGains",
     "JointLaw",
     "JointVerdict",
+    "PassiveGains",
     "check_controllers",
     "check_gains",
+    "passive_gains",
     "read_controllers",
     "read_gains",
 ]
