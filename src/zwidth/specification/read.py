@@ -413,7 +413,8 @@ def environment_table(tables: Mapping[str, Table], overrides: Mapping[str, str])
     if table is None:
         if not overrides:
             raise InputError(
-                "no environment is given: set --stiffness for a wall, or write an [environment] table"
+                'no environment is given: set --stiffness for a wall, such as "500 N/m", or of a device that '
+                'turns "1 N*m/deg"; or write an [environment] table'
             )
         table = Table(COMMAND_LINE, {"type": "wall"})
     for key, value in overrides.items():
