@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
 import yaml
+from described_arms import panda_like
 
 import zwidth as zw
 from zwidth.cli.main import main
@@ -106,3 +108,36 @@ def test_what_cannot_be_is_refused(tmp_path: Path, damping: float, share: float,
     controllers = read_controllers(written(tmp_path, ARM, "arm.yaml"))
     with pytest.raises(zw.InputError, match=message):
         passive_gains(controllers, zw.Device(damping=damping, rate=1, motion="rotary"), share=share)
+
+
+END = """
+end:
+  ros__parameters:
+    stiffness:
+      translation: {x: 600.0, y: 500.0, z: 400.0}
+      nullspace_stiffness: 20
+"""
+
+
+def test_an_impedance_that_postures_bear(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """K stays, ζ goes down to what 0.8 of the damping pays for: all of it pays for 1.25 times as much."""
+    arm, end = panda_like(tmp_path / "panda.urdf"), written(tmp_path, END, "end.yaml")
+    out = tmp_path / "borne.yaml"
+    asked = ["workspace", str(arm), "--rate", "1 kHz", "--postures", "100"]
+    assert main([*asked, "--wall", str(end), "-o", str(out)]) == 1
+    assert "ζ = 0.0" in capsys.readouterr().out
+    own = yaml.safe_load(out.read_text(encoding="utf-8"))["end"]["ros__parameters"]
+    assert own["stiffness"] == {"translation": {"x": 600.0, "y": 500.0, "z": 400.0}}
+    (zeta,) = set(own["damping"]["translation"].values())
+    assert 0.005 < zeta < 0.02
+    assert "between them nothing is proved" in " ".join(out.read_text(encoding="utf-8").split())
+    assert main([*asked, "--wall", str(out), "--json"]) == 3
+    told = json.loads(capsys.readouterr().out)
+    assert 1.25 < told["damping_factor"] < 1.5
+    for more, part in (
+        (["--wall", str(end), "-o", str(end), "--force"], "choose another name"),
+        (["--stiffness", "9", "-o", str(tmp_path / "a.yaml")], "whose names it takes"),
+        (["--stiffness", "9", "--share", "1"], "add -o passive.yaml"),
+    ):
+        assert main([*asked, *more]) == 2
+        assert part in capsys.readouterr().err

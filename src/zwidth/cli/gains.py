@@ -178,7 +178,7 @@ def _held(arguments: argparse.Namespace) -> int:
         if save is not None:
             raise InputError(
                 "an impedance at the end takes the arm to decide: nothing to save here; zwidth workspace "
-                f"ARM.urdf --pose --wall {arguments.files[0]} has its own -o"
+                f"ARM.urdf --pose --wall {arguments.files[0]} --postures 20000 has its own -o FILE.yaml"
             )
         return _cartesian(controllers, arguments)
     if arguments.plant is None:
@@ -228,7 +228,7 @@ def _cartesian(controllers: Controllers, arguments: argparse.Namespace) -> int:
     if arguments.json:
         from zwidth.passivity.document import to_json
 
-        print_json(to_json(controllers.to_dict()))
+        print_json(to_json({"outcome": "undecided", **controllers.to_dict()}))
     else:
         from zwidth.cli.gains_report import print_cartesian
 

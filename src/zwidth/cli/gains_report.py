@@ -81,11 +81,14 @@ def print_cartesian(controllers: Controllers, path: str) -> None:
             heads = [["", "K", "D"], ["", "N/m, N·m/rad", "N·s/m, N·m·s/rad"]]
             section(out, one.source, [_set(Table(rows=rows, heads=heads, lefts=1))])
             section(out, "of it", items(one.notes(3), "dim"))
-        rate = controllers.cartesian[0].rate or controllers.rate
+        one = controllers.cartesian[0]
+        rate = one.rate or controllers.rate
         often = f' --rate "{float(rate):g} Hz"' if rate is not None else ""
-        section(
-            out, "next", [Text(f"zwidth workspace ARM.urdf --pose --wall {path}{often} --postures 20000")]
-        )
+        ask = f"zwidth workspace ARM.urdf --pose --wall {path}{often}"
+        lines = [f"{ask} --postures 20000 -o passive.yaml"]
+        if one.nullspace:
+            lines.append(f'{ask} --null-stiffness wall --within "2 deg"')
+        section(out, "next", [Text(line) for line in lines])
 
 
 _COORDINATES = ("x", "y", "z", "about x", "about y", "about z")

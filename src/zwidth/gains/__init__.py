@@ -3,6 +3,7 @@
 from zwidth.gains.arms import ArmGains
 from zwidth.gains.controllers import Controllers, JointLaw, read_controllers
 from zwidth.gains.held_joints import HeldJoints, check_controllers
+from zwidth.gains.impedance import BorneImpedance, borne_impedance
 from zwidth.gains.joint import Gains, JointGains
 from zwidth.gains.passive import PassiveGains, passive_gains
 from zwidth.gains.read import read_gains
@@ -10,6 +11,7 @@ from zwidth.gains.verdict import GainsVerdict, JointVerdict, check_gains
 
 __all__ = [
     "ArmGains",
+    "BorneImpedance",
     "Controllers",
     "Gains",
     "GainsVerdict",
@@ -18,6 +20,7 @@ __all__ = [
     "JointLaw",
     "JointVerdict",
     "PassiveGains",
+    "borne_impedance",
     "check_controllers",
     "check_gains",
     "passive_gains",

@@ -73,6 +73,10 @@ class CartesianGains:
         Of the controller [Hz]; None where the file does not say.
     source
         Where they stand.
+    factors
+        ζ of each.
+    keys
+        That lead to the table of the controller.
     """
 
     stiffness: tuple[float, ...]
@@ -81,6 +85,8 @@ class CartesianGains:
     nullspace_damping: float
     rate: Fraction | None
     source: str
+    factors: tuple[float, ...] = (1.0,) * 6
+    keys: tuple[str, ...] = ()
 
     def wall(self, turns: int) -> MatrixWall:
         """As a wall for a hand at a point, 0 turns, or in pose, 3."""
@@ -155,6 +161,7 @@ class Controllers:
                     "nullspace_damping_N_m_s_per_rad": one.nullspace_damping,
                     "rate_Hz": None if one.rate is None else float(one.rate),
                     "source": one.source,
+                    "left_out": list(one.notes(3)),
                 }
                 for one in self.cartesian
             ],
@@ -271,7 +278,16 @@ def _cartesian(table: GainTable) -> CartesianGains:
         raise InputError(f"{table.label}: stiffness and damping factors must be ≥ 0: a spring pulls back")
     rate = table.number("update_frequency", "Hz") if "update_frequency" in table else None
     *d, d_null = (2 * factor * sqrt(value) for factor, value in zip(factors, k, strict=True))
-    return CartesianGains(tuple(k[:6]), tuple(d), k[6], d_null, rate, table.where("stiffness"))
+    return CartesianGains(
+        tuple(k[:6]),
+        tuple(d),
+        k[6],
+        d_null,
+        rate,
+        table.where("stiffness"),
+        tuple(factors[:6]),
+        table.keys,
+    )
 
 
 def _three(table: GainTable, key: str, unit: str) -> Sequence[float]:

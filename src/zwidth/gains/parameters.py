@@ -17,7 +17,7 @@ from zwidth.quantity.text import exact_text
 from zwidth.specification.table import plain
 
 _PLAIN = re.compile(r"[A-Za-z_/][A-Za-z0-9_./*-]*")
-_NOT_TEXT = {"y", "n", "yes", "no", "on", "off", "true", "false", "null"}
+_NOT_TEXT = {"yes", "no", "on", "off", "true", "false", "null"}
 """Words that are no text where nothing quotes them."""
 
 _WIDTH = 100
@@ -25,6 +25,12 @@ _UNITS = {"p": "N*m/rad", "i": "N*m/(rad*s)", "d": "N*m*s/rad"}
 
 Remarks = Mapping[str, str]
 Tree = dict[str, "Tree | str"]
+
+
+def text_of(tree: Tree, head: Sequence[str]) -> str:
+    """A file, line by line: comments, then keys; `tree` holds each value as it is written."""
+    comments = [line for text in head for line in _comment(text)]
+    return "\n".join([*comments, *_lines(tree, 0), ""])
 
 
 def parameter_file(
@@ -48,10 +54,10 @@ def parameter_file(
     """
     tree: Tree = {}
     if rate.denominator == 1:
-        _at(tree, manager)["update_rate"] = f"{rate}  # Hz, for which the gains are proved"
+        place_of(tree, manager)["update_rate"] = f"{rate}  # Hz, for which the gains are proved"
     for keys in dict.fromkeys(law.keys for law, _ in laws):
         own = [(law, remarks) for law, remarks in laws if law.keys == keys]
-        place = _at(tree, keys)
+        place = place_of(tree, keys)
         by_joint = [pair for pair in own if pair[0].by_joint]
         listed = [pair for pair in own if not pair[0].by_joint]
         if by_joint:
@@ -59,8 +65,7 @@ def parameter_file(
         if listed:
             place["k_gains"] = _list(listed, "p")
             place["d_gains"] = _list(listed, "d")
-    comments = [line for text in head for line in _comment(text)]
-    return "\n".join([*comments, *_lines(tree, 0), ""])
+    return text_of(tree, head)
 
 
 def double(value: Fraction) -> str:
@@ -69,7 +74,8 @@ def double(value: Fraction) -> str:
     return text if "." in text else f"{text}.0"
 
 
-def _at(tree: Tree, keys: Sequence[str]) -> Tree:
+def place_of(tree: Tree, keys: Sequence[str]) -> Tree:
+    """Where the keys lead, made where it is missing."""
     for key in keys:
         inner = tree.setdefault(key, {})
         assert isinstance(inner, dict)

@@ -136,11 +136,7 @@ def passive_gains(
     InputError
         If a number is outside its bound, or of a joint no gains are proved.
     """
-    part = parse_number(share, "1", "share").fraction
-    if not 0 < part <= 1:
-        raise InputError(
-            f"share is how much of a joint's damping the gains may use, 0 < share ≤ 1, got {float(part):g}"
-        )
+    part = share_of(share)
     loops = loops_of(controllers, plant, rate, delay)
     joints = tuple(
         _Joint(law, device.replace(damping=Exact(part * device.exact("damping"))), loops).nearest(stiffest)
@@ -149,6 +145,22 @@ def passive_gains(
     return PassiveGains(
         controllers, joints, part, loops.rate, loops.delay, (*loops.notes, *_of_encoders(loops.devices))
     )
+
+
+def share_of(given: RealLike) -> Fraction:
+    """How much of each joint's damping gains may use.
+
+    Raises
+    ------
+    InputError
+        If it is no part of it.
+    """
+    part = parse_number(given, "1", "share").fraction
+    if not 0 < part <= 1:
+        raise InputError(
+            f"share is how much of a joint's damping the gains may use, 0 < share ≤ 1, got {float(part):g}"
+        )
+    return part
 
 
 def _of_encoders(devices: tuple[Device, ...]) -> Iterator[str]:
@@ -229,7 +241,7 @@ class _Joint:
 
     def _try(self, p: float, d: float) -> HeldJoint | None:
         kept = p == float(self.law.stiffness)
-        stiffness, damping = self.law.stiffness if kept else _rounded_down(p), _rounded_down(d)
+        stiffness, damping = self.law.stiffness if kept else rounded_down(p), rounded_down(d)
         if not stiffness and not damping:
             return None
         verdict = self._verdict(stiffness, damping)
@@ -246,7 +258,7 @@ def _last(holds: Callable[[float], bool], low: float, high: float) -> float:
     return low
 
 
-def _rounded_down(value: float) -> Fraction:
+def rounded_down(value: float) -> Fraction:
     """To the digits that are written."""
     if value <= 0:
         return Fraction(0)
