@@ -101,13 +101,20 @@ def test_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str])
 
 
 @pytest.mark.parametrize(
-    ("damping", "share", "message"), [(1, 0, "0 < share"), (0, 1, "no gains of good are proved")]
+    ("joint", "share", "message"),
+    [
+        ({"damping": 1}, 0, "0 < share"),
+        ({"damping": 0}, 1, "no gains of good are proved: 0 N"),
+        ({"damping": 1, "resolution": 1e-4}, 1, "give coulomb_friction"),
+    ],
 )
-def test_what_cannot_be_is_refused(tmp_path: Path, damping: float, share: float, message: str) -> None:
-    """A share of nothing; a joint without damping."""
+def test_what_cannot_be_is_refused(
+    tmp_path: Path, joint: dict[str, float], share: float, message: str
+) -> None:
+    """A share of nothing; a joint without damping, or with steps and no friction that covers them."""
     controllers = read_controllers(written(tmp_path, ARM, "arm.yaml"))
     with pytest.raises(zw.InputError, match=message):
-        passive_gains(controllers, zw.Device(damping=damping, rate=1, motion="rotary"), share=share)
+        passive_gains(controllers, zw.Device(**joint, rate=1, motion="rotary"), share=share)
 
 
 END = """

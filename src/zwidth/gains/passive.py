@@ -189,12 +189,20 @@ class _Joint:
         found = self._stiffest() if stiffest else self._near(p, d)
         proved = self._proved(*found)
         if proved is None:
-            raise InputError(
-                f"no gains of {self.law.name} are proved: {shown(self.device.damping, 'N*m*s/rad')} of "
-                f"damping and {shown(self.device.coulomb_friction, 'N*m')} of Coulomb friction leave nothing "
-                "for a spring"
-            )
+            raise InputError(f"no gains of {self.law.name} are proved: {self._lacking()}")
         return proved
+
+    def _lacking(self) -> str:
+        """Why no spring is."""
+        if self.device.exact("resolution") and not self.device.exact("coulomb_friction"):
+            return (
+                f"encoder steps of {shown(self.device.resolution, 'rad')} take Coulomb friction, and none "
+                "was given; give coulomb_friction, or leave out resolution to ask without the steps"
+            )
+        return (
+            f"{shown(self.device.damping, 'N*m*s/rad')} of damping and "
+            f"{shown(self.device.coulomb_friction, 'N*m')} of Coulomb friction leave nothing for a spring"
+        )
 
     @property
     def budget(self) -> float:
