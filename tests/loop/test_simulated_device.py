@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from typing import Any
 
 import numpy as np
@@ -77,6 +79,17 @@ def test_a_law_with_a_state_is_stepped_by_hand() -> None:
     assert all_of_it.zwidth.energy.closes
     assert (whole.position, whole.velocity) == (all_of_it.position[-1], all_of_it.velocity[-1])
     assert whole.time == all_of_it.time[-1]
+
+
+def test_a_script_that_does_nothing_else_has_the_ledger_too() -> None:
+    """In a process of its own, where nobody has asked for `simulate` before."""
+    script = (
+        "import zwidth as zw; "
+        "paddle = zw.catalogue.device('haptic-paddle'); "
+        "touch = zw.simulation.SimulatedDevice(paddle, zw.operators.Dowel(), 0.01); "
+        "touch.step(0.0); touch.step(0.0); assert touch.trace().zwidth.energy.closes"
+    )
+    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
 
 
 def test_what_the_law_holds_is_not_supposed() -> None:
