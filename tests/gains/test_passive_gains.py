@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -79,6 +80,15 @@ def test_the_file_has_the_types_that_ros_asks_for_and_is_read_again(tmp_path: Pa
     laws = [(law.name, law.stiffness, law.integral, law.damping) for law in again.joints]
     assert laws == [(j.law.name, j.law.stiffness, 0, j.law.damping) for j in gains.joints]
     assert again.rate == 1000
+
+
+def test_the_page_shows_what_comes_out(tmp_path: Path) -> None:
+    """Of the file that it begins with, for joints of 1 N·m·s/rad."""
+    page = (Path(__file__).parents[2] / "docs" / "gain-files.md").read_text(encoding="utf-8")
+    asked, shown = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)
+    controllers = read_controllers(written(tmp_path, asked, "controllers.yaml"))
+    text = passive_gains(controllers, zw.Device(damping=1, rate=1, motion="rotary")).to_yaml()
+    assert text.endswith(f"\n{shown}")
 
 
 def test_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
