@@ -68,6 +68,12 @@ def test_scattering_parameters_with_an_error():
     assert "wrong by more than the error" in found.assumptions[-1]
 
 
+def test_no_module_has_the_name_of_what_it_offers():
+    """Once such a module is loaded, for another of its names, it would stand in the place of the function."""
+    for name in dir(zw.ports):
+        assert getattr(zw.ports, name).__module__.rpartition(".")[2] != name
+
+
 def test_the_picture_tells_three_kinds_of_samples_apart():
     """Each sample once, with its error, and the bands up to the samples beside them."""
     found = zw.ports.response_table([1, 2, 3, 4, 5], [1 + 2j, -0.2j, -0.3, -0.05 + 1j, 0.4], error=0.1)
