@@ -190,6 +190,8 @@ def test_a_device_in_its_ranges(run: Run) -> None:
     assert "let go at a turn a second" in said
     document = json.loads(run("check", "moza-r9", "--stiffness", "2 N*m/deg", "--json")[1])
     assert document["ranges"]["measure_first"]["parameter"] == "damping"
+    said = run("check", "dynamixel-mx-64", "--stiffness", "1")[1]
+    assert "measure first rate: if it is at least 84.1 Hz" in said
     status, said = run("check", "moza-r9", "--stiffness", "2 N*m/deg", "--law", "force-bounding")
     assert status == 2
     assert "give yours, --delay '1 ms'" in said

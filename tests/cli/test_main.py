@@ -187,7 +187,7 @@ def test_a_name_is_text_and_never_markup(run: Run) -> None:
         (("check", "haptic-padle", "--stiffness", "3"), ("haptic-paddle",)),
         (("check", "missing.toml"), ("no file",)),
         (("check", "haptic-paddle"), ("no environment",)),
-        (("check", "excalibur", "--stiffness", "3"), ("damping",)),
+        (("limit", "excalibur", "--stiffness", "3"), ("damping", "zwidth check excalibur answers")),
         (("check",), ("no device",)),
         ((*PASSIVE, "--rate", "1 kg"), ("rate is in Hz",)),
         ((*PASSIVE, "--environment.stiffness", "3"), ("behind a coupling",)),

@@ -155,6 +155,14 @@ def test_a_device_in_its_ranges_can_be_decided(name: str) -> None:
     assert zw.check(found.device, zw.Wall("1e-9")).outcome == "passive"
 
 
+def test_no_device_is_without_an_answer() -> None:
+    """What a verdict needs is published, or has a range: `zwidth check NAME` never asks for it."""
+    for name in zw.catalogue.names():
+        device = zw.catalogue.in_range(name).device
+        assert device.damping
+        assert device.sample_period
+
+
 def test_what_is_given_needs_no_range() -> None:
     """Under any name that it has; a rate then is one number, and counts are a resolution."""
     found = zw.catalogue.in_range(
@@ -172,7 +180,7 @@ def test_a_range_is_no_value() -> None:
     with pytest.raises(zw.InputError, match="zwidth check moza-r9 answers for a stated range"):
         zw.catalogue.device("moza-r9")
     with pytest.raises(zw.InputError, match="no source gives the damping"):
-        zw.catalogue.in_range("excalibur")
+        zw.catalogue.in_range("haptic-paddle", damping=None)
     with pytest.raises(zw.InputError, match="is rotary"):
         zw.catalogue.in_range("smartknob", motion="linear")
 

@@ -353,6 +353,23 @@ def test_slips_in_a_file(read: Load, content: str | bytes, part: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("name", "part"),
+    [
+        ("arm.urdf", "for zwidth workspace"),
+        ("controllers.yaml", "for zwidth gains"),
+        ("session.csv", "for zwidth identify"),
+        ("two-link", "an arm of several joints"),
+    ],
+)
+def test_what_another_command_reads_is_sent_there(tmp_path: Path, name: str, part: str) -> None:
+    """By its ending, or as a built-in arm, which is no file."""
+    path = tmp_path / name
+    if path.suffix:
+        path.write_text("<robot/>: 1\n", encoding="utf-8")
+    assert part in message(lambda: load([path if path.suffix else name], {}))
+
+
+@pytest.mark.parametrize(
     ("overrides", "part"),
     [
         ({"stiffness": "5 kHz"}, 'command line: stiffness is in N/m; got "5 kHz", a frequency (1/s)'),

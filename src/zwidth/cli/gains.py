@@ -36,7 +36,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--save",
         metavar="FILE",
         action=Once,
-        help="save verdicts and proofs as JSON, for zwidth verify",
+        help="save verdicts and proofs as JSON, for zwidth verify; of one arm in ROS 2 a .yaml: gains that "
+        "are proved, as its parameters",
     )
     output.add_argument(
         "--joint", metavar="NAME", action=Once, help="the whole report on one joint, as zwidth pair gives it"
@@ -45,6 +46,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--plot", metavar="FILE", action=Once, help="with --joint: save its plots, .png, .svg or .pdf"
     )
     output.add_argument("--force", action="store_true", help="replace files that exist")
+    one_arm = parser.add_argument_group("gains that are written", "with -o FILE.yaml, of one arm in ROS 2")
+    one_arm.add_argument(
+        "--share",
+        metavar="S",
+        action=Once,
+        help="of each joint's damping, that they may use (default: 0.8)",
+    )
+    one_arm.add_argument(
+        "--stiffest",
+        action="store_true",
+        help="the stiffest that are proved, in the place of those nearest to the file",
+    )
     arms = parser.add_argument_group(
         "arms", "what no gain file says; said in the report where it is not given"
     )
@@ -91,6 +104,11 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.family is None and _of_controllers(arguments.files):
         return _held(arguments)
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
+    if arguments.share is not None or arguments.stiffest or _is_yaml(save):
+        raise InputError(
+            "gains are written as .yaml of one arm with a parameter file of ros2_control; these are of "
+            "another kind: save their verdicts as .json, and leave out --share and --stiffest"
+        )
     if plot is not None and arguments.joint is None:
         raise InputError("--plot draws one joint: give --joint too, such as --joint J1")
     gains = read_gains(
@@ -136,13 +154,12 @@ def _of_controllers(files: list[str]) -> bool:
 
 def _held(arguments: argparse.Namespace) -> int:
     """The joints of one arm, each held at a target by the spring of its controller."""
-    from zwidth.gains import check_controllers, read_controllers
+    from zwidth.gains import check_controllers, passive_gains, read_controllers
     from zwidth.passivity.document import to_json
 
     for option in (
         "joint",
         "plot",
-        "save",
         "drive_rate",
         "bilateral_kp",
         "supply_voltage",
@@ -155,8 +172,14 @@ def _held(arguments: argparse.Namespace) -> int:
         if getattr(arguments, option):
             name = option.replace("_", "-")
             raise InputError(f"--{name} is of two arms; these are the gains of one arm: leave it out")
+    save = _target(arguments)
     controllers = read_controllers(arguments.files[0])
     if not controllers.joints and controllers.cartesian:
+        if save is not None:
+            raise InputError(
+                "an impedance at the end takes the arm to decide: nothing to save here; zwidth workspace "
+                f"ARM.urdf --pose --wall {arguments.files[0]} --postures 20000 has its own -o FILE.yaml"
+            )
         return _cartesian(controllers, arguments)
     if arguments.plant is None:
         raise InputError(
@@ -164,14 +187,40 @@ def _held(arguments: argparse.Namespace) -> int:
             "that "
             "has [arm] damping = … and coulomb_friction = …"
         )
-    found = check_controllers(controllers, arguments.plant, arguments.rate, arguments.link_delay)
+    asked = (controllers, arguments.plant, arguments.rate, arguments.link_delay)
+    found = check_controllers(*asked)
+    better = None
+    if _is_yaml(save):
+        share = {} if arguments.share is None else {"share": arguments.share}
+        better = passive_gains(*asked, **share, stiffest=arguments.stiffest)
+    if save is not None:
+        with writing(save):
+            (found if better is None else better).save(save)
     if arguments.json:
         print_json(to_json(found.to_dict()))
     else:
         from zwidth.cli.gains_report import print_held
 
-        print_held(found)
+        print_held(found, better)
+        say_written(save)
     return exit_status(found.outcome)
+
+
+def _is_yaml(path: Path | None) -> bool:
+    return path is not None and path.suffix.lower() in (".yaml", ".yml")
+
+
+def _target(arguments: argparse.Namespace) -> Path | None:
+    """The file to write for one arm: gains as .yaml, verdicts as .json; never the file that was read."""
+    _, save = targets(None, arguments.save, arguments.force)
+    if not _is_yaml(save):
+        if arguments.share is not None or arguments.stiffest:
+            raise InputError("--share and --stiffest are of gains that are written: add -o passive.yaml")
+        if save is not None and save.suffix.lower() != ".json":
+            raise InputError(f"-o: of one arm .yaml is for gains, .json for verdicts, got {save.name!r}")
+    elif save is not None and save.exists() and save.samefile(arguments.files[0]):
+        raise InputError(f"{save} is the file that is read, and has more than gains; choose another name")
+    return save
 
 
 def _cartesian(controllers: Controllers, arguments: argparse.Namespace) -> int:
@@ -179,7 +228,7 @@ def _cartesian(controllers: Controllers, arguments: argparse.Namespace) -> int:
     if arguments.json:
         from zwidth.passivity.document import to_json
 
-        print_json(to_json(controllers.to_dict()))
+        print_json(to_json({"outcome": "undecided", **controllers.to_dict()}))
     else:
         from zwidth.cli.gains_report import print_cartesian
 

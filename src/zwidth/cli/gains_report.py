@@ -9,7 +9,7 @@ from rich.text import Text
 
 from zwidth.cli.page import headline, items, more_with_all, page, section
 from zwidth.cli.pair_report import print_pair
-from zwidth.gains import ArmGains, Controllers, GainsVerdict, HeldJoints
+from zwidth.gains import ArmGains, Controllers, GainsVerdict, HeldJoints, PassiveGains
 from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.pairs import PairVerdict
 from zwidth.passivity.pairs.in_short import pair_in_short
@@ -45,13 +45,27 @@ def print_joint(verdict: PairVerdict, notes: Iterable[str], in_full: bool = Fals
         section(out, "\nof the gains", items((note for note in notes if note not in said), "dim"))
 
 
-def print_held(found: HeldJoints) -> None:
-    """Print the verdicts on the joints of one arm."""
+def print_held(found: HeldJoints, better: PassiveGains | None = None) -> None:
+    """Print the verdicts on the joints of one arm, and the gains that were written."""
     parts = list(found.report())
     with page() as out:
         out.print(headline(found.outcome, TOLD[found.outcome].terminal, found.claim))
         section(out, "joint by joint", [_set(part) for part in parts if isinstance(part, Table)])
+        if better is not None:
+            share = f"{float(100 * better.share):g} % of b"
+            section(out, f"written, each proved with {share}", [_set(_written(better))])
         section(out, "assumes", items(found.notes, "dim"))
+
+
+def _written(better: PassiveGains) -> Table:
+    """p, i and d of each joint, and of the file where they were others."""
+    heads = [["joint", "p", "i", "d", ""], ["", "N·m/rad", "N·m/(rad·s)", "N·m·s/rad", ""]]
+    rows = []
+    for old, new in better.changed:
+        numbers = [f"{float(v):g}" for v in (new.stiffness, new.integral, new.damping)]
+        same = (old.stiffness, old.integral, old.damping) == (new.stiffness, new.integral, new.damping)
+        rows.append([new.name, *numbers, "as it was" if same else "changed"])
+    return Table(rows=rows, heads=heads, lefts=1)
 
 
 def print_cartesian(controllers: Controllers, path: str) -> None:
@@ -67,11 +81,14 @@ def print_cartesian(controllers: Controllers, path: str) -> None:
             heads = [["", "K", "D"], ["", "N/m, N·m/rad", "N·s/m, N·m·s/rad"]]
             section(out, one.source, [_set(Table(rows=rows, heads=heads, lefts=1))])
             section(out, "of it", items(one.notes(3), "dim"))
-        rate = controllers.cartesian[0].rate or controllers.rate
+        one = controllers.cartesian[0]
+        rate = one.rate or controllers.rate
         often = f' --rate "{float(rate):g} Hz"' if rate is not None else ""
-        section(
-            out, "next", [Text(f"zwidth workspace ARM.urdf --pose --wall {path}{often} --postures 20000")]
-        )
+        ask = f"zwidth workspace ARM.urdf --pose --wall {path}{often}"
+        lines = [f"{ask} --postures 20000 -o passive.yaml"]
+        if one.nullspace:
+            lines.append(f'{ask} --null-stiffness wall --within "2 deg"')
+        section(out, "next", [Text(line) for line in lines])
 
 
 _COORDINATES = ("x", "y", "z", "about x", "about y", "about z")

@@ -30,6 +30,7 @@ _OF_TWO_ARMS = ("pair", "pair violation")
 
 _ONE_BY_ONE = {
     "zwidth gains 1": "joints",
+    "zwidth held joints 1": "joints",
     "zwidth passive masses 1": "verdicts",
     "zwidth each 1": "devices",
 }

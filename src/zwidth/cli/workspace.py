@@ -13,15 +13,18 @@ from zwidth.cli.workspace_arm import arm_of
 from zwidth.cli.workspace_joints import add_joint_options
 from zwidth.cli.workspace_null_space import NULL_OPTIONS, null_space_of, print_null_space, refuse_without
 from zwidth.cli.workspace_report import print_workspace
-from zwidth.cli.workspace_wall import WALL_OPTIONS, left_out, wall_of
+from zwidth.cli.workspace_wall import WALL_OPTIONS, cartesian_of, is_of_controllers, left_out, wall_of
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
+    from zwidth.arms import Arm
+    from zwidth.gains import BorneImpedance
     from zwidth.passivity.workspace import PostureMap, Workspace
 
 _RATE = "1 kHz"
 _SAVED = (".json", ".nc")
+_GAINS = (".yaml", ".yml")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -74,14 +77,24 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="the hand turns with the end, and the wall resists that too",
     )
-    saved = "the verdict with its certificate, for zwidth verify (.json), or the map as NetCDF (.nc)"
+    parser.add_argument(
+        "--share",
+        metavar="S",
+        action=Once,
+        help="with -o FILE.yaml: of the joints' damping, that the impedance may use (default: 0.8)",
+    )
+    saved = (
+        "the verdict with its certificate, for zwidth verify (.json), or the map as NetCDF (.nc); with "
+        "--postures and --wall FILE.yaml an impedance that they bear (.yaml)"
+    )
     add_in_full(add_output(parser, "the verdict", "the map", saved))
 
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth workspace`: 0 passive, 1 active, 3 undecided, 4 by a proof on paper alone."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
-    if save is not None and save.suffix.lower() not in _SAVED:
+    _check_gains(arguments, save)
+    if save is not None and save.suffix.lower() not in (*_SAVED, *_GAINS):
         raise InputError(
             f"--save: a file must end in .json for the verdict with its certificate, or in .nc for the map; "
             f"got {save.name!r}"
@@ -143,7 +156,12 @@ def _postures(arguments: argparse.Namespace, plot: Path | None, save: Path | Non
         delay=float(parse_number(arguments.delay or "0", "s", "delay")),
         postures=_whole(arguments.postures, "postures"),
     )
-    if save is not None:
+    better = None
+    if save is not None and save.suffix.lower() in _GAINS:
+        better = _borne(arguments, arm)
+        with writing(save):
+            better.save(save)
+    elif save is not None:
         _save(found, save)
     if plot is not None:
         found.plot(plot)
@@ -151,9 +169,41 @@ def _postures(arguments: argparse.Namespace, plot: Path | None, save: Path | Non
         without = left_out(arguments, arm.turns)
         print_json(to_json({**found.to_dict(), **({"wall_leaves_out": without} if without else {})}))
     else:
-        print_postures(found, arguments.in_full, left_out(arguments, arm.turns))
+        print_postures(found, arguments.in_full, left_out(arguments, arm.turns), better)
         say_written(save, plot)
     return TOLD[found.outcome].status
+
+
+def _check_gains(arguments: argparse.Namespace, save: Path | None) -> None:
+    """An impedance is written of postures and of a file alone, and never over that file."""
+    wanted = save is not None and save.suffix.lower() in _GAINS
+    if not wanted:
+        if arguments.share is not None:
+            raise InputError("--share is of an impedance that is written: add -o passive.yaml")
+        return
+    wall = None if arguments.wall is None else Path(arguments.wall)
+    if arguments.postures is None or wall is None or not is_of_controllers(wall):
+        raise InputError(
+            "-o: a .yaml is an impedance that all postures bear: it needs --postures, and --wall with the "
+            ".yaml of a controller whose names it takes; the verdict is saved as .json, the map as .nc"
+        )
+    assert save is not None
+    if save.exists() and save.samefile(wall):
+        raise InputError(f"{save} is the file that is read, and has more than gains; choose another name")
+
+
+def _borne(arguments: argparse.Namespace, arm: Arm) -> BorneImpedance:
+    """The impedance that is written."""
+    from zwidth.gains import borne_impedance
+
+    return borne_impedance(
+        cartesian_of(Path(arguments.wall)),
+        arm,
+        rate=float(parse_number(arguments.rate or _RATE, "Hz", "rate")),
+        delay=float(parse_number(arguments.delay or "0", "s", "delay")),
+        postures=_whole(arguments.postures, "postures"),
+        **({} if arguments.share is None else {"share": arguments.share}),
+    )
 
 
 def _null_space(arguments: argparse.Namespace, plot: Path | None, save: Path | None) -> int:

@@ -10,11 +10,17 @@ from zwidth.cli.workspace_joints import damping_in_words
 from zwidth.cli.workspace_wall import wall_in_words
 
 if TYPE_CHECKING:
+    from zwidth.gains import BorneImpedance
     from zwidth.passivity.workspace import PostureMap
 
 
-def print_postures(found: PostureMap, in_full: bool = False, without: Sequence[str] = ()) -> None:
-    """Print the verdict, the numbers and what is assumed on standard output."""
+def print_postures(
+    found: PostureMap,
+    in_full: bool = False,
+    without: Sequence[str] = (),
+    better: BorneImpedance | None = None,
+) -> None:
+    """Print the verdict, the numbers, what was written and what is assumed on standard output."""
     from zwidth.cli.page import blocks, headline, items, more_with_all, page, section, small_print
     from zwidth.passivity.in_short import in_short
     from zwidth.passivity.outcome import TOLD
@@ -28,6 +34,8 @@ def print_postures(found: PostureMap, in_full: bool = False, without: Sequence[s
             ("wall", wall_in_words(asked.wall)),
             *(("left out", text) for text in without),
         ]
+        if better is not None:
+            about.append(("written", _written(better)))
         if in_full:
             blocks(out, list(found.rows()), about)
             section(out, "assumes", items(found.assumptions, "dim"))
@@ -35,3 +43,15 @@ def print_postures(found: PostureMap, in_full: bool = False, without: Sequence[s
         assumed = ("assumes", small_print(in_short(found.scope, found.outcome)))
         blocks(out, list(found.rows()), [*about, assumed])
         more_with_all(out, "assumptions in full")
+
+
+def _written(better: BorneImpedance) -> str:
+    """The impedance in a line, and what of it was changed."""
+    k, zeta = (
+        ", ".join(f"{float(v):g}" for v in row[: better.size]) for row in (better.stiffness, better.factors)
+    )
+    units = "N/m" if better.size == len(better.stiffness) // 2 else "N/m, N·m/rad"
+    return (
+        f"K = {k} {units}; ζ = {zeta}: the condition holds at all of {better.found.tried} postures with "
+        f"{float(100 * better.share):g} % of the joints' damping; between them nothing is proved"
+    )

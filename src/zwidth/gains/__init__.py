@@ -3,12 +3,15 @@
 from zwidth.gains.arms import ArmGains
 from zwidth.gains.controllers import Controllers, JointLaw, read_controllers
 from zwidth.gains.held_joints import HeldJoints, check_controllers
+from zwidth.gains.impedance import BorneImpedance, borne_impedance
 from zwidth.gains.joint import Gains, JointGains
+from zwidth.gains.passive import PassiveGains, passive_gains
 from zwidth.gains.read import read_gains
 from zwidth.gains.verdict import GainsVerdict, JointVerdict, check_gains
 
 __all__ = [
     "ArmGains",
+    "BorneImpedance",
     "Controllers",
     "Gains",
     "GainsVerdict",
@@ -16,8 +19,11 @@ __all__ = [
     "JointGains",
     "JointLaw",
     "JointVerdict",
+    "PassiveGains",
+    "borne_impedance",
     "check_controllers",
     "check_gains",
+    "passive_gains",
     "read_controllers",
     "read_gains",
 ]

@@ -8,14 +8,14 @@ section finds its top.  What is found is rounded inward and proved by itself: no
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from math import floor, log10, sqrt
+from math import floor, log10
 
 from zwidth.errors import InputError
 from zwidth.gains.coupled import CoupledJoint
 from zwidth.gains.joint import Gains
+from zwidth.gains.peak import peak
 from zwidth.passivity.linear.boundary import COARSER, largest_holding, smallest_holding
 from zwidth.passivity.pairs import check_pair
 from zwidth.passivity.pairs.limits import is_passive
@@ -23,9 +23,6 @@ from zwidth.quantity.exact import Exact
 
 DIGITS = 3
 """Significant digits of the gains that are told."""
-
-_STEPS = 14
-"""Of the golden section: a thousandth of its range."""
 
 _TRIES = 6
 _WORTH = 1.02
@@ -64,7 +61,7 @@ def best(joint: CoupledJoint) -> CoupledJoint | None:
     start = next((x for x in (0.0, *(high * n / _GRID for n in range(1, _GRID + 1))) if value(x)), None)
     if start is None:
         return None
-    times = _top(value, high, start)
+    times = peak(value, high, start)
     candidates = [_damped(joint, one, x) for x in (times, start)]
     stiffness = [_largest(candidate) or 0.0 for candidate in candidates]
     if stiffness[0] < _WORTH * stiffness[1]:
@@ -187,25 +184,6 @@ def _is_proved(joint: CoupledJoint) -> bool:
         return check_pair(joint.pair()).passive
     except InputError:
         return False
-
-
-def _top(value: Callable[[float], float], high: float, start: float) -> float:
-    """Where a function on [0, high] is largest that is concave around `start` and 0 elsewhere."""
-
-    def at(x: float) -> tuple[float, float, float]:
-        return value(x), -abs(x - start), x
-
-    golden = (sqrt(5) - 1) / 2
-    low = 0.0
-    left, right = at(high - golden * (high - low)), at(low + golden * (high - low))
-    for _ in range(_STEPS):
-        if left[:2] >= right[:2]:
-            high, right = right[2], left
-            left = at(high - golden * (high - low))
-        else:
-            low, left = left[2], right
-            right = at(low + golden * (high - low))
-    return max(left, right)[2]
 
 
 def _unit(value: Fraction) -> Fraction:

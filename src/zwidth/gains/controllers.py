@@ -42,13 +42,19 @@ _JOINT_NOTES = (
 
 @dataclass(frozen=True)
 class JointLaw:
-    """p, i and d of one joint [N·m/rad, N·m/(rad·s), N·m·s/rad], and where they stand."""
+    """p, i and d of one joint [N·m/rad, N·m/(rad·s), N·m·s/rad], and where they stand.
+
+    `keys` leads to the table of its controller; `by_joint` is True of gains below the joint's name, False of
+    a list for all joints.
+    """
 
     name: str
     stiffness: Fraction
     integral: Fraction
     damping: Fraction
     source: str
+    keys: tuple[str, ...] = ()
+    by_joint: bool = True
 
 
 @dataclass(frozen=True)
@@ -67,6 +73,10 @@ class CartesianGains:
         Of the controller [Hz]; None where the file does not say.
     source
         Where they stand.
+    factors
+        ζ of each.
+    keys
+        That lead to the table of the controller.
     """
 
     stiffness: tuple[float, ...]
@@ -75,6 +85,8 @@ class CartesianGains:
     nullspace_damping: float
     rate: Fraction | None
     source: str
+    factors: tuple[float, ...] = (1.0,) * 6
+    keys: tuple[str, ...] = ()
 
     def wall(self, turns: int) -> MatrixWall:
         """As a wall for a hand at a point, 0 turns, or in pose, 3."""
@@ -116,12 +128,15 @@ class Controllers:
         Of the controller manager [Hz]; None where the file does not say.
     notes
         What the numbers are.
+    manager
+        The keys that lead to the controller manager's parameters.
     """
 
     joints: tuple[JointLaw, ...]
     cartesian: tuple[CartesianGains, ...]
     rate: Fraction | None
     notes: tuple[str, ...]
+    manager: tuple[str, ...] = ("controller_manager", "ros__parameters")
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
@@ -146,6 +161,7 @@ class Controllers:
                     "nullspace_damping_N_m_s_per_rad": one.nullspace_damping,
                     "rate_Hz": None if one.rate is None else float(one.rate),
                     "source": one.source,
+                    "left_out": list(one.notes(3)),
                 }
                 for one in self.cartesian
             ],
@@ -171,7 +187,11 @@ def read_controllers(path: str | Path) -> Controllers:
         )
     joints = tuple(joint for inner in found for joint in _joints(inner))
     cartesian = tuple(_cartesian(inner) for inner in found if _is_cartesian(inner))
-    return Controllers(joints, cartesian, _rate(table), _JOINT_NOTES if joints else ())
+    manager = _manager(table)
+    notes = _JOINT_NOTES if joints else ()
+    if manager is None:
+        return Controllers(joints, cartesian, None, notes)
+    return Controllers(joints, cartesian, manager.number("update_rate", "Hz"), notes, manager.keys)
 
 
 def is_of_controllers(table: GainTable) -> bool:
@@ -213,7 +233,8 @@ def _joints(table: GainTable) -> Iterator[JointLaw]:
         stiffness = table.numbers("k_gains", "N*m/rad")
         damping = table.numbers("d_gains", "N*m*s/rad", len(stiffness))
         for n, (k, d) in enumerate(zip(stiffness, damping, strict=True)):
-            yield JointLaw(f"joint{n + 1}", k, Fraction(0), d, table.where(f"k_gains[{n}]"))
+            where = table.where(f"k_gains[{n}]")
+            yield JointLaw(f"joint{n + 1}", k, Fraction(0), d, where, table.keys, by_joint=False)
     if _is_pid(table):
         yield from _pids(table)
 
@@ -234,7 +255,7 @@ def _pids(table: GainTable) -> Iterator[JointLaw]:
             return row.number(key, unit) if key in row else Fraction(0)
 
         p, i, d = number("p", "N*m/rad"), number("i", "1"), number("d", "N*m*s/rad")
-        yield JointLaw(str(name), p, i, d, row.where("p"))
+        yield JointLaw(str(name), p, i, d, row.where("p"), table.keys)
 
 
 def _cartesian(table: GainTable) -> CartesianGains:
@@ -257,7 +278,16 @@ def _cartesian(table: GainTable) -> CartesianGains:
         raise InputError(f"{table.label}: stiffness and damping factors must be ≥ 0: a spring pulls back")
     rate = table.number("update_frequency", "Hz") if "update_frequency" in table else None
     *d, d_null = (2 * factor * sqrt(value) for factor, value in zip(factors, k, strict=True))
-    return CartesianGains(tuple(k[:6]), tuple(d), k[6], d_null, rate, table.where("stiffness"))
+    return CartesianGains(
+        tuple(k[:6]),
+        tuple(d),
+        k[6],
+        d_null,
+        rate,
+        table.where("stiffness"),
+        tuple(factors[:6]),
+        table.keys,
+    )
 
 
 def _three(table: GainTable, key: str, unit: str) -> Sequence[float]:
@@ -268,9 +298,9 @@ def _three(table: GainTable, key: str, unit: str) -> Sequence[float]:
     return [float(inner.number(axis, unit)) for axis in _AXES]
 
 
-def _rate(table: GainTable) -> Fraction | None:
-    """The update_rate of the controller manager."""
+def _manager(table: GainTable) -> GainTable | None:
+    """The parameters of the controller manager, where its update_rate stands."""
     for inner in table.below():
-        if inner.label.endswith("controller_manager, ros__parameters") and "update_rate" in inner:
-            return inner.number("update_rate", "Hz")
+        if inner.keys[-2:] == ("controller_manager", "ros__parameters") and "update_rate" in inner:
+            return inner
     return None

@@ -31,10 +31,11 @@ DEEPEST = 4
 
 @dataclass(frozen=True)
 class GainTable:
-    """Keys of a gain file with what stands there; `label` says where that is."""
+    """Keys of a gain file with what stands there; `label` says where that is, `keys` how one comes there."""
 
     label: str
     values: Mapping[str, Any]
+    keys: tuple[str, ...] = ()
 
     def __contains__(self, key: object) -> bool:
         return key in self.values
@@ -48,7 +49,7 @@ class GainTable:
         inner = self.values[key]
         if not isinstance(inner, Mapping):
             raise InputError(f"{self.where(key)}: expected keys below it, got {_kind(inner)}")
-        return GainTable(f"{self.label}, {key}", inner)
+        return GainTable(f"{self.label}, {key}", inner, (*self.keys, key))
 
     def below(self) -> Iterator[GainTable]:
         """This table and those inside it, each once, the outer ones first."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
@@ -15,7 +15,7 @@ from zwidth.gains.controllers import Controllers, JointLaw
 from zwidth.gains.plant import plant_of_file
 from zwidth.passivity.check import check
 from zwidth.passivity.outcome import COLOUR, Outcome
-from zwidth.passivity.result import Documented
+from zwidth.passivity.result import Documented, evidence_of
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import shown
@@ -38,6 +38,19 @@ class HeldJoint:
         """The damping that the joint needs [N·m·s/rad]; None where none is enough, or it is not known."""
         left = self.verdict.margins.get("damping")
         return None if left is None else float(self.verdict.device.exact("damping")) - left
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data, units in the keys."""
+        return {
+            "name": self.law.name,
+            "source": self.law.source,
+            "stiffness_N_m_per_rad": float(self.law.stiffness),
+            "integral_N_m_per_rad_s": float(self.law.integral),
+            "damping_N_m_s_per_rad": float(self.law.damping),
+            "outcome": self.verdict.outcome,
+            "claim": self.verdict.claim,
+            "required_damping_N_m_s_per_rad": self.needed,
+        }
 
 
 @dataclass(frozen=True, repr=False)
@@ -74,23 +87,18 @@ class HeldJoints(Documented):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
+        return self._document([joint.to_dict() for joint in self.joints])
+
+    def saved(self) -> dict[str, Any]:
+        """The same with the proof, or the motion, of each joint."""
+        return self._document([{**joint.to_dict(), **evidence_of(joint.verdict)} for joint in self.joints])
+
+    def _document(self, joints: list[dict[str, Any]]) -> dict[str, Any]:
         return {
             "format": self.FORMAT,
             "outcome": self.outcome,
             "claim": self.claim,
-            "joints": [
-                {
-                    "name": joint.law.name,
-                    "source": joint.law.source,
-                    "stiffness_N_m_per_rad": float(joint.law.stiffness),
-                    "integral_N_m_per_rad_s": float(joint.law.integral),
-                    "damping_N_m_s_per_rad": float(joint.law.damping),
-                    "outcome": joint.verdict.outcome,
-                    "claim": joint.verdict.claim,
-                    "required_damping_N_m_s_per_rad": joint.needed,
-                }
-                for joint in self.joints
-            ],
+            "joints": joints,
             "notes": list(self.notes),
         }
 
@@ -137,6 +145,27 @@ def check_controllers(
     InputError
         If there are no joint gains or no rate, or a number is outside its bound.
     """
+    loops = loops_of(controllers, plant, rate, delay)
+    joints = tuple(
+        HeldJoint(law, check(device, wall(law, loops.rate)))
+        for law, device in zip(controllers.joints, loops.devices, strict=True)
+    )
+    return HeldJoints(joints, loops.notes)
+
+
+class Loops(NamedTuple):
+    """Each joint as a device; the controller's rate [Hz], the delay [s]; what was taken for granted."""
+
+    devices: tuple[Device, ...]
+    rate: Fraction
+    delay: Fraction
+    notes: tuple[str, ...]
+
+
+def loops_of(
+    controllers: Controllers, plant: str | Device, rate: RealLike | None, delay: RealLike | None
+) -> Loops:
+    """The loops of joint gains; arguments and errors as of `check_controllers`."""
     laws = controllers.joints
     if not laws:
         raise InputError(
@@ -147,17 +176,13 @@ def check_controllers(
     if often is None:
         raise InputError("the file does not say its update_rate; give --rate [Hz]")
     late = 1 / often if delay is None else parse_number(delay, "s", "delay").fraction
-    devices = _devices(laws, plant, often, late)
-    joints = tuple(
-        HeldJoint(law, check(device, _wall(law, often))) for law, device in zip(laws, devices, strict=True)
-    )
     notes = (
         *controllers.notes,
         f"{shown(Exact(often), 'Hz')}, torque {shown(Exact(late), 's')} after the reading"
         + (": one period, an assumption" if delay is None else ""),
         "each joint by itself: what joints share, gravity and flexible gears are not in the model",
     )
-    return HeldJoints(joints, notes)
+    return Loops(tuple(_devices(laws, plant, often, late)), often, late, notes)
 
 
 def _devices(
@@ -170,7 +195,7 @@ def _devices(
     return [Device(**row, **own, motion="rotary", name=law.name) for law, row in zip(laws, rows, strict=True)]
 
 
-def _wall(law: JointLaw, rate: Fraction) -> Environment:
+def wall(law: JointLaw, rate: Fraction) -> Environment:
     """On both sides of the target: H(z) = p + i T/(z − 1) + d (z − 1)/(T z)."""
     if not law.integral:
         k, b = law.stiffness, law.damping * rate

@@ -34,6 +34,11 @@ if TYPE_CHECKING:
 Progress = Callable[[int, int], None]
 """Told (done, total) samples now and then."""
 
+TOO_MANY_STOPS = (
+    "the motion has too many stops in one sample to be followed: device, hand and forces differ by "
+    "so many orders of magnitude that rounding decides; scale them closer together"
+)
+
 _STRIDE = 200_000
 """Samples between two looks at progress and Ctrl-C."""
 
@@ -164,10 +169,7 @@ def simulate(
     state, memory = setup.state.copy(), setup.memory.copy()
     done = run_setup(setup, state, memory, work, commands, record, progress)
     if state[FAULT] != 0.0:
-        raise InputError(
-            "the motion has too many stops in one sample to be followed: device, hand and forces differ by "
-            "so many orders of magnitude that rounding decides; scale them closer together"
-        )
+        raise InputError(TOO_MANY_STOPS)
     return build_trace(setup, record, done, stops=int(state[STOPS]))
 
 
@@ -186,7 +188,7 @@ def run_setup(
     try:
         while done < total:
             stop = min(total, done + _STRIDE)
-            _run(setup, done, stop, state, memory, work, commands, record)
+            run_samples(setup, done, stop, state, memory, work, commands, record)
             done = stop
             if progress is not None:
                 progress(min(done, setup.frame.samples), setup.frame.samples)
@@ -196,7 +198,7 @@ def run_setup(
     return done
 
 
-def _run(
+def run_samples(
     setup: Setup,
     first: int,
     last: int,
@@ -206,6 +208,7 @@ def _run(
     commands: NDArray[np.float64],
     record: NDArray[np.float64],
 ) -> None:
+    """Take the samples `first` … `last` − 1, each with the interval behind it; can be called again."""
     numbers, law, late = setup.plant_numbers, setup.law, setup.frame.late
     force, anchor, target, switch = setup.optional()
     if setup.plain:

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from math import floor, inf, isfinite, log10
+from math import ceil, floor, inf, isfinite, log10
 from typing import Any, NamedTuple
 
 from zwidth.device import Device
@@ -130,10 +130,12 @@ class OverRanges:
         return f"passive for every device in the ranges: {every}; for the most favourable: {best}"
 
     def _first(self, first: Measure) -> str:
-        name = in_words(first.key)
+        name = _named(first.key, self.ranges[first.key])
         if first.enough is not None:
-            side = "at least" if _BETTER[first.key] else "at most"
+            side = "at least" if _BETTER[first.key] or name == "rate" else "at most"
             enough = shown(first.enough, GLOSSARY[first.key].unit_for(self.motion), 3)
+            if name == "rate":
+                enough = shown(_rounded_up(1 / first.enough), "Hz", 3)
             return f"{name}: if it is {side} {enough}, this is passive for every device in the other ranges"
         grows = "from none" if first.times == inf else f"{first.times:.2g} times"
         return f"{name}: over its range the largest stiffness grows {grows}, more than over any other"
@@ -146,6 +148,12 @@ def _finite(value: float | None) -> float | None:
 def _key(key: str, own: Range) -> str:
     """What the range is of: of a period it is stated as a rate."""
     return "rate" if own.unit == "Hz" else key
+
+
+def _rounded_up(value: float) -> float:
+    """To three digits."""
+    unit = 10.0 ** (floor(log10(value)) - 2)
+    return ceil(value / unit) * unit
 
 
 def _named(key: str, own: Range) -> str:

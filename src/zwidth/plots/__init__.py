@@ -3,12 +3,10 @@
 Import it by name, `import zwidth.plots`: nothing else in the package does, so
 that a verdict never waits for matplotlib.  `criterion`, `plane`, `budget`,
 `witness`, `worst_case`, `storage`, `cycle`, `indices`, `check_figure`,
-`limit_figure`, `plot_held_pair`, `plot_lateness`, `plot_links`, `plot_pair`, `plot_scene`,
-`sweep_figure`, `workspace_figure` and `z_width_figure` return a `matplotlib.figure.Figure` that
 `limit_figure`, `plot_held_pair`, `plot_lateness`, `plot_links`, `plot_pair`, `plot_scene`, `postures_figure`,
-`workspace_figure` and `z_width_figure` return a `matplotlib.figure.Figure` that
-belongs to no window; the `draw_…` functions draw on axes of your own, in the look
-of `LOOK` if your axes have it.
+`sample_table_figure`, `sweep_figure`, `workspace_figure` and `z_width_figure` return a
+`matplotlib.figure.Figure` that belongs to no window; the `draw_…` functions draw on axes of your own,
+in the look of `LOOK` if your axes have it.
 """
 
 from zwidth.plots.budget import budget, draw_damping, draw_friction
@@ -25,6 +23,7 @@ from zwidth.plots.pair_motion import draw_pair_energy, draw_pair_motion
 from zwidth.plots.plane import draw_plane, plane
 from zwidth.plots.postures import postures_figure
 from zwidth.plots.report import check_figure
+from zwidth.plots.sample_table import draw_sample_table, sample_table_figure
 from zwidth.plots.scene import draw_scene, plot_scene
 from zwidth.plots.storage import draw_storage, storage
 from zwidth.plots.style import LOOK
@@ -54,6 +53,7 @@ __all__ = [
     "draw_pair_link",
     "draw_pair_motion",
     "draw_plane",
+    "draw_sample_table",
     "draw_scene",
     "draw_storage",
     "draw_witness",
@@ -70,6 +70,7 @@ __all__ = [
     "plot_pair",
     "plot_scene",
     "postures_figure",
+    "sample_table_figure",
     "save_sweep",
     "save_z_width",
     "storage",

@@ -331,12 +331,23 @@ def _row_of_laws(value: object, name: str) -> dict[str, object]:
     return {ROW: value}
 
 
+_READ_BY = {
+    **dict.fromkeys((".urdf", ".mjcf", ".xml"), "a description of an arm is for zwidth workspace"),
+    **dict.fromkeys((".yaml", ".yml", ".json"), "gains of controllers and of arms are for zwidth gains"),
+    ".csv": "a recording is for zwidth identify, diagnose or tissue",
+}
+"""Who reads a file of another kind."""
+
+
 def _parse(text: str, name: str) -> dict[str, Any]:
     import tomllib  # only where a file is read
 
     try:
         return tomllib.loads(text, parse_float=Decimal)
     except tomllib.TOMLDecodeError as error:
+        other = _READ_BY.get(Path(name).suffix.lower())
+        if other is not None:
+            raise InputError(f"{name}: not TOML, which devices and laws are written in; {other}") from None
         raise InputError(f"{name}: not TOML: {plain(str(error), 160)}") from None
     except (ValueError, ArithmeticError):  # what int and Decimal refuse
         raise InputError(f"{name}: a number or date in it is larger than any quantity") from None
@@ -374,6 +385,12 @@ def _not_there(path: Path, name: str) -> str:
     """What to say where there is no such file: one beside it, or a device of the catalogue, near in name."""
     if path.suffix == ".toml":
         return f"there is no file {name}{did_you_mean(path)}"
+    from zwidth.arms import BUILT_IN  # only for this message
+
+    if str(path) in BUILT_IN:
+        return (
+            f"{name} is an arm of several joints, which zwidth workspace reads; here it takes a single axis"
+        )
     near = near_file(path, catalogue.names())
     hint = suggestion(near or str(path), [near] if near else catalogue.names())
     return f"{name} is neither a file nor a device of the catalogue; {hint}"
@@ -413,7 +430,8 @@ def environment_table(tables: Mapping[str, Table], overrides: Mapping[str, str])
     if table is None:
         if not overrides:
             raise InputError(
-                "no environment is given: set --stiffness for a wall, or write an [environment] table"
+                'no environment is given: set --stiffness for a wall, such as "500 N/m", or of a device that '
+                'turns "1 N*m/deg"; or write an [environment] table'
             )
         table = Table(COMMAND_LINE, {"type": "wall"})
     for key, value in overrides.items():

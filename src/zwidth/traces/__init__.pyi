@@ -1,3 +1,4 @@
+from zwidth.loop.simulated_device import SimulatedDevice as SimulatedDevice
 from zwidth.traces.accessor import TraceAccessor as TraceAccessor
 from zwidth.traces.comparison import Comparison as Comparison
 from zwidth.traces.comparison import compare_traces as compare_traces

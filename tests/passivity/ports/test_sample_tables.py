@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from figure_layout import faults
 
 import zwidth as zw
 
@@ -65,6 +66,34 @@ def test_scattering_parameters_with_an_error():
     assert found.bands[0].worst == 1.04
     assert zw.ports.scattering_table(network, error=0.04).violated == (False, False, False)
     assert "wrong by more than the error" in found.assumptions[-1]
+
+
+def test_no_module_has_the_name_of_what_it_offers():
+    """Once such a module is loaded, for another of its names, it would stand in the place of the function."""
+    for name in dir(zw.ports):
+        assert getattr(zw.ports, name).__module__.rpartition(".")[2] != name
+
+
+def test_the_picture_tells_three_kinds_of_samples_apart():
+    """Each sample once, with its error, and the bands up to the samples beside them."""
+    found = zw.ports.response_table([1, 2, 3, 4, 5], [1 + 2j, -0.2j, -0.3, -0.05 + 1j, 0.4], error=0.1)
+    figure = found.plot()
+    (axes,) = figure.axes
+    assert axes.get_title(loc="left") == "1 of 5 samples violate"
+    shown = {bars.get_label(): bars.lines[0].get_xydata().tolist() for bars in axes.containers}
+    assert shown == {
+        "no violation shown": [[1, 1], [5, 0.4]],
+        "may violate, within its error": [[2, 0], [4, -0.05]],
+        "violates, whatever its error": [[3, -0.3]],
+    }
+    (at,) = axes.containers[2].lines[2][0].get_segments()
+    assert at == pytest.approx(np.array([[3, -0.4], [3, -0.2]]))
+    low, high = axes.get_ylim()
+    assert low < -0.4 < 1.1 < high
+    assert faults(figure) == []
+    network = SimpleNamespace(f=[1.0, 2.0, 3.0], s=[[[0.96]], [[1.02j]], [[1.04]]])
+    (axes,) = zw.ports.scattering_table(network).plot().axes
+    assert (axes.get_ylabel(), axes.containers[1].get_label()) == ("|S| [1]", "violates")
 
 
 @pytest.mark.parametrize(

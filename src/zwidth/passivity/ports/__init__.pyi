@@ -3,11 +3,11 @@ from zwidth.passivity.ports.extracting_input import ExtractingInput as Extractin
 from zwidth.passivity.ports.index import PassivityIndex as PassivityIndex
 from zwidth.passivity.ports.indices import PassivityIndices as PassivityIndices
 from zwidth.passivity.ports.indices import passivity_indices as passivity_indices
+from zwidth.passivity.ports.measured_response import ResponseTable as ResponseTable
+from zwidth.passivity.ports.measured_response import response_table as response_table
+from zwidth.passivity.ports.measured_scattering import ScatteringTable as ScatteringTable
+from zwidth.passivity.ports.measured_scattering import scattering_table as scattering_table
 from zwidth.passivity.ports.relative import RelativeIndex as RelativeIndex
-from zwidth.passivity.ports.response_table import ResponseTable as ResponseTable
-from zwidth.passivity.ports.response_table import response_table as response_table
 from zwidth.passivity.ports.sample_table import SampleBand as SampleBand
 from zwidth.passivity.ports.scattering import ScatteringPassivity as ScatteringPassivity
 from zwidth.passivity.ports.scattering import scattering_passivity as scattering_passivity
-from zwidth.passivity.ports.scattering_table import ScatteringTable as ScatteringTable
-from zwidth.passivity.ports.scattering_table import scattering_table as scattering_table

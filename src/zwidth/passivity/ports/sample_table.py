@@ -7,11 +7,11 @@ and stable.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from flint import fmpq
@@ -68,8 +68,19 @@ class SampleTable(Result):
         How many there are.
     """
 
+    PICTURE: ClassVar[str] = "sample_table_figure"
     HEAD: ClassVar[str]
+    """What the worst of a band is."""
+    NAMES: ClassVar[tuple[str, str]]
+    """What the values are, of one port and of several."""
+    UNIT: ClassVar[str]
+    WORST: ClassVar[str]
+    """The key of the worst of them."""
     FOR_A_PROOF: ClassVar[str]
+    BOUND: ClassVar[float]
+    """What the values of a passive system keep to."""
+    BEYOND: ClassVar[int]
+    """On which side of it they do not: 1 above, −1 below."""
 
     frequencies: tuple[float, ...]
     values: tuple[float, ...]
@@ -77,6 +88,42 @@ class SampleTable(Result):
     possible: tuple[bool, ...]
     errors: tuple[float, ...]
     ports: int
+
+    @classmethod
+    def judged(
+        cls,
+        frequencies: Any,
+        samples: Any,
+        values: Sequence[float],
+        errors: Sequence[Fraction],
+        breaks: Callable[[Any, float, Fraction], bool],
+    ) -> Self:
+        """The table; `breaks(sample, value, slack)` says whether a sample is beyond the bound by more."""
+        rows = list(zip(samples, values, errors, strict=True))
+        return cls(
+            frequencies=tuple(map(float, frequencies)),
+            values=tuple(values),
+            violated=tuple(breaks(sample, value, e) for sample, value, e in rows),
+            possible=tuple(breaks(sample, value, -e) for sample, value, e in rows),
+            errors=tuple(map(float, errors)),
+            ports=samples.shape[1],
+        )
+
+    @property
+    def worst(self) -> tuple[float, float]:
+        """(value, f [Hz]) of the sample that breaks the bound most, or is nearest to it."""
+        value = self.worst_of(self.values)
+        return value, self.frequencies[self.values.index(value)]
+
+    def describe(self) -> str:
+        """What is shown, in a sentence or two."""
+        count, of = sum(self.violated), len(self.violated)
+        shown = (
+            f"At {count} of {of} samples {self.told_broken()}"
+            if count
+            else f"At none of the {of} samples {self.told_kept()} That is no proof of passivity."
+        )
+        return shown + self.told_possible()
 
     @property
     def violates(self) -> bool:
@@ -127,16 +174,21 @@ class SampleTable(Result):
             "violated_samples": sum(self.violated),
             "possible_samples": sum(self.possible),
             "violated_Hz": [[band.low, band.high] for band in self.bands],
-            **self.worst_numbers(),
+            self.WORST: self.worst[0],
+            f"{self.WORST}_at_Hz": self.worst[1],
             "assumptions": list(self.assumptions),
         }
 
     def worst_of(self, values: Sequence[float]) -> float:
         """The one that breaks the bound most, or is nearest to it."""
+        return max(values) if self.BEYOND > 0 else min(values)
+
+    def told_broken(self) -> str:
+        """What happens at the samples that break the bound: the end of a sentence."""
         raise NotImplementedError
 
-    def worst_numbers(self) -> dict[str, float]:
-        """The worst sample, as plain data."""
+    def told_kept(self) -> str:
+        """What does not happen where none does: the end of a sentence."""
         raise NotImplementedError
 
     def _band(self, first: int, last: int) -> SampleBand:

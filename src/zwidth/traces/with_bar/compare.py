@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import zwidth.traces.accessor  # noqa: F401 - gives every trace its `.zwidth`
 from zwidth.bench import bench as _bench
 from zwidth.traces.with_bar import with_bar
 

@@ -8,7 +8,6 @@ system.  Of one axis λ_min is Re G.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
@@ -32,34 +31,29 @@ class ResponseTable(SampleTable):
 
     FORMAT = "zwidth response table 1"
     HEAD: ClassVar[str] = "least Re G"
+    NAMES: ClassVar[tuple[str, str]] = ("Re G", "least eigenvalue of ½(G + Gᴴ)")
+    UNIT: ClassVar[str] = "unit of G"
+    WORST: ClassVar[str] = "least_real_part"
     FOR_A_PROOF: ClassVar[str] = "For a proof fit a rational G(s) and ask passivity_indices of the fit."
+    BOUND: ClassVar[float] = 0.0
+    BEYOND: ClassVar[int] = -1
 
     @property
     def least(self) -> tuple[float, float]:
         """(λ_min, f [Hz]) of the sample where it is least."""
-        k = int(np.argmin(self.values))
-        return self.values[k], self.frequencies[k]
+        return self.worst
 
-    def describe(self) -> str:
-        """What is shown, in a sentence or two."""
-        count, of = sum(self.violated), len(self.violated)
+    def told_broken(self) -> str:
+        """With the least real part."""
+        return f"a sinusoid takes energy out; {self._least()}."
+
+    def told_kept(self) -> str:
+        """With the least real part."""
+        return f"is it shown that a sinusoid takes energy out; {self._least()}."
+
+    def _least(self) -> str:
         value, at = self.least
-        least = f"the least real part is {value:.9g}, at {at:.6g} Hz".replace("-", "−")
-        if count:
-            return f"At {count} of {of} samples a sinusoid takes energy out; {least}." + self.told_possible()
-        return (
-            f"At none of the {of} samples is it shown that a sinusoid takes energy out; {least}. "
-            "That is no proof of passivity." + self.told_possible()
-        )
-
-    def worst_of(self, values: Sequence[float]) -> float:
-        """The least."""
-        return min(values)
-
-    def worst_numbers(self) -> dict[str, float]:
-        """The least real part, and where."""
-        value, at = self.least
-        return {"least_real_part": value, "least_real_part_at_Hz": at}
+        return f"the least real part is {value:.9g}, at {at:.6g} Hz".replace("-", "−")
 
 
 def response_table(frequencies: Any, values: Any, error: Any = 0) -> ResponseTable:
@@ -84,15 +78,7 @@ def response_table(frequencies: Any, values: Any, error: Any = 0) -> ResponseTab
     f, g = read_samples(frequencies, values, "values")
     errors = read_errors(error, len(f))
     least = [float(np.linalg.eigvalsh((sample + sample.conj().T) / 2)[0]) for sample in g]
-    rows = list(zip(g, least, errors, strict=True))
-    return ResponseTable(
-        frequencies=tuple(map(float, f)),
-        values=tuple(least),
-        violated=tuple(_below(sample, value, -e) for sample, value, e in rows),
-        possible=tuple(_below(sample, value, e) for sample, value, e in rows),
-        errors=tuple(map(float, errors)),
-        ports=g.shape[1],
-    )
+    return ResponseTable.judged(f, g, least, errors, lambda sample, value, e: _below(sample, value, -e))
 
 
 def _below(sample: Any, value: float, level: Fraction) -> bool:

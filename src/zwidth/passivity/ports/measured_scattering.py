@@ -8,7 +8,6 @@ brings back more than it carries.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar
@@ -34,7 +33,12 @@ class ScatteringTable(SampleTable):
 
     FORMAT = "zwidth scattering table 1"
     HEAD: ClassVar[str] = "largest ‖S‖"
+    NAMES: ClassVar[tuple[str, str]] = ("|S|", "largest singular value of S")
+    UNIT: ClassVar[str] = "1"
+    WORST: ClassVar[str] = "largest_gain"
     FOR_A_PROOF: ClassVar[str] = "For a proof fit a rational S(s) and ask scattering_passivity of the fit."
+    BOUND: ClassVar[float] = 1.0
+    BEYOND: ClassVar[int] = 1
 
     @property
     def gains(self) -> tuple[float, ...]:
@@ -44,31 +48,20 @@ class ScatteringTable(SampleTable):
     @property
     def largest(self) -> tuple[float, float]:
         """(‖S‖, f [Hz]) of the sample where most comes back."""
-        k = int(np.argmax(self.values))
-        return self.values[k], self.frequencies[k]
+        return self.worst
 
-    def describe(self) -> str:
-        """What is shown, in a sentence or two."""
-        count, of = sum(self.violated), len(self.violated)
+    def told_broken(self) -> str:
+        """With the largest ‖S‖."""
         gain, at = self.largest
-        if count:
-            return (
-                f"At {count} of {of} samples more comes back than goes in, most at {at:.6g} Hz: "
-                f"‖S‖ = {_size(gain)}. No passive network has these values." + self.told_possible()
-            )
         return (
-            f"At none of the {of} samples does more come back than goes in; the largest ‖S‖ is {gain:.9g}, "
-            f"at {at:.6g} Hz. That is no proof of passivity." + self.told_possible()
+            f"more comes back than goes in, most at {at:.6g} Hz: ‖S‖ = {_size(gain)}. No passive network has "
+            "these values."
         )
 
-    def worst_of(self, values: Sequence[float]) -> float:
-        """The largest."""
-        return max(values)
-
-    def worst_numbers(self) -> dict[str, float]:
-        """‖S‖ where it is largest, and there."""
+    def told_kept(self) -> str:
+        """With the largest ‖S‖."""
         gain, at = self.largest
-        return {"largest_gain": gain, "largest_gain_at_Hz": at}
+        return f"does more come back than goes in; the largest ‖S‖ is {gain:.9g}, at {at:.6g} Hz."
 
 
 def scattering_table(network: Any, error: Any = 0) -> ScatteringTable:
@@ -98,14 +91,8 @@ def scattering_table(network: Any, error: Any = 0) -> ScatteringTable:
     _refuse_waves_without_power(network)
     errors = read_errors(error, len(f))
     gains = [float(np.linalg.norm(sample, 2)) for sample in s]
-    rows = list(zip(s, gains, errors, strict=True))
-    return ScatteringTable(
-        frequencies=tuple(map(float, f)),
-        values=tuple(gains),
-        violated=tuple(_exceeds(sample, gain, 1 + e) for sample, gain, e in rows),
-        possible=tuple(e >= 1 or _exceeds(sample, gain, 1 - e) for sample, gain, e in rows),
-        errors=tuple(map(float, errors)),
-        ports=s.shape[1],
+    return ScatteringTable.judged(
+        f, s, gains, errors, lambda sample, gain, e: e <= -1 or _exceeds(sample, gain, 1 + e)
     )
 
 
