@@ -8,6 +8,7 @@ the device.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from zwidth.device import Device
@@ -50,6 +51,7 @@ class _Loop:
     compensation_speed: float
     delay: float
     drive_damping: float
+    stated: Environment | None = None
 
     def built(self, **changes: float) -> tuple[Device, Environment]:
         """With some numbers changed."""
@@ -60,10 +62,7 @@ class _Loop:
             if left < 0:
                 raise InputError("the drive's damper may drive more than the device brakes")
             device = device.replace(damping=text_of(left))
-        wall: Environment = Wall(text_of(at["stiffness"]))
-        if at["damping"]:
-            estimate = Window(self.window) if self.window > 1 else BackwardDifference()
-            wall = Wall(text_of(at["stiffness"]), text_of(at["damping"]), velocity_filter=estimate)
+        wall = self._law(at)
         if at["compensation"]:
             from zwidth.rendering import FrictionCompensation, render
 
@@ -74,6 +73,16 @@ class _Loop:
                 ),
             )
         return device, wall
+
+    def _law(self, at: Mapping[str, float]) -> Environment:
+        """The law as stated, else as found, with the stiffness and the damping of `at`."""
+        if self.stated is not None:
+            names = [name for name in ("stiffness", "damping") if at[name] != getattr(self, name)]
+            return self.stated.replace(**{name: text_of(at[name]) for name in names})
+        if not at["damping"]:
+            return Wall(text_of(at["stiffness"]))
+        estimate = Window(self.window) if self.window > 1 else BackwardDifference()
+        return Wall(text_of(at["stiffness"]), text_of(at["damping"]), velocity_filter=estimate)
 
     def decided(self, **changes: float) -> Verdict | None:
         """The verdict by closed forms; None where there is none."""
@@ -143,11 +152,13 @@ _NAMES = {
 def _loop(seen: Evidence, device: Device, cause: str) -> _Loop:
     assert seen.law is not None
     law = seen.law
+    told = seen.stated if seen.stated is not None and seen.stated.holds else None
     helped = law.compensation if seen.supplied["friction compensation"] > 0.02 * abs(seen.total) else 0.0
     return _Loop(
         device=device,
-        stiffness=law.stiffness,
-        damping=law.damping,
+        stated=None if told is None else told.environment,
+        stiffness=law.stiffness if told is None else told.stiffness,
+        damping=law.damping if told is None else told.damping,
         window=law.window,
         compensation=rounded(helped),
         compensation_speed=rounded(law.compensation_speed),

@@ -8,24 +8,29 @@ Nothing is named that the file cannot show; then it says what to record.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from zwidth.device import Device
-from zwidth.diagnosis.causes import CAUSES, is_named, likelihoods
+from zwidth.diagnosis.causes import CAUSES, follows, is_named, likelihoods
 from zwidth.diagnosis.change import change_for
 from zwidth.diagnosis.evidence import Evidence, gather
+from zwidth.diagnosis.lowered import PASSIVE
 from zwidth.diagnosis.pairs.recording import holds_two_arms
 from zwidth.diagnosis.recording import Recording, read
 from zwidth.diagnosis.result import Diagnosis
 from zwidth.diagnosis.vibration import find
+from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.identification.logs import Log
+from zwidth.passivity.check import check
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _REGULAR = "a stretch of ten cycles or more in which it shakes, the hand as it was"
+_LAW = "the law that was programmed beside the file (stiffness, virtual damping): its force does not show it"
 _DEVICE = "the device's numbers (mass, damping, Coulomb friction, rate) beside the file: DEVICE"
 
 
@@ -33,6 +38,7 @@ def diagnose(
     recording: Log | str | PathLike[str] | xr.Dataset,
     device: Device | None = None,
     *,
+    law: Environment | None = None,
     columns: Mapping[str, str | None] | None = None,
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, object] | None = None,
@@ -47,6 +53,9 @@ def diagnose(
         force: what the law asked for, what the motor gave, best both.
     device
         What is known of the device: without it no number can be checked, and fewer causes be told apart.
+    law
+        The law that was programmed, such as a `Wall`; it is held beside the force in the recording, and its
+        numbers are those that are changed.  Without it the law is looked for in the recording.
     columns, units, scale
         As for `read_log`; `commanded_force` is the force that the law asked for, `actuator_force` the one
         that the motor gave.
@@ -62,7 +71,8 @@ def diagnose(
     Raises
     ------
     InputError
-        If the recording cannot be read, holds no force of the actuator, or moves otherwise than the device.
+        If the recording cannot be read, holds no force of the actuator, or moves otherwise than the device;
+        or if the law has no H(z).
     """
     if not isinstance(recording, Log) and "position" not in (columns or {}) and holds_two_arms(recording):
         raise InputError(
@@ -78,7 +88,22 @@ def diagnose(
     vibration = find(taken.time, taken.position, taken.period)
     if vibration is None:
         return _still(taken)
-    return _named(taken, gather(taken, vibration, device), device)
+    found = _named(taken, gather(taken, vibration, device, law), device)
+    return found if law is None else replace(found, stated=_as_stated(found, device, law))
+
+
+def _as_stated(found: Diagnosis, device: Device | None, law: Environment) -> tuple[str, ...]:
+    """The law as stated beside the force, and what `check` says to the loop as stated."""
+    told = None if found.seen is None else found.seen.stated
+    said = [] if told is None else [*told.sentences()]
+    if device is None:
+        return tuple(said)
+    outcome = check(device, law).outcome
+    if outcome in PASSIVE:
+        said.append(f"as stated the loop is {outcome.upper()}: what feeds it is not in what was stated")
+    else:
+        said.append(f"as stated the loop is {outcome.upper()} by itself")
+    return tuple(said)
 
 
 def _still(taken: Recording) -> Diagnosis:
@@ -119,6 +144,8 @@ def _record(
         behind = [CAUSES[cause].record] if inside and unseen else []
         return behind if device is not None else [*behind, _DEVICE]
     wanted = [CAUSES["delay"].record] if len(seen.roles) < 2 else []
+    if seen.stated is None and not follows(seen):
+        wanted.append(_LAW)
     if device is None:
         wanted.append(_DEVICE)
     wanted += [CAUSES[name].record for name in list(likely)[:2]]

@@ -127,7 +127,7 @@ def _read(
             "say where the energy of a vibration comes from; say which with "
             f'columns={{"{COMMANDED}": …}} for what the law asks for, or '
             'columns={"actuator_force": …} for what the motor gives; there are '
-            f"{', '.join(names)}"
+            f"{', '.join(names)}{_two_arms(names)}"
         )
     logs = {
         role: log(**_arguments(role, column, columns, units, scale), **reading)
@@ -159,11 +159,26 @@ def _roles(names: list[str], source: str, wanted: Mapping[str, str | None]) -> d
         elif found.get(role) and not any(wanted.get(other) for other in (COMMANDED, "actuator_force")):
             raise InputError(
                 f"{source}: {', '.join(found[role])} may each be the {role.replace('_', ' ')}; "
-                f'say which with columns={{"{role}": "{found[role][0]}"}}'
+                f'say which with columns={{"{role}": "{found[role][0]}"}}{_two_arms(names)}'
             )
     if not roles and len(found.get("force", ())) == 1:
         roles["force"] = found["force"][0]
     return roles
+
+
+_SIDES = (("left", "right"), ("action", "observation"))
+"""Names of two arms that do not say which of them leads."""
+
+
+def _two_arms(names: list[str]) -> str:
+    """What to do where there may be two arms in a file."""
+    several = any(all(any(side in name.lower() for name in names) for side in pair) for pair in _SIDES)
+    return (
+        ". If these are two arms, one following the other, say whose each is: "
+        'columns={"leader_position": …}, columns={"follower_position": …}, and the forces alike'
+        if several
+        else ""
+    )
 
 
 def _arguments(

@@ -23,7 +23,14 @@ class Diagnosis(Answer[Change, Evidence, Recording]):
     """Why it shook: `cause` is one of the keys of `zwidth.diagnosis.CAUSES`, or None where the data do not
     say, and `confidence` how often such a finding is right, among faults simulated as the weights were learnt
     from.
+
+    Parameters
+    ----------
+    stated
+        How the law as it was stated fits the force, and what `check` says to that loop; nothing without one.
     """
+
+    stated: tuple[str, ...] = ()
 
     @property
     def claim(self) -> str:
@@ -55,7 +62,7 @@ class Diagnosis(Answer[Change, Evidence, Recording]):
         yield from rows_of_likely(self.likely)
 
     def _measured(self, seen: Evidence) -> dict[str, Any]:
-        document = {
+        document: dict[str, Any] = {
             f"swing_{'rad' if seen.rotary else 'm'}": seen.vibration.swing,
             "swing_counts": seen.counts if seen.resolution else None,
             "sample_period_s": seen.loop_period,
@@ -70,6 +77,14 @@ class Diagnosis(Answer[Change, Evidence, Recording]):
                 "window_samples": seen.law.window,
                 key_with_unit("compensation", "N*m" if seen.rotary else "N"): seen.law.compensation,
                 "unexplained": seen.law.unexplained,
+            }
+        if (told := seen.stated) is not None:
+            document["stated"] = {
+                "holds": told.holds,
+                "gain": told.gain,
+                "lag_s": told.lag,
+                "unexplained": told.unexplained,
+                "text": list(self.stated),
             }
         return document
 
