@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from zwidth.diagnosis.drive import STRAIGHT
 from zwidth.diagnosis.evidence import Evidence
 from zwidth.diagnosis.features import features, vector
 from zwidth.quantity.text import shown
@@ -265,12 +266,9 @@ _LARGER = 1.3
 
 def _climbs_straight(seen: Evidence) -> bool:
     """The motor's force alone, and it changes at one rate, or has the corners of a triangle."""
-    straight = (seen.ramps or 0.0) > _STRAIGHT or seen.force_bend.real > _POINTED
+    straight = (seen.ramps or 0.0) > STRAIGHT or seen.force_bend.real > _POINTED
     return seen.recorded == "motor" and straight
 
-
-_STRAIGHT = 0.42
-"""Share of the time in which it changes as fast as it ever does, ± 15 %; a sine does so for 0.37."""
 
 _POINTED = 0.02
 """Third harmonic of a force against its first: 1/9 of a triangle, below 0 of a force that is cut off."""

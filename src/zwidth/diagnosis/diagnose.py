@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.device import Device
 from zwidth.diagnosis.causes import CAUSES, follows, is_named, likelihoods
-from zwidth.diagnosis.change import change_for
+from zwidth.diagnosis.change import Change, change_for
+from zwidth.diagnosis.doubts import doubt
 from zwidth.diagnosis.evidence import Evidence, gather
 from zwidth.diagnosis.lowered import PASSIVE
 from zwidth.diagnosis.pairs.recording import holds_two_arms
@@ -116,7 +117,8 @@ def _still(taken: Recording) -> Diagnosis:
 def _named(taken: Recording, seen: Evidence, device: Device | None) -> Diagnosis:
     likely = dict(sorted(likelihoods(seen).items(), key=lambda item: -item[1]))
     first, p = next(iter(likely.items()))
-    cause = first if is_named(first, p, seen) else None
+    against = doubt(first, seen)
+    cause = first if against is None and is_named(first, p, seen) else None
     change = change_for(cause, seen, device) if cause is not None and device is not None else None
     return Diagnosis(
         cause=cause,
@@ -127,7 +129,7 @@ def _named(taken: Recording, seen: Evidence, device: Device | None) -> Diagnosis
         energy_per_cycle=seen.energy,
         evidence=tuple(CAUSES[cause].evidence(seen)) if cause is not None else (),
         change=change,
-        record=() if change is not None else tuple(_record(cause, likely, seen, device)),
+        record=_record(cause, likely, seen, device, change, against),
         seen=seen,
         findings=taken.findings,
         recording=taken,
@@ -135,9 +137,23 @@ def _named(taken: Recording, seen: Evidence, device: Device | None) -> Diagnosis
 
 
 def _record(
+    cause: str | None,
+    likely: Mapping[str, float],
+    seen: Evidence,
+    device: Device | None,
+    change: Change | None,
+    against: str | None,
+) -> tuple[str, ...]:
+    """What would say more: what speaks against any cause, or for the likeliest what would show it."""
+    if against is not None:
+        return (against,)
+    return () if change is not None else tuple(_wanted(cause, likely, seen, device))
+
+
+def _wanted(
     cause: str | None, likely: Mapping[str, float], seen: Evidence, device: Device | None
 ) -> list[str]:
-    """What would say more: for the two likeliest, and what every diagnosis is better with."""
+    """For the two likeliest, and what every diagnosis is better with."""
     if cause is not None:
         inside = cause in ("delay", "drive damping", "actuator limit")
         unseen = seen.recorded == "command" or (seen.recorded == "motor" and cause == "drive damping")

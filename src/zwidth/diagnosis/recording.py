@@ -209,6 +209,11 @@ def _recording(log: Log, commanded: Log | None, applied: Log | None, supposed: t
             'of a vibration comes from; read it with columns={"actuator_force": …}'
         )
     longest = _longest(log)
+    asked = None if commanded is None else _longest(commanded).actuator_force
+    given = None if applied is None else _longest(applied).actuator_force
+    if asked is not None and given is not None and _against(asked, given):
+        given = -given
+        supposed = (*supposed, _AGAINST)
     return Recording(
         source=log.source,
         motion=log.motion,
@@ -216,10 +221,21 @@ def _recording(log: Log, commanded: Log | None, applied: Log | None, supposed: t
         resolution=log.resolution,
         time=longest.time,
         position=longest.position,
-        commanded=None if commanded is None else _longest(commanded).actuator_force,
-        applied=None if applied is None else _longest(applied).actuator_force,
+        commanded=asked,
+        applied=given,
         findings=(*supposed, *(finding.text for finding in log.findings if finding.kind != "no hand force")),
     )
+
+
+_AGAINST = "the motor's force is the command with the other sign: both are taken to count alike"
+_ALIKE = 0.1
+"""Share of its variance by which a force may differ from the other's negative."""
+
+
+def _against(asked: Array, given: Array) -> bool:
+    """Whether one of two forces counts the other way."""
+    spread = float(np.var(given))
+    return bool(spread and np.var(given + asked) < _ALIKE * spread)
 
 
 def _longest(log: Log) -> Block:

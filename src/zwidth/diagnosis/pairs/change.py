@@ -21,6 +21,7 @@ _PARAMETERS = {
     "damping": ("damping", "stiffness"),
     "local damping": ("local_damping", "stiffness"),
     "friction compensation": ("compensation",),
+    "actuator limit": ("stiffness",),
 }
 _NAMES = {
     "stiffness": ("stiffness of the coupling", "stiffness"),
@@ -53,9 +54,10 @@ def change_for(cause: str, seen: PairEvidence, pair: Pair) -> PairChange | None:
         current = gains[key]
         if current <= 0:
             continue
-        to = _limit(pair, gains, seen) if key == "stiffness" else None
+        top = min(current, _followed(seen)) if cause == "actuator limit" else current
+        to = _limit(pair, gains, seen) if key == "stiffness" and top == current else None
         if to is None:
-            to = largest(lambda value, key=key: _verdict(pair, gains | {key: value}, seen), current)  # type: ignore[misc]
+            to = largest(lambda value, key=key: _verdict(pair, gains | {key: value}, seen), top)  # type: ignore[misc]
         if to is None:
             continue
         changed = _built(pair, gains | {key: to}, seen)
@@ -71,6 +73,12 @@ def change_for(cause: str, seen: PairEvidence, pair: Pair) -> PairChange | None:
             verdict=check(changed),
         )
     return None
+
+
+def _followed(seen: PairEvidence) -> float:
+    """The stiffness whose force the motors can follow in this motion, the arms against each other."""
+    apart = seen.vibration.angular * sum(seen.amplitudes)
+    return min(rate for rate in seen.rates if rate is not None) / apart
 
 
 def _limit(pair: Pair, gains: dict[str, float], seen: PairEvidence) -> float | None:
@@ -107,8 +115,8 @@ def _built(pair: Pair, gains: dict[str, float], seen: PairEvidence) -> Pair:
     assert leader is not None
     assert follower is not None
     devices = [
-        device if late is None else device.replace(delay=text_of(late))
-        for device, late in zip((pair.leader, pair.follower), seen.delays, strict=True)
+        device if late is None or rate is not None else device.replace(delay=text_of(late))
+        for device, late, rate in zip((pair.leader, pair.follower), seen.delays, seen.rates, strict=True)
     ]
     ratio = follower.stiffness / leader.stiffness
     helped = gains["compensation"]
