@@ -2,7 +2,7 @@
 
     python benchmarks/diagnosis.py FOLDER [--faults 500] [--seed 2027]
 
-Faults are drawn by `shaken.py`, which knows nothing of the diagnosis, with a seed that was not used to
+Faults are drawn by `shaken_draws.py`, which knows nothing of the diagnosis, with a seed that was not used to
 learn its weights.  FOLDER keeps the logs, so that a second call goes on where the first one was stopped.
 Every file is read as `zwidth diagnose` reads it.  A change is put into the thing itself, not into what was
 identified of it.
@@ -18,7 +18,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from shaken import CAUSES, Logged, Thing, draw, quiet, run, write_log
+from shaken import CAUSES, Thing, quiet, run
+from shaken_draws import draw
+from shaken_logs import Logged, write_log
 
 import zwidth as zw
 

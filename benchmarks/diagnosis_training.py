@@ -20,7 +20,8 @@ from pathlib import Path
 import numpy as np
 from diagnosis import kept
 from scipy.optimize import minimize
-from shaken import CAUSES, Logged
+from shaken import CAUSES
+from shaken_logs import Logged
 
 from zwidth.diagnosis import evidence, features, recording, vibration
 

@@ -19,7 +19,15 @@ import zwidth as zw
 
 Array = NDArray[np.float64]
 
-CAUSES = ("link delay", "sampling", "delay", "damping", "local damping", "friction compensation")
+CAUSES = (
+    "link delay",
+    "sampling",
+    "delay",
+    "damping",
+    "local damping",
+    "friction compensation",
+    "actuator limit",
+)
 
 FINE = 20
 """Steps of the integrator in a sample period."""
@@ -42,6 +50,7 @@ class Arms:
     delay: int = 0
     link: int = 0
     limit: float = 0.0
+    slew: float = 0.0
     hand_stiffness: float = 0.0
     hand_damping: float = 0.0
     kick: float = 0.0
@@ -70,7 +79,7 @@ def run(arms: Arms) -> Moved:
         [
             *arms.mass, *arms.viscous, *arms.coulomb, arms.resolution, arms.period, arms.stiffness,
             arms.damping, arms.local_damping, arms.compensation, arms.limit, arms.hand_stiffness,
-            arms.hand_damping, arms.kick,
+            arms.hand_damping, arms.kick, arms.slew,
         ]
     )  # fmt: skip
     return Moved(*_integrate(numbers, arms.delay, arms.link, steps))
@@ -78,10 +87,10 @@ def run(arms: Arms) -> Moved:
 
 @nb.njit(cache=True)
 def _integrate(p: Array, late: int, link: int, steps: int) -> Array:
-    m0, m1, b0, b1, c0, c1, res, T, K, B, D, F, limit, kh, ch, kick = p
+    m0, m1, b0, b1, c0, c1, res, T, K, B, D, F, limit, kh, ch, kick, slew = p
     mass, viscous, coulomb = (m0, m1), (b0, b1), (c0, c1)
     out = np.zeros((4, 2, steps))
-    x, v, wished = np.zeros(2), np.zeros(2), np.zeros(2)
+    x, v, wished, given = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
     v[0] = kick
     dt = T / FINE
     for k in range(steps):
@@ -96,11 +105,15 @@ def _integrate(p: Array, late: int, link: int, steps: int) -> Array:
             out[3, a, k] = v[a]
         for a in range(2):
             wished[a] = min(max(out[1, a, max(k - late, 0)], -limit), limit)
-            out[2, a, k] = wished[a]
+            if slew == 0.0:
+                given[a] = wished[a]
+            out[2, a, k] = given[a]
         for _ in range(FINE):
             for a in range(2):
                 hand = -kh * x[a] - ch * v[a] if a == 0 else 0.0
-                free = v[a] + dt * (hand - wished[a] - viscous[a] * v[a]) / mass[a]
+                if slew > 0.0:
+                    given[a] += min(max(wished[a] - given[a], -slew * dt), slew * dt)
+                free = v[a] + dt * (hand - given[a] - viscous[a] * v[a]) / mass[a]
                 drop = dt * coulomb[a] / mass[a]
                 v[a] = 0.0 if abs(free) <= drop else free - drop * np.sign(free)
                 x[a] += dt * v[a]
@@ -196,6 +209,11 @@ def _drawn(rng: np.random.Generator, cause: str) -> Arms:
     elif cause == "local damping":
         base["local_damping"] = -calm * _log(rng, 1.1, 3.0)
         changes = {"local_damping": 0.0}
+    elif cause == "actuator limit":
+        base["kick"] *= rng.uniform(1.0, 3.0)
+        base["slew"] = stiffness * swing * natural * _log(rng, 0.1, 1.0)
+        base["limit"] = stiffness * swing * _log(rng, 1.5, 10.0)
+        changes = {"slew": 0.0}
     else:
         friction *= 4
         base["compensation"] = friction * _log(rng, 1.2, 4.0)

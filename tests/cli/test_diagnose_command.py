@@ -46,6 +46,16 @@ def test_without_a_device_it_asks_for_one(there: Path, capsys) -> None:
     assert "$ zwidth check" not in said
 
 
+def test_the_law_as_it_was_programmed(there: Path, capsys) -> None:
+    """It is held beside the file, and the line to type has its numbers."""
+    assert main(["diagnose", "shaking.csv", "wheel.toml", "--stiffness", "20 N*m/rad"]) == 0
+    said = capsys.readouterr().out
+    assert "the command is that of the law as stated" in said
+    assert "$ zwidth check wheel.toml --stiffness '20 N*m/rad'" in said
+    assert main(["diagnose", "shaking.csv", "wheel.toml", "--stiffness", "40 N*m/rad"]) == 0
+    assert "0.5 times that of the law" in " ".join(capsys.readouterr().out.split())
+
+
 def test_json_says_the_same(there: Path, capsys) -> None:
     """The cause, the change and the command, for a program."""
     assert main(["diagnose", "shaking.csv", "wheel.toml", "--json"]) == 0

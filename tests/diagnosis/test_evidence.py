@@ -7,8 +7,10 @@ import pytest
 
 from zwidth.device import Device
 from zwidth.diagnosis import drive, law, vibration
-from zwidth.diagnosis.evidence import gather
-from zwidth.diagnosis.recording import Recording
+from zwidth.diagnosis.doubts import doubt
+from zwidth.diagnosis.evidence import Evidence, gather
+from zwidth.diagnosis.recording import Recording, read_of_table
+from zwidth.identification.logs.table import Table, in_pieces
 
 PERIOD = 1 / 800
 FREQUENCY = 23.7
@@ -222,3 +224,44 @@ def test_corners_of_a_force() -> None:
     for wave, bend in ((np.arcsin(np.sin(phase)), 1 / 9), (np.sign(np.sin(phase)), -1 / 3)):
         seen = gather(recorded(position, applied=wave), whole, None)
         assert seen.force_bend.real == pytest.approx(bend * held, rel=0.1)
+
+
+def seen_in(position: np.ndarray, **forces: np.ndarray) -> Evidence:
+    """What is seen of a device of 80 g in arrays."""
+    record = recorded(position, **forces)
+    found = vibration.find(record.time, position, PERIOD)
+    assert found is not None
+    device = Device(mass=0.08, damping=0.1, coulomb_friction=0, sample_period=PERIOD)
+    return gather(record, found, device)
+
+
+def test_what_speaks_against_any_cause() -> None:
+    """Dying out, noise, a motor's force in another unit, millimetres read as metres, the hum of the mains."""
+    t = np.arange(1600) * PERIOD
+    x = 0.004 * np.sin(2 * np.pi * FREQUENCY * t)
+    force = 0.08 * (2 * np.pi * FREQUENCY) ** 2 * x
+    assert doubt("delay", seen_in(x, commanded=force, applied=held(force, 2))) is None
+    dying = np.exp(-2 * t)
+    assert "dies out" in str(doubt("delay", seen_in(dying * x, commanded=dying * force)))
+    noise = RNG.normal(size=x.size) * 1e-3
+    assert "noise" in str(doubt("structural resonance", seen_in(noise, commanded=1000 * noise)))
+    assert "3 times" in str(doubt("delay", seen_in(x, commanded=force, applied=3 * held(force, 2))))
+    assert "units" in str(doubt("drive damping", seen_in(1000 * x, commanded=force)))
+    hum = 1e-4 * np.sin(2 * np.pi * 50 * t)
+    assert "mains" in str(doubt("structural resonance", seen_in(hum, commanded=300 * hum)))
+
+
+def test_a_motors_force_of_the_other_sign_is_turned_and_said() -> None:
+    """The same rows, the motor's force counted the other way: read as the command counts."""
+    t = np.arange(600) * PERIOD
+    columns = {"time_s": t, "position_m": np.round(1e4 * np.sin(150 * t)) * 1e-7}
+    columns["commanded_force_N"] = 200 * columns["position_m"]
+    columns["motor_force_N"] = -columns["commanded_force_N"]
+    table = Table(
+        source="log.csv",
+        units=dict.fromkeys(columns),
+        read=lambda names: in_pieces("log.csv", columns, names),
+    )
+    taken = read_of_table(table, {}, {}, {}, {})
+    assert taken.applied == pytest.approx(columns["commanded_force_N"])
+    assert any("other sign" in finding for finding in taken.findings)

@@ -14,6 +14,7 @@ from two_arms import PERIOD, arms, moved, written
 import zwidth as zw
 from zwidth.diagnosis import PAIR_CAUSES
 from zwidth.diagnosis.pairs import law
+from zwidth.diagnosis.pairs.recording import holds_two_arms, read_pair
 from zwidth.specification.pairs import load_pair
 from zwidth.specification.write_pair import written_pair
 
@@ -224,3 +225,44 @@ def test_a_pair_is_written_as_it_is_read(tmp_path: Path) -> None:
     assert (again.stiffness, again.follower_stiffness, again.compensation) == (
         pair.stiffness, pair.follower_stiffness, pair.compensation,
     )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("time_s", "q_leader [rad]", "tau_leader [Nm]", "q_follower [rad]", "tau_follower [Nm]"),
+        ("t [s]", "pos_master_rad", "torque_cmd_master_Nm", "pos_slave_rad", "torque_cmd_slave_Nm"),
+        ("Time (s)", "Leader angle (rad)", "Leader torque (Nm)", "follower/q_rad", "follower/torque_Nm"),
+    ],
+)
+def test_columns_of_an_arm_by_usual_names(
+    shaken: dict[str, np.ndarray], names: tuple[str, ...], tmp_path: Path
+) -> None:
+    """The arm stands before the name or behind it, the unit after both."""
+    columns = {"time_s": shaken["time_s"]}
+    columns |= {k: values for k, values in shaken.items() if k != "time_s" and "motor" not in k}
+    path = tmp_path / "arms.csv"
+    table = np.column_stack([*columns.values()])
+    np.savetxt(path, table, fmt="%.7g", delimiter=",", header=",".join(names), comments="")
+    assert holds_two_arms(path)
+    taken = read_pair(path)
+    for arm, recording in zip(("leader", "follower"), taken.arms, strict=True):
+        assert recording.motion == "rotary"
+        assert recording.position == pytest.approx(shaken[f"{arm}_position_rad"])
+        assert recording.commanded == pytest.approx(shaken[f"{arm}_commanded_torque_N_m"], abs=1e-5)
+
+
+def test_what_is_missing_is_asked_for_of_its_arm(shaken: dict[str, np.ndarray], tmp_path: Path) -> None:
+    """The follower's force by its own key; arms on the left and right, of which one must lead; a folder."""
+    bare = {name: values for name, values in shaken.items() if "follower" not in name or "position" in name}
+    with pytest.raises(zw.InputError, match=r'the follower: .*"follower_commanded_force"'):
+        zw.diagnose_pair(written(tmp_path / "bare.csv", bare))
+    sides = {k.replace("leader", "left").replace("follower", "right"): v for k, v in shaken.items()}
+    with pytest.raises(zw.InputError, match="If these are two arms"):
+        zw.diagnose(written(tmp_path / "sides.csv", sides))
+    (tmp_path / "set" / "meta").mkdir(parents=True)
+    (tmp_path / "set" / "meta" / "info.json").write_text("{}", encoding="utf-8")
+    (tmp_path / "set" / "data" / "chunk-000").mkdir(parents=True)
+    (tmp_path / "set" / "data" / "chunk-000" / "episode_000000.parquet").write_bytes(b"PAR1")
+    with pytest.raises(zw.InputError, match=r"LeRobot dataset.*episode_000000\.parquet"):
+        zw.diagnose(tmp_path / "set")

@@ -8,7 +8,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.column_options import SHEET, sheet_option
-from zwidth.cli.options import Once, add_all, add_in_full, add_output, device_parameters, given
+from zwidth.cli.options import (
+    Once,
+    add_in_full,
+    add_law_option,
+    add_output,
+    add_parameters,
+    device_parameters,
+    given,
+    overrides,
+)
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
 from zwidth.specification.table import quoted
@@ -16,6 +25,7 @@ from zwidth.specification.table import quoted
 if TYPE_CHECKING:
     from zwidth.device import Device
     from zwidth.diagnosis import Diagnosis, PairDiagnosis
+    from zwidth.environment import Environment
     from zwidth.pairs import Pair
 
 _READING = (
@@ -25,6 +35,7 @@ _READING = (
 )
 """Options that may come several times: name, argument of `diagnose`, what stands for the value, help."""
 
+_DEVICE = [p.key for p in device_parameters()]
 _OF_AN_ARM = ("position", "commanded_force", "actuator_force")
 _QUANTITIES = (
     "time",
@@ -36,15 +47,16 @@ _QUANTITIES = (
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth diagnose`."""
     parser.usage = (
-        "%(prog)s LOG [SOURCE ...] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] "
-        "[--sheet NAME] [--PARAMETER VALUE ...] [--all] [--json] [--plot FILE] [-o FILE] [--force]"
+        "%(prog)s LOG [SOURCE ...] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] [--sheet NAME] "
+        "[--law NAMES] [--PARAMETER VALUE ...] [--all] [--json] [--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument("log", metavar="LOG", help="a recording of it shaking, in a file of any format")
     parser.add_argument(
         "sources",
         metavar="SOURCE",
         nargs="*",
-        help="device of the catalogue, or TOML file with a [device] table; of two arms as for zwidth pair",
+        help="device of the catalogue, or TOML file with a [device] table, and an [environment] if the law "
+        "is known; of two arms as for zwidth pair",
     )
     reading = parser.add_argument_group("log")
     for option, name, metavar, meaning in _READING:
@@ -62,9 +74,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "the loop with the number changed as TOML, for zwidth check (zwidth pair)",
     )
     add_in_full(output)
-    add_all(
-        parser.add_argument_group("device", "override what SOURCE says, or replace it"), device_parameters()
-    )
+    add_law_option(parser)
+    add_parameters(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -114,17 +125,17 @@ def _diagnosed(arguments: argparse.Namespace) -> Diagnosis | PairDiagnosis:
     try:
         if holds_two_arms(Path(arguments.log), reading.get("columns"), arguments.sheet):
             return diagnose_pair(Path(arguments.log), _pair_of_arms(arguments), **reading)
-        device = _device(arguments)
+        device, law = _loop(arguments)
         if device is not None and device.resolution != 0:
             reading["resolution"] = device.resolution
-        return diagnose(Path(arguments.log), device, **reading)
+        return diagnose(Path(arguments.log), device, law=law, **reading)
     except InputError as error:
         raise InputError(_as_typed(str(error))) from None
 
 
 def _pair_of_arms(arguments: argparse.Namespace) -> Pair | None:
     """Both arms; whatever spring joins them is not taken from there."""
-    if words := given(arguments, [p.key for p in device_parameters()]):
+    if words := overrides(arguments):
         raise InputError(
             f"--{next(iter(words)).replace('_', '-')}: {Path(arguments.log).name} holds two arms; give their "
             "numbers as SOURCE, one file for both or leader and follower"
@@ -146,14 +157,19 @@ def _as_typed(text: str) -> str:
     return _PYTHON.sub(lambda found: f"{_OPTION[found[1]]} {found[2]}={found[3] or found[4]}", text)
 
 
-def _device(arguments: argparse.Namespace) -> Device | None:
-    keys = [p.key for p in device_parameters()]
-    words = given(arguments, keys)
+def _loop(arguments: argparse.Namespace) -> tuple[Device | None, Environment | None]:
+    """The device, and the law that was programmed, as far as they are known."""
+    words = overrides(arguments)
     if not words and not arguments.sources:
-        return None
-    from zwidth.specification.read import load_device
+        return None, None
+    from zwidth.cli.decision import asked
+    from zwidth.specification.read import WITH_LAWS, read_tables, specified_device
 
-    return load_device(arguments.sources, words)
+    tables = read_tables(arguments.sources, WITH_LAWS)
+    if "environment" in tables or arguments.law or len(given(arguments, _DEVICE)) < len(words):
+        loop = asked(arguments).loop
+        return loop.device, loop.environment
+    return specified_device(tables, words), None
 
 
 def _pair(option: str, typed: str) -> tuple[str, str]:

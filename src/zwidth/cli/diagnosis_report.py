@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rich.padding import Padding
 from rich.text import Text
 
-from zwidth.cli.options import device_parameters, given
+from zwidth.cli.options import overrides
 from zwidth.cli.page import below, grid, headline, items, more_with_all, page, section, small_print
 from zwidth.passivity.outcome import TOLD
 from zwidth.quantity.glossary import GLOSSARY
@@ -19,6 +19,7 @@ from zwidth.quantity.text import shown
 if TYPE_CHECKING:
     from zwidth.diagnosis import Diagnosis, PairDiagnosis
     from zwidth.diagnosis.change import Change
+    from zwidth.diagnosis.law import Law
     from zwidth.diagnosis.pairs.change import PairChange
 
 _OPTIONS = {"stiffness": "--stiffness", "damping": "--virtual-damping", "delay": "--delay"}
@@ -30,6 +31,7 @@ def print_diagnosis(found: Diagnosis | PairDiagnosis, arguments: argparse.Namesp
     with page() as out:
         out.print(_headline(found))
         section(out, "what speaks for it", items(found.evidence))
+        section(out, "the law as stated", items(getattr(found, "stated", ())))
         if found.change is not None:
             section(out, "what to change", _change(found.change, found, arguments))
         elif found.cause is not None and not found.record:
@@ -83,27 +85,45 @@ def command(found: Diagnosis | PairDiagnosis, arguments: argparse.Namespace) -> 
         reading = [word for pair in _read_with(arguments) for word in pair]
         typed = ["zwidth", "diagnose", arguments.log, *arguments.sources, *reading, "-o", "mended.toml"]
         return f"{shlex.join(typed)} && zwidth pair mended.toml"
-    if change.parameter not in _OPTIONS:
-        return f"zwidth diagnose {shlex.quote(arguments.log)} … -o mended.toml && zwidth check mended.toml"
     assert isinstance(found, Diagnosis)
     assert found.seen is not None
+    other = found.seen.stated is not None and not found.seen.stated.holds
+    if change.parameter not in _OPTIONS or arguments.law or other:
+        return f"zwidth diagnose {shlex.quote(arguments.log)} … -o mended.toml && zwidth check mended.toml"
     assert found.seen.law is not None
     words = ["zwidth", "check", *arguments.sources]
-    for key, value in given(arguments, [p.key for p in device_parameters()]).items():
-        if key != "delay":
+    of_law = {"stiffness": "stiffness", "damping": "virtual_damping"}.get(change.parameter)
+    for key, value in overrides(arguments).items():
+        if key not in ("delay", of_law):
             words += [f"--{key.replace('_', '-')}", value]
-    law = found.seen.law
+    words += (
+        _law_as_stated(change) if found.seen.stated is not None else _law_as_found(found.seen.law, change)
+    )
+    if float(change.device.exact("delay")):
+        words += ["--delay", f"{1000 * float(change.device.exact('delay')):.6g} ms"]
+    return shlex.join(words)
+
+
+def _law_as_stated(change: Change) -> list[str]:
+    """What differs from the law that was given."""
+    if change.parameter not in ("stiffness", "damping"):
+        return []
+    return [
+        _OPTIONS[change.parameter],
+        f"{change.to:.6g} {GLOSSARY[change.parameter].unit_for(change.device.motion)}",
+    ]
+
+
+def _law_as_found(law: Law, change: Change) -> list[str]:
     stiffness = change.to if change.parameter == "stiffness" else law.stiffness
     damping = change.to if change.parameter == "damping" else law.damping
     motion = change.device.motion
-    words += ["--stiffness", f"{stiffness:.6g} {GLOSSARY['stiffness'].unit_for(motion)}"]
+    words = ["--stiffness", f"{stiffness:.6g} {GLOSSARY['stiffness'].unit_for(motion)}"]
     if damping:
         words += ["--virtual-damping", f"{damping:.6g} {GLOSSARY['damping'].unit_for(motion)}"]
         if law.window > 1:
             words += ["--velocity-filter", f"window {law.window}"]
-    if float(change.device.exact("delay")):
-        words += ["--delay", f"{1000 * float(change.device.exact('delay')):.6g} ms"]
-    return shlex.join(words)
+    return words
 
 
 def _read_with(arguments: argparse.Namespace) -> Iterator[tuple[str, str]]:

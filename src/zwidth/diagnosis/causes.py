@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from zwidth.diagnosis.drive import STRAIGHT
 from zwidth.diagnosis.evidence import Evidence
 from zwidth.diagnosis.features import features, vector
 from zwidth.quantity.text import shown
@@ -234,6 +235,15 @@ def _structure(seen: Evidence) -> Iterator[str]:
         yield f"where the sensor sits the motor takes {taken} in a cycle, and it shakes all the same"
 
 
+def follows(seen: Evidence) -> bool:
+    """The force is that of a law; one that is only ever off or at its limit is that of many."""
+    return seen.law is not None and seen.law.unexplained < _MOST_UNEXPLAINED
+
+
+_MOST_UNEXPLAINED = 0.1
+"""Share of the force's variance: of a hundred simulated faults one leaves more to its own law."""
+
+
 def _missing(seen: Evidence) -> bool:
     """Less comes in by the forces in the file than the device's friction takes."""
     return seen.lost is not None and seen.energy < seen.lost
@@ -256,12 +266,9 @@ _LARGER = 1.3
 
 def _climbs_straight(seen: Evidence) -> bool:
     """The motor's force alone, and it changes at one rate, or has the corners of a triangle."""
-    straight = (seen.ramps or 0.0) > _STRAIGHT or seen.force_bend.real > _POINTED
+    straight = (seen.ramps or 0.0) > STRAIGHT or seen.force_bend.real > _POINTED
     return seen.recorded == "motor" and straight
 
-
-_STRAIGHT = 0.42
-"""Share of the time in which it changes as fast as it ever does, ± 15 %; a sine does so for 0.37."""
 
 _POINTED = 0.02
 """Third harmonic of a force against its first: 1/9 of a triangle, below 0 of a force that is cut off."""
@@ -280,7 +287,7 @@ CAUSES: Mapping[str, Cause] = {
         Cause(
             "sampling",
             "the spring is held from sample to sample and so pushes out harder than it was pressed in",
-            lambda s: s.supplied["sampling"] > 0,
+            lambda s: s.supplied["sampling"] > 0 and follows(s),
             _sampling,
             _DEVICE,
         ),
@@ -315,7 +322,7 @@ CAUSES: Mapping[str, Cause] = {
         Cause(
             "friction compensation",
             "more friction is compensated than there is: the compensation drives the motion",
-            lambda s: s.law is not None and s.law.compensation > 0,
+            lambda s: s.law is not None and s.law.compensation > 0 and follows(s),
             _compensation,
             _EVERY,
         ),

@@ -8,13 +8,12 @@ the device.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass
-from math import floor, log10
-from typing import Protocol
 
 from zwidth.device import Device
 from zwidth.diagnosis.evidence import Evidence
+from zwidth.diagnosis.lowered import Lowered, largest, lowered_to, rounded, text_of
 from zwidth.environment import BackwardDifference, Wall, Window
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
@@ -22,66 +21,22 @@ from zwidth.passivity.check import check, check_by_closed_forms
 from zwidth.passivity.covering import covering
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import ends
-from zwidth.quantity.text import shown
 from zwidth.rendering.rendered import laws_of
-
-PASSIVE = ("passive", "passive in contact")
-"""Outcomes that a change may have."""
-
-_HALVINGS = 14
-_MARGIN = 0.8
-"""Of the largest value that is passive: at that itself a motion that is there need not die out."""
-
-_DIGITS = 3
 
 
 @dataclass(frozen=True, kw_only=True)
-class Change:
+class Change(Lowered):
     """One number of the loop, from where it is to where it may be.
 
     Parameters
     ----------
-    parameter
-        Its key, such as "stiffness".
-    current, to
-        In `unit`.
-    unit
-        SI.
-    text
-        In words.
     device, environment
         The loop with that number changed.
-    verdict
-        What `check` says to it.
     """
 
-    parameter: str
-    current: float
-    to: float
-    unit: str
-    text: str
     device: Device
     environment: Environment
     verdict: Verdict
-
-    def to_dict(self) -> dict[str, object]:
-        """As plain data."""
-        return {
-            "parameter": self.parameter,
-            "from": self.current,
-            "to": self.to,
-            "unit": self.unit,
-            "text": self.text,
-            "outcome": self.verdict.outcome,
-        }
-
-
-class Judged(Protocol):
-    """A verdict of any kind of loop."""
-
-    @property
-    def outcome(self) -> str:
-        """As of `check`."""
 
 
 @dataclass(frozen=True)
@@ -96,30 +51,38 @@ class _Loop:
     compensation_speed: float
     delay: float
     drive_damping: float
+    stated: Environment | None = None
 
     def built(self, **changes: float) -> tuple[Device, Environment]:
         """With some numbers changed."""
         at = {**self.__dict__, **changes}
-        device: Device = self.device.replace(delay=_text(at["delay"]))
+        device: Device = self.device.replace(delay=text_of(at["delay"]))
         if at["drive_damping"]:
             left = float(ends(device.damping)[0]) - at["drive_damping"]
             if left < 0:
                 raise InputError("the drive's damper may drive more than the device brakes")
-            device = device.replace(damping=_text(left))
-        wall: Environment = Wall(_text(at["stiffness"]))
-        if at["damping"]:
-            estimate = Window(self.window) if self.window > 1 else BackwardDifference()
-            wall = Wall(_text(at["stiffness"]), _text(at["damping"]), velocity_filter=estimate)
+            device = device.replace(damping=text_of(left))
+        wall = self._law(at)
         if at["compensation"]:
             from zwidth.rendering import FrictionCompensation, render
 
             wall = render(
                 wall,
                 FrictionCompensation(
-                    coulomb=_text(at["compensation"]), speed=_text(at["compensation_speed"])
+                    coulomb=text_of(at["compensation"]), speed=text_of(at["compensation_speed"])
                 ),
             )
         return device, wall
+
+    def _law(self, at: Mapping[str, float]) -> Environment:
+        """The law as stated, else as found, with the stiffness and the damping of `at`."""
+        if self.stated is not None:
+            names = [name for name in ("stiffness", "damping") if at[name] != getattr(self, name)]
+            return self.stated.replace(**{name: text_of(at[name]) for name in names})
+        if not at["damping"]:
+            return Wall(text_of(at["stiffness"]))
+        estimate = Window(self.window) if self.window > 1 else BackwardDifference()
+        return Wall(text_of(at["stiffness"]), text_of(at["damping"]), velocity_filter=estimate)
 
     def decided(self, **changes: float) -> Verdict | None:
         """The verdict by closed forms; None where there is none."""
@@ -157,7 +120,7 @@ def change_for(cause: str, seen: Evidence, device: Device) -> Change | None:
             current=current,
             to=to,
             unit=said,
-            text=f"lower the {name} from {shown(current, said, 3)} to {shown(to, said, 3)}",
+            text=lowered_to(name, current, to, said),
             device=built[0],
             environment=built[1],
             verdict=verdict,
@@ -189,53 +152,16 @@ _NAMES = {
 def _loop(seen: Evidence, device: Device, cause: str) -> _Loop:
     assert seen.law is not None
     law = seen.law
+    told = seen.stated if seen.stated is not None and seen.stated.holds else None
     helped = law.compensation if seen.supplied["friction compensation"] > 0.02 * abs(seen.total) else 0.0
     return _Loop(
         device=device,
-        stiffness=law.stiffness,
-        damping=law.damping,
+        stated=None if told is None else told.environment,
+        stiffness=law.stiffness if told is None else told.stiffness,
+        damping=law.damping if told is None else told.damping,
         window=law.window,
-        compensation=_rounded(helped),
-        compensation_speed=_rounded(law.compensation_speed),
-        delay=_rounded(seen.delay) if cause == "delay" and seen.sees_delay else seen.known.delay,
+        compensation=rounded(helped),
+        compensation_speed=rounded(law.compensation_speed),
+        delay=rounded(seen.delay) if cause == "delay" and seen.sees_delay else seen.known.delay,
         drive_damping=seen.drive.damping if cause == "drive damping" and seen.drive is not None else 0.0,
     )
-
-
-def largest(decided: Callable[[float], Judged | None], current: float) -> float | None:
-    """The largest value up to the current one that is passive, of a few digits; None where only 0 is, or
-    none.
-    """
-
-    def passive(value: float) -> bool:
-        verdict = decided(value)
-        return verdict is not None and verdict.outcome in PASSIVE
-
-    low, high = 0.0, current
-    if not passive(0.0) and not passive(1e-3 * current):
-        return None
-    if passive(current):
-        low = current
-    for _ in range(_HALVINGS if low < high else 0):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if passive(middle) else (low, middle)
-    to = with_margin(low)
-    return to if to > 1e-3 * current and passive(to) else None
-
-
-def with_margin(limit: float) -> float:
-    """Four fifths of a limit, of a few digits."""
-    return _rounded(_MARGIN * limit)
-
-
-def _rounded(value: float) -> float:
-    """Down to three digits."""
-    if value <= 0:
-        return 0.0
-    step = 10.0 ** (floor(log10(value)) - _DIGITS + 1)
-    return float(f"{floor(value / step * (1 + 1e-12)) * step:.{_DIGITS}g}")
-
-
-def _text(value: float) -> str:
-    """The decimal that is meant."""
-    return f"{value:.6g}"

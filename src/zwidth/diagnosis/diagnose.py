@@ -8,24 +8,30 @@ Nothing is named that the file cannot show; then it says what to record.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from zwidth.device import Device
-from zwidth.diagnosis.causes import CAUSES, is_named, likelihoods
-from zwidth.diagnosis.change import change_for
+from zwidth.diagnosis.causes import CAUSES, follows, is_named, likelihoods
+from zwidth.diagnosis.change import Change, change_for
+from zwidth.diagnosis.doubts import doubt
 from zwidth.diagnosis.evidence import Evidence, gather
+from zwidth.diagnosis.lowered import PASSIVE
 from zwidth.diagnosis.pairs.recording import holds_two_arms
 from zwidth.diagnosis.recording import Recording, read
 from zwidth.diagnosis.result import Diagnosis
 from zwidth.diagnosis.vibration import find
+from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.identification.logs import Log
+from zwidth.passivity.check import check
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _REGULAR = "a stretch of ten cycles or more in which it shakes, the hand as it was"
+_LAW = "the law that was programmed beside the file (stiffness, virtual damping): its force does not show it"
 _DEVICE = "the device's numbers (mass, damping, Coulomb friction, rate) beside the file: DEVICE"
 
 
@@ -33,6 +39,7 @@ def diagnose(
     recording: Log | str | PathLike[str] | xr.Dataset,
     device: Device | None = None,
     *,
+    law: Environment | None = None,
     columns: Mapping[str, str | None] | None = None,
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, object] | None = None,
@@ -47,6 +54,9 @@ def diagnose(
         force: what the law asked for, what the motor gave, best both.
     device
         What is known of the device: without it no number can be checked, and fewer causes be told apart.
+    law
+        The law that was programmed, such as a `Wall`; it is held beside the force in the recording, and its
+        numbers are those that are changed.  Without it the law is looked for in the recording.
     columns, units, scale
         As for `read_log`; `commanded_force` is the force that the law asked for, `actuator_force` the one
         that the motor gave.
@@ -62,7 +72,8 @@ def diagnose(
     Raises
     ------
     InputError
-        If the recording cannot be read, holds no force of the actuator, or moves otherwise than the device.
+        If the recording cannot be read, holds no force of the actuator, or moves otherwise than the device;
+        or if the law has no H(z).
     """
     if (
         not isinstance(recording, Log)
@@ -82,7 +93,22 @@ def diagnose(
     vibration = find(taken.time, taken.position, taken.period)
     if vibration is None:
         return _still(taken)
-    return _named(taken, gather(taken, vibration, device), device)
+    found = _named(taken, gather(taken, vibration, device, law), device)
+    return found if law is None else replace(found, stated=_as_stated(found, device, law))
+
+
+def _as_stated(found: Diagnosis, device: Device | None, law: Environment) -> tuple[str, ...]:
+    """The law as stated beside the force, and what `check` says to the loop as stated."""
+    told = None if found.seen is None else found.seen.stated
+    said = [] if told is None else [*told.sentences()]
+    if device is None:
+        return tuple(said)
+    outcome = check(device, law).outcome
+    if outcome in PASSIVE:
+        said.append(f"as stated the loop is {outcome.upper()}: what feeds it is not in what was stated")
+    else:
+        said.append(f"as stated the loop is {outcome.upper()} by itself")
+    return tuple(said)
 
 
 def _still(taken: Recording) -> Diagnosis:
@@ -95,7 +121,8 @@ def _still(taken: Recording) -> Diagnosis:
 def _named(taken: Recording, seen: Evidence, device: Device | None) -> Diagnosis:
     likely = dict(sorted(likelihoods(seen).items(), key=lambda item: -item[1]))
     first, p = next(iter(likely.items()))
-    cause = first if is_named(first, p, seen) else None
+    against = doubt(first, seen)
+    cause = first if against is None and is_named(first, p, seen) else None
     change = change_for(cause, seen, device) if cause is not None and device is not None else None
     return Diagnosis(
         cause=cause,
@@ -106,7 +133,7 @@ def _named(taken: Recording, seen: Evidence, device: Device | None) -> Diagnosis
         energy_per_cycle=seen.energy,
         evidence=tuple(CAUSES[cause].evidence(seen)) if cause is not None else (),
         change=change,
-        record=() if change is not None else tuple(_record(cause, likely, seen, device)),
+        record=_record(cause, likely, seen, device, change, against),
         seen=seen,
         findings=taken.findings,
         recording=taken,
@@ -114,15 +141,31 @@ def _named(taken: Recording, seen: Evidence, device: Device | None) -> Diagnosis
 
 
 def _record(
+    cause: str | None,
+    likely: Mapping[str, float],
+    seen: Evidence,
+    device: Device | None,
+    change: Change | None,
+    against: str | None,
+) -> tuple[str, ...]:
+    """What would say more: what speaks against any cause, or for the likeliest what would show it."""
+    if against is not None:
+        return (against,)
+    return () if change is not None else tuple(_wanted(cause, likely, seen, device))
+
+
+def _wanted(
     cause: str | None, likely: Mapping[str, float], seen: Evidence, device: Device | None
 ) -> list[str]:
-    """What would say more: for the two likeliest, and what every diagnosis is better with."""
+    """For the two likeliest, and what every diagnosis is better with."""
     if cause is not None:
         inside = cause in ("delay", "drive damping", "actuator limit")
         unseen = seen.recorded == "command" or (seen.recorded == "motor" and cause == "drive damping")
         behind = [CAUSES[cause].record] if inside and unseen else []
         return behind if device is not None else [*behind, _DEVICE]
     wanted = [CAUSES["delay"].record] if len(seen.roles) < 2 else []
+    if seen.stated is None and not follows(seen):
+        wanted.append(_LAW)
     if device is None:
         wanted.append(_DEVICE)
     wanted += [CAUSES[name].record for name in list(likely)[:2]]

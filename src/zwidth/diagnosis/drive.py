@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+STRAIGHT = 0.42
+"""Share of the time in which a force changes as fast as it ever does, ± 15 %; a sine does so for 0.37."""
+
 _TRIED = 40
 _STEEP = (50, 70, 85, 90, 93, 95, 97, 99, 99.8)
 
@@ -36,6 +39,8 @@ class Drive:
         [s] τ of the best pure delay, of some forty in three quarters of a cycle.
     delay_to_a_sample
         [s] the best one near that, to a sample of the loop.
+    gain, by_gain
+        How many times the delayed command the applied force is, and the share that this leaves over.
     by_delay, by_damper, by_rate, by_nothing
         Share of the applied force's variance that is left over by each; 0 is a full account.
     damping, damping_lag
@@ -48,6 +53,8 @@ class Drive:
 
     delay: float
     delay_to_a_sample: float
+    gain: float
+    by_gain: float
     by_nothing: float
     by_delay: float
     by_damper: float
@@ -72,12 +79,18 @@ def account(
     def left(model: Array) -> float:
         return float(np.mean((applied - model)[used] ** 2)) / spread
 
+    def delayed_by(lag: float) -> Array:
+        return _late(commanded, times, lag)
+
     top = float(np.abs(applied).max())
     delayed = {lag: np.clip(_late(commanded, times, lag), -top, top) for lag in lags}
     delay = min(lags, key=lambda lag: left(delayed[lag]))
     stride = round((lags[1] - lags[0]) / step)
     near = [delay + k * step for k in range(-stride + 1, stride) if delay + k * step > -0.5 * step]
     finer = min(near, key=lambda lag: left(np.clip(_late(commanded, times, lag), -top, top)))
+    by_gain, multiple, rough = min((*_scaled(delayed_by(lag)[used], applied[used]), lag) for lag in lags)
+    around = [rough + k * step / 2 for k in range(-2 * stride + 1, 2 * stride)]
+    by_gain, multiple = min(_scaled(delayed_by(lag)[used], applied[used]) for lag in around)
     best, damping, damping_lag = np.inf, 0.0, 0.0
     speed = np.gradient(position, row_period)
     short = [lag for lag in lags if lag <= max(step, 0.0) * 1.01]
@@ -92,10 +105,13 @@ def account(
             rest = left(np.clip(asked + gain * v, -top, top))
             if gain > 0 and rest < best:
                 best, damping, damping_lag = rest, gain, lag
-    rate, by_rate = _rate(commanded, applied, times, step, left)
+    rate, by_rate = min(
+        (_rate(asked, applied, times, step, left) for asked in (commanded, np.clip(commanded, -top, top))),
+        key=lambda found: found[1],
+    )
     return Drive(
-        delay=delay, delay_to_a_sample=finer, by_nothing=left(np.clip(commanded, -top, top)),
-        by_delay=left(delayed[delay]),
+        delay=delay, delay_to_a_sample=finer, gain=multiple,
+        by_gain=by_gain, by_nothing=left(np.clip(commanded, -top, top)), by_delay=left(delayed[delay]),
         by_damper=min(best, 1.0), by_rate=by_rate, damping=damping, damping_lag=damping_lag, rate=rate,
         applied=applied,
     )  # fmt: skip
@@ -124,6 +140,13 @@ def inside(applied: Array, position: Array, row_period: float, cycle: float) -> 
             rest = applied - np.clip(table @ terms, *ends)
             best = min(best, float(np.mean(rest[used] ** 2)) / spread)
     return best
+
+
+def _scaled(asked: Array, given: Array) -> tuple[float, float]:
+    """What a multiple of one force leaves of the other's variance, and the multiple, if it is positive."""
+    asked, given = asked - asked.mean(), given - given.mean()
+    gain = max(0.0, float(asked @ given) / (float(asked @ asked) or 1.0))
+    return float(np.mean((given - gain * asked) ** 2)) / (float(np.mean(given**2)) or 1.0), gain
 
 
 def _free(applied: Array, used: slice) -> NDArray[np.intp]:

@@ -32,7 +32,9 @@ from zwidth.diagnosis import drive, law
 from zwidth.diagnosis.drive import Drive
 from zwidth.diagnosis.law import Law
 from zwidth.diagnosis.recording import Recording
+from zwidth.diagnosis.stated import Stated, compare
 from zwidth.diagnosis.vibration import Vibration, phasors
+from zwidth.environment.environment import Environment
 from zwidth.quantity.exact import ends
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -137,6 +139,8 @@ class Evidence:
         is not in the file.
     ramps
         Share of the time in which the motor's force changes about as fast as it ever does; None without it.
+    stated
+        The law as somebody stated it, beside the force; None where nobody did.
     """
 
     vibration: Vibration
@@ -161,6 +165,7 @@ class Evidence:
     force_bend: complex
     by_inside: float | None
     ramps: float | None
+    stated: Stated | None = None
 
     @property
     def recorded(self) -> str:
@@ -182,8 +187,10 @@ class Evidence:
         return self.vibration.swing / self.resolution if self.resolution else np.inf
 
 
-def gather(recording: Recording, vibration: Vibration, device: Device | None) -> Evidence:
-    """Measure everything."""
+def gather(
+    recording: Recording, vibration: Vibration, device: Device | None, stated: Environment | None = None
+) -> Evidence:
+    """Measure everything; where the law is stated and the force follows it, by its own numbers."""
     known = Known.of(device)
     around, period = vibration.around, recording.period
     steady = slice(vibration.rows.start - around.start, vibration.rows.stop - around.start)
@@ -197,9 +204,17 @@ def gather(recording: Recording, vibration: Vibration, device: Device | None) ->
     commanded, applied = (None if f is None else sign * f for f in (commanded, applied))
     cycle = 1 / vibration.frequency
     found = None
+    told = None
     if np.ptp(seen):
         lags = _lags(commanded is not None, cycle, loop_period)
         found = law.fit(x, sign * seen, period, loop_period, lags)
+        if stated is not None:
+            told = compare(stated, x, sign * seen, period, loop_period, lags, commanded is not None)
+            if commanded is None and applied is not None:
+                told = replace(told, accounted=_accounted(told.asked, applied, x, period, loop_period, cycle))
+    if told is not None and told.holds:
+        commanded = told.asked if commanded is None else commanded
+        found = told.as_law(commanded, loop_period)
     if found is not None:
         found = replace(found, compensated=found.compensated[steady])
     between = None
@@ -208,7 +223,7 @@ def gather(recording: Recording, vibration: Vibration, device: Device | None) ->
         between = replace(between, applied=between.applied[steady])
     alone = commanded is None and applied is not None
     by_inside = drive.inside(applied, x, period, cycle) if alone and applied is not None else None
-    x, seen = x[steady], seen[steady]
+    x = x[steady]
     commanded, applied = (None if f is None else f[steady] for f in (commanded, applied))
     omega = vibration.angular
     xs = phasors(x, vibration.frequency, period)
@@ -219,7 +234,8 @@ def gather(recording: Recording, vibration: Vibration, device: Device | None) ->
     assert force is not None
     motion = _Motion(xs, omega, loop_period, vibration.frequency, period)
     F = motion.phasors(force) * (1 if applied is not None else motion.late(delay))
-    supplied = _terms(found, between, motion, delay, sign * seen)
+    asked = commanded if commanded is not None else force
+    supplied = _terms(found, between, motion, delay, asked)
     needed = motion.needed(known)
     lost = None
     if known.damping is not None:
@@ -252,7 +268,16 @@ def gather(recording: Recording, vibration: Vibration, device: Device | None) ->
         force_bend=_bend(motion.phasors(force)),
         by_inside=by_inside,
         ramps=None if applied is None else drive.ramps(applied),
+        stated=told,
     )
+
+
+def _accounted(
+    asked: Array, applied: Array, x: Array, period: float, loop_period: float, cycle: float
+) -> float:
+    """Share of a motor's force that its command leaves over, delayed, damped or limited as suits it best."""
+    between = drive.account(asked, applied, x, period, loop_period, cycle)
+    return min(between.by_delay, between.by_damper, between.by_rate)
 
 
 class _Motion(NamedTuple):
@@ -294,12 +319,6 @@ class _Motion(NamedTuple):
     def work(self, force: NDArray[np.complex128]) -> float:
         """[J] in a cycle, −π Σ n Im(F_n X_n*)."""
         return float(-np.pi * (self.orders * np.imag(force * np.conj(self.xs))).sum())
-
-    def answer(self, stiffness: float, damping: float, window: int) -> NDArray[np.complex128]:
-        """What a spring and a damper ask for, before the hold, by each harmonic."""
-        span = window * self.loop_period
-        late = 1 - np.exp(-1j * self.orders * self.omega * span)
-        return np.asarray((stiffness + damping * late / span) * self.xs)
 
     def held(self, asked: NDArray[np.complex128]) -> NDArray[np.complex128]:
         """The same through the hold."""
@@ -378,8 +397,8 @@ def _terms(
     if found is None:
         return supplied
     helping = motion.phasors(found.compensated)
-    spring = motion.held(motion.answer(found.stiffness, 0.0, 1))
-    damper = motion.held(motion.answer(0.0, found.damping, found.window))
+    spring = motion.held(found.stiffness * motion.xs)
+    damper = motion.held(found.damper(motion.orders * motion.omega, motion.loop_period) * motion.xs)
     asked = abs(motion.phasors(seen)[0] - helping[0])
     share = min(1.0, asked / (abs(spring[0] + damper[0]) or np.inf))  # less where it is cut off or away
     supplied["sampling"] = share * motion.work(spring)

@@ -69,6 +69,8 @@ class Law:
         Share of the time for which there is no force.
     compensated
         [N; N·m] the force of F in each row.
+    transfer
+        H(z) of a law that was stated, numerator and denominator; None of one that was found.
     """
 
     stiffness: float
@@ -82,18 +84,26 @@ class Law:
     limit: float
     away: float
     compensated: Array = field(repr=False)
+    transfer: tuple[Array, Array] | None = field(default=None, repr=False)
+
+    def damper(self, omegas: Array, period: float) -> NDArray[np.complex128]:
+        """What the law asks for besides its spring, over the position, at some ω [rad/s]."""
+        if self.transfer is not None:
+            z = np.exp(1j * omegas * period)
+            numerator, denominator = (np.polyval(part, z) for part in self.transfer)
+            return np.asarray(numerator / denominator - self.stiffness)
+        span = self.window * period
+        return np.asarray(self.damping * (1 - np.exp(-1j * omegas * span)) / span)
 
 
 def fit(
     position: Array, force: Array, row_period: float, loop_period: float, lags: Sequence[float]
 ) -> Law | None:
     """The law of a force in a stretch; None where it does not follow the motion at all."""
-    sides = _at_ends(force)
-    away = np.abs(force) < 0.01 * np.abs(force).max()
-    out = away if away.mean() > 0.05 else np.zeros_like(away)
+    sides, away = _at_ends(force), _away(force)
     first = int(np.ceil((max(lags) + max(WINDOWS) * loop_period) / row_period)) + 1
     first = min(first, position.size // 2)
-    rows = np.flatnonzero(~(sides | out))
+    rows = np.flatnonzero(free(force))
     rows = rows[rows >= first]
     if rows.size < _FEWEST_ROWS or not np.ptp(force[rows]):
         sides, rows = np.zeros_like(sides), np.arange(first, position.size)
@@ -113,6 +123,34 @@ def fit(
         compensation_speed=best.speed, lag=best.lag, unexplained=best.left, limited=float(sides.mean()),
         limit=float(np.abs(force).max()) if sides.any() else 0.0, away=float(away.mean()),
         compensated=_compensated(best, position, times, loop_period),
+    )  # fmt: skip
+
+
+def free(force: Array) -> Rows:
+    """Rows in which a force is neither at its limit nor off."""
+    away = _away(force)
+    return ~(_at_ends(force) | away) if away.mean() > 0.05 else ~_at_ends(force)
+
+
+def known(
+    force: Array,
+    *,
+    stiffness: float,
+    damping: float,
+    compensation: tuple[float, float, Array],
+    lag: float,
+    unexplained: float,
+    transfer: tuple[Array, Array],
+) -> Law:
+    """A law that was stated, as one that was found: H(z) at rest is the spring where it has none by name."""
+    sides = _at_ends(force)
+    helps, speed, helped = compensation
+    at_rest = float(np.sum(transfer[0]) / np.sum(transfer[1])) if np.sum(transfer[1]) else 0.0
+    return Law(
+        stiffness=stiffness or at_rest, damping=damping, window=1, compensation=helps,
+        compensation_speed=speed, lag=lag, unexplained=unexplained, limited=float(sides.mean()),
+        limit=float(np.abs(force).max()) if sides.any() else 0.0, away=float(_away(force).mean()),
+        compensated=helped, transfer=transfer,
     )  # fmt: skip
 
 
@@ -213,6 +251,10 @@ def _compensated(best: _Tried, position: Array, times: Array, loop_period: float
     move = (np.interp(times - best.lag, times, position) - before) / loop_period
     force: Array = -best.compensation * _bent(move, best.speed)
     return force
+
+
+def _away(force: Array) -> Rows:
+    return np.asarray(np.abs(force) < 0.01 * np.abs(force).max())
 
 
 def _at_ends(force: Array) -> Rows:

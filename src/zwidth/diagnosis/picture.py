@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Protocol
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
 from matplotlib import rc_context
@@ -40,11 +40,12 @@ class Shaking(Protocol):
         """[J] that friction takes in a cycle."""
 
 
+Drawn = TypeVar("Drawn", bound=Shaking)
+
 _CYCLES = 8
 """That are drawn as they went."""
 
 
-@rc_context(LOOK)
 def diagnosis_figure(recording: Recording, seen: Evidence | None, claim: str) -> Figure:
     """Position and force over some cycles; the spectrum beside the energy of a cycle, term by term.
 
@@ -53,13 +54,21 @@ def diagnosis_figure(recording: Recording, seen: Evidence | None, claim: str) ->
     InputError
         If nothing vibrates: there is nothing to draw.
     """
+    return figure_of(recording, seen, claim, lambda axes, seen: _cycles(axes, recording, seen))
+
+
+@rc_context(LOOK)
+def figure_of(
+    recording: Recording, seen: Drawn | None, claim: str, draw_cycles: Callable[[Axes, Drawn], None]
+) -> Figure:
+    """What is drawn above, the spectrum of a recording and the energy of a cycle below."""
     if seen is None:
         raise InputError("nothing vibrates in this recording, so there is no picture of a vibration")
     figure = new_figure(9.0, 6.6)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.1, 1.0))
-    _cycles(figure.add_subplot(grid[0, :]), recording, seen)
-    draw_spectrum(figure.add_subplot(grid[1, 0]), recording, seen)
-    draw_energy(figure.add_subplot(grid[1, 1]), seen)
+    draw_cycles(figure.add_subplot(grid[0, :]), seen)
+    _spectrum(figure.add_subplot(grid[1, 0]), recording, seen)
+    _energy(figure.add_subplot(grid[1, 1]), seen)
     page_heading(figure, claim)
     return figure
 
@@ -97,7 +106,7 @@ def _cycles(axes: Axes, recording: Recording, seen: Evidence) -> None:
     )
 
 
-def draw_spectrum(axes: Axes, recording: Recording, seen: Shaking) -> None:
+def _spectrum(axes: Axes, recording: Recording, seen: Shaking) -> None:
     """Amplitude against frequency, up to six times that of the vibration."""
     vibration = seen.vibration
     x = recording.position[vibration.rows]
@@ -114,7 +123,7 @@ def draw_spectrum(axes: Axes, recording: Recording, seen: Shaking) -> None:
     heading(axes, f"{vibration.frequency:.4g} Hz")
 
 
-def draw_energy(axes: Axes, seen: Shaking) -> None:
+def _energy(axes: Axes, seen: Shaking) -> None:
     """A bar for each term of the energy of a cycle."""
     terms = {name: work for name, work in seen.supplied.items() if work}
     if seen.lost is not None:

@@ -128,7 +128,7 @@ def _read(
             "say where the energy of a vibration comes from; say which with "
             f'columns={{"{COMMANDED}": …}} for what the law asks for, or '
             'columns={"actuator_force": …} for what the motor gives; there are '
-            f"{', '.join(names)}"
+            f"{', '.join(names)}{_two_arms(names)}"
         )
     logs = {
         role: log(**_arguments(role, column, columns, units, scale), **reading)
@@ -160,11 +160,26 @@ def _roles(names: list[str], source: str, wanted: Mapping[str, str | None]) -> d
         elif found.get(role) and not any(wanted.get(other) for other in (COMMANDED, "actuator_force")):
             raise InputError(
                 f"{source}: {', '.join(found[role])} may each be the {role.replace('_', ' ')}; "
-                f'say which with columns={{"{role}": "{found[role][0]}"}}'
+                f'say which with columns={{"{role}": "{found[role][0]}"}}{_two_arms(names)}'
             )
     if not roles and len(found.get("force", ())) == 1:
         roles["force"] = found["force"][0]
     return roles
+
+
+_SIDES = (("left", "right"), ("action", "observation"))
+"""Names of two arms that do not say which of them leads."""
+
+
+def _two_arms(names: list[str]) -> str:
+    """What to do where there may be two arms in a file."""
+    several = any(all(any(side in name.lower() for name in names) for side in pair) for pair in _SIDES)
+    return (
+        ". If these are two arms, one following the other, say whose each is: "
+        'columns={"leader_position": …}, columns={"follower_position": …}, and the forces alike'
+        if several
+        else ""
+    )
 
 
 def _arguments(
@@ -195,6 +210,11 @@ def _recording(log: Log, commanded: Log | None, applied: Log | None, supposed: t
             'of a vibration comes from; read it with columns={"actuator_force": …}'
         )
     longest = _longest(log)
+    asked = None if commanded is None else _longest(commanded).actuator_force
+    given = None if applied is None else _longest(applied).actuator_force
+    if asked is not None and given is not None and _against(asked, given):
+        given = -given
+        supposed = (*supposed, _AGAINST)
     return Recording(
         source=log.source,
         motion=log.motion,
@@ -202,10 +222,21 @@ def _recording(log: Log, commanded: Log | None, applied: Log | None, supposed: t
         resolution=log.resolution,
         time=longest.time,
         position=longest.position,
-        commanded=None if commanded is None else _longest(commanded).actuator_force,
-        applied=None if applied is None else _longest(applied).actuator_force,
+        commanded=asked,
+        applied=given,
         findings=(*supposed, *(finding.text for finding in log.findings if finding.kind != "no hand force")),
     )
+
+
+_AGAINST = "the motor's force is the command with the other sign: both are taken to count alike"
+_ALIKE = 0.1
+"""Share of its variance by which a force may differ from the other's negative."""
+
+
+def _against(asked: Array, given: Array) -> bool:
+    """Whether one of two forces counts the other way."""
+    spread = float(np.var(given))
+    return bool(spread and np.var(given + asked) < _ALIKE * spread)
 
 
 def _longest(log: Log) -> Block:

@@ -63,8 +63,11 @@ class Vibration:
         [m; rad] from end to end of the motion, 5th to 95th percentile stretched to a sine's.
     regular
         Share of the motion's variance in the frequency and its harmonics, 0 to 1.
+    regular_by_chance
+        The same with what as many free numbers would explain of noise taken off.
     growth
-        [1/s] of the amplitude, 0 where it stays.
+        Logarithm of the amplitude in the last quarter of `around` over that in the first, or twice that of
+        its second half where it is more: what dies out goes on to, after a start it stays.
     """
 
     rows: slice
@@ -73,6 +76,7 @@ class Vibration:
     frequency_spread: float
     swing: float
     regular: float
+    regular_by_chance: float
     growth: float
 
     @property
@@ -129,6 +133,10 @@ def _above(lowest: float, position: Array, period: float) -> Vibration | None:
     pieces = [peak(_without_line(part), period, lowest) for part in np.array_split(y, 4)]
     spread = max(float(np.std(pieces)) / 2, 0.02 / (y.size * period))
     _, rest = fitted(y, frequency, period)
+    whole = _without_line(position[around])
+    regular = float(1 - np.var(rest) / np.var(y))
+    orders = sum(n * frequency * period < 0.5 for n in range(1, HARMONICS + 1))
+    freedom = max(y.size - 2 * orders - 3, 1)
     low, high = np.percentile(y - _slow(y, frequency, period), (5, 95))
     return Vibration(
         rows=rows,
@@ -136,8 +144,9 @@ def _above(lowest: float, position: Array, period: float) -> Vibration | None:
         frequency=frequency,
         frequency_spread=spread,
         swing=float(high - low) / float(np.cos(np.pi * 0.05)),
-        regular=float(1 - np.var(rest) / np.var(y)),
-        growth=_growth(y),
+        regular=regular,
+        regular_by_chance=1 - (1 - regular) * (y.size - 1) / freedom,
+        growth=max(_growth(whole), 2 * _growth(whole[whole.size // 2 :])),
     )
 
 

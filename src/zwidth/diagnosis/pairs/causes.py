@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from zwidth.diagnosis.causes import SURE
 from zwidth.diagnosis.pairs.energy import PairEvidence
 
 PAIR_CAUSES: Mapping[str, str] = {
@@ -23,6 +24,7 @@ PAIR_CAUSES: Mapping[str, str] = {
     "damping": "damping against the other arm's speed comes so late that it drives the motion",
     "local damping": "damping of each arm's own speed comes so late, or has such a sign, that it drives",
     "friction compensation": "more friction is compensated than there is: the compensation drives the motion",
+    "actuator limit": "a motor cannot follow: its force comes late because it changes no faster",
 }
 """The terms of `energy`, in words."""
 
@@ -50,6 +52,19 @@ def likelihoods(seen: PairEvidence) -> dict[str, float]:
                 for name, p in odds.items():
                     mean[name] += p / sum(odds.values()) / len(STATED) ** 2
     return mean if any(mean.values()) else {}
+
+
+MOST_BEHIND = 0.1
+"""Share of a motor's force that a delay or a limit of rate behind its command may leave over."""
+
+
+def is_named(cause: str, p: float, seen: PairEvidence) -> bool:
+    """Whether a cause is likely enough and the file shows it.  Where a motor cannot follow, how much that
+    gives depends on how far the arms swing: what else gives more at this swing is not named then.
+    """
+    limited = any(rate is not None for rate in seen.rates)
+    alone = not limited or cause == "actuator limit"
+    return p >= SURE and alone and seen.behind < MOST_BEHIND and followed(seen)
 
 
 def followed(seen: PairEvidence) -> bool:

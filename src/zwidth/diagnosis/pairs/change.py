@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from statistics import fmean
 
-from zwidth.diagnosis.change import PASSIVE, largest, with_margin
+from zwidth.diagnosis.lowered import PASSIVE, Lowered, largest, lowered_to, text_of, with_margin
 from zwidth.diagnosis.pairs.energy import PairEvidence
 from zwidth.errors import InputError
 from zwidth.pairs.pair import Pair
 from zwidth.passivity.check import check
 from zwidth.passivity.pairs.verdict import PairVerdict
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import shown
 from zwidth.rendering.force.friction_compensation import FrictionCompensation
 
 _PARAMETERS = {
@@ -22,6 +21,7 @@ _PARAMETERS = {
     "damping": ("damping", "stiffness"),
     "local damping": ("local_damping", "stiffness"),
     "friction compensation": ("compensation",),
+    "actuator limit": ("stiffness",),
 }
 _NAMES = {
     "stiffness": ("stiffness of the coupling", "stiffness"),
@@ -34,43 +34,17 @@ _SLOWEST = 0.05
 
 
 @dataclass(frozen=True, kw_only=True)
-class PairChange:
+class PairChange(Lowered):
     """One number of the coupling, from where it is to where it may be.
 
     Parameters
     ----------
-    parameter
-        Its key.
-    current, to
-        In `unit`.
-    unit
-        SI.
-    text
-        In words.
     pair
         With that number changed.
-    verdict
-        What `check` says to it.
     """
 
-    parameter: str
-    current: float
-    to: float
-    unit: str
-    text: str
     pair: Pair
     verdict: PairVerdict
-
-    def to_dict(self) -> dict[str, object]:
-        """As plain data."""
-        return {
-            "parameter": self.parameter,
-            "from": self.current,
-            "to": self.to,
-            "unit": self.unit,
-            "text": self.text,
-            "outcome": self.verdict.outcome,
-        }
 
 
 def change_for(cause: str, seen: PairEvidence, pair: Pair) -> PairChange | None:
@@ -80,9 +54,10 @@ def change_for(cause: str, seen: PairEvidence, pair: Pair) -> PairChange | None:
         current = gains[key]
         if current <= 0:
             continue
-        to = _limit(pair, gains, seen) if key == "stiffness" else None
+        top = min(current, _followed(seen)) if cause == "actuator limit" else current
+        to = _limit(pair, gains, seen) if key == "stiffness" and top == current else None
         if to is None:
-            to = largest(lambda value, key=key: _verdict(pair, gains | {key: value}, seen), current)  # type: ignore[misc]
+            to = largest(lambda value, key=key: _verdict(pair, gains | {key: value}, seen), top)  # type: ignore[misc]
         if to is None:
             continue
         changed = _built(pair, gains | {key: to}, seen)
@@ -93,11 +68,17 @@ def change_for(cause: str, seen: PairEvidence, pair: Pair) -> PairChange | None:
             current=current,
             to=to,
             unit=unit,
-            text=f"lower the {name} from {shown(current, unit, 3)} to {shown(to, unit, 3)}",
+            text=lowered_to(name, current, to, unit),
             pair=changed,
             verdict=check(changed),
         )
     return None
+
+
+def _followed(seen: PairEvidence) -> float:
+    """The stiffness whose force the motors can follow in this motion, the arms against each other."""
+    apart = seen.vibration.angular * sum(seen.amplitudes)
+    return min(rate for rate in seen.rates if rate is not None) / apart
 
 
 def _limit(pair: Pair, gains: dict[str, float], seen: PairEvidence) -> float | None:
@@ -134,19 +115,19 @@ def _built(pair: Pair, gains: dict[str, float], seen: PairEvidence) -> Pair:
     assert leader is not None
     assert follower is not None
     devices = [
-        device if late is None else device.replace(delay=_text(late))
-        for device, late in zip((pair.leader, pair.follower), seen.delays, strict=True)
+        device if late is None or rate is not None else device.replace(delay=text_of(late))
+        for device, late, rate in zip((pair.leader, pair.follower), seen.delays, seen.rates, strict=True)
     ]
     ratio = follower.stiffness / leader.stiffness
     helped = gains["compensation"]
     return Pair(
         *devices,
-        stiffness=_text(gains["stiffness"]),
-        damping=_text(gains["damping"]),
-        local_damping=_text(gains["local_damping"]),
-        follower_stiffness=_text(ratio * gains["stiffness"]) if abs(ratio - 1) > 0.02 else None,
-        delay=(_text(follower.link_delay), _text(leader.link_delay)),
-        compensation=FrictionCompensation(coulomb=_text(helped), speed=_text(_speed(seen)))
+        stiffness=text_of(gains["stiffness"]),
+        damping=text_of(gains["damping"]),
+        local_damping=text_of(gains["local_damping"]),
+        follower_stiffness=text_of(ratio * gains["stiffness"]) if abs(ratio - 1) > 0.02 else None,
+        delay=(text_of(follower.link_delay), text_of(leader.link_delay)),
+        compensation=FrictionCompensation(coulomb=text_of(helped), speed=text_of(_speed(seen)))
         if helped
         else None,
     )
@@ -161,8 +142,3 @@ def _verdict(pair: Pair, gains: dict[str, float], seen: PairEvidence) -> PairVer
         return check(_built(pair, gains, seen))
     except InputError:
         return None
-
-
-def _text(value: float) -> str:
-    """The decimal that is meant."""
-    return f"{value:.6g}"

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from zwidth.diagnosis.causes import SURE
-from zwidth.diagnosis.pairs.causes import PAIR_CAUSES, followed, likelihoods
+from zwidth.diagnosis.pairs.causes import PAIR_CAUSES, is_named, likelihoods
 from zwidth.diagnosis.pairs.change import change_for
 from zwidth.diagnosis.pairs.energy import PairEvidence, gather, vibrates
 from zwidth.diagnosis.pairs.recording import ARMS, PairRecording, read_pair
@@ -28,6 +27,7 @@ if TYPE_CHECKING:
 _REGULAR = "a stretch of ten cycles or more in which both arms shake, the hands as they were"
 _DEVICE = "the numbers of both arms (damping, Coulomb friction, rate) beside the file: DEVICE"
 _FORCES = "of both arms the force that is commanded and the motor's own, at every sample of the loop"
+_SLOW = "the same at a smaller swing: here a motor's force changes no faster than {rate}, and cannot follow"
 _PLAIN = "both arms with no force but the coupling's: without gravity compensation, away from stops"
 
 
@@ -77,7 +77,7 @@ def diagnose_pair(
     seen = gather(taken, *found, None if pair is None else (pair.leader, pair.follower))
     likely = dict(sorted(likelihoods(seen).items(), key=lambda item: -item[1]))
     first, p = next(iter(likely.items()), ("", 0.0))
-    if not followed(seen) or p < SURE:
+    if not is_named(first, p, seen):
         return _answer(taken, seen, likely=likely, record=tuple(_record(seen, pair)))
     change = None if pair is None else change_for(first, seen, pair)
     return _answer(
@@ -106,6 +106,8 @@ def _answer(taken: PairRecording, seen: PairEvidence | None, **other: Any) -> Pa
 
 
 def _record(seen: PairEvidence, pair: Pair | None) -> Iterator[str]:
+    if limits := [rate for rate in seen.rates if rate is not None]:
+        yield _SLOW.format(rate=shown(min(limits), "N*m/s" if seen.rotary else "N/s", 3))
     if any(law is None for law in seen.laws) or any(delay is None for delay in seen.delays):
         yield _FORCES
     if pair is None:
@@ -137,6 +139,11 @@ def _evidence(cause: str, seen: PairEvidence) -> Iterator[str]:
     elif cause == "friction compensation":
         force = shown(leader.compensation, "N*m" if seen.rotary else "N", 3)
         yield f"the force holds {force} along the motion"
+    elif cause == "actuator limit":
+        limited = ((arm, rate) for arm, rate in zip(ARMS, seen.rates, strict=True) if rate is not None)
+        for arm, rate in limited:
+            most = shown(rate, "N*m/s" if seen.rotary else "N/s", 3)
+            yield f"the {arm}'s motor changes its force by no more than {most}"
     elif cause == "delay":
         late = [delay for delay in seen.delays if delay is not None]
         yield f"a force comes up to {shown(max(late, default=0.0), 's', 3)} after its arm's own reading"

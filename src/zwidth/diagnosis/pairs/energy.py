@@ -14,13 +14,14 @@ without a hold would give nothing in all: K (X − X') gives the one arm what it
     damping                the whole term of B, where it drives
     local damping          the whole term of D, where it drives
     friction compensation  the force along the motion
+    actuator limit         what a motor adds whose force changes no faster than some rate, in place of a delay
 
 summed over both arms; where the springs differ, the follower's joules count K_l/K_f times.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,6 +29,7 @@ from numpy.typing import NDArray
 
 from zwidth.device import Device
 from zwidth.diagnosis import drive
+from zwidth.diagnosis.drive import STRAIGHT
 from zwidth.diagnosis.evidence import Known
 from zwidth.diagnosis.pairs import law
 from zwidth.diagnosis.pairs.law import ArmLaw
@@ -38,7 +40,15 @@ from zwidth.diagnosis.vibration import HARMONICS, Vibration, find, phasors
 Array = NDArray[np.float64]
 Phasors = NDArray[np.complex128]
 
-TERMS = ("link delay", "sampling", "delay", "damping", "local damping", "friction compensation")
+TERMS = (
+    "link delay",
+    "sampling",
+    "delay",
+    "damping",
+    "local damping",
+    "friction compensation",
+    "actuator limit",
+)
 """The terms of the energy that goes in."""
 
 _MOST_ROWS = 20_000
@@ -46,6 +56,12 @@ _MOST_ROWS = 20_000
 
 _EXPLAINED = 0.01
 """Share of a force's variance that may be left over in the whole run."""
+
+_ALIKE = 2e-3
+"""Share of a motor's force by which it may differ from the command and be the same."""
+
+_LIMITED = 0.7
+"""Of what the best delay leaves over, what a limit of rate leaves at most to be seen."""
 
 _LONGEST_LINK = 0.6
 """Of a cycle, by how much a reading of the other may be older."""
@@ -75,6 +91,11 @@ class PairEvidence:
         End to end, of both, in counts of their encoders; infinite where none is seen.
     delays
         [s] from an arm's reading to its force, where the file shows the motor's force; else None.
+    rates
+        [N/s; N·m/s] no faster than which the motor's force of each arm changes; None where it follows.
+    behind
+        Share of the motors' forces that neither a delay nor a limit of rate accounts for, the larger of both;
+        1 where a force changes at one rate and its command is not in the file.
     supplied
         [J] that each term gives in a cycle, negative where it takes.
     energy
@@ -92,6 +113,8 @@ class PairEvidence:
     amplitudes: tuple[float, float]
     counts: tuple[float, float]
     delays: tuple[float | None, float | None]
+    rates: tuple[float | None, float | None]
+    behind: float
     supplied: Mapping[str, float]
     energy: float
     rubs: tuple[float, float] | None
@@ -123,12 +146,10 @@ def gather(
     orders = np.arange(1.0, HARMONICS + 1)
     positions = [arm.position[rows] for arm in recording.arms]
     xs = [phasors(x, vibration.frequency, period) for x in positions]
-    forces, laws, delays = [], [], []
-    for k, arm in enumerate(recording.arms):
-        force, fitted, delay = _arm(arm, recording.arms[1 - k], rows, loop_period, vibration)
-        forces.append(force)
-        laws.append(fitted)
-        delays.append(delay)
+    seen = [
+        _arm(arm, recording.arms[1 - k], rows, loop_period, vibration) for k, arm in enumerate(recording.arms)
+    ]
+    forces, laws, delays, rates, added, behind = zip(*seen, strict=True)
     half = 0.5 * orders * omega * loop_period
     hold = np.sinc(half / np.pi) * np.exp(-1j * half)
     ratio = _ratio(laws)
@@ -143,6 +164,8 @@ def gather(
         for name, part in _terms(fitted, delays[k], xs[k], xs[1 - k], hold, orders * omega, loop_period):
             supplied[name] += weight * _work(part, xs[k], orders)
         supplied["friction compensation"] += weight * _work(helped, xs[k], orders)
+        limited = phasors(added[k], vibration.frequency, period) * hold
+        supplied["actuator limit"] += weight * _work(limited, xs[k], orders)
     rubs = None
     if all(k.damping is not None for k in known):
         weighted = list(zip(known, xs, (1.0, ratio), strict=True))
@@ -162,6 +185,8 @@ def gather(
         amplitudes=(float(abs(xs[0][0])), float(abs(xs[1][0]))),
         counts=tuple(2 * abs(x[0]) / step if step else np.inf for x, step in zip(xs, steps, strict=True)),  # type: ignore[arg-type]
         delays=(delays[0], delays[1]),
+        rates=(rates[0], rates[1]),
+        behind=max(behind),
         supplied=supplied,
         energy=energy,
         rubs=rubs,
@@ -171,8 +196,9 @@ def gather(
 
 def _arm(
     arm: Recording, other: Recording, rows: slice, loop_period: float, vibration: Vibration
-) -> tuple[Array, ArmLaw | None, float | None]:
-    """The force that acts, the law of an arm, and how late its force is.
+) -> tuple[Array, ArmLaw | None, float | None, float | None, Array, float]:
+    """The force that acts, the law of an arm, how late its force is; the rate that limits it, what that adds
+    to the command, and the share of the force that is left over.
 
     The law is looked for in the whole run, where it does what the force did: of a motion that repeats itself
     to the last count many laws give the same force.
@@ -194,20 +220,24 @@ def _arm(
                 break
     best = min(fits, key=lambda one: one.unexplained, default=None)
     delay: float | None = None if arm.applied is None or best is None else best.lag
+    acts = sign * (arm.applied if arm.applied is not None else seen)[rows]
+    rate, added, behind = None, np.zeros_like(acts), 0.0
     if arm.commanded is not None and arm.applied is not None:
-        asked, given = (sign * values[rows] for values in (arm.commanded, arm.applied))
-        delay = drive.account(
-            asked, given, arm.position[rows], arm.period, loop_period, cycle
-        ).delay_to_a_sample
-    acts = arm.applied if arm.applied is not None else seen
-    return sign * acts[rows], best, delay
+        asked = sign * arm.commanded[rows]
+        between = drive.account(asked, acts, arm.position[rows], arm.period, loop_period, cycle)
+        delay, behind = between.delay_to_a_sample, min(between.by_delay, between.by_rate)
+        if between.by_nothing > _ALIKE and between.by_rate < _LIMITED * between.by_delay:
+            delay, rate, added = 0.0, between.rate, acts - asked
+    elif arm.applied is not None and drive.ramps(acts) > STRAIGHT:
+        behind = 1.0  # something does not follow, and the command that would tell is not there
+    return acts, best, delay, rate, added, behind
 
 
 def _lags(longest: float, step: float, fewest: int, most: int) -> list[float]:
     return [k * step for k in range(min(max(fewest, int(longest / step)), most) + 1)]
 
 
-def _ratio(laws: list[ArmLaw | None]) -> float:
+def _ratio(laws: Sequence[ArmLaw | None]) -> float:
     """K_l/K_f, 1 where they are the same within what a file shows."""
     leader, follower = laws
     if leader is None or follower is None or not leader.stiffness or not follower.stiffness:

@@ -1,8 +1,8 @@
 """Both arms of one file: the columns of the leader's and of the follower's side, each read as a recording.
 
-    leader_position_rad, follower_position_rad, leader_commanded_force_N_m, follower/motor_torque, …
+    leader_position_rad, follower/motor_torque, Leader angle (rad), q_follower [rad], master_torque_cmd, …
 
-What stands before the name says whose it is; what is left is known as of any log.
+What stands before the name or behind it says whose it is; what is left is known as of any log.
 """
 
 from __future__ import annotations
@@ -26,7 +26,13 @@ if TYPE_CHECKING:
 
 ARMS = ("leader", "follower")
 _WORDS = {"leader": "leader|master", "follower": "follower|slave"}
-_PREFIX = {arm: re.compile(rf"^/?(?:{words})[_./ -]+(?=\S)", re.IGNORECASE) for arm, words in _WORDS.items()}
+_OF = {
+    arm: re.compile(
+        rf"^/?(?:{words})[_./ -]+(?=\S)|(?<=\w)[_. -](?:{words})(?=$|_\w+$|\s*[\[(])", re.IGNORECASE
+    )
+    for arm, words in _WORDS.items()
+}
+"""What says whose a column is: before its name, or behind it and before its unit."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,7 +110,7 @@ def _both(table: Table, columns: Mapping[str, str | None], *told: Any) -> PairRe
 
 def _of_both(names: list[str], columns: Mapping[str, str | None] | None) -> bool:
     said = [*names, *(columns or {})]
-    return all(any(_PREFIX[arm].match(name) for name in said) for arm in ARMS)
+    return all(any(_OF[arm].search(name) for name in said) for arm in ARMS)
 
 
 def _of_arm(
@@ -114,9 +120,9 @@ def _of_arm(
     other = ARMS[1 - ARMS.index(arm)]
     original = {}
     for name in table.units:
-        if _PREFIX[arm].match(name):
-            original[_PREFIX[arm].sub("", name)] = name
-        elif not _PREFIX[other].match(name):
+        if _OF[arm].search(name):
+            original[_OF[arm].sub("", name, count=1)] = name
+        elif not _OF[other].search(name):
             original.setdefault(name, name)
     chosen: dict[str, str | None] = _own(columns, arm, other)
     original |= {name: name for name in chosen.values() if name is not None and name in table.units}
@@ -145,7 +151,15 @@ def _arm(
     view = replace(
         table, units={name: table.units[was] for name, was in original.items()}, read=read, means={}
     )
-    return read_of_table(view, chosen, _own(units, arm, other), _own(scale, arm, other), reading)
+    try:
+        return read_of_table(view, chosen, _own(units, arm, other), _own(scale, arm, other), reading)
+    except InputError as error:
+        text = _NO_COLUMN.sub(f"{arm}_", str(error))
+        raise InputError(f"the {arm}: {text}") from None
+
+
+_NO_COLUMN = re.compile(r'(?<=columns=\{")(?=\w+": …)')
+"""Where a message asks for a column that the arm does not have."""
 
 
 def _own(given: Mapping[str, Any], arm: str, other: str) -> dict[str, Any]:

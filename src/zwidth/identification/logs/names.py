@@ -24,7 +24,7 @@ _WORDS: dict[str, tuple[str, ...]] = {
     ),
     "position": (
         "measured_position",
-        "position pos x displacement encoder enc encoder_position enc_pos encoder_pos encoder_counts "
+        "position pos x q qpos displacement encoder enc encoder_position enc_pos encoder_pos encoder_counts "
         "enc_counts counts ticks angle theta joint_position stroke "
         "weg lage stellung auslenkung winkel déplacement posición ángulo posizione spostamento",
     ),
@@ -105,14 +105,13 @@ def role_of_force(column: str) -> str | None:
     if _VECTOR.search(column.lower()):
         return None
     given, asked = (tier.split() for tier in _WORDS["actuator_force"])
-    unsaid = _WORDS["hand_force"][1].split()
     if word in given or word == "effort":  # of a joint state: what the motor gives
         return "actuator_force"
     return (
         "commanded_force"
         if word in asked or word == "wished_force"  # of a served loop
         else "force"
-        if word in ("force", "f", "torque") and word in unsaid
+        if word in ("force", "f", "torque", "tau")
         else None
     )
 

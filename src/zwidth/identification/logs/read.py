@@ -150,6 +150,11 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
     if path.is_dir() and not (path / "metadata.yaml").is_file():
         if (table := _recorded(path)) is not None:
             return table
+        if (path / "meta" / "info.json").is_file() and (episodes := sorted(path.glob("data/*/*.parquet"))):
+            raise InputError(
+                f"{path} is a LeRobot dataset with {len(episodes)} file(s); name one of them, such as "
+                f"{episodes[0]}"
+            )
         raise InputError(
             f"{path} is a directory, and no rosbag2 or recording: there is no metadata.yaml and no "
             "part-000000.parquet in it; name a file"

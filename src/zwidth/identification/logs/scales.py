@@ -230,7 +230,8 @@ def _by_scale(where: str, unit: str | None, scale: str, wanted: Dimension, kind:
 
 def _by_unit(where: str, quantity: str, unit: str | None, wanted: Dimension, kind: str) -> float:
     if unit is None:
-        example = {"time": "ms", "position": "mm"}.get(quantity, "N")
+        turns = "joint" in where
+        example = {"time": "ms", "position": "rad" if turns else "mm"}.get(quantity, "N*m" if turns else "N")
         raise InputError(f'{where} has no unit; state it with units={{"{quantity}": "{example}"}}')
     if _is_counts(unit):
         raise InputError(
