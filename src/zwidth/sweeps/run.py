@@ -58,7 +58,7 @@ def sweep(
     of
         "check": the verdict, what binds, the largest passive stiffness; "limit": `passive_limit`; "simulate":
         one touch each, what it felt like and the energy got out; "pair": the verdict on two arms. Verdicts
-        are by closed forms: values are not iterated, so that no answer depends on the time that it gets.
+        are by closed forms: values are not iterated.
     operator, duration
         Of a simulation: the hand, and how long [s].
     path
