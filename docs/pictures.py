@@ -66,7 +66,7 @@ def _limit() -> Any:
 
 
 def _limit_numbers(found: Any) -> Numbers:
-    """To two digits: where in its hundredth a bracket ends depends on the time that each try was given."""
+    """To two digits: where in its hundredth a bracket ends depends on the order of what was tried."""
     ends = {"passive": found.proved_passive, "active": found.proved_active}
     return {f"proved_{side}_N_per_m": float(f"{end:.2g}") for side, end in ends.items()}
 

@@ -57,14 +57,6 @@ def _messages_in_one_line() -> Iterator[None]:
         yield
 
 
-@pytest.fixture(scope="session", autouse=True)
-def _time_enough() -> Iterator[None]:
-    """A game that is to be decided is decided, also on a busy machine and where it is compiled first."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("zwidth.passivity.gap.SECONDS", 60.0)
-        yield
-
-
 def pytest_configure(config: pytest.Config) -> None:
     """Marks of these tests."""
     config.addinivalue_line("markers", "real_time: made again if the machine stood still, see real_time.py")

@@ -133,10 +133,18 @@ def test_a_parameter_is_named_as_its_option(run: Run, parameter: str, low: float
 def test_one_side_is_status_three(run: Run) -> None:
     """Before no wall at all every damping of the device is passive."""
     loop = ("limit", "haptic-paddle", "--stiffness", "0", "--parameter", "damping")
-    result = run(*loop, "--seconds", "0.5", "--all")
+    result = run(*loop, "--effort", "0.5", "--all")
     assert result.status == 3
     assert result.out.startswith(" ONE SIDE ")
     assert "none known" in result.out
+
+
+def test_a_search_that_time_ended_says_so(run: Run) -> None:
+    """In the report, short and in full, and in the document."""
+    cut = (*BOUNDED, "--seconds", "1e-9")
+    assert "the time given was over first" in run(*cut).out
+    assert "the time given was over first" in run(*cut, "--all").out
+    assert json.loads(run(*cut, "--json").out)["cut_by_time"]
 
 
 def test_the_force_limit_is_counted_in(run: Run) -> None:
@@ -189,6 +197,7 @@ def test_a_contact(run: Run) -> None:
         (("--speed", "-1"), "speed must be > 0"),
         (("--speed", "3 N"), "speed is in m/s"),
         (("--seconds", "0"), "seconds must be > 0"),
+        (("--effort", "0"), "effort must be > 0"),
         (("--tolerance", "2"), "tolerance must be a number from"),
         (("--resolution", "0", "--penetration", "1 mm"), "resolution is 0"),
         (("--damping", "0.1 .. 0.2"), "no single value"),

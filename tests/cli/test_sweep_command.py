@@ -66,10 +66,22 @@ def test_other_questions(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert json.loads(capsys.readouterr().out)["axes"] == {"link_delay_s": [0, 0.009]}
 
 
+def test_a_law_of_the_command_line_gets_its_number(capsys: pytest.CaptureFixture[str]) -> None:
+    """What is varied need not be given, of a law in a chain either; of `limit` and `simulate` as well."""
+    varied = ("sweep", "haptic-paddle", "--stiffness", "200", "--law", "damper", "--workers", "1", "--json",
+              "--vary", "law.damping=10:20 mN*s/m:2")  # fmt: skip
+    for more in ((), ("--of", "limit"), ("--of", "simulate", "--operator", "dowel", "--duration", "5 ms")):
+        assert main((*varied, *more)) == 0
+        assert json.loads(capsys.readouterr().out)["axes"] == {"law.damping_N_s_per_m": [0.01, 0.02]}
+
+
 @pytest.mark.parametrize(
     ("more", "message"),
     [
         ((), "nothing is varied"),
+        (("--vary", "window=4", "--stiffness", "9"), "to vary in this loop. What can be varied: coulomb"),
+        (("--vary", "type=wall,maxwell", "--stiffness", "9"), 'no number "type" to vary'),
+        (("--vary", "law.2.limit=1,2", "--law", "saturation", "--stiffness", "9"), 'mean "law.limit"'),
         (("--vary", "stiffness"), "--vary is NAME=VALUES"),
         (("--vary", "stifness=1,2"), 'did you mean "stiffness"'),
         (("--vary", "rate=1,2", "--vary", "rate=3,4"), "given twice"),

@@ -273,7 +273,7 @@ def test_undecided_between_the_bounds(monkeypatch):
     """With a one-pole filter there is a gap between the proved bounds: undecided, and both are named."""
     device = zw.Device(damping="0.6", coulomb_friction=0, resolution="0.0005", sample_period="0.001")
     law = zw.Wall(100, "0.1", zw.rendering.OnePole("0.02"))
-    monkeypatch.setattr(gap, "SECONDS", 0.2)  # more time would not decide it either
+    monkeypatch.setattr(gap, "EFFORT", 0.2)  # more would not decide it either
     decision = zw.check(device, law).decision
     low, high = decision.necessary_friction, float(decision.sufficient_friction)
     assert low < high * 0.999

@@ -28,6 +28,8 @@ from zwidth.sweeps.springs import largest_spring
 PADDLE = zw.catalogue.device("haptic-paddle")
 WALL = zw.Wall(100)
 GRID = {"stiffness": "50:600:7", "delay": "0:2 ms:5"}
+POLE = zw.Wall(100, "0.03", zw.rendering.OnePole("1 ms"))
+WINDOWED = zw.Wall(100, "0.03", zw.rendering.Window(2))
 
 
 @pytest.mark.parametrize(
@@ -277,6 +279,99 @@ def test_a_touch_is_simulated_as_by_itself() -> None:
     assert touches["energy_extracted"].attrs["units"] == "J"
 
 
+LAWS = (
+    zw.rendering.Damper("0.05", zw.rendering.AdaptiveWindow(longest=4)),
+    zw.rendering.PassivityController(),
+    zw.rendering.WindowedController(),
+)
+
+
+def test_numbers_of_laws_in_a_chain_are_varied() -> None:
+    """Also those that the device filled in, whole ones, and those of a law's velocity."""
+    hand = zw.operators.Dowel(force=1)
+    vary = {"law.2.largest-damping": "0.03, 0.2", "law.3.window": "3, 9", "law.1.velocity.longest": [2, 4]}
+    found = zw.sweep(
+        PADDLE, zw.render(zw.Wall(770), *LAWS), of="simulate", operator=hand, duration="0.03 s", vary=vary,
+        workers=1,
+    )  # fmt: skip
+    assert found["law.2.largest_damping"].attrs["units"] == "N*s/m"
+    chain = zw.render(
+        zw.Wall(770),
+        zw.rendering.Damper("0.05", zw.rendering.AdaptiveWindow(longest=2)),
+        zw.rendering.PassivityController(largest_damping="0.2"),
+        zw.rendering.WindowedController(window=9),
+    )
+    trace = zw.simulate(PADDLE, chain, hand, 0.03)
+    row = zw.traces.compare_traces({"one": trace}).rows["one"]
+    assert {name: float(found[name].values[1, 1, 0]) for name in row} == row
+    assert len(np.unique(found.deepest_position.values)) > 1
+
+
+@pytest.mark.parametrize(
+    ("wall", "name", "values", "changed_wall"),
+    [
+        (
+            zw.Wall(90, "0.03", zw.rendering.OnePole("1 ms")),
+            "velocity_filter.time_constant",
+            "1, 20 ms",
+            zw.Wall(90, "0.03", zw.rendering.OnePole("20 ms")),
+        ),
+        (
+            zw.Wall(90, "0.03", zw.rendering.OnePole("1 ms")),
+            "velocity_filter.cutoff",
+            "50, 100 Hz",
+            zw.Wall(90, "0.03", zw.rendering.OnePole(zw.Exact(1 / (2 * np.pi * 100)))),
+        ),
+        (
+            zw.Wall(90, "0.03", zw.rendering.Window(2)),
+            "velocity_filter.samples",
+            [2, 9],
+            zw.Wall(90, "0.03", zw.rendering.Window(9)),
+        ),
+        (
+            zw.VirtualCoupling(200, "0.01", zw.Wall(500, "0.02", zw.rendering.OnePole("1 ms"))),
+            "environment.velocity_filter.time_constant",
+            "1, 5 ms",
+            zw.VirtualCoupling(200, "0.01", zw.Wall(500, "0.02", zw.rendering.OnePole("5 ms"))),
+        ),
+        (
+            zw.render(zw.Wall(100), zw.rendering.RateTerm()),
+            "law.time_constant",
+            "0.1, 1 ms",
+            zw.render(zw.Wall(100), zw.rendering.RateTerm(time_constant="1 ms")),
+        ),
+        (
+            zw.render(zw.Wall(100), zw.rendering.ForceBounding()),
+            "stiffness",
+            "100, 2000",
+            zw.render(zw.Wall(2000), zw.rendering.ForceBounding()),
+        ),
+    ],
+)
+def test_what_a_law_is_made_of_is_varied(
+    wall: zw.Environment, name: str, values: Any, changed_wall: zw.Environment
+) -> None:
+    """Filters of a velocity, what is behind a coupling, a law in a chain: each as by itself."""
+    found = zw.sweep(PADDLE, wall, vary={name: values}, workers=1)
+    verdict = zw.check(PADDLE, changed_wall, iterate=False)
+    one = found.isel({name: 1})
+    assert (one.outcome, one.contact, one.binding) == (
+        verdict.outcome,
+        verdict.scope.contact,
+        getattr(verdict, "limit", ""),
+    )
+
+
+def test_the_limit_behind_a_law_whose_number_is_varied() -> None:
+    """As `passive_limit` has it of each."""
+    chain = zw.render(zw.Wall(100), zw.rendering.RateTerm())
+    found = zw.sweep(PADDLE, chain, of="limit", vary={"law.time_constant": "0.1, 1 ms"}, workers=1)
+    for k in (0, 1):
+        law = zw.rendering.RateTerm(time_constant=found["law.time_constant"].values[k])
+        one = zw.limit(PADDLE, zw.render(zw.Wall(100), law), iterate=False)
+        assert found.proved_passive.values[k] == one.proved_passive
+
+
 def test_what_an_outcome_is_about_stands_beside_it() -> None:
     """No claim without its contact and encoder; what all have in common is in the scope."""
     found = zw.sweep(
@@ -321,7 +416,14 @@ def test_a_loop_that_cannot_be_is_said_to_be_refused() -> None:
     ("vary", "more", "message"),
     [
         ({}, {}, "nothing is varied"),
-        ({"stifness": "1, 2"}, {}, 'did you mean "stiffness"'),
+        ({"stifness": "1, 2"}, {}, 'did you mean "stiffness".* can be varied: coulomb_friction, '),
+        ({"velocity_filter": "1, 2"}, {"environment": POLE}, "no number of its own; .*cutoff"),
+        ({"samples": "1, 2"}, {"environment": WINDOWED}, 'did you mean "velocity_filter.samples"'),
+        ({"velocity_filter.samples": "1.5, 2"}, {"environment": WINDOWED}, "samples = 1.5: a .*whole number"),
+        ({"velocity_filter.cutoff": "0, 2"}, {"environment": POLE}, "cutoff must be > 0 Hz"),
+        ({"velocity_filter.cutoff": "1, 2", "velocity_filter.time_constant": "1, 2"},
+         {"environment": POLE}, "the same number"),
+        ({"law.window": "1, 2"}, {"environment": zw.render(WALL, *LAWS)}, 'did you mean "law.3.window"'),
         ({"stiffness": "-1, 2"}, {}, r"at stiffness = -1 N/m: stiffness must be ≥ 0"),
         ({"rate": "1, 2", "sample_period": "1, 2"}, {}, "the same number"),
         ({"stiffness": (0, 1, 30_000), "delay": (0, 1, 1000)}, {}, "at most 20000000 loops"),
@@ -338,7 +440,7 @@ def test_bad_input_is_refused_before_work_starts(
 ) -> None:
     """One message each."""
     with pytest.raises(zw.InputError, match=message):
-        zw.sweep(PADDLE, WALL, vary=vary, **more)
+        zw.sweep(PADDLE, **{"environment": WALL, **more}, vary=vary)
 
 
 def test_a_file_that_is_no_sweep(tmp_path: Path) -> None:

@@ -48,7 +48,7 @@ def _of_a_law(device: Device, law: Environment) -> tuple[bool, str]:
     program = program_of(device, law, **actuator)
     assert isinstance(program, DynamicProgram)  # it is no row
     told = budget_of(program, MOVES)
-    played = available_storage(device, law, **actuator, seconds=float("inf"), progress=told)
+    played = available_storage(device, law, **actuator, effort=float("inf"), progress=told)
     if played.outcome == "undecided":
         return False, "nor does value iteration decide it"
     return played.outcome == "active", played.claim if played.outcome == "active" else _proved(program)

@@ -310,7 +310,7 @@ def _worst(device: Device, wall: Wall, speed: Fraction) -> Floats | None:
         assert isinstance(program, DynamicProgram)  # a wall is no row
         told = budget_of(program, MOVES)
         played = available_storage(
-            device, wall, speed=bounded, penetration=deep, seconds=float("inf"), progress=told
+            device, wall, speed=bounded, penetration=deep, effort=float("inf"), progress=told
         )
     except (InputError, Spent):  # an ideal encoder, a board that is too large or too small
         return None

@@ -48,7 +48,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
         ("--penetration", "LENGTH", "the hand goes no deeper [m; rotary rad]"),
         ("--speed", "SPEED", "the hand is no faster, over a sample [m/s; rotary rad/s]"),
         ("--tolerance", "RATIO", "relative width of the bracket that is wanted (default: 0.01)"),
-        ("--seconds", "TIME", "time after which the bracket so far is given [s] (default: 60)"),
+        (
+            "--effort",
+            "NUMBER",
+            "how much is tried: 1 is about a second of one core, counted as work, so that "
+            "every machine finds the same (default: 60)",
+        ),
+        ("--seconds", "TIME", "time after which the bracket so far is given as well [s] (default: none)"),
     ):
         search.add_argument(option, metavar=metavar, action=Once, help=meaning)
     for option, meaning in (
@@ -138,7 +144,7 @@ def named(typed: str) -> str:
 def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
     """The search as `passive_limit` takes it."""
     length, speed = (GLOSSARY[name].unit_for(motion) for name in ("position", "velocity"))
-    units = {"penetration": length, "speed": speed, "tolerance": "1", "seconds": "s"}
+    units = {"penetration": length, "speed": speed, "tolerance": "1", "effort": "1", "seconds": "s"}
     options: dict[str, Any] = {
         "force_limit": arguments.count_force_limit,
         "force_resolution": arguments.count_force_resolution,
@@ -147,8 +153,9 @@ def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
         typed = getattr(arguments, name)
         if typed is not None:
             options[name] = parse_number(typed, unit, name)
-    if options.get("seconds", 1) <= 0:
-        raise InputError(f"seconds must be > 0, got {arguments.seconds}: the search takes some time")
+    for name in ("effort", "seconds"):
+        if options.get(name, 1) <= 0:
+            raise InputError(f"{name} must be > 0, got {getattr(arguments, name)}: the search takes some")
     return options
 
 

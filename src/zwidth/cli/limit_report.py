@@ -42,9 +42,10 @@ def print_bracket(bracket: Bracket, loop: Specification, in_full: bool = False) 
             _all(out, bracket, loop)
             return
         motion = [] if bracket.witness is None else [("the motion", motion_in_short(bracket.witness))]
-        device, environment, hand, _ = _loop(bracket, loop)
+        device, environment, hand, *_ = _loop(bracket, loop)
         assumed = ("assumes", small_print(in_short(bracket.scope, hands=False)))
-        blocks(out, [hand, *_of_every_hand(bracket), *motion], [device, environment, assumed])
+        answer = [hand, *_of_every_hand(bracket), *motion, *_cut(bracket)]
+        blocks(out, answer, [device, environment, assumed])
         more_with_all(out, "the motion, how long it took, assumptions in full")
 
 
@@ -97,7 +98,15 @@ def _loop(bracket: Bracket, loop: Specification) -> list[Row]:
         ("environment", environment_line(loop.environment, loop.device.motion)),
         ("hand", bracket.hand),
         ("decided", f"{bracket.evaluations} loops in {shown(bracket.seconds, 's', 3)}"),
+        *_cut(bracket),
     ]
+
+
+def _cut(bracket: Bracket) -> list[Row]:
+    """That the time ended the search, where it did."""
+    if not bracket.cut_by_time:
+        return []
+    return [("cut", "the time given was over first: a faster machine, or more, may come closer")]
 
 
 def _values(bracket: Bracket) -> Table:

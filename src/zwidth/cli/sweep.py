@@ -53,7 +53,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUES",
         action="append",
         help="a parameter, named as its option is, and its values: stiffness=100:3000:50, delay=0:5 ms:20, "
-        "rate=100:10000:20 log, resolution=0.1,1,10 um; with several every combination",
+        "rate=100:10000:20 log, resolution=0.1,1,10 um; law.KEY of a law in a chain, law.2.KEY of the second "
+        "one, velocity-filter.cutoff; with several every combination",
     )
     grid.add_argument("--of", metavar="COMMAND", action=Once, help=f"{', '.join(VERBS)} (default: check)")
     grid.add_argument(

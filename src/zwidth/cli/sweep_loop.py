@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterable, Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.cli.options import (
     BEHIND,
@@ -18,7 +18,13 @@ from zwidth.cli.options import (
 )
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
+from zwidth.specification.environments import option_keys
 from zwidth.specification.table import COMMAND_LINE, quoted, suggestion
+
+if TYPE_CHECKING:
+    from zwidth.device import Device
+    from zwidth.environment import Environment
+    from zwidth.specification.table import Table
 
 
 class Asked(NamedTuple):
@@ -40,28 +46,55 @@ def asked(arguments: argparse.Namespace, of: str, vary: Mapping[str, str]) -> As
     InputError
         If anything cannot be used, or an option is none of this command.
     """
-    _begin(arguments, vary)
+    begun, unknown = _begin(arguments, vary)
     _refuse_others(arguments, of)
-    if of == "pair":
-        return _pair(arguments)
-    return _touch(arguments) if of == "simulate" else _wall(arguments, of)
+    try:
+        if of == "pair":
+            return _pair(arguments)
+        return _touch(arguments, begun) if of == "simulate" else _wall(arguments, of, begun)
+    except InputError:
+        if unknown:
+            raise _no_number(arguments, unknown) from None
+        raise
 
 
-def _begin(arguments: argparse.Namespace, vary: Mapping[str, str]) -> None:
-    """Give each parameter that is varied its last value, which has its unit."""
+def _begin(arguments: argparse.Namespace, vary: Mapping[str, str]) -> tuple[dict[str, str], str]:
+    """Give each parameter that is varied its last value, which has its unit.
+
+    The values of those that have no option, and the first name that no loop has; "" where each may be one.
+    """
+    begun, unknown = {}, ""
     for key, values in vary.items():
         dest = f"parameter {key}"
-        if key.startswith(("leader.", "follower.")):
-            continue  # of one arm: it has no option
+        parts = values.split(":") if ":" in values else [*values.split(","), ""]
+        last = parts[-2].strip()
         if not hasattr(arguments, dest):
-            known = sorted(
-                n.removeprefix("parameter ") for n in vars(arguments) if n.startswith("parameter ")
-            )
-            raise InputError(f"--vary: there is no number {quoted(key)}; {suggestion(key, known)}")
+            unknown = unknown or ("" if "." in key else key)  # one within another: what the loop has, it says
+            begun[key] = last
+            continue
         if getattr(arguments, dest) is not None:
             raise InputError(f"--{key.replace('_', '-')} is given and varied; which one is meant?")
-        parts = values.split(":") if ":" in values else [*values.split(","), ""]
-        setattr(arguments, dest, parts[-2].strip())
+        if key.rpartition(".")[2] in _NO_NUMBERS:
+            unknown = unknown or key
+            continue
+        setattr(arguments, dest, last)
+    return begun, unknown
+
+
+_NO_NUMBERS = frozenset(key for key, own in option_keys().items() if not own.is_number) | {
+    "type",
+    "name",
+    "motion",
+    "catalogue",
+}
+"""Options that hold a word, or a list."""
+
+
+def _no_number(arguments: argparse.Namespace, key: str) -> InputError:
+    """What is said of a name that no loop has, where this one cannot be made without it."""
+    options = (n.removeprefix("parameter ") for n in vars(arguments) if n.startswith("parameter "))
+    known = sorted(name for name in options if name.rpartition(".")[2] not in _NO_NUMBERS)
+    return InputError(f"--vary: there is no number {quoted(key)}; {suggestion(key, known)}")
 
 
 _OWN = {
@@ -99,10 +132,10 @@ def _parameters(of: str) -> Iterable[Parameter]:
     return [*loop, *operator_parameters(), *simulation_parameters()]
 
 
-def _wall(arguments: argparse.Namespace, of: str) -> Asked:
-    from zwidth.cli.decision import asked as loop_of
+def _wall(arguments: argparse.Namespace, of: str, begun: Mapping[str, str]) -> Asked:
+    from zwidth.specification.read import WITH_LAWS, read_tables
 
-    loop = loop_of(arguments).loop
+    device, law = _loop(arguments, read_tables(arguments.sources, WITH_LAWS), begun)
     options: dict[str, Any] = {}
     if of == "check" and arguments.contact is not None and contact(arguments) == "kept":
         options["contact"] = "kept"
@@ -112,7 +145,25 @@ def _wall(arguments: argparse.Namespace, of: str) -> Asked:
         options["parameter"] = named(arguments.parameter or "stiffness")
         if arguments.tolerance is not None:
             options["tolerance"] = float(parse_number(arguments.tolerance, "1", "tolerance"))
-    return Asked(loop.device, loop.environment, options=options)
+    return Asked(device, law, options=options)
+
+
+def _loop(
+    arguments: argparse.Namespace, tables: Mapping[str, Table], begun: Mapping[str, str]
+) -> tuple[Device, Environment]:
+    """Device and environment behind its laws; a number of a law that is varied need not be given either."""
+    from zwidth.specification.laws import behind_laws, law_tables
+    from zwidth.specification.read import specified
+
+    loop = specified(tables, overrides(arguments))
+    laws = law_tables(tables.get("law"), arguments.law)
+    for number, law in enumerate(laws, start=1):
+        before = "law." if len(laws) == 1 else f"law.{number}."
+        for name, value in begun.items():
+            key = name.removeprefix(before)
+            if name.startswith(before) and "." not in key:
+                law.values.setdefault(key, value)
+    return loop.device, behind_laws(loop.environment, laws, loop.device.motion)
 
 
 def _pair(arguments: argparse.Namespace) -> Asked:
@@ -121,17 +172,15 @@ def _pair(arguments: argparse.Namespace) -> Asked:
     return Asked(load_pair(arguments.sources, given(arguments, [p.key for p in coupling_parameters()])))
 
 
-def _touch(arguments: argparse.Namespace) -> Asked:
+def _touch(arguments: argparse.Namespace, begun: Mapping[str, str]) -> Asked:
     from zwidth.cli.simulation_tables import build_touch, operator_parameters, simulation_parameters
-    from zwidth.specification.laws import with_laws
-    from zwidth.specification.read import TABLES, read_tables, specified
+    from zwidth.specification.read import TABLES, read_tables
 
     tables = read_tables(arguments.sources, TABLES)
     words = given(arguments, [p.key for p in (*operator_parameters(), *simulation_parameters())])
-    loop = specified(tables, overrides(arguments))
-    law = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
-    touch = build_touch(tables.get("operator"), tables.get("simulation"), words, loop.device.motion)
-    return Asked(loop.device, law, touch.operator, _run(touch))
+    device, law = _loop(arguments, tables, begun)
+    touch = build_touch(tables.get("operator"), tables.get("simulation"), words, device.motion)
+    return Asked(device, law, touch.operator, _run(touch))
 
 
 def _run(touch: Any) -> dict[str, Any]:

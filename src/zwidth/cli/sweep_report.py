@@ -35,7 +35,8 @@ def report(found: xr.Dataset) -> Iterator[Part]:
 def _axis(values: xr.DataArray) -> str:
     unit = values.attrs["units"]
     ends = [shown(float(end), unit) for end in (values.min(), values.max())]
-    return f"{in_words(str(values.name))} {ends[0]} to {ends[1]}, {values.size} values"
+    name = in_words(str(values.name))
+    return f"{name} {ends[0]}" if values.size == 1 else f"{name} {ends[0]} to {ends[1]}, {values.size} values"
 
 
 def _outcomes(found: xr.Dataset) -> Iterator[tuple[str, ...]]:

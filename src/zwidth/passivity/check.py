@@ -88,7 +88,7 @@ def check(
     (Abbott & Okamura 2005).  Equality counts as passive.  A damped wall is
     covered with contact made and broken where b ≥ (2d + 1) K T/2 + |B| Σ|w_j| and
     f_c ≥ (K + |B| ‖h_v‖₁) Δ/2, clamped or not.  Where these conditions leave a gap
-    values are iterated as in `available_storage`, for some seconds at most.
+    values are iterated as in `available_storage`, for some seconds of one core at most.
 
     Laws without H(z) are decided too: nonlinear springs by their slopes, laws in a chain by the force
     bounding that ends them or a wall that covers them, all by value iteration; `decided_by` says which.
@@ -108,8 +108,7 @@ def check(
         "passive in contact" if this is proved only of hands that stay inside.  "kept": the question is about
         those alone.
     iterate
-        False for closed forms alone: what they leave open stays open, and no answer depends on the time that
-        value iteration gets.
+        False for closed forms alone, in milliseconds: what they leave open stays open.
     progress
         Told the number of states that still improve, where values are iterated.
     of_an_arm

@@ -16,8 +16,8 @@ from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.passivity.verdict import Verdict
 
-SECONDS = 5.0
-"""Time that a check spends on it."""
+EFFORT = 5.0
+"""What a check spends on it: about as many seconds of one core, the same on every machine."""
 
 
 def has_gap(device: Device, law: Environment, verdict: Verdict) -> bool:
@@ -36,7 +36,7 @@ def with_value_iteration(
     from zwidth.passivity.storage.solution import available_storage  # numpy and numba take their time
 
     try:
-        found = available_storage(device, law, seconds=SECONDS, progress=progress)
+        found = available_storage(device, law, effort=EFFORT, progress=progress)
     except InputError:
         return verdict
     if found.witness is not None:

@@ -159,7 +159,7 @@ def _by_values(verdict: Verdict, progress: Progress | None) -> Verdict:
 
     try:
         device, law = verdict.device, verdict.environment
-        found = available_storage(device, law, seconds=gap.SECONDS, progress=progress)
+        found = available_storage(device, law, effort=gap.EFFORT, progress=progress)
     except InputError:  # an ideal encoder, or a law that remembers too much
         return verdict
     if found.witness is not None:

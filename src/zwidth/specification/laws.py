@@ -59,9 +59,31 @@ def with_laws(
     InputError
         If a law or a key is unknown, or has a value it cannot have.
     """
+    return behind_laws(environment, law_tables(table, typed), motion)
+
+
+def law_tables(table: Table | None, typed: Iterable[str] | None) -> list[Table]:
+    """The table of each law, as `with_laws` takes them.
+
+    Raises
+    ------
+    InputError
+        If there are too many.
+    """
     tables = _tables(table) if typed is None else [*_named(typed)]
     if len(tables) > MOST:
         raise InputError(f"{tables[MOST].label}: more than {MOST} laws in a chain")
+    return tables
+
+
+def behind_laws(environment: Environment, tables: Iterable[Table], motion: str) -> Environment:
+    """The environment behind the law of each table; itself where there are none.
+
+    Raises
+    ------
+    InputError
+        As `build_law`.
+    """
     laws = [build_law(law, motion) for law in tables]
     if not laws:
         return environment

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping
+from fractions import Fraction
 from types import MappingProxyType
 from typing import Any
 
@@ -161,11 +162,21 @@ def _time_constant(arguments: Mapping[str, object]) -> Exact | Interval:
         return parse(arguments["time_constant"], "s", "time_constant")
     cutoff = parse(arguments["cutoff"], "Hz", "cutoff")
     low, high = ends(cutoff)
-    if low <= 0:
-        raise InputError(f"cutoff must be > 0 Hz, got {cutoff}: the filter would pass nothing")
-    # τ = 1/(2πf) is irrational: rounded to a double, as a controller would hold it.
-    slow, fast = (Exact(1 / (2 * math.pi * float(f))) for f in (low, high))
+    slow, fast = map(time_constant_of, (low, high))
     return slow if low == high else Interval(fast, slow)
+
+
+def time_constant_of(cutoff: Exact | Fraction) -> Exact:
+    """τ = 1/(2πf) [s] of a cut-off frequency [Hz], rounded to a double as a controller would hold it.
+
+    Raises
+    ------
+    InputError
+        If f ≤ 0.
+    """
+    if cutoff <= 0:
+        raise InputError(f"cutoff must be > 0 Hz, got {float(cutoff):g}: the filter would pass nothing")
+    return Exact(1 / (2 * math.pi * float(cutoff)))
 
 
 def _filter_table(text: str) -> dict[str, object]:

@@ -50,6 +50,10 @@ class Axis:
         """The values."""
         return np.array(self.values)
 
+    def told(self, value: float) -> str:
+        """The parameter at one value, "delay = 0.001 s"."""
+        return f"{self.name} = {value:.12g}{'' if self.unit == '1' else f' {self.unit}'}"
+
 
 def axis(name: str, given: object, unit: str) -> Axis:
     """Read the values of a parameter.

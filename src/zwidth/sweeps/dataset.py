@@ -15,6 +15,7 @@ from zwidth.passivity.scope import scope_of
 from zwidth.quantity.exact import Interval
 from zwidth.sweeps.columns import REFUSED
 from zwidth.sweeps.request import FORMAT, Request
+from zwidth.sweeps.within import with_numbers
 
 _OF_EACH = ("contact", "encoder", "fed_with", "law", "damping", "coulomb_friction", "clamped")
 """Entries of a scope that may be another at every loop: they are variables, or the loop's own numbers."""
@@ -68,19 +69,17 @@ def _ranges(asked: Request) -> Environment:
     varied = {
         own.key: Interval(min(axis.values), max(axis.values))
         for own, axis in zip(asked.parameters, asked.axes, strict=True)
-        if own.part == "law"
+        if own.part == "law" and "." not in own.key
     }
     try:
-        return law.around(law.met.replace(**varied))
+        return law.around(with_numbers(law.met, varied))
     except InputError:
         return law
 
 
 def _why(asked: Request, place: tuple[int, ...]) -> str:
     """Why a loop cannot be."""
-    values = ", ".join(
-        f"{own.name} = {own.values[n]:.12g} {own.unit}" for own, n in zip(asked.axes, place, strict=True)
-    )
+    values = ", ".join(own.told(own.values[n]) for own, n in zip(asked.axes, place, strict=True))
     try:
         asked.question.answer(asked.at(place), {})
     except InputError as error:

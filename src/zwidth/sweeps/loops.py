@@ -1,15 +1,18 @@
 """The loop that is varied, and what of it may be: numbers of device, environment, pair, hand and run.
 
-A parameter is named as its option of the command line is: `damping` is the device's, `virtual_damping` the
-environment's, `environment.stiffness` is of what stands behind a coupling, `operator.force` of the hand.  Of
-a pair `stiffness` is of its coupling, `leader.damping` and `follower.damping` are of its arms, and `rate`,
-like every other number of a device, of both.
+A parameter is named as its option is: `damping` is the device's, `virtual_damping` the environment's,
+`velocity_filter.time_constant` its filter's, `environment.stiffness` is of what stands behind a coupling,
+`operator.force` of the hand.  With one law in a chain `law.largest_damping` is of that law; with several
+`law.2.largest_damping` of the second, the first being next to the environment.  Of a pair `stiffness` is of
+its coupling, `leader.damping` and `follower.damping` are of its arms, and `rate`, like every other number of
+a device, of both.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields, is_dataclass, replace
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -19,10 +22,11 @@ from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.operator import ParametricOperator
 from zwidth.pairs import Pair
-from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import parameters_of
-from zwidth.specification.table import quoted, suggestion
+from zwidth.specification.table import quoted
+from zwidth.sweeps.within import Units, numbers_within, with_numbers
 
 
 @dataclass(frozen=True)
@@ -63,8 +67,6 @@ class Parameter(NamedTuple):
 
 Changes = dict[str, Exact]
 
-Units = Mapping[str, str]
-
 
 class Part(NamedTuple):
     """A part of a loop.
@@ -99,10 +101,22 @@ def parameter(loop: Loop, typed: str) -> Parameter:
         for key, unit in part.units(loop).items()
     }
     if name not in known:
-        raise InputError(
-            f"there is no number {quoted(typed)} to vary in this loop; {suggestion(name, sorted(known))}"
-        )
+        raise InputError(_unknown(typed.strip(), name, known))
     return known[name]
+
+
+def _unknown(typed: str, name: str, known: Iterable[str]) -> str:
+    """What may have been meant, and all that can be varied."""
+    within = [one for one in known if one.startswith(f"{name}.")]
+    if within:
+        return f"{quoted(typed)} is no number of its own; what can be varied of it: {', '.join(within)}"
+    same = [one for one in known if one.rpartition(".")[2] == name]
+    near = same or get_close_matches(name[:60], known, n=1)
+    meant = f"; did you mean {' or '.join(quoted(one) for one in near)}?" if near else "."
+    return (
+        f"there is no number {quoted(typed)} to vary in this loop{meant} What can be varied: "
+        f"{', '.join(sorted(known))}"
+    )
 
 
 def changed(loop: Loop, values: Mapping[Parameter, float]) -> Loop:
@@ -122,8 +136,6 @@ def changed(loop: Loop, values: Mapping[Parameter, float]) -> Loop:
 
 
 _ALIAS = {
-    ("law", "damping"): "virtual_damping",
-    ("behind", "damping"): "virtual_damping",
     ("coupling", "damping"): "virtual_damping",
     ("coupling", "follower_damping"): "follower_virtual_damping",
 }
@@ -191,38 +203,44 @@ def _coupling(loop: Loop, new: Changes) -> Loop:
     return replace(loop, subject=loop.subject.replace(**given))
 
 
-def _numbers_of(thing: Any, unit: Callable[[str], str]) -> Units:
-    """Of a data class the fields that hold one number, or an interval in whose place one may stand."""
-    if not is_dataclass(thing):
-        return {}
-    held = {each.name: getattr(thing, each.name) for each in fields(thing)}
-    return {name: unit(name) for name, value in held.items() if isinstance(value, Exact | Interval)}
-
-
 def _of_law(loop: Loop) -> Units:
-    law = loop.environment
-    return {} if law is None else _numbers_of(law.met, lambda key: law.met.unit_of(key, loop.motion))
+    return {} if loop.environment is None else numbers_within(loop.environment.met, loop.motion)
 
 
 def _law(loop: Loop, new: Changes) -> Loop:
     law = loop.environment
     assert law is not None
-    return replace(loop, environment=law.around(law.met.replace(**new)))
+    return replace(loop, environment=law.around(with_numbers(law.met, new)))
 
 
-def _behind(loop: Loop) -> Any:
-    return None if loop.environment is None else getattr(loop.environment.met, "environment", None)
+def chain_of(environment: Environment | None) -> tuple[Any, ...]:
+    """The laws in a chain: asked of an attribute, for the compiler of their steps takes its time to load."""
+    return getattr(environment, "laws", ())
 
 
-def _of_behind(loop: Loop) -> Units:
-    inner = _behind(loop)
-    return {} if inner is None else _numbers_of(inner, lambda key: inner.unit_of(key, loop.motion))
+def law_of(name: str, laws: int) -> tuple[int, str]:
+    """Which law of a chain a number is of, from 0 on, and its name there: a single law has no number."""
+    place, _, rest = name.partition(".") if laws > 1 else ("1", "", name)
+    return int(place) - 1, rest
 
 
-def _law_behind(loop: Loop, new: Changes) -> Loop:
-    law = loop.environment
-    assert law is not None
-    return replace(loop, environment=law.around(law.met.replace(environment=_behind(loop).replace(**new))))
+def _of_chain(loop: Loop) -> Units:
+    laws = chain_of(loop.environment)
+    return {
+        f"{number}.{name}" if len(laws) > 1 else name: unit
+        for number, law in enumerate(laws, start=1)
+        for name, unit in numbers_within(law, loop.motion).items()
+    }
+
+
+def _chain(loop: Loop, new: Changes) -> Loop:
+    laws = chain_of(loop.environment)
+    changes: list[Changes] = [{} for _ in laws]
+    for name, value in new.items():
+        place, key = law_of(name, len(laws))
+        changes[place][key] = value
+    others = tuple(with_numbers(law, own) for law, own in zip(laws, changes, strict=True))
+    return replace(loop, environment=replace(loop.environment, laws=others))  # type: ignore[type-var]  # what has laws
 
 
 def _of_hand(loop: Loop) -> Units:
@@ -258,7 +276,7 @@ PARTS: Mapping[str, Part] = MappingProxyType(
         "follower": Part("follower.", _of_arms, _arms("follower")),
         "coupling": Part("", _of_coupling, _coupling),
         "law": Part("", _of_law, _law),
-        "behind": Part("environment.", _of_behind, _law_behind),
+        "chain": Part("law.", _of_chain, _chain),
         "hand": Part("operator.", _of_hand, _hand),
         "run": Part("", _of_run, _run),
     }

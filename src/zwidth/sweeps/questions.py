@@ -1,6 +1,6 @@
 """The questions of a sweep: what `check`, `limit`, `simulate` and `pair` answer about one loop.
 
-No answer depends on the time that a search gets: values are not iterated.  What closed forms leave open stays
+Values are not iterated, which takes seconds.  What closed forms leave open stays
 open here, "undecided" or "passive in contact"; `zwidth.check` of that loop spends some seconds more on it.
 """
 

@@ -187,10 +187,16 @@ def _at_once(asked: Request) -> int:
 
 def _refuse_the_same(parameters: Iterable[Parameter]) -> None:
     """A parameter twice, or two of which one is made of the other."""
-    made = {"rate": "sample_period", "counts_per_turn": "resolution", "inertia": "mass"}
+    made = {
+        "rate": "sample_period",
+        "counts_per_turn": "resolution",
+        "inertia": "mass",
+        "cutoff": "time_constant",
+    }
     seen: dict[tuple[str, str], str] = {}
     for own in parameters:
-        number = own.part, made.get(own.key, own.key)
+        owner, dot, key = own.key.rpartition(".")
+        number = own.part, owner + dot + made.get(key, key)
         if number in seen:
             raise InputError(f"{seen[number]} and {own.name} are the same number: vary one of them")
         seen[number] = own.name
@@ -206,7 +212,7 @@ def _check_ends(asked: Request) -> None:
                 loop = changed(asked.loop, dict(zip(asked.parameters, values, strict=True)))
                 asked.question.needs(loop)
             except InputError as error:
-                raise InputError(f"at {own.name} = {value:.12g} {own.unit}: {error}") from None
+                raise InputError(f"at {own.told(value)}: {error}") from None
     _ = asked.columns
 
 

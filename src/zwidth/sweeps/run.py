@@ -51,12 +51,14 @@ def sweep(
     vary
         By the name of a parameter its values: a text "100:3000:50", "0:5 ms:20", "1:1000:20 log" or
         "0, 1 ms, 2 ms"; (start, stop, count); or a list. `damping` is the device's, `virtual_damping` the
-        environment's, `operator.force` the hand's, `leader.damping` that of one arm of a pair. Each value is
-        the nearest double, and stands for the decimal that Python prints for it.
+        environment's, `velocity_filter.time_constant` its filter's, `law.largest_damping` that of a law in a
+        chain, `law.2.largest_damping` of the second of several, `operator.force` the hand's, `leader.damping`
+        that of one arm of a pair. Each value is the nearest double, and stands for the decimal that Python
+        prints for it.
     of
         "check": the verdict, what binds, the largest passive stiffness; "limit": `passive_limit`; "simulate":
         one touch each, what it felt like and the energy got out; "pair": the verdict on two arms. Verdicts
-        are by closed forms: values are not iterated, so that no answer depends on the time that it gets.
+        are by closed forms: values are not iterated.
     operator, duration
         Of a simulation: the hand, and how long [s].
     path

@@ -103,7 +103,7 @@ def test_cells_of_many_counts_from_both_sides(name):
     dear = name == "negative damping"  # to compute its grid
     bounds = {"penetration": "0.0005", "speed": "0.0625" if dear else "0.125"}
     tolerance = 0.15 if dear else 0.075
-    bracket = zw.limit(loop, wall, **bounds, tolerance=tolerance, seconds=60)
+    bracket = zw.limit(loop, wall, **bounds, tolerance=tolerance)
     assert bracket.certificate.verify()
     assert bracket.witness.verify()
     assert bracket.relative_width < tolerance
@@ -149,7 +149,7 @@ def test_hands_between_the_ends_of_cells(name):
     """Random rounds behind the fine encoder, turns within a sample too: none gains where it is proved."""
     wall, delay, damping = WALLS[name]
     loop = device(4096 * 20, damping, "0.05", delay)
-    bracket = zw.limit(loop, wall, penetration="0.002", speed="0.5", tolerance=0.1, seconds=20)
+    bracket = zw.limit(loop, wall, penetration="0.002", speed="0.5", tolerance=0.1, effort=5)
     law = program_of(loop, wall.replace(stiffness=bracket.proved_passive), "0.002", "0.5").law
     step, period = (float(loop.exact(k)) for k in ("resolution", "sample_period"))
     late = loop.exact("delay") / loop.exact("sample_period")
@@ -241,7 +241,7 @@ def test_this_hand_is_never_worse_than_every_hand():
         sample_period="0.001",
         delay="0.0003",
     )
-    bracket = zw.limit(wheel, zw.Wall(57), speed="12.566", penetration="0.0873", seconds=0.2)
+    bracket = zw.limit(wheel, zw.Wall(57), speed="12.566", penetration="0.0873", effort=0.2)
     assert bracket.proved_passive >= bracket.every_hand[0]
     assert bracket.certificate.verify()
     if bracket.proved_active is not None:
@@ -249,21 +249,20 @@ def test_this_hand_is_never_worse_than_every_hand():
         assert bracket.every_hand[1] <= bracket.proved_active
 
 
-def test_the_two_sides_share_the_time(monkeypatch):
-    """A proof that takes ten seconds leaves half of the time to motions that take one."""
+def test_the_two_sides_share_the_work():
+    """A proof that takes ten times as much leaves half of it to motions."""
     clock = [0.0]
-    monkeypatch.setattr(two_sides.time, "monotonic", lambda: clock[0])
 
-    def taking(seconds, shown):
-        def holds(value, deadline):
-            clock[0] += seconds
+    def taking(work, shown):
+        def holds(value, most):
+            clock[0] += work
             return shown(value)
 
         return holds
 
     proofs = two_sides.Side(taking(10.0, lambda v: v < 90), 1, Exact(1))
     motions = two_sides.Side(taking(1.0, lambda v: v > 110), -1, Exact(1))
-    two_sides.approach(proofs, motions, 0.001, 60.0)
+    two_sides.approach(proofs, motions, 0.001, 60.0, lambda: clock[0])
     assert motions.good is not None
     assert motions.good > 110
     assert proofs.spent <= 40

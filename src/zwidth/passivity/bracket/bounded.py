@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from functools import partial
 
@@ -17,6 +16,7 @@ from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, progra
 from zwidth.passivity.storage.row.program import RowProgram
 from zwidth.passivity.storage.row.storage_function import RowStorage
 from zwidth.passivity.storage.row.table import DoesNotClose
+from zwidth.passivity.storage.solve.effort import Until
 from zwidth.passivity.storage.two_sides import approach
 from zwidth.quantity.exact import Exact
 
@@ -29,7 +29,7 @@ class BoundedSearch:
     Parameters
     ----------
     search
-        The parameter, and the time that is left.
+        The parameter, and how much may still be done.
     program
         The dynamic program at a value.
     slow
@@ -52,7 +52,7 @@ class BoundedSearch:
         self.proving, self.refuting = search.sides(self._covers_slow_hands, partial(self._gains, FINE[0]))
 
     def bracket(self) -> Bracket:
-        """The values, once they are close enough or the time is over."""
+        """The values, once they are close enough or enough was done."""
         slowest = self._slow_limit()
         every, towards = self.every, self.proving.towards
         closed = _nearer(every.passive, slowest, towards)
@@ -85,11 +85,11 @@ class BoundedSearch:
     def _slow_limit(self) -> Exact | None:
         """The last value at which a closed form covers this hand; None without one."""
         side, nobody = self.search.sides(self._covers_slow_hands, lambda *_: False)
-        approach(side, nobody, self.search.tolerance / 40, self.search.deadline)
+        approach(side, nobody, self.search.tolerance / 40, self.search.most, self.search.effort)
         return side.good
 
     def _on_cells(self) -> None:
-        """Proofs on coarse cells where counts are too many, each in half of the time that is left."""
+        """Proofs on coarse cells where counts are too many, each with half of what may still be done."""
         for cells in CELLS:
             self.proving.holds = partial(self._is_proved_on_cells, cells)
             self._approach(self.search.share(0.5))
@@ -99,18 +99,21 @@ class BoundedSearch:
     def _on_steps(self) -> None:
         """Proofs and motions on finer and finer steps; no more once nothing is proved on one of them."""
         for steps, fine in zip(STEPS, (FINE[0], *[FINE[1]] * 3), strict=True):
-            if time.monotonic() >= self.search.deadline or self._is_done():
+            if self.search.effort() >= self.search.most or self._is_done():
                 break
             self.proving.holds, self.refuting.holds = (
                 partial(self._is_proved, steps),
                 partial(self._gains, fine),
             )
-            self._approach(self.search.deadline)
+            self._approach(self.search.most)
             if self.proving.good is None:
                 break
 
-    def _approach(self, deadline: float) -> None:
-        approach(self.proving, self.refuting, self.search.tolerance / 4, deadline)
+    def _approach(self, most: float) -> None:
+        approach(self.proving, self.refuting, self.search.tolerance / 4, most, self.search.effort)
+
+    def _until(self, most: float) -> Until:
+        return Until(self.search.effort, most)
 
     def _is_done(self) -> bool:
         return self.search.is_close(self.proving.good, self.refuting.good)
@@ -119,24 +122,24 @@ class BoundedSearch:
         self.search.count()
         return self._keep_proof(value, self.slow(value))
 
-    def _is_proved_on_cells(self, cells: int, value: Exact, deadline: float) -> bool:
+    def _is_proved_on_cells(self, cells: int, value: Exact, most: float) -> bool:
         self.search.count()
-        proof = self.program(value).prove_on_cells(cells, deadline, self.search.report)
+        proof = self.program(value).prove_on_cells(cells, self._until(most), self.search.report)
         return self._keep_proof(value, proof)
 
-    def _is_proved(self, steps: int, value: Exact, deadline: float) -> bool:
+    def _is_proved(self, steps: int, value: Exact, most: float) -> bool:
         self.search.count()
         try:
             program = self.program(value)
-            in_time = min(deadline, self.search.deadline - program.checking_time(steps))
-            return self._keep_proof(value, program.prove(steps, in_time, self.search.report))
+            until = self._until(min(most, self.search.most - program.checking(steps)))
+            return self._keep_proof(value, program.prove(steps, until, self.search.report))
         except DoesNotClose:
             return False
 
-    def _gains(self, fine: int, value: Exact, deadline: float) -> bool:
+    def _gains(self, fine: int, value: Exact, most: float) -> bool:
         self.search.count()
         try:
-            motion = self.program(value).refute(fine, deadline, self.search.report)
+            motion = self.program(value).refute(fine, self._until(most), self.search.report)
         except DoesNotClose:
             return False
         if motion is not None:

@@ -47,6 +47,8 @@ class Bracket(Result):
         The bounds on the hand, exact; None where the bracket is about every hand.
     violation
         What of the linear criterion is violated at `proved_active`, where closed conditions found it.
+    cut_by_time
+        True where a time that was given ended the search: another machine may find a closer one.
     """
 
     FORMAT = "zwidth limit 1"
@@ -65,6 +67,7 @@ class Bracket(Result):
     storage: StorageFunction | RowStorage | None = None
     bounds: HandBounds | None = None
     violation: Violation | None = None
+    cut_by_time: bool = False
 
     @property
     def hand(self) -> str:
@@ -87,7 +90,8 @@ class Bracket(Result):
         """The bracket in a sentence."""
         name = in_words(self.parameter).replace("environment.", "").replace("device.", "device ")
         if self.proved_passive is None and self.proved_active is None:
-            return f"{name}: nothing was decided in the time given"
+            given = "in the time given" if self.cut_by_time else "with the effort given"
+            return f"{name}: nothing was decided {given}"
         passive, active = in_unit(self.proved_passive, self.unit), in_unit(self.proved_active, self.unit)
         if self.proved_active is None:
             return f"{name}: {passive} is proved passive, and nothing is refuted"
@@ -109,5 +113,6 @@ class Bracket(Result):
             f"every_hand_{suffix}": list(self.every_hand),
             "assumptions": list(self.assumptions),
             "evaluations": self.evaluations,
+            **({"cut_by_time": True} if self.cut_by_time else {}),
             **evidence_of(self),
         }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from math import inf
 from typing import Any
@@ -20,7 +19,7 @@ from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.storage.program import DynamicProgram, program_of
 from zwidth.passivity.storage.row.program import RowProgram, row_program
 from zwidth.passivity.storage.slow_hands import slow_hands
-from zwidth.passivity.storage.solution import time_limit
+from zwidth.passivity.storage.solve.effort import EFFORT, Effort, checked_effort, time_limit
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.rendering.rendered import laws_of
 
@@ -36,7 +35,8 @@ def passive_limit(
     force_resolution: bool = False,
     friction: FrictionCurve | None = None,
     tolerance: float = 0.01,
-    seconds: float = 60.0,
+    effort: float = EFFORT,
+    seconds: float | None = None,
     iterate: bool = True,
     progress: Callable[[int, int], None] | None = None,
 ) -> Bracket:
@@ -64,10 +64,14 @@ def passive_limit(
         Friction measured at several speeds, in place of the device's b and f_c.
     tolerance
         Relative width of the bracket that is wanted.
+    effort
+        How much is done before the bracket so far is returned: 1 is about a second of one core. Work is
+        counted, not time, so that every machine finds the same, to the last bit.
     seconds
-        Time after which the bracket so far is returned; that of compiling, once, is not counted.
+        Time after which it is returned as well [s]; that of compiling, once, is not counted. `cut_by_time`
+        says where it was. Default: none.
     iterate
-        False for closed conditions alone: the same on every machine, however long it takes.
+        False for closed conditions alone, however long they take.
     progress
         Told (loops decided, about how many there will be).
 
@@ -87,17 +91,18 @@ def passive_limit(
     law = as_environment(environment)
     refuse_without_part(parameter.removeprefix("device."), force_limit, force_resolution)
     asked = parameter_of(device, law, parameter)
+    most = checked_effort(effort)
     time_limit(seconds)
     counted = penetration, speed, force_limit, force_resolution, friction
     if not iterate:
-        return _by_closed_forms(Search(asked, tolerance, time.monotonic(), inf, progress), counted)
+        return _by_closed_forms(Search(asked, tolerance, Effort(), inf, progress), counted)
     ideal = ends(device.resolution)[1] == 0
     in_a_row = bool(laws_of(law))
     if not (ideal or in_a_row or is_stepped(law)) and isinstance(
         first := program_of(device, law, *counted), DynamicProgram
     ):
         first.warm_up()
-    search = Search(asked, tolerance, time.monotonic(), time_limit(seconds), progress)
+    search = Search(asked, tolerance, Effort(time_limit(seconds)), most, progress)
     if friction is not None and asked.name in ("device.damping", "device.coulomb_friction"):
         raise InputError(f"{parameter} plays no part beside a friction curve: leave out one of the two")
     closed = not (force_limit or force_resolution or friction is not None)

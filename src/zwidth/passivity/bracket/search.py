@@ -1,4 +1,4 @@
-"""The two values of a bracket, sought by closed forms; loops and time are counted."""
+"""The two values of a bracket, sought by closed forms; loops and work are counted."""
 
 from __future__ import annotations
 
@@ -18,13 +18,14 @@ from zwidth.passivity.storage.evidence.gain import Gain
 from zwidth.passivity.storage.evidence.storage_function import StorageFunction
 from zwidth.passivity.storage.hand_bounds import HandBounds
 from zwidth.passivity.storage.row.storage_function import RowStorage
+from zwidth.passivity.storage.solve.effort import Effort
 from zwidth.passivity.storage.two_sides import Side, approach
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact
 
 Holds = Callable[[Exact, float], bool]
-"""Whether a claim is shown at a value by a time."""
+"""Whether a claim is shown at a value with no more work than that."""
 
 
 class Found(NamedTuple):
@@ -44,32 +45,32 @@ def is_stepped(law: Environment) -> bool:
 
 
 _LOOP = 0.01
-"""What one loop is counted as, of which closed forms decide a hundred in a second [s]."""
+"""What one loop is counted as at least: closed forms decide a hundred in a second."""
 
 NOTHING = Found(None, None, None, None, Scope())
 
 
 class Search:
-    """Looks for the two values, counting loops and time."""
+    """Looks for the two values, counting loops and work."""
 
     def __init__(
         self,
         parameter: Parameter,
         tolerance: float,
-        start: float,
-        seconds: float,
+        effort: Effort,
+        most: float,
         progress: Callable[[int, int], None] | None,
     ) -> None:
         self.parameter, self.tolerance = parameter, tolerance
-        self.start, self.deadline, self.progress = start, start + seconds, progress
+        self.effort, self.most, self.progress = effort, most, progress
+        self.start = time.monotonic()
         self.evaluations = 0
         self.first = Exact(parameter.now or 1.0)
 
     def by_closed_forms(self, every_law: bool = False) -> Found | None:
         """What certificates and motions show of every hand; None for a law that has none.
 
-        Loops are counted in the place of seconds, so that a busy machine finds the same.  With `every_law`
-        those without H(z) are looked at too.
+        With `every_law` those without H(z) are looked at too.
         """
         verdicts: dict[Exact, Any] = {}
 
@@ -94,7 +95,7 @@ class Search:
         except InputError:  # a law without H(z), which only value iteration can decide
             return None
         sides = self.sides(proved, refuted)
-        approach(*sides, self.tolerance / 4, inf, self._counted)
+        approach(*sides, self.tolerance / 4, inf, self.effort)
         passive, active = (side.good for side in sides)
         good = None if passive is None else verdict(passive)
         bad = None if active is None else verdict(active)
@@ -102,10 +103,6 @@ class Search:
         proof = None if good is None else good.certificate
         motion, violation = (None, None) if bad is None else (bad.witness, bad.violation)
         return Found(passive, active, proof, motion, known.scope, violation)
-
-    def _counted(self) -> float:
-        """A time that passes with every loop; over where that of the clock is."""
-        return inf if time.monotonic() >= self.deadline else self.evaluations * _LOOP
 
     def bracket(
         self,
@@ -129,6 +126,7 @@ class Search:
             storage,
             bounds,
             found.violation,
+            self.effort.is_cut,
         )
 
     def sides(self, proved: Holds, refuted: Holds) -> tuple[Side, Side]:
@@ -143,13 +141,14 @@ class Search:
         return abs(active - passive) <= self.tolerance * max(active, passive)
 
     def share(self, part: float) -> float:
-        """When a part of the time that is left will be over."""
-        now = time.monotonic()
-        return now + part * max(self.deadline - now, 0.0)
+        """How much will be done when a part of what is left is."""
+        done = self.effort()
+        return done + part * max(self.most - done, 0.0)
 
     def count(self) -> None:
         """One loop more is looked at."""
         self.evaluations += 1
+        self.effort.spend(_LOOP)
         self.report(0)
 
     def report(self, _: int) -> None:

@@ -7,10 +7,8 @@ State: position, and what the law remembers.  Move: Δx in one sample.  Reward:
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import inf
 from typing import Any
 
 from zwidth.device.device import Device
@@ -31,6 +29,7 @@ from zwidth.passivity.storage.hand_bounds import HandBounds, hand_bounds
 from zwidth.passivity.storage.law import FiniteLaw, finite_law
 from zwidth.passivity.storage.losses import Losses
 from zwidth.passivity.storage.row.program import RowProgram, row_program
+from zwidth.passivity.storage.solve.effort import Effort, Until, freely
 from zwidth.passivity.storage.solve.value_iteration import Progress, value_iteration
 from zwidth.quantity.exact import RealLike
 from zwidth.rendering.rendered import laws_of
@@ -44,8 +43,8 @@ FINE = (1024, 16384)
 _QUICK = 100_000_000
 """Pairs of states and moves up to which a storage function is sought at once."""
 
-_CHECKED_IN_A_SECOND, _SLOWER = 300_000_000, 10
-"""Of such pairs, on a slow processor; and by how much laws that relax take longer."""
+_CHECKED, _SLOWER = 300_000_000, 10
+"""Of such pairs, in a unit of `effort`; and by how much laws that relax take longer."""
 
 _MOST_CHECKED = 1_500_000_000
 """The same: what the checker takes on."""
@@ -88,9 +87,9 @@ class DynamicProgram:
         """True where a storage function takes its time."""
         return self._moves(STEPS[0]) > _QUICK or self.too_large is not None
 
-    def checking_time(self, steps: int) -> float:
-        """How long the checker may take over a storage function [s]."""
-        return 0.02 + self._moves(steps) / _CHECKED_IN_A_SECOND
+    def checking(self, steps: int) -> float:
+        """What the checker may have to do over a storage function, in the unit of `effort`."""
+        return 0.02 + self._moves(steps) / _CHECKED
 
     def _moves(self, steps: int) -> int:
         """Pairs of states and moves on the grid, by the outer approximation."""
@@ -117,13 +116,13 @@ class DynamicProgram:
         return ("rounded power",)
 
     def prove(
-        self, steps: int, deadline: float = inf, progress: Progress | None = None, backend: str = "cpu"
+        self, steps: int, until: Until | None = None, progress: Progress | None = None, backend: str = "cpu"
     ) -> StorageFunction | None:
         """A storage function on so many steps per count that the checker accepts, or None."""
         if self.too_large is not None or self._moves(steps) > _MOST_CHECKED:
             return None
         grid = self._grid(self.losses, self.domain, steps, "outer")
-        iteration = value_iteration(grid, deadline, progress, backend)
+        iteration = value_iteration(grid, until, progress, backend)
         return None if iteration.value is None else StorageFunction(iteration, self.motion)
 
     def warm_up(self) -> None:
@@ -140,7 +139,7 @@ class DynamicProgram:
             )
             if reach > 1:
                 few.prove_on_cells(4)
-                few.refute(4, time.monotonic() + 1)
+                few.refute(4, Until(Effort(), 1.0))
                 continue
             found = few.prove(1)
             if found is not None:
@@ -153,24 +152,25 @@ class DynamicProgram:
         return any(has_cells(self.law, self.losses, self.domain, cells) for cells in CELLS)
 
     def prove_on_cells(
-        self, cells: int, deadline: float = inf, progress: Progress | None = None
+        self, cells: int, until: Until | None = None, progress: Progress | None = None
     ) -> Certificate | None:
         """A proof that the checker accepts, on cells of which the longest move has so many, or None."""
-        return prove_on_cells(self.law, self.losses, self.domain, self.motion, cells, deadline, progress)
+        limit = freely() if until is None else until
+        return prove_on_cells(self.law, self.losses, self.domain, self.motion, cells, limit, progress)
 
     def refute(
-        self, steps: int, deadline: float = inf, progress: Progress | None = None, backend: str = "cpu"
+        self, steps: int, until: Until | None = None, progress: Progress | None = None, backend: str = "cpu"
     ) -> Gain | None:
         """A motion that gains, recomputed exactly, or None."""
         if self.domain.within.highest < 1:  # no reading inside lies within the bounds
             return None
         for every, domain in grids(self.law, self.losses, self.domain):
-            if time.monotonic() >= deadline:
+            if until is not None and until.is_over:
                 break
             cells = replace(self.losses, resolution=self.losses.resolution * every)
             fine = max(self._fine_enough(steps) // every, _STEPS_OF_MANY) * every
             grid = self._grid(cells, domain, fine, "inner", every)
-            iteration = value_iteration(grid, deadline, progress, backend)
+            iteration = value_iteration(grid, until, progress, backend)
             motion = gain(iteration, self.motion, self.bounds) if iteration.cycle else None
             if motion is not None:
                 return motion

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +20,7 @@ from zwidth.passivity.storage.evidence.storage_function import StorageFunction
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of, program_scope
 from zwidth.passivity.storage.row.program import RowProgram
 from zwidth.passivity.storage.slow_hands import slow_hands
+from zwidth.passivity.storage.solve.effort import EFFORT, Effort, Until, checked_effort, time_limit
 from zwidth.passivity.storage.solve.value_iteration import Progress
 from zwidth.passivity.wording import claim_of_passivity
 from zwidth.quantity.exact import RealLike
@@ -48,6 +48,8 @@ class AvailableStorage(PassivityAnswer):
         The motion that gains; None unless active.
     storage
         The storage function, to look at; None unless passive.
+    cut_by_time
+        True where a time that was given ended the search: another machine may decide.
     """
 
     FORMAT = "zwidth worst hand 1"
@@ -60,6 +62,7 @@ class AvailableStorage(PassivityAnswer):
     certificate: Certificate | None
     witness: Gain | None
     storage: StorageFunction | None
+    cut_by_time: bool = False
 
     @property
     def claim(self) -> str:
@@ -68,7 +71,9 @@ class AvailableStorage(PassivityAnswer):
             return claim_of_passivity(self.scope, False)
         if self.witness is not None:
             return f"A motion of the hand takes energy out of this loop: {self.witness.describe()}."
-        return "Neither a proof nor a motion was found: finer steps, or more time, may decide."
+        if self.cut_by_time:
+            return "Neither a proof nor a motion was found before the time given was over: more may decide."
+        return "Neither a proof nor a motion was found: finer steps, or more effort, may decide."
 
     def figure(self) -> Any:
         """The storage function; of an active loop the motion."""
@@ -104,7 +109,8 @@ def available_storage(
     force_limit: bool = False,
     force_resolution: bool = False,
     friction: FrictionCurve | None = None,
-    seconds: float = 60.0,
+    effort: float = EFFORT,
+    seconds: float | None = None,
     progress: Progress | None = None,
     backend: str = "cpu",
 ) -> AvailableStorage:
@@ -135,8 +141,11 @@ def available_storage(
     friction
         Friction measured at several speeds, in place of the device's b and f_c.  A proof uses
         all models below the curve at once; a motion pays what the curve says.
+    effort
+        How much is done before the answer is "undecided": 1 is about a second of one core. Work is counted,
+        not time, so that every processor finds the same, to the last bit.
     seconds
-        Time after which the answer is "undecided".
+        Time after which it is "undecided" as well [s]; `cut_by_time` says where it was. Default: none.
     progress
         Told the number of states that still improve, round by round.
     backend
@@ -152,48 +161,37 @@ def available_storage(
     law = as_environment(environment)
     said = program_scope(device, law, program)
     program.warm_up()
-    deadline = time.monotonic() + time_limit(seconds)
+    most, done = checked_effort(effort), Effort(time_limit(seconds))
+    whole = Until(done, most)
     counted = force_limit or force_resolution or friction is not None
     slow = None if counted else slow_hands(device, law, program.bounds.speed)
     if program.is_large:
-        slow = slow or _on_cells(program, deadline, progress)
+        slow = slow or _on_cells(program, whole, progress)
         if slow is not None:
             return AvailableStorage("passive", said, device, law, slow, None, None)
     for steps, fine in zip(STEPS, (*FINE, None, None), strict=True):
-        in_time = time.monotonic() + (deadline - time.monotonic()) / 2 - program.checking_time(steps)
-        storage = program.prove(steps, in_time, progress, backend)
+        half = Until(done, done.spent + (most - done.spent) / 2 - program.checking(steps))
+        storage = program.prove(steps, half, progress, backend)
         if storage is not None:
             certificate = storage.certificate()
+            done.spend(program.checking(steps))
             if certificate.verify():  # nothing is claimed that the checker does not accept
                 return AvailableStorage("passive", said, device, law, certificate, None, storage)
-        motion = None if fine is None else program.refute(fine, deadline, progress, backend)
+        motion = None if fine is None else program.refute(fine, whole, progress, backend)
         if motion is not None:
             return AvailableStorage("active", said, device, law, None, motion, None)
-        if time.monotonic() >= deadline:
+        if whole.is_over:
             break
     if slow is not None:
         return AvailableStorage("passive", said, device, law, slow, None, None)
     if program.too_large is not None:
         raise InputError(program.too_large)
-    return AvailableStorage("undecided", said, device, law, None, None, None)
+    return AvailableStorage("undecided", said, device, law, None, None, None, done.is_cut)
 
 
 def _on_cells(
-    program: DynamicProgram | RowProgram, deadline: float, progress: Progress | None
+    program: DynamicProgram | RowProgram, until: Until, progress: Progress | None
 ) -> Certificate | None:
     """The first proof on cells of many counts."""
-    found = (program.prove_on_cells(cells, deadline, progress) for cells in CELLS)
+    found = (program.prove_on_cells(cells, until, progress) for cells in CELLS)
     return next((certificate for certificate in found if certificate is not None), None)
-
-
-def time_limit(seconds: float) -> float:
-    """The time that a search may take [s].
-
-    Raises
-    ------
-    InputError
-        If it is not a number ≥ 0.
-    """
-    if not isinstance(seconds, int | float) or not seconds >= 0:
-        raise InputError(f"seconds must be a number ≥ 0, got {seconds!r}: it is the time that may pass")
-    return float(seconds)

@@ -1,4 +1,4 @@
-"""Two claims sought from two sides of a limit, the time shared fairly between them.
+"""Two claims sought from two sides of a limit, the work shared fairly between them.
 
 Each side asks at one value after the other: on from the farthest at which its claim was shown, and then
 between it and the nearest at which it was not.  An answer is evidence by itself, so that a law which is safe,
@@ -7,7 +7,6 @@ unsafe and safe again loses only the best bracket.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from math import log2, sqrt
 
@@ -17,11 +16,11 @@ _FARTHEST = 60
 """Doublings from the first guess after which there is no limit."""
 
 _AHEAD = 0.5
-"""Time by which the first side may be ahead of the other [s]: it tells the other where to begin."""
+"""Work by which the first side may be ahead of the other: it tells the other where to begin."""
 
 
 Clock = Callable[[], float]
-"""The time [s]."""
+"""What has been done so far, as `solve.effort` counts it."""
 
 
 class Side:
@@ -30,7 +29,7 @@ class Side:
     Parameters
     ----------
     holds
-        Whether the claim was shown at a value by the time given [s, as `time.monotonic`].
+        Whether the claim was shown at a value with no more than what is given, of all that is done.
     towards
         1 if it is the harder to show the larger the value, −1 if the smaller.
     origin
@@ -51,11 +50,11 @@ class Side:
         """Seek anew with sharper means: what failed before may be shown now."""
         self.bad, self._ahead = None, 0
 
-    def ask(self, value: Exact, other: Side, deadline: float, clock: Clock) -> None:
-        """Try the claim at a value: no longer than a part of the time left, that there is some for others."""
+    def ask(self, value: Exact, other: Side, most: float, clock: Clock) -> None:
+        """Try the claim at a value, with a part of the work that is left, that there is some for others."""
         self._ahead += (self.good is None) != (self._nearest(other.good) is None)
         begun = clock()
-        left = max(deadline - begun, 0.0)
+        left = max(most - begun, 0.0)
         if self.holds(value, begun + left / (2 if self.good is None else 4)):
             self.good = value
         else:
@@ -86,21 +85,17 @@ class Side:
         return min(known, key=lambda value: self.towards * value) if known else None
 
 
-def approach(first: Side, second: Side, fine: float, deadline: float, clock: Clock | None = None) -> None:
-    """Let both sides ask until neither gains, or the time is up; the one that has had less time goes next.
-
-    The clock is that of the machine; with one that counts work every machine finds the same.
-    """
-    clock = time.monotonic if clock is None else clock
+def approach(first: Side, second: Side, fine: float, most: float, clock: Clock) -> None:
+    """Let both sides ask until neither gains, or so much is done; the one that has had less goes next."""
     for side in (first, second):
         side.begin()
-    while clock() < deadline:
+    while clock() < most:
         own, others = first.next(second, fine), second.next(first, fine)
         behind = first.spent <= second.spent + _AHEAD
         if own is not None and (behind or others is None):
-            first.ask(own, second, deadline, clock)
+            first.ask(own, second, most, clock)
         elif others is not None:
-            second.ask(others, first, deadline, clock)
+            second.ask(others, first, most, clock)
         else:
             return
 

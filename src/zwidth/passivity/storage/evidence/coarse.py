@@ -8,6 +8,7 @@ from zwidth.passivity.storage.evidence.storage_function import loop_document, pa
 from zwidth.passivity.storage.grid.coarse import CoarseGrid, coarse_grid
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.passivity.storage.losses import Integers, Losses
+from zwidth.passivity.storage.solve.effort import Until
 from zwidth.passivity.storage.solve.value_iteration import Progress, value_iteration
 from zwidth.quantity.text import exact_text
 
@@ -16,6 +17,9 @@ CELLS = (16, 32, 64, 128)
 
 MOST_STATES = 400_000
 
+_CHECKED = 1e8
+"""Pairs of states and moves that the checker takes on in a unit of `effort`."""
+
 
 def prove_on_cells(
     law: FiniteLaw,
@@ -23,17 +27,18 @@ def prove_on_cells(
     domain: Domain,
     motion: str,
     cells: int,
-    deadline: float,
+    until: Until,
     progress: Progress | None,
 ) -> Certificate | None:
     """A storage function that the checker accepts, or None."""
     grid = coarse_grid(law, losses, domain, cells)
     if grid is None or not has_cells(law, losses, domain, cells):
         return None
-    value = value_iteration(grid, deadline, progress).value
+    value = value_iteration(grid, until, progress).value
     if value is None:
         return None
     certificate = Certificate((_document(grid, losses, motion, value),))
+    until.effort.spend(value.size * grid.width / _CHECKED)
     return certificate if certificate.verify() else None
 
 

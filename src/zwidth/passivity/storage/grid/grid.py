@@ -47,6 +47,9 @@ from zwidth.quantity.text import exact_text
 
 Approximation = Literal["outer", "inner"]
 
+_BY_ONE_HULL, _BY_HULLS, _BY_MOVES = 5e-8, 2e-7, 2e-8
+"""What a state, or a move from it, costs in a round by each kernel, in the unit of `effort`."""
+
 
 @dataclass(frozen=True)
 class Grid:
@@ -316,11 +319,13 @@ class Grid:
             return OnCard(*rest, self.forces, self.costs, self.nodes, self.domain.reach, self.steps)
         tables = self.forces, self.costs, self.nodes, self.places, self.domain.reach
         if self.losses.part == 1:
-            return BestMoves(*rest, sweep, (*tables, self.hull_steps))
+            work = _BY_ONE_HULL if self.hull_steps else _BY_HULLS
+            return BestMoves(*rest, sweep, (*tables, self.hull_steps), work)
         tables = *tables, self.later_forces, self.later_costs
         if self.every == 1:
-            return BestMoves(*rest, sweep_parts, tables)
-        return BestMoves(*rest, sweep_turning, (*tables, *self._turning))
+            return BestMoves(*rest, sweep_parts, tables, _BY_HULLS)
+        moves = self.width * self.nodes.size
+        return BestMoves(*rest, sweep_turning, (*tables, *self._turning), _BY_MOVES * moves)
 
     @property
     def hull_steps(self) -> int:

@@ -15,10 +15,10 @@ follows them is watched, with the average as it really becomes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, partial
+from functools import cached_property
 from math import ceil, floor
 from typing import Any
 
@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from zwidth.errors import InputError
 from zwidth.passivity.storage.grid.grid import Grid
 from zwidth.passivity.storage.losses import Integers
+from zwidth.passivity.storage.solve.effort import Until
 from zwidth.passivity.storage.solve.hull import NOWHERE
 from zwidth.passivity.storage.solve.relaxing import sweep_relaxing
 from zwidth.passivity.storage.solve.value_iteration import THREADS, Move, Sweep, slices
@@ -35,6 +36,9 @@ from zwidth.passivity.storage.solve.watched import RelaxingForce, best_cycle, fo
 
 ONE = 1 << 16
 """Weights of interpolation are whole multiples of 1/ONE, taken from both sides."""
+
+_MOVE = 5e-9
+"""What a move from a state costs in a round, in the unit of `effort`."""
 
 _STARTS = 12
 """States from which the best moves are followed in one search."""
@@ -190,18 +194,29 @@ class RelaxingSweep(Sweep):
     """V on the levels while it is improved; cycles that gain are met by following the best moves."""
 
     def __init__(self, grid: RelaxingGrid) -> None:
-        super().__init__(grid.first_guess, THREADS, _MAX_ROUNDS[grid.approximation])
+        first = grid.first_guess
+        work = _MOVE * first.size * grid.width * grid.nodes.size
+        super().__init__(first, THREADS, work, _MAX_ROUNDS[grid.approximation])
         self.grid = grid
-        self._blocks = slices(grid.domain.cells, _BLOCKS)
+        self._blocks = slices(0, grid.domain.cells, _BLOCKS)
         self._tables: tuple[Any, ...] = (
             *(grid.rows, *grid.all_forces, *grid.images, grid.costs, grid.nodes),
             *(grid.steps, grid.domain.reach, grid.approximation == "outer"),
         )
 
-    def jobs(self) -> Iterable[Callable[[], int]]:
-        """A job for each block of cells."""
+    def improve(self, pool: ThreadPoolExecutor, until: Until) -> int | None:
+        """One round, block of cells by block."""
         before = self.value.copy()
-        return [partial(sweep_relaxing, self.value, before, *block, *self._tables) for block in self._blocks]
+
+        def done(block: tuple[int, int]) -> int | None:
+            if until.effort.is_late():
+                return None
+            improved: int = sweep_relaxing(self.value, before, *block, *self._tables)
+            return improved
+
+        found = list(pool.map(done, self._blocks))
+        counts = [count for count in found if count is not None]
+        return sum(counts) if len(counts) == len(found) else None
 
     def gaining_cycle(self) -> tuple[Move, ...]:
         """The nodes of a cycle that gains, each with its cell; empty if none was met.

@@ -23,6 +23,9 @@ from zwidth.passivity.storage.row.table import Table
 from zwidth.passivity.storage.solve.table import sweep_table
 from zwidth.passivity.storage.solve.value_iteration import BestMoves, Move, Sweep
 
+_MOVE = 2.5e-9
+"""What a move from a state costs in a round, in the unit of `effort`."""
+
 NO_LAW = FiniteLaw((), "none")
 """In place of a law that can be written down: its forces stand in the table."""
 
@@ -69,7 +72,10 @@ class RowGrid(Grid):
         if backend != "cpu":
             raise InputError("laws in a chain are for the processor: leave out backend='gpu'")
         tables = self.table.successors, self.forces, self.costs, self.nodes
-        return BestMoves(self.first_guess.copy(), self.table.states, self.move_at, sweep_table, tables)
+        moves = self.table.successors.shape[1] * self.nodes.size
+        return BestMoves(
+            self.first_guess.copy(), self.table.states, self.move_at, sweep_table, tables, _MOVE * moves
+        )
 
     def move_at(self, state: int) -> Move:
         """The node, in steps from the lower edge of cell 0, and the state of the table."""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from math import ceil, inf
+from math import ceil
 
 from zwidth.device.device import Device
 from zwidth.device.friction import FrictionCurve
@@ -21,6 +21,7 @@ from zwidth.passivity.storage.row.grid import NO_LAW, RowGrid
 from zwidth.passivity.storage.row.law import RowLaw, row_law
 from zwidth.passivity.storage.row.storage_function import RowStorage
 from zwidth.passivity.storage.row.table import MOST_STATES, DoesNotClose, Table, tabulate
+from zwidth.passivity.storage.solve.effort import Until
 from zwidth.passivity.storage.solve.value_iteration import Progress, value_iteration
 from zwidth.quantity.exact import RealLike
 
@@ -66,8 +67,8 @@ class RowProgram:
         """True where a storage function takes its time: no closed form stands in for it."""
         return False
 
-    def checking_time(self, steps: int) -> float:
-        """How long the checker may take over a storage function [s]."""
+    def checking(self, steps: int) -> float:
+        """What the checker may have to do over a storage function, in the unit of `effort`."""
         moves = self.table.successors.size * (steps + 1) ** 2
         return 0.02 + moves / 300_000_000
 
@@ -103,18 +104,20 @@ class RowProgram:
         return tabulate(self.law, self.domain, self.most)
 
     def prove(
-        self, steps: int, deadline: float = inf, progress: Progress | None = None, backend: str = "cpu"
+        self, steps: int, until: Until | None = None, progress: Progress | None = None, backend: str = "cpu"
     ) -> RowStorage | None:
         """A storage function on so many steps per count, or None."""
         grid = RowGrid(NO_LAW, self.losses, self.domain, steps, "outer", table=self.table)
-        iteration = value_iteration(grid, deadline, progress, backend)
+        iteration = value_iteration(grid, until, progress, backend)
         return None if iteration.value is None else RowStorage(iteration, self.motion, self.law)
 
-    def prove_on_cells(self, cells: int, deadline: float = inf, progress: Progress | None = None) -> None:
+    def prove_on_cells(
+        self, cells: int, until: Until | None = None, progress: Progress | None = None
+    ) -> None:
         """Nothing: a table has the states of every count."""
 
     def refute(
-        self, steps: int, deadline: float = inf, progress: Progress | None = None, backend: str = "cpu"
+        self, steps: int, until: Until | None = None, progress: Progress | None = None, backend: str = "cpu"
     ) -> Gain | None:
         """A motion that gains, replayed by the simulator, or None."""
         within = self.domain.within
@@ -123,7 +126,7 @@ class RowProgram:
         same = (within.lowest, within.highest) == (self.domain.lowest, self.domain.highest)
         table = self.table if same else tabulate(self.law, within, self.most)
         grid = RowGrid(NO_LAW, self.losses, within, steps, "inner", table=table)
-        iteration = value_iteration(grid, deadline, progress, backend)
+        iteration = value_iteration(grid, until, progress, backend)
         return row_gain(iteration, self.law, self.device, self.environment) if iteration.cycle else None
 
 

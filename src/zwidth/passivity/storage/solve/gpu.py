@@ -14,10 +14,14 @@ import numpy as np
 
 from zwidth.loop.gpu import _cuda as cuda_or_message
 from zwidth.passivity.storage.losses import Integers
+from zwidth.passivity.storage.solve.effort import Until
 from zwidth.passivity.storage.solve.hull import sweep
 from zwidth.passivity.storage.solve.value_iteration import BestMoves, Move
 
 _THREADS = 128
+
+_STATE = 5e-9
+"""What a state costs in a round, in the unit of `effort`."""
 
 _SCRATCH = 2**26
 """Points in the hulls of all threads at once, each of three 64-bit numbers: 1.5 GiB."""
@@ -51,7 +55,7 @@ class OnCard(BestMoves):
         steps: int,
     ) -> None:
         cuda = cuda_or_message()
-        super().__init__(value, groups, move_at, sweep, ())
+        super().__init__(value, groups, move_at, sweep, (), work=_STATE)
         points = (2 * reach + 1) * nodes.size
         self.steps, self.reach, self.groups = steps, reach, groups
         threads = min(groups * nodes.size, max(_SCRATCH // points, _THREADS))
@@ -62,7 +66,7 @@ class OnCard(BestMoves):
         self.hulls = [cuda.device_array((points, threads), np.int64) for _ in range(3)]
         self.improved = cuda.device_array(threads, np.int64)
 
-    def improve(self, pool: ThreadPoolExecutor, deadline: float) -> int:
+    def improve(self, pool: ThreadPoolExecutor, until: Until) -> int:
         """One round; returns how many states improved."""
         from zwidth.passivity.storage.solve.cuda_kernel import gather, improve_all
 

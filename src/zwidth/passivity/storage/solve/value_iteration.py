@@ -13,12 +13,10 @@ a gaining cycle is read from what the kernel leaves.
 from __future__ import annotations
 
 import os
-import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import partial
 from itertools import pairwise
 from math import inf
 from typing import Any, Generic, Protocol, TypeVar
@@ -28,6 +26,7 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.passivity.storage.losses import Integers
 from zwidth.passivity.storage.solve.cycle import best_cycle
+from zwidth.passivity.storage.solve.effort import Until, freely
 
 Progress = Callable[[int], None]
 """Told, after each round, how many states improved in it."""
@@ -38,11 +37,16 @@ Move = tuple[int, int]
 THREADS = min(os.cpu_count() or 1, 8)
 
 ALONE = 100_000
-"""States up to which one thread iterates: several improve the same values in an order of their own, and then
-the same grid may leave another motion each time."""
+"""States up to which a grid is one block: more of them cost rounds."""
+
+BLOCKS = 8
+"""Of a larger grid, improved side by side, however many threads there are: another number, another motion."""
 
 AT_ONCE = 20_000
-"""States that are improved before the clock is looked at."""
+"""States that are improved before the clock is looked at, where time may end a search."""
+
+ROUND = 3e-4
+"""What a round costs beside its states, in the unit of `effort`."""
 
 _LOOK = 4
 """Rounds between two searches for a cycle: a search costs less than a round."""
@@ -57,33 +61,32 @@ class Sweep(ABC):
         V at the start, in energy units; improved in place.
     threads
         How many improve it at once.
+    work
+        What a round costs, in the unit of `effort`.
     max_rounds
         Rounds after which the search is given up.
     """
 
-    def __init__(self, value: Integers, threads: int, max_rounds: float = inf) -> None:
+    def __init__(self, value: Integers, threads: int, work: float, max_rounds: float = inf) -> None:
         self.value, self.threads, self.max_rounds = value, threads, max_rounds
+        self.work = ROUND + work
 
     @abstractmethod
-    def jobs(self) -> Iterable[Callable[[], int]]:
-        """One round: functions that improve a part of V each and return how many states improved."""
+    def improve(self, pool: ThreadPoolExecutor, until: Until) -> int | None:
+        """One round; returns how many states improved, None if the time was over before its end."""
 
     @abstractmethod
     def gaining_cycle(self) -> tuple[Move, ...]:
         """The moves of a cycle that gains, if there is one among the best moves."""
 
-    def improve(self, pool: ThreadPoolExecutor, deadline: float) -> int | None:
-        """One round; returns how many states improved, None if the deadline came before its end."""
-
-        def done(job: Callable[[], int]) -> int | None:
-            return None if time.monotonic() >= deadline else job()
-
-        found = list(pool.map(done, self.jobs()))
-        return None if None in found else sum(count for count in found if count is not None)
-
 
 class BestMoves(Sweep):
     """A sweep that keeps the best move of each state: a cycle that they close gains in every round.
+
+    A large grid is cut into blocks.  Each is improved on values of its own, those of the others as they were
+    before the round, so that no order of threads is seen in what is found.  The values of a round lie between
+    those before it and those after it; so a cycle of best moves still gains: around one that did not, each
+    state would have been improved after the next one in the same block.
 
     Parameters
     ----------
@@ -97,6 +100,8 @@ class BestMoves(Sweep):
         Called with V, the best moves, the first group and the last, and the tables.
     tables
         What does not change: forces, costs and where the nodes are.
+    work
+        What a state costs in a round, in the unit of `effort`.
     """
 
     def __init__(
@@ -106,18 +111,46 @@ class BestMoves(Sweep):
         move_at: Callable[[int], Move],
         kernel: Callable[..., int],
         tables: tuple[Any, ...],
+        work: float,
     ) -> None:
-        super().__init__(value, 1 if value.size <= ALONE else THREADS)
+        blocks = 1 if value.size <= ALONE else BLOCKS
+        super().__init__(value, min(blocks, THREADS), work * value.size)
         self.choice = np.full(value.shape, -1, np.int64)
-        self._parts = [
-            partial(kernel, value, self.choice, first, last, *tables)
-            for first, last in slices(groups, max(THREADS * 4, value.size // AT_ONCE))
-        ]
+        self._blocks = slices(0, groups, blocks)
+        self._in_a_group = value.size // groups
+        self._kernel, self._tables = kernel, tables
         self._move_at = move_at
 
-    def jobs(self) -> Iterable[Callable[[], int]]:
-        """Parts that each take a fraction of a second."""
-        return self._parts
+    def improve(self, pool: ThreadPoolExecutor, until: Until) -> int | None:
+        """One round, block by block."""
+        if len(self._blocks) == 1:
+            return self._improved(self.value, self._blocks[0], until)
+
+        def done(block: tuple[int, int]) -> tuple[int | None, Integers]:
+            own = self.value.copy()
+            improved = self._improved(own, block, until)
+            return improved, own.reshape(-1)[self._states(block)].copy()
+
+        found = list(pool.map(done, self._blocks))
+        for block, (_, own) in zip(self._blocks, found, strict=True):
+            self.value.reshape(-1)[self._states(block)] = own
+        counts = [count for count, _ in found if count is not None]
+        return sum(counts) if len(counts) == len(found) else None
+
+    def _improved(self, value: Integers, block: tuple[int, int], until: Until) -> int | None:
+        """How many states of a block improved, piece by piece; None if the time was over before its end."""
+        first, last = block
+        improved = 0
+        for piece in slices(first, last, 1 + (last - first) * self._in_a_group // AT_ONCE):
+            if until.effort.is_late():
+                return None
+            improved += self._kernel(value, self.choice, *piece, *self._tables)
+        return improved
+
+    def _states(self, block: tuple[int, int]) -> slice:
+        """Where the states of a block are."""
+        first, last = block
+        return slice(first * self._in_a_group, last * self._in_a_group)
 
     def gaining_cycle(self) -> tuple[Move, ...]:
         """The moves of a cycle among the best moves."""
@@ -157,7 +190,7 @@ class ValueIteration(Generic[G]):
 
 
 def value_iteration(
-    grid: G, deadline: float = inf, progress: Progress | None = None, backend: str = "cpu"
+    grid: G, until: Until | None = None, progress: Progress | None = None, backend: str = "cpu"
 ) -> ValueIteration[G]:
     """Improve every state until a storage function or a gaining cycle is left.
 
@@ -165,8 +198,8 @@ def value_iteration(
     ----------
     grid
         The law, what moves cost, and the states.
-    deadline
-        When to give up, as `time.monotonic()`.
+    until
+        When to give up; None: never.
     progress
         Called after each round with the number of states that improved.
     backend
@@ -180,11 +213,13 @@ def value_iteration(
     if backend not in ("cpu", "gpu"):
         raise InputError(f'backend is "cpu" or "gpu", got {backend!r}')
     sweep = grid.sweep(backend)
+    limit = freely() if until is None else until
     rounds = 0
     with ThreadPoolExecutor(sweep.threads) as pool:
-        while time.monotonic() < deadline and rounds < sweep.max_rounds:
+        while not limit.is_over and rounds < sweep.max_rounds:
             rounds += 1
-            improved = sweep.improve(pool, deadline)
+            improved = sweep.improve(pool, limit)
+            limit.effort.spend(sweep.work)
             if improved is None:
                 break
             if progress is not None:
@@ -196,7 +231,7 @@ def value_iteration(
     return ValueIteration(grid, None, (), rounds)
 
 
-def slices(items: int, parts: int) -> list[tuple[int, int]]:
-    """So many parts of a number of items, first and last of each; none that is empty."""
-    ends = np.linspace(0, items, parts + 1).astype(int).tolist()
-    return [(first, last) for first, last in pairwise(ends) if first < last]
+def slices(first: int, last: int, parts: int) -> list[tuple[int, int]]:
+    """So many parts of the items first … last − 1, ends of each as of those; none that is empty."""
+    ends = np.linspace(first, last, parts + 1).astype(int).tolist()
+    return [(begin, end) for begin, end in pairwise(ends) if begin < end]
