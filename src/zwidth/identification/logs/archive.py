@@ -14,10 +14,10 @@ from zipfile import BadZipFile, ZipFile, ZipInfo
 from zwidth.errors import InputError
 from zwidth.reading import check_chunk, check_expansion
 
-SMALL = 2**21
+SMALL = 2**20
 """[bytes] Most of what describes a workbook: styles, names, relations."""
 
-TEXTS = 2**24
+TEXTS = 2**23
 """[bytes] Most of its texts."""
 
 LONGEST_ROW = 2**22
