@@ -15,6 +15,6 @@ from zwidth.passivity.coupling.loop_transformation import (
 )
 from zwidth.passivity.coupling.loop_transformation import transformed_blocks as transformed_blocks
 from zwidth.passivity.coupling.loop_transformation import transformed_condition as transformed_condition
-from zwidth.passivity.coupling.passive_masses import MassLimit as MassLimit
-from zwidth.passivity.coupling.passive_masses import PassiveMasses as PassiveMasses
-from zwidth.passivity.coupling.passive_masses import passive_masses as passive_masses
+from zwidth.passivity.coupling.range_of_masses import MassLimit as MassLimit
+from zwidth.passivity.coupling.range_of_masses import PassiveMasses as PassiveMasses
+from zwidth.passivity.coupling.range_of_masses import passive_masses as passive_masses
