@@ -81,7 +81,8 @@ def _null_space(document: Document, rng: Rng) -> Opinion:
                 return false(f"friction lacks {(lack - friction)[free].max():.6g} N·m at {q.tolist()}")
             j = arm.task(q)
             taken = j.T @ (share * k + a) @ j + share * stiffness * first + damping * arm.projector(other)
-            least = np.linalg.eigvalsh(arm.damping - taken)[0]
+            left = (arm.damping - taken)[np.ix_(free, free)]  # a joint that is held has no speed
+            least = np.linalg.eigvalsh(left)[0] if free.any() else 0.0
             if "turns" in wall and wall["rest"] == "given":
                 continue  # away from its rest a wall in pose asks for less
             if least < -SLACK * (np.abs(arm.damping).max() + np.abs(taken).max()):

@@ -92,6 +92,7 @@ CASES = [
     accepted("ranges narrower than the distance", put(POINT, {
         f"{JOINT}low_rad": "0.1", f"{JOINT}high_rad": "0.11"})),
     refused("a region that is too large", put(POINT, {"spring.distance_rad": "2"}), "too large"),
+    refused("a region that is too large by little", put(POINT, {"spring.distance_rad": "0.29"}), "too large"),
     refused("a singular rest", put(PLANE, {"spring.rest_rad": ["0.1", 0, 0, 0]}), "the arm is singular"),
     refused("a rest outside the range", put(POINT, {"spring.rest_rad": ["0.1", "1.01", "0"]}),
             "in the range of joint 2"),
