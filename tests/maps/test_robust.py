@@ -42,6 +42,18 @@ def test_a_certain_hand_has_no_gap() -> None:
     assert found["guaranteed"].values[0] == expected
 
 
+def test_a_slow_swing_of_the_hand_bounds_the_wall() -> None:
+    """A heavy, hardly damped handle on a spring: 0.02 rad a sample, where roots lie close.
+
+    b + c = K (T/2 + delay) without virtual damping, but for terms of second order in (ωT).
+    """
+    device = zw.Device(mass=(0.176, 0.2563), damping=(0.141, 0.2275), sample_period=0.0005, delay=0.00085)
+    hand = zw.stability.HandImpedance(mass=(0, 0.04746), stiffness=(0, 448.6), damping=(0, 1.37))
+    found = zw.maps.robust_boundary(device, hand, (0, 0.2), points=2).isel(virtual_damping=0)
+    assert found["refuted"] == pytest.approx(0.141 / 0.0011, rel=1e-2)
+    assert found["guaranteed"] > 0.995 * found["refuted"]
+
+
 def test_nothing_is_proved_where_a_hand_is_shaken_at_any_stiffness() -> None:
     """More virtual damping than an empty handle bears."""
     found = zw.maps.robust_boundary(PADDLE, BOX, (70, 200), points=2)

@@ -23,6 +23,10 @@ Array = NDArray[np.float64]
 _NEAR = 1e-4
 """How far from the circle a computed root may lie: a double one is off by the root of the rounding."""
 
+_ANGLES = np.geomspace(1e-5, np.pi, 600)[:-1]
+_HALVINGS = 50
+"""Where signs are compared, and how often a place is halved: to the last bits of a double."""
+
 _OUTSIDE = 1e-7
 """Beyond the circle by more than this a root counts as outside."""
 
@@ -82,7 +86,7 @@ def crossings(polynomials: Plain, damping: float) -> list[Crossing]:
     a, b = _in_z(rest), _in_z(spring)
     roots = np.roots(np.convolve(a, b[::-1]) - np.convolve(a[::-1], b))
     near = roots[(np.abs(np.abs(roots) - 1) < _NEAR) & (roots.imag >= 0)]
-    angles = {0.0, np.pi, *(float(angle) for angle in np.abs(np.angle(near)))}
+    angles = {0.0, np.pi, *(float(angle) for angle in np.abs(np.angle(near))), *_slow(rest, spring)}
     found = []
     for angle in sorted(angles):
         zeta = _zeta(np.array(angle))
@@ -90,6 +94,23 @@ def crossings(polynomials: Plain, damping: float) -> list[Crossing]:
         if abs(weight) > 1e-9 * np.abs(spring).max():
             found.append(Crossing(float((-np.polyval(rest, zeta) / weight).real), angle))
     return found
+
+
+def _slow(rest: Array, spring: Array) -> list[float]:
+    """The angles at which rest/spring becomes real, by its sign: near z = 1 no root is found for sure."""
+
+    def twisted(angles: Array) -> Array:
+        zeta = _zeta(angles)
+        return np.asarray((np.polyval(rest, zeta) * np.conj(np.polyval(spring, zeta))).imag)
+
+    low = _ANGLES[:-1][np.diff(np.sign(twisted(_ANGLES))) != 0]
+    high = _ANGLES[1:][np.isin(_ANGLES[:-1], low)]
+    sign = np.sign(twisted(low))
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        same = np.sign(twisted(middle)) == sign
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return [float(angle) for angle in (low + high) / 2]
 
 
 def curve(polynomials: Plain, angles: Array) -> Curve:
