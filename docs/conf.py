@@ -13,10 +13,7 @@ sys.path.insert(0, str(HERE / "_ext"))
 
 import tables  # noqa: E402
 
-from zwidth.passivity import gap  # noqa: E402
-
 tables.write()  # before Sphinx looks for what the pages include
-gap.SECONDS = 60.0  # what a page relies on is decided, also on a busy machine and where it is compiled first
 
 project = "zwidth"
 author = "The zwidth developers"

@@ -19,7 +19,7 @@ SLACK = Fraction(1, 10**9)
 """Of speed and depth: bounds are those that were typed."""
 
 
-def bracket(seed: int, seconds: float = 2.0) -> str:
+def bracket(seed: int, effort: float = 2.0) -> str:
     """What is wrong with the bracket of a seed, "" for nothing."""
     rng = np.random.default_rng([20_251, seed])
     period = Fraction(1, int(rng.choice([500, 1000, 2000])))
@@ -35,7 +35,7 @@ def bracket(seed: int, seconds: float = 2.0) -> str:
         sample_period=period,
         delay=0,
     )
-    found = zw.limit(device, zw.Wall(k), speed=speed, penetration=depth, seconds=seconds)
+    found = zw.limit(device, zw.Wall(k), speed=speed, penetration=depth, effort=effort)
     words = f"{device!r}, speed {float(speed):g}, penetration {float(depth):g}"
     motion = getattr(found.witness, "motion", None)
     if motion is not None:
@@ -44,7 +44,7 @@ def bracket(seed: int, seconds: float = 2.0) -> str:
             return f"a motion at {float(fastest):.4g} m/s: {words}"
         if motion.depth > depth * (1 + SLACK):
             return f"a motion to {float(motion.depth):.4g} m: {words}"
-    every = zw.limit(device, zw.Wall(k), seconds=seconds)
+    every = zw.limit(device, zw.Wall(k), effort=effort)
     here, anywhere = found.proved_passive, every.proved_passive
     if here is not None and anywhere is not None and here < anywhere:
         return f"this hand {float(here):.6g}, every hand {float(anywhere):.6g}: {words}"
