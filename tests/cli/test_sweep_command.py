@@ -37,6 +37,29 @@ def test_the_report_and_the_json_say_the_same(capsys: pytest.CaptureFixture[str]
     assert "by closed forms" in report
 
 
+def test_hands_that_are_known(capsys: pytest.CaptureFixture[str]) -> None:
+    """Of each so many loops that come to rest, in the report and as JSON; of another question refused."""
+    few = (
+        "sweep",
+        "haptic-paddle",
+        "--vary",
+        "stiffness=100,3000",
+        "--hands",
+        "none,finger",
+        "--workers",
+        "1",
+    )
+    assert main(few) == 0
+    report = capsys.readouterr().out
+    assert main((*few, "--json")) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["stability"]["none"] == {"stable": 1, "unstable": 1}
+    assert "with finger" in report
+    assert "dry friction and encoder steps left out" in " ".join(report.split())
+    assert main((*few, "--of", "limit")) == 2
+    assert "--hands is of check" in capsys.readouterr().err
+
+
 def test_a_table_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Both are written, and said to be; the same command again finds the table whole."""
     table, picture = tmp_path / "sweep.parquet", tmp_path / "sweep.svg"

@@ -456,3 +456,41 @@ def test_a_file_that_is_no_sweep(tmp_path: Path) -> None:
         zw.load_sweep(tmp_path / "y.zarr")
     with pytest.raises(zw.InputError, match=r"\.zarr or \.parquet"):
         zw.load_sweep(tmp_path / "y.nc")
+
+
+def test_of_hands_that_are_known_it_says_what_stability_says() -> None:
+    """Of each by its name, beside the verdict about every hand."""
+    hands = {"none": None, "finger": zw.operators.Finger()}
+    grid = {"stiffness": "100, 3000", "delay": "0, 2 ms"}
+    found = zw.sweep(PADDLE, zw.Wall(100, "0.05"), vary=grid, hands=hands, workers=1)
+    for stiffness in found["stiffness"].values:
+        for delay in found["delay"].values:
+            one = found.sel(stiffness=stiffness, delay=delay)
+            device, wall = PADDLE.replace(delay=float(delay)), zw.Wall(float(stiffness), "0.05")
+            for name, hand in hands.items():
+                alone = zw.stability.coupled_stability(device, wall, hand)
+                assert one[f"stability_{name}"].item() == alone.outcome
+                assert one[f"max_stable_stiffness_{name}"].item() == alone.max_stiffness
+            assert one["outcome"].item() == check_by_closed_forms(device, wall).outcome
+    assert set(found["stability_finger"].values.flat) == {"stable", "unstable"}
+    assert "as long as it keeps contact" in found.attrs["answers"]
+
+
+@pytest.mark.parametrize(
+    ("hands", "message"),
+    [
+        ({"My hand": None}, "small letters, such as finger"),
+        ({"finger": 3}, "hand"),
+        ([None], "hands are given by their names"),
+    ],
+)
+def test_a_hand_that_cannot_be_is_refused_before_the_work(hands: Any, message: str) -> None:
+    """Its name becomes that of a column."""
+    with pytest.raises(zw.InputError, match=message):
+        zw.sweep(PADDLE, WALL, vary={"delay": "0, 1 ms"}, hands=hands, workers=1)
+
+
+def test_without_a_mass_nothing_is_said_of_hands() -> None:
+    """Refused before the work, not once for each loop."""
+    with pytest.raises(zw.InputError, match="mass"):
+        zw.sweep(PADDLE.replace(mass=None), WALL, vary={"delay": "0, 1 ms"}, hands={"none": None}, workers=1)

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from zwidth.cli.hands_alone import NAMES
 from zwidth.cli.options import (
     Once,
     add_all,
@@ -38,8 +39,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     from zwidth.cli.simulation_tables import operator_parameters, simulation_parameters
 
     parser.usage = (
-        "%(prog)s [SOURCE ...] --vary NAME=VALUES [--vary ...] [--of COMMAND] [--PARAMETER VALUE ...] "
-        "[--json] [--plot FILE] [-o FILE] [--workers N | --dask ADDRESS]"
+        "%(prog)s [SOURCE ...] --vary NAME=VALUES [--vary ...] [--of COMMAND] [--hands NAMES] "
+        "[--PARAMETER VALUE ...] [--json] [--plot FILE] [-o FILE] [--workers N | --dask ADDRESS]"
     )
     parser.add_argument(
         "sources",
@@ -62,6 +63,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     grid.add_argument(
         "--tolerance", metavar="RATIO", action=Once, help="of limit: width of the bracket (default: 0.01)"
+    )
+    grid.add_argument(
+        "--hands",
+        metavar="NAMES",
+        action=Once,
+        help=f"of check: say besides whether hands that are known come to rest: {NAMES}; needs a mass",
     )
     add_law_option(parser)
     add_contact_option(parser)

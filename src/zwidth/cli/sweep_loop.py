@@ -99,6 +99,7 @@ def _no_number(arguments: argparse.Namespace, key: str) -> InputError:
 
 _OWN = {
     "contact": ("check",),
+    "hands": ("check",),
     "parameter": ("limit",),
     "tolerance": ("limit",),
     "law": ("check", "limit", "simulate"),
@@ -139,6 +140,11 @@ def _wall(arguments: argparse.Namespace, of: str, begun: Mapping[str, str]) -> A
     options: dict[str, Any] = {}
     if of == "check" and arguments.contact is not None and contact(arguments) == "kept":
         options["contact"] = "kept"
+    if arguments.hands is not None:
+        from zwidth.cli.hands_alone import named_hands
+
+        hands = named_hands(arguments.hands, device.motion)
+        options["hands"] = {name.replace("-", "_"): hand for name, hand in hands.items()}
     if of == "limit":
         from zwidth.cli.limit import named
 

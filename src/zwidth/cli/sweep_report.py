@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterable, Iterator
+from typing import Any, get_args
 
 import numpy as np
 import xarray as xr
@@ -13,6 +13,7 @@ from zwidth.passivity.outcome import TOLD
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import in_words, shown
 from zwidth.showing import Lines, Part, Table
+from zwidth.stability.known_hand.decide import Outcome as Rests
 
 
 def report(found: xr.Dataset) -> Iterator[Part]:
@@ -20,7 +21,10 @@ def report(found: xr.Dataset) -> Iterator[Part]:
     loops = found["refused"].size
     if "outcome" in found:
         heads = ["outcome", "loops", "", *map(str, found.dims)]
-        yield Table(heads=[heads], rows=list(_outcomes(found)), lefts=1)
+        yield Table(heads=[heads], rows=list(_counted(found, found["outcome"], TOLD)), lefts=1)
+        for name, of_one in _of_hands(found):
+            heads = [f"with {in_words(name)}", *heads[1:]]
+            yield Table(heads=[heads], rows=list(_counted(found, of_one, get_args(Rests))), lefts=1)
     else:
         heads = ["", "smallest", "median", "largest"]
         yield Table(heads=[heads], rows=list(_numbers(found)), lefts=1)
@@ -39,14 +43,19 @@ def _axis(values: xr.DataArray) -> str:
     return f"{name} {ends[0]}" if values.size == 1 else f"{name} {ends[0]} to {ends[1]}, {values.size} values"
 
 
-def _outcomes(found: xr.Dataset) -> Iterator[tuple[str, ...]]:
-    """Of each outcome how many loops, and the range of each parameter that they take up."""
-    outcome = found["outcome"].values
-    for word in TOLD:
-        where = outcome == word
+def _of_hands(found: xr.Dataset) -> Iterator[tuple[str, xr.DataArray]]:
+    """Of each hand that is known, by its name, whether the loops come to rest."""
+    of_one = "stability_"
+    return ((str(n).removeprefix(of_one), v) for n, v in found.data_vars.items() if str(n).startswith(of_one))
+
+
+def _counted(found: xr.Dataset, told: xr.DataArray, words: Iterable[str]) -> Iterator[tuple[str, ...]]:
+    """Of each word how many loops, and the range of each parameter that they take up."""
+    for word in words:
+        where = told.values == word
         count = int(where.sum())
         if count:
-            yield word, str(count), f"{count / outcome.size:.1%}", *_ranges(found, where)
+            yield word, str(count), f"{count / where.size:.1%}", *_ranges(found, where)
 
 
 def _ranges(found: xr.Dataset, where: Any) -> Iterator[str]:
@@ -82,12 +91,19 @@ def summary(found: xr.Dataset) -> dict[str, Any]:
         "axes": axes,
     }
     if "outcome" in found:
-        words, counts = np.unique(found["outcome"].values, return_counts=True)
-        told["outcomes"] = {str(w): int(n) for w, n in zip(words, counts, strict=True) if w}
+        told["outcomes"] = _how_often(found["outcome"])
+    hands = {name: _how_often(of_one) for name, of_one in _of_hands(found)}
+    if hands:
+        told["stability"] = hands
     told["numbers"] = {_key(name, values): _ends(values) for name, values in _measured(found)}
     if "scope" in found.attrs:
         told["scope"] = json.loads(found.attrs["scope"])
     return {**told, "answers": found.attrs["answers"]}
+
+
+def _how_often(told: xr.DataArray) -> dict[str, int]:
+    words, counts = np.unique(told.values, return_counts=True)
+    return {str(w): int(n) for w, n in zip(words, counts, strict=True) if w}
 
 
 def _ends(values: xr.DataArray) -> dict[str, float | None]:

@@ -14,6 +14,7 @@ from zwidth.passivity.document import to_json
 from zwidth.passivity.scope import scope_of
 from zwidth.quantity.exact import Interval
 from zwidth.sweeps.columns import REFUSED
+from zwidth.sweeps.questions import HANDS
 from zwidth.sweeps.request import FORMAT, Request
 from zwidth.sweeps.within import with_numbers
 
@@ -39,7 +40,7 @@ def attributes(asked: Request, layers: Layers) -> dict[str, str]:
         "of": asked.of,
         "motion": loop.motion,
         "loop": _in_words(asked),
-        "answers": _MEANING[asked.of],
+        "answers": _MEANING[asked.of] + (OF_HANDS if HANDS in loop.options else ""),
     }
     if asked.of in ("check", "limit"):
         assert isinstance(loop.subject, Device)
@@ -97,3 +98,8 @@ _MEANING = {
     "evidence of a pair",
 }
 """What is claimed, by the question."""
+
+OF_HANDS = (
+    ". Stability is of each hand alone, as long as it keeps contact, dry friction and encoder steps left "
+    "out: what zwidth check --hands says"
+)

@@ -6,6 +6,7 @@ open here, "undecided" or "passive in contact"; `zwidth.check` of that loop spen
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple, get_args
@@ -18,6 +19,8 @@ from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.verdict import LIMITS as LIMITS_OF_A_PAIR
 from zwidth.passivity.scope import Contact, Encoder, FedWith, Law, Scope
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.specification.table import quoted
+from zwidth.stability.known_hand.decide import Outcome as Rests
 from zwidth.sweeps.columns import Column, Columns
 from zwidth.sweeps.loops import Loop
 
@@ -71,20 +74,44 @@ def _stiffness(loop: Loop, meaning: str) -> Column:
     return Column(meaning, GLOSSARY["stiffness"].unit_for(loop.motion))
 
 
+HANDS = "hands"
+"""The option of "check" that names hands, by name a hand or None: of each whether it comes to rest."""
+
+
 def _checked_columns(loop: Loop) -> Columns:
     return {
         "outcome": _OUTCOME,
         **_OF_A_SCOPE,
         "binding": Column("what binds: what is violated, or would be first", words=LIMITS),
         "max_stiffness": _stiffness(loop, "largest passive stiffness, all else as it is"),
+        **_columns_of_hands(loop),
     }
+
+
+def _columns_of_hands(loop: Loop) -> Columns:
+    columns: dict[str, Column] = {}
+    for name in _hands(loop):
+        if not re.fullmatch(r"[a-z]\w*", name, re.ASCII):
+            raise InputError(f"a hand is named in small letters, such as finger, got {quoted(name)}")
+        about = f"with the hand {name} alone, in sustained contact"
+        columns[f"stability_{name}"] = Column(
+            f"whether the loop comes to rest {about}", words=get_args(Rests)
+        )
+        columns[f"max_stable_stiffness_{name}"] = _stiffness(loop, f"up to which stiffness it does {about}")
+    return columns
+
+
+def _hands(loop: Loop) -> Mapping[str, Any]:
+    hands: Mapping[str, Any] = loop.options.get(HANDS, {})
+    return hands
 
 
 def checked(loop: Loop, line: Line) -> Answer:
     """What `zwidth.check` says of a loop, by closed forms; the largest stiffness is sought once in a line."""
     from zwidth.passivity.check import check
 
-    verdict = check(loop.subject, loop.environment, iterate=False, **loop.options)  # type: ignore[arg-type]  # a device, see _one_device
+    options = {key: value for key, value in loop.options.items() if key != HANDS}
+    verdict = check(loop.subject, loop.environment, iterate=False, **options)  # type: ignore[arg-type]  # a device, see _one_device
     about = verdict.outcome, verdict.scope.contact
     if about not in line:
         line[about] = getattr(verdict, "max_stiffness", None)
@@ -93,7 +120,19 @@ def checked(loop: Loop, line: Line) -> Answer:
         **_scope(verdict.scope),
         "binding": getattr(verdict, "limit", ""),
         "max_stiffness": line[about],
+        **_of_hands(loop),
     }
+
+
+def _of_hands(loop: Loop) -> Answer:
+    """What `zwidth.stability.coupled_stability` says of each hand."""
+    from zwidth.stability import coupled_stability
+
+    told: dict[str, Any] = {}
+    for name, hand in _hands(loop).items():
+        found = coupled_stability(loop.subject, loop.environment, hand)  # type: ignore[arg-type]  # a device, see _one_device
+        told[f"stability_{name}"], told[f"max_stable_stiffness_{name}"] = found.outcome, found.max_stiffness
+    return told
 
 
 def _limited_columns(loop: Loop) -> Columns:
@@ -173,6 +212,16 @@ def _one_device(loop: Loop) -> None:
         raise InputError("the environment is missing: what the device renders, such as zw.Wall(300)")
 
 
+def _held(loop: Loop) -> None:
+    """With hands that are known the loop must be one that their stability is known of."""
+    _one_device(loop)
+    if not isinstance(_hands(loop), Mapping):
+        raise InputError(
+            'hands are given by their names, such as {"none": None, "finger": zw.operators.Finger()}'
+        )
+    _of_hands(loop)
+
+
 def _touched(loop: Loop) -> None:
     if isinstance(loop.subject, Pair):
         raise InputError("the touches of a sweep are of one device: simulate two arms one by one")
@@ -190,7 +239,7 @@ def _two_arms(loop: Loop) -> None:
 
 QUESTIONS: Mapping[str, Question] = MappingProxyType(
     {
-        "check": Question(_checked_columns, checked, _one_device),
+        "check": Question(_checked_columns, checked, _held),
         "limit": Question(_limited_columns, limited, _one_device),
         "simulate": Question(_simulated_columns, simulated, _touched),
         "pair": Question(_paired_columns, paired, _two_arms),

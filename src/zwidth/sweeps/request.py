@@ -20,7 +20,7 @@ from zwidth.specification.table import quoted, suggestion
 from zwidth.sweeps.axes import Axis, axis
 from zwidth.sweeps.columns import OF_EVERY_SWEEP, Columns
 from zwidth.sweeps.loops import Loop, Parameter, changed, parameter
-from zwidth.sweeps.questions import QUESTIONS, Question
+from zwidth.sweeps.questions import HANDS, QUESTIONS, Question
 from zwidth.sweeps.springs import Springs, springs
 from zwidth.sweeps.walls import is_of_walls
 
@@ -73,14 +73,21 @@ class Request:
     @cached_property
     def springs(self) -> Springs | None:
         """The loops as springs, where all of them are."""
-        return springs(self.loop, self.parameters, self.axes) if self.of == "check" else None
+        return springs(self.loop, self.parameters, self.axes) if self._by_closed_forms_alone else None
 
     @property
     def of_walls(self) -> bool:
         """Whether loops that differ in their stiffness alone are walls."""
         return (
-            self.of == "check" and self.stiffness_axis is not None and is_of_walls(self.loop, self.parameters)
+            self._by_closed_forms_alone
+            and self.stiffness_axis is not None
+            and is_of_walls(self.loop, self.parameters)
         )
+
+    @property
+    def _by_closed_forms_alone(self) -> bool:
+        """Whether verdicts are all that is asked for: hands that are known are looked at loop by loop."""
+        return self.of == "check" and HANDS not in self.loop.options
 
     @property
     def size(self) -> int:

@@ -70,17 +70,19 @@ def sweep(
     progress
         Is told how many chunks are done, and of how many. Default: a bar.
     options
-        Further arguments of `check` (contact), `passive_limit` (parameter, tolerance) or `simulate`.
+        Further arguments of `check` (contact), `passive_limit` (parameter, tolerance) or `simulate`; of
+        "check" also `hands`, by name a hand or None for nobody: of each whether the loop comes to rest with
+        it alone, as `zwidth.stability.coupled_stability` decides it.
 
     Returns
     -------
     xarray.Dataset
         A dimension for each parameter, its values as coordinate with their unit; of `check` and `pair`
-        `outcome`, `contact` and `encoder` that it is about, `binding`, and `max_stiffness`; of `limit`
-        `proved_passive` and `proved_active`; of `simulate` the measures of `compare_traces`. `refused` is
-        True of a loop that cannot be. What all loops have in common, and what an answer means, stands in the
-        attributes `scope` and `answers`. The bits do not depend on who computes, in which order, or how often
-        it was stopped.
+        `outcome`, `contact` and `encoder` that it is about, `binding`, and `max_stiffness`, with hands
+        `stability_NAME` and `max_stable_stiffness_NAME` of each; of `limit` `proved_passive` and
+        `proved_active`; of `simulate` the measures of `compare_traces`. `refused` is True of a loop that
+        cannot be. What all loops have in common, and what an answer means, stands in the attributes `scope`
+        and `answers`. The bits do not depend on who computes, in which order, or how often it was stopped.
 
     Raises
     ------
