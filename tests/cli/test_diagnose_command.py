@@ -57,11 +57,11 @@ def test_the_law_as_it_was_programmed(there: Path, capsys) -> None:
 
 
 def test_json_says_the_same(there: Path, capsys) -> None:
-    """The cause, the change and the command, for a program."""
+    """The cause, the change and the command, in the angle of the log."""
     assert main(["diagnose", "shaking.csv", "wheel.toml", "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert document["cause"] == "delay"
-    assert document["command"].startswith("zwidth check wheel.toml --stiffness '20 N*m/rad'")
+    assert document["command"].startswith("zwidth check wheel.toml --stiffness '0.349066 N*m/deg'")
     assert document["change"]["parameter"] == "delay"
 
 

@@ -14,6 +14,7 @@ from zwidth.cli.options import overrides
 from zwidth.cli.page import below, grid, headline, items, more_with_all, page, section, small_print
 from zwidth.passivity.outcome import TOLD
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
@@ -108,22 +109,25 @@ def _law_as_stated(change: Change) -> list[str]:
     """What differs from the law that was given."""
     if change.parameter not in ("stiffness", "damping"):
         return []
-    return [
-        _OPTIONS[change.parameter],
-        f"{change.to:.6g} {GLOSSARY[change.parameter].unit_for(change.device.motion)}",
-    ]
+    return [_OPTIONS[change.parameter], _with_unit(change.to, change.parameter, change.device.motion)]
 
 
 def _law_as_found(law: Law, change: Change) -> list[str]:
     stiffness = change.to if change.parameter == "stiffness" else law.stiffness
     damping = change.to if change.parameter == "damping" else law.damping
     motion = change.device.motion
-    words = ["--stiffness", f"{stiffness:.6g} {GLOSSARY['stiffness'].unit_for(motion)}"]
+    words = ["--stiffness", _with_unit(stiffness, "stiffness", motion)]
     if damping:
-        words += ["--virtual-damping", f"{damping:.6g} {GLOSSARY['damping'].unit_for(motion)}"]
+        words += ["--virtual-damping", _with_unit(damping, "damping", motion)]
         if law.window > 1:
             words += ["--velocity-filter", f"window {law.window}"]
     return words
+
+
+def _with_unit(value: float, quantity: str, motion: str) -> str:
+    """As it is typed, in the angle of the question."""
+    factor, unit = spoken(GLOSSARY[quantity].unit_for(motion))
+    return f"{factor * value:.6g} {unit}"
 
 
 def _read_with(arguments: argparse.Namespace) -> Iterator[tuple[str, str]]:
