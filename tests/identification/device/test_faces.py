@@ -18,6 +18,7 @@ import zwidth as zw
 from zwidth.identification.device.curve import friction_bins, lower_bounds
 from zwidth.identification.device.estimate import Estimate
 from zwidth.identification.device.limits import advice, limits, percent
+from zwidth.identification.device.table import rows
 from zwidth.specification.read import load
 
 
@@ -176,6 +177,7 @@ def test_a_rotary_device_is_saved_as_one(tmp_path: Path) -> None:
     time, position, force = paddle()
     log = zw.Log.from_arrays(time=time, position=position, hand_force=force, resolution=STEP, motion="rotary")
     found = zw.identify(log)
+    assert "inertia" in [row.name for row in rows(found)]
     found.save(tmp_path / "wheel.toml")
     read = load([tmp_path / "wheel.toml"], {"stiffness": "1"}).device
     assert read.motion == "rotary"

@@ -47,17 +47,24 @@ class Row(NamedTuple):
     unit: str
 
 
+def named(key: str, motion: str) -> str:
+    """A parameter as people call it: of what turns the mass is an inertia."""
+    return "inertia" if key == "mass" and motion == "rotary" else NAMES[key]
+
+
 def rows(identified: IdentifiedNumbers, confidence: float = 0.95) -> list[Row]:
     """The parameters, and what they allow."""
     table = []
     if identified.mass is not None:
         unit = quantity_unit("mass", identified.motion)
-        table.append(Row("m", NAMES["mass"], f"{identified.mass:.4g}", "as given", unit))
+        table.append(Row("m", named("mass", identified.motion), f"{identified.mass:.4g}", "as given", unit))
     for key, symbol in SYMBOLS.items():
         if key in identified.estimates:
             estimate = identified.estimates[key]
             low, high = estimate.interval(confidence)
-            table.append(_row(symbol, NAMES[key], estimate.value, low, high, estimate.unit))
+            table.append(
+                _row(symbol, named(key, identified.motion), estimate.value, low, high, estimate.unit)
+            )
         if key == "damping" and identified.shows("damping by direction"):
             for name in ("inward", "outward"):
                 estimate = getattr(identified.directions, name)
