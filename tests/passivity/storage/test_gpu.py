@@ -17,8 +17,6 @@ from zwidth.passivity.storage.losses import Losses
 from zwidth.passivity.storage.solve.value_iteration import value_iteration
 
 _ON_CARD = """
-import itertools
-
 import zwidth as zw
 from zwidth.passivity.storage.solve import gpu
 from zwidth.passivity.storage.domain import Domain
@@ -31,25 +29,25 @@ gpu._SCRATCH = 1  # so that threads have more than one item
 paddle = zw.catalogue.device("haptic-paddle").replace(coulomb_friction="0.004")
 ended = []
 window = zw.rendering.Window(2)
-for turn, (stiffness, (damping, delay, domain)) in enumerate(itertools.product((200, 20000), (
-    ({}, 0, Domain(-3, 3, 4)),
-    ({"damping": 0.05}, 0, Domain(-5, 3, 4)),
-    ({"damping": 0.03, "velocity_filter": window, "clamped": True}, 0, Domain(-2, 2, 2)),
-    ({"damping": 0.02}, 1, Domain(-2, 2, 2)),
-))):
+outer, inner = ("outer", 3), ("inner", 1024)
+for stiffness, damping, delay, domain, (approximation, steps) in (
+    (200, {}, 0, Domain(-3, 3, 4), outer),
+    (200, {"damping": 0.05}, 0, Domain(-5, 3, 4), inner),
+    (20000, {"damping": 0.03, "velocity_filter": window, "clamped": True}, 0, Domain(-2, 2, 2), inner),
+    (20000, {"damping": 0.02}, 1, Domain(-2, 2, 2), outer),
+):
     wall = zw.Wall(stiffness, **damping)
     law = finite_law(paddle, wall)
     losses = Losses(*(paddle.exact(k) for k in ("damping", "coulomb_friction", "resolution")),
                     paddle.exact("sample_period"), delay)
-    for approximation, steps in ((("outer", 3), ("inner", 1024))[(turn + turn // 4) % 2],):
-        grid = Grid(law, losses, domain, steps, approximation)
-        grid.__dict__["first_guess"] = 0 * grid.first_guess  # so that it takes many rounds
-        card, own = (value_iteration(grid, backend=one) for one in ("gpu", "cpu"))
-        assert own.rounds > 2, (approximation, wall, own.rounds)
-        assert (card.value is None) == (own.value is None)
-        assert bool(card.cycle) == bool(own.cycle)
-        assert own.value is None or (card.value == own.value).all()
-        ended.append(own.value is not None)
+    grid = Grid(law, losses, domain, steps, approximation)
+    grid.__dict__["first_guess"] = 0 * grid.first_guess  # so that it takes many rounds
+    card, own = (value_iteration(grid, backend=one) for one in ("gpu", "cpu"))
+    assert own.rounds > 2, (approximation, wall, own.rounds)
+    assert (card.value is None) == (own.value is None)
+    assert bool(card.cycle) == bool(own.cycle)
+    assert own.value is None or (card.value == own.value).all()
+    ended.append(own.value is not None)
 print(*ended)
 """
 
@@ -63,7 +61,7 @@ def test_the_card_finds_what_the_processor_finds() -> None:
     """The same outcome and the same V to the last bit, with none, one or two readings remembered."""
     done = _in_simulator(_ON_CARD)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.split() == ["True"] * 4 + ["False"] * 4
+    assert done.stdout.split() == ["True"] * 2 + ["False"] * 2
 
 
 def _grid() -> Grid:
