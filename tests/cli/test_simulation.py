@@ -239,7 +239,7 @@ def test_ctrl_c_keeps_what_is_finished_and_says_so(run: Run, monkeypatch) -> Non
     import zwidth.loop.simulate as module
 
     monkeypatch.setattr(module, "_STRIDE", 50)
-    real, calls = module._run, []
+    real, calls = module.run_samples, []
 
     def stopped(*arguments: object) -> None:
         calls.append(1)
@@ -247,7 +247,7 @@ def test_ctrl_c_keeps_what_is_finished_and_says_so(run: Run, monkeypatch) -> Non
             raise KeyboardInterrupt
         real(*arguments)
 
-    monkeypatch.setattr(module, "_run", stopped)
+    monkeypatch.setattr(module, "run_samples", stopped)
     result = run(*DOWEL, "-o", "part.nc")
     assert result.status == 130
     assert "interrupted" in result.out

@@ -17,6 +17,7 @@ from zwidth.passivity.storage.domain import Domain
 from zwidth.passivity.storage.grid.grid import Grid
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.passivity.storage.losses import Losses
+from zwidth.passivity.storage.solve.effort import Effort, Until
 from zwidth.passivity.storage.solve.value_iteration import value_iteration
 
 LAWS = {
@@ -164,7 +165,7 @@ def test_what_gains_by_the_inner_costs_gains_by_the_outer_ones(seed):
 
 
 def test_nothing_is_iterated_when_there_is_no_time():
-    """A deadline in the past leaves neither a value nor a cycle."""
+    """With nothing left to do there is neither a value nor a cycle."""
     law, losses = drawn(Random(1), "damped", 1)
-    iteration = value_iteration(Grid(law, losses, Domain(-3, 2, 2), 4, "outer"), deadline=0.0)
+    iteration = value_iteration(Grid(law, losses, Domain(-3, 2, 2), 4, "outer"), Until(Effort(), 0.0))
     assert (iteration.value, iteration.cycle, iteration.rounds) == (None, (), 0)
