@@ -115,7 +115,7 @@ def test_any_parameters(parameters: dict[str, str], others: dict[str, str], as_j
     status("check", *options, *(["--json"] if as_json else []))
 
 
-@quick
+@settings(quick, max_examples=8)  # a pair takes its time
 @given(st.dictionaries(st.sampled_from(COUPLING), values, max_size=2), st.booleans())
 @example({"--stiffness": "1e40"}, True)
 @example({"--link-delay": "0.4 s", "--stiffness": "1/3"}, False)
