@@ -75,7 +75,7 @@ def null_space(told: Read) -> tuple[str, tuple[tuple[float, ...], ...]]:
         "no hands, wherever they hold the arm, take energy out of the wall and the null-space spring while "
         f"the joints are in their ranges and within {about(spring.distance)} rad of its rest, root of the "
         "sum of squares; read without encoder steps; the wall's torque follows the arm, the spring's is "
-        f"held{in_words(given[0], pose)}; {cells} cells"
+        f"held{in_words(given[0], pose)}; {cells} cell{'s' * (cells != 1)}"
     )
     return words, tuple(tuple(x.middle / 2**BITS for x in row) for row in middle)
 

@@ -86,7 +86,7 @@ def arm(told: Read) -> tuple[str, tuple[tuple[float, ...], ...]]:
         cells += positive_in(box, claim.columns, "a column of the Jacobian is longer than it is said to be")
     middle = claim.matrix([Enclosed(BITS, (low + high) // 2) for low, high in box])
     surplus = tuple(tuple(x.middle / 2**BITS for x in row) for row in middle)
-    return f"{claim.words}; {cells} cells", surplus
+    return f"{claim.words}; {cells} cell{'s' * (cells != 1)}", surplus
 
 
 def outward(low: Fraction, high: Fraction) -> Range:
