@@ -28,7 +28,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "playpage",  # of _ext
     "sphinx-mathjax-offline",  # formulas are drawn without a network
-    "shown",  # commands that are run where the page is built
+    "computed",  # commands that are run where the page is built
 ]
 exclude_patterns = ["_build", "_generated", "gallery/GALLERY_HEADER.rst"]
 
