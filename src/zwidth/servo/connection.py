@@ -48,6 +48,17 @@ STATUS = {
     CLOSED: "the other side has closed",
 }
 
+
+Setting = tuple[str, str, str, str, str]
+"""What is set in a device that can change sign, size or end of a force.
+
+Its name as the maker has it (of a servo with the address of its register); its value as delivered, "" where
+the maker does not say it; the effect; what is done about it before any force is given, one of `DONE`; file
+and line, or page, in the version that `Connection.maker` names.
+"""
+
+REFUSES, TELLS, RESTORES, SETS, LEAVES = DONE = "read; refused", "read; told", "set; put back", "set", "left"
+
 _SIGNATURE = int64(float64[::1], uint8[::1], uint8[::1])
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -83,6 +94,12 @@ class Connection(ABC):
 
     tells: ClassVar[tuple[str, ...]] = ()
     """What it tells besides the position, units in the names; `MOST_TOLD` numbers, from memory[TOLD] on."""
+
+    maker: ClassVar[str] = ""
+    """Whose words `settings` go by, and of which version."""
+
+    settings: ClassVar[tuple[Setting, ...]] = ()
+    """All that can change sign, size or end of its force, as far as the maker tells."""
 
     met_hardware: ClassVar[bool] = False
     """False where only an emulator of the other side has been met."""

@@ -2,10 +2,12 @@
 
 import os
 import tty
+from math import tau
 
 import pytest
 from servo.drive import PATIENCE, drive, drive_into
 from servo.emulators.faults import Fault
+from servo.emulators.handle import Handle
 from servo.emulators.odrive import ODriveEmulator
 
 from zwidth.errors import InputError
@@ -114,6 +116,57 @@ def test_one_lost_answer_about_the_state_costs_one_sample():
     assert run.readings[2:] == pytest.approx(motor.positions[1:], rel=1e-15)
 
 
+@pytest.mark.parametrize("turns", [0.0, 1.0, -1.0, 2.2])
+def test_the_motor_gives_the_torque_of_the_wall_whatever_its_speed(turns):
+    """As delivered it would give (2 turn/s − v)/6 N·m at most; afterwards it does again."""
+    with ODriveEmulator() as motor:
+        motor.properties["axis0.motor.config.torque_constant"] = "0.5"
+        motor.handle = Handle(mass=1e9, stiffness=0.0, damping=0.0, speed=turns * tau)
+        drive(ODrive(motor.port), 40, lambda reading: 1.0)
+        flag = motor.properties["axis0.controller.config.enable_torque_mode_vel_limit"]
+    assert set(motor.torques[1:]) == {1.0}
+    assert flag == "1"
+
+
+def test_what_limits_the_torque_of_an_odrive_is_told():
+    """The motor's limits as a torque; 1.2 · 2 turn/s, above which the axis is dropped, and dropped it is."""
+    with ODriveEmulator() as motor:
+        motor.handle = Handle(mass=1e9, stiffness=0.0, damping=0.0, speed=2.5 * tau)
+        connection = ODrive(motor.port)
+        run = drive(connection, 40, lambda reading: 1.0)
+    assert "at most 0.4 N·m" in connection.describe()
+    assert "lets the motor go above 15.1 rad/s" in connection.describe()
+    assert run.statuses[-1] == REFUSED
+    with ODriveEmulator() as motor:  # as firmware 0.5.1 names the limit of the speed, and 0.6 those of torque
+        new, old = ODrive.settings[0].name, "controller.config.enable_current_mode_vel_limit"
+        motor.properties[f"axis0.{old}"] = motor.properties.pop(f"axis0.{new}")
+        motor.properties["axis0.config.motor.current_soft_max"] = motor.properties.pop(
+            "axis0.motor.config.current_lim"
+        )
+        connection = ODrive(motor.port)
+        connection.open(1e-3)
+        assert motor.properties[f"axis0.{old}"] == "0"
+        connection.close()
+        assert motor.properties[f"axis0.{old}"] == "1"
+    assert "at most 0.4 N·m" in connection.describe()
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("config.enable_sensorless_mode", "1", "spins the motor"),
+        ("motor.config.motor_type", "2", "are volts"),
+    ],
+)
+def test_an_odrive_that_takes_no_torque_is_refused(name, value, said):
+    """Before anything is set, and before the axis is in closed loop control."""
+    with ODriveEmulator() as motor:
+        motor.properties[f"axis0.{name}"] = value
+        with pytest.raises(InputError, match=said):
+            ODrive(motor.port).open(1e-3)
+    assert not any(line.startswith(("w", "c")) for line in motor.lines)
+
+
 def test_an_axis_that_leaves_closed_loop_control_is_refused():
     """Within the 16 samples between two questions for the state."""
     with ODriveEmulator() as motor:
@@ -129,6 +182,7 @@ def test_the_watchdog_runs_while_the_torque_is_not_0():
     torques = [0.0] * 5 + [0.1] * 40 + [0.0] * 3 + [-0.1] * 3
     given = iter(torques)
     with ODriveEmulator() as motor:
+        motor.properties["axis0.controller.config.enable_overspeed_error"] = "0"
         drive(ODrive(port=motor.port, watchdog=0.08), len(torques), lambda reading: next(given))
     opening, *found = motor.watchdog_on
     assert not opening

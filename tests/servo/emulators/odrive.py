@@ -1,6 +1,7 @@
 """An ODrive's text protocol as documentation and firmware have it, one axis on a hand that is a spring.
 
-Written from docs.odriverobotics.com ("ASCII Protocol") and the behaviour of firmware 0.5.6.
+Written from docs.odriverobotics.com ("ASCII Protocol") and the behaviour of firmware 0.5.6, whose settings as
+delivered it has.
 """
 
 from __future__ import annotations
@@ -21,12 +22,18 @@ class ODriveEmulator(TerminalEmulator):
         See `Emulator`; a fault is one of all answers, those to other questions as well.
     starts
         False for an axis that stays idle.
+
+    Attributes
+    ----------
+    torques
+        Those that the motor gave [N·m], at every position asked.
     """
 
     def __init__(self, fault: Fault | None = None, at: int = 0, *, starts: bool = True) -> None:
         super().__init__(fault, at)
         self.handle = Handle(mass=1e-4, stiffness=0.05, damping=4e-4, hand=1.5, position=1.1)
         self.positions: list[float] = []
+        self.torques: list[float] = []
         self.lines: list[str] = []
         self.watchdog_on: list[bool] = []
         self.disarm_at: int | None = None
@@ -38,8 +45,18 @@ class ODriveEmulator(TerminalEmulator):
             "axis0.error": "0",
             "axis0.config.enable_watchdog": "0",
             "axis0.config.watchdog_timeout": "0.000000",
+            "axis0.config.enable_sensorless_mode": "0",
             "axis0.controller.config.control_mode": "3",
             "axis0.controller.config.input_mode": "5",
+            "axis0.controller.config.enable_torque_mode_vel_limit": "1",
+            "axis0.controller.config.enable_overspeed_error": "1",
+            "axis0.controller.config.vel_limit": "2.000000",
+            "axis0.controller.config.vel_limit_tolerance": "1.200000",
+            "axis0.controller.config.vel_gain": "0.166667",
+            "axis0.motor.config.motor_type": "0",
+            "axis0.motor.config.current_lim": "10.000000",
+            "axis0.motor.config.torque_constant": "0.040000",
+            "axis0.motor.config.torque_lim": "inf",
         }
         self._starts = starts
         self._data = b""
@@ -102,11 +119,32 @@ class ODriveEmulator(TerminalEmulator):
     def _feedback(self) -> str:
         if self.exchange == self.disarm_at:
             self.properties["axis0.current_state"] = "1"
-        idle = self.properties["axis0.current_state"] != "8"
-        self.handle.step(0.0 if idle else self.commands[-1].force)
+        self.torques.append(self._torque())
+        self.handle.step(self.torques[-1])
         turns = f"{self.handle.position / tau:f}"
         self.positions.append(float(turns) * tau)
         return f"{turns} {self.handle.speed / tau:f}"
+
+    def _torque(self) -> float:
+        """Firmware 0.5.6, MotorControl/controller.cpp lines 137 to 141, 332 to 341 and 387 to 405."""
+        if self.properties["axis0.current_state"] != "8":
+            return 0.0
+        speed, torque = self.handle.speed / tau, self.commands[-1].force  # [turn/s]
+        limit = self._number("controller.config.vel_limit")
+        fastest = limit * self._number("controller.config.vel_limit_tolerance")
+        if self._number("controller.config.enable_overspeed_error") and abs(speed) > fastest:
+            self.properties["axis0.current_state"], self.properties["axis0.error"] = "1", "512"
+            return 0.0
+        if self.properties.get("axis0.controller.config.enable_torque_mode_vel_limit") == "1":
+            gain = self._number("controller.config.vel_gain")
+            torque = min(max(torque, (-limit - speed) * gain), (limit - speed) * gain)
+        most = float(self.properties.get("axis0.motor.config.current_lim", "inf"))
+        most *= self._number("motor.config.torque_constant")
+        most = min(most, self._number("motor.config.torque_lim"))
+        return min(max(torque, -most), most)
+
+    def _number(self, name: str) -> float:
+        return float(self.properties[f"axis0.{name}"])
 
     def _set(self, name: str, value: str) -> None:
         if name not in self.frozen:

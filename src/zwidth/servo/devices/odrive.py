@@ -13,9 +13,9 @@ from __future__ import annotations
 import time
 from contextlib import suppress
 from functools import reduce
-from math import pi
+from math import inf, isnan, nan, pi
 from operator import xor
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -27,14 +27,19 @@ from zwidth.servo.connection import (
     FORCE,
     GARBLED,
     GOOD,
+    LEAVES,
     OWN,
     READING,
     REFUSED,
+    REFUSES,
+    RESTORES,
     SILENT,
     STALE,
+    TELLS,
     UNTIL,
     CompiledConnection,
     Opened,
+    Setting,
     blank,
     exchanged,
 )
@@ -61,6 +66,12 @@ _TORQUE_CONTROL, _PASSTHROUGH = 1, 1
 _ANSWER_TIME = 1.0
 _START_TIME = 3.0
 _LAST_WORD = 0.2
+_GIMBAL = 2
+_SPEED_LIMITS = (
+    "controller.config.enable_torque_mode_vel_limit",
+    "controller.config.enable_current_mode_vel_limit",
+)
+"""From firmware 0.5.3 on, and before."""
 _ASTERISK, _NEWLINE, _RETURN, _BLANK = (ord(c) for c in "*\n\r ")
 
 
@@ -228,10 +239,14 @@ def _apply(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
 class ODrive(CompiledConnection):
     """One axis of an ODrive, torque against angle.
 
-    Opening it sets torque control without a filter of the input, the watchdog's time, torque 0, and closed
-    loop control; closing gives torque 0, lets the motor go and puts back what was set before.  The watchdog
-    runs while the torque is not 0, so that a loop may take its time to begin.  With every 16th torque this is
-    said again, and the state of the axis asked for: one that left closed loop control is a fault.
+    Opening it sets torque control without a filter of the input and without its limit of the speed
+
+        |τ| ≤ (vel_limit ∓ v) vel_gain,
+
+    0.333 N·m at rest as delivered; the watchdog's time, torque 0, and closed loop control.  Closing gives
+    torque 0, lets the motor go and puts back what was set before.  The watchdog runs while the torque is not
+    0, so that a loop may take its time to begin.  With every 16th torque this is said again, and the state of
+    the axis asked for: one that left closed loop control is a fault.
 
     Parameters
     ----------
@@ -252,6 +267,42 @@ class ODrive(CompiledConnection):
 
     motion = "rotary"
     late = 0
+    maker = "ODrive firmware 0.5.6, Firmware/MotorControl; that of 0.6 is not published"
+    settings: ClassVar[tuple[Setting, ...]] = (
+        (_SPEED_LIMITS[0], "1", "size: |τ| ≤ (vel_limit ∓ v)·vel_gain, as delivered (2 turn/s ∓ v)/6 N·m",
+         RESTORES, "controller.cpp:137, 387"),
+        ("controller.config.control_mode", "3", "what is controlled: 1, the torque", RESTORES,
+         "controller.cpp:374"),
+        ("controller.config.input_mode", "1", "filters or ramps the torque unless 1", RESTORES,
+         "controller.cpp:187"),
+        ("config.watchdog_timeout", "0", "end: how long the last torque acts", RESTORES, "axis.hpp:164"),
+        ("config.enable_watchdog", "0", "end: whether it ends by itself", RESTORES, "axis.cpp:172"),
+        ("requested_state", "0", "8, closed loop control; 1, idle, in the end", RESTORES, "axis.cpp:572"),
+        ("config.enable_sensorless_mode", "0", "spins the motor before it takes a torque", REFUSES,
+         "axis.cpp:262"),
+        ("motor.config.motor_type", "0", "size: of a gimbal motor, 2, a torque is volts", REFUSES,
+         "motor.cpp:589"),
+        ("motor.config.current_lim", "10 A", "size: |τ| ≤ current_lim·torque_constant", TELLS,
+         "motor.cpp:365, 391"),
+        ("motor.config.torque_constant", "0.04 N·m/A", "size: the current is τ over it", TELLS,
+         "motor.cpp:542"),
+        ("motor.config.torque_lim", "∞", "size: |τ| ≤ torque_lim", TELLS, "motor.cpp:392"),
+        ("controller.config.vel_limit", "2 turn/s", "end: above tolerance·vel_limit the axis is dropped", TELLS,
+         "controller.cpp:337"),
+        ("controller.config.vel_limit_tolerance", "1.2", "end: as above", TELLS, "controller.cpp:337"),
+        ("controller.config.enable_overspeed_error", "1", "end: whether it is dropped", TELLS,
+         "controller.cpp:332"),
+        ("controller.config.spinout_mechanical_power_threshold", "−10 W",
+         "end: a motor that takes more than 10 W from the hand and from the supply is dropped", LEAVES,
+         "controller.cpp:438"),
+        ("controller.config.anticogging.anticogging_enabled", "1",
+         "size: once calibrated, adds a torque by the angle", LEAVES, "controller.cpp:364"),
+        ("encoder.config.direction", "by calibration", "sign, of torque and angle alike", LEAVES,
+         "motor.cpp:520"),
+        ("min_endstop, max_endstop", "off", "end: pressed, the axis is dropped", LEAVES, "axis.cpp:156"),
+        ("fet_thermistor, motor_thermistor", "100 °C", "size: less current from there on", LEAVES,
+         "motor.cpp:376"),
+    )  # fmt: skip
     met_hardware = False
     measure = _measure
     apply = _apply
@@ -267,6 +318,7 @@ class ODrive(CompiledConnection):
         self.port, self.axis, self.baud, self.watchdog = port, axis, baud, watchdog
         self._serial: Any = None
         self._before: dict[str, str] = {}
+        self._limits = ""
 
     def open(self, sample_period: float) -> Opened:
         """Reach the ODrive, set it up, and wait until the axis is in closed loop control."""
@@ -308,8 +360,8 @@ class ODrive(CompiledConnection):
     def describe(self) -> str:
         """Which axis, over what, and what the position is."""
         return (
-            f"ODrive axis {self.axis} at {self.port}, torque control; the position is its own filtered "
-            "estimate, told in steps of 6.3 µrad; only an emulator of it has been met"
+            f"ODrive axis {self.axis} at {self.port}, torque control{self._limits}; the position is its own "
+            "filtered estimate, told in steps of 6.3 µrad; only an emulator of it has been met"
         )
 
     def _set_up(self) -> None:
@@ -317,7 +369,9 @@ class ODrive(CompiledConnection):
         serial = self._serial
         serial.write(b"\n")  # ends what an earlier program left unfinished
         self._read("current_state")
+        self._check_motor()
         settings = {
+            self._known(*_SPEED_LIMITS): "0",
             "config.enable_watchdog": "0",
             "config.watchdog_timeout": f"{self.watchdog:g}",
             "controller.config.control_mode": str(_TORQUE_CONTROL),
@@ -335,6 +389,44 @@ class ODrive(CompiledConnection):
         serial.write(_line_of(f"c {self.axis} 0"))
         self._write(serial, "requested_state", _CLOSED_LOOP)
         self._wait_for_start()
+
+    def _check_motor(self) -> None:
+        """Refuse what would not be a torque; keep what limits one in words."""
+        which = f"axis {self.axis} of the ODrive at {self.port}"
+        if self._found("config.enable_sensorless_mode") == 1:
+            raise InputError(
+                f"{which} is in its sensorless mode, which spins the motor before it takes a torque; set "
+                "config.enable_sensorless_mode to 0, with an encoder"
+            )
+        if self._found("motor.config.motor_type", "config.motor.motor_type") == _GIMBAL:
+            raise InputError(
+                f"{which} has a gimbal motor, for which a torque is volts, so that no wall is as stiff as "
+                "it was proved; take one whose current is controlled, motor_type 0"
+            )
+        current = self._found("motor.config.current_lim", "config.motor.current_soft_max")
+        constant = self._found("motor.config.torque_constant", "config.motor.torque_constant")
+        most = min(current * constant, self._found("motor.config.torque_lim", "config.torque_soft_max"))
+        limits = "an unknown torque" if isnan(most) else f"{most:.3g} N·m"
+        fastest = self._found("controller.config.vel_limit")
+        fastest *= self._found("controller.config.vel_limit_tolerance")
+        if self._found("controller.config.enable_overspeed_error") == 0:
+            fastest = inf
+        dropped = "above an unknown speed" if isnan(fastest) else f"above {_TURN * fastest:.3g} rad/s"
+        self._limits = f", at most {limits}; it lets the motor go {dropped}, whatever it holds"
+
+    def _known(self, *names: str) -> str:
+        """The first of these properties that its firmware has."""
+        for name in names[:-1]:
+            with suppress(InputError):
+                self._read(name)
+                return name
+        return names[-1]
+
+    def _found(self, *names: str) -> float:
+        """The first of these properties that its firmware has; NaN for none."""
+        with suppress(InputError):
+            return float(self._read(self._known(*names)))
+        return nan
 
     def _wait_for_start(self) -> None:
         """Closed loop control, or the errors that keep the axis from it."""
