@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 import chips
@@ -83,6 +84,16 @@ def connection_keys() -> str:
         optional = ", ".join(f"`{key}`" for key in way.keys if key not in way.needed)
         rows.append((f"`{name}`", way.meaning, ", ".join(f"`{key}`" for key in way.needed), optional))
     return markdown(("type", "what it reaches", "needs", "may have"), rows)
+
+
+def settings(name: str) -> str:
+    """What can change sign, size or end of a connection's force, and what is done about it."""
+    from zwidth.servo.devices.registry import CONNECTIONS
+
+    made = CONNECTIONS[name].made
+    head = ("setting", "as delivered", "what it does to the force", "what is done", "where it stands")
+    rows = [(f"`{row[0]}`", *(cell.replace("|", "\\|") for cell in row[1:])) for row in made.settings]
+    return f"By {made.maker}.\n\n{markdown(head, rows)}"
 
 
 def safety_options() -> str:
@@ -273,8 +284,12 @@ TABLES: dict[str, Callable[[], str]] = {
 
 def write() -> None:
     """Write every table where the pages include it; leave an unchanged one alone."""
+    from zwidth.servo.devices.registry import CONNECTIONS
+
     GENERATED.mkdir(exist_ok=True)
-    for name, table in TABLES.items():
+    for name, table in (
+        TABLES | {f"settings_{name}": partial(settings, name) for name in CONNECTIONS}
+    ).items():
         path, text = GENERATED / f"{name}.md", table()
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")

@@ -158,6 +158,45 @@ def test_a_dynamixel_that_gives_no_torque_any_more_is_refused(what):
     assert (other.table[64], other.table[11], other.table[98]) == (0, 3, 0)
 
 
+@pytest.mark.parametrize("reverse", [None, False, True])
+@pytest.mark.parametrize("drive_mode", range(16))
+@pytest.mark.parametrize("model", [1020, 1120])
+def test_a_wall_of_a_dynamixel_pushes_out_whatever_its_drive_mode(model, drive_mode, reverse):
+    """Or the servo is refused: a slave always, one that is reversed unless its sense is given."""
+    current_too = model == 1120 or not drive_mode & 1
+    with DynamixelEmulator([1024], model=model) as other:
+        other.put(10, 1, drive_mode)
+        if drive_mode & 2 or (drive_mode & 1 and reverse is None):
+            with pytest.raises(
+                InputError, match="slave" if drive_mode & 2 else "clear bit 0, or try by hand"
+            ):
+                servo(other, reverse=reverse).open(1e-3)
+            assert other.table[64] == 0
+            return
+        drive(servo(other, reverse=reverse), 3, lambda reading: -math.copysign(0.5, reading))
+        current = other.commands[-3].force
+        assert (current < 0) == (bool(reverse) != current_too)  # on the shaft, which stands at +1024
+        assert other.table[10] == drive_mode
+        assert other.table[64] == 0
+
+
+def test_a_dynamixel_whose_torque_somebody_puts_off_is_not_put_on_again_by_the_next_current():
+    """As Torque On by Goal Update would."""
+    with DynamixelEmulator(COUNTS) as other:
+        other.put(10, 1, 8)
+        run = drive(servo(other), 100, changing(AT - OPENING, lambda: other.put(64, 1, 0)))
+    assert run.statuses == [GOOD] * (AT - OPENING) + [REFUSED]
+
+
+def test_a_limit_of_the_voltage_of_a_dynamixel_is_told():
+    """Of the two registers the lower one."""
+    with DynamixelEmulator(COUNTS) as other:
+        other.put(100, 2, 177)
+        device = servo(other)
+        drive(device, 3)
+    assert "with 20 % of its supply's voltage" in device.describe()
+
+
 def test_a_torque_beyond_the_current_limit_is_given_as_the_limit():
     """Without that the servo would refuse it, unseen, and keep the current before."""
     with DynamixelEmulator(COUNTS) as other:

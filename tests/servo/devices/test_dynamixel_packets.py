@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from servo.emulators.dynamixel import packet
+from servo.emulators.dynamixel import DynamixelEmulator, packet
 
 from zwidth.servo.connection import CLOSED, GARBLED, GOOD, REFUSED, SILENT, STALE
 from zwidth.servo.devices.dynamixel_packets import put_read, put_write, receive
@@ -31,6 +31,24 @@ def test_the_question_of_the_e_manual():
     """ "Read": present position, 4 bytes at 132 of servo 1."""
     count = put_read(OUT, 1, 132, 4)
     assert OUT[:count].tobytes().hex(" ") == "ff ff fd 00 01 07 00 02 84 00 04 00 1d 15"
+
+
+@pytest.mark.parametrize(
+    ("asked", "answered"),
+    [
+        ("fffffd00 01 0300 01 194e", "fffffd00 01 0700 55 00 0604 26 655d"),  # ping: model 1030, firmware 38
+        ("fffffd00 01 0900 03 7400 00020000 ca89", "fffffd00 01 0400 55 00 a10c"),
+        ("fffffd00 fe 0900 82 8400 0400 01 02 cefa", "fffffd00 01 0800 55 00 a6000000 8cc0"),
+    ],
+    ids=["ping", "write", "sync read"],
+)
+def test_the_emulator_answers_as_the_e_manual(asked, answered):
+    """ "Ping", "Write" and "Sync Read" of Protocol 2.0, byte by byte."""
+    said = []
+    with DynamixelEmulator([166], model=1030, firmware=38) as other:
+        other.write = said.append
+        other.hear(bytes.fromhex(asked))
+    assert b"".join(said).hex() == answered.replace(" ", "")
 
 
 def test_the_answer_of_the_e_manual():

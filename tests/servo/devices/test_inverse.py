@@ -189,6 +189,17 @@ def test_an_answer_that_never_comes_ends_the_run():
     assert service.commands[-1].force == 0.0
 
 
+@pytest.mark.parametrize("number", [1, 3])
+def test_a_device_that_the_service_finds_late_is_served(monkeypatch, number):
+    """An empty list is asked for again, as the public clients of the service do."""
+    monkeypatch.setattr("zwidth.servo.devices.inverse._BETWEEN", 0.0)
+    with InverseEmulator(devices=()) as service:
+        service.found_when_asked = number
+        run = served(service, 20)
+    assert run.statuses == [GOOD] * 20
+    assert service.asked_again == number
+
+
 @pytest.mark.parametrize(
     ("options", "asked", "said"),
     [
@@ -203,8 +214,9 @@ def test_an_answer_that_never_comes_ends_the_run():
         ({"greeting": b'{"inverse3": [{"device_id": "0", "config": 3}]}'}, {}, "not understood"),
     ],
 )
-def test_what_cannot_be_served_is_refused_at_once(options, asked, said):
+def test_what_cannot_be_served_is_refused_at_once(monkeypatch, options, asked, said):
     """With what was found, in one message, and the line is closed."""
+    monkeypatch.setattr("zwidth.servo.devices.inverse._BETWEEN", 0.0)
     with InverseEmulator(**options) as service, pytest.raises(InputError, match=said):
         Inverse(address=service.address, **asked).open(1e-3)
 

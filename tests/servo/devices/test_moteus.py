@@ -12,6 +12,7 @@ from servo.emulators.moteus import MoteusEmulator
 
 from zwidth.errors import InputError
 from zwidth.servo.connection import GOOD, REFUSED, TOLD, UNTIL
+from zwidth.servo.devices import moteus
 from zwidth.servo.devices.moteus import Moteus
 
 OPENING = 2
@@ -56,6 +57,25 @@ def test_the_watchdog_of_a_moteus_runs_only_in_the_loop():
     assert all(math.isnan(time) for time in other.watchdogs[:OPENING])
     assert other.watchdogs[OPENING:] == pytest.approx([0.08] * 22)
     assert [command.force for command in islice(other.commands, OPENING)] == [0.0] * OPENING
+
+
+@pytest.mark.parametrize("mode", [0, 10, 12, 13, 15, None])
+@pytest.mark.parametrize("speed", [-3.0, 0.7])
+def test_what_is_said_of_a_moteus_after_its_watchdog_is_what_it_does(mode, speed):
+    """It is limp if and only if its motor gives no torque; without an answer all that it may do is said."""
+    with MoteusEmulator(TURNS) as other:
+        if mode is None:
+            del other.configuration["servo.timeout_mode"]
+        else:
+            other.configuration["servo.timeout_mode"] = mode
+        drive(device := Moteus(other.port, watchdog=0.08), 20, wall)
+    if mode is None:
+        assert all(f"with {number}" in device.on_silence for number in (0, 10, 15))
+        return
+    other.mode = 11
+    assert f"(servo.timeout_mode {mode})" in device.on_silence
+    assert ("goes limp" in device.on_silence) == (other.torque(speed) == 0.0)
+    assert ("brakes" in device.on_silence) == (mode == 15)
 
 
 @pytest.mark.parametrize("fault", list(ANSWERS))
@@ -183,6 +203,34 @@ def test_what_is_wrong_with_a_moteus_is_said_when_it_is_opened():
         other.bus_is_off = True
         with pytest.raises(InputError, match="ERR"):
             Moteus(other.port).open(1e-3)
+
+
+@pytest.mark.usefixtures("_soon")
+def test_a_moteus_that_has_heard_a_checksum_is_told_from_one_whose_bus_is_off():
+    """It wants them until it is switched off."""
+    refused = pytest.raises(InputError, match="give checksums = true")
+    with MoteusEmulator(TURNS, checksums=True) as other, refused:
+        Moteus(other.port).open(1e-3)
+
+
+def test_a_configuration_that_bears_on_the_torque_of_a_moteus_is_told_or_refused():
+    """Before it is told to operate; what its firmware does not know is left out."""
+    with MoteusEmulator(TURNS) as other:
+        other.configuration["motor.cogging_dq_scale"] = 0.25
+        del other.configuration["servo.inertia_feedforward"]
+        drive(device := Moteus(other.port), 3)
+    assert "servo.max_current_A 100, motor.cogging_dq_scale 0.25;" in device.describe()
+    with MoteusEmulator(TURNS) as other:
+        other.configuration["servo.fixed_voltage_mode"] = 1
+        with pytest.raises(InputError, match="gives no torque"):
+            Moteus(other.port).open(1e-3)
+    assert other.commands == []
+
+
+@pytest.mark.parametrize("code", [*range(32, 51)])
+def test_every_fault_of_a_moteus_has_a_name(code):
+    """As fw/error.h numbers them."""
+    assert code in moteus._FAULTS
 
 
 @pytest.mark.parametrize(

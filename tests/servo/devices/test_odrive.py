@@ -138,7 +138,7 @@ def test_what_limits_the_torque_of_an_odrive_is_told():
     assert "lets the motor go above 15.1 rad/s" in connection.describe()
     assert run.statuses[-1] == REFUSED
     with ODriveEmulator() as motor:  # as firmware 0.5.1 names the limit of the speed, and 0.6 those of torque
-        new, old = ODrive.settings[0].name, "controller.config.enable_current_mode_vel_limit"
+        new, old = ODrive.settings[0][0], "controller.config.enable_current_mode_vel_limit"
         motor.properties[f"axis0.{old}"] = motor.properties.pop(f"axis0.{new}")
         motor.properties["axis0.config.motor.current_soft_max"] = motor.properties.pop(
             "axis0.motor.config.current_lim"
@@ -155,7 +155,7 @@ def test_what_limits_the_torque_of_an_odrive_is_told():
     ("name", "value", "said"),
     [
         ("config.enable_sensorless_mode", "1", "spins the motor"),
-        ("motor.config.motor_type", "2", "are volts"),
+        ("motor.config.motor_type", "2", "is volts"),
     ],
 )
 def test_an_odrive_that_takes_no_torque_is_refused(name, value, said):

@@ -1,4 +1,8 @@
-"""A Dynamixel of the X series on a bus, written from the e-Manual: control table, packets, odd habits."""
+"""A Dynamixel of the X series on a bus, written from the e-Manual: control table, packets, odd habits.
+
+Its positions are those of its shaft, its commands the currents that turn the shaft: what the Drive Mode makes
+of both is for the host to find out.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +12,11 @@ from servo.emulators.faults import Fault
 from servo.emulators.terminal import TerminalEmulator
 
 HEADER = b"\xff\xff\xfd\x00"
-_TORQUE, _WATCHDOG, _GOAL, _LIMIT, _MODE = 64, 98, 102, 38, 11
+_TORQUE, _WATCHDOG, _GOAL, _LIMIT, _MODE, _DRIVE = 64, 98, 102, 38, 11, 10
+_X540 = (1110, 1120)
+"""Models whose currents Reverse inverts as well: the e-Manual, "Drive Mode"."""
+_OTHER_VALUES, _REFUSED = 0x04, 0x07
+"""Of an answer: "Data Range Error", "Access Error"."""
 
 
 def remainder(packet: bytes) -> bytes:
@@ -59,6 +67,7 @@ class DynamixelEmulator(TerminalEmulator):
         self.indirect_data = indirect_data
         self.table = bytearray(700)
         self.alert = False
+        self.touched: set[int] = set()
         self._heard = b""
         self._room = 28 if indirect_data == 224 else 20
         self.put(0, 2, model)
@@ -66,6 +75,8 @@ class DynamixelEmulator(TerminalEmulator):
         self.put(9, 1, 250)
         self.put(_MODE, 1, 3)
         self.put(_LIMIT, 2, 1193)
+        self.put(36, 2, 885)
+        self.put(100, 2, 885)
         for i in range(self._room):
             self.put(168 + 2 * i, 2, indirect_data + i)
 
@@ -103,28 +114,45 @@ class DynamixelEmulator(TerminalEmulator):
             for at in range(4, len(parameters), 1 + count):
                 if parameters[at] == self.identifier:
                     self._write(address, parameters[at + 1 : at + 1 + count])
+        elif instruction == 0x82 and identifier == 0xFE and self.identifier in parameters[4:]:
+            self._read(*struct.unpack_from("<HH", parameters))
+        elif instruction == 0x01 and identifier in (self.identifier, 0xFE):
+            self.write(self._status(0, bytes(self.table[:2]) + bytes([self.table[6]])))
         elif instruction == 0x02 and identifier == self.identifier:
             self._read(*struct.unpack("<HH", parameters))
+        elif instruction == 0x03 and identifier == self.identifier:
+            self.write(self._status(self._write(struct.unpack_from("<H", parameters)[0], parameters[2:])))
 
-    def _write(self, address: int, data: bytes) -> None:
+    def _status(self, error: int, parameters: bytes = b"") -> bytes:
+        return packet(self.identifier, bytes([0x55, error | (0x80 if self.alert else 0)]) + parameters)
+
+    def _write(self, address: int, data: bytes) -> int:
+        """What is wrong with it, as an answer says it; 0."""
+        self.touched.add(address)
         value = int.from_bytes(data, "little", signed=True)
         torque, limit = self.table[_TORQUE], self.value(_LIMIT, 2)
         if address < 64 and torque:
-            return
+            return _REFUSED
         if address == _GOAL and (self.table[_WATCHDOG] == 0xFF or abs(value) > limit):
-            return
+            return _OTHER_VALUES
         if address == _MODE and value != self.table[_MODE]:
             self.put(_GOAL, 2, limit)  # what a change of the operating mode does
         self.put(address, len(data), value)
+        if address == _GOAL and self.table[_DRIVE] & 8:
+            self.table[_TORQUE] = 1
         if address in (_GOAL, _TORQUE) and self.table[_TORQUE] and self.table[_MODE] == 0:
-            self.command(int.from_bytes(self.table[_GOAL : _GOAL + 2], "little", signed=True))
+            current = int.from_bytes(self.table[_GOAL : _GOAL + 2], "little", signed=True)
+            turned = self.table[_DRIVE] & 1 and self.value(0, 2) in _X540
+            self.command(0 if self.table[_DRIVE] & 2 else (-current if turned else current))
+        return 0
 
     def _read(self, address: int, count: int) -> None:
+        self.touched.add(address)
         counted = address == self.indirect_data and count >= 6
         index = min(self.exchange, len(self.positions) - 1)
-        self.put(132, 4, self.positions[index])
+        self.put(132, 4, -self.positions[index] if self.table[_DRIVE] & 1 else self.positions[index])
         values = bytes(self.table[self._behind(i)] for i in range(address, address + count))
-        frame = packet(self.identifier, bytes([0x55, 0x80 if self.alert else 0]) + values)
+        frame = self._status(0, values)
         if counted:
             self.answer(frame)
         else:

@@ -36,6 +36,7 @@ class FeetechEmulator(TerminalEmulator):
         self.table[7], self.table[30], self.table[_TORQUE] = 250, 1, 1
         self.table[48:50] = (1000).to_bytes(2, "little")
         self.saved: list[int] = []
+        self.touched: set[int] = set()
         self._heard = b""
 
     def hear(self, data: bytes) -> None:
@@ -63,10 +64,18 @@ class FeetechEmulator(TerminalEmulator):
             for at in range(2, len(parameters), 1 + count):
                 if parameters[at] == self.identifier:
                     self._write(address, parameters[at + 1 : at + 1 + count])
+        elif instruction == 0x82 and identifier == 0xFE and self.identifier in parameters[2:]:
+            self._read(*parameters[:2])
         elif instruction == 0x02 and identifier == self.identifier:
             self._read(*parameters)
+        elif instruction in (0x01, 0x03) and identifier in (self.identifier, 0xFE):
+            if instruction == 0x03:
+                self._write(parameters[0], parameters[1:])
+            if instruction == 0x01 or identifier != 0xFE:
+                self.write(packet(self.identifier, bytes([self.state])))
 
     def _write(self, address: int, data: bytes) -> None:
+        self.touched.add(address)
         self.table[address : address + len(data)] = data
         if address < _TORQUE and not self.table[_LOCK]:
             self.saved.append(address)
@@ -75,6 +84,7 @@ class FeetechEmulator(TerminalEmulator):
             self.command((-1 if word & 1024 else 1) * (word % 1024) / 1000)
 
     def _read(self, address: int, count: int) -> None:
+        self.touched.add(address)
         position = self.positions[min(self.exchange, len(self.positions) - 1)]
         word = abs(position) | (0x8000 if position < 0 else 0)
         self.table[_POSITION : _POSITION + 2] = word.to_bytes(2, "little")

@@ -64,6 +64,8 @@ class InverseEmulator(Emulator):
         self.pongs: list[bytes] = []
         self.kinds: list[int] = []
         self.closed_by_client = False
+        self.asked_again = 0
+        self.found_when_asked: int | None = None
         self.ping_before: int | None = None
         self.leave_out = False
         self.not_ready_from: int | None = None
@@ -146,7 +148,14 @@ class InverseEmulator(Emulator):
             self.hang_up()
         if kind != 1:
             return
-        (device,) = json.loads(payload)["inverse3"]
+        message = json.loads(payload)
+        if message == {"session": {"force_render_full_state": {}}}:
+            self.asked_again += 1
+            if self.asked_again == self.found_when_asked:
+                self._devices = ("049D",)
+            self.write(frame(self._greeting or self._document(full=True)))
+            return
+        (device,) = message["inverse3"]
         assert device["device_id"] == self._devices[-1]
         values = device["commands"]["set_cursor_force"]["values"]
         assert set(values) == {"x", "y", "z"}

@@ -1,4 +1,8 @@
-"""A moteus controller behind an adapter that speaks fdcanusb's lines, written from mjbots' documentation."""
+"""A moteus controller behind an adapter that speaks fdcanusb's lines, written from mjbots' documentation.
+
+What it does after its watchdog is the rule of mjbots/moteus db1a7623, fw/bldc_servo_control.h, lines 1137 to
+1152 and 1451 to 1477; when it wants checksums, that of fw/uart_fdcanusb_micro_server.h, lines 223 to 270.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +36,12 @@ class MoteusEmulator(TerminalEmulator):
     identifier
         Its id.id.
     checksums
-        True for lines with a checksum, as of a UART.
+        True for one that has heard a line with a checksum, and wants them from now on.
+
+    Attributes
+    ----------
+    configuration
+        What "conf get" tells, as delivered.
     """
 
     def __init__(
@@ -53,7 +62,31 @@ class MoteusEmulator(TerminalEmulator):
         self.bus_is_off = False
         self.complaints: list[str] = []
         self.watchdogs: list[float] = []
+        self.configuration = {
+            "servo.timeout_mode": 12.0,
+            "servo.timeout_max_torque_Nm": 5.0,
+            "servo.pid_position.kd": 0.05,
+            "servo.fixed_voltage_mode": 0.0,
+            "servo.voltage_mode_control": 0.0,
+            "servo.max_current_A": 100.0,
+            "servo.inertia_feedforward": 0.0,
+            "motor.cogging_dq_scale": 0.0,
+        }
+        self.asked_for: set[str] = set()
+        self._scale = math.nan
+        self._stream = b""
         self._heard = b""
+
+    def torque(self, speed: float) -> float:
+        """Of the motor at a speed [turn/s], when it operates as when its watchdog has run out."""
+        way = self.configuration["servo.timeout_mode"] if self.mode == 11 else self.mode
+        damping = -self.configuration["servo.pid_position.kd"] * speed  # of its own law, scale 1
+        if way == 12:
+            most = self.configuration["servo.timeout_max_torque_Nm"]
+            return min(max(self._scale * damping, -most), most)
+        if way == 10:
+            return damping if self.mode == 11 else self.commands[-1].force + self._scale * damping
+        return -0.2 * speed if way == 15 else 0.0  # the short-circuited motor's own constant is for itself
 
     def hear(self, data: bytes) -> None:
         """Take bytes that came, however they were cut."""
@@ -75,12 +108,13 @@ class MoteusEmulator(TerminalEmulator):
         return text + (b" *%02X" % checksum(text + b" ") if self.checksums else b"") + b"\r\n"
 
     def _obey(self, line: bytes) -> None:
-        if self.checksums:
-            body, star, digits = line.rpartition(b"*")
-            if not star or int(digits, 16) != checksum(body):
-                self.write(self.line(b"ERR checksum"))
-                return
-            line = body.rstrip()
+        body, star, digits = line.rpartition(b"*")
+        if star:
+            right = int(digits, 16) == checksum(body)
+            self.checksums, line = self.checksums or right, body.rstrip()
+        if not (right if star else not self.checksums):
+            self.write(self.line(b"ERR checksum"))
+            return
         words = line.split()
         if words[:2] != [b"can", b"send"] or self.bus_is_off:
             self.write(self.line(b"ERR unknown command"))
@@ -94,7 +128,8 @@ class MoteusEmulator(TerminalEmulator):
         answer = self._registers(data)
         if address & 0x8000:
             to = self.identifier << 8 | (address >> 8 & 0x7F)
-            self.answer(self.line(b"rcv %x %s E B F" % (to, answer.hex().encode())))
+            give = self.write if answer[:1] == b"\x41" else self.answer
+            give(self.line(b"rcv %x %s E B F" % (to, answer.hex().encode())))
 
     def _registers(self, data: bytes) -> bytes:
         """Write what is written, and the answer to what is read."""
@@ -105,6 +140,10 @@ class MoteusEmulator(TerminalEmulator):
             what, kind, count = data[at] & 0xF0, _TYPES[data[at] >> 2 & 3], data[at] & 3
             at += 1
             if data[at - 1] == 0x50:
+                continue
+            if what == 0x40:
+                answer += self._told(data[at - 1], data[at + 1], data[at + 2 :])
+                at += 2 + (data[at + 1] if data[at - 1] == 0x40 else 0)
                 continue
             if count == 0:
                 count, at = data[at], at + 1
@@ -122,6 +161,17 @@ class MoteusEmulator(TerminalEmulator):
             self._command({register: self._meaning(*value) for register, value in written.items()}, written)
         return answer
 
+    def _told(self, what: int, count: int, data: bytes) -> bytes:
+        """The stream of text: 40 hex tells it something, 42 asks for what it says."""
+        if what == 0x42:
+            part, self._stream = self._stream[:count], self._stream[count:]
+            return bytes([0x41, 1, len(part)]) + part
+        _, _, name = data[:count].decode().strip().split()
+        self.asked_for.add(name)
+        known = self.configuration.get(name)
+        self._stream += b"ERR error reading\r\n" if known is None else b"%.6f\r\n" % known
+        return b""
+
     def _meaning(self, kind: str, value: float) -> float:
         return math.nan if value == _SPECIAL.get(kind) else value
 
@@ -135,6 +185,7 @@ class MoteusEmulator(TerminalEmulator):
             self.complaints.append("no torque mode")
         if any(values.get(register, 1.0) != 0.0 for register in (0x021, 0x023, 0x024, 0x02B)):
             self.complaints.append("a loop inside is not off")
+        self._scale = values[0x024]
         kind, _ = written[0x027]
         self.watchdogs.append(values[0x027] * _TIME[kind])
         self.command(values[0x022])

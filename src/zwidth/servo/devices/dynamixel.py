@@ -25,11 +25,17 @@ from zwidth.servo.connection import (
     DESCRIPTOR,
     FORCE,
     GOOD,
+    LEAVES,
     OWN,
     READING,
     REFUSED,
+    REFUSES,
+    RESTORES,
+    SETS,
+    TELLS,
     UNTIL,
     Opened,
+    Setting,
     exchanged,
 )
 from zwidth.servo.devices.arrivals import unwrapped, unwritten
@@ -47,7 +53,8 @@ SERVO, TOGETHER, ASKED, BEFORE, SEEN, PER_TORQUE, MOST, WATCHDOG = range(OWN, OW
 COUNTS = 4096.0
 """Of a turn of the output."""
 
-_MODEL, _FIRMWARE, _RETURN_DELAY, _OPERATING_MODE, _CURRENT_LIMIT = 0, 6, 9, 11, 38
+_MODEL, _FIRMWARE, _RETURN_DELAY, _DRIVE_MODE, _OPERATING_MODE = 0, 6, 9, 10, 11
+_PWM_LIMIT, _CURRENT_LIMIT, _GOAL_PWM = 36, 38, 100
 _TORQUE_ENABLE, _LED, _HARDWARE_ERROR, _BUS_WATCHDOG, _GOAL_CURRENT = 64, 65, 70, 98, 102
 _PRESENT_POSITION, _INDIRECT_ADDRESS = 132, 168
 
@@ -63,7 +70,9 @@ _ASKED_FOR = (
 _SHORTEST, _LENGTHS = 6, 3
 _WATCHDOG_UNIT, _LONGEST_WATCHDOG, _WATCHDOG_SINCE = 0.02, 127, 38
 _EXPIRED = 0xFF
-
+_REVERSE, _SLAVE, _ON_BY_GOAL = 1, 2, 8
+"""Bits of the drive mode."""
+_FULL_PWM = 885
 
 _UNITS = {
     1020: ("XM430-W350", 2.69e-3),
@@ -136,6 +145,9 @@ class Dynamixel(BusServo):
         After so long without any packet on the bus the servo stops [s]: a multiple of 20 ms, up to 2.54 s.
     current_unit
         u [A], of a model that is not known here, or another than the e-Manual's.
+    reverse
+        True where a positive current turns the servo towards smaller positions.  None: not, and a servo whose
+        drive mode is Reverse is refused, for by the e-Manual that inverts positions alone on most models.
 
     Raises
     ------
@@ -144,6 +156,34 @@ class Dynamixel(BusServo):
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "rotary"
+    maker: ClassVar[str] = "ROBOTIS e-Manual, ROBOTIS-GIT/emanual of 2024, _includes/en/dxl/control_table_"
+    settings: ClassVar[tuple[Setting, ...]] = (
+        ("Model Number 0", "", "size: the unit of the current", REFUSES, "docs/en/dxl/x"),
+        ("Firmware Version 6", "", "end: before 38 there is no watchdog", REFUSES, "buswatchdog.md:25"),
+        ("Drive Mode 10", "0", "sign: bit 0, Reverse, inverts positions, and on the X540 currents too; bit 1, "
+         "Slave, ignores the goal; bit 3 puts a torque that is off on with the next goal", REFUSES,
+         "drivemode.md:13 to 29, 54"),
+        ("Operating Mode 11", "3", "what is controlled: 0, the current", RESTORES, "docs/en/dxl/x"),
+        ("Return Delay Time 9", "250", "delay of the position, 0.5 ms", RESTORES, "docs/en/dxl/x"),
+        ("Current Limit 38", "of the model", "size: a goal beyond is refused, the last one stays", TELLS,
+         "current_limit.md"),
+        ("PWM Limit 36", "885", "size: less than 885 is less voltage, and less torque at a speed", TELLS,
+         "goal_pwm.md:1"),
+        ("Goal PWM 100", "PWM Limit", "size: as PWM Limit", TELLS, "goal_pwm.md:1"),
+        ("Goal Current 102", "0", "the torque; 0 before the torque is on", SETS, "goal_current.md"),
+        ("Torque Enable 64", "0", "whether there is a torque; 0 in the end", SETS, "docs/en/dxl/x"),
+        ("Bus Watchdog 98", "0", "end: how long the last current acts; 0 in the end", SETS,
+         "buswatchdog.md:1 to 17"),
+        ("Indirect Address 168 to 182", "224 and on", "what is read in one piece; they stay", SETS,
+         "indirect_data.md"),
+        ("Hardware Error Status 70", "0", "end: an alert", TELLS, "hardware_error_status.md"),
+        ("Shutdown 63", "of the model", "end: which alerts put the torque off", LEAVES, "docs/en/dxl/x"),
+        ("Temperature, Voltage Limit 31 to 34", "of the model", "end: an alert", LEAVES, "docs/en/dxl/x"),
+        ("Secondary ID 12", "255", "goals of another servo with this identifier act here too", LEAVES,
+         "docs/en/dxl/x"),
+        ("PWM Slope 62", "140", "delay of the torque, of the 330 size", LEAVES, "docs/en/dxl/x"),
+        ("Homing Offset 20", "0", "where the zero is", LEAVES, "homingoffset.md"),
+    )  # fmt: skip
     measure: ClassVar[Any] = staticmethod(_measure)
     apply: ClassVar[Any] = staticmethod(_apply)
 
@@ -156,6 +196,7 @@ class Dynamixel(BusServo):
         baud: int = 1_000_000,
         watchdog: float = 0.04,
         current_unit: float | None = None,
+        reverse: bool | None = None,
     ) -> None:
         if not (isinstance(identifier, int) and 0 <= identifier <= 252):
             raise InputError(f"identifier must be 0 to 252, those of a Dynamixel, got {identifier!r}")
@@ -176,8 +217,10 @@ class Dynamixel(BusServo):
         self._steps = math.ceil(watchdog / _WATCHDOG_UNIT - 1e-9)  # 0.14/0.02 is a little more than 7
         self.watchdog = self._steps * _WATCHDOG_UNIT
         self.current_unit = current_unit
+        self.reverse = reverse
         self._model = "servo"
         self._most_torque = math.nan
+        self._pwm = _FULL_PWM
 
     def open(self, sample_period: float) -> Opened:
         """As of every connection; the watchdog begins with the first torque of the loop.
@@ -202,6 +245,8 @@ class Dynamixel(BusServo):
     def describe(self) -> str:
         """Which servo, its numbers, and what has been met of it."""
         limit = "" if math.isnan(self._most_torque) else f", {self._most_torque:.3g} N·m at most"
+        if self._pwm < _FULL_PWM:
+            limit += f", with {100 * self._pwm / _FULL_PWM:.3g} % of its supply's voltage"
         return f"{self._name}, {self.torque_per_current:g} N·m/A{limit}; tried against an emulator only"
 
     @property
@@ -224,10 +269,12 @@ class Dynamixel(BusServo):
         """
         memory[SERVO] = self.identifier
         unit = self._unit()
-        limit = self._read(_CURRENT_LIMIT, 2)
+        limit, mode = self._read(_CURRENT_LIMIT, 2), self._drive_mode()
         self._set(_TORQUE_ENABLE, 1, 0)
         self._set(_BUS_WATCHDOG, 1, 0)
         self._change(_RETURN_DELAY, 1, 0)
+        if mode & _ON_BY_GOAL:
+            self._change(_DRIVE_MODE, 1, mode & ~_ON_BY_GOAL)
         self._change(_OPERATING_MODE, 1, 0)
         for i, address in enumerate(_ASKED_FOR):
             self._set(_INDIRECT_ADDRESS + 2 * i, 2, address)
@@ -236,9 +283,27 @@ class Dynamixel(BusServo):
         if self._read(_GOAL_CURRENT, 2) != 0:
             raise InputError(f"{self._name} has a goal current of its own as soon as its torque is on")
         memory[TOGETHER] = self._together()
-        memory[PER_TORQUE] = 1.0 / (self.torque_per_current * unit)
+        memory[PER_TORQUE] = (-1.0 if self.reverse else 1.0) / (self.torque_per_current * unit)
         memory[MOST], memory[WATCHDOG] = limit, self._steps
         self._most_torque = limit * unit * self.torque_per_current
+        self._pwm = min(self._read(_PWM_LIMIT, 2), self._read(_GOAL_PWM, 2))
+
+    def _drive_mode(self) -> int:
+        """Refused where the goal current is ignored, or its sense is not known."""
+        mode = self._read(_DRIVE_MODE, 1)
+        if mode & _SLAVE:
+            raise InputError(
+                f"{self._name} is a slave by its Drive Mode {_DRIVE_MODE}: it follows the cable of its "
+                "master and ignores every goal current; serve the master, or clear bit 1"
+            )
+        if mode & _REVERSE and self.reverse is None:
+            raise InputError(
+                f"{self._name} is reversed by its Drive Mode {_DRIVE_MODE}: by the e-Manual that inverts its "
+                "positions, and its currents too on the X540 and XW540 alone, so that on others a wall pulls "
+                "in; clear bit 0, or try by hand which way a current turns it and give reverse = true or "
+                "false"
+            )
+        return mode
 
     def _together(self) -> int:
         """Where position, watchdog and torque enable are now read in one piece: the last two are 0 and 1."""

@@ -30,10 +30,16 @@ from zwidth.servo.connection import (
     DESCRIPTOR,
     FORCE,
     GOOD,
+    LEAVES,
     OWN,
     READING,
     REFUSED,
+    REFUSES,
+    RESTORES,
+    SETS,
+    TELLS,
     UNTIL,
+    Setting,
     exchanged,
 )
 from zwidth.servo.devices.arrivals import unwrapped, unwritten
@@ -124,6 +130,32 @@ class Feetech(BusServo):
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "rotary"
+    maker: ClassVar[str] = (
+        "Feetech, memory table of the STS3215; huggingface/lerobot 7427f318, src/lerobot/motors/feetech"
+    )
+    settings: ClassVar[tuple[Setting, ...]] = (
+        ("operation mode 33", "0", "what is controlled: 2, the duty", RESTORES, "tables.py:68"),
+        ("lock 55", "", "1: what is written is forgotten when it is switched off", RESTORES, "tables.py:82"),
+        ("return delay 7", "250", "delay of the position, 0.5 ms", RESTORES, "feetech.py:213"),
+        ("torque switch 40", "0", "whether there is a torque; 0 in the end", SETS, "tables.py:76"),
+        ("running time 44", "0", "the duty in mode 2, bit 10 its sign; 0 before the torque is on", SETS,
+         "SMS_STS library, WritePwm"),
+        ("angular resolution 30", "1", "place: a count is no 1/4096 of a turn unless 1", REFUSES,
+         "tables.py:66"),
+        ("torque limit 48", "1000", "size: a duty is at most this", TELLS, "tables.py:81"),
+        ("state of the servo", "0", "end: a fault, in every answer", TELLS, "memory table, servo status"),
+        ("max torque 16", "1000", "size: torque limit 48 is this when it is switched on", LEAVES,
+         "tables.py:55"),
+        ("phase 18", "", "sign: which way a duty turns; tried by hand, and `reverse` given", LEAVES,
+         "feetech.py:219"),
+        ("overload torque 36, protective torque 34, protection time 35", "",
+         "size: after so long at so much it gives the protective torque", LEAVES, "tables.py:69 to 71"),
+        ("protection current 28, over-current time 38", "", "end: a fault", LEAVES,
+         "tables.py:65, 73"),
+        ("unloading condition 19", "", "end: which faults put the torque off", LEAVES,
+         "tables.py:57"),
+        ("homing offset 31", "0", "where the zero is", LEAVES, "tables.py:67"),
+    )  # fmt: skip
     measure: ClassVar[Any] = staticmethod(_measure)
     apply: ClassVar[Any] = staticmethod(_apply)
 

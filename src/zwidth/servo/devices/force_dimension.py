@@ -19,7 +19,18 @@ from typing import Any, ClassVar, Literal
 
 from zwidth.errors import InputError
 from zwidth.quantity.parameter import one_of
-from zwidth.servo.connection import GARBLED, GOOD, REFUSED, SILENT, STALE, LibraryConnection
+from zwidth.servo.connection import (
+    GARBLED,
+    GOOD,
+    LEAVES,
+    REFUSED,
+    SETS,
+    SILENT,
+    STALE,
+    TELLS,
+    LibraryConnection,
+    Setting,
+)
 from zwidth.servo.posix import now
 
 _PACKAGE = "forcedimension_core"
@@ -52,6 +63,22 @@ class ForceDimension(LibraryConnection):
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "linear"
+    maker: ClassVar[str] = "Force Dimension SDK 3.16, by forcedimension-core 1.0.0"
+    settings: ClassVar[tuple[Setting, ...]] = (
+        ("dhdSetTimeGuard", "on", "delay: a question that comes soon gets an older position", SETS,
+         "dhd.expert.setTimeGuard"),
+        ("dhdSetWatchdog", "", "end: 20 ms without a force", SETS, "dhd.expert.setWatchdog"),
+        ("whether there is a watchdog", "", "end: without one the last force stays", TELLS,
+         "dhd.expert.setWatchdog"),
+        ("dhdEnableForce", "off", "whether there is a force; off in the end", SETS, "dhd.enableForce"),
+        ("dhdSetGravityCompensation", "", "size: a force of the library's own is added", LEAVES,
+         "dhd.setGravityCompensation"),
+        ("dhdSetMaxForce", "none", "size: |F| is at most this", LEAVES, "dhd.setMaxForce"),
+        ("motors at their limit", "", "size: the whole force is scaled down", LEAVES, "dhd.setForce"),
+        ("dhdSetVelocityThreshold", "of the device", "end: faster, and the force is turned off", LEAVES,
+         "dhd.expert"),
+        ("dhdSetDeviceAngleRad", "0", "sign: which way x, y, z are", LEAVES, "dhd.setDeviceAngleRad"),
+    )  # fmt: skip
 
     def __init__(self, axis: str = "x", *, index: int | None = None, simulator: bool = False) -> None:
         self.axis = one_of("axis", axis, "x", "y", "z")

@@ -28,14 +28,17 @@ from zwidth.servo.connection import (
     DESCRIPTOR,
     FORCE,
     GOOD,
+    LEAVES,
     OWN,
     READING,
     REFUSED,
+    SETS,
     SILENT,
     STATUS,
     UNTIL,
     CompiledConnection,
     Opened,
+    Setting,
     blank,
     exchanged,
 )
@@ -155,6 +158,18 @@ class Hapkit(CompiledConnection):
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "linear"
+    maker: ClassVar[str] = "the sketch of this project, examples/hapkit/hapkit.ino"
+    settings: ClassVar[tuple[Setting, ...]] = (
+        ("start", "", "end: the force is 0, one that was cut may be given again", SETS, "hapkit.ino"),
+        ("SILENCE", "20 ms", "end: the force is cut, and the loop ends", LEAVES, "hapkit.ino:32"),
+        ("count", "", "sign, and size of a position; tried with a rule", LEAVES, "of the specification"),
+        ("FORWARD", "HIGH", "sign; tried by hand", LEAVES, "hapkit.ino:19"),
+        ("SECTOR_RADIUS, HANDLE_RADIUS, PULLEY_RADIUS", "75, 70, 4.191 mm", "size", LEAVES,
+         "hapkit.ino:21 to 23"),
+        ("TORQUE", "0.03 N·m", "size: at most this at the motor, and it goes with the supply", LEAVES,
+         "hapkit.ino:24"),
+        ("SPAN", "980", "place: a jump of the sensor that is counted wrong", LEAVES, "hapkit.ino:20"),
+    )  # fmt: skip
     measure: ClassVar[Any] = staticmethod(_measure)
     apply: ClassVar[Any] = staticmethod(_apply)
 

@@ -38,13 +38,16 @@ from zwidth.servo.connection import (
     FORCE,
     GARBLED,
     GOOD,
+    LEAVES,
     OWN,
     READING,
+    SETS,
     SILENT,
     STATUS,
     UNTIL,
     CompiledConnection,
     Opened,
+    Setting,
     blank,
     exchanged,
 )
@@ -214,6 +217,18 @@ def _apply(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
 class _Haply(CompiledConnection):
     """The board with its joints; which of their angles or positions is the axis."""
 
+    maker: ClassVar[str] = "Haply's firmware M3 1.5 and M0 0.3, hAPI of 2021, HaplyHAPI 1.0.1"
+    settings: ClassVar[tuple[Setting, ...]] = (
+        ("setup: ports, rotations, offsets, counts", "", "sign, size and place: of motors and encoders alike",
+         SETS, "hAPI, Device.deviceSetParameters"),
+        ("torque of each motor", "", "the force; the other axis is free", SETS, "hAPI, Board.transmit"),
+        ("arms at rest at their offsets", "", "sign and place: where they stand is taken for it", LEAVES,
+         "hAPI, Pantograph"),
+        ("no watchdog", "", "end: the last torques act until the power is cut", LEAVES, "firmware"),
+        ("limit of a motor", "0.123 N·m", "size, and direction where one of two is cut", LEAVES,
+         "firmware M3 1.5"),
+        ("links", "70, 90, 38 mm", "size: torques of a force", LEAVES, "HaplyHAPI, Pantograph"),
+    )  # fmt: skip
     measure: ClassVar[Any] = staticmethod(_measure)
     apply: ClassVar[Any] = staticmethod(_apply)
 

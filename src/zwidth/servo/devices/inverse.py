@@ -16,6 +16,7 @@ from __future__ import annotations
 import json
 import os
 import socket
+import time
 from contextlib import suppress
 from typing import Any, ClassVar, Literal
 
@@ -30,15 +31,20 @@ from zwidth.servo.connection import (
     GARBLED,
     GOOD,
     INDEX,
+    LEAVES,
     OWN,
     READING,
     REFUSED,
+    REFUSES,
+    SETS,
     SILENT,
     STALE,
     STATUS,
+    TELLS,
     UNTIL,
     CompiledConnection,
     Opened,
+    Setting,
     blank,
     exchanged,
 )
@@ -70,6 +76,9 @@ _INBOX = 2 * 65536 + websocket.LONGEST_HEADER
 _LONGEST_NAME = 64
 _ANSWER_TIME = 2.0
 _LAST_WORD = 0.5
+_WHOLE_STATE = b'{"session":{"force_render_full_state":{}}}'
+_ASKED_AGAIN, _BETWEEN = 4, 0.25
+"""How often the service is asked for its devices where it lists none, and after how long [s]."""
 _POLL = 20_000
 
 _DEVICES, _ID, _STATE, _POSITION, _CONDITION, _READY = (
@@ -249,6 +258,18 @@ class Inverse(CompiledConnection):
 
     motion = "linear"
     late = 1
+    maker = "Inverse service 3.5, docs.haply.co"
+    settings: ClassVar[tuple[Setting, ...]] = (
+        ("set_cursor_force", "", "the force, of the other two axes 0", SETS, "WebSocket Protocol"),
+        ("mount.scale, transform.scale", "1", "size: a scaled position is no metre", REFUSES,
+         "WebSocket Protocol"),
+        ("status.ready", "", "end: a device that is not ready gives no force", REFUSES, "WebSocket Protocol"),
+        ("filters: force_gate, damping", "", "size: a force is filtered, a damper added", TELLS, "Filters"),
+        ("damper of oscillations", "on", "size: always", TELLS, "Filters"),
+        ("force_scale", "1", "size: a factor of all forces", LEAVES, "Filters"),
+        ("gravity_compensation", "", "size: a force of the service's own is added", LEAVES, "Filters"),
+        ("preset and basis of the session", "", "sign: which way x, y, z are", LEAVES, "WebSocket Protocol"),
+    )  # fmt: skip
     met_hardware = False
     measure = _measure
     apply = _apply
@@ -282,7 +303,15 @@ class Inverse(CompiledConnection):
         self._line = line
         try:
             message, behind = websocket.read_message(line, behind)
-            self._choose(_inventory(message, self.address))
+            devices = _inventory(message, self.address)
+            for _ in range(_ASKED_AGAIN):  # one that it has not found yet, as other clients do
+                if devices:
+                    break
+                time.sleep(_BETWEEN)
+                websocket.send_text(line, _WHOLE_STATE)
+                message, behind = websocket.read_message(line, behind)
+                devices = _inventory(message, self.address)
+            self._choose(devices)
             line.setblocking(False)
             self._opened = self._memory(line.fileno(), behind)
             self._try_once(self._opened)

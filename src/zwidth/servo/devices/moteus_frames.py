@@ -7,7 +7,11 @@ An address of 16 bits is ``source · 256 + destination``; bit 15 asks for an ans
 The data are groups of registers, one byte for what is done and the type of the values, the number of
 registers in its low two bits or in a byte behind it, then the first register, then the values, little-endian.
 A line may end in `` *XX``, the remainder of all before the asterisk divided by x⁸ + x⁷ + x⁴ + x² + x + 1;
-from a UART it always does once the host's lines do.
+from a UART it always does once the host's lines do, and lines of the host without one are then refused.
+
+A stream of text goes through the same frames: 40 channel count TEXT to the controller, 42 channel most asks
+for what it has to say, 41 channel count TEXT says it; channel 1 takes "conf get NAME" (mjbots, "Diagnostic
+protocol"; lib/python/moteus/multiplex.py, lines 39 to 41).
 
 Sources: mjbots, moteus documentation, "CAN protocol", "Register reference" and "UART"; fdcanusb, README.
 """
@@ -25,13 +29,16 @@ NOT_OURS, RIGHT, EARLIER, BROKEN, FAILED = range(5)
 # What an answer says, in the memory of the connection: the mode, the fault, the position [turns].
 MODE, FAULT, TURNS = range(OWN, OWN + 3)
 
+NO_CHECKSUM = -1
+"""In the place of a fault: the controller took no line, for it wants checksums."""
+
 STOPPED, OPERATING = 0, 10
 """Of the register "mode"; between them are a fault (1) and what comes before operating (2 to 4)."""
 
 ANY = -(1 << 15)
 """In 16 bits, what stands for no number: of the watchdog, that there is none."""
 
-_RAW = 256
+RAW = 256
 """Where in the outbox a frame is put together, before it is written as text at the beginning."""
 
 _SEND = tuple(b"can send ")
@@ -42,8 +49,8 @@ _DIGITS = tuple(b"0123456789abcdef")
 @compiled
 def put_question(out: Bytes, servo: int, source: int, checked: bool) -> int:
     """Ask for mode, position and fault; how many bytes to send."""
-    at = _bytes(out, _RAW, (0x11, 0x00, 0x1D, 0x01, 0x11, 0x0F))
-    return _line(out, 0x8000 | source << 8 | servo, at - _RAW, checked)
+    at = _bytes(out, RAW, (0x11, 0x00, 0x1D, 0x01, 0x11, 0x0F))
+    return _line(out, 0x8000 | source << 8 | servo, at - RAW, checked)
 
 
 @compiled
@@ -52,18 +59,30 @@ def put_torque(out: Bytes, servo: int, torque: float, watchdog: int, checked: bo
 
     The integral part of the position loop has a scale of its own, and must be 0 as well.
     """
-    at = _bytes(out, _RAW, (0x01, 0x00, OPERATING, 0x02, 0x20, 0x80, 0x00, 0x0D, 0x22))
+    at = _bytes(out, RAW, (0x01, 0x00, OPERATING, 0x02, 0x20, 0x80, 0x00, 0x0D, 0x22))
     at = put_float32(out, at, torque)
     at = put(out, _bytes(out, at, (0x02, 0x23, 0x00, 0x00, 0x05, 0x27)), 2, watchdog)
     at = _bytes(out, at, (0x01, 0x2B, 0x00))
-    return _line(out, servo, at - _RAW, checked)
+    return _line(out, servo, at - RAW, checked)
 
 
 @compiled
 def put_stop(out: Bytes, servo: int, checked: bool) -> int:
     """The driver off and its faults forgotten."""
-    at = _bytes(out, _RAW, (0x01, 0x00, STOPPED))
-    return _line(out, servo, at - _RAW, checked)
+    at = _bytes(out, RAW, (0x01, 0x00, STOPPED))
+    return _line(out, servo, at - RAW, checked)
+
+
+@compiled
+def put_data(out: Bytes, address: int, size: int, checked: bool) -> int:
+    """A frame of the `size` bytes that stand at `RAW`, filled up to a length that there is on the bus."""
+    at, length = RAW + size, size if size <= 8 else (size + 3) // 4 * 4
+    if length > 24:
+        length = 32 if length <= 32 else (48 if length <= 48 else 64)
+    while at < RAW + length:
+        out[at] = 0x50
+        at += 1
+    return _line(out, address, length, checked)
 
 
 @compiled
@@ -72,32 +91,41 @@ def understood(line: Bytes, count: int, servo: int, source: int, checked: bool, 
 
     The line is overwritten by the bytes that it spells.
     """
+    if _begins(line, count, (69, 82, 82, 32, 99, 104, 101, 99, 107, 115, 117, 109)):  # ERR checksum
+        memory[FAULT] = NO_CHECKSUM
+    size = addressed(line, count, servo, source, checked)
+    if size < 0:
+        return -1 - size
+    return RIGHT if _registers(line, size, memory) else BROKEN
+
+
+@compiled
+def addressed(line: Bytes, count: int, servo: int, source: int, checked: bool) -> int:
+    """How many bytes the frame has that goes to this source, now at the line's beginning; else −1 − what."""
     if count == 0:
-        return NOT_OURS
+        return -1 - NOT_OURS
     count = _without_checksum(line, count, checked)
     if count < 2:
-        return BROKEN
+        return -1 - BROKEN
     if _begins(line, count, (69, 82, 82)):  # ERR
-        return FAILED
+        return -1 - FAILED
     if count == 2 and line[0] == 79 and line[1] == 75:  # OK
-        return NOT_OURS
+        return -1 - NOT_OURS
     if not _begins(line, count, (114, 99, 118, 32)):  # rcv and a space
-        return BROKEN
+        return -1 - BROKEN
     at, address = 4, 0
     while at < count and line[at] != 32:
         digit = _digit(line[at])
         if digit < 0:
-            return BROKEN
+            return -1 - BROKEN
         address = address << 4 | digit
         at += 1
     if (address >> 8) & 0xFF != servo or address >> 16 != 0:
-        return NOT_OURS
+        return -1 - NOT_OURS
     size = _spelled(line, at + 1, count)
     if size < 0:
-        return BROKEN
-    if address & 0xFF != source:
-        return EARLIER
-    return RIGHT if _registers(line, size, memory) else BROKEN
+        return -1 - BROKEN
+    return size if address & 0xFF == source else -1 - EARLIER
 
 
 @compiled
@@ -117,7 +145,7 @@ def _line(out: Bytes, address: int, size: int, checked: bool) -> int:
     out[at] = 32
     at += 1
     for i in range(size):
-        byte = int(out[_RAW + i])
+        byte = int(out[RAW + i])
         out[at], out[at + 1] = _DIGITS[byte >> 4], _DIGITS[byte & 0xF]
         at += 2
     if checked:

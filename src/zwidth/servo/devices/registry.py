@@ -62,6 +62,7 @@ _PORT = Key("serial port, such as /dev/ttyACM0")
 _BAUD = Key("bits per second of the port", "whole")
 _AXIS = Key("axis of the device")
 _NUMBER = Key("number of the device on its bus", "whole")
+_REVERSE = Key("true: a positive command turns it towards smaller readings", "flag")
 _WATCHDOG = Key("after so long without a command the device gives no force", "number", "s")
 
 CONNECTIONS: Mapping[str, Way] = MappingProxyType(
@@ -144,6 +145,7 @@ CONNECTIONS: Mapping[str, Way] = MappingProxyType(
                 "watchdog": _WATCHDOG,
                 "torque_per_current": Key("torque of one ampere", "number", "N*m/A"),
                 "current_unit": Key("current of one unit, where the model is unknown", "number", "A"),
+                "reverse": _REVERSE,
             },
             ("port", "torque_per_current"),
         ),
@@ -156,7 +158,7 @@ CONNECTIONS: Mapping[str, Way] = MappingProxyType(
                 "identifier": _NUMBER,
                 "baud": _BAUD,
                 "full_duty_torque": Key("torque at full duty and standstill", "number", "N*m"),
-                "reverse": Key("true: a positive duty turns it towards smaller readings", "flag"),
+                "reverse": _REVERSE,
             },
             ("port", "full_duty_torque"),
         ),

@@ -12,6 +12,7 @@ import base64
 import hashlib
 import os
 import socket
+from contextlib import suppress
 
 import numpy as np
 
@@ -103,6 +104,15 @@ def read_message(line: socket.socket, behind: bytes) -> tuple[bytes, bytes]:
         data = data[end:]
         if kind_of(first) < CLOSE and is_last(first):
             return message, data
+
+
+def send_text(line: socket.socket, text: bytes) -> None:
+    """One message, before the loop; a line that is gone is told by the answer that does not come."""
+    into = np.zeros(len(text) + LONGEST_HEADER, np.uint8)
+    mask = int.from_bytes(os.urandom(4), "little")
+    length = put_frame(TEXT, np.frombuffer(text, np.uint8).copy(), 0, len(text), mask, into)
+    with suppress(OSError):
+        line.sendall(bytes(into[:length]))
 
 
 def _more(line: socket.socket) -> bytes:
