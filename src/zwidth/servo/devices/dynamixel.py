@@ -156,32 +156,35 @@ class Dynamixel(BusServo):
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "rotary"
-    maker: ClassVar[str] = "ROBOTIS e-Manual, ROBOTIS-GIT/emanual of 2024, _includes/en/dxl/control_table_"
+    maker: ClassVar[str] = (
+        "ROBOTIS e-Manual, the model's page; ROBOTIS-GIT/emanual, _includes/en/dxl/control_table_: drivemode "
+        "at 028a13d2, buswatchdog at 01a2df19, goal_pwm at 0b774a35"
+    )
     settings: ClassVar[tuple[Setting, ...]] = (
-        ("Model Number 0", "", "size: the unit of the current", REFUSES, "docs/en/dxl/x"),
-        ("Firmware Version 6", "", "end: before 38 there is no watchdog", REFUSES, "buswatchdog.md:25"),
-        ("Drive Mode 10", "0", "sign: bit 0, Reverse, inverts positions, and on the X540 currents too; bit 1, "
-         "Slave, ignores the goal; bit 3 puts a torque that is off on with the next goal", REFUSES,
-         "drivemode.md:13 to 29, 54"),
-        ("Operating Mode 11", "3", "what is controlled: 0, the current", RESTORES, "docs/en/dxl/x"),
-        ("Return Delay Time 9", "250", "delay of the position, 0.5 ms", RESTORES, "docs/en/dxl/x"),
+        ("Model Number 0", "", "size: the unit of the current", REFUSES, "Model Number, Goal Current"),
+        ("Firmware Version 6", "", "end: before 38 there is no watchdog", REFUSES, "buswatchdog.md:20"),
+        ("Drive Mode 10", "0", "sign: Reverse, bit 0, inverts positions, on the X540 and XW540 currents too; "
+         "Slave, bit 1, ignores a goal; with bit 3 a goal puts on a torque that is off", REFUSES,
+         "drivemode.md:17, 21, 23, 37, 57"),
+        ("Operating Mode 11", "3", "what is controlled: 0, the current", RESTORES, "page of the model"),
+        ("Return Delay Time 9", "250", "delay of the position, 0.5 ms", RESTORES, "page of the model"),
         ("Current Limit 38", "of the model", "size: a goal beyond is refused, the last one stays", TELLS,
          "current_limit.md"),
         ("PWM Limit 36", "885", "size: less than 885 is less voltage, and less torque at a speed", TELLS,
          "goal_pwm.md:1"),
         ("Goal PWM 100", "PWM Limit", "size: as PWM Limit", TELLS, "goal_pwm.md:1"),
         ("Goal Current 102", "0", "the torque; 0 before the torque is on", SETS, "goal_current.md"),
-        ("Torque Enable 64", "0", "whether there is a torque; 0 in the end", SETS, "docs/en/dxl/x"),
+        ("Torque Enable 64", "0", "whether there is a torque; 0 in the end", SETS, "page of the model"),
         ("Bus Watchdog 98", "0", "end: how long the last current acts; 0 in the end", SETS,
-         "buswatchdog.md:1 to 17"),
+         "buswatchdog.md:6 to 14"),
         ("Indirect Address 168 to 182", "224 and on", "what is read in one piece; they stay", SETS,
          "indirect_data.md"),
         ("Hardware Error Status 70", "0", "end: an alert", TELLS, "hardware_error_status.md"),
-        ("Shutdown 63", "of the model", "end: which alerts put the torque off", LEAVES, "docs/en/dxl/x"),
-        ("Temperature, Voltage Limit 31 to 34", "of the model", "end: an alert", LEAVES, "docs/en/dxl/x"),
+        ("Shutdown 63", "of the model", "end: which alerts put the torque off", LEAVES, "page of the model"),
+        ("Temperature, Voltage Limit 31 to 34", "of the model", "end: an alert", LEAVES, "page of the model"),
         ("Secondary ID 12", "255", "goals of another servo with this identifier act here too", LEAVES,
-         "docs/en/dxl/x"),
-        ("PWM Slope 62", "140", "delay of the torque, of the 330 size", LEAVES, "docs/en/dxl/x"),
+         "page of the model"),
+        ("PWM Slope 62", "140", "delay of the torque, of the 330 size", LEAVES, "page of the model"),
         ("Homing Offset 20", "0", "where the zero is", LEAVES, "homingoffset.md"),
     )  # fmt: skip
     measure: ClassVar[Any] = staticmethod(_measure)
