@@ -77,7 +77,7 @@ def sides(cycles: int) -> list[Side]:
             lambda e: Moteus(e.port, checksums=True),
             0.3,
         ),
-        Side("ODrive", lambda fault: ODriveEmulator(fault, AT), lambda e: ODrive(port=e.port), 0.3),
+        Side("ODrive", lambda fault: ODriveEmulator(fault, AT), lambda e: ODrive(port=e.port), 0.003),
         Side(
             "Dynamixel",
             lambda fault: DynamixelEmulator(counts, fault, AT),

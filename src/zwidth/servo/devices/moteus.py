@@ -111,7 +111,7 @@ _FAULTS = {
 
 _TIMEOUT_MODE = "servo.timeout_mode"
 
-_TIMEOUTS = {
+_TIMEOUTS: dict[float, str] = {
     10: "brings its motor to rest and holds it there with its own gains, up to servo.max_current_A",
     12: "goes limp, for its zero velocity takes the derivative scale of the last torque, 0 (firmware before "
     "May 2022 damps, with up to servo.timeout_max_torque_Nm)",
@@ -279,7 +279,7 @@ class Moteus(CompiledConnection):
                 f"{first} does what its servo.timeout_mode says, not read here: with 0, or 12 as delivered, "
                 f"it goes limp, with 15 it brakes, with 10 it holds its place by a law of its own{last}"
             )
-        return f"{first} {_TIMEOUTS.get(int(mode), 'goes limp')} (servo.timeout_mode {mode:g}){last}"
+        return f"{first} {_TIMEOUTS.get(mode, 'goes limp')} (servo.timeout_mode {mode:g}){last}"
 
     def open(self, sample_period: float) -> Opened:
         """Stop the controller, so that its faults are forgotten; then torque 0, until it operates.
