@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from servo.emulators.feetech import packet
+from servo.emulators.feetech import FeetechEmulator, packet
 
 from zwidth.servo.connection import CLOSED, GARBLED, GOOD, SILENT, STALE
 from zwidth.servo.devices.feetech_packets import magnitude, put_read, put_write, receive, with_sign_bit
@@ -32,6 +32,20 @@ def test_the_question_and_the_answer_of_the_protocol_manual():
     count = put_read(OUT, 1, 0x38, 2)
     assert OUT[:count].tobytes().hex(" ") == "ff ff 01 04 02 38 02 be"
     assert heard(bytes.fromhex("ffff0104001805dd"), 2) == (GOOD, b"\x00\x18\x05")
+
+
+@pytest.mark.parametrize(
+    ("identifier", "asked", "answered"),
+    [(1, "01", "00"), (1, "03 28 01", "00"), (0xFE, "82 38 02 01 02", "00 18 05"), (0xFE, "03 28 01", None)],
+    ids=["ping", "write", "sync read", "write to all"],
+)
+def test_the_emulator_answers_as_a_servo(identifier, asked, answered):
+    """A ping and a write with its state, a sync read with its registers; a write to all is not answered."""
+    said = []
+    with FeetechEmulator([0x518]) as other:
+        other.write = said.append
+        other.hear(packet(identifier, bytes.fromhex(asked)))
+    assert said == ([] if answered is None else [packet(1, bytes.fromhex(answered))])
 
 
 @given(identifier=st.integers(0, 253), address=st.integers(0, 86), value=st.integers(0, 2**16 - 1))
