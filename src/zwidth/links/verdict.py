@@ -15,6 +15,7 @@ from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
+from zwidth.passivity.wording import TRANSMISSION
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import quantity_unit
 
@@ -124,6 +125,7 @@ class PortVerdict(PassivityAnswer):
             yield "encoder counts, their phase unknown; none is lost"
         else:
             yield "an ideal position sensor: the displacement is read without error"
+        yield TRANSMISSION
         if device.assumed:
             yield f"{', '.join(device.assumed)} not given, taken as 0"
         if self.outcome == "theorem":
