@@ -24,8 +24,9 @@ from zwidth.links.kernel import End
 from zwidth.links.memory import (
     COULOMB,
     DAMPING,
-    HEARD_NUMBER,
     LATE,
+    LINE,
+    NEW_LINE,
     NUMBER,
     NUMBERS_SIZE,
     OWN_NUMBERS,
@@ -135,7 +136,8 @@ def attack(
                 p[OWN_NUMBERS + 1] = between(random, 0.1, 30.0) * p[PERIOD] if random.random() < 0.5 else 0.0
             p[OWN_NUMBERS + 2] = p[DAMPING]
             end.state[:] = 0.0
-            end.state[HEARD_NUMBER] = end.state[NUMBER] = -1.0
+            end.state[:LINE] = NEW_LINE
+            end.state[NUMBER] = -1.0
             draw_wire(random, end.hears)
         one, other = (
             draw_hand(random, near.numbers, draws[0], none),

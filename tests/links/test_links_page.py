@@ -32,7 +32,7 @@ def test_its_first_two_examples_run(capsys: pytest.CaptureFixture[str]) -> None:
     for block in re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)[:2]:
         exec(block, names)
     assert re.fullmatch(r"-?\d\.\d\d N\n", capsys.readouterr().out)
-    first, second = Packet(0, 0.0, 0.0, 0.0), Packet(1, 1e-3, 1e-6, 2e-5)
+    first, second = Packet(0, 0.0, 0.0, 0.0, 5), Packet(1, 1e-3, 1e-6, 2e-5, 5)
     broken = second.to_bytes()[:-1] + b"\0\0"
     mail = Mail([first.to_bytes(), broken, second.to_bytes()])
     assert names["arrived"](mail) == [first, second]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import struct
+import zlib
 from fractions import Fraction
 
 import numpy as np
@@ -11,14 +13,14 @@ import zwidth as zw
 from zwidth.links import Packet, Schedule, WavePort
 from zwidth.links.schedule import LOST
 
-PACKET = Packet(7, -1.5e-3, 2.25, -0.125)
+PACKET = Packet(7, -1.5e-3, 2.25, -0.125, 2**64 - 1, 2**63)
 MS = Fraction(1, 1000)
 
 
 def test_a_packet_comes_back_from_its_bytes() -> None:
-    """Number, wave and sums, bit for bit."""
+    """Runs, number, wave and sums, bit for bit."""
     data = PACKET.to_bytes()
-    assert len(data) == Packet.SIZE == 36
+    assert len(data) == Packet.SIZE == 56
     assert Packet.from_bytes(data) == PACKET
 
 
@@ -34,20 +36,32 @@ def test_a_broken_packet_is_refused(bit: int) -> None:
 @pytest.mark.parametrize("data", [b"", PACKET.to_bytes()[:-1], PACKET.to_bytes() + b"\0"])
 def test_other_lengths_are_refused(data: bytes) -> None:
     """What is no packet at all."""
-    with pytest.raises(zw.InputError, match="36 bytes"):
+    with pytest.raises(zw.InputError, match="56 bytes"):
         Packet.from_bytes(data)
+
+
+@pytest.mark.parametrize(
+    ("data", "version"),
+    [(struct.pack("<Qddd", 7, 0.0, 1.0, 0.0), 1), (b"zwp\x03" + PACKET.to_bytes()[4:-4] + bytes(9), 3)],
+)
+def test_packets_of_another_version_are_refused_in_a_sentence(data: bytes, version: int) -> None:
+    """The first had no runs, and 36 bytes; of what is still to come the length is not known."""
+    with pytest.raises(zw.InputError, match=f"of version {version}, and this port reads version 2"):
+        Packet.from_bytes(data + struct.pack("<I", zlib.crc32(data)))
 
 
 @pytest.mark.parametrize(
     ("numbers", "said"),
     [
-        ((-1, 0.0, 0.0, 0.0), "counts from 0"),
-        ((0, float("nan"), 0.0, 0.0), "wave of a packet"),
-        ((0, 0.0, -1.0, 0.0), "must be ≥ 0 J"),
-        ((0, 0.0, 0.0, float("inf")), "position of a packet"),
+        ((-1, 0.0, 0.0, 0.0, 1), "counts from 0"),
+        ((0, float("nan"), 0.0, 0.0, 1), "wave of a packet"),
+        ((0, 0.0, -1.0, 0.0, 1), "must be ≥ 0 J"),
+        ((0, 0.0, 0.0, float("inf"), 1), "position of a packet"),
+        ((0, 0.0, 0.0, 0.0, 0), "run of a packet is whole, from 1"),
+        ((0, 0.0, 0.0, 0.0, 1, 2**64), "to of a packet is whole, from 0"),
     ],
 )
-def test_absurd_packets_are_refused(numbers: tuple[int, float, float, float], said: str) -> None:
+def test_absurd_packets_are_refused(numbers: tuple[int, float, float, float, int], said: str) -> None:
     """No port ever hears of them."""
     with pytest.raises(zw.InputError, match=said):
         Packet(*numbers)

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from math import floor
+from typing import Any
 
 import pytest
 from strategies import seeds
 
 import zwidth as zw
+from zwidth.compiled import Array
 from zwidth.errors import InputError
 from zwidth.links import Packet, WavePort
-from zwidth.links.memory import ACTING
+from zwidth.links.memory import ACTING, COUNTED, ENERGY, HEARD_ENERGY, NUMBER
 from zwidth.links.wave_port import RESERVE
 
 PERIODS = 150
+SCHEDULES = 2000
 
 
 def arm(damping: str = "0.15", friction: str = "0", resolution: str = "0", **more: object) -> zw.Device:
@@ -32,9 +36,11 @@ class Ends:
     Within a period each hand moves at constant speed: no motion between two readings costs it less.
     """
 
-    def __init__(self, devices: list[zw.Device], draw: random.Random, **law: object) -> None:
+    def __init__(
+        self, devices: list[zw.Device], draw: random.Random, keeps_all: bool = False, **law: object
+    ) -> None:
         self.ports = [WavePort(device, **law) for device in devices]
-        self.draw = draw
+        self.draw, self.keeps_all = draw, keeps_all
         self.on_the_way: list[list[Packet]] = [[], []]
         self.at = [Fraction(draw.random()) * port.device.exact("resolution") for port in self.ports]
         self.work = Fraction(0)
@@ -44,7 +50,9 @@ class Ends:
         """Any of what is on the way, in any order, some of it twice; some never."""
         waiting, draw = self.on_the_way[end], self.draw
         out = [draw.choice(waiting) for _ in range(draw.choice([0, 0, 1, 1, 2, 3]))] if waiting else []
-        if draw.random() < 0.05:
+        if self.keeps_all and draw.random() < 0.5:
+            out += waiting[-1:]
+        if not self.keeps_all and draw.random() < 0.05:
             waiting.clear()
         return out
 
@@ -105,11 +113,11 @@ def test_a_hand_inside_one_count_gains_nothing() -> None:
     """
     device = arm(resolution="22.4e-6")
     port, told, taken, height = WavePort(device), 1e-6, 0.0, 20e-6
-    port.receive([Packet(0, 0.0, 0.0, 0.0)])
+    port.receive()
     sent = port.send(0.0).energy
     seen = 0.0
     for k in range(200):
-        force = port.receive([Packet(2 * k + 1, 0.0, told, (k + 1) * 6e-5)])
+        force = port.receive([Packet(2 * k + 1, 0.0, told, (k + 1) * 6e-5, 9, port.run)])
         seen = max(seen, force)
         taken += force * height - 0.15 * height**2 / 0.001
         sent = port.send(0.0).energy
@@ -120,8 +128,9 @@ def test_a_hand_inside_one_count_gains_nothing() -> None:
     assert seen > 2 * 0.15 * height / 0.001
 
 
-def moved(port: WavePort, way: float) -> Packet:
+def moved(port: WavePort, way: float, to: WavePort) -> Packet:
     """The packet of a period in which nothing has come."""
+    port.meet(to.run)
     port.receive()
     return port.send(way)
 
@@ -129,9 +138,9 @@ def moved(port: WavePort, way: float) -> Packet:
 def test_what_a_packet_tells_is_used_once() -> None:
     """The same again, and what is older, change nothing."""
     port, other = WavePort(arm()), WavePort(arm())
-    port.receive([moved(other, 0.0)])
+    port.receive([moved(other, 0.0, port)])
     port.send(0.0)
-    first, second = moved(other, 2e-4), moved(other, 1e-4)
+    first, second = moved(other, 2e-4, port), moved(other, 1e-4, port)
     assert port.receive([second, first, second, first]) > 0
     for _ in range(5):
         port.send(0.0)
@@ -141,13 +150,12 @@ def test_what_a_packet_tells_is_used_once() -> None:
 
 def test_an_older_packet_changes_nothing() -> None:
     """Neither where it sends the port to, nor what it may spend."""
-    other = WavePort(arm())
-    packets = [moved(other, 1e-4) for _ in range(4)]
-    ports = WavePort(arm()), WavePort(arm())
+    other, *ports = (WavePort(arm()) for _ in range(3))
+    packets = [moved(other, 1e-4, ports[0]) for _ in range(4)]
     forces: list[list[float]] = [[], []]
     for k, old in ((0, 0), (3, 1), (3, 2), (3, 0)):
         for port, heard, found in zip(ports, ([k], [k, old]), forces, strict=True):
-            found.append(port.receive([packets[i] for i in heard]))
+            found.append(port.receive([replace(packets[i], to=port.run) for i in heard]))
             port.send(1e-4)
     assert forces[0] == forces[1]
     assert forces[0][2] > 0
@@ -157,13 +165,13 @@ def test_what_is_lost_comes_with_the_next_packet() -> None:
     """The sums of lost packets are those of the ones that arrive, so the forces are the same later."""
     sender, whole, lossy = (WavePort(arm()) for _ in range(3))
     for port in (whole, lossy):
-        port.receive([Packet(0, 0.0, 0.0, 0.0)])
+        port.receive()
         port.send(0.0)
-    packets = [moved(sender, way) for way in (0.0, 1e-4, 1e-4, 1e-4)]
+    packets = [moved(sender, way, whole) for way in (0.0, 1e-4, 1e-4, 1e-4)]
     every, some = [], []
     for arriving in ([1], [2], [3], [], []):
         every.append(whole.receive([packets[k] for k in arriving]))
-        some.append(lossy.receive([packets[k] for k in arriving if k == 3]))
+        some.append(lossy.receive([replace(packets[k], to=lossy.run) for k in arriving if k == 3]))
         step = 1e-4
         whole.send(step)
         lossy.send(step)
@@ -172,14 +180,122 @@ def test_what_is_lost_comes_with_the_next_packet() -> None:
     assert every[3:] == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
-def test_a_port_that_starts_anew_counts_nothing_of_before() -> None:
-    """The sums of its first packet may have been used by another: only what is added to them counts."""
-    other = WavePort(arm())
-    packets = [moved(other, 1e-4) for _ in range(3)]
-    port = WavePort(arm())
-    assert port.receive([packets[1]]) == 0
-    port.send(0.0)
-    assert port.receive([packets[2]]) > 0
+def test_one_push_and_six_followers_one_after_another() -> None:
+    """Each hears packet 0 again, then the last: what the first has taken none takes a second time."""
+    device = arm(friction="0.05")
+    leader, told = WavePort(device), list[Packet]()
+    work, back = Fraction(0), list[Packet]()
+
+    def hold(port: WavePort, packets: list[Packet], way: float | None = None) -> Packet:
+        """A hand that goes so far, or is taken along as is best for it."""
+        nonlocal work
+        force = port.receive(packets)
+        best = max(abs(force) - 0.05, 0.0) * 1e-3 / 0.3
+        way = way if way is not None else best if force > 0 else -best
+        moved, lost = Fraction(way), device.exact("damping") / device.exact("sample_period")
+        work += lost * moved**2 + Fraction(1, 20) * abs(moved) - Fraction(force) * moved
+        return port.send(way)
+
+    follower = WavePort(device)
+    for k in range(13):
+        told.append(hold(leader, back, 0.0 if k < 3 else 1e-3))
+        back = [hold(follower, told[-1:])] if k < 3 else []
+    found = [work]
+    for _ in range(7):
+        hold(follower, told[:1])
+        for _ in range(100):
+            hold(follower, told[-1:])
+        found.append(work)
+        follower = WavePort(device)
+    assert found[0] == pytest.approx(2e-3)
+    assert 0 < found[1] < 1e-3
+    assert found[2:] == found[1:2] * 6
+
+
+def test_who_has_answered_is_sent_to_and_nobody_else() -> None:
+    """Not a run whose old packets come again, nor the port itself over a link that sends all back."""
+    port, other, gone = (WavePort(arm()) for _ in range(3))
+    assert port.receive([Packet(0, 0.1, 1.0, 1e-3, port.run, port.run)]) == 0
+    assert port.send(0.0).to == 0
+    for stranger, to in ((gone, 0), (other, 0), (gone, 0), (other, port.run), (gone, 0), (gone, other.run)):
+        port.receive([replace(moved(stranger, 0.0, port), to=to)])
+        told = port.send(0.0).to
+    assert told == other.run
+
+
+class Purse(WavePort):
+    """Takes what it hears of, and sends on whole parts of it: sums of whole numbers, without rounding."""
+
+    draw: random.Random
+
+    def take(self, s: Array) -> float:
+        """Nothing is felt."""
+        s[RESERVE] += s[HEARD_ENERGY] - s[COUNTED]
+        s[COUNTED] = s[HEARD_ENERGY]
+        return 0.0
+
+    def give(self, s: Array, _: float) -> None:
+        """Any part."""
+        part = self.draw.randint(0, int(s[RESERVE]))
+        s[RESERVE] -= part
+        s[ENERGY] += part
+        s[NUMBER] += 1.0
+
+    @property
+    def steps(self) -> Any:
+        """In the place of the waves."""
+        return (lambda _, s: self.take(s)), (lambda _, s, moved: self.give(s, moved))
+
+
+def test_no_order_of_packets_and_of_starts_gives_a_joule_twice() -> None:
+    """A link that keeps every packet of every run and brings any of them to whoever runs, whenever it likes.
+
+    Purses that are left and those that are held are never more than there were at first; and once the old
+    packets are gone, two that hear each other are sent to again.
+    """
+    device, draw = arm(), random.Random(2)
+    Purse.draw = draw
+    largest = 0
+    for _ in range(SCHEDULES):
+        ends, sent = [Purse(device), Purse(device)], [list[Packet](), list[Packet]()]
+        left, restarts = 0, draw.choice([0.0, 0.05, 0.2])
+        for purse in ends:
+            purse.state[RESERVE] = 1000.0
+        for _ in range(12):
+            for end, purse in enumerate(ends):
+                if draw.random() < restarts:
+                    left += int(purse.state[RESERVE])
+                    ends[end] = purse = purse.anew()
+                waiting = sent[1 - end]
+                recent = waiting[-3:] if draw.random() < 0.7 else waiting
+                purse.receive(draw.choice(recent) for _ in range(draw.randint(0, 2)) if recent)
+                sent[end].append(purse.send(0.0))
+            held = sum(int(purse.state[RESERVE]) for purse in ends)
+            assert left + held <= 2000
+            largest = max(largest, *(int(purse.state[COUNTED]) for purse in ends))
+        for _ in range(3):
+            for end, purse in enumerate(ends):
+                purse.receive(sent[1 - end][-1:])
+                sent[end].append(purse.send(0.0))
+        assert [packets[-1].to for packets in sent] == [purse.run for purse in reversed(ends)]
+    assert largest > 1000
+
+
+@seeds(12)
+@pytest.mark.parametrize("resolution", ["0", "22.4e-6"])
+def test_two_hands_take_nothing_out_whichever_end_starts_anew(resolution: str, seed: int) -> None:
+    """And the packets of all runs come again: in exact arithmetic, over all runs of both ends."""
+    device, draw = arm(friction="0.02", resolution=resolution), random.Random(seed)
+    ends = Ends([device, device], draw, impedance=draw.choice(["0.04", "0.15", "1"]), keeps_all=True)
+    move, felt = greedy(ends), 0
+    for k in range(PERIODS):
+        for end, port in enumerate(ends.ports):
+            if draw.random() < 0.03:
+                ends.ports[end] = port.anew()
+        ends.period(move)
+        assert ends.work >= 0
+        felt += k > PERIODS // 2 and any(ends.forces)
+    assert felt
 
 
 def test_an_actuator_that_gives_less_is_booked_as_it_gives() -> None:
@@ -233,13 +349,13 @@ def test_ends_of_two_rates_come_to_the_same_place() -> None:
 def test_receive_and_send_are_called_in_turn() -> None:
     """A force that is booked twice would bring energy back twice, and a way under two forces has no work."""
     port, other = WavePort(arm()), WavePort(arm())
-    port.receive([moved(other, 0.0)])
+    port.receive([moved(other, 0.0, port)])
     with pytest.raises(InputError, match="receive is called once in a period"):
         port.receive()
     port.send(0.0)
     with pytest.raises(InputError, match="send is called once in a period"):
         port.send(0.0)
-    assert port.receive([moved(other, 1e-3)]) > 0
+    assert port.receive([moved(other, 1e-3, port)]) > 0
 
 
 def test_the_force_of_a_period_is_the_one_that_acts_in_it() -> None:
@@ -247,7 +363,7 @@ def test_the_force_of_a_period_is_the_one_that_acts_in_it() -> None:
     port, other = WavePort(arm(delay=Fraction(2, 1000))), WavePort(arm())
     computed, acted = [], []
     for _ in range(6):
-        computed.append(port.receive([moved(other, 1e-4)]))
+        computed.append(port.receive([moved(other, 1e-4, port)]))
         acted.append(port.force)
         port.send(0.0)
     assert acted == [0.0, 0.0, *computed[:4]]

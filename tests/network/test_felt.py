@@ -20,6 +20,8 @@ def forces(positions, often, *elements):
     """The port's force over each sample of a device that is led along the positions."""
     port = WavePort(DEVICE)
     part = PartRun(Part("room", Scene([LineEnd("tool", W, "line"), *elements], "")), often * T)
+    port.meet(part.ports["line"].run)
+    part.ports["line"].meet(port.run)
     told, asked, found = [], [], []
     for k, move in enumerate(np.diff(positions)):
         found.append(port.receive(told))

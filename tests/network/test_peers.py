@@ -1,5 +1,7 @@
 """Peers on a clock that the test turns: what they step, hear and say; and what a silent one is felt as."""
 
+import random
+
 import numpy as np
 import pytest
 
@@ -118,6 +120,37 @@ def test_a_peer_that_is_gone_is_felt_as_no_force():
     force = run.trace()["actuator_force"].values
     assert np.abs(force[:1000]).max() > 0.05
     assert not force[1012:1500].any()
+
+
+class Echoing(Tube):
+    """Brings what it has brought before once more, now and then: of every run that was at the other side."""
+
+    def __init__(self, mine, other):
+        super().__init__(mine, other)
+        self.old, self.draw = [], random.Random(4)
+
+    def receive(self):
+        found = super().receive()
+        self.old += found
+        return found + [self.draw.choice(self.old) for _ in range(self.draw.choice([0, 1, 2])) if self.old]
+
+
+def test_a_process_that_starts_anew_is_felt_again_and_nothing_is_given_twice():
+    """The scene's process three times, over a link that repeats; the device and its hand go on."""
+    clock = Clock()
+    push = zw.operators.RecordedForce(0.5 * np.sin(0.02 * np.arange(2000)))
+    run = DeviceRun(WavePort(PADDLE), push, 2, "line")
+    here, there = Echoing.pair()
+    device = Peer(run, {"line": here}, "1 ms", clock=clock)
+    for _ in range(3):
+        scene = Peer(PartRun(room("line"), "5 ms"), {"line": there}, "5 ms", clock=clock)
+        together([(1, device), (5, scene)], clock, 0.5)
+        seen, told = device.links["line"].report(), scene.links["line"].report()
+        assert told.energy_received <= seen.energy_sent
+    trace = run.trace()
+    force = np.abs(trace["actuator_force"].values)
+    assert min(force[500 * k : 500 * (k + 1)].max() for k in range(3)) > 0.05
+    assert (trace["hand_work"].values - trace["kinetic_energy"].values).min() > -1e-12
 
 
 def test_the_pace_is_kept_and_what_is_late_is_made_up_for():

@@ -37,6 +37,7 @@ SAID: dict[str, list[tuple[dict[str, Any], str]]] = {
     "force_steps": [({"force_steps": True}, "converter steps counted, else an ideal actuator")],
     "largest_force": [({"largest_force": 3.0}, "forces of the wall up to 3 N")],
     "largest_moment": [({"largest_force": 3.0, "largest_moment": 0.2}, "and moments up to 0.2 N·m")],
+    "transmission": [({"transmission": "rigid"}, "motor, encoder and hand move as one")],
     "torque": [
         ({"torque": "follows the arm"}, "torque follows the arm"),
         ({"torque": "follows the readings"}, "torque follows the encoders"),
@@ -112,6 +113,7 @@ def test_every_entry_of_the_record_is_said() -> None:
         ("contact", record.Contact),
         ("encoder", record.Encoder),
         ("sampling", record.Sampling),
+        ("transmission", record.Transmission),
         ("torque", record.Torque),
         ("fed_with", record.FedWith),
         ("law", record.Law),

@@ -36,10 +36,11 @@ def time(monkeypatch):
     return passed
 
 
-def pushed(count, seed=5):
-    """What another end sends that is moved to and fro: packets, one a period."""
+def pushed(run, count, seed=5):
+    """What another end sends to a port that is moved to and fro: packets, one a period."""
     random = np.random.default_rng(seed)
     port = WavePort(PADDLE)
+    port.meet(run.port.run)
     packets = []
     for k in range(count):
         port.receive()
@@ -48,34 +49,38 @@ def pushed(count, seed=5):
     return packets
 
 
+def without_runs(packets):
+    """What two ports of the same motion tell alike."""
+    return [packet and (packet.number, packet.wave, packet.energy, packet.position) for packet in packets]
+
+
 def run_on(connection, device=LATE, **more):
     """The run of a device, with nothing else."""
     return PortRun(WavePort(device), connection, "line", **more)
 
 
-def stepped(run, packets):
+def stepped(run, count):
     """The packets of each step, None where nothing was sent."""
-    return [run.step({"line": [packet]}).get("line") for packet in packets]
+    return [run.step({"line": [packet]}).get("line") for packet in pushed(run, count)]
 
 
 def test_a_simulated_device_feels_what_the_simulator_s_own_run_gives_it():
     """Force by force and packet by packet, to the last bit; a period's packet is sent at the next step."""
-    packets = pushed(800)
     hand = zw.operators.Finger()
     given = DeviceRun(WavePort(PADDLE), hand, 1, "line")
     wanted, forces = [], []
-    for packet in packets:
+    for packet in pushed(given, 800):
         wanted.append(given.step({"line": [packet]})["line"])
         forces.append(given.forces["line"])
     run = run_on(Simulated(device=PADDLE, hand=hand, duration=1), PADDLE, longest_period=1e-3)
     sent, served = [], []
-    for packet in packets:
+    for packet in pushed(run, 800):
         sent.append(run.step({"line": [packet]}).get("line"))
         served.append(run.forces["line"])
     assert max(map(abs, served)) > 0.05
     assert served == forces
     assert sent[0] is None
-    assert sent[1:] == wanted[:-1]
+    assert without_runs(sent[1:]) == without_runs(wanted[:-1])
     run.close()
 
 
@@ -90,7 +95,7 @@ def test_a_force_is_given_at_the_reading_from_which_the_port_lets_it_act(late, w
     finally:
         type(connection).late = 0
     acting = []
-    for packet in pushed(300):
+    for packet in pushed(run, 300):
         run.step({"line": [packet]})
         acting.append(run.forces["line"])
     assert max(map(abs, acting)) > 0.01
@@ -105,7 +110,7 @@ def test_what_the_packets_tell_is_never_more_than_what_came_and_was_put_in():
     run = run_on(Library(readings))
     came = sent = work = 0.0
     before = None
-    for k, packet in enumerate(pushed(600)):
+    for k, packet in enumerate(pushed(run, 600)):
         if before is not None:
             work += run.forces["line"] * (readings[k] - before)
         told = run.step({"line": [packet]}).get("line")
@@ -124,8 +129,7 @@ def test_a_reading_s_zero_and_sense_change_nothing():
     readings = np.round(50 * np.sin(0.03 * np.arange(200))) * STEP
     plain, turned = Library(readings), Library(1000 * STEP - readings)
     runs = [run_on(plain), run_on(turned, placement=Placement(origin=300 * STEP, sense=-1))]
-    packets = pushed(200)
-    told = [stepped(run, packets) for run in runs]
+    told = [without_runs(stepped(run, 200)) for run in runs]
     assert told[0] == told[1]
     assert plain.forces == [-f for f in turned.forces]
     assert any(plain.forces)
@@ -140,7 +144,7 @@ def test_one_sample_without_an_answer_is_held_and_two_end_the_force(bad, held):
     """Held: the force stays, nothing is sent.  Ended: force 0 for good, and silence."""
     connection = Played(np.round(30 * np.sin(0.05 * np.arange(100))) * STEP, bad)
     run = run_on(connection, PADDLE)
-    told = stepped(run, pushed(100))
+    told = stepped(run, 100)
     forces = connection.forces
     if held is not None:
         assert run.ended == ""
@@ -174,7 +178,7 @@ def test_a_fault_ends_force_and_packets_at_once(change, bad, said):
         readings[k] = value
     connection = Played(readings, bad)
     run = run_on(connection, PADDLE)
-    told = stepped(run, pushed(100))
+    told = stepped(run, 100)
     assert said in run.ended
     assert run.report().to_dict()["ended"] == run.ended
     assert all(packet is not None for packet in told[1:60])
@@ -202,7 +206,7 @@ class Unplugged(Library):
 def test_a_cable_that_is_out_is_a_line_that_closed(connection):
     """A library raises an error of the system, or says so when it is given a force."""
     run = run_on(connection)
-    told = stepped(run, pushed(100))
+    told = stepped(run, 100)
     assert "has closed" in run.ended
     assert run.failed
     assert len([packet for packet in told if packet is not None]) in (49, 50)
@@ -214,7 +218,7 @@ def test_a_loop_that_did_not_run_ends_the_force_and_long_periods_are_counted(tim
     """1.2 T by default; 50 ms end it."""
     connection = Played(np.round(30 * np.sin(0.05 * np.arange(200))) * STEP)
     run = run_on(connection, PADDLE)
-    packets = pushed(200)
+    packets = pushed(run, 200)
     for k in range(100):
         time[1] = 1_199_000 if k % 10 else 1_201_000
         run.step({"line": [packets[k]]})
@@ -247,7 +251,7 @@ def test_how_far_a_hand_goes_is_asked_of_the_time_that_passed(counts, ended, tim
     readings = np.zeros(30)
     readings[20:] = counts * STEP
     run = run_on(Played(readings), PADDLE)
-    packets = pushed(30)
+    packets = pushed(run, 30)
     for k in range(30):
         time[1] = 30_000_000 if k == 20 else 1_000_000
         run.step({"line": [packets[k]]})
@@ -261,7 +265,7 @@ def test_the_safety_s_force_is_the_port_s_own_limit():
     free, limited = Library(readings), Library(readings)
     runs = [run_on(free), run_on(limited, safety=Safety(force="30 mN"))]
     for run in runs:
-        stepped(run, pushed(300))
+        stepped(run, 300)
         run.close()
     assert max(map(abs, free.forces)) > 0.03
     assert max(map(abs, limited.forces)) == pytest.approx(0.03)
@@ -347,6 +351,6 @@ def test_two_devices_over_one_line_take_nothing_from_each_other_and_one_alone_fe
 
 def test_packets_are_what_they_are():
     """The stand-in for the other end makes packets with energy in them."""
-    packets = pushed(50)
+    packets = pushed(run_on(Library([0.0])), 50)
     assert all(isinstance(packet, Packet) for packet in packets)
     assert packets[-1].energy > 0

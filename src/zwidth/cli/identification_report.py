@@ -14,7 +14,7 @@ from zwidth.cli.page import below, grid, headline, items, more_with_all, page, s
 from zwidth.environment import Wall
 from zwidth.identification.device.estimate import MOST_CONFIDENCE
 from zwidth.identification.device.limits import advice, percent
-from zwidth.identification.device.table import rows, source_name
+from zwidth.identification.device.table import BOTH_SIDES, rows, source_name
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.verdict import Verdict
@@ -38,7 +38,7 @@ def print_identified(found: Result, in_full: bool = False) -> None:
     with page() as out:
         out.print(_headline(found))
         if not in_full:
-            section(out, "the device", list(_numbers(found))[:1])
+            section(out, "the device", list(_numbers(found))[:2])
             section(out, "what the data show", _findings([f for f in own if f.kind in _WARNINGS]))
             if found.verdict is not None:
                 section(out, "the environment", _checked(found, found.verdict))
@@ -110,6 +110,7 @@ def _numbers(found: Result) -> Iterator[Table | Text]:
             row.unit,
         )
     yield table
+    yield Text(BOTH_SIDES, style="dim")
     one = found.identified
     force = "N*m" if one.motion == "rotary" else "N"
     yield Text(

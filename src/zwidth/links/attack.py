@@ -64,6 +64,8 @@ class LinkWitness(Result):
         samples = self.positions.shape[1] - 1
         period = self.leader.device.exact("sample_period")
         ports = [self.leader.anew(), self.follower.anew()]
+        for port, other in zip(ports, reversed(ports), strict=True):
+            port.meet(other.run)
         due: list[dict[int, list[Packet]]] = [{}, {}]
         times = [self.schedule.arrivals(samples, period, way) for way in (0, 1)]
         total = done = Fraction(0)

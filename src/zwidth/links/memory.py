@@ -1,10 +1,13 @@
 """What a port knows, as its step functions see it: float64 in flat arrays.
 
-`p` does not change: the device, then from OWN_NUMBERS on what the law has of its own.  `s` is the state: the
-newest packet heard, the packet to be sent next, forces, then from OWN_STATE on the law's.
+`p` does not change: the device, then from OWN_NUMBERS on what the law has of its own.  `s` is the state: what
+was heard and told of one run of the other end, the packet to be sent next, forces, then from OWN_STATE on the
+law's.
 """
 
 from __future__ import annotations
+
+import numpy as np
 
 from zwidth.compiled import Array, compiled
 
@@ -16,9 +19,11 @@ MOST_LATE = 7
 
 HEARD_NUMBER, HEARD_WAVE, HEARD_ENERGY, HEARD_POSITION, FRESH = range(5)
 """Of the newest packet; FRESH is 1 where it came in this period.  HEARD_NUMBER is −1 before any."""
-BASE_ENERGY, BASE_POSITION = 5, 6
-"""What the other end had sent before the first packet that was heard."""
-NUMBER, WAVE, ENERGY, POSITION = range(7, 11)
+COUNTED, USED, ENERGY, POSITION = range(5, 9)
+"""What is used of the energy and the position heard; the sums of the packet that is sent next."""
+LINE = 9
+"""So many, from 0 on, are about one run of the other end: each run has its own."""
+NUMBER, WAVE = 9, 10
 """Of the packet that is sent next."""
 FORCE, ACTING = 11, 12
 """That is computed newest, and that acts in this period [N; N·m], positive along x."""
@@ -29,19 +34,17 @@ LOSSES = 48
 MOVING = 179
 """1 between receive and send, which are called in turn."""
 STATE_SIZE = 180
+NEW_LINE = np.array([-1.0, *[0.0] * (LINE - 1)])
 
 
 @compiled
 def hear(s: Array, number: float, wave: float, energy: float, position: float) -> None:
     """Take in a packet: the newest counts, and what is older or the same again changes nothing.
 
-    The energy that it tells is a sum, which never falls.  Of a first packet that is not the other end's very
-    first the sums so far count for nothing: another may have used them.
+    The energy that it tells is a sum, which never falls.
     """
     if number <= s[HEARD_NUMBER]:
         return
-    if s[HEARD_NUMBER] < 0.0 and number > 0.0:
-        s[BASE_ENERGY], s[BASE_POSITION] = energy, position
     s[HEARD_NUMBER], s[HEARD_WAVE], s[HEARD_POSITION], s[FRESH] = number, wave, position, 1.0
     s[HEARD_ENERGY] = max(s[HEARD_ENERGY], energy)
 

@@ -1,4 +1,7 @@
-"""What one port sends to the other: a number, a wave, and the sums of all waves and energies so far."""
+"""What one port sends to the other: for which run of it, a wave, and the sums of waves and energies so far.
+
+"zwp" 2 | run | to | number | wave | energy | position | CRC-32        (little-endian)
+"""
 
 from __future__ import annotations
 
@@ -9,9 +12,13 @@ from math import isfinite
 
 from zwidth.errors import InputError
 
-_LAYOUT = struct.Struct("<Qddd")
+_LAYOUT = struct.Struct("<4sQQQddd")
 _CHECKSUM = struct.Struct("<I")
+_MARK = b"zwp\x02"
+_FIRST_SIZE = 36
+"""Of the first layout, which had no mark and no runs."""
 _MOST = 2**53
+_RUNS = 2**64
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,10 +34,14 @@ class Packet:
     wave
         Of the period that has ended, the square root of its energy with the sign of its push [√J].
     energy
-        That this port has sent in all, ≥ 0; it never falls [J].
+        That this port has sent to that run of the other end in all, ≥ 0; it never falls [J].
     position
         Where this port sends the other to: the sum of its waves, as ways; or its own position where no
         waves are sent [m; rad].
+    run
+        Drawn when a port starts, from 1 to 2⁶⁴ − 1: no other run has the same.
+    to
+        The run of the other end that it is meant for; 0 where none has been heard of.
 
     Raises
     ------
@@ -42,6 +53,8 @@ class Packet:
     wave: float
     energy: float
     position: float
+    run: int
+    to: int = 0
 
     SIZE = _LAYOUT.size + _CHECKSUM.size
     """Bytes of a packet."""
@@ -49,6 +62,10 @@ class Packet:
     def __post_init__(self) -> None:
         if not (isinstance(self.number, int) and 0 <= self.number < _MOST):
             raise InputError(f"the number of a packet counts from 0, got {self.number!r}")
+        for name, least in (("run", 1), ("to", 0)):
+            value = getattr(self, name)
+            if not (isinstance(value, int) and least <= value < _RUNS):
+                raise InputError(f"{name} of a packet is whole, from {least} to 2⁶⁴ − 1, got {value!r}")
         for name in ("wave", "energy", "position"):
             value = getattr(self, name)
             if not (isinstance(value, float) and isfinite(value)):
@@ -57,8 +74,9 @@ class Packet:
             raise InputError(f"energy of a packet must be ≥ 0 J, got {self.energy:g}: it is what was sent")
 
     def to_bytes(self) -> bytes:
-        """36 bytes, the last four a CRC-32 of the others."""
-        body = _LAYOUT.pack(self.number, self.wave, self.energy, self.position)
+        """56 bytes, the last four a CRC-32 of the others."""
+        told = (self.run, self.to, self.number, self.wave, self.energy, self.position)
+        body = _LAYOUT.pack(_MARK, *told)
         return body + _CHECKSUM.pack(zlib.crc32(body))
 
     @classmethod
@@ -73,8 +91,15 @@ class Packet:
         Raises
         ------
         InputError
-            If it is of another length, or its checksum or a number is wrong: such a packet counts as lost.
+            If it is of another version or length, or its checksum or a number is wrong: such a packet counts
+            as lost.
         """
+        if len(data) == _FIRST_SIZE or (data[:3] == _MARK[:3] and data[3:4] not in (b"", _MARK[3:])):
+            version = 1 if len(data) == _FIRST_SIZE else data[3]
+            raise InputError(
+                f"a packet of version {version}, and this port reads version {_MARK[3]}: install one "
+                "zwidth at both ends; leave it out, as if it were lost"
+            )
         if len(data) != cls.SIZE:
             raise InputError(
                 f"a packet has {cls.SIZE} bytes, got {len(data)}; leave it out, as if it were lost"
@@ -82,8 +107,7 @@ class Packet:
         body, check = data[: _LAYOUT.size], data[_LAYOUT.size :]
         if _CHECKSUM.unpack(check)[0] != zlib.crc32(body):
             raise InputError("the checksum of a packet is wrong; leave it out, as if it were lost")
-        return cls(*_LAYOUT.unpack(body))
-
-
-FIRST = Packet(0, 0.0, 0.0, 0.0)
-"""Of a port that has neither moved nor been pushed."""
+        mark, run, to, number, wave, energy, position = _LAYOUT.unpack(body)
+        if mark != _MARK:
+            raise InputError("these bytes are no packet of a port; leave them out, as if they were lost")
+        return cls(number, wave, energy, position, run, to)

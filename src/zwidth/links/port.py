@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -28,9 +29,22 @@ _ULP = 2.0**-51
 """Of so many counts: the difference of two readings far out is rounded, and so is its quotient."""
 
 
+@dataclass(slots=True)
+class _Other:
+    """Of the other end: the run that is sent to, whether it has answered, and the lines of runs before."""
+
+    run: int = 0
+    answered: bool = False
+    kept: dict[int, Array] = field(default_factory=dict)
+
+
 @dataclass(frozen=True)
 class Port(Parametric):
     """One end of a link.  Each period: ``receive``, then the device moves, then ``send``.
+
+    A port is a run: it draws a number, which every packet tells with that of the run that it is meant for.
+    What is told is a sum for each run of the other end, and only a packet that has this port's own number
+    counts: energy is never counted by two runs, whenever either end starts anew (docs/theory/links.md).
 
     Parameters
     ----------
@@ -48,6 +62,9 @@ class Port(Parametric):
     device: Device
     numbers: Array = field(init=False, repr=False, compare=False)
     state: Array = field(init=False, repr=False, compare=False)
+    run: int = field(init=False, repr=False, compare=False)
+    """Of this port alone: drawn when it is made."""
+    _other: _Other = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -55,6 +72,7 @@ class Port(Parametric):
             raise InputError(f"device is a Device, got {type(self.device).__name__}")
         self.complete()
         self._keep(numbers=np.array(self._numbers()), state=self.fresh_state())
+        self._keep(run=secrets.randbelow(2**64 - 1) + 1, _other=_Other())
 
     def complete(self) -> None:
         """Fill in what was not given."""
@@ -75,12 +93,42 @@ class Port(Parametric):
     def fresh_state(self) -> Array:
         """Before the first packet."""
         state = np.zeros(memory.STATE_SIZE)
-        state[memory.HEARD_NUMBER] = state[memory.NUMBER] = -1.0
+        state[: memory.LINE] = memory.NEW_LINE
+        state[memory.NUMBER] = -1.0
         return state
 
     def anew(self: P) -> P:
-        """The same port before its first packet."""
+        """The same port before its first packet, another run."""
         return replace(self)
+
+    def warm(self) -> None:
+        """Compile what has to be, before a clock runs; this port stays as it is."""
+        one, other = self.anew(), self.anew()
+        other.meet(one.run)
+        other.receive()
+        one.receive([other.send(0.0)])
+        one.send(0.0)
+
+    def meet(self, run: int) -> None:
+        """Send to this run of the other end from now on; ``receive`` finds it by itself in what it hears.
+
+        What was sent before is not for it: the sums that it is told begin at 0, where both ends are now.
+        """
+        other, s = self._other, self.state
+        if run != other.run:
+            other.kept[other.run] = s[: memory.LINE].copy()
+            s[: memory.LINE] = other.kept.get(run, memory.NEW_LINE)
+        other.run = run
+
+    def _is_for_this_run(self, packet: Packet) -> bool:
+        """Whose packets have this run's number is who is sent to; before the first, whoever is heard."""
+        if packet.run == self.run:
+            return False
+        mine = packet.to == self.run
+        if mine or not self._other.answered:
+            self.meet(packet.run)
+            self._other.answered |= mine
+        return mine
 
     has_ledger: ClassVar[bool] = False
     """True where a ledger pays for every force, which has a certificate."""
@@ -120,7 +168,8 @@ class Port(Parametric):
                 raise InputError(
                     f"packets are Packet objects, got {packet!r}; bytes: Packet.from_bytes(data)"
                 )
-            memory.hear(self.state, float(packet.number), packet.wave, packet.energy, packet.position)
+            if self._is_for_this_run(packet):
+                memory.hear(self.state, float(packet.number), packet.wave, packet.energy, packet.position)
         self.state[memory.MOVING] = 1.0
         return float(self.steps[0](self.numbers, self.state))
 
@@ -162,8 +211,8 @@ class Port(Parametric):
         self.steps[1](self.numbers, self.state, counts * step if step > 0 else moved)
         self.state[memory.MOVING] = 0.0
         s = self.state
-        told = (float(s[i]) for i in (memory.WAVE, memory.ENERGY, memory.POSITION))
-        return Packet(int(s[memory.NUMBER]), *told)
+        wave, energy, position = (float(s[i]) for i in (memory.WAVE, memory.ENERGY, memory.POSITION))
+        return Packet(int(s[memory.NUMBER]), wave, energy, position, self.run, self._other.run)
 
     def describe(self) -> str:
         """The law with its numbers, on one line."""

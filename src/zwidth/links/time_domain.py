@@ -17,7 +17,6 @@ from typing import ClassVar
 from zwidth.compiled import Array, compiled
 from zwidth.links.memory import (
     ACTING,
-    BASE_ENERGY,
     ENERGY,
     HEARD_ENERGY,
     PERIOD,
@@ -37,7 +36,7 @@ _OUT = OWN
 def force(p: Array, s: Array) -> float:
     """The spring's force and, where more has come out than was put in, a damper's."""
     f = pull(p, s)
-    excess = s[_OUT] - (s[HEARD_ENERGY] - s[BASE_ENERGY])
+    excess = s[_OUT] - s[HEARD_ENERGY]
     moved = s[MOVED]
     if excess > 0.0 and moved != 0.0:
         f -= min(excess / (moved * moved), p[_LARGEST] / p[PERIOD]) * moved

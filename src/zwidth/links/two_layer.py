@@ -15,7 +15,7 @@ from typing import ClassVar
 from zwidth.compiled import Array, compiled
 from zwidth.links.memory import (
     ACTING,
-    BASE_ENERGY,
+    COUNTED,
     ENERGY,
     HEARD_ENERGY,
     PERIOD,
@@ -28,7 +28,7 @@ from zwidth.quantity.parameter import Certain, parameter
 TWO_LAYER = 6.0
 
 _LEVEL, _FILLING = STIFFNESS + 1, STIFFNESS + 2
-_TANK, _COUNTED = OWN, OWN + 1
+_TANK = OWN
 
 _SHARE = 0.01
 """Of the tank, to the other end in each period."""
@@ -37,9 +37,8 @@ _SHARE = 0.01
 @compiled
 def force(p: Array, s: Array) -> float:
     """What the tank allows of the spring's force, and the damper that fills it."""
-    told = max(s[HEARD_ENERGY] - s[BASE_ENERGY], 0.0)
-    s[_TANK] += max(told - s[_COUNTED], 0.0)
-    s[_COUNTED] = max(told, s[_COUNTED])
+    s[_TANK] += max(s[HEARD_ENERGY] - s[COUNTED], 0.0)
+    s[COUNTED] = s[HEARD_ENERGY]
     f, tank, moved = pull(p, s), s[_TANK], s[MOVED]
     most = tank / abs(moved) if moved != 0.0 else abs(f)
     most = max(most, 0.0) if tank > 0.0 else 0.0

@@ -15,6 +15,7 @@ from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
+from zwidth.passivity.wording import TRANSMISSION
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import quantity_unit
 
@@ -23,9 +24,10 @@ def check(port: Port, schedule: Schedule | None = None) -> PortVerdict:
     """Decide whether two hands can take energy out of two such ports, one at each end of a link.
 
     Passive means for every link that makes up no packets: Σ over both ends of ∫ f_h v dt is never below 0 for
-    devices that start at rest.  For waves with a ledger that comes with a certificate.  For waves without one
-    it is so exactly if w ≤ b and the displacement is read without steps, a theorem on paper.  Of other laws a
-    motion is looked for that takes energy out.  Derivation: docs/theory/links.md.
+    devices that start at rest, whenever and as often as either port starts anew.  For waves with a ledger it
+    comes with a certificate.  For waves without one it is so exactly if w ≤ b and the displacement is read
+    without steps, a theorem on paper.  Of other laws a motion is looked for that takes energy out.
+    Derivation: docs/theory/links.md.
 
     Parameters
     ----------
@@ -110,7 +112,7 @@ class PortVerdict(PassivityAnswer):
         device = self.port.device
         yield "two hands without limit on speed and force, one on each device; both start at rest"
         yield "the link makes up no packets; one with a wrong checksum counts as lost"
-        yield "both ports start together; one that starts anew later hears no packet from before"
+        yield "either port may start anew, one at a time on a device; no two runs draw one number of 64 bits"
         late = int(self.port.numbers[LATE])
         when = f"{late} sample{'' if late == 1 else 's'} after its reading" if late else "at once"
         yield f"the force is applied {when} and held for the period, by an actuator without a lag of its own"
@@ -123,6 +125,7 @@ class PortVerdict(PassivityAnswer):
             yield "encoder counts, their phase unknown; none is lost"
         else:
             yield "an ideal position sensor: the displacement is read without error"
+        yield TRANSMISSION
         if device.assumed:
             yield f"{', '.join(device.assumed)} not given, taken as 0"
         if self.outcome == "theorem":

@@ -29,9 +29,8 @@ from typing import ClassVar
 from zwidth.compiled import Array, compiled
 from zwidth.links.memory import (
     ACTING,
-    BASE_ENERGY,
-    BASE_POSITION,
     COULOMB,
+    COUNTED,
     DAMPING,
     ENERGY,
     FORCE,
@@ -44,6 +43,7 @@ from zwidth.links.memory import (
     PERIOD,
     POSITION,
     RESOLUTION,
+    USED,
     WAVE,
     apply,
     queued,
@@ -57,10 +57,10 @@ from zwidth.quantity.parameter import Certain, parameter
 WAVE_PORT = 1.0
 
 IMPEDANCE, SMOOTHING = OWN_NUMBERS, OWN_NUMBERS + 1
-RESERVE, COUNTED, USED, OWED, HELD, CHARGE = range(OWN_STATE, OWN_STATE + 6)
-"""R [J]; energy and position of the other end that are used; energy still to be sent [J]; of the force that
-acts in this period what is held back for it and c [J]."""
-_HELD = OWN_STATE + 6
+RESERVE, OWED, HELD, CHARGE = range(OWN_STATE, OWN_STATE + 4)
+"""R [J]; energy still to be sent [J]; of the force that acts in this period what is held back for it and
+c [J]."""
+_HELD = OWN_STATE + 4
 _CHARGES = _HELD + MOST_LATE + 1
 
 _DOWN = 1.0 - ROUNDING
@@ -71,14 +71,14 @@ _SMOOTHING = Quantity("smoothing", "τ_s", "s", "s", "time constant that smooths
 @compiled
 def force(p: Array, s: Array) -> float:
     """The force on the device for the coming period [N; N·m], positive along x."""
-    told = max(s[HEARD_ENERGY] - s[BASE_ENERGY], 0.0) * _DOWN
+    told = s[HEARD_ENERGY] * _DOWN
     reserve = s[RESERVE]
     if told > s[COUNTED]:
         reserve += told - s[COUNTED]
         s[COUNTED] = told
     reserve -= ROUNDING * abs(reserve)
     r = p[IMPEDANCE] / p[PERIOD]
-    missing = s[HEARD_POSITION] - s[BASE_POSITION] - s[USED]
+    missing = s[HEARD_POSITION] - s[USED]
     size = abs(missing)
     wanted = 0.0
     if reserve > 0.0 and size > 0.0:

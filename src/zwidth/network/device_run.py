@@ -10,7 +10,6 @@ import numpy as np
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
 from zwidth.links import Packet
-from zwidth.links.packet import FIRST
 from zwidth.links.port import Port
 from zwidth.loop.kernel import R_COMMAND, R_READING
 from zwidth.loop.pair.kernel import Arm, read, through
@@ -83,9 +82,7 @@ class DeviceRun:
         arm = self._arm._replace(**{name: getattr(self._arm, name).copy() for name in _CHANGED})
         _measure(arm, 0)  # what has to be compiled is compiled before the clock runs
         _move(arm, 0, 0.0, self._setup.tick, True, self._work)
-        ready = port.anew()
-        ready.receive([FIRST])
-        ready.send(0.0)
+        port.warm()
 
     @property
     def lines(self) -> tuple[str, ...]:

@@ -1,20 +1,18 @@
 """One link, watched: how many packets, how old, how many lost, and how much energy went each way.
 
-A packet tells all the energy that its side has sent so far: what one side has heard of is never more than
-what the other has sent, or the link is no link.
+A packet tells all the energy that its side has sent so far to the run that it is meant for: what one side has
+heard of is never more than what the other has sent, or the link is no link.
 """
 
 from __future__ import annotations
 
 import math
-import secrets
 import time
 from collections import deque
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from zwidth.errors import InputError
 from zwidth.links import Packet
 from zwidth.network.channel import Channel
 from zwidth.network.frame import Frame
@@ -26,6 +24,8 @@ _REMEMBERED = 4096
 
 _SILENT = 0.5
 """What is worth a word [s]."""
+
+_OTHER_VERSION = "another version of zwidth, which is not read: install one at both ends"
 
 WINDOW = 4096
 """A frame this much older than the newest is dropped: that it was not used yet can no longer be known."""
@@ -46,6 +46,8 @@ class LinkReport(Shown):
     """Packets that came after a younger one."""
     foreign: int
     """Datagrams that were none of a port."""
+    other_version: int
+    """Of those, from another version of zwidth."""
     rate: float
     """Packets received per second since the first."""
     round_trip: tuple[float, float, float]
@@ -53,7 +55,7 @@ class LinkReport(Shown):
     energy_sent: float
     """That this side has sent in all [J]."""
     energy_received: float
-    """That the other side has sent in all, as far as this one has heard [J]."""
+    """That the other side has sent to this run in all, as far as this one has heard [J]."""
     silent: float
     """Since the last packet came [s]; infinite before the first."""
 
@@ -73,6 +75,7 @@ class LinkReport(Shown):
             "doubled": self.doubled,
             "late": self.late,
             "foreign": self.foreign,
+            "of_another_version": self.other_version,
             "rate_Hz": self.rate,
             "round_trip_s": {"median": p50, "of_99_percent": p99, "longest": most},
             "energy_sent_J": self.energy_sent,
@@ -99,21 +102,33 @@ class LinkReport(Shown):
     def brief(self) -> str:
         """In a few words."""
         if not self.received:
-            return "nothing has come"
+            return f"what comes is of {_OTHER_VERSION}" if self.other_version else "nothing has come"
         waiting = f", silent for {self.silent:.2g} s" if self.silent > _SILENT else ""
         echoed = math.isfinite(self.round_trip[0])
         trip = f", {1e3 * self.round_trip[0]:.3g} ms there and back" if echoed else ""
         return f"{self.rate:.4g} per second, {self._share} lost{trip}{waiting}"
 
     def rows(self) -> list[list[str]]:
+        more = f", {self.other_version} of {_OTHER_VERSION}" if self.other_version else ""
         return [
             ["packets", f"{self.sent} sent, {self.received} received, {self.rate:.4g} per second"],
             ["lost", f"{self.lost} ({self._share}), {self.doubled} twice, {self.late} late"],
-            ["foreign", f"{self.foreign} datagrams"],
+            ["foreign", f"{self.foreign} datagrams{more}"],
             ["there and back", f"{self._trips}: median, 99 %"],
             ["energy", f"{shown(self.energy_sent, 'J')} sent, {shown(self.energy_received, 'J')} received"],
             ["silent", f"for {self.silent:.3g} s" if self.received else "from the start"],
         ]
+
+
+@dataclass
+class _Run:
+    """Of one run of the other side: first and newest number, those seen, and the energy for this side."""
+
+    first: int
+    newest: int = -1
+    received: int = 0
+    energy: float = 0.0
+    seen: set[int] = field(default_factory=set)
 
 
 class Link:
@@ -129,33 +144,29 @@ class Link:
 
     def __init__(self, channel: Channel, clock: Callable[[], float] = time.monotonic) -> None:
         self.channel, self._clock = channel, clock
-        self._run, self._other = secrets.randbelow(2**32 - 1) + 1, 0
-        self._sent = 0
+        self._run = self._sent = 0
         self._called = False
-        self._newest = -1
-        self._first = -1
-        self._seen: set[int] = set()
+        self._runs: dict[int, _Run] = {}
         self._came: tuple[float, float] | None = None
         self._began = math.nan
-        self._received = self._doubled = self._late = self._foreign = 0
-        self._in = self._out = 0.0
+        self._doubled = self._late = self._foreign = self._other_version = 0
+        self._out: dict[int, float] = {}
         self._trips: deque[float] = deque(maxlen=_REMEMBERED)
 
     def send(self, packet: Packet) -> None:
         """Send a packet of a port."""
         now = self._clock()
         echo, held = (self._came[0], now - self._came[1]) if self._came else (math.nan, 0.0)
-        values = (packet.wave, packet.energy, packet.position)
-        frame = Frame(packet.number, values, now, echo, held, self._run, self._other)
-        self.channel.send(frame.to_bytes())
+        self.channel.send(Frame(packet, now, echo, held).to_bytes())
         self._sent += 1
-        self._out = packet.energy
+        self._run = packet.run
+        self._out[packet.to] = packet.energy
 
     def call(self) -> bool:
         """Call the other side, with a frame that holds nothing; True once it was heard of."""
         if self.receive():
             self._called = True
-        self.channel.send(Frame(0, (), self._clock(), run=self._run, to=self._other).to_bytes())
+        self.channel.send(Frame(None, self._clock()).to_bytes())
         return self._called
 
     def receive(self) -> list[Packet]:
@@ -163,41 +174,35 @@ class Link:
         now = self._clock()
         return [packet for datagram in self.channel.receive() if (packet := self._taken(datagram, now))]
 
-    def _is_meant(self, frame: Frame) -> bool:
-        """False of what was sent to an earlier run of this side, or by one of the other side."""
-        if frame.to == self._run or (frame.to == 0 and self._other == 0):
-            self._other = frame.run
-        return frame.to in (0, self._run) and frame.run == self._other
-
     def _taken(self, datagram: bytes, now: float) -> Packet | None:
         frame = Frame.from_bytes(datagram)
-        if frame is not None and not self._is_meant(frame):
+        if frame is None:
             self._foreign += 1
+            self._other_version += Frame.is_of_another_version(datagram)
             return None
-        if frame is not None and not frame.values:
+        packet = frame.packet
+        if packet is None:
             self._called = True
             return None
-        packet = _packet(frame)
-        if frame is None or packet is None:
-            self._foreign += 1
-            return None
-        if frame.number in self._seen or frame.number <= self._newest - WINDOW:
+        run = self._runs.setdefault(packet.run, _Run(packet.number))
+        if packet.number in run.seen or packet.number <= run.newest - WINDOW:
             self._doubled += 1
             return None
-        self._seen.add(frame.number)
-        if frame.number < self._newest:
+        run.seen.add(packet.number)
+        run.received += 1
+        if packet.number < run.newest:
             self._late += 1
         else:
-            self._newest = frame.number
-            if len(self._seen) > 2 * WINDOW:
-                self._seen = {n for n in self._seen if n > frame.number - WINDOW}
+            run.newest = packet.number
+            if len(run.seen) > 2 * WINDOW:
+                run.seen = {n for n in run.seen if n > packet.number - WINDOW}
             self._came = (frame.sent, now)
-            if math.isfinite(frame.echo):
+            if packet.to == self._run and math.isfinite(frame.echo):
                 self._trips.append(now - frame.echo - frame.held)
-        if self._first < 0:
-            self._first, self._began = frame.number, now
-        self._received += 1
-        self._in = max(self._in, packet.energy)
+        if math.isnan(self._began):
+            self._began = now
+        if packet.to == self._run:
+            run.energy = max(run.energy, packet.energy)
         return packet
 
     def report(self) -> LinkReport:
@@ -205,27 +210,18 @@ class Link:
         now = self._clock()
         trips = sorted(self._trips)
         at = [trips[min(int(q * len(trips)), len(trips) - 1)] if trips else math.nan for q in (0.5, 0.99, 1)]
-        span = self._newest - self._first + 1 if self._first >= 0 else 0
+        received = sum(run.received for run in self._runs.values())
         return LinkReport(
             sent=self._sent,
-            received=self._received,
-            lost=max(span - self._received, 0),
+            received=received,
+            lost=sum(max(run.newest - run.first + 1 - run.received, 0) for run in self._runs.values()),
             doubled=self._doubled,
             late=self._late,
             foreign=self._foreign,
-            rate=self._received / (now - self._began) if now > self._began else 0.0,
+            other_version=self._other_version,
+            rate=received / (now - self._began) if now > self._began else 0.0,
             round_trip=(at[0], at[1], at[2]),
-            energy_sent=self._out,
-            energy_received=self._in,
+            energy_sent=sum(self._out.values()),
+            energy_received=sum(run.energy for run in self._runs.values()),
             silent=now - self._came[1] if self._came else math.inf,
         )
-
-
-def _packet(frame: Frame | None) -> Packet | None:
-    """The packet of a port that a frame holds, or None."""
-    if frame is None or len(frame.values) != 3:
-        return None
-    try:
-        return Packet(frame.number, *frame.values)
-    except InputError:
-        return None

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 from zwidth.device import Device
 from zwidth.links import Packet, WavePort
-from zwidth.links.packet import FIRST
 from zwidth.quantity.exact import RealLike
 from zwidth.scene.element import Element
 from zwidth.scene.parts import Part
@@ -46,10 +45,8 @@ class PartRun:
         self.felt = 0.0
         """The mean force at the port of the scene over the last step, 0 without one [N; N·m]."""
         self.ports = {end.title: _port(end, sample_period) for end in part.ends}
-        for end in part.ends:
-            ready = _port(end, sample_period)
-            ready.receive([FIRST])
-            ready.send(0.0)
+        for port in self.ports.values():
+            port.warm()
 
     def step(
         self, heard: Mapping[str, Iterable[Packet]] | None = None, move: float = 0.0
@@ -114,6 +111,10 @@ def run_parts(
         Of each line, by its name, the steps that a packet is on its way, 1 or more; default 1.
     """
     late = late or {}
+    for line in {line for run in parts.values() for line in run.ports}:
+        ends = [run.ports[line] for run in parts.values() if line in run.ports]
+        for port, far in zip(ends, reversed(ends), strict=True):
+            port.meet(far.run)
     on_the_way: dict[tuple[str, str], list[tuple[int, Packet]]] = {}
     felt: list[float] = []
     for steps, move in enumerate(moves):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from zwidth.passivity.scope import Contact, Encoder, Law, Sampling, Scope, Torque
-from zwidth.passivity.wording import describe_hands
+from zwidth.passivity.wording import AS_ONE, describe_hands
 from zwidth.quantity.text import in_words, told_quantity
 
 _CONTACT: dict[Contact, str] = {
@@ -72,6 +72,7 @@ def _parts(scope: Scope, active: bool, hands: bool) -> Iterator[str]:
         yield from _hands(scope, active)
     yield _losses(scope)
     yield _actuator(scope)
+    yield AS_ONE if scope.transmission else ""
     yield _TORQUE[scope.torque]
     yield _forces(scope)
     yield _SAMPLING[scope.sampling]

@@ -32,6 +32,9 @@ Sampling = Literal["constant", "any"]
 Torque = Literal["", "follows the arm", "follows the readings", "held"]
 """Of an arm, within a period: it is always that of the arm, or of its readings; or computed once."""
 
+Transmission = Literal["rigid", ""]
+"""Motor, encoder and hand move as one, no cable, belt or gear gives way between them; "" without a device."""
+
 FedWith = Literal["position", "penetration", ""]
 """Its memory hears the position outside too, or the depth max(x, 0); or that makes no difference."""
 
@@ -107,6 +110,8 @@ class Scope:
         Whether the actuator's force limit, and its converter's steps, are in it; else the actuator is ideal.
     largest_force, largest_moment
         Forces of the wall [N; N·m], and of an arm in pose moments [N·m], up to which it holds; None: any.
+    transmission
+        What is between motor, encoder and hand: no claim counts what gives way there.
     torque
         Of an arm: what becomes of the torque within a period; "" for a device of one axis.
     sampling
@@ -145,6 +150,7 @@ class Scope:
     force_steps: bool = False
     largest_force: float | None = None
     largest_moment: float | None = None
+    transmission: Transmission = "rigid"
     torque: Torque = ""
     sampling: Sampling = "constant"
     damping: float | None = None
@@ -192,6 +198,8 @@ def _document(scope: Scope) -> dict[str, Any]:
         written[f"largest_force_{force}"] = scope.largest_force
     if scope.largest_moment is not None:
         written["largest_moment_N_m"] = scope.largest_moment
+    if scope.transmission:
+        written["transmission"] = scope.transmission
     if scope.torque:
         written["torque"] = scope.torque
     if scope.friction is not None:

@@ -59,6 +59,8 @@ _LAW = {
     "energy at first bounded": "environments that have stored no more than a bounded energy at first",
     "any before the last": "any environment, and any laws before the last one of the chain",
 }
+AS_ONE = "motor, encoder and hand move as one"
+TRANSMISSION = f"{AS_ONE}: no cable, belt or gear gives way between them"
 _ENCODER = {
     "ideal": "ideal position sensor: no quantization",
     "counted": "encoder counts of one size, their phase against the surface unknown",
@@ -138,6 +140,8 @@ def _lines(scope: Scope, active: bool) -> Iterator[str]:
         limit = "limits on" if " and " in speed else "limit on"
         yield f"a hand without {limit} {speed}; the mass of the device plays no part"
     yield _actuator(scope)
+    if scope.transmission:
+        yield TRANSMISSION
     if scope.torque:
         yield _TORQUE[scope.torque]
     if scope.largest_force is not None:

@@ -24,7 +24,6 @@ from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.links import Packet
-from zwidth.links.packet import FIRST
 from zwidth.links.port import Port
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY
@@ -170,9 +169,7 @@ class PortRun:
         self._limits: Limits = limits
         self._longest = float(longest)
         self._kept: deque[float] = deque([0.0] * (0 if simulated else waits - connection.late))
-        ready = self.port.anew()  # what has to be compiled is compiled before the clock runs
-        ready.receive([FIRST])
-        ready.send(0.0)
+        self.port.warm()
         compile_judging()
         self.connection, self.placement = connection, placement or Placement()
         self._period = float(period)

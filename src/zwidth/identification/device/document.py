@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from zwidth.identification.device.limits import advice, limits
+from zwidth.identification.device.table import BOTH_SIDES
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 
 if TYPE_CHECKING:
@@ -61,6 +62,7 @@ def to_dict(identified: IdentifiedNumbers, confidence: float) -> dict[str, Any]:
         "pulses": identified.pulses,
         "findings": [{"kind": f.kind, "text": f.text} for f in identified.findings],
         "advice": list(advice(identified, confidence)),
+        "assumptions": [BOTH_SIDES],
     }
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from zwidth.device.device import Device
 from zwidth.identification.device.limits import percent
-from zwidth.identification.device.table import source_name
+from zwidth.identification.device.table import BOTH_SIDES, source_name
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.text import as_decimal, quantity_unit
 from zwidth.specification.write import toml
@@ -46,6 +46,7 @@ def _story(identified: IdentifiedNumbers, confidence: float | None) -> list[str]
         f"Identified from {source_name(identified)}: {identified.strokes} strokes, {identified.pulses} means "
         f"over {milliseconds:.3g} ms, r² = {identified.explained:.4f}.",
         "m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a, in means over smooth pulses inside strokes.",
+        f"{BOTH_SIDES}.",
     ]
     story += [
         f"{finding}" for finding in identified.findings if finding.kind in ("wrong model", "bent friction")

@@ -36,6 +36,12 @@ NAMES = {
     "2f_c/Δ": "wall by Coulomb friction",
 }
 
+BOTH_SIDES = (
+    "m, b and f_c are the sum of both sides of a cable, belt or gear between motor and hand; where the motor "
+    "swings on it only its own side pays"
+)
+"""What is taken for granted of every device: motor, encoder and hand move as one."""
+
 
 class Row(NamedTuple):
     """A number as people read it."""
@@ -108,6 +114,7 @@ def report(identified: IdentifiedNumbers, confidence: float = 0.95) -> Iterable[
     yield Table(caption=title(identified), heads=heads, rows=rows(identified, confidence))
     yield ""
     yield facts(identified)
+    yield BOTH_SIDES
     if identified.findings:
         yield Lines(identified.findings)
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from zwidth.pairs import Pair
 from zwidth.passivity.pairs.compensation import assumed_of_forces
 from zwidth.passivity.pairs.criterion import PairCriterion
+from zwidth.passivity.wording import TRANSMISSION
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import told_quantity
 
@@ -34,11 +35,12 @@ def assumed_of_timing(criterion: PairCriterion, any_age: bool) -> Iterator[str]:
 
 
 def assumed_of_arms(pair: Pair) -> Iterator[str]:
-    """Of both sensors, and what was not given."""
+    """Of both sensors, of what is between motor and hand, and what was not given."""
     if any(side.resolution for side in pair.sides):
         yield "encoder counts of each arm's own size, their phase unknown"
     else:
         yield "ideal position sensors: no quantization"
+    yield f"of each arm {TRANSMISSION}"
     for name, device in (("leader", pair.leader), ("follower", pair.follower)):
         if device.assumed:
             yield f"{name}: {', '.join(device.assumed)} not given, taken as 0"

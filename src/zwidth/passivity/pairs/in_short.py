@@ -8,6 +8,7 @@ from zwidth.pairs import Pair
 from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.passivity.pairs.held.verdict import HeldVerdict
 from zwidth.passivity.pairs.verdict import PairVerdict
+from zwidth.passivity.wording import AS_ONE
 
 
 def pair_in_short(verdict: PairVerdict | HeldVerdict) -> str:
@@ -63,6 +64,7 @@ def _of_both(criterion: PairCriterion, any_age: bool) -> Iterator[str]:
         yield f"readings of the other arm just {ages} samples old, none lost"
     yield from _of_forces(criterion)
     yield "encoder steps counted" if any(side.resolution for side in pair.sides) else "ideal position sensors"
+    yield f"of each arm {AS_ONE}"
     yield from _not_given(pair)
 
 

@@ -117,7 +117,7 @@ class PassivityIndices(PassivityAnswer):
     @property
     def scope(self) -> Scope:
         """A linear port by itself: every hand, no surface, no encoder, nothing sampled but what G(z) is."""
-        return Scope(contact="both sides")
+        return Scope(contact="both sides", transmission="")
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""

@@ -113,7 +113,7 @@ class ScatteringPassivity(PassivityAnswer):
     @property
     def scope(self) -> Scope:
         """A linear network by itself."""
-        return Scope(contact="both sides")
+        return Scope(contact="both sides", transmission="")
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""

@@ -64,7 +64,8 @@ class AbsoluteStability(Result):
     @property
     def scope(self) -> Scope:
         """One plant of a known hand and device, with any spring of the class, touched and left at will."""
-        return Scope(hands=Hands(impedance="the plant G(z)"), contact="made and broken", sampling="constant")
+        hands = Hands(impedance="the plant G(z)")
+        return Scope(hands=hands, contact="made and broken", sampling="constant", transmission="")
 
     def slope(self, criterion: Criterion) -> Exact:
         """The largest K that the criterion proves."""
