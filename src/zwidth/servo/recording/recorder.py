@@ -187,7 +187,7 @@ def check_recording(path: Path, force: bool) -> None:
     """Refuse a place that is none for a recording, before anything is served."""
     if path.suffix.lower() != SUFFIX:
         raise InputError(
-            f"a recording is a file that ends in {SUFFIX}, got {str(path)!r}; zwidth replay run.mcap -o run.nc "
-            "makes a table of one, and in Python read_recording('run.mcap').dataset().to_dataframe()"
+            f"a recording is a file that ends in {SUFFIX}, got {str(path)!r}; of one zwidth replay "
+            "run.mcap -o run.nc makes a table, and in Python read_recording(path).dataset().to_dataframe()"
         )
     check_target(path, force)
