@@ -21,7 +21,13 @@ from typing import IO
 
 from zwidth.errors import InputError
 
+try:
+    import fcntl
+except ImportError:  # not on Windows
+    fcntl = None  # type: ignore[assignment]
+
 _NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+_OURS = 0o600
 _ANYBODY = 0o666
 """Permissions of a new file before the umask."""
 
@@ -94,6 +100,53 @@ def _abandoned(file: IO[bytes], unfinished: Path) -> None:
         file.close()
     with suppress(OSError):
         unfinished.unlink()
+
+
+@contextmanager
+def alone(path: Path) -> Iterator[None]:
+    """What grows at `path` grows by one process at a time; the system forgets the lock of one that is killed.
+
+    Raises
+    ------
+    InputError
+        If another process is at it, or nothing can be written there.
+    """
+    lock = path.with_name(f".{path.name}.lock")
+    try:
+        held = _locked(lock)
+    except (BlockingIOError, FileExistsError, PermissionError) as error:
+        if isinstance(error, PermissionError) and os.name == "posix":
+            raise InputError(f"{path} cannot be written: {error.strerror}") from None
+        raise InputError(
+            f"{path} is being written by another process: wait until that has ended, and the same command "
+            "goes on with what is there; or choose another name"
+        ) from None
+    except OSError as error:
+        raise InputError(f"{path} cannot be written: {error.strerror}") from None
+    try:
+        yield
+    finally:
+        if fcntl is not None:
+            with suppress(OSError):
+                lock.unlink()
+        os.close(held)
+
+
+def _locked(lock: Path) -> int:
+    if fcntl is None:  # Windows takes such a file away with the process
+        return os.open(lock, _NEW | getattr(os, "O_TEMPORARY", 0), _OURS)
+    while True:
+        held = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, _OURS)
+        try:
+            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if os.path.samestat(os.fstat(held), lock.lstat()):
+                return held
+        except FileNotFoundError:
+            pass  # who had it has just taken it away: once more
+        except BaseException:
+            os.close(held)
+            raise
+        os.close(held)
 
 
 def first_line(error: BaseException) -> str:
