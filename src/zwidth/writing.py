@@ -32,14 +32,34 @@ _ANYBODY = 0o666
 """Permissions of a new file before the umask."""
 
 
-def check_target(path: Path, force: bool) -> None:
-    """Refuse a place where nothing can be written, or a file would be lost."""
-    if path.is_dir():
-        raise InputError(f"{path} is a directory; name a file")
-    if os.path.lexists(path) and not force:  # a link that leads nowhere is there too
-        raise InputError(f"{path} exists; choose another name, or give force=True to replace it")
-    if not path.parent.is_dir():
-        raise InputError(f"{path} cannot be written: there is no directory {path.parent}")
+def check_target(path: Path, force: bool, how: str = "force=True") -> None:
+    """Refuse a place where nothing can be written, or a file would be lost, before anything is computed.
+
+    Raises
+    ------
+    InputError
+        If it exists and `force` is False, is a directory, lies in none, or may not be written; `how` is what
+        to give in the place of `force`.
+    """
+    try:
+        if b"\0" in os.fsencode(path):
+            raise InputError(f"{path} cannot be written: a name has no zero bytes")
+        if path.is_dir():
+            raise InputError(f"{path} is a directory; name a file")
+        if os.path.lexists(path) and not force:  # a link that leads nowhere is there too
+            raise InputError(f"{path} exists; choose another name, or give {how} to replace it")
+        place = Path(os.path.realpath(path))
+        if not place.parent.is_dir():
+            raise InputError(f"{path} cannot be written: there is no directory {place.parent}")
+        there = place.exists()
+        if there and not os.access(place, os.W_OK):
+            raise InputError(f"{path} cannot be written: it is protected against that")
+        if (place.is_file() or not there) and not os.access(place.parent, os.W_OK | os.X_OK):
+            raise InputError(f"{path} cannot be written: nothing may be put into {place.parent}")
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{path} cannot be written: {_reason(error)}") from None
 
 
 @contextmanager
@@ -57,8 +77,7 @@ def writing_whole(path: Path) -> Iterator[IO[bytes]]:
         with _opened(path) as file:
             yield file
     except OSError as error:
-        reason = error.strerror or first_line(error)
-        raise InputError(f"{path} cannot be written: {reason}; nothing was changed there") from None
+        raise InputError(f"{path} cannot be written: {_reason(error)}; nothing was changed there") from None
 
 
 @contextmanager
@@ -111,6 +130,8 @@ def alone(path: Path) -> Iterator[None]:
     InputError
         If another process is at it, or nothing can be written there.
     """
+    if path.is_symlink() and not path.exists():
+        raise InputError(f"{path} is a link that leads nowhere; choose another name or remove it first")
     lock = path.with_name(f".{path.name}.lock")
     try:
         held = _locked(lock)
@@ -147,6 +168,10 @@ def _locked(lock: Path) -> int:
             os.close(held)
             raise
         os.close(held)
+
+
+def _reason(error: Exception) -> str:
+    return getattr(error, "strerror", None) or first_line(error)
 
 
 def first_line(error: BaseException) -> str:
