@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import csv
 import errno
 import os
 import re
 import secrets
 from collections.abc import Callable, Iterator
+from io import StringIO
 from pathlib import Path
 from stat import S_IMODE
 from typing import Any
 
 import pytest
 from full_disk import full_disk
+from hypothesis import given
+from hypothesis import strategies as st
 
 import zwidth as zw
 from zwidth.cli.main import main
 from zwidth.passivity.document import save_json
-from zwidth.writing import check_target, writing_whole
+from zwidth.writing import check_target, csv_cell, csv_text, writing_whole
 
 LOOP = zw.Device(mass=0.04, damping=0.15, sample_period=0.001), zw.Wall(200)
 
@@ -212,6 +216,30 @@ def test_only_one_place_opens_files_to_write() -> None:
     writers = {p for p in source.rglob("*.py") if _WRITES.search(p.read_text(encoding="utf-8"))}
     of_users = {source / "writing.py", source / "plots" / "files.py"}
     assert writers == {*of_users, source / "checker" / "schema.py"}
+
+
+TEXT = "=+-@\t\r\n\"',;ax1.e ＝＋ü"
+
+
+@given(st.lists(st.lists(st.text(TEXT) | st.floats(allow_nan=False), min_size=2), min_size=1))
+def test_text_is_text_in_every_spreadsheet(rows: list[list[str | float]]) -> None:
+    """No cell begins as a formula does that is no number; what is read back is what was written."""
+    read = list(csv.reader(StringIO(csv_text(rows), newline="")))
+    assert [[csv_cell(cell) for cell in row] for row in read] == [[str(cell) for cell in row] for row in rows]
+    for cell in (cell for row in read for cell in row):
+        try:
+            float(cell)
+        except ValueError:
+            assert not cell.startswith(("=", "+", "-", "@", "\t", "\r", "＝", "＋"))
+
+
+def test_a_trace_is_no_formula_either(trace: Any, tmp_path: Path) -> None:
+    """The attributes in the first line hold what others named; numbers are as they were."""
+    named = trace.assign_attrs(device="a,=HYPERLINK(1);+1,-2", environment="@x")
+    named.zwidth.save(tmp_path / "t.csv")
+    first = (tmp_path / "t.csv").read_text(encoding="utf-8").partition("\n")[0]
+    assert not re.search("[,;][=+@-]", first)
+    assert zw.load_trace(tmp_path / "t.csv").identical(named)
 
 
 OUTPUTS = (

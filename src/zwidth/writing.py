@@ -11,11 +11,13 @@ not be written is not replaced either.
 
 from __future__ import annotations
 
+import csv
 import os
 import secrets
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from io import StringIO
 from pathlib import Path
 from typing import IO
 
@@ -119,6 +121,36 @@ def _abandoned(file: IO[bytes], unfinished: Path) -> None:
         file.close()
     with suppress(OSError):
         unfinished.unlink()
+
+
+_OBEYED = ("=", "+", "-", "@", "\t", "\r", "\n", "＝", "＋", "－", "＠")
+"""With which a spreadsheet takes a text for a formula, or cuts off what stands before one."""
+
+
+def csv_text(rows: Iterable[Iterable[object]]) -> str:
+    """Rows as CSV, in which a spreadsheet takes no text for a formula: such a one begins with an apostrophe.
+
+    A number stays one, also as a text.  `csv_cell` takes the apostrophe away again.
+    """
+    out = StringIO()
+    lines = csv.writer(out, lineterminator="\n")
+    for row in rows:
+        lines.writerow(f"'{cell}" if isinstance(cell, str) and _is_formula(cell) else cell for cell in row)
+    return out.getvalue()
+
+
+def csv_cell(text: str) -> str:
+    """What was written there by `csv_text`."""
+    return text[1:] if text.startswith("'") and _is_formula(text[1:]) else text
+
+
+def _is_formula(text: str) -> bool:
+    """True of what may be taken for one, behind apostrophes or not."""
+    try:
+        float(text)
+    except ValueError:
+        return text.lstrip("'").startswith(_OBEYED)
+    return False
 
 
 @contextmanager

@@ -17,7 +17,7 @@ from zwidth.identification.logs.served.contents import FORMAT, name_and_unit, ro
 from zwidth.identification.logs.served.mcap import mcap_head, mcap_parts
 from zwidth.missing import did_you_mean
 from zwidth.servo.ring import ENDED, SERVING
-from zwidth.showing import Lines, Part, Shown, Table
+from zwidth.showing import Lines, Part, Shown, Table, printable
 from zwidth.specification.read import Specification
 from zwidth.specification.write import parsed
 
@@ -143,8 +143,8 @@ class Recording(Shown):
             "sample_period_s": self.period,
             "whole": int(self.whole),
             "rows_lost": self.rows_lost,
-            "about": json.dumps(self.about, ensure_ascii=False),
-            "events": json.dumps(self.events, ensure_ascii=False),
+            "about": printable(json.dumps(self.about, ensure_ascii=False)),
+            "events": printable(json.dumps(self.events, ensure_ascii=False)),
         }
         return xr.Dataset(variables, coords={"time": time}, attrs=said)
 
