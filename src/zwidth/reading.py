@@ -45,7 +45,8 @@ def shown_only(data: xr.Dataset, path: Path) -> xr.Dataset:
     """
     if not all(str(name).isprintable() for name in (*data.variables, *data.dims)):
         raise InputError(f"{path} is not read: a name in it holds control characters")
-    for each in (data, *data.variables.values()):
+    parts: list[Any] = [data, *data.variables.values()]
+    for each in parts:
         told = each.attrs.items()
         each.attrs = {printable(str(k)): printable(v) if isinstance(v, str) else v for k, v in told}
     return data

@@ -44,6 +44,11 @@ OF_A_PAIR = (*PAIR_TABLES, "follower_connection", "follower_operator")
 
 FACES = ("terminal", "browser", "foxglove")
 
+_READERS = (
+    "\nuntil this ends, any web page that is open in a browser here can read position, force and energy there"
+)
+"""Foxglove's SDK has no way to ask where a reader comes from."""
+
 FAULT = 5
 """Exit status where the force ended by itself."""
 
@@ -201,7 +206,7 @@ def begin_watching(face: str, port: int | None, servo: Servo) -> Callable[[], An
     given = {} if port is None else {"port": port}
     page = (live.open_page if face == "browser" else live.serve_foxglove)(servo.rows, **given)
     with quiet_pipe(sys.stderr):
-        print(f"live at {page.address}", file=sys.stderr)
+        print(f"live at {page.address}{_READERS if face == 'foxglove' else ''}", file=sys.stderr)
     return page.close
 
 
