@@ -158,9 +158,9 @@ def test_what_xarray_shows_is_not_obeyed_either(trace: Any, tmp_path: Path) -> N
     for suffix in (".nc", ".csv", ".parquet"):
         path = tmp_path / f"touch{suffix}"
         trace.assign_attrs(device=HOSTILE, operator="two\nlines").zwidth.save(path)
-        loaded = zw.load_trace(path)
+        loaded = zw.traces.load_trace(path)
         assert loaded.attrs["operator"] == "two\nlines"
-        for one in (trace, loaded, zw.sweep(DEVICE, zw.Wall(200), vary={"stiffness": "1, 2"}, workers=1)):
+        for one in (trace, loaded):
             assert "<script" not in one._repr_html_()
             assert not OBEYED.search(repr(one) + one._repr_html_())
 

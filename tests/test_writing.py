@@ -239,7 +239,7 @@ def test_a_trace_is_no_formula_either(trace: Any, tmp_path: Path) -> None:
     named.zwidth.save(tmp_path / "t.csv")
     first = (tmp_path / "t.csv").read_text(encoding="utf-8").partition("\n")[0]
     assert not re.search("[,;][=+@-]", first)
-    assert zw.load_trace(tmp_path / "t.csv").identical(named)
+    assert zw.traces.load_trace(tmp_path / "t.csv").identical(named)
 
 
 OUTPUTS = (
