@@ -17,8 +17,8 @@ import secrets
 import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
-from io import StringIO
 from pathlib import Path
+from types import SimpleNamespace
 from typing import IO
 
 from zwidth.errors import InputError
@@ -132,11 +132,11 @@ def csv_text(rows: Iterable[Iterable[object]]) -> str:
 
     A number stays one, also as a text.  `csv_cell` takes the apostrophe away again.
     """
-    out = StringIO()
-    lines = csv.writer(out, lineterminator="\n")
+    written: list[str] = []
+    lines = csv.writer(SimpleNamespace(write=written.append))  # its own line end: both signs of it are quoted
     for row in rows:
         lines.writerow(f"'{cell}" if isinstance(cell, str) and _is_formula(cell) else cell for cell in row)
-    return out.getvalue()
+    return "".join(line.removesuffix("\r\n") + "\n" for line in written)
 
 
 def csv_cell(text: str) -> str:
