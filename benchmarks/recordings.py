@@ -117,21 +117,20 @@ def main() -> None:
     parser.add_argument("--folder", default=None, help="where to write (default: a temporary folder)")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory(dir=arguments.folder) as folder:
-        for name in ("run.mcap", "run.parquet"):
-            path = Path(folder) / name
-            done, share, early, late = recorded(path, 60 * arguments.minutes, arguments.speed)
-            begun = time.perf_counter()
-            found = read_recording(path)
-            took = time.perf_counter() - begun
-            assert found.whole
-            assert found.samples == done.rows
-            whole = np.array_equal(found.columns["sample"], np.arange(done.rows))
-            print(
-                f"{name}: {done.rows:,} rows, {done.rows_lost} lost, all there: {whole}; "
-                f"{done.size / max(1, done.rows):.1f} bytes a row, {done.size / 1e6:.0f} MB; "
-                f"{100 * share:.2f} % of a processor at {5 * arguments.speed:g} kHz; memory {early:.0f} MB "
-                f"after a quarter, {late:.0f} MB at the end; read back in {took:.1f} s"
-            )
+        path = Path(folder) / "run.mcap"
+        done, share, early, late = recorded(path, 60 * arguments.minutes, arguments.speed)
+        begun = time.perf_counter()
+        found = read_recording(path)
+        took = time.perf_counter() - begun
+        assert found.whole
+        assert found.samples == done.rows
+        whole = np.array_equal(found.columns["sample"], np.arange(done.rows))
+        print(
+            f"{path.name}: {done.rows:,} rows, {done.rows_lost} lost, all there: {whole}; "
+            f"{done.size / max(1, done.rows):.1f} bytes a row, {done.size / 1e6:.0f} MB; "
+            f"{100 * share:.2f} % of a processor at {5 * arguments.speed:g} kHz; memory {early:.0f} MB "
+            f"after a quarter, {late:.0f} MB at the end; read back in {took:.1f} s"
+        )
 
 
 if __name__ == "__main__":

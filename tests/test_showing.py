@@ -6,15 +6,31 @@ import ast
 import json
 import os
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import zwidth as zw
+from zwidth.arms.kinematics.builtin import built_in
 from zwidth.cli.main import main
-from zwidth.showing import OBEYED, Headline, Html, Lines, Picture, Shown, Table, element, printable, void
+from zwidth.showing import (
+    OBEYED,
+    Headline,
+    Html,
+    Lines,
+    Picture,
+    Shown,
+    Table,
+    element,
+    one_line,
+    printable,
+    void,
+)
 
 SCRIPT = "<script>alert(1)</script>"
 HOSTILE = f"{SCRIPT} $\\frac{{$ & \x1b[2J\x9b31m \u202e\"'"
@@ -135,6 +151,28 @@ def test_names_are_escaped_in_notebooks(trace: Any) -> None:
         assert not OBEYED.search(page)
         ElementTree.fromstring(page)
     assert "&lt;script&gt;" in DEVICE._repr_html_()
+
+
+def test_what_xarray_shows_is_not_obeyed_either(trace: Any, tmp_path: Path) -> None:
+    """A Dataset says its attributes as they are: those of a device, and those of a file of others."""
+    for suffix in (".nc", ".csv", ".parquet"):
+        path = tmp_path / f"touch{suffix}"
+        trace.assign_attrs(device=HOSTILE, operator="two\nlines").zwidth.save(path)
+        loaded = zw.traces.load_trace(path)
+        assert loaded.attrs["operator"] == "two\nlines"
+        for one in (trace, loaded):
+            assert "<script" not in one._repr_html_()
+            assert not OBEYED.search(repr(one) + one._repr_html_())
+
+
+@given(st.text(), st.text())
+def test_no_name_and_no_message_holds_what_is_obeyed(name: str, more: str) -> None:
+    """Whoever made the text: a device, an arm, a message that quotes it."""
+    device = zw.Device(mass=1, damping=1, sample_period=1, name=name)
+    arm = replace(built_in("two-link", damping=0.1), name=name)
+    for shown in (device.name, arm.name, str(zw.InputError(f"{name!s}: {more}")), one_line(name)):
+        assert not OBEYED.search(shown)
+    assert one_line(name).isprintable()
 
 
 @pytest.mark.parametrize("draw", ["trace", "traces", "verdict", "law"])

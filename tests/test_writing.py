@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+import csv
 import errno
 import os
 import re
 import secrets
 from collections.abc import Callable, Iterator
+from io import StringIO
 from pathlib import Path
 from stat import S_IMODE
 from typing import Any
 
 import pytest
 from full_disk import full_disk
+from hypothesis import given
+from hypothesis import strategies as st
 
 import zwidth as zw
+from zwidth.cli.main import main
 from zwidth.passivity.document import save_json
-from zwidth.writing import check_target, writing_whole
+from zwidth.writing import check_target, csv_cell, csv_text, writing_whole
 
 LOOP = zw.Device(mass=0.04, damping=0.15, sample_period=0.001), zw.Wall(200)
 
@@ -211,3 +216,86 @@ def test_only_one_place_opens_files_to_write() -> None:
     writers = {p for p in source.rglob("*.py") if _WRITES.search(p.read_text(encoding="utf-8"))}
     of_users = {source / "writing.py", source / "plots" / "files.py"}
     assert writers == {*of_users, source / "checker" / "schema.py"}
+
+
+TEXT = "=+-@\t\r\n\"',;ax1.e ＝＋ü"
+
+
+@given(st.lists(st.lists(st.text(TEXT) | st.floats(allow_nan=False), min_size=2), min_size=1))
+def test_text_is_text_in_every_spreadsheet(rows: list[list[str | float]]) -> None:
+    """No cell begins as a formula does that is no number; what is read back is what was written."""
+    read = list(csv.reader(StringIO(csv_text(rows), newline="")))
+    assert [[csv_cell(cell) for cell in row] for row in read] == [[str(cell) for cell in row] for row in rows]
+    for cell in (cell for row in read for cell in row):
+        try:
+            float(cell)
+        except ValueError:
+            assert not cell.startswith(("=", "+", "-", "@", "\t", "\r", "＝", "＋"))
+
+
+def test_a_trace_is_no_formula_either(trace: Any, tmp_path: Path) -> None:
+    """The attributes in the first line hold what others named; numbers are as they were."""
+    named = trace.assign_attrs(device="a,=HYPERLINK(1);+1,-2", environment="@x")
+    named.zwidth.save(tmp_path / "t.csv")
+    first = (tmp_path / "t.csv").read_text(encoding="utf-8").partition("\n")[0]
+    assert not re.search("[,;][=+@-]", first)
+    assert zw.traces.load_trace(tmp_path / "t.csv").identical(named)
+
+
+OUTPUTS = (
+    ("check haptic-paddle --stiffness 100", "--save", "x.json"),
+    ("check haptic-paddle --stiffness 100", "--plot", "x.png"),
+    ("limit haptic-paddle --stiffness 100", "-o", "x.json"),
+    ("simulate haptic-paddle --stiffness 100", "-o", "x.nc"),
+    ("simulate haptic-paddle --stiffness 100", "--plot", "x.svg"),
+    ("simulate haptic-paddle --stiffness 100", "--sound", "x.wav"),
+    ("compare haptic-paddle --stiffness 100", "-o", "x.json"),
+    ("play haptic-paddle --stiffness 100 --no-browser", "-o", "x.html"),
+    ("report haptic-paddle --stiffness 100", "-o", "x.html"),
+    ("serve haptic-paddle --stiffness 100", "-o", "x.mcap"),
+    ("emit haptic-paddle --stiffness 100", "-o", "folder"),
+    ("sweep haptic-paddle --stiffness 100 --vary delay=0,1e-4", "-o", "x.parquet"),
+    ("sweep haptic-paddle --stiffness 100 --vary delay=0,1e-4", "-o", "x.zarr"),
+    ("sweep haptic-paddle --stiffness 100 --vary delay=0,1e-4", "--plot", "x.pdf"),
+    ("map haptic-paddle --stiffness 0:9 --virtual-damping 0:1 --cells 2x2", "-o", "x.zarr"),
+    ("map haptic-paddle --stiffness 0:9 --virtual-damping 0:1 --cells 2x2", "--certify", "x.json"),
+    ("each haptic-paddle hapkit --stiffness 100", "-o", "x.csv"),
+    ("identify session.csv", "-o", "x.toml"),
+    ("diagnose shaking.csv wheel.toml", "-o", "x.toml"),
+    ("tissue relaxation.csv", "-o", "x.toml"),
+    ("gains x.yaml haptic-paddle", "-o", "x.yaml"),
+    ("pair haptic-paddle --stiffness 50", "-o", "x.json"),
+    ("links haptic-paddle", "-o", "x.json"),
+    ("workspace arm.urdf --stiffness 100", "-o", "x.json"),
+    ("replay run.mcap", "-o", "x.nc"),
+    ("traces touch.nc", "--plot", "x.png"),
+    ("doctor", "-o", "x.json"),
+    ("new device", "", "x.toml"),
+    ("examples", "", "folder"),
+)
+
+
+@pytest.mark.parametrize(("command", "option", "name"), OUTPUTS)
+def test_no_command_follows_a_link_that_leads_nowhere(
+    command: str, option: str, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
+) -> None:
+    """Without --force it is told before anything is computed, and nothing is made where it leads."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / name).symlink_to(tmp_path / "chosen by another")
+    assert main([*command.split(), *option.split(), name]) == 2
+    assert re.search("exists|leads nowhere|no folder", capsys.readouterr().err)
+    assert [each.name for each in tmp_path.iterdir()] == [name]
+
+
+def test_what_may_not_be_written_is_told_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A protected file, a folder into which nothing may be put; a pipe or a device takes what comes."""
+    path = tmp_path / "x.json"
+    closed = {str(tmp_path)}
+    monkeypatch.setattr(os, "access", lambda place, mode: str(place) not in closed)
+    with pytest.raises(zw.InputError, match="nothing may be put into"):
+        check_target(path, force=False)
+    path.touch()
+    closed = {str(path)}
+    with pytest.raises(zw.InputError, match="protected"):
+        check_target(path, force=True)
+    check_target(Path(os.devnull), force=True)

@@ -7,6 +7,11 @@ what to try.  Verdicts about nature are never exceptions.
 
 from __future__ import annotations
 
+from zwidth.showing import printable
+
 
 class InputError(ValueError):
     """A parameter, file or command that cannot be used as given."""
+
+    def __init__(self, message: object = "") -> None:
+        super().__init__(printable(str(message)))  # it may quote a file or its name

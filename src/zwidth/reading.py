@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING, Any
 from zlib import decompressobj
 
 from zwidth.errors import InputError
+from zwidth.showing import printable
 
 if TYPE_CHECKING:
     import h5py
+    import xarray as xr
 
 FREE = 2**31
 """[bytes] What any file may be expanded to."""
@@ -31,6 +33,23 @@ _DEFLATE, _MOST_DEFLATED = 1, 1032
 """The filter's number in HDF5, and the most bytes that it makes of one."""
 
 _STEP = 2**20
+
+
+def shown_only(data: xr.Dataset, path: Path) -> xr.Dataset:
+    """A Dataset of a file, its attributes without what a terminal or a page would obey.
+
+    Raises
+    ------
+    InputError
+        If a name in it has such a character: it would be another one without.
+    """
+    if not all(str(name).isprintable() for name in (*data.variables, *data.dims)):
+        raise InputError(f"{path} is not read: a name in it holds control characters")
+    parts: list[Any] = [data, *data.variables.values()]
+    for each in parts:
+        told = each.attrs.items()
+        each.attrs = {printable(str(k)): printable(v) if isinstance(v, str) else v for k, v in told}
+    return data
 
 
 def check_expansion(path: Path, expanded: int) -> None:

@@ -28,6 +28,12 @@ def printable(text: str) -> str:
     return OBEYED.sub("?", text)
 
 
+def one_line(text: str, longest: int | None = None) -> str:
+    """The same of what stands in a line, such as a name: ? for a line's end too; not longer than that."""
+    shown = "".join(c if c.isprintable() else "?" for c in text)
+    return shown if longest is None or len(shown) <= longest else f"{shown[: longest - 3]}..."
+
+
 def element(tag: str, *inside: object, **attributes: str) -> Html:
     """What is inside in a tag; what is no `Html` is escaped, and so are the attributes."""
     return Html(f"<{tag}{_given(attributes)}>{join(*inside)}</{tag}>")

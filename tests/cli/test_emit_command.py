@@ -141,7 +141,7 @@ def test_where_the_files_go(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert "-o DIRECTORY" in capsys.readouterr().err
     (tmp_path / "file").write_text("mine")
     assert main([*PADDLE, "-o", str(tmp_path / "file")]) == 2
-    assert "is a file; name a directory" in capsys.readouterr().err
+    assert "exists and is no directory" in capsys.readouterr().err
     assert main([*PADDLE, "-o", str(tmp_path / "file" / "below")]) == 2
     assert "cannot be made" in capsys.readouterr().err
     folder = str(tmp_path / "wall")

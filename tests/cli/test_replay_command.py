@@ -65,9 +65,9 @@ def test_other_forces_are_status_1(recorded: Path, capsys: pytest.CaptureFixture
     """A file that says it was another wall."""
     rows = WrittenRows(np.column_stack(list(read_recording(recorded).columns.values())))
     rows.events.append({"specification": written(paddle(), zw.Wall(stiffness=301))})
-    with Recorder(rows, recorded.with_suffix(".parquet")):
+    with Recorder(rows, recorded, force=True):
         rows.written = 498
-    assert command(recorded.with_suffix(".parquet")) == 1
+    assert command(recorded) == 1
     assert "another force in" in capsys.readouterr().out
 
 

@@ -74,7 +74,8 @@ def test_sense_is_not_rounded(capsys: pytest.CaptureFixture[str]) -> None:
         (["--watch", "wall"], "terminal, browser, foxglove"),
         (["--watch", "terminal", "--watch-port", "1"], "--watch-port goes with"),
         (["--operator", "fingr"], "did you mean"),
-        (["-o", "session.csv"], ".mcap, .parquet"),
+        (["-o", "session.csv"], "ends in .mcap"),
+        (["-o", "session.parquet"], "zwidth replay run.mcap -o run.nc"),
         (["--duration", "0 s"], "> 0"),
     ],
 )

@@ -82,6 +82,37 @@ def test_only_pages_of_this_server_get_a_websocket() -> None:
         assert upgrade(page.address, f"http://127.0.0.1:{port}", session) == 101
 
 
+def test_a_foreign_name_meets_no_handler() -> None:
+    """Also where Origin says the same name, which is the same origin for a browser; a port belongs to it."""
+    with serve_explorer() as page:
+        port = urlsplit(page.address).port
+        session = session_of(page.address)
+        for host in (
+            f"evil.example:{port}",
+            "127.0.0.1",
+            "localhost:1",
+            f"127.0.0.2:{port}",
+            f"0.0.0.0:{port}",
+            "",
+        ):
+            assert upgrade(page.address, f"http://{host}", session, Host=host) == 421
+            assert [status(page.address, path, Host=host)[0] for path in ("/", "/static/", "/enter")] == [
+                421
+            ] * 3
+        for host in (f"localhost:{port}", f"[::1]:{port}", f"LocalHost:{port}"):
+            assert status(page.address, Host=host)[0] == 200
+            assert upgrade(page.address, f"http://{host.lower()}", session, Host=host) == 101
+
+
+def test_over_the_network_an_address_in_numbers_is_a_name_too() -> None:
+    """Of every address none can be listed; a name that is not this machine's own stays foreign."""
+    with serve_explorer(address="0.0.0.0") as page:
+        port = urlsplit(page.address).port
+        assert status(page.address, "/enter", Host=f"192.0.2.7:{port}")[0] == 401
+        assert status(page.address, "/enter", Host=f"[2001:db8::7]:{port}")[0] == 401
+        assert status(page.address, "/enter", Host=f"evil.example:{port}")[0] == 421
+
+
 def test_only_this_machine_is_answered() -> None:
     """By default it listens to 127.0.0.1."""
     with serve_explorer() as page:

@@ -1,5 +1,6 @@
 """Datagrams through real sockets and memory: whole, in order, lost and doubled as said; never waiting."""
 
+import os
 import socket
 import subprocess
 import sys
@@ -117,6 +118,38 @@ os._exit(9)
             SharedMemory(name, True)
         first.send(b"new")
         assert second.receive() == [b"new"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="there are no such modes")
+def test_memory_that_others_may_have_laid_there_is_not_used(tmp_path, monkeypatch):
+    """By either side: open to others, of two names, a link, a folder, of another user; it stays as it was."""
+    monkeypatch.setattr("zwidth.network.shared_memory._place", tmp_path.joinpath)
+
+    def left(name, mode=0o600):
+        (tmp_path / name).touch()
+        (tmp_path / name).chmod(mode)
+
+    for mode in (0o640, 0o604, 0o602):
+        left(f"{mode:o}", mode)
+    left("two")
+    os.link(tmp_path / "two", tmp_path / "names")
+    os.symlink(tmp_path / "nothing", tmp_path / "astray")
+    left("mine")
+    os.symlink(tmp_path / "mine", tmp_path / "link")
+    (tmp_path / "folder").mkdir()
+    os.mkfifo(tmp_path / "pipe", 0o600)
+    before = sorted((each.name, each.lstat().st_size) for each in tmp_path.iterdir())
+    for name in ("640", "604", "602", "two", "names", "astray", "link", "folder", "pipe"):
+        for first in (True, False):
+            with pytest.raises(InputError, match="shared memory"):
+                SharedMemory(name, first)
+    with monkeypatch.context() as patch:
+        patch.setattr("os.getuid", lambda: os.stat(tmp_path).st_uid + 1)
+        for first in (True, False):
+            with pytest.raises(InputError, match="belongs to another user"):
+                SharedMemory("mine", first)
+    assert sorted((each.name, each.lstat().st_size) for each in tmp_path.iterdir()) == before
+    SharedMemory("mine", True).close()
 
 
 def test_a_reader_a_ring_behind_loses_the_oldest():

@@ -217,6 +217,30 @@ def test_a_sweep_goes_on(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPa
         zw.sweep(PADDLE, WALL, vary={**GRID, "delay": "0:3 ms:5"}, path=path)
 
 
+@pytest.mark.parametrize("name", ["sweep.zarr", "sweep.parquet", "map.zarr"])
+def test_one_process_at_a_time_writes_a_file(tmp_path: Path, name: str) -> None:
+    """A second one is told so and harms nothing; the lock of one that is gone holds nobody up."""
+    path = tmp_path / name
+    (tmp_path / f".{name}.lock").touch()
+    refused: list[str] = []
+
+    def computed(progress: Callable[[int, int], None]) -> xr.Dataset:
+        if name == "map.zarr":
+            area = {"stiffness": (0, 300), "virtual_damping": (0, 1), "cells": (4, 4)}
+            return zw.z_width(PADDLE, **area, workers=1, path=path, progress=progress)
+        return zw.sweep(PADDLE, WALL, vary={"stiffness": "1, 2"}, workers=1, path=path, progress=progress)
+
+    def asked_again(done: int, total: int) -> None:
+        with pytest.raises(zw.InputError, match="is being written by another process") as told:
+            computed(lambda done, total: None)
+        refused.append(str(told.value))
+
+    found = computed(asked_again)
+    assert refused
+    assert [each.name for each in tmp_path.iterdir() if each.suffix != ".lock"] == [name]
+    xr.testing.assert_identical(computed(lambda done, total: None), found)
+
+
 def test_processes_compute_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two of them, chunks in whatever order."""
     monkeypatch.setattr(requests, "BY_CLOSED_FORMS", 6)

@@ -17,7 +17,7 @@ from zwidth.cli.options import (
     add_parameters,
     contact,
 )
-from zwidth.cli.output import print_json, say_written, targets, writing
+from zwidth.cli.output import print_json, say_written, targets
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
@@ -75,8 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
     verdict = decided(loop, contact(arguments))
     ranges = _ranges(loop, verdict)
     if save is not None:
-        with writing(save):
-            verdict.save(save, _reports(hands, active_hand=active, ranges=ranges))
+        verdict.save(save, _reports(hands, active_hand=active, ranges=ranges))
     if plot is not None:
         verdict.plot(plot)
     replayed = _replayed(verdict) if arguments.replay else None

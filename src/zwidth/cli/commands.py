@@ -248,7 +248,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "exit status: 0 the same forces, 1 others, 2 bad input\n\n"
             "examples:\n"
             "  zwidth replay session.mcap --plot session.png\n"
-            "  zwidth replay session.parquet -o session.nc",
+            "  zwidth replay session.mcap -o session.nc",
         ),
         "doctor": Command(
             "is this machine fit to run the loop?",

@@ -18,7 +18,7 @@ from zwidth.cli.options import (
     given,
     overrides,
 )
-from zwidth.cli.output import print_json, say_written, targets, writing
+from zwidth.cli.output import print_json, say_written, targets
 from zwidth.errors import InputError
 from zwidth.specification.table import quoted
 
@@ -87,8 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
     if save is not None:
         found.save(save, force=True)
     if plot is not None:
-        with writing(plot):
-            found.plot(plot, force=True)
+        found.plot(plot, force=True)
     if arguments.json:
         from zwidth.cli.diagnosis_report import command
 

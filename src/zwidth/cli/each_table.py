@@ -22,6 +22,7 @@ from zwidth.quantity.text import in_words, shown, unit_text
 from zwidth.quantity.units import parse_number
 from zwidth.showing import Part, Table
 from zwidth.specification.table import plain, quoted
+from zwidth.writing import csv_cell, csv_text
 
 LARGEST_FILE = 1 << 20
 """Bytes of a table of what was measured."""
@@ -85,21 +86,14 @@ class EachDevice(Documented):
 
     def csv(self) -> str:
         """The table, units in the heads, for a spreadsheet."""
-        out = StringIO()
-        rows = csv.writer(out, lineterminator="\n")
         _, unit = spoken(GLOSSARY["stiffness"].unit_for(self.motion))
         heads = ["device", "outcome", f"largest passive stiffness [{unit}]", "limit"]
-        rows.writerow([*heads, *([f"shook from [{unit}]", "times what is proved"] if self.measured else [])])
+        rows = [[*heads, *([f"shook from [{unit}]", "times what is proved"] if self.measured else [])]]
         for name in self.verdicts:
-            more = (
-                [_plain(self._told(self.measured.get(name))), _plain(self._times(name))]
-                if self.measured
-                else []
-            )
-            rows.writerow(
-                [*self._first(name), _plain(self._told(self.largest(name))), self._limit(name), *more]
-            )
-        return out.getvalue()
+            more = [self._told(self.measured.get(name)), self._times(name)] if self.measured else []
+            largest, *others = map(_plain, (self._told(self.largest(name)), *more))
+            rows.append([*self._first(name), largest, self._limit(name), *others])
+        return csv_text(rows)
 
     def _outcomes(self) -> str:
         counted = Counter(verdict.outcome for verdict in self.verdicts.values())
@@ -204,7 +198,7 @@ def read_measured(path: Path, motion: str) -> dict[str, float]:
             raise InputError(
                 f'{where}: a device and a stiffness, such as "kit-1, 240 N/m"; got {quoted(",".join(row))}'
             )
-        name, text = row[0].strip(), row[1].strip()
+        name, text = csv_cell(row[0]).strip(), row[1].strip()
         bare = not any(map(str.isalpha, text))
         try:
             value = float(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from zwidth.cli.decision import exit_status
 from zwidth.cli.options import Once, add_in_full
-from zwidth.cli.output import print_json, say_written, targets, writing
+from zwidth.cli.output import print_json, say_written, targets
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
 from zwidth.specification.read import question_time
@@ -132,8 +132,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.joint is not None:
         return _of_one(verdict, arguments, plot, save)
     if save is not None:
-        with writing(save):
-            verdict.save(save)
+        verdict.save(save)
     if arguments.json:
         print_json(verdict.to_json())
     else:
@@ -194,8 +193,7 @@ def _held(arguments: argparse.Namespace) -> int:
         share = {} if arguments.share is None else {"share": arguments.share}
         better = passive_gains(*asked, **share, stiffest=arguments.stiffest)
     if save is not None:
-        with writing(save):
-            (found if better is None else better).save(save)
+        (found if better is None else better).save(save)
     if arguments.json:
         print_json(to_json(found.to_dict()))
     else:
@@ -244,8 +242,7 @@ def _of_one(
 
     pair, notes = verdict.joint(arguments.joint).verdict, {"notes": list(verdict.notes)}
     if save is not None:
-        with writing(save):
-            save_json(save, {**pair.saved(), **notes})
+        save_json(save, {**pair.saved(), **notes})
     if plot is not None:
         pair.plot(plot)
     if arguments.json:

@@ -10,7 +10,7 @@ from zwidth.cli.column_options import SHEET, as_options, pairs_of
 from zwidth.cli.decision import decided, exit_status
 from zwidth.cli.identification_result import Result
 from zwidth.cli.options import BEHIND, Once, add_all, add_in_full, add_output, environment_parameters, given
-from zwidth.cli.output import print_json, say_written, targets, writing
+from zwidth.cli.output import print_json, say_written, targets
 from zwidth.errors import InputError
 from zwidth.specification.table import quoted
 
@@ -91,8 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
     if save is not None:
         found.identified.save(save, confidence, force=True, **found.others)
     if plot is not None:
-        with writing(plot):
-            found.identified.plot(plot, force=True)
+        found.identified.plot(plot, force=True)
     if arguments.json:
         print_json(_json(found))
     else:

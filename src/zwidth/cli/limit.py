@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import Once, add_in_full, add_law_option, add_output, add_parameters, overrides
-from zwidth.cli.output import print_json, say_written, targets, writing
+from zwidth.cli.output import print_json, say_written, targets
 from zwidth.device.catalogue import PROPERTIES
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
@@ -85,8 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
     warn_of_compiling_the_iteration()
     bracket = passive_limit(loop.device, loop.environment, parameter, **options)
     if save is not None:
-        with writing(save):
-            bracket.save(save)
+        bracket.save(save)
     if plot is not None:
         bracket.plot(plot)
     if arguments.json:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.hands_alone import NAMES, named_hands
 from zwidth.cli.options import Once, add_all, device_parameters, given
-from zwidth.cli.output import print_json, print_message, print_report, say_written, targets, writing
+from zwidth.cli.output import print_json, print_message, print_report, say_written, targets
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken_data
@@ -99,8 +99,7 @@ def run(arguments: argparse.Namespace) -> int:
     if plot is not None:
         from zwidth.plots import save_z_width  # matplotlib takes its time
 
-        with writing(plot):
-            save_z_width(found, plot, overwrite=True)
+        save_z_width(found, plot, overwrite=True)
     if proof is not None:
         _certify(device, found, options.get("velocity_filter"), proof)
     if arguments.json:
@@ -118,8 +117,7 @@ def _certify(device: Device, found: xr.Dataset, velocity: VelocityEstimator | No
     certificate = z_width_certificate(device, found, velocity_filter=velocity)
     if certificate is None:
         raise InputError("--certify: no wall of this map is passive, so there is nothing to certify")
-    with writing(path):
-        certificate.save(path)
+    certificate.save(path)
 
 
 def _device(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> Device:

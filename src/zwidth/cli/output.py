@@ -6,7 +6,7 @@ import codecs
 import json
 import os
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TextIO
@@ -15,6 +15,7 @@ from zwidth.cli.width import columns, fitted, wrapped
 from zwidth.errors import InputError
 from zwidth.showing import OBEYED, Part, printable
 from zwidth.specification.table import plain
+from zwidth.writing import check_target
 
 PICTURES = (".png", ".svg", ".pdf")
 
@@ -141,24 +142,26 @@ def check_new(path: Path, force: bool) -> None:
     Raises
     ------
     InputError
-        If it exists and `force` is False, is a directory, or lies in none.
+        See `check_target`.
     """
-    shown = plain(str(path), 100)
-    try:
-        if b"\0" in os.fsencode(path):
-            raise InputError(f"{shown} cannot be written: a name has no zero bytes")
-        if path.is_dir():
-            raise InputError(f"{shown} is a directory; name a file")
-        if path.exists() and not force:
-            raise InputError(f"{shown} exists; choose another name, or give --force to replace it")
-        if not path.parent.is_dir():
-            raise InputError(
-                f"{shown} cannot be written: there is no directory {plain(str(path.parent), 100)}"
-            )
-    except (OSError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{shown} cannot be written: {_reason(error)}") from None
+    check_target(path, force, "--force")
+
+
+def target(option: str, given: str | None, suffixes: Sequence[str], force: bool) -> Path | None:
+    """The file of an option, checked before anything is computed; None where none was asked for.
+
+    Raises
+    ------
+    InputError
+        If it ends in none of these, cannot be written, or would be lost.
+    """
+    if given is None:
+        return None
+    path = Path(given)
+    if path.suffix.lower() not in suffixes:
+        raise InputError(f"{option}: the file must end in {', '.join(suffixes)}, got {given!r}")
+    check_new(path, force)
+    return path
 
 
 def targets(
@@ -171,20 +174,18 @@ def targets(
     InputError
         If one cannot be written or would be lost, or both are the same.
     """
-    picture = None if plot is None else Path(plot)
+    picture = target("--plot", plot, PICTURES, force)
     document = None if save is None else Path(save)
-    if picture is not None and picture.suffix.lower() not in PICTURES:
-        raise InputError(f"--plot: the file must end in {', '.join(PICTURES)}, got {str(picture)!r}")
-    if picture is not None and picture == document:
+    if document is None:
+        return picture, None
+    if picture == document:
         raise InputError(f"--plot and {option} name the same file")
-    if document is not None and document.suffix.lower() in PICTURES:
+    if document.suffix.lower() in PICTURES:
         raise InputError(
             f"{option}: {document.name!r} is the name of a picture, and what is saved is none; "
             "for a picture give --plot"
         )
-    for path in (picture, document):
-        if path is not None:
-            check_new(path, force)
+    check_new(document, force)
     return picture, document
 
 
@@ -210,22 +211,12 @@ def give_out(
     if save is not None:
         found.save(save)
     if plot is not None:
-        with writing(plot):
-            found.plot(plot)
+        found.plot(plot)
     if as_json:
         print_json(found.to_json())
     else:
         print_report(found.report() if in_short is None else in_short)
         say_written(save, plot)
-
-
-@contextmanager
-def writing(path: Path) -> Iterator[None]:
-    """Say which file it was that could not be written."""
-    try:
-        yield
-    except OSError as error:
-        raise InputError(f"{plain(str(path), 100)} cannot be written: {_reason(error)}") from None
 
 
 def _reason(error: Exception) -> str:

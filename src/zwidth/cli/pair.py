@@ -7,7 +7,7 @@ import argparse
 from zwidth.cli.decision import exit_status
 from zwidth.cli.known_hands import hand_parameters, known_hands
 from zwidth.cli.options import add_all, add_in_full, add_output, coupling_parameters, given
-from zwidth.cli.output import print_json, say_written, targets, writing
+from zwidth.cli.output import print_json, say_written, targets
 from zwidth.specification.pairs import load_pair
 
 
@@ -41,8 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
     pair = load_pair(arguments.sources, given(arguments, [p.key for p in coupling_parameters()]))
     verdict = check(pair, **known_hands(arguments, pair.motion))
     if save is not None:
-        with writing(save):
-            verdict.save(save)
+        verdict.save(save)
     if plot is not None:
         verdict.plot(plot)
     if arguments.json:

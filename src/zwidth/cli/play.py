@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
-from zwidth.cli.output import check_new, print_text, say_written
-from zwidth.errors import InputError
+from zwidth.cli.output import print_text, say_written, target
 from zwidth.writing import writing_whole
 
 if TYPE_CHECKING:
@@ -54,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     """`zwidth play`: 0."""
     from zwidth.explorer.play import play_page
 
-    save = _target(arguments)
+    save = target("--save", arguments.save, SUFFIXES, arguments.force)
     loops = _loops(arguments)
     page = play_page(loops).encode()
     place = save or _temporary()
@@ -73,17 +72,6 @@ def _outcomes(loops: Sequence[Played]) -> str:
         return f"{loops[0].verdict.outcome.upper()}: {loops[0].name}"
     found = Counter(loop.verdict.outcome for loop in loops)
     return f"{len(loops)} loops to play: " + ", ".join(f"{count} {name}" for name, count in found.items())
-
-
-def _target(arguments: argparse.Namespace) -> Path | None:
-    """The file to write, checked before anything is computed."""
-    if arguments.save is None:
-        return None
-    path = Path(arguments.save)
-    if path.suffix.lower() not in SUFFIXES:
-        raise InputError(f"--save: the file must end in {' or '.join(SUFFIXES)}, got {arguments.save!r}")
-    check_new(path, arguments.force)
-    return path
 
 
 def _temporary() -> Path:

@@ -24,7 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "recording",
         metavar="RECORDING",
-        help="a .mcap file or .parquet folder of zwidth serve, whole or cut off",
+        help="a .mcap file of zwidth serve, whole or cut off",
     )
     add_output(
         parser, "what is in it", "position, force and lateness", "the columns with their units as NetCDF: .nc"

@@ -20,7 +20,7 @@ from zwidth.cli.options import (
     given,
     overrides,
 )
-from zwidth.cli.output import check_new, print_json, print_message, print_report, quiet_pipe, say_written
+from zwidth.cli.output import print_json, print_message, print_report, quiet_pipe, say_written
 from zwidth.cli.serve_tables import (
     CONNECTION,
     OPERATOR,
@@ -42,9 +42,12 @@ SERVED_TABLES = (*WITH_LAWS, OPERATOR, CONNECTION, SAFETY)
 OF_A_PAIR = (*PAIR_TABLES, "follower_connection", "follower_operator")
 """Tables of two arms, see `serve_pair`."""
 
-RECORDED = (".mcap", ".parquet")
-
 FACES = ("terminal", "browser", "foxglove")
+
+_READERS = (
+    "\nuntil this ends, any web page that is open in a browser here can read position, force and energy there"
+)
+"""Foxglove's SDK has no way to ask where a reader comes from."""
 
 FAULT = 5
 """Exit status where the force ended by itself."""
@@ -82,7 +85,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     output = parser.add_argument_group("output")
     output.add_argument("--json", action="store_true", help="print the report as JSON, units in the keys")
-    output.add_argument("-o", "--save", metavar="FILE", action=Once, help="record it: .mcap or .parquet")
+    output.add_argument("-o", "--save", metavar="FILE", action=Once, help="record it: .mcap")
     output.add_argument("--force", action="store_true", help="replace files that exist")
     add_all(parser.add_argument_group("how the device is reached"), connection_parameters())
     add_all(parser.add_argument_group("limits of what a hand is given"), safety_parameters())
@@ -203,7 +206,7 @@ def begin_watching(face: str, port: int | None, servo: Servo) -> Callable[[], An
     given = {} if port is None else {"port": port}
     page = (live.open_page if face == "browser" else live.serve_foxglove)(servo.rows, **given)
     with quiet_pipe(sys.stderr):
-        print(f"live at {page.address}", file=sys.stderr)
+        print(f"live at {page.address}{_READERS if face == 'foxglove' else ''}", file=sys.stderr)
     return page.close
 
 
@@ -261,9 +264,8 @@ def _hand(
 def _target(arguments: argparse.Namespace) -> Path | None:
     if arguments.save is None:
         return None
+    from zwidth.servo.recording.recorder import check_recording
+
     path = Path(arguments.save)
-    if path.suffix.lower() not in RECORDED:
-        raise InputError(f"--save: the file must end in {', '.join(RECORDED)}, got {arguments.save!r}")
-    if not path.is_dir():  # a recording in Parquet is a folder: the recorder looks at it
-        check_new(path, arguments.force)
+    check_recording(path, arguments.force)
     return path

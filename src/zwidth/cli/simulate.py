@@ -19,7 +19,7 @@ from zwidth.cli.options import (
     given,
     overrides,
 )
-from zwidth.cli.output import check_new, print_json, say_written, writing
+from zwidth.cli.output import PICTURES, print_json, say_written, target
 from zwidth.cli.simulate_pair import pair_measures, simulated_pair
 from zwidth.environment import Environment, NonlinearSpring
 from zwidth.errors import InputError
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from zwidth.device import Device
     from zwidth.operator import Operator
 
-PICTURES = (".png", ".svg", ".pdf")
 SAVED = (".nc", ".parquet", ".csv")
 SOUNDS = (".wav",)
 INTERRUPTED = 130
@@ -90,8 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
     if sound is not None:
         save_sound(trace, sound, force=True)
     if plot is not None:
-        with writing(plot):
-            trace.zwidth.plot(plot)
+        trace.zwidth.plot(plot)
     if arguments.json:
         print_json(json.dumps(summary(trace), indent=2, ensure_ascii=False))
     else:
@@ -213,13 +211,3 @@ def _targets(arguments: argparse.Namespace) -> tuple[Path | None, Path | None, P
     sound = target("--sound", arguments.sound, SOUNDS, arguments.force)
     save = target("--save", arguments.save, SAVED, arguments.force)
     return plot, sound, save
-
-
-def target(option: str, given: str | None, suffixes: tuple[str, ...], force: bool) -> Path | None:
-    if given is None:
-        return None
-    path = Path(given)
-    if path.suffix.lower() not in suffixes:
-        raise InputError(f"{option}: the file must end in {', '.join(suffixes)}, got {given!r}")
-    check_new(path, force)
-    return path

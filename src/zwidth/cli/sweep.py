@@ -17,12 +17,11 @@ from zwidth.cli.options import (
 )
 from zwidth.cli.output import (
     PICTURES,
-    check_new,
     print_json,
     print_message,
     print_report,
     say_written,
-    writing,
+    target,
 )
 from zwidth.errors import InputError
 from zwidth.specification.table import plain, quoted
@@ -101,7 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
     from zwidth.cli.sweep_loop import asked
     from zwidth.sweeps.run import sweep
 
-    plot = _picture(arguments)
+    plot = target("--plot", arguments.plot, PICTURES, arguments.force)
     of = arguments.of or "check"
     if of not in VERBS:
         raise InputError(f"--of is one of {', '.join(VERBS)}, got {quoted(of)}")
@@ -140,22 +139,10 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _picture(arguments: argparse.Namespace) -> Path | None:
-    """Where the plot goes, checked before anything is computed."""
-    if arguments.plot is None:
-        return None
-    path = Path(arguments.plot)
-    if path.suffix.lower() not in PICTURES:
-        raise InputError(f"--plot: the file must end in {', '.join(PICTURES)}, got {str(path)!r}")
-    check_new(path, arguments.force)
-    return path
-
-
 def _draw(found: xr.Dataset, plot: Path) -> None:
     from zwidth.plots import save_sweep  # matplotlib takes its time
 
-    with writing(plot):
-        save_sweep(found, plot, overwrite=True)
+    save_sweep(found, plot, overwrite=True)
 
 
 def _varied(typed: list[str] | None) -> dict[str, str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from zwidth.cli.column_options import as_options, pairs_of
 from zwidth.cli.decision import decided, exit_status
 from zwidth.cli.options import Once, add_all, add_in_full, add_output, device_parameters, given
-from zwidth.cli.output import print_json, say_written, targets, writing
+from zwidth.cli.output import print_json, say_written, targets
 from zwidth.errors import InputError
 from zwidth.specification.table import quoted, suggestion
 
@@ -92,8 +92,7 @@ def run(arguments: argparse.Namespace) -> int:
     if save is not None:
         _save(found, save, arguments.scaled)
     if plot is not None:
-        with writing(plot):
-            found.test.plot(plot)
+        found.test.plot(plot)
     if arguments.json:
         print_json(_json(found))
     else:
@@ -204,7 +203,7 @@ def _save(found: Result, path: Path, scaled: bool) -> None:
         )
     numbers = [f"#   {name}: {low_high} {unit}" for name, _, low_high, unit in found.test.parameters()[1:]]
     head = [f"# Tissue of a {found.test.test.kind} test, by zwidth tissue; 95 % intervals:", *numbers]
-    with writing(path), writing_whole(path) as file:
+    with writing_whole(path) as file:
         file.write(("\n".join(head) + "\n" + remark + written_environment(law)).encode())
 
 

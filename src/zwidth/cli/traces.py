@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import Once
-from zwidth.cli.output import print_json, say_written, writing
-from zwidth.cli.simulate import ANGLES, PICTURES, target
+from zwidth.cli.output import PICTURES, print_json, say_written, target
+from zwidth.cli.simulate import ANGLES
 from zwidth.errors import InputError
 from zwidth.quantity.spoken import note
 
@@ -32,8 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     comparison = compare_traces(dict(_labelled(arguments.files, load_trace)))
     if plot is not None:
-        with writing(plot):
-            comparison.plot(plot)
+        comparison.plot(plot)
     if arguments.json:
         print_json(json.dumps(comparison.to_dict(), indent=2, ensure_ascii=False))
     else:

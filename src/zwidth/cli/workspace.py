@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from zwidth.cli.options import Once, add_in_full, add_output
-from zwidth.cli.output import print_json, say_written, targets, writing
+from zwidth.cli.output import print_json, say_written, targets
 from zwidth.cli.workspace_arm import arm_of
 from zwidth.cli.workspace_joints import add_joint_options
 from zwidth.cli.workspace_null_space import NULL_OPTIONS, null_space_of, print_null_space, refuse_without
@@ -159,8 +159,7 @@ def _postures(arguments: argparse.Namespace, plot: Path | None, save: Path | Non
     better = None
     if save is not None and save.suffix.lower() in _GAINS:
         better = _borne(arguments, arm)
-        with writing(save):
-            better.save(save)
+        better.save(save)
     elif save is not None:
         _save(found, save)
     if plot is not None:
@@ -216,8 +215,7 @@ def _null_space(arguments: argparse.Namespace, plot: Path | None, save: Path | N
     found = null_space_of(arguments, float(parse_number(arguments.rate or _RATE, "Hz", "rate")))
     without = left_out(arguments, found.question.arm.turns)
     if save is not None:
-        with writing(save):
-            found.save(save)
+        found.save(save)
     if plot is not None:
         found.plot(plot)
     if arguments.json:
@@ -230,13 +228,12 @@ def _null_space(arguments: argparse.Namespace, plot: Path | None, save: Path | N
 
 def _save(space: Workspace | PostureMap, path: Path) -> None:
     """The verdict with its certificate, or the map."""
-    with writing(path):
-        if path.suffix.lower() == ".json":
-            space.save(path)
-        else:
-            from zwidth.traces.files import save_netcdf  # xarray takes its time
+    if path.suffix.lower() == ".json":
+        space.save(path)
+    else:
+        from zwidth.traces.files import save_netcdf  # xarray takes its time
 
-            save_netcdf(space.data, path)
+        save_netcdf(space.data, path)
 
 
 def _largest(text: str | None, option: str) -> list[float] | None:

@@ -30,7 +30,7 @@ from zwidth.quantity.parameter import (
     read_number,
 )
 from zwidth.quantity.text import in_words, shown
-from zwidth.showing import Html, Table
+from zwidth.showing import Html, Table, one_line
 
 Motion = Literal["linear", "rotary"]
 
@@ -192,7 +192,7 @@ class Device(Parametric):
         assumed = tuple(key for key in _ZERO_IF_UNKNOWN if given[key] is None)
         given.update(dict.fromkeys(assumed, 0))
         read = {key: _read(key, value, motion) for key, value in given.items()}
-        self._keep(**read, _assumed=assumed, motion=motion, name=str(name))
+        self._keep(**read, _assumed=assumed, motion=motion, name=one_line(str(name)))
         _check_stiction(self)
 
     @property

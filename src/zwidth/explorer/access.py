@@ -18,9 +18,13 @@ from bokeh.server.auth_provider import AuthProvider
 from tornado.web import RequestHandler
 
 from zwidth.errors import InputError
+from zwidth.servo.live.page import OWN
 
 SHORTEST = 16
 """Characters of a token."""
+
+ANY = ("0.0.0.0", "::")
+"""Addresses that stand for every one of this machine."""
 
 TOKEN = "token"
 _LOGIN = "/enter"
@@ -55,14 +59,14 @@ def token_for(address: str, given: str | None) -> str | None:
 
 
 def hosts(address: str) -> list[str]:
-    """The names under which pages of this server may speak to it."""
-    if is_loopback(address):
-        return sorted({address, "127.0.0.1", "localhost"})
-    names = {address, socket.gethostname(), socket.getfqdn(), "127.0.0.1", "localhost"}
-    if address in ("0.0.0.0", "::"):
+    """The names under which this server is asked, in small letters."""
+    names = {address, *OWN}
+    if not is_loopback(address):
+        names |= {socket.gethostname(), socket.getfqdn()}
+    if address in ANY:
         with suppress(OSError):
             names.update(socket.gethostbyname_ex(socket.gethostname())[2])
-    return sorted(names - {"0.0.0.0", "::"})
+    return sorted({name.lower() for name in names} - set(ANY))
 
 
 class TokenAccess(AuthProvider):  # type: ignore[misc]  # Bokeh's has no types

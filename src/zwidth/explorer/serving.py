@@ -25,14 +25,14 @@ from tornado.httpserver import HTTPServer
 from tornado.ioloop import IOLoop
 
 from zwidth.errors import InputError
-from zwidth.explorer.access import TOKEN, TokenAccess, hosts, token_for
+from zwidth.explorer.access import ANY, TOKEN, TokenAccess, hosts, token_for
 from zwidth.explorer.computing import compiled
 from zwidth.explorer.page import full_page, page_of
 from zwidth.explorer.session import Session
 from zwidth.explorer.starts import first
 from zwidth.explorer.state import State, from_query
 from zwidth.explorer.working import Workers
-from zwidth.servo.live.page import HOST, Page, checked_port
+from zwidth.servo.live.page import HOST, Page, checked_port, guarded, origins
 
 MOST_SESSIONS = 16
 """Pages that are open at once."""
@@ -88,6 +88,7 @@ class _Server:
                 "for a free one"
             ) from None
         self._state, self._hosts, self._token, self._most = state, hosts(address), token, most
+        self._any = address in ANY
         shown = "127.0.0.1" if address == "0.0.0.0" else f"[{address}]" if ":" in address else address
         secret = "" if token is None else f"?{TOKEN}={token}"
         self.address = f"http://{shown}:{self._port}/{secret}"
@@ -129,13 +130,14 @@ class _Server:
         access = NullAuth() if self._token is None else TokenAccess(self._token, f"zwidth_{self._port}")
         tornado = BokehTornado(
             build_applications({"/": self._make}, title="zwidth: explore a loop", location=False),
-            extra_websocket_origins=[f"{host}:{self._port}" for host in self._hosts],
+            extra_websocket_origins=origins(self._hosts, self._port),
             auth_provider=access,
             websocket_max_message_size_bytes=LARGEST_MESSAGE,
             check_unused_sessions_milliseconds=_UNUSED // 3,
             unused_session_lifetime_milliseconds=_UNUSED,
         )
-        http = HTTPServer(tornado, max_body_size=LARGEST_MESSAGE)
+        own = guarded(tornado, self._hosts, self._port, addresses=self._any)
+        http = HTTPServer(own, max_body_size=LARGEST_MESSAGE)
         return BaseServer(IOLoop.current(), tornado, http), http
 
     def _make(self) -> Template:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from math import floor
 from pathlib import Path
@@ -195,8 +196,7 @@ class Emitted(Result):
             If a file exists, and nothing is written then; or if one cannot be written.
         """
         folder = Path(directory)
-        if folder.exists() and not folder.is_dir():
-            raise InputError(f"{folder} is a file; name a directory")
+        check_folder(folder)
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -209,6 +209,12 @@ class Emitted(Result):
             with writing_whole(folder / name) as file:
                 file.write(text.encode())
         return [folder / name for name in sorted(named)]
+
+
+def check_folder(folder: Path) -> None:
+    """Refuse what is there and no directory; a link that leads nowhere is there."""
+    if os.path.lexists(folder) and not folder.is_dir():
+        raise InputError(f"{folder} exists and is no directory; name one")
 
 
 def emit(

@@ -12,6 +12,7 @@ itself lets one feel in free air: its inertia, damping and friction (Colgate & B
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -32,6 +33,7 @@ from zwidth.maps.scopes import scopes
 from zwidth.passivity.document import to_json
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.writing import alone
 
 Progress = Callable[[int, int], None]
 
@@ -110,7 +112,9 @@ def z_width(
             return on_threads(compute, ready, left, workers)
         return on_cluster(compute, ready, left, address)
 
-    layers = computed(asked.layout, finished, None if path is None else Path(path), progress)
+    store = None if path is None else Path(path)
+    with nullcontext() if store is None else alone(store):
+        layers = computed(asked.layout, finished, store, progress)
     return _dataset(asked, ready, layers, speed)
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import mmap
 import os
+import stat
 import tempfile
 from contextlib import suppress
 from pathlib import Path
@@ -44,7 +45,8 @@ class SharedMemory(Channel):
     Raises
     ------
     InputError
-        If the name holds anything else, the memory is in use already, or for the second side not there yet.
+        If the name holds anything else, the memory is in use already or not this user's alone, or for the
+        second side not there yet.
     """
 
     def __init__(self, name: str, first: bool) -> None:
@@ -109,9 +111,13 @@ def _place(name: str) -> Path:
 
 
 def _made(path: Path, name: str) -> int:
+    """New, or what one that was killed has left: that is not locked any more."""
     try:
-        file = os.open(path, _FLAGS | os.O_CREAT, _OURS)
-        if fcntl is not None:  # what one that was killed has left is not locked any more
+        try:
+            file = os.open(path, _FLAGS | os.O_CREAT | os.O_EXCL, _OURS)
+        except FileExistsError:
+            file = _ours(path, name)
+        if fcntl is not None:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         os.truncate(file, _SIZE)
     except OSError as error:
@@ -124,7 +130,7 @@ def _made(path: Path, name: str) -> int:
 
 def _found(path: Path, name: str) -> int:
     try:
-        file = os.open(path, _FLAGS)
+        file = _ours(path, name)
     except OSError as error:
         raise InputError(
             f"there is no shared memory {name!r} to be opened: {error.strerror}; "
@@ -133,4 +139,24 @@ def _found(path: Path, name: str) -> int:
     if os.fstat(file).st_size != _SIZE:
         os.close(file)
         raise InputError(f"the shared memory {name!r} is not ready; start the first side before this one")
+    return file
+
+
+def _ours(path: Path, name: str) -> int:
+    """A file that is there already, if it is this user's and nobody else reads or writes it."""
+    file = os.open(path, _FLAGS)
+    found = os.fstat(file)  # of what was opened, whatever lies there now
+    faults = {
+        "is no file": not stat.S_ISREG(found.st_mode),
+        "belongs to another user": hasattr(os, "getuid") and found.st_uid != os.getuid(),
+        "is open to other users": os.name == "posix" and found.st_mode & 0o077 != 0,
+        "has a second name": found.st_nlink > 1,
+    }
+    fault = next((said for said, so in faults.items() if so), None)
+    if fault is not None:
+        os.close(file)
+        raise InputError(
+            f"the shared memory {name!r} is not used: {path} {fault}, and what it holds would not be this "
+            "user's alone; take another name, or remove that file"
+        )
     return file

@@ -95,6 +95,8 @@ def _index(path: str | Path, header: list[str] | None, width: int, column: str |
     if isinstance(column, str):
         if header is None or column not in header:
             raise InputError(f"{path} has no column {column!r}{names or ', its columns have no names'}")
+        if header.count(column) > 1:
+            raise InputError(f"{path} has more than one column {column!r}; give its number, counted from 0")
         return header.index(column)
     if not 0 <= column < width:
         raise InputError(f"{path} has no column {column}: it has {width}, counted from 0")

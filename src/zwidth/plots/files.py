@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
@@ -14,7 +13,7 @@ from matplotlib.text import Text
 
 from zwidth.errors import InputError
 from zwidth.showing import OBEYED, printable
-from zwidth.writing import writing_whole
+from zwidth.writing import check_target, writing_whole
 
 ENDINGS = ("png", "svg", "pdf")
 
@@ -40,9 +39,8 @@ def save_figure(draw: Callable[[], Figure], path: str | Path, overwrite: bool = 
         raise InputError(
             f"a picture is written as .png, .svg or .pdf, got {target.name!r}; for example check.png"
         )
+    check_target(target, overwrite, "overwrite=True")
     picture = encoded(draw(), ending)
-    if os.path.lexists(target) and not overwrite:
-        raise InputError(f"{target} exists already and is not replaced; give another name or remove it first")
     with writing_whole(target) as file:
         file.write(picture)
 

@@ -24,6 +24,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.dimension import PI, Unit, compatible, kind_of, unit_of
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.spoken import note
+from zwidth.showing import one_line
 
 LONGEST_TEXT = 120
 """A value longer than this is a mistake, whatever it says."""
@@ -188,8 +189,7 @@ def _is(what: str, unit: str) -> str:
 
 
 def _short(text: str) -> str:
-    printable = "".join(c if c.isprintable() else "?" for c in text)
-    return printable if len(printable) <= 40 else printable[:37] + "..."
+    return one_line(text, 40)
 
 
 def _digits(value: object) -> int:

@@ -73,7 +73,7 @@ def save(
     """
     target = Path(path)
     check_ending(target)
-    check_target(target, overwrite)
+    check_target(target, overwrite, "overwrite=True")
     is_pdf = target.suffix.lower() == ".pdf"
     made = pdf(verdict, provenance) if is_pdf else html(verdict, provenance).encode()
     with writing_whole(target) as file:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
 from zwidth.device.device import Device
@@ -19,7 +20,7 @@ from zwidth.servo.connection import Connection, Placement
 from zwidth.servo.devices.simulated import Simulated
 from zwidth.servo.priority import RealTime
 from zwidth.servo.proving import Decide
-from zwidth.servo.recording.recorder import Recorder
+from zwidth.servo.recording.recorder import Recorder, check_recording
 from zwidth.servo.report import ServoReport
 from zwidth.servo.safety import Safety
 from zwidth.servo.session import Contact, Servo
@@ -71,7 +72,7 @@ def serve(
     anyway
         Also what is not proved passive.
     record
-        A file that ends in .mcap or .parquet, written while the loop runs.
+        A file that ends in .mcap, written while the loop runs.
     force
         Replace that file if it exists.
     watch
@@ -87,6 +88,8 @@ def serve(
         If the device cannot be reached or does not answer, the law is not proved passive, or the file
         cannot be written.
     """
+    if record is not None:
+        check_recording(Path(record), force)
     if connection is None:
         length = _SIMULATED_FOR if duration is None else duration
         held = usual_hand(device) if hand is None else hand

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from difflib import get_close_matches
 
 from zwidth.errors import InputError
+from zwidth.showing import one_line
 
 COMMAND_LINE = "command line"
 
@@ -75,8 +76,7 @@ class Table:
 
 def plain(text: str, longest: int = 60) -> str:
     """A text of the user as a message shows it: on one line, not too long."""
-    printable = "".join(c if c.isprintable() else "?" for c in text)
-    return printable if len(printable) <= longest else f"{printable[: longest - 3]}..."
+    return one_line(text, longest)
 
 
 def quoted(text: str) -> str:

@@ -21,6 +21,7 @@ from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.kind import Kind, name_of
 from zwidth.quantity.text import exact_text
 from zwidth.rendering import ESTIMATORS, LAWS
+from zwidth.showing import one_line
 from zwidth.specification.environments import TYPES, build_environment
 from zwidth.specification.laws import with_laws
 from zwidth.specification.read import WITH_LAWS, Specification, specified, tables_of
@@ -115,7 +116,7 @@ def toml(value: object) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     assert isinstance(value, str)
-    return json.dumps("".join(c if c.isprintable() else "?" for c in value), ensure_ascii=False)
+    return json.dumps(one_line(value), ensure_ascii=False)
 
 
 def device_table(device: Device) -> dict[str, object]:

@@ -21,7 +21,7 @@ import xarray as xr
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean
 from zwidth.quantity.glossary import unit_suffix
-from zwidth.reading import check_parquet
+from zwidth.reading import check_parquet, shown_only
 from zwidth.sweeps.columns import Column
 from zwidth.sweeps.request import FORMAT, Request
 from zwidth.writing import first_line, writing_whole
@@ -49,7 +49,7 @@ def load_sweep(path: str | PathLike[str]) -> xr.Dataset:
     if not source.exists():
         raise InputError(f"{source} cannot be read: there is no such file{did_you_mean(source)}")
     try:
-        found, _ = readers[source.suffix](source)
+        found = shown_only(readers[source.suffix](source)[0], source)
     except InputError:
         raise
     except Exception as error:  # what the libraries raise on foreign bytes is not documented

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ from zwidth.sweeps.files import PARQUET, ZARR, begun, save_table, saved_table
 from zwidth.sweeps.loops import Loop
 from zwidth.sweeps.request import Request, request
 from zwidth.traces.progress import progress_bar
+from zwidth.writing import alone
 
 SUFFIXES = (ZARR, PARQUET)
 
@@ -105,10 +107,9 @@ def sweep(
             return on_processes(compute, asked, left, workers)
         return on_cluster(compute, asked, left, address)
 
-    if progress is not None:
-        return _kept(asked, finished, file, progress)
-    with progress_bar("chunks") as bar:
-        return _kept(asked, finished, file, bar)
+    bar = progress_bar("chunks") if progress is None else nullcontext(progress)
+    with nullcontext() if file is None else alone(file), bar as told:
+        return _kept(asked, finished, file, told)
 
 
 def _kept(

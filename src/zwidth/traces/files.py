@@ -8,6 +8,7 @@ Parquet in the metadata of its schema, CSV in its first line after a `#`.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from io import BytesIO
 from numbers import Real
@@ -23,7 +24,7 @@ from zwidth.loop.pair.trace import ARMS, labelled
 from zwidth.loop.pair.trace import FORMAT as OF_A_PAIR
 from zwidth.loop.trace import FORMAT, UNITS, VARIABLES
 from zwidth.missing import did_you_mean
-from zwidth.reading import check_hdf5, check_parquet
+from zwidth.reading import check_hdf5, check_parquet, shown_only
 from zwidth.writing import check_target, first_line, writing_whole
 
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ def load_trace(path: str | PathLike[str]) -> xr.Dataset:
     if not source.is_file():
         raise InputError(f"{source} cannot be read: there is no such file{did_you_mean(source)}")
     try:
-        trace = read(source)
+        trace = shown_only(read(source), source)
     except InputError:
         raise
     except Exception as error:  # what the libraries raise on foreign bytes is not documented
@@ -220,10 +221,16 @@ def _read_parquet(path: Path) -> xr.Dataset:
     return _from_columns({name: table[name].to_numpy() for name in table.column_names}, attributes, path)
 
 
+_SEPARATED = re.compile("[,;](?=[=+@＝＋－＠-])")
+"""Within a text of JSON, whose own commas have a space behind them: a spreadsheet would see a formula."""
+
+
 def _write_csv(trace: xr.Dataset, file: IO[bytes]) -> None:
     columns = _columns(trace)
     columns["sampled"] = columns["sampled"].astype(np.int64)
-    file.write(f"# {json.dumps(trace.attrs, ensure_ascii=False)}\n".encode())
+    told = json.dumps(trace.attrs, ensure_ascii=False)
+    told = _SEPARATED.sub(lambda found: f"\\u{ord(found[0]):04x}", told)
+    file.write(f"# {told}\n".encode())
     file.write(f"{','.join(columns)}\n".encode())
     for row in zip(*(values.tolist() for values in columns.values()), strict=True):
         file.write(f"{','.join(map(repr, row))}\n".encode())  # repr: the shortest text with the same bits
@@ -237,6 +244,8 @@ def _read_csv(path: Path) -> xr.Dataset:
                 f"{path} holds no zwidth trace: its first line is not '# {{…}}' with the attributes"
             )
         attributes = json.loads(first[2:])
+        if len(set(header)) < len(header):
+            raise InputError(f"{path} holds no trace that can be read: a column is there twice")
         rows = np.loadtxt(file, delimiter=",", ndmin=2)
     if rows.shape[1] != len(header):
         raise InputError(f"{path} is not whole: {len(header)} names for {rows.shape[1]} columns")

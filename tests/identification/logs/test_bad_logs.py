@@ -13,6 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import zwidth as zw
+from zwidth.operator.column import read_column
 
 GOOD = "time_s,position_mm,force_N\n" + "".join(f"{k / 1000},{k % 37},{k % 11}\n" for k in range(2000))
 RANDOM = np.random.default_rng(1).bytes(20000)
@@ -30,6 +31,10 @@ RANDOM = np.random.default_rng(1).bytes(20000)
         (GOOD.replace("time_s", "when").encode(), 'known to be the time.*"when"'),
         (GOOD.replace("position_mm", "where_mm").encode(), 'known to be the position.*"where_mm"'),
         (GOOD.replace("force_N", "pos_mm").encode(), "may each be the position"),
+        (GOOD.replace("force_N", "position_mm").encode(), r'"position_mm", "position_mm \(2\)" may each be'),
+        (GOOD.replace("force_N", "time_s").encode(), r'"time_s", "time_s \(2\)" may each be the time'),
+        (b"\x89MCAP0\r\n" + RANDOM, "ends in the middle, after 20008 bytes: was it copied whole"),
+        (b"\x89MCAP", "ends in the middle"),
         (GOOD.replace("_mm", "").encode(), "has no unit"),
         (GOOD.replace("_mm", " [furlong]").encode(), "furlong"),
         (GOOD.replace("_mm", " [kg]").encode(), "not a length"),
@@ -45,7 +50,6 @@ RANDOM = np.random.default_rng(1).bytes(20000)
         (b"PAR1" + RANDOM, "cannot be read"),
         (b"\x89HDF\r\n\x1a\n" + RANDOM, "cannot be read"),
         (b"MATLAB 5.0 MAT-file" + RANDOM, "cannot be read"),
-        (b"\x89MCAP0\r\n" + RANDOM, "cannot be read"),
         (b"SQLite format 3\0" + RANDOM, "cannot be read"),
         (b"#ROSBAG V2.0\n" + RANDOM, "cannot be read"),
     ],
@@ -75,6 +79,18 @@ def outcome(path: Path) -> tuple[str, int]:
         return log.source, sum(b.time.size for b in log.blocks())
     except zw.InputError as error:
         return str(error), 0
+
+
+def test_a_column_that_is_there_twice_is_told_elsewhere_too(tmp_path: Path) -> None:
+    """In Parquet, and where one column of a text is asked for by its name."""
+    path, text = tmp_path / "log.parquet", tmp_path / "log.csv"
+    pq.write_table(pa.Table.from_arrays([pa.array([1.0, 2.0])] * 2, names=["position_m"] * 2), path)
+    with pytest.raises(zw.InputError, match='more than one column "position_m"'):
+        zw.read_log(path)
+    text.write_text("a,b,a\n1,2,3\n", encoding="utf-8")
+    with pytest.raises(zw.InputError, match="more than one column 'a'; give its number"):
+        read_column(text, "a")
+    assert read_column(text, 2) == [3.0]
 
 
 @pytest.mark.parametrize("keep", [0.2, 0.6, 0.95, 0.999])

@@ -6,7 +6,9 @@ import re
 import sys
 import time
 from collections.abc import Callable, Iterator
+from socket import create_connection
 from typing import Any
+from urllib.parse import urlsplit
 from urllib.request import urlopen
 
 import numpy as np
@@ -22,7 +24,7 @@ from zwidth.errors import InputError
 from zwidth.servo.live.browser import open_page
 from zwidth.servo.live.document import SPANS, Shown, make_document
 from zwidth.servo.live.envelope import Envelope
-from zwidth.servo.live.page import Page
+from zwidth.servo.live.page import HOST, Page
 from zwidth.servo.live.rows import CURVES, Watched
 from zwidth.servo.live.tally import Tally
 
@@ -243,6 +245,14 @@ def test_pages_of_others_are_refused(page: Page) -> None:
     address = page.address.replace("http", "ws") + "ws"
     with pytest.raises(InvalidStatus):
         connect(address, origin="http://elsewhere.example", subprotocols=protocols)
+    # a name that comes to mean this machine: of the same origin, and told by its Host alone
+    foreign = address.replace("127.0.0.1", "elsewhere.example")
+    for asked in (foreign, address.replace("ws://127.0.0.1", "ws://127.0.0.2")):
+        with (
+            create_connection((HOST, urlsplit(address).port)) as stream,
+            pytest.raises(InvalidStatus, match="421"),
+        ):
+            connect(asked, sock=stream, origin="http://" + urlsplit(asked).netloc, subprotocols=protocols)
     with connect(address, origin=page.address.rstrip("/"), subprotocols=protocols) as socket:
         assert "ACK" in socket.recv(timeout=60)
 

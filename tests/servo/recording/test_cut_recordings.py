@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -12,11 +11,10 @@ from written_rows import COLUMNS, drawn
 from zwidth import InputError
 from zwidth.identification.logs.served.contents import Head
 from zwidth.servo.recording.mcap import McapFile
-from zwidth.servo.recording.parquet import ParquetFolder
 from zwidth.servo.recording.recording import read_recording
 
 EACH = 50
-"""Rows of a chunk, and of a part."""
+"""Rows of a chunk."""
 
 HEAD = Head(columns=COLUMNS, motion="linear", period=1e-3, title="a wall", about={"laws": []})
 TABLE = drawn(20 * EACH)
@@ -24,7 +22,7 @@ TAKEN = np.arange(len(TABLE)) * 1_000_000
 
 
 def pieces() -> list[slice]:
-    """The rows of each chunk or part."""
+    """The rows of each chunk."""
     return [slice(k, k + EACH) for k in range(0, len(TABLE), EACH)]
 
 
@@ -39,16 +37,6 @@ def chunked(tmp_path: Path) -> tuple[Path, list[int]]:
         ends.append(file.size - index)
     file.close()
     return tmp_path / "run.mcap", ends
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    """A folder of parts, 0 without rows and then one for each piece."""
-    written = ParquetFolder(tmp_path / "run.parquet", HEAD)
-    for n, k in enumerate(pieces()):
-        written.write(TABLE[k], TAKEN[k], [], 2 * n * 10**9)
-    written.close()
-    return tmp_path / "run.parquet"
 
 
 def is_prefix(path: Path, rows: int) -> None:
@@ -126,79 +114,25 @@ def test_any_changed_byte_is_no_crash(chunked: tuple[Path, list[int]], tmp_path:
     assert 0 < refused < 200
 
 
-def test_a_whole_file_reads_to_its_end(chunked: tuple[Path, list[int]], folder: Path) -> None:
+def test_a_whole_file_reads_to_its_end(chunked: tuple[Path, list[int]]) -> None:
     """Otherwise the tests above would show little."""
-    for path in (chunked[0], folder):
-        assert read_recording(path).whole
-        assert read_recording(path).samples == len(TABLE)
-
-
-@pytest.mark.parametrize("share", [0.0, 0.3, 0.99])
-def test_a_part_that_is_cut_ends_what_is_read(folder: Path, share: float) -> None:
-    """As one that is missing does: what follows is not put where it does not belong."""
-    before = read_recording(folder)
-    broken = sorted(folder.iterdir())[8]
-    rows = EACH * (8 - 1) + EACH  # part 1 holds the first two pieces, each later one a piece more
-    assert before.whole
-    data = broken.read_bytes()
-    broken.write_bytes(data[: int(share * len(data))])
-    is_prefix(folder, rows)
-    broken.unlink()
-    is_prefix(folder, rows)
-
-
-def test_a_changed_byte_ends_what_is_read_of_a_folder(folder: Path) -> None:
-    """A part has a checksum of all that it holds; one that fails it is not believed."""
-    part = sorted(folder.iterdir())[6]
-    data = part.read_bytes()
-    random = np.random.default_rng(3)
-    for place in (len(data) // 4, data.index(b"a wall"), *random.integers(4, len(data), 60)):
-        changed = bytearray(data)
-        changed[place] ^= 1
-        part.write_bytes(changed)
-        found = read_recording(folder)
-        if not found.whole:
-            is_prefix(folder, EACH * 6)
-            continue
-        assert np.column_stack(list(found.columns.values())).tobytes() == TABLE.tobytes()
-
-
-def test_a_part_under_its_first_name_is_passed_over(folder: Path, tmp_path: Path) -> None:
-    """A process that was killed while it wrote a part leaves such a file; pandas passes it over too."""
-    import pandas as pd
-
-    (folder / f".zwidth-{'0' * 32}.part").write_bytes(b"PAR1 and no more")
-    assert read_recording(folder).whole
-    assert len(pd.read_parquet(folder)) == len(TABLE)
-
-
-def test_parts_of_two_recordings_are_not_joined(folder: Path, tmp_path: Path) -> None:
-    """A part with other columns, or with another number than its name says, ends what is read."""
-    parts = sorted(folder.iterdir())
-    shutil.copy(parts[5], parts[4])
-    is_prefix(folder, EACH * 4)
-    parts[0].write_bytes(parts[0].read_bytes()[:-1])
-    with pytest.raises(InputError, match="part-000000"):
-        read_recording(folder)
-    parts[0].unlink()
-    with pytest.raises(InputError, match="no recording"):
-        read_recording(folder)
+    assert read_recording(chunked[0]).whole
+    assert read_recording(chunked[0]).samples == len(TABLE)
 
 
 def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
-    """A text, an empty folder, nothing at all: each with one message."""
+    """A text, a folder, nothing at all: each with one message."""
     (tmp_path / "text.mcap").write_text("time,position\n0,1\n")
-    (tmp_path / "empty.parquet").mkdir()
-    for name in ("text.mcap", "empty.parquet", "nothing.mcap"):
+    (tmp_path / "folder.mcap").mkdir()
+    for name in ("text.mcap", "folder.mcap", "nothing.mcap"):
         with pytest.raises(InputError):
             read_recording(tmp_path / name)
 
 
 def test_a_recording_of_another_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Rather than read wrongly."""
-    for later in ("run.mcap", "run.parquet"):
-        with monkeypatch.context() as patch:
-            patch.setattr("zwidth.identification.logs.served.contents.FORMAT", "zwidth recording 2")
-            (McapFile if later == "run.mcap" else ParquetFolder)(tmp_path / later, HEAD).close()
-        with pytest.raises(InputError, match="zwidth recording 2"):
-            read_recording(tmp_path / later)
+    with monkeypatch.context() as patch:
+        patch.setattr("zwidth.identification.logs.served.contents.FORMAT", "zwidth recording 2")
+        McapFile(tmp_path / "run.mcap", HEAD).close()
+    with pytest.raises(InputError, match="zwidth recording 2"):
+        read_recording(tmp_path / "run.mcap")

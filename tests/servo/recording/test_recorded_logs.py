@@ -13,8 +13,6 @@ import zwidth as zw
 from zwidth.servo.recording.recorder import Recorder
 from zwidth.servo.recording.recording import read_recording
 
-SUFFIXES = pytest.mark.parametrize("suffix", [".mcap", ".parquet"])
-
 
 def moved(kept: int = 1 << 20) -> WrittenRows:
     """A device that its own actuator moves to and fro: nobody holds it."""
@@ -33,10 +31,9 @@ def written(rows: WrittenRows, path: Path) -> Path:
     return path
 
 
-@SUFFIXES
-def test_a_recording_is_identified(tmp_path: Path, suffix: str) -> None:
+def test_a_recording_is_identified(tmp_path: Path) -> None:
     """As from arrays, number for number; the signs are those that make the mass positive and right."""
-    path = written(moved(), tmp_path / f"run{suffix}")
+    path = written(moved(), tmp_path / "run.mcap")
     known = paddle()
     found = zw.identify(path)
     same = zw.identify(
@@ -48,10 +45,9 @@ def test_a_recording_is_identified(tmp_path: Path, suffix: str) -> None:
         assert found.estimates[name].value == pytest.approx(true, rel=0.05)
 
 
-@SUFFIXES
-def test_a_log_of_a_recording(tmp_path: Path, suffix: str) -> None:
+def test_a_log_of_a_recording(tmp_path: Path) -> None:
     """Time, position as read and force as given, of every sample; the step of the encoder is seen."""
-    log = zw.read_log(written(moved(), tmp_path / f"run{suffix}"))
+    log = zw.read_log(written(moved(), tmp_path / "run.mcap"))
     known = paddle()
     assert (log.motion, log.sample_period, log.channels) == ("linear", PERIOD, ("actuator_force",))
     assert log.resolution == pytest.approx(STEP, rel=1e-9)
@@ -97,7 +93,7 @@ def test_a_rotary_recording(tmp_path: Path) -> None:
     rows.motion = "rotary"
     rows.COLUMNS = tuple(name.replace("_N", "_N_m") if name.endswith("_N") else name for name in COLUMNS)
     rows.COLUMNS = tuple("position_rad" if name == "position_m" else name for name in rows.COLUMNS)
-    log = zw.read_log(written(rows, tmp_path / "run.parquet"))
+    log = zw.read_log(written(rows, tmp_path / "run.mcap"))
     assert log.motion == "rotary"
     assert log.channels == ("actuator_force",)
 

@@ -20,6 +20,7 @@ import numpy.typing as npt
 
 from zwidth.arms.kinematics.joint_damping import Damping, joint_damping
 from zwidth.errors import InputError
+from zwidth.showing import one_line
 
 Array = npt.NDArray[np.float64]
 
@@ -84,6 +85,7 @@ class Arm(ABC):
 
     def __post_init__(self) -> None:
         m = self.joint_count
+        object.__setattr__(self, "name", one_line(self.name))
         object.__setattr__(self, "damping", joint_damping(self.damping, m))
         for key in ("coulomb_friction", "resolution", "torque_limit"):
             object.__setattr__(self, key, _numbers(getattr(self, key), key, m))

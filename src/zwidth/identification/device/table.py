@@ -10,7 +10,7 @@ from zwidth.identification.device.limits import limits, percent
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import in_a_table, quantity_unit, told_quantity, unit_text
-from zwidth.showing import Lines, Part, Table
+from zwidth.showing import Lines, Part, Table, one_line
 
 if TYPE_CHECKING:
     from zwidth.identification.device.numbers import IdentifiedNumbers
@@ -104,8 +104,7 @@ def title(identified: IdentifiedNumbers) -> str:
 
 def source_name(identified: IdentifiedNumbers) -> str:
     """The log's name without its folders, on one line."""
-    name = Path(identified.source).name or identified.source
-    return "".join(c if c.isprintable() else "?" for c in name)
+    return one_line(Path(identified.source).name or identified.source)
 
 
 def report(identified: IdentifiedNumbers, confidence: float = 0.95) -> Iterable[Part]:

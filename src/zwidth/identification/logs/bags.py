@@ -33,9 +33,8 @@ def bag_table(path: Path) -> Table:
     """The numbers in a bag."""
     paths: dict[str, str] = {}
     units: dict[str, str | None] = {TIME: "ns"}
-    bag = _opened(path)
     check_bag(path)
-    with bag as reader:
+    with _opened(path) as reader:
         check_messages(path, reader)
         for connection in reader.connections:
             message = _first(reader, connection)

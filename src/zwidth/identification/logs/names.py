@@ -54,6 +54,8 @@ _VECTOR = re.compile(r"(force|torque|velocity|linear|angular|acceleration|orient
 """Components of what is no position, in a message."""
 
 _INDEX = re.compile(r"\[\d+\]$")
+_AGAIN = re.compile(r" \(\d+\)$")
+"""Behind a name that stands there more than once, see `layout`: it may be meant as the first one may."""
 
 
 def recognise(
@@ -82,6 +84,7 @@ def recognise(
 
 def name_and_unit(column: str, quantity: str) -> tuple[str, str | None]:
     """The word and the unit in a column's name: "position_mm" is "position" and "mm"."""
+    column = _AGAIN.sub("", column)
     bare = _INDEX.sub("", column.strip())
     bracketed = _BRACKETS.match(bare) if bare == column.strip() else None
     if bracketed is not None:

@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
+from zwidth.errors import InputError
 from zwidth.identification.logs.table import MOST_COLUMNS, PIECE, Table, Values
 from zwidth.reading import check_parquet
 
@@ -21,6 +22,9 @@ _EPISODES = {"episode_index", "frame_index"}
 def parquet_table(path: Path) -> Table:
     """The table in a Parquet file."""
     schema = pq.read_schema(path)
+    again = next((name for name in schema.names if schema.names.count(name) > 1), None)
+    if again is not None:
+        raise InputError(f'{path} has more than one column "{again}"; give each a name of its own')
     metadata = schema.metadata or {}
     units = {field.name: _unit(field) for field in schema if _is_number(field.type)}
     for field in schema:

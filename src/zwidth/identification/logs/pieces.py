@@ -20,6 +20,7 @@ from zwidth.reading import LARGEST_CHUNK, Bounded, check_chunk, check_expansion
 
 _CHUNK, _CHUNK_INDEX = 0x06, 0x08
 _MCAP = b"\x89MCAP"
+_MCAP_END = b"\x89MCAP0\r\n"
 _CODECS = ("lz4", "zstd", "bz2")
 _ROS1_START, _ROS1_CHUNK, _ROS1_INDEX = 13, b"\x05", b"\x06"
 _STEP = 2**20
@@ -69,6 +70,13 @@ def check_messages(path: Path, reader: Any) -> None:
 
 def _check_mcap(path: Path) -> None:
     with open(path, "rb") as file:
+        size = path.stat().st_size
+        file.seek(max(0, size - len(_MCAP_END)))
+        if file.read() != _MCAP_END:
+            raise InputError(
+                f"{path} ends in the middle, after {size} bytes: was it copied whole, its recorder ended? "
+                "mcap recover FILE -o WHOLE makes a whole file of what is there"
+            )
         declared = 0
         for piece in _pieces(file, path.stat().st_size):
             declared += piece.declared

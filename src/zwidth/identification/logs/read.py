@@ -36,7 +36,7 @@ def read_log(
     Parameters
     ----------
     path
-        The file, or the directory of a rosbag2 or of a recording.
+        The file, or the directory of a rosbag2.
     columns
         The column of each of time, position, hand_force and actuator_force, where its name is not recognised:
         {"position": "enc_left"}; None leaves one out: {"hand_force": None}.
@@ -148,16 +148,13 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
         If there is no such file or sheet, or it is none that is read.
     """
     if path.is_dir() and not (path / "metadata.yaml").is_file():
-        if (table := _recorded(path)) is not None:
-            return table
         if (path / "meta" / "info.json").is_file() and (episodes := sorted(path.glob("data/*/*.parquet"))):
             raise InputError(
                 f"{path} is a LeRobot dataset with {len(episodes)} file(s); name one of them, such as "
                 f"{episodes[0]}"
             )
         raise InputError(
-            f"{path} is a directory, and no rosbag2 or recording: there is no metadata.yaml and no "
-            "part-000000.parquet in it; name a file"
+            f"{path} is a directory, and no rosbag2: there is no metadata.yaml in it; name a file"
         )
     if not path.exists():
         raise InputError(f"{path} cannot be read: there is no such file{did_you_mean(path)}")
@@ -227,9 +224,10 @@ def _old_office(path: Path) -> str:
 
 def _recorded(path: Path) -> Table | None:
     """The table of a recording of a served loop; None if it is none."""
-    from zwidth.identification.logs.served.table import head_of, served_table
+    from zwidth.identification.logs.served.mcap import mcap_head
+    from zwidth.identification.logs.served.table import served_table
 
-    head = head_of(path)
+    head = mcap_head(path)
     return None if head is None else served_table(path, head)
 
 

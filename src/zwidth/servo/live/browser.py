@@ -17,7 +17,7 @@ from zwidth.errors import InputError
 from zwidth.servo.live.document import SPANS, Shown, make_document
 from zwidth.servo.live.envelope import Envelope
 from zwidth.servo.live.library import library
-from zwidth.servo.live.page import HOST, Page, checked_port
+from zwidth.servo.live.page import HOST, OWN, Page, checked_port, guarded, origins
 from zwidth.servo.live.reader import Reader
 from zwidth.servo.live.rows import CURVES, News, Rows
 from zwidth.servo.live.tally import Tally
@@ -119,9 +119,9 @@ class _Server:
         handler = library("bokeh.application.handlers", "Bokeh").FunctionHandler
         tornado = library("bokeh.server.tornado", "Bokeh").BokehTornado(
             {"/": application(handler(lambda doc: make_document(doc, self._shown)))},
-            extra_websocket_origins=[f"{host}:{self._port}" for host in (HOST, "localhost")],
+            extra_websocket_origins=origins(OWN, self._port),
         )
-        http = library("tornado.httpserver", "Tornado").HTTPServer(tornado)
+        http = library("tornado.httpserver", "Tornado").HTTPServer(guarded(tornado, OWN, self._port))
         loop = library("tornado.ioloop", "Tornado").IOLoop.current()
         return library("bokeh.server.server", "Bokeh").BaseServer(loop, tornado, http), http
 

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from types import TracebackType
+from collections.abc import Callable, Collection
+from ipaddress import ip_address
+from types import SimpleNamespace, TracebackType
+from typing import Any
 
 from zwidth.errors import InputError
+from zwidth.servo.live.library import library
 
 HOST = "127.0.0.1"
 """Nobody on another machine is answered."""
+
+OWN = (HOST, "localhost", "::1")
+"""What this machine calls itself."""
+
+_FOREIGN = b"This server does not answer to that name: open the address that zwidth printed.\n"
 
 
 class Page:
@@ -54,3 +62,52 @@ def checked_port(port: int) -> int:
             f"{port!r} is no port: give a whole number from 1 to 65535, or 0 for one that is free"
         )
     return port
+
+
+def origins(names: Collection[str], port: int) -> list[str]:
+    """As a browser writes them: ``name:port``, an address of IPv6 in brackets."""
+    return [f"[{name}]:{port}" if ":" in name else f"{name}:{port}" for name in names]
+
+
+def guarded(application: Any, names: Collection[str], port: int, *, addresses: bool = False) -> Any:
+    """What Tornado is to serve in the place of `application`: a request to a foreign host meets no handler.
+
+    A page of another site whose name comes to mean this machine is of the same origin for a browser, and for
+    Tornado; only its Host tells.  A WebSocket begins as such a request.
+
+    Parameters
+    ----------
+    names
+        Of this server.
+    port
+        Of this server; only port 80 may be left out of a Host.
+    addresses
+        Any address in numbers will do: it comes to mean nothing else.
+    """
+    routing, http = library("tornado.routing", "Tornado"), library("tornado.httputil", "Tornado")
+    own = {*origins(names, port), *(names if port == 80 else ())}
+
+    def match(request: Any) -> dict[str, Any] | None:
+        host = request.headers.get("Host", "").lower()
+        return {} if host in own or (addresses and _is_address(host, port)) else None
+
+    def refused(request: Any) -> None:
+        start = http.ResponseStartLine("HTTP/1.1", 421, "Misdirected Request")
+        told = {"Content-Type": "text/plain", "Content-Length": str(len(_FOREIGN))}
+        request.connection.write_headers(start, http.HTTPHeaders(told), _FOREIGN)
+        request.connection.finish()
+
+    rules = [
+        routing.Rule(SimpleNamespace(match=match), application),
+        routing.Rule(routing.AnyMatches(), refused),
+    ]
+    return routing.RuleRouter(rules)
+
+
+def _is_address(host: str, port: int) -> bool:
+    """True of an address in numbers with this port."""
+    name = host.removesuffix(f":{port}").removeprefix("[").removesuffix("]")
+    try:
+        return host in origins([str(ip_address(name))], port)
+    except ValueError:
+        return False

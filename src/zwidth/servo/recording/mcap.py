@@ -35,7 +35,7 @@ _OF_ROWS, _OF_EVENTS = 1, 2
 
 _CODEC = "zstd"
 
-_NEW = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_BINARY", 0)
+_NEW = os.O_WRONLY | os.O_CREAT | getattr(os, "O_BINARY", 0)
 
 _NUMBERED = np.dtype([("kind", "u1"), ("size", "<u8"), ("channel", "<u2"), ("number", "<u4")])
 _TIMED = np.dtype([("written", "<u8"), ("taken", "<u8"), ("cdr", "V4")])
@@ -64,9 +64,11 @@ class McapFile:
     Parameters
     ----------
     path
-        Made new; what was there is lost.
+        Made new.
     head
         What is known before the first row.
+    force
+        What is there is lost; else there must be nothing, nor a link.
 
     Raises
     ------
@@ -74,8 +76,8 @@ class McapFile:
         If the disk does not take it.
     """
 
-    def __init__(self, path: Path, head: Head) -> None:
-        self._file = os.open(path, _NEW, 0o666)
+    def __init__(self, path: Path, head: Head, force: bool = False) -> None:
+        self._file = os.open(path, _NEW | (os.O_TRUNC if force else os.O_EXCL), 0o666)
         self._head, self._at = head, 0
         self._rows = self._events = self._chunks = 0
         self._index = bytearray()

@@ -6,19 +6,18 @@ is lost, counted and said.  A disk that refuses ends the recording, not the loop
 
 from __future__ import annotations
 
-import re
-import shutil
 import threading
 import time
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.identification.logs.served.contents import ROWS_LOST, Head, as_json, from_json
+from zwidth.servo.recording.mcap import McapFile
 from zwidth.servo.recording.rows import LoopRows
 from zwidth.writing import check_target, first_line
 
@@ -30,24 +29,7 @@ if TYPE_CHECKING:
 EVERY = 0.2
 """[s] between two looks at the ring, so that what was done a second ago is in the file."""
 
-SUFFIXES = (".mcap", ".parquet")
-
-_OURS = re.compile(r"part-\d{6,}\.parquet|\.zwidth-[0-9a-f]{32}\.part")
-"""What a recording has in its folder."""
-
-
-class _File(Protocol):
-    """What is written to: bytes and rows in it so far, more rows with their times, an end."""
-
-    @property
-    def size(self) -> int: ...
-    @property
-    def rows(self) -> int: ...
-    def write(
-        self, rows: Array, taken: NDArray[np.int64], events: list[dict[str, Any]], now: int
-    ) -> None: ...
-    def close(self) -> None: ...
-    def abandon(self) -> None: ...
+SUFFIX = ".mcap"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +39,7 @@ class Recorded:
     Parameters
     ----------
     path
-        The file or folder.
+        The file.
     rows
         In the file.
     rows_lost
@@ -99,7 +81,7 @@ class Recorder:
     rows
         Of the loop; from its first row on.
     path
-        Ends in .mcap, a file, or in .parquet, a folder with a part for each second.
+        Ends in .mcap.
     force
         Replace what is there.
 
@@ -111,7 +93,11 @@ class Recorder:
 
     def __init__(self, rows: LoopRows, path: str | PathLike[str], *, force: bool = False) -> None:
         self._rows, self.path = rows, Path(path)
-        self._file = _opened(self.path, _head(rows), force)
+        check_recording(self.path, force)
+        try:
+            self._file = McapFile(self.path, _head(rows), force)
+        except OSError as error:
+            raise InputError(f"{path} cannot be written: {error.strerror or first_line(error)}") from None
         self._count = self._lost = self._told = 0
         self._sample: float | None = None
         self._origin: int | None = None
@@ -197,35 +183,11 @@ def _head(rows: LoopRows) -> Head:
     )
 
 
-def _opened(path: Path, head: Head, force: bool) -> _File:
-    """The file, begun: what cannot be written is known before the loop starts."""
-    from zwidth.servo.recording.mcap import McapFile
-    from zwidth.servo.recording.parquet import ParquetFolder
-
-    if path.suffix.lower() not in SUFFIXES:
-        raise InputError(f"a recording is a .mcap file or a .parquet folder, got {str(path)!r}: name one")
-    try:
-        if path.suffix.lower() == ".mcap":
-            check_target(path, force)
-            return McapFile(path, head)
-        _make_room(path, force)
-        return ParquetFolder(path, head)
-    except OSError as error:
-        raise InputError(f"{path} cannot be written: {error.strerror or first_line(error)}") from None
-
-
-def _make_room(path: Path, force: bool) -> None:
-    """A place for a folder; an old recording or a file there is removed, any other folder is not."""
-    if not path.is_dir() or path.is_symlink():
-        check_target(path, force)
-        path.unlink(missing_ok=True)
-        return
-    if not force:
-        raise InputError(f"{path} exists; choose another name, or give force=True to replace it")
-    others = [entry.name for entry in path.iterdir() if not _OURS.fullmatch(entry.name)]
-    if others:
+def check_recording(path: Path, force: bool) -> None:
+    """Refuse a place that is none for a recording, before anything is served."""
+    if path.suffix.lower() != SUFFIX:
         raise InputError(
-            f"{path} is a folder that holds {others[0]!r}, which no recording does; it is not replaced: "
-            "choose another name"
+            f"a recording is a file that ends in {SUFFIX}, got {str(path)!r}; of one zwidth replay "
+            "run.mcap -o run.nc makes a table, and in Python read_recording(path).dataset().to_dataframe()"
         )
-    shutil.rmtree(path)
+    check_target(path, force)

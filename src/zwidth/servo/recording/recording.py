@@ -14,10 +14,10 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.identification.logs import Log, read_log
 from zwidth.identification.logs.served.contents import FORMAT, name_and_unit, rows_lost
-from zwidth.identification.logs.served.table import head_of, parts_of
+from zwidth.identification.logs.served.mcap import mcap_head, mcap_parts
 from zwidth.missing import did_you_mean
 from zwidth.servo.ring import ENDED, SERVING
-from zwidth.showing import Lines, Part, Shown, Table
+from zwidth.showing import Lines, Part, Shown, Table, printable
 from zwidth.specification.read import Specification
 from zwidth.specification.write import parsed
 
@@ -143,8 +143,8 @@ class Recording(Shown):
             "sample_period_s": self.period,
             "whole": int(self.whole),
             "rows_lost": self.rows_lost,
-            "about": json.dumps(self.about, ensure_ascii=False),
-            "events": json.dumps(self.events, ensure_ascii=False),
+            "about": printable(json.dumps(self.about, ensure_ascii=False)),
+            "events": printable(json.dumps(self.events, ensure_ascii=False)),
         }
         return xr.Dataset(variables, coords={"time": time}, attrs=said)
 
@@ -239,7 +239,7 @@ def read_recording(path: str | PathLike[str]) -> Recording:
     Parameters
     ----------
     path
-        A .mcap file or a .parquet folder; it may have been cut off at any byte.
+        A .mcap file; it may have been cut off at any byte.
 
     Raises
     ------
@@ -249,16 +249,16 @@ def read_recording(path: str | PathLike[str]) -> Recording:
     source = Path(path)
     if not source.exists():
         raise InputError(f"{source} cannot be read: there is no such file{did_you_mean(source)}")
-    head = head_of(source)
+    head = None if source.is_dir() else mcap_head(source)
     if head is None:
         raise InputError(
             f"{source} is no recording of a served loop, or it was cut off before it says what it holds; "
-            "give the .mcap file or the .parquet folder that zwidth serve wrote"
+            "give the .mcap file that zwidth serve wrote"
         )
     pieces: list[Array] = [np.empty((0, len(head.columns)))]
     events: list[dict[str, Any]] = []
     whole = False
-    for part in parts_of(source, head):
+    for part in mcap_parts(source, head):
         pieces.append(part.rows)
         events += part.events
         whole = part.last

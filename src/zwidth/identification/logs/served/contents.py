@@ -12,6 +12,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.errors import InputError
+from zwidth.showing import one_line
 
 if TYPE_CHECKING:
     import numpy as np
@@ -117,6 +118,7 @@ def head_in(text: str | bytes, source: object) -> tuple[Head, dict[str, Any]]:
         said = from_json(text)
         form = said.pop("format")
         named = {key: said.pop(key) for key in ("motion", "period", "title", "about")}
+        named["title"] = one_line(str(named["title"]))
         head = Head(columns=tuple(map(str, said.pop("columns"))), **named)
     except (ValueError, KeyError, TypeError):
         raise InputError(f"{source} is no whole recording: what it says of itself cannot be read") from None
@@ -130,7 +132,8 @@ def _check(head: Head, source: object) -> None:
     """What is computed with must be what it should be: a file of others may say anything."""
     known = head.motion in COLUMNS
     good = isinstance(head.period, int | float) and 0 < head.period < 1e9 and isinstance(head.about, dict)
-    if not (known and good and len(set(head.columns)) == len(head.columns)):
+    names = all(name.isprintable() for name in head.columns) and len(set(head.columns)) == len(head.columns)
+    if not (known and good and names):
         raise InputError(f"{source} is no recording: its motion, period or columns are not those of a loop")
     wrong = [key for key in _NUMBERS if not isinstance(head.about.get(key, 0.0), int | float)]
     if wrong:

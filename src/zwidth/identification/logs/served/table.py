@@ -12,31 +12,12 @@ from typing import Any
 import numpy as np
 
 from zwidth.identification.logs.block import Finding
-from zwidth.identification.logs.served.contents import COLUMNS, Head, Part, rows_lost
-from zwidth.identification.logs.served.mcap import mcap_head, mcap_parts
-from zwidth.identification.logs.served.parquet import FIRST, parquet_head, parquet_parts
+from zwidth.identification.logs.served.contents import COLUMNS, Head, rows_lost
+from zwidth.identification.logs.served.mcap import mcap_parts
 from zwidth.identification.logs.table import PIECE, Table, Values
 
 GOOD = 0.0
 """The status of a sample that was read."""
-
-
-def head_of(path: Path) -> Head | None:
-    """What a recording says of itself; None if the file or folder is no recording.
-
-    Raises
-    ------
-    InputError
-        If it is one, and this cannot be read.
-    """
-    if path.is_dir():
-        return parquet_head(path) if (path / FIRST).is_file() else None
-    return mcap_head(path)
-
-
-def parts_of(path: Path, head: Head) -> Iterator[Part]:
-    """What was recorded, in order."""
-    return parquet_parts(path, head) if path.is_dir() else mcap_parts(path, head)
 
 
 def served_table(path: Path, head: Head) -> Table:
@@ -67,7 +48,7 @@ def _read(
     chosen = [head.columns.index(name) for name in names]
     waiting: list[Any] = []
     last, lost = False, 0
-    for part in parts_of(path, head):
+    for part in mcap_parts(path, head):
         waiting.append(_with_gaps(part.rows, head)[:, chosen])
         lost += rows_lost(part.events)
         last = part.last
