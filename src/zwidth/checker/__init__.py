@@ -14,9 +14,9 @@ from __future__ import annotations
 
 from .document.fields import Row
 from .document.file import Unreadable, read_file
-from .judge import Judged, Part, judge, judge_file
 from .one import STOPPED, Verified, verify
 from .scope import Scope
+from .verdict import Judged, Part, judge, judge_file
 from .whole import EVIDENCE
 from .words import answer, headline, not_checked, rows
 

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from .document.file import Unreadable
-from .judge import judge_file
+from .verdict import judge_file
 from .words import answer, headline, not_checked, rows
 
 

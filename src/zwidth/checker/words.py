@@ -1,4 +1,4 @@
-"""What was found of a document in words, made from what each proof covers and not from what it says of itself."""
+"""What was found of a document, in words made from what each proof covers, not from what it says."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from .document.fields import Row
 from .document.number import about
-from .judge import Judged, Part
 from .scope import ACTIVE, INDEX, KEPT, NO_INDEX, STABLE, UNSTABLE, Scope
+from .verdict import Judged, Part
 
 VALID, NOT_VALID = "VALID", "NOT VALID"
 

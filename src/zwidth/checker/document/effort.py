@@ -51,8 +51,8 @@ def spend(steps: float, bits: float = 0, by: float | None = None, each: float = 
         cost = count[0]
     if cost > MOST:
         raise Invalid(
-            f"the document is too large to be checked: more effort than {MOST / 1e6:g} s of an ordinary core, "
-            "all in it together; give its proofs and motions in files of their own, or in fewer digits or parts"
+            f"the document is too large to be checked: more effort than {MOST / 1e6:g} s of an ordinary "
+            "core for all in it; give its proofs and motions in files of their own, or with fewer digits"
         )
 
 
