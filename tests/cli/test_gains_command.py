@@ -96,7 +96,7 @@ def test_what_is_saved_is_verified(files, options, tmp_path, capsys):
     status = main([*argv, "-o", str(path)])
     assert f"written: {path}" in capsys.readouterr().out
     assert main(["verify", str(path)]) == 0
-    assert capsys.readouterr().out.count(" VALID ") == 2
+    assert capsys.readouterr().out.count(" VALID ") == 1 + 2
     document = json.loads(path.read_text(encoding="utf-8"))
     assert status == (document["outcome"] == "active")
     document["joints"][1]["outcome"] = "active" if status == 0 else "passive"
