@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from .corners import corners
-from .document.effort import one_document, spend
+from .document.effort import EACH, one_document, spend
 from .document.fields import Row, read_document
 from .document.refusal import Invalid
 from .kinds import KINDS, fields_of, kind_of
@@ -15,9 +15,6 @@ from .scope import Scope
 
 STOPPED = "the checker stopped at something that it does not foresee"
 """Nothing is accepted then; a document that brings it there shows a fault of the checker."""
-
-_EACH = 5000
-"""What a piece of evidence costs at least, whatever is in it, in steps of work."""
 
 
 class Verified(NamedTuple):
@@ -65,7 +62,7 @@ def verify(document: Mapping[str, Any]) -> Verified:
 
 
 def _verified(document: Mapping[str, Any]) -> Verified:
-    spend(_EACH)
+    spend(EACH)
     if not isinstance(document, Mapping):
         raise Invalid("a document must be an object with a kind")
     if document.get("kind") == "corners":

@@ -15,6 +15,8 @@ from .refusal import Invalid
 
 MOST = 6_000_000.0
 """Of one file [µs]."""
+EACH = 4000
+"""What a piece of evidence costs at least, whatever is in it, in steps of work."""
 MOST_ROOM = 320_000_000.0
 """At a time [bytes]."""
 

@@ -12,7 +12,7 @@ from .effort import spend
 
 LARGEST_FILE = 10_000_000
 """Bytes."""
-MOST_VALUES = 1_000_000
+MOST_VALUES = 500_000
 """Numbers, texts, lists and objects in it, counted by their commas and brackets."""
 DEEPEST = 20
 """Objects and lists within one another."""

@@ -13,7 +13,7 @@ from .effort import spend
 from .refusal import Invalid
 
 LONGEST_NUMBER = 20_000
-_READ = 120
+_READ = 60
 """What reading a number costs, and showing it, beside its digits, in steps of work."""
 LARGEST_EXPONENT = 5000
 MOST_BITS = 400_000
