@@ -1,4 +1,4 @@
-"""Whole documents: nothing stated without evidence that shows it, nothing passed over, one count of effort."""
+"""Whole documents: nothing stated that its evidence does not show, nothing passed over, effort counted once."""
 
 from __future__ import annotations
 
