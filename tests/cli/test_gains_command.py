@@ -129,11 +129,15 @@ def test_one_joint_has_the_report_of_its_pair(files, tmp_path, capsys):
 
 def test_a_document_without_proofs_is_no_evidence(tmp_path, capsys):
     """Nothing is said to be valid of nothing."""
-    for number, joints in enumerate(([], 3, [{"outcome": "undecided"}])):
-        path = tmp_path / f"{number}.json"
+    for joints, status, said in (
+        ([], 2, "no evidence"),
+        (3, 1, "joints must be a list"),
+        ([{"outcome": "undecided"}], 2, "no evidence"),
+    ):
+        path = tmp_path / "gains.json"
         path.write_text(json.dumps({"format": "zwidth gains 1", "joints": joints}), encoding="utf-8")
-        assert main(["verify", str(path)]) == 2
-        assert "no evidence" in capsys.readouterr().err
+        assert main(["verify", str(path)]) == status
+        assert said in "".join(capsys.readouterr())
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from contextvars import ContextVar
 
 from .refusal import Invalid
 
-MOST = 6_000_000.0
+MOST = 5_000_000.0
 """Of one file [µs]."""
 EACH = 4000
 """What a piece of evidence costs at least, whatever is in it, in steps of work."""
