@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from zwidth import checker
+from zwidth.checker.kinds import KINDS
 
 HOUSE = Path(checker.__file__).parent
-SHARED = ("__init__", "kinds", "scope")
+SHARED = ("__init__", "__main__", "kinds", "one", "scope", "verdict", "whole", "words")
 """Files that every kind goes through, besides those that they read documents with."""
 
 
@@ -20,7 +21,7 @@ def files_of(kind: str) -> list[Path]:
     used = {node.id for node in ast.walk(_entry(registry, kind)) if isinstance(node, ast.Name)}
     found: set[Path] = {HOUSE / f"{name}.py" for name in SHARED}
     waiting = [modules[name] for name in used if name in modules]
-    waiting += [HOUSE / "document" / "fields.py", HOUSE / "document" / "effort.py"]
+    waiting += [HOUSE / "document" / f"{name}.py" for name in ("fields", "effort", "file")]
     while waiting:
         file = waiting.pop()
         if file not in found:
@@ -61,7 +62,7 @@ def lines_in(file: Path) -> int:
 def rows() -> list[tuple[str, str, str, str]]:
     """Kind, files, lines and what they need besides Python, the shortest first."""
     found = []
-    for kind in checker.KINDS:
+    for kind in KINDS:
         files = files_of(kind)
         arrays = any(file.parent.name == "storage" for file in files)
         found.append((kind, len(files), sum(map(lines_in, files)), arrays))

@@ -13,6 +13,7 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
+from zwidth.checker.kinds import KINDS
 from zwidth.passivity.document import to_json
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -61,7 +62,7 @@ def test_every_kind_has_its_files(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(DOCS / "_ext"))
     trust = __import__("trust")
     monkeypatch.delitem(sys.modules, "trust")
-    for kind in checker.KINDS:
+    for kind in KINDS:
         files = trust.files_of(kind)
         assert any(file.parent.name == "storage" for file in files) is ("storage" in kind)
         assert sum(map(trust.lines_in, files)) < trust.total() / 2

@@ -48,7 +48,7 @@ def test_saved_and_verified(capsys: pytest.CaptureFixture[str], tmp_path: Path) 
     capsys.readouterr()
     assert main(["verify", str(file)]) == 0
     out = capsys.readouterr().out
-    assert out.count("VALID") == 3
+    assert out.count("VALID") == 1 + 3
     assert out.count("No hand of this activity") == 2
     assert "10 Hz" in out
     document = json.loads(file.read_text(encoding="utf-8"))

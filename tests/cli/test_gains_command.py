@@ -96,7 +96,7 @@ def test_what_is_saved_is_verified(files, options, tmp_path, capsys):
     status = main([*argv, "-o", str(path)])
     assert f"written: {path}" in capsys.readouterr().out
     assert main(["verify", str(path)]) == 0
-    assert capsys.readouterr().out.count(" VALID ") == 2
+    assert capsys.readouterr().out.count(" VALID ") == 1 + 2
     document = json.loads(path.read_text(encoding="utf-8"))
     assert status == (document["outcome"] == "active")
     document["joints"][1]["outcome"] = "active" if status == 0 else "passive"
@@ -129,11 +129,15 @@ def test_one_joint_has_the_report_of_its_pair(files, tmp_path, capsys):
 
 def test_a_document_without_proofs_is_no_evidence(tmp_path, capsys):
     """Nothing is said to be valid of nothing."""
-    for number, joints in enumerate(([], 3, [{"outcome": "undecided"}])):
-        path = tmp_path / f"{number}.json"
+    for joints, status, said in (
+        ([], 2, "no evidence"),
+        (3, 1, "joints must be a list"),
+        ([{"outcome": "undecided"}], 2, "no evidence"),
+    ):
+        path = tmp_path / "gains.json"
         path.write_text(json.dumps({"format": "zwidth gains 1", "joints": joints}), encoding="utf-8")
-        assert main(["verify", str(path)]) == 2
-        assert "no evidence" in capsys.readouterr().err
+        assert main(["verify", str(path)]) == status
+        assert said in "".join(capsys.readouterr())
 
 
 @pytest.mark.parametrize(

@@ -75,7 +75,7 @@ def test_what_is_saved_is_verified_on_both_sides(run: Run) -> None:
     assert run(*BOUNDED, "-o", "limit.json").status == 0
     result = run("verify", "limit.json")
     assert result.status == 0
-    assert result.out.count(" VALID ") == 2
+    assert result.out.count(" VALID ") == 1 + 2
     assert "No hand within these bounds" in words(result)
     assert "up to 23 counts inside and with any memory, for moves of up to 13.3928 counts" in words(result)
     assert "is passive, proved" not in words(result)

@@ -159,10 +159,11 @@ def test_saved_touches_beside_each_other(run: Run) -> None:
 
 
 def test_a_saved_proof_is_verified_in_the_same_width(run: Run) -> None:
-    """A part for each proof and motion, its answer first."""
+    """The answer first, and a part for each proof and motion with its own."""
     assert run("check", *PADDLE, "770", "-o", "proof.json")[-1] == "written: proof.json"
     lines = run("verify", "proof.json")
-    assert lines[0].startswith(" VALID  A hand can take any amount of energy out")
+    assert lines[0].startswith(" VALID  all 2 proofs and motions below")
+    assert lines[2].startswith(" VALID  A hand can take any amount of energy out")
     assert _fits(lines, 80), lines
 
 

@@ -12,8 +12,8 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
+from zwidth.checker import judge
 from zwidth.cli.main import main
-from zwidth.cli.verify import verifications
 from zwidth.passivity.document import to_json
 
 PADDLE = zw.Device(
@@ -144,7 +144,7 @@ def test_the_index_of_a_port_is_no_verdict(outcome: str) -> None:
     del taken["proof"]
     for evidence in (PORT, taken):
         assert checker.verify(evidence).valid, checker.verify(evidence).reason
-        (part,) = verifications({"outcome": outcome, "certificate": evidence})
+        (part,) = judge({"outcome": outcome, "certificate": evidence}).parts
         assert not part.verification.valid
         assert "is of a port" in part.verification.reason
 
@@ -225,14 +225,14 @@ def test_what_is_said_of_a_port_needs_evidence_at_that_level() -> None:
     port = {"format": "zwidth indices 1", "outcome": "passive"}
     saved = plain(zw.ports.passivity_indices(zw.PulseTransferFunction([4], [1]), PADDLE).to_dict())
     assert saved["outcome"] == "passive"
-    assert [part.verification.valid for part in verifications(saved)] == [True]
+    assert [part.verification.valid for part in judge(saved).parts] == [True]
     for document in (
         {**port, "certificate": PORT},
         {**saved, "outcome": "active"},
         {**saved, "certificate": {**saved["certificate"], "level": "-1"}},
         {**saved, "format": "zwidth verdict 1"},
     ):
-        assert [part.verification.valid for part in verifications(document)] == [False]
+        assert not judge(document).valid
 
 
 def test_a_document_about_a_wheel_is_told_in_degrees_too(

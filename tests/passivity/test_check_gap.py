@@ -11,7 +11,7 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.cli.verify import verifications
+from zwidth.checker import judge
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.decision import decide
 from zwidth.passivity.gap import has_gap
@@ -147,7 +147,7 @@ def test_the_json_names_the_game_and_a_saved_file_holds_its_proof(
     assert set(told["worst_hand"]) == {"format", "outcome", "claim", "scope", "assumptions"}
     verdict.save(tmp_path / "verdict.json")
     saved = json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))
-    parts = verifications(saved)
+    parts = judge(saved).parts
     assert all(part.verification.valid for part in parts)
     kinds = {"active": ["contact motion"], "undecided": ["slow hands"]}
     kinds["passive in contact"] = ["quantized", "slow hands"]

@@ -20,7 +20,6 @@ from strategies import seeds
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.passivity import certificate
 from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.passivity.document import to_json
 from zwidth.passivity.linear.loop import linear_loop
@@ -181,7 +180,7 @@ def test_honest_documents_are_accepted(name):
 @pytest.mark.skipif(not Path("/dev/zero").exists(), reason="there is no device without end")
 def test_what_says_nothing_of_its_size_is_not_read_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
     """A device has size 0 and gives bytes for ever."""
-    monkeypatch.setattr(certificate, "LARGEST_FILE", 1000)
+    monkeypatch.setattr("zwidth.checker.document.file.LARGEST_FILE", 1000)
     with pytest.raises(zw.InputError, match="larger than 1000 bytes"):
         read_document("/dev/zero")
 

@@ -9,7 +9,7 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.cli.verify import verifications
+from zwidth.checker import judge
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.formulas.nonlinear_spring import spring_need
 from zwidth.rendering import ForceBounding, PassivityController, SlewLimit
@@ -133,7 +133,7 @@ def test_a_spring_that_pulls_away_for_ever():
     assert verdict.violation.verify()
     assert "pulls away with 0.5 N" in verdict.claim
     assert verify_document(json.loads(verdict.to_json())).scope.shows == "active"
-    assert all(part.verification.valid for part in verifications(json.loads(verdict.to_json())))
+    assert all(part.verification.valid for part in judge(json.loads(verdict.to_json())).parts)
     held = zw.check(PADDLE.replace(coulomb_friction="0.5", resolution=0), away)
     assert held.outcome == "undecided"
     assert "no lowest value" in held.claim

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from .document.effort import EACH, spend
 from .document.fields import Read, read_document
 from .document.refusal import Invalid
 from .kinds import KINDS, Found, fields_of, kind_of
@@ -30,6 +31,7 @@ def corners(document: Mapping[str, Any]) -> tuple[Found, Scope | None, tuple[Rea
         raise Invalid(f"corners must be a list of 1 to {MOST_CORNERS} certificates")
     reasons, scopes, told, claimed = [], [], [], []
     for corner in listed:
+        spend(EACH)
         if not isinstance(corner, Mapping):
             raise Invalid("a corner must be a certificate")
         kind = kind_of(corner)

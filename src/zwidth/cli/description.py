@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from zwidth.cli.width import GLUE as GLUE
 from zwidth.device import Device
 from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
@@ -17,9 +18,6 @@ _OF_A_DEVICE = ("damping", "coulomb_friction", "resolution", "sample_period", "d
 """What a verdict depends on."""
 
 _SHORT = ("environment", "flag", "velocity filter", "word")
-
-GLUE = "\ue000"
-"""Stands for a blank at which no line may break; whoever prints it puts the blank back."""
 
 
 def device_line(device: Device) -> str:

@@ -14,9 +14,8 @@ from typing import NoReturn
 
 from zwidth.cli.commands import COMMANDS, configure, run
 from zwidth.cli.help import Help
-from zwidth.cli.options import joined
 from zwidth.cli.output import print_message, quiet_pipe, tolerate_encoding
-from zwidth.cli.typed import as_typed
+from zwidth.cli.typed import as_typed, joined
 from zwidth.cli.welcome import WELCOME
 from zwidth.errors import InputError
 from zwidth.quantity.spoken import answers_as_typed

@@ -7,14 +7,14 @@ as `--coulomb-friction`; nothing about a parameter is written twice.
 from __future__ import annotations
 
 import argparse
-import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
+from zwidth.cli.typed import Once as Once
+from zwidth.cli.typed import heed_angles as heed_angles
 from zwidth.device.rotary import ROTARY
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY, Quantity
-from zwidth.quantity.spoken import ANGLES, note
 from zwidth.rendering import LAWS
 from zwidth.specification import pairs
 from zwidth.specification.environments import TYPES, option_keys
@@ -31,8 +31,6 @@ _MEANINGS = {
 }
 """Keys of a device that are no quantities."""
 
-_NEGATIVE = re.compile(r"-\s*(\d|\.\d|inf|nan|∞)", re.IGNORECASE)
-
 
 class Parameter(NamedTuple):
     """One parameter as an option: its key, what stands for its value, its help."""
@@ -45,22 +43,6 @@ class Parameter(NamedTuple):
     def option(self) -> str:
         """The option's name, `--coulomb-friction`."""
         return "--" + self.key.replace("_", "-")
-
-
-class Once(argparse.Action):
-    """Stores a value, and refuses a second one: the first would be ignored."""
-
-    def __call__(
-        self,
-        parser: argparse.ArgumentParser,
-        namespace: argparse.Namespace,
-        values: Any,
-        option_string: str | None = None,
-    ) -> None:
-        """Store the value of one option."""
-        if getattr(namespace, self.dest, None) is not None:
-            raise InputError(f"{option_string} is given twice; which one is meant?")
-        setattr(namespace, self.dest, values)
 
 
 def device_parameters() -> Iterator[Parameter]:
@@ -117,20 +99,6 @@ def add_angles(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> Non
     )
 
 
-def heed_angles(arguments: argparse.Namespace) -> None:
-    """Answer in the angles that were asked for.
-
-    Raises
-    ------
-    InputError
-        If there are none of that name.
-    """
-    if arguments.angles is not None:
-        if arguments.angles not in ANGLES:
-            raise InputError(f"--angles is one of {', '.join(ANGLES)}, got {arguments.angles[:40]!r}")
-        note(arguments.angles)
-
-
 def add_parameters(parser: argparse.ArgumentParser) -> None:
     """Give a command every parameter of a device and of an environment."""
     device = parser.add_argument_group("device", "override what SOURCE says, or replace it")
@@ -185,18 +153,6 @@ def given(arguments: argparse.Namespace, keys: Iterable[str]) -> dict[str, str]:
     """Those of the keys that were given, with their values as typed."""
     values = vars(arguments)
     return {key: values[_dest(key)] for key in keys if values.get(_dest(key)) is not None}
-
-
-def joined(arguments: Sequence[str]) -> list[str]:
-    """`--option -0.1` as `--option=-0.1`: a value may begin with a minus."""
-    result: list[str] = []
-    for argument in arguments:
-        before = result[-1] if result else ""
-        if _NEGATIVE.match(argument) and before.startswith("--") and before != "--" and "=" not in before:
-            result[-1] = f"{before}={argument}"
-        else:
-            result.append(argument)
-    return result
 
 
 def add_all(group: Any, parameters: Iterable[Parameter]) -> None:

@@ -16,9 +16,8 @@ from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
 
-from zwidth.cli.description import GLUE
 from zwidth.cli.output import quiet_pipe, spelled
-from zwidth.cli.width import columns
+from zwidth.cli.width import GLUE, columns
 from zwidth.showing import printable
 
 Row = tuple[str, str | Text]

@@ -14,6 +14,9 @@ from zwidth.showing import Lines, Part, Table
 PIPED, WIDEST, NARROWEST = 80, 100, 20
 """Columns without a terminal; the most that read well; the fewest into which words are put."""
 
+GLUE = "\ue000"
+"""Stands for a blank at which no line may break; whoever prints it puts the blank back."""
+
 _BETWEEN = "  "
 _MARK = re.compile(r"\s*([·*✓✗-]|\d+\.) ")
 

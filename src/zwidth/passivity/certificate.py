@@ -6,15 +6,13 @@ part that is positive on [−1, 1], and what proves the environment stable.
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from zwidth.checker import Scope, Verified, verify
+from zwidth.checker import Scope, Unreadable, Verified, judge, read_file, verify
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean
 from zwidth.passivity.decision import Decision
@@ -25,11 +23,10 @@ from zwidth.passivity.linear.linear import LinearProof
 from zwidth.passivity.linear.one_norm import NormBound
 from zwidth.passivity.linear.positivity import Positivity
 from zwidth.passivity.linear.relaxing_contact import RelaxingLaw
-from zwidth.passivity.result import EVIDENCE, Evidence
+from zwidth.passivity.result import Evidence
 from zwidth.quantity.text import exact_text
 
 FORMAT = "zwidth certificate 1"
-LARGEST_FILE = 200_000_000
 
 
 @dataclass(frozen=True, repr=False)
@@ -190,42 +187,21 @@ def verify_document(document: object) -> Verified:
     InputError
         If it contains neither.
     """
-    results = [verify(part) for part in evidence(document)]
-    failed = next((r for r in results if not r.valid), None)
-    if failed is not None:
-        return failed
+    try:
+        found = judge(document)
+    except Unreadable as error:
+        raise InputError(str(error)) from None
+    results = [part.verification for part in found.parts]
+    wrong = [*found.faults, *(r.reason for r in results if not r.valid)]
+    if wrong:
+        refused = next((r for r in results if not r.valid), None)
+        return refused if refused and not found.faults else Verified(False, wrong[0])
+    if len(results) == 1:
+        return results[0]
     energy = next((r.energy for r in results if r.energy is not None), None)
-    scope = results[0].scope if len(results) == 1 else None  # of several, each has its own
-    rows = results[0].rows if len(results) == 1 else ()
-    reason = "; and ".join(r.reason for r in results)
-    return Verified(True, reason, energy, scope=scope, rows=rows)
-
-
-def evidence(document: object) -> list[Mapping[str, Any]]:
-    """The certificates, violations and witnesses in a document, which may be one itself.
-
-    Raises
-    ------
-    InputError
-        If it contains neither.
-    """
-    if not isinstance(document, Mapping):
-        raise InputError("expected a JSON object with a certificate, a violation or a witness")
-    if "kind" in document:
-        return [document]
-    inner = (h[k] for h in _holders(document) for k in EVIDENCE if k in h)
-    found = [part for part in inner if isinstance(part, Mapping) and "kind" in part]
-    if not found:
-        raise InputError(
-            f"no evidence found: the object has no key kind, {', '.join(EVIDENCE[:-1])} or {EVIDENCE[-1]}"
-        )
-    return found
-
-
-def _holders(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """The document and the reports inside it."""
-    inner = (document.get(key) for key in ("worst_hand", "active_hand", "contact_kept", "contact_broken"))
-    return [document, *(h for report in inner if isinstance(report, Mapping) for h in _holders(report))]
+    return Verified(
+        True, "; and ".join(r.reason for r in results), energy
+    )  # of several, each has its own scope
 
 
 def read_document(path: str | Path) -> object:
@@ -236,34 +212,8 @@ def read_document(path: str | Path) -> object:
     InputError
         If it cannot be read, is too large, is not JSON, or gives a key twice in one object.
     """
-    path = Path(path)
     try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)  # a device says nothing of its size
-        if len(content) > LARGEST_FILE:
-            raise InputError(f"larger than {LARGEST_FILE} bytes, and no certificate is")
-        return json.loads(
-            content.decode(), parse_float=Decimal, parse_int=_integer, object_pairs_hook=_once_each
-        )
-    except FileNotFoundError:
-        raise InputError(f"{path} cannot be read: there is no such file{did_you_mean(path)}") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from None
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path} is not JSON: {error}") from None
-
-
-def _once_each(pairs: list[tuple[str, object]]) -> dict[str, object]:
-    """An object whose keys are all different: of two with one name nobody could say which is meant."""
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        names = [name for name, _ in pairs]
-        twice = next(name for name in names if names.count(name) > 1)
-        raise InputError(f"{twice[:60]!r} is given twice in one object, and only one of them can be meant")
-    return found
-
-
-def _integer(text: str) -> object:
-    return int(text) if len(text) <= 4000 else Decimal(text)
+        return read_file(path)
+    except Unreadable as error:
+        missing = "" if Path(path).exists() else did_you_mean(Path(path))
+        raise InputError(f"{path}: {error}{missing}") from None

@@ -7,7 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from zwidth.checker import verify
+from zwidth.checker import EVIDENCE, verify
 from zwidth.errors import InputError
 from zwidth.passivity.document import save_json, to_json
 from zwidth.passivity.flat import to_dataset, to_series
@@ -15,9 +15,6 @@ from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.wording import lines
 from zwidth.showing import Headline, Lines, Part, Picture, Shown, Table
-
-EVIDENCE = ("certificate", "violation", "witness")
-"""Where a result, and a document, holds what the checker can check."""
 
 
 def evidence_of(result: object) -> dict[str, Any]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from zwidth.checker import Verified, verify
-from zwidth.passivity.result import EVIDENCE, Answer, Evidence
+from zwidth.checker import EVIDENCE, Verified, verify
+from zwidth.passivity.result import Answer, Evidence
 from zwidth.passivity.verdict import Verdict
 from zwidth.showing import Part
 

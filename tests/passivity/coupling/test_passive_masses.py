@@ -13,7 +13,7 @@ from stepped_body import forces
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.cli.verify import verifications
+from zwidth.checker import judge
 from zwidth.environment.integrators import Integrator
 
 T = Fraction(1, 1000)
@@ -238,11 +238,11 @@ def test_it_is_saved_and_verified():
         "passive",
         "active",
     ]
-    parts = verifications(document)
+    parts = judge(document).parts
     assert all(part.verification.valid for part in parts)
     assert len(parts) >= 5
     document["verdicts"][1]["outcome"] = "active"
-    assert not all(part.verification.valid for part in verifications(document))
+    assert not all(part.verification.valid for part in judge(document).parts)
 
 
 def test_it_says_its_masses():

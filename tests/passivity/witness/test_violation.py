@@ -15,10 +15,10 @@ from tampered import tampered
 
 import zwidth as zw
 from zwidth import checker
+from zwidth.checker import judge
 from zwidth.checker.loop.criterion import criterion
 from zwidth.checker.loop.loop import LOOP, loop_of
 from zwidth.checker.loop.violation import criterion_at
-from zwidth.cli.verify import verifications
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.check import check_by_closed_forms
 
@@ -261,7 +261,7 @@ def test_honest_violations_are_accepted(name):
     """What the prover wrote is accepted, by itself and in a saved verdict."""
     assert checker.verify(DOCUMENTS[name]).valid
     verdict = zw.check(*VIOLATIONS[name])
-    assert all(part.verification.valid for part in verifications(verdict.to_dict()))
+    assert all(part.verification.valid for part in judge(verdict.to_dict()).parts)
 
 
 TAMPERED = [
@@ -323,10 +323,10 @@ def test_a_violation_proves_no_passivity():
         {"outcome": "passive", "certificate": document},
         {"outcome": "passive", "certificate": {"kind": "corners", "corners": [document]}},
     ):
-        assert not any(part.verification.valid for part in verifications(claim))
+        assert not any(part.verification.valid for part in judge(claim).parts)
     assert not verify_document({"kind": "corners", "corners": [document]}).valid
     proof = zw.check(DEVICE, zw.Wall(100)).certificate.to_dict()
-    assert not any(p.verification.valid for p in verifications({"outcome": "active", "violation": proof}))
+    assert not any(p.verification.valid for p in judge({"outcome": "active", "violation": proof}).parts)
 
 
 def test_no_passive_loop_has_a_violation():

@@ -1,7 +1,8 @@
-"""What a check would cost, reckoned from sizes before the work is done: too much is refused.
+"""What a check would cost, reckoned before the work is done: one count for a file, and too much is refused.
 
-Costs are microseconds of an ordinary core, roughly: a product of whole numbers of p and q bits, p ≥ q, takes
-some (p/1000) (q/1000)^0.8 of them, a sum or a small number a tenth.  What is spent on one document adds up.
+Costs are microseconds of an ordinary core, roughly and rather too many: a product of whole numbers of p and q
+bits, p ≥ q, takes some (p/1000) (q/1000)^0.8 of them, a sum or a small number a tenth.  Reading, every piece
+of evidence, and every box, cell and corner in it add to one count; the same evidence again is checked once.
 """
 
 from __future__ import annotations
@@ -12,9 +13,11 @@ from contextvars import ContextVar
 
 from .refusal import Invalid
 
-MOST = 6_000_000.0
-"""Of one document [µs]."""
-MOST_ROOM = 900_000_000.0
+MOST = 5_000_000.0
+"""Of one file [µs]."""
+EACH = 4000
+"""What a piece of evidence costs at least, whatever is in it, in steps of work."""
+MOST_ROOM = 320_000_000.0
 """At a time [bytes]."""
 
 _spent: ContextVar[list[float] | None] = ContextVar("spent", default=None)
@@ -22,7 +25,10 @@ _spent: ContextVar[list[float] | None] = ContextVar("spent", default=None)
 
 @contextmanager
 def one_document() -> Iterator[None]:
-    """Begin to count anew."""
+    """Begin to count; what is inside another one goes on with its count."""
+    if _spent.get() is not None:
+        yield
+        return
     token = _spent.set([0.0])
     try:
         yield
@@ -30,15 +36,26 @@ def one_document() -> Iterator[None]:
         _spent.reset(token)
 
 
-def spend(steps: float, bits: float = 0, by: float | None = None) -> None:
-    """Before so many products of `bits` and `by` bits, the same if not given: too many are refused."""
-    cost = steps * (0.1 + bits / 1000 * ((bits if by is None else by) / 1000) ** 0.8)
-    spent = _spent.get()
-    if spent is not None:
-        spent[0] += cost
-        cost = spent[0]
+def spent() -> float:
+    """What was counted so far of the file that is being read."""
+    return (_spent.get() or [0.0])[0]
+
+
+def spend(steps: float, bits: float = 0, by: float | None = None, each: float = 0.1) -> None:
+    """Before so many products of `bits` and `by` bits, the same if not given: too many are refused.
+
+    `each` is what one costs where its numbers are small [µs].
+    """
+    cost = steps * (each + bits / 1000 * ((bits if by is None else by) / 1000) ** 0.8)
+    count = _spent.get()
+    if count is not None:
+        count[0] += cost
+        cost = count[0]
     if cost > MOST:
-        raise Invalid("the document is too large to be checked: too many numbers, or too many digits")
+        raise Invalid(
+            f"the document is too large to be checked: more effort than {MOST / 1e6:g} s of an ordinary "
+            "core for all in it; give its proofs and motions in files of their own, or with fewer digits"
+        )
 
 
 def reserve(room: float) -> None:

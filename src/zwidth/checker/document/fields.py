@@ -16,6 +16,7 @@ from operator import ge, gt, le, lt
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
+from .effort import spend
 from .number import LONGEST_NUMBER, PATTERN, about, number
 from .refusal import Invalid
 from .unit import NONE, Unit, in_words
@@ -345,6 +346,7 @@ class Record(Field):
     def read(self, value: Any, at: str, motion: str) -> Read:
         if not isinstance(value, Mapping):
             raise Invalid(f"{at or 'a document'} must be an object")
+        spend(100 + 20 * len(self.fields))
         place = f"{at}." if at else ""
         by_key = {field.key(name, motion): name for name, field in self.fields.items()}
         self._require_known(value, place, motion)

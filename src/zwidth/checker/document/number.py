@@ -13,6 +13,8 @@ from .effort import spend
 from .refusal import Invalid
 
 LONGEST_NUMBER = 20_000
+_READ = 60
+"""What reading a number costs, and showing it, beside its digits, in steps of work."""
 LARGEST_EXPONENT = 5000
 MOST_BITS = 400_000
 MOST_BITS_OF_A_LAW = 20_000
@@ -28,13 +30,14 @@ def number(value: Any) -> Fraction:
     if isinstance(value, bool) or not isinstance(value, (int, str, Decimal, float, Fraction)):
         raise Invalid(f"expected a number, got {type(value).__name__}")
     if isinstance(value, (int, Fraction)):
+        spend(_READ)
         return Fraction(value)
     text = repr(value) if isinstance(value, float) else str(value)
     if len(text) > LONGEST_NUMBER:
         raise Invalid("a number has too many digits")
     if not _NUMBER.fullmatch(text):
         raise Invalid(f"expected a number, got {text[:40]!r}")
-    spend(1, 3.4 * len(text))
+    spend(1, 3.4 * len(text), each=_READ / 10)
     return _fraction(text) if "/" in text else _decimal(text)
 
 

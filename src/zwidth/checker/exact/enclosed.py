@@ -11,7 +11,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
+from ..document.effort import spend
+
 Slopes = tuple[int, ...]
+
+_PRODUCT = 5.0
+"""What a product of two such numbers costs, with the sums that go with it, and again for each slope [µs]."""
 
 
 class Enclosed:
@@ -122,12 +127,13 @@ def apart(numbers: Sequence[Enclosed]) -> list[Enclosed]:
 
 def dot(a: Iterable[Enclosed], b: Iterable[Enclosed]) -> Enclosed:
     """Σ a_i b_i of numbers with one `bits`, rounded once; at least one of each."""
-    middle = rest = bits = 0
+    middle = rest = bits = terms = 0
     slopes: list[int] = []
     for x, y in zip(a, b, strict=True):
         bits = x.bits
         if x.is_zero or y.is_zero:
             continue
+        terms += 1
         middle += x.middle * y.middle
         own, strange = x.reach, y.reach
         rest += abs(x.middle) * y.radius + abs(y.middle) * x.radius + own * strange
@@ -135,7 +141,7 @@ def dot(a: Iterable[Enclosed], b: Iterable[Enclosed]) -> Enclosed:
             if part:
                 moved = [factor * s for s in part]
                 slopes = [s + t for s, t in zip(slopes, moved, strict=True)] if slopes else moved
-    return _rounded(bits, middle, slopes, rest, bits)
+    return _rounded(bits, middle, slopes, rest, bits, terms)
 
 
 def mapped(matrix: Iterable[Iterable[Enclosed]], vector: Sequence[Enclosed]) -> list[Enclosed]:
@@ -151,8 +157,9 @@ def _merged(a: Slopes, b: Slopes, sign: int) -> Slopes:
     return tuple(x + sign * y for x, y in zip(a, b, strict=True))
 
 
-def _rounded(bits: int, middle: int, slopes: Sequence[int], rest: int, down: int) -> Enclosed:
-    """Over 2^down: one unit of radius for every number that has lost something."""
+def _rounded(bits: int, middle: int, slopes: Sequence[int], rest: int, down: int, terms: int = 1) -> Enclosed:
+    """Over 2^down, after so many products: one unit of radius for every number that has lost something."""
+    spend((1 + terms) * (1 + len(slopes)), bits, each=_PRODUCT / 2)
     mask = (1 << down) - 1
     lost = sum([s & mask != 0 for s in (middle, *slopes)])
     return Enclosed(bits, middle >> down, tuple([s >> down for s in slopes]), -(-rest >> down) + lost)

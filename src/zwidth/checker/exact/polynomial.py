@@ -7,11 +7,14 @@ from fractions import Fraction
 from math import lcm
 from typing import Any, TypeVar
 
+from ..document.effort import spend
+
 Exact = TypeVar("Exact", int, Fraction)
 
 
 def multiply(a: Sequence[Exact], b: Sequence[Exact], zero: Any = 0) -> list[Exact]:
     """a b; the zero is that of other numbers."""
+    spend(len(a) * len(b), _longest(a), _longest(b), each=2)
     out: list[Any] = [zero] * (len(a) + len(b) - 1) if a and b else []
     for i, x in enumerate(a):
         if x:
@@ -34,10 +37,18 @@ def same(a: Sequence[Exact], b: Sequence[Exact]) -> bool:
 
 def value(ascending: Sequence[Fraction | int], x: Fraction) -> Fraction:
     """a(x), 0 of an empty one."""
+    each = _longest((x,))
+    spend(3 * len(ascending), len(ascending) * each + _longest(ascending), each, each=1.5)
     total = Fraction(0)
     for c in reversed(ascending):
         total = total * x + c
     return total
+
+
+def _longest(numbers: Sequence[Any]) -> int:
+    """Bits of the longest of them; 0 of others than these, which count for themselves."""
+    exact = (x for x in numbers if isinstance(x, (int, Fraction)))
+    return max((x.numerator.bit_length() + x.denominator.bit_length() for x in exact), default=0)
 
 
 def cleared(a: Sequence[Fraction]) -> list[int]:

@@ -19,6 +19,7 @@ from __future__ import annotations
 from fractions import Fraction
 from itertools import pairwise
 
+from ..document.effort import spend
 from ..document.fields import Read, Record, document, increasing, pairs
 from ..document.number import about
 from ..document.refusal import Invalid
@@ -41,6 +42,7 @@ def nonlinear_spring(told: Read) -> str:
         raise Invalid(f"the delay is more than {MOST_DELAY} samples")
     if points[0][1] > 0 or points[-1][1] < 0:
         raise Invalid("beyond its ends the spring pulls away for ever: its potential has no lowest value")
+    spend(len(points), each=40)
     slopes = [(f1 - f0) / (x1 - x0) for (x0, f0), (x1, f1) in pairwise(points)]
     largest, steepest = max(*slopes, Fraction(0)), max(map(abs, slopes))
     part = late % 1

@@ -16,6 +16,7 @@ from fractions import Fraction
 from math import lcm
 from typing import NamedTuple
 
+from ..document.effort import spend
 from ..document.fields import List, Number, Read, Record, Whole, document, numbers
 from ..document.number import common_scale, down
 from ..document.refusal import Invalid
@@ -66,6 +67,8 @@ def _require_nonnegative(p: Port, minors: Sequence[Read]) -> None:
     whole = _whole(p)
     if degree > MOST_POINTS or degree * p.axes**3 * p.order * (1 + whole.bits / 1000) > MOST_WORK:
         raise Invalid("the minors have too high a degree")
+    products = p.axes**4 + 4 * p.axes**3 + 4 * p.axes**2 * (p.order + 1)
+    spend((degree + 1) * products, whole.bits + 2 * p.order * degree.bit_length(), each=1)
     ratios: list[Fraction | None] = [None] * p.axes
     for step in range(degree + 1):
         c, weight, found = _minors_at(p, whole, Fraction(step + 1, degree // 2 + 2))

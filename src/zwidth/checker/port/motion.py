@@ -15,6 +15,7 @@ from fractions import Fraction
 from math import comb, lcm, pi
 from typing import Any
 
+from ..document.effort import spend
 from ..document.fields import Field, List, Number, OneOf, Read, Record, Whole, document, numbers
 from ..document.number import about, common_scale, up
 from ..document.refusal import Invalid
@@ -130,7 +131,9 @@ def _require_few_lines(p: Port, motion: Read) -> None:
     if motion.cycles <= motion.power or 2 * motion.power < p.order:
         raise Invalid("a burst must have more cycles than its power, and a power of half the order or more")
     lines = p.axes**2 * (2 * motion.power + 1) * (p.order + 1) ** 2
-    if lines * (16 + _bits((motion.cycles + motion.power) * _short(motion.step))) > MOST_LINES:
+    bits = _bits((motion.cycles + motion.power) * _short(motion.step))
+    spend(lines / (p.order + 1) * 6, bits * (p.order + 1), each=2)
+    if lines * (16 + bits) > MOST_LINES:
         raise Invalid("the burst has too many lines for so large a port")
 
 
@@ -189,6 +192,7 @@ def _require_few_terms(p: Port, motion: Read, length: int) -> None:
     if motion.lowest_power < p.order:
         raise Invalid("the polynomial must begin at rest")
     terms = motion.lowest_power + length
+    spend(4 * p.axes**2 * (p.order + 1) * terms, terms * _bits(_short(motion.duration)), each=2)
     if p.axes**2 * (p.order + 1) * terms**2 * _bits(_short(motion.duration)) > MOST_TERMS:
         raise Invalid("the polynomial has too many terms for so large a port")
 
@@ -221,6 +225,7 @@ def _sequence(p: Port, motion: Read) -> Fraction:
         raise Invalid("the sequence is too long")
     sides = (p.inputs, p.outputs)
     scale = lcm(*(c.denominator for side in sides for row in side for q in row for c in q))
+    spend(2 * length * (p.order + 2) * p.axes**2, large.bit_length(), scale.bit_length(), each=0.4)
     whole = [[int(x * large) for x in phi] for phi in latent]
     taken = spent = 0
     for rows in zip(*sides, strict=True):
