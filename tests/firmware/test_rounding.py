@@ -19,7 +19,7 @@ from zwidth.firmware.bound import plain
 from zwidth.firmware.evaluation import Exact, NoBound
 from zwidth.firmware.invariant import Rest, invariant
 from zwidth.firmware.law import law_program
-from zwidth.firmware.machine import Machine, machine
+from zwidth.firmware.machine import Machine, machine, rest_ends
 
 MOST = 3000
 DEVICES = {"bare": PADDLE, "stepped": STEPPED, "limited": LIMITED}
@@ -109,7 +109,7 @@ def test_every_number_stays_within_its_bound(name: str) -> None:
     """Every exact intermediate, and all that is remembered, lies in the range that the bound has for it."""
     law = law_program(PADDLE, laws()[name])
     exact, random = ExactProgram(law), np.random.default_rng(5)
-    ends = np.array([law.rest[0] + law.rest[1] * law.resolution * n for n in (-MOST, MOST)])
+    ends = rest_ends(law, (-MOST, MOST))
     given = {law.program.parameters[0]: plain(-MOST, MOST)}
     try:
         found = invariant(law.program, given, Rest(ends, (0.0,) * ends.shape[1]), Exact())

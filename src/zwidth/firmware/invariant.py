@@ -33,12 +33,12 @@ Places = list[tuple[float, float, float]]
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """What a program remembers at first: anything on a straight line between two ends.
+    """What a program remembers at first: anything on a straight line between some of its ends.
 
     Parameters
     ----------
     ends
-        2 × n.
+        m × n.
     error
         By how much the computed one is off, place by place.
     """

@@ -16,6 +16,7 @@ from typing import Literal
 
 import numpy as np
 
+from zwidth.compiled import Array
 from zwidth.errors import InputError
 from zwidth.firmware.binary import DOUBLE, FLOAT, Binary
 from zwidth.firmware.bound import Bound, plain
@@ -159,10 +160,8 @@ def _given(law: LawProgram, counts: tuple[float, float]) -> dict[Variable, Bound
 def _binary_errors(law: LawProgram, counts: tuple[float, float], arithmetic: Binary) -> list[float]:
     """How far what it remembers at first is off: at + slope (Δ n), of rounded numbers, is rounded thrice."""
     most = (law.resolution or 1.0) * max(map(abs, counts))
-    return [
-        8 * arithmetic.unit * (abs(float(at)) + abs(float(slope)) * most) + arithmetic.least
-        for at, slope in zip(*law.rest, strict=True)
-    ]
+    sizes = np.abs(law.rest[:, 0]) + np.abs(law.rest[:, 1]) * most
+    return [8 * arithmetic.unit * float(size) + arithmetic.least for size in sizes.max(axis=0)]
 
 
 def _bounded(
@@ -173,9 +172,15 @@ def _bounded(
     errors: Sequence[float],
 ) -> Invariant:
     """From rest anywhere."""
-    unit = law.resolution or 1.0
-    rest = Rest(np.array([law.rest[0] + law.rest[1] * unit * x for x in counts]), tuple(errors))
+    rest = Rest(rest_ends(law, counts), tuple(errors))
     return invariant(law.program, _given(law, counts), rest, arithmetic, converter)
+
+
+def rest_ends(law: LawProgram, counts: tuple[float, float]) -> Array:
+    """What it remembers at the ends of both lines: outside, and inside, with the surface between them."""
+    outside, inside = np.minimum(counts, 0.0), np.maximum(counts, 0.0)
+    sides = zip(law.rest, (outside, inside), strict=True)
+    return np.array([at + per * (law.resolution or 1.0) * x for (at, per), ends in sides for x in ends])
 
 
 # ---- fixed point
@@ -189,7 +194,7 @@ def _fixed(
     enough: float | None,
 ) -> Machine:
     """The finest unit of force with which nothing leaves its word; a wider word where that is too coarse."""
-    exact = _bounded(law, counts, Exact(), converter, [0.0] * law.rest.shape[1])
+    exact = _bounded(law, counts, Exact(), converter, [0.0] * law.remembers)
     sizes = exact.values
     cells = [max(-low, high) for low, high, _ in exact.memory]
     best: Machine | None = None
@@ -226,7 +231,10 @@ def _proved(
 ) -> Machine:
     """The bound of the error, and that no number is larger than it was written for."""
     most = max(map(abs, counts))
-    errors = [fixed_rest_error(law, fixed, k, most) for k in range(law.rest.shape[1])]
+    errors = [
+        max(fixed_rest_error(law, fixed, k, inside, most) for inside in (False, True))
+        for k in range(law.remembers)
+    ]
     found = _bounded(law, counts, fixed, converter, errors)
     for variable, size in fixed.most.items():
         if variable in found.values and found.values[variable].computed_size > size:
@@ -234,24 +242,23 @@ def _proved(
     return _machine(law, "fixed", counts, found, fixed)
 
 
-def rest_numbers(law: LawProgram, fixed: Fixed, place: int) -> tuple[int, int, int]:
+def rest_numbers(law: LawProgram, fixed: Fixed, place: int, inside: bool) -> tuple[int, int, int]:
     """(a, m, k) of what is remembered at rest at n counts, a + (m n >> k)."""
-    unit = cell_unit(fixed, place)
-    size = fixed.units.scale.size(unit)
-    at, slope = float(law.rest[0, place]), float(law.rest[1, place]) * law.resolution
-    ratio = slope / size
+    size = fixed.units.scale.size(cell_unit(fixed, place))
+    at, slope = law.line(place, inside)
+    ratio = slope * law.resolution / size
     if ratio == 0.0 or abs(ratio - round(ratio)) <= 1e-12 * abs(ratio) or abs(ratio) >= 4096:
         return round(at / size), round(ratio), 0
     return round(at / size), round(ratio * 2**16), 16
 
 
-def fixed_rest_error(law: LawProgram, fixed: Fixed, place: int, most: float) -> float:
+def fixed_rest_error(law: LawProgram, fixed: Fixed, place: int, inside: bool, most: float) -> float:
     """How far that is off."""
     size = fixed.units.scale.size(cell_unit(fixed, place))
-    a, m, k = rest_numbers(law, fixed, place)
-    slope = float(law.rest[1, place]) * law.resolution
-    own = abs(float(law.rest[0, place]) - a * size)
-    return own + abs(slope - m * 2.0**-k * size) * most + (size if k else 0.0)
+    a, m, k = rest_numbers(law, fixed, place, inside)
+    at, slope = law.line(place, inside)
+    own = abs(at - a * size) + abs(slope * law.resolution - m * 2.0**-k * size) * most
+    return own + (size if k else 0.0)
 
 
 def cell_unit(fixed: Fixed, place: int) -> Unit:

@@ -75,7 +75,7 @@ def shared(capacity: int, remembered: int, ring: Array, counts: int) -> Shared:
     return Shared(
         laws=np.zeros((2, capacity)),
         memories=np.zeros((2, remembered)),
-        rests=np.zeros((2, 2, remembered)),
+        rests=np.zeros((2, 2, 2, remembered)),
         control=control,
         numbers=np.zeros(NUMBERS),
         counts=np.zeros(counts),
