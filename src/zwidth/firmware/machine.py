@@ -36,6 +36,8 @@ _ANY = 2**31 - 1
 """Counts to each side that 32 bits hold."""
 _WIDE = 2.0**-10
 """Of the force: an error beyond this is worth a wider word."""
+_TRIES = 4
+"""Times that a program is written anew, for numbers as large as their errors make them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,25 +195,23 @@ def _fixed(
     force_unit: float | None,
     enough: float | None,
 ) -> Machine:
-    """The finest unit of force with which nothing leaves its word; a wider word where that is too coarse."""
+    """The finest unit of force with which nothing leaves its word; where that is off by more than is enough,
+    a coarser one, whose factors are kept with more digits, or a wider word: whichever is off by least.
+    """
     exact = _bounded(law, counts, Exact(), converter, [0.0] * law.remembers)
-    sizes = exact.values
-    cells = [max(-low, high) for low, high, _ in exact.memory]
     best: Machine | None = None
     for word in (32, 64):
         for fraction in _FRACTIONS[word]:
             scale = Scale(law.resolution, _unit(law, exact, force_unit), fraction, word)
             try:
-                found = lowered(law.program, scale, sizes, cells)
-                made = _proved(law, counts, converter, found)
+                made = _proved(law, counts, converter, scale, exact)
             except TooLarge:
                 continue
             if best is None or (made.error or 0.0) < (best.error or 0.0):
                 best = made
             wanted = _WIDE * (made.largest_force or 0.0) if enough is None else enough
-            if word == 64 or (made.rounding or 0.0) <= wanted:
+            if (made.rounding or 0.0) <= wanted:
                 return best
-            break
     if best is None:
         raise NoBound("its numbers leave 64 bits")
     return best
@@ -227,19 +227,22 @@ def _unit(law: LawProgram, exact: Invariant, force_unit: float | None) -> float:
 
 
 def _proved(
-    law: LawProgram, counts: tuple[float, float], converter: Operation | None, fixed: Fixed
+    law: LawProgram, counts: tuple[float, float], converter: Operation | None, scale: Scale, found: Invariant
 ) -> Machine:
-    """The bound of the error, and that no number is larger than it was written for."""
+    """The bound of the error, and that no number is larger than it was written for, with its error."""
     most = max(map(abs, counts))
-    errors = [
-        max(fixed_rest_error(law, fixed, k, inside, most) for inside in (False, True))
-        for k in range(law.remembers)
-    ]
-    found = _bounded(law, counts, fixed, converter, errors)
-    for variable, size in fixed.most.items():
-        if variable in found.values and found.values[variable].computed_size > size:
-            raise TooLarge
-    return _machine(law, "fixed", counts, found, fixed)
+    for _ in range(_TRIES):
+        cells = [max(-low, high) + error for low, high, error in found.memory]
+        fixed = lowered(law.program, scale, found.values, cells)
+        errors = [
+            max(fixed_rest_error(law, fixed, k, inside, most) for inside in (False, True))
+            for k in range(law.remembers)
+        ]
+        found = _bounded(law, counts, fixed, converter, errors)
+        sizes = ((found.values[v].computed_size, size) for v, size in fixed.most.items() if v in found.values)
+        if all(found_size <= size for found_size, size in sizes):
+            return _machine(law, "fixed", counts, found, fixed)
+    raise TooLarge
 
 
 def rest_numbers(law: LawProgram, fixed: Fixed, place: int, inside: bool) -> tuple[int, int, int]:
