@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from firmware.adversary import text
 from firmware.emitted_laws import Law, laws
 from firmware.emulated.host import HostLaw
 from firmware.emulated.required import require
@@ -14,6 +15,8 @@ from firmware.random_laws import laws as bounded
 from strategies import seeds
 
 import zwidth as zw
+from zwidth.firmware.law import law_program
+from zwidth.firmware.machine import machine
 from zwidth.loop.law import sampled_force
 from zwidth.loop.setup import Setup, prepare, resting_memory
 from zwidth.operator import PrescribedMotion
@@ -34,7 +37,7 @@ def test_a_solid_that_relaxes_pushes_as_its_spring(tmp_path: Path) -> None:
     solid, still = zw.StandardLinearSolid(100, 200, "0.5"), PrescribedMotion([0.02001] * 9)
     assert zw.simulate(device, solid, still, "0.008")["commanded_force"].values == pytest.approx(2, rel=1e-12)
     require("host")
-    law = HostLaw(zw.emit(device, solid, anyway=True).text, tmp_path)
+    law = HostLaw(text(machine(law_program(device, solid), "double", (-5000, 5000))), tmp_path)
     law.init(1000)
     assert law.run([1000] * 9) == pytest.approx(2, rel=1e-12)
 
@@ -78,7 +81,7 @@ def motion(random: np.random.Generator, samples: int) -> np.ndarray:
 
 
 def gained(law: zw.Environment, random: np.random.Generator) -> tuple[float, float, int]:
-    """The most that the hand has beyond what the claim counts [J], all it moved [J], and the number of resets.
+    """The most that the hand has beyond what the claim counts [J], all it moved [J], the number of resets.
 
     A reset before a reading, at rest at that one, counts nothing.  One at rest at the reading before counts
     the way since then, times what the force differs by from the one at rest there: that force is still given.

@@ -5,8 +5,8 @@
 
 The s_i are what is remembered, off by e_i, and what is no sum of other numbers: a reading, a product of two
 of them.  The ε_j are roundings, each in its range.  As each keeps its sign, what cancels is seen to cancel,
-and `invariant` sums up what a filter makes of each.  The bounds are computed in double and widened by parts in
-10¹², the coefficients are off by what is in r and in δ.
+and `invariant` sums up what a filter makes of each.  The bounds are computed in double and widened by parts
+in 10¹², the coefficients are off by what is in r and in δ.
 """
 
 from __future__ import annotations
