@@ -165,7 +165,7 @@ def _compiled_run() -> Callable[..., None]:
     table = float64[:, ::1]
     signature = void(
         asked, asked, int64, numbers, octets, octets,
-        table, table, float64[:, :, ::1], words, numbers, numbers, table, words,
+        table, table, float64[:, :, :, ::1], words, numbers, numbers, table, words,
     )  # fmt: skip
     options: Any = {"cache": True, "nogil": True, "error_model": "numpy"}
     found: Callable[..., None] = njit(signature, **options)(_run)
