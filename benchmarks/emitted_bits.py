@@ -50,7 +50,8 @@ def _by_position(law, memory, given, out):
 def simulated(law: LawProgram, given: np.ndarray) -> Ran:
     """What the compiled functions make of the readings."""
     numbers, out = np.array(law.law), np.empty((len(given), 1))
-    memory = law.rest[0] + law.rest[1] * (given[0] * (law.resolution or 1.0))
+    at, per = law.rest[int(given[0] > 0)]
+    memory = at + per * (given[0] * (law.resolution or 1.0))
     (_by_counts if law.resolution > 0 else _by_position)(numbers, memory, given, out)
     return Ran(out, memory)
 
@@ -71,7 +72,7 @@ def of_laws(names: list[str], steps: int, folder: Path) -> int:
     for name, law in made.items():
         given = readings(law, 11, steps)
         ran = simulated(law, given)
-        rows, cells = given[:, None], np.zeros(law.rest.shape[1])
+        rows, cells = given[:, None], np.zeros(law.remembers)
         others = [run_c(library, name, rows, cells, 1) for library in libraries]
         beside = {f"{name}.mjs": module(law, about=[name], numbers=[])}
         others += run_node(law_in_javascript(name), folder, {name: (rows, cells, 1)}, beside).values()

@@ -60,9 +60,8 @@ class ExactProgram:
     def init(self, counts: int) -> None:
         """At rest."""
         x = Fraction(self.law.resolution or 1.0) * counts
-        self.cells = [
-            Fraction(float(a)) + Fraction(float(b)) * x for a, b in zip(*self.law.rest, strict=True)
-        ]
+        lines = [self.law.line(k, counts > 0) for k in range(self.law.remembers)]
+        self.cells = [Fraction(a) + Fraction(s) * x for a, s in lines]
 
     def step(self, counts: int) -> Fraction:
         """One sample: the force."""

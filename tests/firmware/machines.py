@@ -130,16 +130,19 @@ _ANY = 2.0**31
 
 
 def law_in_c(law: LawProgram, name: str) -> str:
-    """A law's header, and a function for `run_c`: it begins at its first reading."""
-    size, kind = law.rest.shape[1], "int32_t" if law.resolution > 0 else "double"
+    """A law's header, and a function for `run_c`: it begins at its first reading, and after each NaN."""
+    size, kind = law.remembers, "int32_t" if law.resolution > 0 else "double"
     ends = [(f"POSITION_{end}", f"({sign}1e9)", "m") for end, sign in (("MIN", "-"), ("MAX", ""))]
     everywhere = Machine(law, "double", (-_ANY, _ANY), None)
     return f"""{header(everywhere, name=name, about=[name], numbers=ends)}
 void {name}_rows(const double *in, int rows, double *cells, double *out)
 {{
     {name}_state s;
-    {name}_init(&s, ({kind})in[0]);
-    for (int k = 0; k < rows; k += 1) {{ out[k] = {name}_step(&s, ({kind})in[k]); }}
+    for (int k = 0; k < rows; k += 1) {{
+        if (in[k] != in[k]) {{ out[k] = 0; continue; }}
+        if (k == 0 || in[k - 1] != in[k - 1]) {{ {name}_init(&s, ({kind})in[k]); }}
+        out[k] = {name}_step(&s, ({kind})in[k]);
+    }}
     for (int k = 0; k < {size}; k += 1) {{ cells[k] = s.memory[k]; }}
 }}
 """
@@ -151,6 +154,7 @@ def law_in_javascript(name: str) -> str:
 export const {name} = (() => {{
     let s;
     return (row, cells) => {{
+        if (row[0] !== row[0]) {{ s = null; return [0]; }}
         s ??= of_{name}.init(row[0]);
         const force = of_{name}.step(s, row[0]);
         cells.set(s.memory.subarray(0, cells.length));

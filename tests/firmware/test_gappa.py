@@ -18,6 +18,7 @@ from zwidth.firmware.binary import DOUBLE, FLOAT
 from zwidth.firmware.bound import plain
 from zwidth.firmware.invariant import Rest, invariant
 from zwidth.firmware.law import LawProgram, law_program
+from zwidth.firmware.machine import rest_ends
 from zwidth.firmware.program import Constant, Load, Operand, Operation, Store, Variable
 
 MOST = 3000
@@ -35,7 +36,7 @@ class Script:
 
     def __init__(self, law: LawProgram, number: str, factor: float) -> None:
         arithmetic, name, unit = _FORMATS[number]
-        ends = np.array([law.rest[0] + law.rest[1] * law.resolution * n for n in (-MOST, MOST)])
+        ends = rest_ends(law, (-MOST, MOST))
         errors = 8 * unit * np.abs(ends).max(axis=0)
         given = {law.program.parameters[0]: plain(-MOST, MOST)}
         found = invariant(law.program, given, Rest(ends, tuple(map(float, errors))), arithmetic)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,10 @@ from zwidth.firmware.bound import plain
 from zwidth.firmware.evaluation import Exact, NoBound
 from zwidth.firmware.invariant import Rest, invariant
 from zwidth.firmware.law import law_program
-from zwidth.firmware.machine import Machine, machine
+from zwidth.firmware.machine import Machine, machine, rest_ends
+from zwidth.loop.law import sampled_force
+from zwidth.loop.setup import prepare
+from zwidth.operator import PrescribedMotion
 
 MOST = 3000
 DEVICES = {"bare": PADDLE, "stepped": STEPPED, "limited": LIMITED}
@@ -71,6 +75,24 @@ def test_the_error_stays_within_its_bound(name: str, device: str, number: str, t
             assert abs(force) <= m.largest_force
 
 
+@pytest.mark.parametrize("number", ["float", "fixed"])
+@pytest.mark.parametrize("name", laws())
+def test_it_begins_within_its_bound_and_stays_there(name: str, number: str, tmp_path: Path) -> None:
+    """Of the force at rest that the simulator gives, after init and reset, for as long as it waits."""
+    require("host")
+    m = made(PADDLE, name, number)
+    if m is None:
+        pytest.skip("no bound is claimed of it")
+    law, period = HostLaw(text(m), tmp_path), PADDLE.exact("sample_period")
+    for n in (-MOST, -7, 0, 1, 2, 391, MOST):
+        there = PrescribedMotion([n * float(PADDLE.exact("resolution"))] * 2)
+        loop = prepare(PADDLE, laws()[name], there, period, encoder_phase=0.5)
+        rest = sampled_force(loop.law, loop.memory, n)
+        for begin in (partial(law.init, n), law.reset):
+            begin()
+            assert np.abs(law.run([n] * 40) * law.force_per_unit - rest).max() <= m.error + 1e-9 * abs(rest)
+
+
 @pytest.mark.parametrize("number", ["double", "float", "fixed"])
 @pytest.mark.parametrize(
     "name", [n for n in laws() if n.startswith(("wall", "solid", "maxwell", "everywhere"))]
@@ -109,7 +131,7 @@ def test_every_number_stays_within_its_bound(name: str) -> None:
     """Every exact intermediate, and all that is remembered, lies in the range that the bound has for it."""
     law = law_program(PADDLE, laws()[name])
     exact, random = ExactProgram(law), np.random.default_rng(5)
-    ends = np.array([law.rest[0] + law.rest[1] * law.resolution * n for n in (-MOST, MOST)])
+    ends = rest_ends(law, (-MOST, MOST))
     given = {law.program.parameters[0]: plain(-MOST, MOST)}
     try:
         found = invariant(law.program, given, Rest(ends, (0.0,) * ends.shape[1]), Exact())
@@ -124,3 +146,46 @@ def test_every_number_stays_within_its_bound(name: str) -> None:
                     assert found.values[variable].low <= value <= found.values[variable].high
             for value, (low, high, _) in zip(exact.cells, found.memory, strict=True):
                 assert low <= value <= high
+
+
+@pytest.mark.parametrize("name", [n for n in laws() if n.startswith("everywhere")])
+def test_no_bound_of_a_filter_is_tighter(name: str) -> None:
+    """Readings with the signs of its answer bring each place of its memory to the bound, but for 10⁻³."""
+    law = law_program(PADDLE, laws()[name])
+    given = {law.program.parameters[0]: plain(-MOST, MOST)}
+    rest = Rest(rest_ends(law, (-MOST, MOST)), (0.0,) * law.remembers)
+    found = invariant(law.program, given, rest, Exact())
+    exact, reached = ExactProgram(law), [Fraction(0)] * law.remembers
+    for n in (1, *[0] * 400):
+        exact.step(n)
+        reached = [most + abs(c) * MOST for most, c in zip(reached, exact.cells, strict=True)]
+    for most, (low, high, _) in zip(reached, found.memory, strict=True):
+        assert most <= min(-low, high)
+        assert max(-low, high) <= float(most) * 1.001
+
+
+SLOW = {
+    "one pole": zw.Wall(300, "0.2", zw.rendering.OnePole("200 ms")),
+    "two poles": zw.PulseTransferFunction(["81.3", "-157.1", "75.9"], [1, "-1.9", "0.9025"]),
+    "solid": zw.StandardLinearSolid(200, 300, 60),
+}
+
+
+@pytest.mark.parametrize("number", ["float", "fixed"])
+@pytest.mark.parametrize("name", SLOW)
+def test_what_is_told_of_slow_filters_is_near_what_is_found(name: str, number: str, tmp_path: Path) -> None:
+    """A hand that waits at some of 200 readings makes it a tenth of the bound, at least."""
+    require("host")
+    ways, most = {}, 25_000
+    for kind in (number, "double"):
+        m = machine(law_program(PADDLE, SLOW[name]), kind, (-most, most))
+        (tmp_path / kind).mkdir()
+        ways[kind] = m, HostLaw(text(m), tmp_path / kind)
+    worst, random = 0.0, np.random.default_rng(1)
+    for n in random.integers(0, most, 200):
+        off = []
+        for _, law in ways.values():
+            law.init(int(n))
+            off.append(law.run(np.full(1000, n)) * law.force_per_unit)
+        worst = max(worst, np.abs(off[0] - off[1]).max())
+    assert ways[number][0].error / 10 < worst <= ways[number][0].error + ways["double"][0].error

@@ -1,10 +1,12 @@
-"""What is known of a number: where it lies, how it depends on what is remembered, how far it is off.
+"""What is known of a number: where it lies, how it depends on others, how far it is off.
 
-    exact     v ∈ [low, high],   v = Σ c_i m_i + r,   r ∈ [rest_low, rest_high]
-    computed  |ṽ − v| ≤ error,   with m̃ − m of error 0 no more than `own`
+    exact     v ∈ [low, high],   v = Σ c_i s_i + r,   r ∈ [rest_low, rest_high]
+    computed  ṽ − v = Σ c_i e_i + Σ d_j ε_j + δ,      |δ| ≤ own,      |ṽ − v| ≤ error
 
-The sums hold where v is a sum of what is remembered, m_i; so the error of a filter is summed with the signs
-that it has, as the filter itself forgets it.  The bounds are computed in double and widened by parts in 10¹².
+The s_i are what is remembered, off by e_i, and what is no sum of other numbers: a reading, a product of two
+of them.  The ε_j are roundings, each in its range.  As each keeps its sign, what cancels is seen to cancel,
+and `invariant` sums up what a filter makes of each.  The bounds are computed in double and widened by parts
+in 10¹², the coefficients are off by what is in r and in δ.
 """
 
 from __future__ import annotations
@@ -14,6 +16,40 @@ from math import ceil, copysign, floor, inf, isfinite, sqrt
 
 WIDER = 1e-12
 """Of each bound, relative: thousands of roundings of the bound itself."""
+
+_OFF = 2.0**-52
+"""Relative: what a product or a sum of two coefficients is off."""
+_LEAST = 2.0**-1060
+"""The same where they are very small."""
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """A number of its own, in [low, high]: one that is no sum of others, a rounding, a place of the memory.
+
+    Parameters
+    ----------
+    low, high
+        Of the exact number.
+    place
+        In the memory; None elsewhere.
+    error
+        How far what is remembered there is off.
+    """
+
+    low: float
+    high: float
+    place: int | None = None
+    error: float = 0.0
+
+    @property
+    def size(self) -> float:
+        """The largest |s|."""
+        return max(abs(self.low), abs(self.high))
+
+
+Sum = dict[Source, float]
+"""Coefficients."""
 
 
 @dataclass(frozen=True)
@@ -26,12 +62,14 @@ class Bound:
         Of the exact number.
     error
         How far the computed one is from it, ≥ 0.
-    coefficients
-        c_i by place in the memory; None where it is no sum of what is remembered.
+    terms
+        c_i.
     rest_low, rest_high
         Of r.
+    noise
+        d_j.
     own
-        The error that arises here, without that of what is remembered.
+        Of δ.
     signed
         True where the computed number has the sign of the exact one, and is 0 where it is.
     """
@@ -39,9 +77,10 @@ class Bound:
     low: float
     high: float
     error: float = 0.0
-    coefficients: dict[int, float] | None = field(default_factory=dict)
+    terms: Sum = field(default_factory=dict)
     rest_low: float = 0.0
     rest_high: float = 0.0
+    noise: Sum = field(default_factory=dict)
     own: float = 0.0
     signed: bool = False
 
@@ -55,16 +94,11 @@ class Bound:
         """The largest |ṽ|."""
         return self.size + self.error
 
-    @property
-    def is_plain(self) -> bool:
-        """True where nothing remembered is in it."""
-        return self.coefficients == {}
-
     def with_error(self, more: float) -> Bound:
-        """The same with an error of its own added."""
+        """The same with a rounding of its own added."""
         if more == 0.0:
             return self
-        return replace(self, error=self.error + more, own=self.own + more)
+        return replace(self, error=self.error + more, noise={**self.noise, Source(-more, more): 1.0})
 
     def within(self, low: float, high: float) -> Bound:
         """The same where it is known to lie in [low, high]; None of the two may be lost to rounding."""
@@ -73,86 +107,119 @@ class Bound:
 
 
 def plain(low: float, high: float, error: float = 0.0, signed: bool = False) -> Bound:
-    """Of a number that depends on nothing remembered."""
-    return Bound(low, high, error, {}, low, high, error, signed or error == 0.0)
-
-
-def bent(low: float, high: float, error: float, of: tuple[Bound, ...], signed: bool = False) -> Bound:
-    """Of a number that is no sum of others: plain where they are."""
-    if all(b.is_plain for b in of):
-        return plain(low, high, error, signed)
-    return Bound(low, high, error, None, low, high, error, signed or error == 0.0)
+    """Of a number that is no sum of others."""
+    signed = signed or error == 0.0
+    noise = {Source(-error, error): 1.0} if error else {}
+    if low == high:
+        return Bound(low, high, error, {}, low, high, noise, 0.0, signed)
+    return Bound(low, high, error, {Source(low, high): 1.0}, 0.0, 0.0, noise, 0.0, signed)
 
 
 def remembered(place: int, low: float, high: float, error: float) -> Bound:
     """Of what is remembered in a place."""
-    return Bound(low, high, error, {place: 1.0}, 0.0, 0.0, 0.0, error == 0.0)
+    return Bound(low, high, error, {Source(low, high, place, error): 1.0}, signed=error == 0.0)
 
 
 def added(a: Bound, b: Bound, sign: float) -> Bound:
     """a + b, or a − b."""
     low, high = (b.low, b.high) if sign > 0 else (-b.high, -b.low)
-    exact = a.error == b.error == 0.0
-    if a.coefficients is None or b.coefficients is None:
-        return bent(_less(a.low + low), _more(a.high + high), a.error + b.error, (a, b), exact)
-    places = {**a.coefficients}
-    for place, c in b.coefficients.items():
-        places[place] = places.get(place, 0.0) + sign * c
     rest_low, rest_high = (b.rest_low, b.rest_high) if sign > 0 else (-b.rest_high, -b.rest_low)
-    return Bound(
+    terms, off, more = _summed(a.terms, b.terms, sign)
+    noise, too, _ = _summed(a.noise, b.noise, sign)
+    return _of_sum(
         _less(a.low + low),
         _more(a.high + high),
         _more(a.error + b.error),
-        places,
-        _less(a.rest_low + rest_low),
-        _more(a.rest_high + rest_high),
-        _more(a.own + b.own),
-        exact,
+        terms,
+        _less(_less(a.rest_low + rest_low) - off),
+        _more(_more(a.rest_high + rest_high) + off),
+        noise,
+        _more(a.own + b.own + more + too),
+        a.error == b.error == 0.0,
     )
 
 
 def scaled(a: Bound, c: float) -> Bound:
     """c a, of a number c that is known."""
-    ends = sorted((c * a.low, c * a.high)) if c else [0.0, 0.0]
-    rest = sorted((c * a.rest_low, c * a.rest_high)) if c else [0.0, 0.0]
-    places = None if a.coefficients is None else {p: c * k for p, k in a.coefficients.items() if c}
-    return Bound(
-        _less(ends[0]),
-        _more(ends[1]),
-        _more(abs(c) * a.error) if c else 0.0,
-        places,
-        _less(rest[0]),
-        _more(rest[1]),
-        _more(abs(c) * a.own) if c else 0.0,
+    if c == 0.0:
+        return plain(0.0, 0.0)
+    low, high = sorted((c * a.low, c * a.high))
+    rest_low, rest_high = sorted((c * a.rest_low, c * a.rest_high))
+    terms, off, more = _summed({s: c * k for s, k in a.terms.items()}, {}, 1.0, rounded=c not in (1.0, -1.0))
+    noise, too, _ = _summed({s: c * k for s, k in a.noise.items()}, {}, 1.0, rounded=c not in (1.0, -1.0))
+    return _of_sum(
+        _less(low),
+        _more(high),
+        _more(abs(c) * a.error),
+        terms,
+        _less(_less(rest_low) - off),
+        _more(_more(rest_high) + off),
+        noise,
+        _more(abs(c) * a.own + more + too),
         a.signed,
     )
+
+
+def _summed(a: Sum, b: Sum, sign: float, rounded: bool = False) -> tuple[Sum, float, float]:
+    """a ± b; and how far the rounding of its coefficients makes it off, and makes its error off."""
+    found = dict(a)
+    for source, c in b.items():
+        found[source] = found.get(source, 0.0) + sign * c
+    off = more = 0.0
+    for source in found if rounded else a.keys() & b.keys():
+        by = _OFF * abs(found[source]) + _LEAST
+        off, more = off + by * source.size, more + by * source.error
+    return {s: c for s, c in found.items() if c}, 2 * off, 2 * more
+
+
+def _of_sum(
+    low: float,
+    high: float,
+    error: float,
+    terms: Sum,
+    rest_low: float,
+    rest_high: float,
+    noise: Sum,
+    own: float,
+    signed: bool,
+) -> Bound:
+    """Of a sum: no farther than its terms together, nor farther off."""
+    least, most, size, off = rest_low, rest_high, 0.0, own
+    for s, c in terms.items():
+        one, other = c * s.low, c * s.high
+        least, most = least + min(one, other), most + max(one, other)
+        size += abs(c) * s.size
+        off += abs(c) * s.error
+    off += sum(abs(d) * s.high for s, d in noise.items())
+    low, high = max(low, _less(least) - WIDER * size), min(high, _more(most) + WIDER * size)
+    return Bound(low, high, min(error, _more(off)), terms, rest_low, rest_high, noise, own, signed)
 
 
 def multiplied(a: Bound, b: Bound) -> Bound:
     """A product of two numbers that are not known."""
     corners = [_product(x, y) for x in (a.low, a.high) for y in (b.low, b.high)]
     error = _product(a.size, b.error) + _product(b.size, a.error) + _product(a.error, b.error)
-    return bent(_less(min(corners)), _more(max(corners)), _more(error), (a, b), a.signed and b.signed)
+    return plain(_less(min(corners)), _more(max(corners)), _more(error), a.signed and b.signed)
 
 
 def divided(a: Bound, b: Bound) -> Bound:
     """A quotient; nothing is known of it where the divisor may be 0."""
     least = max(b.low, -b.high, 0.0)
     if least - b.error <= 0.0 or not isfinite(a.computed_size):
-        return bent(-inf, inf, inf, (a, b))
+        return plain(-inf, inf, inf)
     corners = [x / y for x in (a.low, a.high) for y in (b.low, b.high)]
     error = (a.error + b.error * a.size / least) / (least - b.error)
-    return bent(_less(min(corners)), _more(max(corners)), _more(error), (a, b), a.signed and b.signed)
+    return plain(_less(min(corners)), _more(max(corners)), _more(error), a.signed and b.signed)
 
 
 def rooted(a: Bound) -> Bound:
     """A square root."""
     left = a.low - a.error
     if a.low < 0.0 or (left < 0.0 and not a.signed):  # of a negative number a machine gives none
-        return bent(0.0, inf, inf, (a,))
+        return plain(0.0, inf, inf)
     low, high = sqrt(a.low), sqrt(a.high)
     error = a.error / (2 * sqrt(left)) if left > 0 else sqrt(a.error)
-    return bent(_less(low), _more(high), _more(error), (a,), a.signed)
+    return plain(_less(low), _more(high), _more(error), a.signed)
 
 
 def least(a: Bound, b: Bound) -> Bound:
@@ -171,7 +238,7 @@ def _chosen(low: float, high: float, a: Bound, b: Bound, first: bool, second: bo
         return a
     if second and a.error == b.error == 0.0:
         return b
-    return bent(low, high, max(a.error, b.error), (a, b), a.signed and b.signed)
+    return plain(low, high, max(a.error, b.error), a.signed and b.signed)
 
 
 def absolute(a: Bound) -> Bound:
@@ -179,7 +246,7 @@ def absolute(a: Bound) -> Bound:
     if a.low >= 0.0 and (a.error == 0.0 or a.signed):
         return a
     low = 0.0 if a.low <= 0.0 <= a.high else min(abs(a.low), abs(a.high))
-    return bent(low, a.size, a.error, (a,), a.signed)
+    return plain(low, a.size, a.error, a.signed)
 
 
 def floored(a: Bound) -> Bound:
@@ -187,7 +254,7 @@ def floored(a: Bound) -> Bound:
     low = float(floor(a.low)) if isfinite(a.low) else a.low
     high = float(floor(a.high)) if isfinite(a.high) else a.high
     error = float(ceil(a.error)) if isfinite(a.error) else inf
-    return bent(low, high, error, (a,))
+    return plain(low, high, error)
 
 
 def hull(a: Bound, b: Bound) -> Bound:
@@ -195,7 +262,7 @@ def hull(a: Bound, b: Bound) -> Bound:
     if a == b:
         return a
     low, high, error = min(a.low, b.low), max(a.high, b.high), max(a.error, b.error)
-    return bent(low, high, error, (a, b), a.signed and b.signed)
+    return plain(low, high, error, a.signed and b.signed)
 
 
 def apart(a: Bound, b: Bound) -> float:

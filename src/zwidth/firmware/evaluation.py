@@ -15,7 +15,6 @@ from zwidth.firmware.bound import (
     absolute,
     added,
     apart,
-    bent,
     divided,
     floored,
     hull,
@@ -299,7 +298,7 @@ def _joined(a: _Way, b: _Way, differing_from: _Way | None) -> _Way:
         if differing_from is None or (x is before and y is before):
             return both
         error = max(both.error, apart(x, y), apart(y, x))
-        return bent(both.low, both.high, error, (x, y))
+        return plain(both.low, both.high, error)
 
     old = _Way({}, [], {}) if differing_from is None else differing_from
     values = {

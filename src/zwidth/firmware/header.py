@@ -16,7 +16,7 @@ GUARD = """\
 #if defined(__FAST_MATH__)
 #error "compile without -ffast-math: it changes the law that was proved"
 #endif
-#if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0
+#if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
 #error "numbers are kept with more digits than they have: compile with -msse2 -mfpmath=sse"
 #endif"""
 
@@ -94,7 +94,7 @@ def header(
         f"typedef {body.force} {name}_force;  /* {upper}_FORCE_PER_UNIT each; out of a wall is positive */",
         "",
         "typedef struct {",
-        f"    {body.memory} memory[{max(machine.law.rest.shape[1], 1)}];",
+        f"    {body.memory} memory[{max(machine.law.remembers, 1)}];",
         f"    {body.given};  /* seen last */",
         f"}} {name}_state;",
         "",
@@ -176,13 +176,12 @@ def _binary(machine: Machine, name: str) -> _Body:
 def _rest(law: LawProgram, real: Real, seen: str) -> list[str]:
     """What it remembers at rest, place by place."""
     x = f"(({real}){seen} * {real_text(law.resolution, real)})" if law.resolution > 0 else seen
-    lines = []
-    for k, (start, per) in enumerate(zip(*law.rest, strict=True)):
-        value = real_text(float(start), real)
-        if per != 0.0:
-            value = f"{value} + {real_text(float(per), real)} * {x}"
-        lines.append(f"    s->memory[{k}] = {value};")
-    return lines or ["    s->memory[0] = 0;"]
+
+    def line(place: int, inside: bool) -> str:
+        at, per = law.line(place, inside)
+        return real_text(at, real) + (f" + {real_text(per, real)} * {x}" if per != 0.0 else "")
+
+    return [f"    s->memory[{k}] = {value};" for k, value in enumerate(law.rest_texts(seen, line))]
 
 
 def _whole(machine: Machine, name: str) -> _Body:
@@ -197,9 +196,9 @@ def _whole(machine: Machine, name: str) -> _Body:
     )
     step = [*c.changing(), *c.block(program.body, 1)]
     result = c.read(program.results[0], alone=True)
-    rest = []
-    for k in range(machine.law.rest.shape[1]):
-        start, per, shift = rest_numbers(machine.law, fixed, k)
+
+    def line(place: int, inside: bool) -> str:
+        start, per, shift = rest_numbers(machine.law, fixed, place, inside)
         value = c.constant_text(start)
         if per:
             wide = "int64_t" if word == 64 or shift else c.integer
@@ -207,7 +206,9 @@ def _whole(machine: Machine, name: str) -> _Body:
             moved = f"({moved} >> {shift})" if shift else moved
             value = f"{value} + {moved}" if start else moved
             value = f"({c.integer}){value}" if shift and not start else f"({c.integer})({value})"
-        rest.append(f"    s->memory[{k}] = {value};")
+        return value
+
+    rest = enumerate(machine.law.rest_texts("counts", line))
     return _Body(
         guards=[SHIFTS],
         includes=["#include <stdint.h>"],
@@ -215,7 +216,7 @@ def _whole(machine: Machine, name: str) -> _Body:
         given="int32_t counts",
         memory=c.integer,
         before=c.helper_lines(),
-        rest=rest or ["    s->memory[0] = 0;"],
+        rest=[f"    s->memory[{k}] = {value};" for k, value in rest],
         step=step,
         result=f"(int32_t)({result})" if word == 64 else result,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -36,7 +37,7 @@ class LawProgram:
     law
         The packed numbers that it was made of, see `loop.law`.
     rest
-        What it remembers at rest at 0, and per metre or radian away from it; 2 × n.
+        What it remembers at rest, see `loop.setup.resting_lines`; 2 × 2 × n.
     resolution
         Δ, metres or radians per count; 0 where the position is given.
     pays
@@ -58,6 +59,21 @@ class LawProgram:
     def limit(self) -> float:
         """The force limit, 0 where there is none."""
         return float(self.law[LIMIT])
+
+    @property
+    def remembers(self) -> int:
+        """Numbers in its memory."""
+        return int(self.rest.shape[2])
+
+    def line(self, place: int, inside: bool) -> tuple[float, float]:
+        """a and s of a place that holds a + s x at rest."""
+        a, s = self.rest[int(inside), :, place]
+        return float(a), float(s)
+
+    def rest_texts(self, seen: str, written: Callable[[int, bool], str]) -> list[str]:
+        """What each place holds at rest at `seen`, in C and in JavaScript, where `written` writes a line."""
+        both = [(written(k, False), written(k, True)) for k in range(self.remembers)]
+        return [o if o == i else f"{seen} > 0 ? {i} : {o}" for o, i in both] or ["0"]
 
 
 def law_program(device: Device, environment: Environment | object, *, single: bool = False) -> LawProgram:
@@ -86,7 +102,7 @@ def law_program(device: Device, environment: Environment | object, *, single: bo
     law = as_environment(environment)
     packed = pack(device, law, 0.0, _SMALL, single=single)
     resolution = float(device.exact("resolution"))
-    cells = Cells(MEMORY, packed.rest.shape[1])
+    cells = Cells(MEMORY, packed.rest.shape[2])
     if resolution > 0.0:
         program = specialised(sampled_force, (packed.law, cells, Variable("integer", "counts")))
     else:

@@ -16,6 +16,7 @@ from typing import Literal
 
 import numpy as np
 
+from zwidth.compiled import Array
 from zwidth.errors import InputError
 from zwidth.firmware.binary import DOUBLE, FLOAT, Binary
 from zwidth.firmware.bound import Bound, plain
@@ -35,6 +36,8 @@ _ANY = 2**31 - 1
 """Counts to each side that 32 bits hold."""
 _WIDE = 2.0**-10
 """Of the force: an error beyond this is worth a wider word."""
+_TRIES = 4
+"""Times that a program is written anew, for numbers as large as their errors make them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,10 +162,8 @@ def _given(law: LawProgram, counts: tuple[float, float]) -> dict[Variable, Bound
 def _binary_errors(law: LawProgram, counts: tuple[float, float], arithmetic: Binary) -> list[float]:
     """How far what it remembers at first is off: at + slope (Δ n), of rounded numbers, is rounded thrice."""
     most = (law.resolution or 1.0) * max(map(abs, counts))
-    return [
-        8 * arithmetic.unit * (abs(float(at)) + abs(float(slope)) * most) + arithmetic.least
-        for at, slope in zip(*law.rest, strict=True)
-    ]
+    sizes = np.abs(law.rest[:, 0]) + np.abs(law.rest[:, 1]) * most
+    return [8 * arithmetic.unit * float(size) + arithmetic.least for size in sizes.max(axis=0)]
 
 
 def _bounded(
@@ -173,9 +174,15 @@ def _bounded(
     errors: Sequence[float],
 ) -> Invariant:
     """From rest anywhere."""
-    unit = law.resolution or 1.0
-    rest = Rest(np.array([law.rest[0] + law.rest[1] * unit * x for x in counts]), tuple(errors))
+    rest = Rest(rest_ends(law, counts), tuple(errors))
     return invariant(law.program, _given(law, counts), rest, arithmetic, converter)
+
+
+def rest_ends(law: LawProgram, counts: tuple[float, float]) -> Array:
+    """What it remembers at the ends of both lines: outside, and inside, with the surface between them."""
+    outside, inside = np.minimum(counts, 0.0), np.maximum(counts, 0.0)
+    sides = zip(law.rest, (outside, inside), strict=True)
+    return np.array([at + per * (law.resolution or 1.0) * x for (at, per), ends in sides for x in ends])
 
 
 # ---- fixed point
@@ -188,25 +195,23 @@ def _fixed(
     force_unit: float | None,
     enough: float | None,
 ) -> Machine:
-    """The finest unit of force with which nothing leaves its word; a wider word where that is too coarse."""
-    exact = _bounded(law, counts, Exact(), converter, [0.0] * law.rest.shape[1])
-    sizes = exact.values
-    cells = [max(-low, high) for low, high, _ in exact.memory]
+    """The finest unit of force with which nothing leaves its word; where that is off by more than is enough,
+    a coarser one, whose factors are kept with more digits, or a wider word: whichever is off by least.
+    """
+    exact = _bounded(law, counts, Exact(), converter, [0.0] * law.remembers)
     best: Machine | None = None
     for word in (32, 64):
         for fraction in _FRACTIONS[word]:
             scale = Scale(law.resolution, _unit(law, exact, force_unit), fraction, word)
             try:
-                found = lowered(law.program, scale, sizes, cells)
-                made = _proved(law, counts, converter, found)
+                made = _proved(law, counts, converter, scale, exact)
             except TooLarge:
                 continue
             if best is None or (made.error or 0.0) < (best.error or 0.0):
                 best = made
             wanted = _WIDE * (made.largest_force or 0.0) if enough is None else enough
-            if word == 64 or (made.rounding or 0.0) <= wanted:
+            if (made.rounding or 0.0) <= wanted:
                 return best
-            break
     if best is None:
         raise NoBound("its numbers leave 64 bits")
     return best
@@ -222,36 +227,41 @@ def _unit(law: LawProgram, exact: Invariant, force_unit: float | None) -> float:
 
 
 def _proved(
-    law: LawProgram, counts: tuple[float, float], converter: Operation | None, fixed: Fixed
+    law: LawProgram, counts: tuple[float, float], converter: Operation | None, scale: Scale, found: Invariant
 ) -> Machine:
-    """The bound of the error, and that no number is larger than it was written for."""
+    """The bound of the error, and that no number is larger than it was written for, with its error."""
     most = max(map(abs, counts))
-    errors = [fixed_rest_error(law, fixed, k, most) for k in range(law.rest.shape[1])]
-    found = _bounded(law, counts, fixed, converter, errors)
-    for variable, size in fixed.most.items():
-        if variable in found.values and found.values[variable].computed_size > size:
-            raise TooLarge
-    return _machine(law, "fixed", counts, found, fixed)
+    for _ in range(_TRIES):
+        cells = [max(-low, high) + error for low, high, error in found.memory]
+        fixed = lowered(law.program, scale, found.values, cells)
+        errors = [
+            max(fixed_rest_error(law, fixed, k, inside, most) for inside in (False, True))
+            for k in range(law.remembers)
+        ]
+        found = _bounded(law, counts, fixed, converter, errors)
+        sizes = ((found.values[v].computed_size, size) for v, size in fixed.most.items() if v in found.values)
+        if all(found_size <= size for found_size, size in sizes):
+            return _machine(law, "fixed", counts, found, fixed)
+    raise TooLarge
 
 
-def rest_numbers(law: LawProgram, fixed: Fixed, place: int) -> tuple[int, int, int]:
+def rest_numbers(law: LawProgram, fixed: Fixed, place: int, inside: bool) -> tuple[int, int, int]:
     """(a, m, k) of what is remembered at rest at n counts, a + (m n >> k)."""
-    unit = cell_unit(fixed, place)
-    size = fixed.units.scale.size(unit)
-    at, slope = float(law.rest[0, place]), float(law.rest[1, place]) * law.resolution
-    ratio = slope / size
+    size = fixed.units.scale.size(cell_unit(fixed, place))
+    at, slope = law.line(place, inside)
+    ratio = slope * law.resolution / size
     if ratio == 0.0 or abs(ratio - round(ratio)) <= 1e-12 * abs(ratio) or abs(ratio) >= 4096:
         return round(at / size), round(ratio), 0
     return round(at / size), round(ratio * 2**16), 16
 
 
-def fixed_rest_error(law: LawProgram, fixed: Fixed, place: int, most: float) -> float:
+def fixed_rest_error(law: LawProgram, fixed: Fixed, place: int, inside: bool, most: float) -> float:
     """How far that is off."""
     size = fixed.units.scale.size(cell_unit(fixed, place))
-    a, m, k = rest_numbers(law, fixed, place)
-    slope = float(law.rest[1, place]) * law.resolution
-    own = abs(float(law.rest[0, place]) - a * size)
-    return own + abs(slope - m * 2.0**-k * size) * most + (size if k else 0.0)
+    a, m, k = rest_numbers(law, fixed, place, inside)
+    at, slope = law.line(place, inside)
+    own = abs(at - a * size) + abs(slope * law.resolution - m * 2.0**-k * size) * most
+    return own + (size if k else 0.0)
 
 
 def cell_unit(fixed: Fixed, place: int) -> Unit:

@@ -47,7 +47,7 @@ def module(
         "",
         f"/* What the law remembers, at rest at this {seen}, as if it had been there for ever. */",
         f"export function init({seen}) {{",
-        f"    const s = {{ memory: new Float64Array({max(law.rest.shape[1], 1)}), {seen} }};",
+        f"    const s = {{ memory: new Float64Array({max(law.remembers, 1)}), {seen} }};",
         f"    reset(s, {seen});",
         "    return s;",
         "}",
@@ -71,12 +71,10 @@ def module(
 
 
 def _rest(law: LawProgram, seen: str) -> list[str]:
-    at, slope = law.rest
     x = f"({seen} * {real_text(law.resolution, 'double')})" if law.resolution > 0 else seen
-    lines = []
-    for k, (start, per) in enumerate(zip(at, slope, strict=True)):
-        value = real_text(float(start), "double")
-        if per != 0.0:
-            value = f"{value} + {real_text(float(per), 'double')} * {x}"
-        lines.append(f"    s.memory[{k}] = {value};")
-    return lines
+
+    def line(place: int, inside: bool) -> str:
+        at, per = law.line(place, inside)
+        return real_text(at, "double") + (f" + {real_text(per, 'double')} * {x}" if per != 0.0 else "")
+
+    return [f"    s.memory[{k}] = {value};" for k, value in enumerate(law.rest_texts(seen, line))]

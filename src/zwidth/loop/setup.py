@@ -144,7 +144,7 @@ def prepare(
         timing=timing,
         encoder_phase=phase,
         law=packed,
-        memory=np.array([*memory, *remembered]),
+        memory=np.array([*memory, *remembered]) + 0.0,  # no line gives −0
         state=state,
         frame=frame,
     )
@@ -315,11 +315,25 @@ def resting_memory(setup: Setup, reading: float) -> Array:
     """What the law of a setup remembers after the hand has been at a reading for ever."""
     row = laws_of(setup.environment)
     remembered = [number for link in row for number in link.initial_state(reading)]
-    return np.array([*at_rest(setup.law, reading), *([0.0] if row else []), *remembered])
+    return np.array([*at_rest(setup.law, reading), *([0.0] if row else []), *remembered]) + 0.0
+
+
+def resting_lines(setup: Setup) -> Array:
+    """The same for every reading x, to the last bit: a + s x outside, where x ≤ 0, and another inside.
+
+    Outside and inside, a and s, place by place: 2 × 2 × n.
+
+    What sees the penetration remembers nothing outside; who has entered long ago is told by a step.
+    """
+    lower, surface, one, two = (resting_memory(setup, x) for x in (-1.0, 0.0, 1.0, 2.0))
+    return np.array([[surface, surface - lower], [one - (two - one), two - one]])
 
 
 def at_rest(law: Array, reading: float) -> Array:
-    """The law's memory after it has read this position for ever; 0 where it would not settle."""
+    """The law's memory after it has read this position for ever; 0 where it would not settle.
+
+    What sections remember at 1, times the reading: so that one line tells it for all of them.
+    """
     gate, at = law[laws.GATE], laws.HEADER
     if law[laws.CONTACT] == laws.POWER_LAW:
         return np.array([reading])
@@ -331,12 +345,12 @@ def at_rest(law: Array, reading: float) -> Array:
         order = int(law[at])
         b, a = law[at + 1 : at + 2 + order], np.concatenate(([1.0], law[at + 2 + order : at + 2 + 2 * order]))
         gain = float(a.sum())
-        y = float(b.sum()) / gain * x if gain != 0.0 else 0.0
+        y = float(b.sum()) / gain if gain != 0.0 else 0.0
         later = 0.0
         own: list[float] = []
         for i in range(order, 0, -1):
-            later += float(b[i]) * x - float(a[i]) * y
-            own.append(later if gain != 0.0 else 0.0)
+            later += float(b[i]) - float(a[i]) * y
+            own.append(later * x if gain != 0.0 else 0.0)
         remembered += reversed(own)
         at += 2 * order + 2
     return np.array(remembered or [0.0])

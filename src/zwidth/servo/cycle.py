@@ -105,7 +105,7 @@ def answer(
     laws, memories
         Two places for a packed law and what it remembers: one is served, the other may be waiting.
     rests
-        For each place, what the law remembers at rest at 0, and per metre or radian away from it.
+        For each place, what the law remembers at rest, see `loop.setup.resting_lines`.
     control, n
         See above; both are changed.
     counts
@@ -198,17 +198,23 @@ def _change_law(
         return served
     if served != NONE and n[QUIET] < n[SETTLED]:
         return served
-    for i in range(memories.shape[1]):
-        memories[wanted, i] = rests[wanted, 0, i] + rests[wanted, 1, i] * x
+    put_at_rest(memories[wanted], rests[wanted], x)
     begins = commanded(counts, laws[wanted], memories[wanted], x)
     low, high = n[BEGINS + 2 * wanted], n[BEGINS + 2 * wanted + 1]
     if abs(begins) > n[NEAR] or x < low or x > high:
         return served
-    for i in range(memories.shape[1]):
-        memories[wanted, i] = rests[wanted, 0, i] + rests[wanted, 1, i] * x
+    put_at_rest(memories[wanted], rests[wanted], x)
     control[SERVED] = wanted
     control[CHANGES] += 1
     return wanted
+
+
+@compiled
+def put_at_rest(memory: Array, lines: Array, x: float) -> None:
+    """As if the hand had been at x for ever: one line outside, another inside."""
+    side = 1 if x > 0.0 else 0
+    for i in range(memory.shape[0]):
+        memory[i] = lines[side, 0, i] + lines[side, 1, i] * x
 
 
 @compiled

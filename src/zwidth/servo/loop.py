@@ -75,7 +75,7 @@ def shared(capacity: int, remembered: int, ring: Array, counts: int) -> Shared:
     return Shared(
         laws=np.zeros((2, capacity)),
         memories=np.zeros((2, remembered)),
-        rests=np.zeros((2, 2, remembered)),
+        rests=np.zeros((2, 2, 2, remembered)),
         control=control,
         numbers=np.zeros(NUMBERS),
         counts=np.zeros(counts),
@@ -165,7 +165,7 @@ def _compiled_run() -> Callable[..., None]:
     table = float64[:, ::1]
     signature = void(
         asked, asked, int64, numbers, octets, octets,
-        table, table, float64[:, :, ::1], words, numbers, numbers, table, words,
+        table, table, float64[:, :, :, ::1], words, numbers, numbers, table, words,
     )  # fmt: skip
     options: Any = {"cache": True, "nogil": True, "error_model": "numpy"}
     found: Callable[..., None] = njit(signature, **options)(_run)

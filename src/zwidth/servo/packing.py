@@ -4,19 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
 from zwidth.compiled import Array
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
-from zwidth.loop.law import GATE, PENETRATION
-from zwidth.loop.setup import prepare, resting_memory
+from zwidth.loop.setup import prepare, resting_lines
 from zwidth.loop.start import unloaded_range
 from zwidth.operator import PrescribedMotion
-
-_STRAIGHT = 1e-9
-"""Of its size: so far from a straight line a memory may be and still be taken for one."""
 
 
 class Packed(NamedTuple):
@@ -24,7 +18,7 @@ class Packed(NamedTuple):
 
     law: Array
     rest: Array
-    """What it remembers at rest at 0, and per metre or radian away from it; 2 × n."""
+    """What it remembers at rest, see `loop.setup.resting_lines`; 2 × 2 × n."""
     begins: tuple[float, float]
     """Between which positions it holds little where it pushes little, see `loop.start.unloaded_range`."""
 
@@ -41,8 +35,7 @@ def pack(
     environment
         With the laws in its chain.
     here
-        The reading now [m; rad]: a law whose memory at rest is no straight function of the position
-        begins with the memory that belongs to this one.
+        The reading now [m; rad].
     force
         Up to which it may begin [N; N·m].
     single
@@ -61,11 +54,4 @@ def pack(
         )
     still = PrescribedMotion([0.0, 0.0])
     setup = prepare(device, environment, still, device.exact("sample_period"), single=single)
-    # one that sees max(x, 0) begins outside: what it remembers inside is another line
-    places = (0.0, -1.0, -2.0) if setup.law[GATE] == PENETRATION else (0.0, 1.0, -1.0)
-    rest, one, two = (resting_memory(setup, x) for x in places)
-    slope = (one - rest) / places[1]
-    bent = np.abs(rest + places[2] * slope - two)
-    if not (bent <= _STRAIGHT * (np.abs(one) + np.abs(two))).all():
-        rest, slope = resting_memory(setup, here), np.zeros_like(rest)
-    return Packed(setup.law, np.stack([rest, slope]), begins)
+    return Packed(setup.law, resting_lines(setup), begins)

@@ -317,7 +317,7 @@ class Servo:
     def _anew(self, opened: Opened) -> Shared:
         """Arrays for a run from sample 0."""
         period = float(self._period)
-        size, remembered = self._first.law.size, self._first.rest.shape[1]
+        size, remembered = self._first.law.size, self._first.rest.shape[2]
         found = shared(max(_ROOM, size), max(_REMEMBERED, remembered), ring(period), STATE_SIZE)
         n = found.numbers
         n[cycle.PERIOD], n[cycle.SENSE], n[cycle.ORIGIN] = period, self.placement.sense, self.placement.origin
@@ -361,15 +361,15 @@ class Servo:
 
     @staticmethod
     def _put(loop: Shared, place: int, packed: Packed) -> None:
-        size, remembered = packed.law.size, packed.rest.shape[1]
+        size, remembered = packed.law.size, packed.rest.shape[2]
         if size > loop.laws.shape[1] or remembered > loop.memories.shape[1]:
             raise InputError(
                 f"the law has {size} numbers and remembers {remembered}; a running loop has room for "
                 f"{loop.laws.shape[1]} and {loop.memories.shape[1]}: end it and start with this law"
             )
         loop.laws[place, :size] = packed.law
-        loop.rests[place, :, :] = 0.0
-        loop.rests[place, :, :remembered] = packed.rest
+        loop.rests[place] = 0.0
+        loop.rests[place, ..., :remembered] = packed.rest
         first = cycle.BEGINS + 2 * place
         loop.numbers[first : first + 2] = packed.begins
 
