@@ -11,10 +11,12 @@ from typing import Any
 
 from zwidth.device.actuator import ActuatorCheck, actuator_checks
 from zwidth.passivity import parameter_limits
-from zwidth.passivity.advice import Advice, advise
+from zwidth.passivity.advice import Advice, Asked, advise
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
+from zwidth.passivity.corners import Loop
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.formulas.stability_plane import admissible_speed
+from zwidth.passivity.scope import Contact
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import in_unit, in_words
@@ -28,9 +30,15 @@ class LinearVerdict(Verdict):
     ----------
     decision
         What is known of the loop, at the worst corner where intervals were given.
+    box
+        The loop with its intervals; None where it was not kept.
+    asked
+        Of which contact.
     """
 
     decision: Decision
+    box: Loop | None = None
+    asked: Contact = "made and broken"
 
     @cached_property
     def budget(self) -> Budget:
@@ -128,8 +136,14 @@ class LinearVerdict(Verdict):
     @cached_property
     def advice(self) -> tuple[Advice, ...]:
         """The smallest single changes that would do, or the slack of each parameter."""
-        contact, stiffest = self._with_contact_broken, lambda: self.max_stiffness
-        return advise(self.device, self.environment, self.is_proved, contact, stiffest)
+        at, law = (self.device, self.environment), self.environment
+        one_sided = law.unilateral and self.asked != "kept"
+        proved = self.outcome == "passive"
+        contact = self.scope.contact == "made and broken" if proved else one_sided and not self.is_proved
+        or_kept = one_sided and not (proved or self._in_contact_only or self.decision.is_clamped)
+        same = contact == self._with_contact_broken or self.decision.is_spring
+        stiffest = (lambda: self.max_stiffness) if same else (lambda: None)
+        return advise(Asked(at, self.box or at, contact), self.is_proved, or_kept, stiffest)
 
     @cached_property
     def actuator(self) -> tuple[ActuatorCheck, ...]:
