@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from fractions import Fraction
 from functools import cache, cached_property, partial
 from math import inf, isinf
@@ -44,7 +43,7 @@ from zwidth.passivity.parameter_limits import has_stiffness, is_of_high_degree, 
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import alike, in_words, readable
+from zwidth.quantity.text import alike, in_words, outward_decimal, readable
 
 _NEVER_NOTHING = ("stiffness", "resolution", "link_delay")
 """What nobody can set to 0 and keep what it is there for."""
@@ -513,20 +512,11 @@ def outward(value: float, knob: Knob, factor: float = 1.0) -> float:
     if value == 0 or isinf(value) or value == knob.current:
         return value
     for digits in (4, 6, 9, 12):
-        rounded = on_the_safe_side(value * factor, knob.more, digits) / factor
+        rounded = outward_decimal(value * factor, knob.more, digits) / factor
         is_farther = (rounded < knob.current) == (value < knob.current) and rounded != knob.current
         if is_farther and knob.holds(Exact(rounded).fraction):
             return rounded
     return value
-
-
-def on_the_safe_side(value: float, more: bool, digits: int = 4) -> float:
-    """So many significant digits, never less with `more`, never more without; noise of doubles aside."""
-    told = Decimal(f"{value:.15g}")
-    if not told.is_finite() or told == 0:
-        return value
-    step = Decimal((0, (1,), told.adjusted() - digits + 1))
-    return float(told.quantize(step, ROUND_CEILING if more else ROUND_FLOOR))
 
 
 def _text(knob: Knob, to: float | None, unit: str, kind: str) -> str:
