@@ -161,7 +161,28 @@ def _of_another_filter(loop: Loop, advice: Advice, contact: str) -> Iterator[str
         yield f"{advice}: not so"
 
 
-@seeds(25)
+def test_a_spring_behind_a_part_of_a_sample_has_its_own_slack() -> None:
+    """With B = 0.2031 such a wall is passive in contact alone; the sensor has no steps, the device no f_c."""
+    device = zw.Device(damping="0.2", rate="2 kHz", delay="0.3 ms")
+    verdict = zw.check(device, zw.Wall(150))
+    told = {advice.parameter: advice.text for advice in verdict.advice}
+    assert told["virtual_damping"] == "virtual damping may go up to 0.09608 N·s/m (now 0 N·s/m)"
+    assert not {"resolution", "coulomb_friction"} & set(told)
+    kept = zw.check(device, zw.Wall(150, "0.1"))
+    assert kept.outcome == "passive in contact"
+    assert all(advice.text.partition(" (")[0].endswith("while contact is kept") for advice in kept.advice)
+
+
+def test_a_negative_damper_is_told_with_its_sign() -> None:
+    """From −0.02 down, not from 0.02 up."""
+    verdict = zw.check(zw.Device(damping="0.2", rate="2 kHz"), zw.Wall(150, "-0.02"))
+    (told,) = [advice for advice in verdict.advice if advice.parameter == "virtual_damping"]
+    assert told.current == -0.02
+    assert told.to < told.current
+    assert told.text.startswith("virtual damping may go down to -0.")
+
+
+@seeds(8)
 def test_advice_is_the_bound_of_the_outcome_that_is_printed(seed: int) -> None:
     """At its value, and as it is printed, `check` says the same; just beyond it, it does not."""
     rng = random.Random(seed)
