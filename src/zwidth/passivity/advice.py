@@ -324,9 +324,9 @@ class _Knobs:
         wall = wall_of(law)
         if has_stiffness(law):
             now = ends(of_box.stiffness)[1]  # type: ignore[attr-defined]
-            between = None if wall is not None else between_sizes(float(now))
+            on_the_way = None if wall is not None else between_sizes(float(now))
             holds = self._proved("stiffness", now)
-            yield Knob("stiffness", float(now), holds, False, "stiffness", stiffest, between=between)
+            yield Knob("stiffness", float(now), holds, False, "stiffness", stiffest, between=on_the_way)
         if wall is not None:
             yield from self._of_wall(wall)
 
