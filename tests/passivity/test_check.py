@@ -436,8 +436,7 @@ def turned(device, law, parameter, value):
     if parameter == "stiffness":
         return device, law.replace(stiffness=value)
     if parameter == "virtual_damping":
-        sign = -1 if law.damping < 0 else 1
-        return device, law.replace(damping=zw.Exact(sign * value.fraction))
+        return device, law.replace(damping=value)
     if parameter == "time_constant":
         return device, law.replace(velocity_filter=zw.rendering.OnePole(value))
     return device.replace(**{parameter: value}), law

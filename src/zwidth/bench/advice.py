@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from zwidth.device.device import Device
 from zwidth.environment.wall import Wall
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.quantity.text import told
+from zwidth.quantity.text import at_most, told
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,8 +39,8 @@ def answer(scores: xr.Dataset, device: Device, wall: Wall) -> str:
     words = [
         f"Alone, a wall of {told(wanted, unit)} is passive on this device and needs no law."
         if alone.outcome == "passive"
-        else f"The device alone renders {told(limit, unit, 4)} passively, so that {told(wanted, unit)} needs "
-        "a law or other hardware."
+        else f"The device alone renders {told(at_most(limit, unit, 4) or 0, unit, 4)} passively, so that "
+        f"{told(wanted, unit)} needs a law or other hardware."
         if limit
         else "The device alone renders no wall passively."
     ]

@@ -18,7 +18,7 @@ from zwidth.passivity.result import Documented
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import in_words, shown, unit_text
+from zwidth.quantity.text import at_most, in_words, outward_decimal, shown, unit_text
 from zwidth.quantity.units import parse_number
 from zwidth.showing import Part, Table
 from zwidth.specification.table import plain, quoted
@@ -54,7 +54,7 @@ class EachDevice(Documented):
 
     def largest(self, name: str) -> float | None:
         """The largest stiffness that is proved [N/m; N·m/rad]; None where none is, or the law has none."""
-        return getattr(self.verdicts[name], "max_stiffness", None)
+        return getattr(self.verdicts[name], "stiffest", None)
 
     def to_dict(self) -> dict[str, Any]:
         """The verdict on each, with its name and what was measured."""
@@ -90,9 +90,9 @@ class EachDevice(Documented):
         heads = ["device", "outcome", f"largest passive stiffness [{unit}]", "limit"]
         rows = [[*heads, *([f"shook from [{unit}]", "times what is proved"] if self.measured else [])]]
         for name in self.verdicts:
-            more = [self._told(self.measured.get(name)), self._times(name)] if self.measured else []
-            largest, *others = map(_plain, (self._told(self.largest(name)), *more))
-            rows.append([*self._first(name), largest, self._limit(name), *others])
+            more = [_plain(self._told(self.measured.get(name))), _plain(self._times(name))]
+            largest = _plain(at_most(self._told(self.largest(name)), "1"))
+            rows.append([*self._first(name), largest, self._limit(name), *(more if self.measured else [])])
         return csv_text(rows)
 
     def _outcomes(self) -> str:
@@ -149,7 +149,8 @@ class EachDevice(Documented):
     def _rows(self) -> Iterator[tuple[str, ...]]:
         for name in self.verdicts:
             more = [self._told(self.measured.get(name)), self._times(name)] if self.measured else []
-            numbers = [self._told(self.largest(name)), *more]
+            largest = self._told(self.largest(name))
+            numbers = [None if largest is None else outward_decimal(largest, False), *more]
             yield (
                 *self._first(name),
                 *("–" if n is None else "any" if n == inf else f"{n:.4g}" for n in numbers),
@@ -166,7 +167,8 @@ class EachDevice(Documented):
         return None if stiffness is None else stiffness * factor
 
     def _in_words(self, stiffness: float) -> str:
-        return shown(stiffness, GLOSSARY["stiffness"].unit_for(self.motion))
+        unit = GLOSSARY["stiffness"].unit_for(self.motion)
+        return shown(at_most(stiffness, unit, 4), unit)
 
 
 def _short(number: float | None) -> str:

@@ -25,7 +25,7 @@ from zwidth.cli.page import (
 )
 from zwidth.passivity.bracket import Bracket
 from zwidth.passivity.in_short import in_short
-from zwidth.quantity.text import in_words, shown
+from zwidth.quantity.text import at_least, at_most, in_words, shown
 from zwidth.specification.read import Specification
 
 if TYPE_CHECKING:
@@ -125,7 +125,14 @@ def _values(bracket: Bracket) -> Table:
 
 
 def _shown(bracket: Bracket, value: float | None) -> str:
-    return "none known" if value is None else shown(value, bracket.unit, _DIGITS)
+    if value is None:
+        return "none known"
+    passive, active = bracket.proved_passive, bracket.proved_active
+    if passive is not None and active is not None:
+        refuted = value in (active, bracket.every_hand[1])
+        outward = at_least if (passive > active) != refuted else at_most
+        value = outward(value, bracket.unit, _DIGITS)
+    return shown(value, bracket.unit, _DIGITS)
 
 
 def _name(bracket: Bracket) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
 from collections.abc import Sequence
 from typing import NoReturn
@@ -57,11 +58,29 @@ def main(argv: Sequence[str] | None = None) -> int:
         with answers_as_typed():
             return _run(typed)
     except InputError as error:
-        print_message(plain(as_typed(str(error), typed), _LONGEST_MESSAGE))
+        print_message(plain(as_typed(_in_a_file(str(error), typed), typed), _LONGEST_MESSAGE))
         return BAD_INPUT
     except KeyboardInterrupt:
         print_message("interrupted")
         return INTERRUPTED
+
+
+_EXAMPLE = re.compile(r"--([a-z-]+) '([^']*)'")
+
+
+def _in_a_file(message: str, argv: Sequence[str]) -> str:
+    """The message with a line of a file in the place of an example of an option that the command has not."""
+    if not _EXAMPLE.search(message) or not argv or argv[0] not in COMMANDS:
+        return message
+    child = Parser(add_help=False)
+    configure(argv[0], child)
+    known = {option for action in child._actions for option in action.option_strings}
+
+    def shown(found: re.Match[str]) -> str:
+        line = f'{found[1].replace("-", "_")} = "{found[2]}" in a file'
+        return found[0] if f"--{found[1]}" in known else line
+
+    return _EXAMPLE.sub(shown, message)
 
 
 def _run(argv: list[str]) -> int:

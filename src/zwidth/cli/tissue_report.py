@@ -14,7 +14,7 @@ from zwidth.identification.logs import Finding
 from zwidth.identification.tissue import TissueTest
 from zwidth.passivity.bracket import Bracket
 from zwidth.passivity.outcome import TOLD
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import outward_decimal, shown
 
 _FEW = 4
 """Findings in a short report."""
@@ -133,8 +133,12 @@ def _scale(bracket: Bracket) -> str:
         return "neither a proof nor a motion was found for any scale of this tissue"
     if passive is None:
         return f"no scale is proved passive; at {active:.4g} times a hand takes energy out"
-    told = f"up to {passive:.4g} times this tissue is proved passive"
-    return told if active is None else f"{told}; at {active:.4g} times a hand takes energy out"
+    told = f"up to {outward_decimal(passive, False):.4g} times this tissue is proved passive"
+    return (
+        told
+        if active is None
+        else f"{told}; at {outward_decimal(active, True):.4g} times a hand takes energy out"
+    )
 
 
 def _assumed(test: TissueTest) -> Iterator[str]:

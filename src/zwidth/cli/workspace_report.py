@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from zwidth.cli.workspace_arm import arm_in_words
 from zwidth.cli.workspace_joints import damping_in_words
 from zwidth.cli.workspace_wall import wall_in_words
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import at_least, at_most, outward_decimal, shown
 
 if TYPE_CHECKING:
     from zwidth.arms import ArmMotion, EncoderSteps
@@ -125,26 +125,30 @@ def _changes(space: Workspace) -> Iterator[tuple[str, str]]:
     if not any(space.added.to_all.enough):
         return
     if space.largest_stiffness is None and space.stiffness_factor > 0:
-        yield "wall", f"its stiffness times {space.stiffness_factor:.4g}, and no more"
+        yield "wall", f"its stiffness times {outward_decimal(space.stiffness_factor, False):.4g}, and no more"
     elif space.largest_stiffness:
-        yield "wall", f"no stiffer than {shown(space.largest_stiffness, 'N/m')}"
+        yield "wall", f"no stiffer than {shown(at_most(space.largest_stiffness, 'N/m', 4), 'N/m')}"
     enough, fails = space.added.least
     total, too_little = sum(enough), sum(fails)
     parts = [
-        f"{shown(addition, 'N*m*s/rad')} more damping in joint {joint}"
+        f"{_enough(addition)} more damping in joint {joint}"
         for joint, addition in enumerate(enough, start=1)
         if addition > _SHOWN * total
     ]
-    together = f", together {shown(total, 'N*m*s/rad')}" if parts[1:] else ""
+    together = f", together {_enough(total)}" if parts[1:] else ""
     yield "least in all", ", ".join(parts) + together + _too_little(too_little)
     enough, fails = space.added.to_all
-    yield "all joints", f"{shown(enough[0], 'N*m*s/rad')} more damping in each{_too_little(fails[0])}"
+    yield "all joints", f"{_enough(enough[0])} more damping in each{_too_little(fails[0])}"
     for joint, (enough, fails) in enumerate(space.added.alone):
         if isfinite(enough[joint]):
-            text = f"{shown(enough[joint], 'N*m*s/rad')} more damping{_too_little(fails[joint])}"
+            text = f"{_enough(enough[joint])} more damping{_too_little(fails[joint])}"
             yield f"joint {joint + 1} alone", text
 
 
 def _too_little(fails: float) -> str:
     """Below which less of it fails at some point of the map, where that is known."""
-    return f"; less than {shown(fails, 'N*m*s/rad')} fails" if fails else ""
+    return f"; less than {shown(at_most(fails, 'N*m*s/rad', 4), 'N*m*s/rad')} fails" if fails else ""
+
+
+def _enough(damping: float) -> str:
+    return shown(at_least(damping, "N*m*s/rad", 4), "N*m*s/rad")

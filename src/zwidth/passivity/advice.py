@@ -1,21 +1,28 @@
 """What to change: the smallest change that makes an active loop passive, or the slack of a passive one.
 
-Every value given was itself proved passive, all else as it was.
+Every value given was itself proved passive, all else as it was, and of the same hands as the outcome: a loop
+that is passive with contact made and broken stays so.  Where a proof of hands that keep contact is all that
+was found, the advice says so.
+
+What is asked for is convex in the K and the B of a wall, and more b, more f_c and a finer encoder never hurt:
+beyond their limits nothing holds again.  In a delay, a period or the time constant of a filter that may
+be (behind a part of a sample a wall asks for more than behind a whole one): of these the way to the limit is
+looked at in steps, and the limit is the first place that fails.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache, cached_property, partial
-from math import ceil, floor, inf, isinf, log10
+from math import inf, isinf
 from typing import Literal
 
-from zwidth.device import Device
 from zwidth.environment import OnePole, Wall, Window
-from zwidth.environment.environment import Environment
 from zwidth.environment.wall import wall_of
+from zwidth.passivity.certificate import Certificate, certify_box
+from zwidth.passivity.corners import Loop, worst_corners
 from zwidth.passivity.decision import decide
 from zwidth.passivity.likely_limits import (
     Change,
@@ -32,11 +39,11 @@ from zwidth.passivity.linear.boundary import (
     largest_holding,
     smallest_holding,
 )
-from zwidth.passivity.parameter_limits import has_stiffness, is_of_high_degree, provable, stiffness_of
-from zwidth.quantity.exact import Exact
+from zwidth.passivity.parameter_limits import has_stiffness, is_of_high_degree, provable
+from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import alike, in_words, readable
+from zwidth.quantity.text import alike, in_words, outward_decimal, readable
 
 _NEVER_NOTHING = ("stiffness", "resolution", "link_delay")
 """What nobody can set to 0 and keep what it is there for."""
@@ -65,7 +72,8 @@ class Advice:
     `kind` is "change" for a loop that is not passive and "slack" for one that
     is; `to` is None where no value on the safer side was found that would do
     alone, and inf ("any" as plain data) where it may have any value.  `is_alone` where it is no limit
-    that keeps it where it is: of values beside it nothing is proved or refuted.
+    that keeps it where it is: of values beside it nothing is proved or refuted.  Of an interval it is the end
+    that asks for more.
     """
 
     parameter: str
@@ -160,7 +168,8 @@ class Knob:
 
     `parameter` is a name of the glossary, behind "leader." or "follower." where it is of one arm.  Where
     its limit may be looked for first says `likely`; `in_samples`, that it is proved for delays of whole
-    samples alone.
+    samples alone.  Where it may fail on the way to a limit that holds, `between` names values on that way.
+    Of a number below 0 it is the size, and `sign` is −1.  `hands` is said of whom it holds.
     """
 
     parameter: str
@@ -170,124 +179,263 @@ class Knob:
     name: str
     likely: Likely = nowhere
     in_samples: bool = False
+    between: Between | None = None
+    sign: int = 1
+    hands: str = ""
 
 
-def advise(
-    device: Device,
-    environment: Environment,
-    passive: bool,
-    contact: bool = False,
-    stiffest: Likely = nowhere,
-) -> tuple[Advice, ...]:
-    """Advice on every parameter of a certain loop.
+Between = Callable[[float], Iterable[float]]
+"""Values between where a number is and where it may go."""
+
+_KEPT = " while contact is kept"
+
+_PHASES = (0, 0.2, 0.4, 0.5, 0.6, 0.8)
+"""Of a sample: behind which part of it a loop asks for most depends on the law."""
+
+_MOST_SAMPLES = 3
+
+
+def between_delays(now: float, period: float) -> Between:
+    """Delays on the way from one to another: parts of the last samples and of the first [s]."""
+
+    def between(to: float) -> Iterator[float]:
+        first = int(now / period)
+        last = int(min(to, now + 1000 * period) / period)
+        samples = sorted({first, *range(max(first, last - _MOST_SAMPLES + 1), last + 1)})
+        yield from ((n + phase) * period for n in samples for phase in _PHASES)
+
+    return between
+
+
+def between_rates(now: float, delay: float) -> Between:
+    """The same of rates behind a delay: at which parts of a sample it ends, and some between [Hz]."""
+
+    def between(to: float) -> Iterator[float]:
+        least = to if 0 < to < inf else now / 1000
+        yield from between_sizes(now)(least)
+        if delay:
+            yield from (r / delay for r in between_delays(least * delay, 1)(now * delay))
+
+    return between
+
+
+def between_sizes(now: float) -> Between:
+    """Some values in proportion."""
+
+    def between(to: float) -> Iterator[float]:
+        low, high = now or to / 1000, to if 0 < to < inf else now * 1000 if to else now / 1000
+        yield from (low * (high / low) ** (part / 6) for part in range(1, 6)) if low and high else ()
+
+    return between
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is to be proved of which loop.
 
     Parameters
     ----------
-    device, environment
-        The loop, without intervals.
-    passive
-        True to say how far each parameter may go, False for what to change.
+    at
+        The loop; where it has intervals their corner that asks for most.
+    box
+        The same with its intervals.
     contact
         As for `provable`.
+    """
+
+    at: Loop
+    box: Loop
+    contact: bool = False
+
+    def is_confirmed(self, advice: Advice) -> bool:
+        """Whether between the ends of intervals a value is proved as well, as the checker sees it."""
+        if not isinstance(advice.to, float) or advice.to in (advice.current, inf):
+            return True
+        return self.covers(_TURNED[advice.parameter](self.box, Exact(advice.to).fraction))
+
+    def covers(self, loop: Loop) -> bool:
+        """Whether the checker finds it proved for all values of a loop that is provable at its corners."""
+        if self.at == self.box:
+            return True
+        corners = worst_corners(*loop)
+        proofs = certify_box(*loop, corners, [decide(*corner) for corner in corners])
+        covered = None if proofs is None else Certificate(tuple(proofs)).covered()
+        return covered is not None and not (self.contact and covered.contact == "kept")
+
+
+def advise(
+    asked: Asked, passive: bool, or_kept: bool = False, stiffest: Likely = nowhere
+) -> tuple[Advice, ...]:
+    """Advice on every parameter of a loop.
+
+    Parameters
+    ----------
+    asked
+        The loop, and what is to be proved.
+    passive
+        True to say how far each parameter may go, False for what to change.
+    or_kept
+        Whether a proof of hands that keep contact is better than none.
     stiffest
         Its `max_stiffness`, which is then not looked for twice.
     """
+    found = tuple(_advised(asked, passive, "" if asked.contact or not or_kept else _KEPT, stiffest))
+    if passive or not (asked.contact and or_kept) or any(advice.to is not None for advice in found):
+        return found
+    return tuple(_advised(replace(asked, contact=False), passive, _KEPT, nowhere))
+
+
+def _advised(asked: Asked, passive: bool, hands: str, stiffest: Likely) -> Iterator[Advice]:
     kind: Literal["change", "slack"] = "slack" if passive else "change"
-    is_high = is_of_high_degree(device, environment)
+    device, law = asked.at
+    is_high = is_of_high_degree(*asked.at)
     grain = COARSER if is_high else COARSE
-    knobs = list(_Knobs(device, environment, contact).every(stiffest))
+    knobs = [replace(knob, hands=hands) for knob in _Knobs(asked).every(stiffest)]
     if is_high:  # to find where a limit is likely takes as long as to find it
         knobs = [replace(knob, likely=nowhere) for knob in knobs]
-    found = [turn(knob, device.motion, kind, grain) for knob in knobs]
-    wall = wall_of(environment)
+    found = turn_all(knobs, device.motion, kind, grain)
+    yield from filter(asked.is_confirmed, found)
+    wall = wall_of(law)
     if not passive and wall is not None and wall.damping != 0:
-        found.extend(_estimators(device, wall, contact, grain))
-    return tuple(found)
+        yield from _estimators(asked, wall, hands, grain)
+
+
+Turned = Callable[[Loop, Fraction], Loop]
+"""A loop with a value of one of its parameters."""
 
 
 @dataclass(frozen=True)
 class _Knobs:
-    """Those of a loop; `contact` as for `provable`."""
+    """Those of a loop."""
 
-    device: Device
-    environment: Environment
-    contact: bool
+    asked: Asked
 
     def every(self, stiffest: Likely) -> Iterator[Knob]:
         """All of them, from the device to the law."""
-        period = self.device.exact("sample_period")
-        delay = self.device.exact("delay")
-        rate = self._searched("rate", 1 / period, self._device("rate"), True, "rate", float(period))
-        yield replace(rate, in_samples=delay > 0 and self._in_samples)
+        law, (whole, of_box) = self.asked.at[1], self.asked.box
+        period, delay = ends(whole.sample_period)[1], ends(whole.delay)[1]
+        rate = self._searched("rate", 1 / period, True, "rate", float(period))
+        between = between_rates(float(1 / period), float(delay))
+        yield replace(rate, in_samples=delay > 0 and self._in_samples, between=between)
         yield from self._losses()
-        later = self._searched("delay", delay, self._device("delay"), False, "delay", float(period))
-        yield replace(later, in_samples=self._in_samples)
-        if has_stiffness(self.environment):
-            now, change = stiffness_of(self.environment).fraction, self._law("stiffness")
-            yield Knob("stiffness", float(now), self._proved(change, now), False, "stiffness", stiffest)
-        if (wall := wall_of(self.environment)) is not None:
+        later = self._searched("delay", delay, False, "delay", float(period))
+        between = between_delays(float(delay), float(period))
+        yield replace(later, in_samples=self._in_samples, between=between)
+        wall = wall_of(law)
+        if has_stiffness(law):
+            now = ends(of_box.stiffness)[1]  # type: ignore[attr-defined]
+            on_the_way = None if wall is not None else between_sizes(float(now))
+            holds = self._proved("stiffness", now)
+            yield Knob("stiffness", float(now), holds, False, "stiffness", stiffest, between=on_the_way)
+        if wall is not None:
             yield from self._of_wall(wall)
 
     def _losses(self) -> Iterator[Knob]:
         """What takes energy out, and the encoder: of these it is known what a loop asks for."""
-        decision, contact = decide(self.device, self.environment), self.contact
+        decision, contact = decide(*self.asked.at), self.asked.contact
         of_one = replace(decision, setting=replace(decision.setting, resolution=Fraction(1)))
         for key, more, name, likely in (
             ("damping", True, "device damping", lambda: likely_damping(decision, contact)),
             ("coulomb_friction", True, "Coulomb friction", lambda: likely_friction(decision, contact)),
             ("resolution", False, "encoder resolution", lambda: likely_resolution(of_one, contact)),
         ):
-            now = self.device.exact(key)
-            yield Knob(key, float(now), self._proved(self._device(key), now), more, name, likely)
+            now = self.asked.at[0].exact(key)
+            yield Knob(key, float(now), self._proved(key, now), more, name, likely)
 
     def _of_wall(self, wall: Wall) -> Iterator[Knob]:
-        b = wall.damping
-        assert isinstance(b, Exact)
-        law = self._law("damping", -1 if b < 0 else 1)
-        usual = float(self.device.exact("damping")) or 1.0
-        yield self._searched("virtual_damping", abs(b.fraction), law, False, "virtual damping", usual)
-        tau = wall.velocity_filter.time_constant
-        if isinstance(tau, Exact) and b != 0:
-            change = self._filter(wall)
-            yield self._searched("time_constant", tau.fraction, change, True, "filter time constant", 0.0)
+        whole = self.asked.box[1]
+        if isinstance(getattr(whole, "damping", None), Exact):
+            b = wall.damping
+            assert isinstance(b, Exact)
+            sign, usual = -1 if b < 0 else 1, float(self.asked.at[0].exact("damping")) or 1.0
+            yield self._searched("virtual_damping", abs(b.fraction), False, "virtual damping", usual, sign)
+        tau = getattr(getattr(whole, "velocity_filter", None), "time_constant", None)
+        if isinstance(tau, Exact) and wall.damping != 0:
+            name = "filter time constant"
+            knob = self._searched("time_constant", tau.fraction, True, name, 0.0)
+            yield replace(knob, between=between_sizes(float(tau)))
 
-    def time_constant(self, wall: Wall, begin: float) -> Knob:
+    def time_constant(self, begin: float) -> Knob:
         """Of a one-pole filter in the place of that of the wall [s]; looked for from `begin` on."""
-        change = self._filter(wall)
-        likely = partial(likely_value, change, self.contact, begin, begin, True)
-        holds: Holds = lambda value: provable(change, value, self.contact)  # noqa: E731
+        change = partial(_TURNED["time_constant"], self.asked.at)
+        likely = partial(likely_value, change, self.asked.contact, begin, begin, True)
+        holds = self._proved("time_constant", None)
         return Knob("time_constant", 0.0, holds, True, "time constant", likely)
 
-    def _searched(self, key: str, now: Fraction, change: Change, more: bool, name: str, other: float) -> Knob:
+    def _searched(self, key: str, now: Fraction, more: bool, name: str, other: float, sign: int = 1) -> Knob:
         """A knob of which secants say where its limit is likely; `other` as for `likely_value`."""
-        likely = partial(likely_value, change, self.contact, float(now), other, more)
-        return Knob(key, float(now), self._proved(change, now), more, name, likely)
+        change: Change = lambda size: _TURNED[key](self.asked.at, sign * size)  # noqa: E731
+        likely = partial(likely_value, change, self.asked.contact, float(now), other, more)
+        return Knob(key, float(now), self._proved(key, now, sign), more, name, likely, sign=sign)
 
-    def _device(self, key: str) -> Change:
-        return lambda value: (self.device.replace(**{key: Exact(value)}), self.environment)
-
-    def _law(self, key: str, sign: int = 1) -> Change:
-        return lambda value: (self.device, self.environment.replace(**{key: Exact(sign * value)}))
-
-    def _filter(self, wall: Wall) -> Change:
-        return lambda value: (self.device, wall.replace(velocity_filter=OnePole(Exact(value))))
-
-    def _proved(self, change: Change, now: Fraction) -> Holds:
+    def _proved(self, key: str, now: Fraction | None, sign: int = 1) -> Holds:
         """Whether the loop with a value is proved passive; as it is, it is decided once for all knobs."""
-        return lambda value: self._here if value == now else provable(change, value, self.contact)
+        change: Change = lambda size: _TURNED[key](self.asked.box, sign * size)  # noqa: E731
+        return lambda size: self._here if size == now else provable(change, size, self.asked.contact)
 
     @cached_property
     def _in_samples(self) -> bool:
         """True where contact made and broken is proved, and with a delay half a sample longer never is."""
-        decision = decide(self.device, self.environment)
-        if decision.is_spring or not (self.contact or decision.is_clamped):
+        device, law = self.asked.at
+        decision = decide(device, law)
+        if decision.is_spring or not (self.asked.contact or decision.is_clamped):
             return False
-        longer = self.device.exact("delay") + self.device.exact("sample_period") / 2
-        return decide(self.device.replace(delay=Exact(longer)), self.environment).contact_damping is None
+        longer = device.exact("delay") + device.exact("sample_period") / 2
+        return decide(device.replace(delay=Exact(longer)), law).contact_damping is None
 
     @cached_property
     def _here(self) -> bool:
-        return provable(lambda _: (self.device, self.environment), Fraction(0), self.contact)
+        return provable(lambda _: self.asked.box, Fraction(0), self.asked.contact)
+
+
+def _of_device(key: str, more: bool) -> Turned:
+    def turned(loop: Loop, value: Fraction) -> Loop:
+        device, law = loop
+        return device.replace(**{key: _moved(getattr(device, key), value, more)}), law
+
+    return turned
+
+
+def _rate(loop: Loop, value: Fraction) -> Loop:
+    device, law = loop
+    if isinstance(device.sample_period, Interval):
+        return _of_device("sample_period", False)(loop, 1 / value)
+    return device.replace(rate=Exact(value)), law
+
+
+def _stiffness(loop: Loop, value: Fraction) -> Loop:
+    device, law = loop
+    return device, law.replace(stiffness=_moved(law.stiffness, value, False))  # type: ignore[attr-defined]
+
+
+_TURNED: Mapping[str, Turned] = {
+    "rate": _rate,
+    "damping": _of_device("damping", True),
+    "coulomb_friction": _of_device("coulomb_friction", True),
+    "resolution": _of_device("resolution", False),
+    "delay": _of_device("delay", False),
+    "stiffness": _stiffness,
+    "virtual_damping": lambda loop, value: (loop[0], loop[1].replace(damping=Exact(value))),
+    "time_constant": lambda loop, value: (loop[0], loop[1].replace(velocity_filter=OnePole(Exact(value)))),
+}
+
+
+def _moved(now: Exact | Interval, value: Fraction, more: bool) -> Exact | Interval:
+    """A value, or an interval with its worse end there; one value where its other end would be worse."""
+    if not isinstance(now, Interval):
+        return Exact(value)
+    low, high = ends(now)
+    if more:
+        return Exact(value) if value >= high else Interval(Exact(value), now.high)
+    return Exact(value) if value <= low else Interval(now.low, Exact(value))
+
+
+def turn_all(
+    knobs: Iterable[Knob], motion: str, kind: Literal["change", "slack"], grain: int = COARSE
+) -> list[Advice]:
+    """`turn` of each; what there is none of, and cannot be less of, is left out."""
+    found = [turn(knob, motion, kind, grain) for knob in knobs]
+    return [one for one in found if one.kind == "change" or one.to != 0 or one.current != 0]
 
 
 def turn(knob: Knob, motion: str, kind: Literal["change", "slack"], grain: int = COARSE) -> Advice:
@@ -296,12 +444,35 @@ def turn(knob: Knob, motion: str, kind: Literal["change", "slack"], grain: int =
     to = None
     if knob.more or knob.current or kind == "slack":  # nothing is less than 0
         to = _last_proved(knob, grain)
+    if kind == "slack" and to is not None:
+        to = _first_crossing(knob, to, grain)
     if kind == "change" and to is not None and not _is_change(knob, to):
         to = None
     unit = GLOSSARY[knob.parameter.rpartition(".")[2]].unit_for(motion)
     shown = None if to is None else outward(to, knob, spoken(unit)[0])
     is_alone = knob.in_samples and to == knob.current
-    return Advice(knob.parameter, knob.current, to, unit, kind, _text(knob, shown, unit, kind), is_alone)
+    now, signed = knob.sign * knob.current or 0.0, None if to is None else knob.sign * to
+    return Advice(knob.parameter, now, signed, unit, kind, _text(knob, shown, unit, kind), is_alone)
+
+
+def _first_crossing(knob: Knob, to: float, grain: int) -> float:
+    """How far it may go, where on the way there a value fails: to before the first that does."""
+    if knob.between is None or to == knob.current:
+        return to
+    end = 0.0 if knob.more and to == inf else to
+    ways = sorted((v for v in knob.between(to) if _is_between(knob.current, v, end)), reverse=knob.more)
+    failing = next((v for v in ways if not knob.holds(Exact(v).fraction)), None)
+    if failing is None:
+        return to
+    good, bad = knob.current, failing
+    while abs(bad - good) > grain * 2.0**-53 * abs(bad):
+        middle = (good + bad) / 2
+        good, bad = (middle, bad) if knob.holds(Exact(middle).fraction) else (good, middle)
+    return _first_crossing(knob, _simplest_near(good, knob.holds, knob.more, grain), grain)
+
+
+def _is_between(one: float, value: float, other: float) -> bool:
+    return min(one, other) < value < max(one, other)
 
 
 def _last_proved(knob: Knob, grain: int) -> float | None:
@@ -334,53 +505,60 @@ def _is_change(knob: Knob, to: float) -> bool:
 
 
 def outward(value: float, knob: Knob, factor: float = 1.0) -> float:
-    """Four significant digits on the safe side, in the unit of which one in SI is `factor`, if proved too."""
-    if value == 0 or isinf(value):
+    """Four significant digits on the safe side, in the unit of which one in SI is `factor`, if proved too.
+
+    Six or more where four are not, or are no farther than where it is.
+    """
+    if value == 0 or isinf(value) or value == knob.current:
         return value
-    told = value * factor
-    scale = 10.0 ** (floor(log10(abs(told))) - 3)
-    rounded = float(f"{(ceil(told / scale) if knob.more else floor(told / scale)) * scale:.4g}") / factor
-    return rounded if knob.holds(Exact(rounded).fraction) else value
+    for digits in (4, 6, 9, 12):
+        rounded = outward_decimal(value * factor, knob.more, digits) / factor
+        is_farther = (rounded < knob.current) == (value < knob.current) and rounded != knob.current
+        if is_farther and knob.holds(Exact(rounded).fraction):
+            return rounded
+    return value
 
 
 def _text(knob: Knob, to: float | None, unit: str, kind: str) -> str:
-    now = readable(knob.current, unit)
-    if kind == "change":
-        if to is None:
-            return f"no {'higher' if knob.more else 'lower'} {knob.name} was found that would do alone"
-        verb = "raise" if knob.more else "lower"
-        now, wanted = alike(unit, (knob.current, to), (4, 6))
-        return f"{verb} the {knob.name} from {now} to {wanted}"
+    name, hands = knob.name, knob.hands
+    higher = knob.more == (knob.sign > 0)
+    if kind == "change" and to is None:
+        return f"no {'higher' if higher else 'lower'} {name} was found that would do alone{hands}"
     if to is None or to == inf:
-        return f"{knob.name} may take any value" if to == inf else f"{knob.name} has no slack"
+        return f"{name} may take any value{hands}" if to == inf else f"{name} has no slack"
+    size = to * spoken(unit)[0]
+    digits = next((n for n in range(6, 17) if abs(float(f"{size:.{n}g}") - size) <= 1e-15 * size), 17)
+    near = 4 if digits == 6 and abs(to - knob.current) > 2e-3 * abs(to) else 12
+    now, wanted = alike(unit, (knob.sign * knob.current, knob.sign * to), (near, digits))
+    if kind == "change":
+        return f"{'raise' if higher else 'lower'} the {name} from {now} to {wanted}{hands}"
     if to == knob.current and knob.in_samples:
-        return f"{knob.name} is proved where it is, {now}, and for delays of whole samples alone"
+        return f"{name} is proved where it is, {now}, and for delays of whole samples alone"
     if to == knob.current:
-        return f"{knob.name} is exactly at its limit, {now}"
-    bound = "as low as" if knob.more else "up to"
-    now, most = alike(unit, (knob.current, to), (4, 6))
-    return f"{knob.name} may go {bound} {most} (now {now})"
+        return f"{name} is exactly at its limit, {now}"
+    bound = "as low as" if knob.more else "up to" if knob.sign > 0 else "down to"
+    return f"{name} may go {bound} {wanted}{hands} (now {now})"
 
 
-def _estimators(device: Device, wall: Wall, contact: bool, grain: int) -> Iterator[Advice]:
+def _estimators(asked: Asked, wall: Wall, hands: str, grain: int) -> Iterator[Advice]:
     """Another velocity estimator that makes the loop passive, if one of the usual does."""
     now = wall.velocity_filter.describe()
+    device, law = asked.box
     for samples in _WINDOWS:
-        law = wall.replace(velocity_filter=Window(samples))
-        if provable(lambda _, law=law: (device, law), Fraction(0), contact):  # type: ignore[misc]
+        other = device, law.replace(velocity_filter=Window(samples))
+        if provable(lambda _, other=other: other, Fraction(0), asked.contact) and asked.covers(other):  # type: ignore[misc]
             to = f"window of {samples} samples"
-            text = f"estimate velocity with a {to} instead of the {now}"
+            text = f"estimate velocity with a {to} instead of the {now}{hands}"
             yield Advice("velocity_filter", now, to, "", "change", text)
             break
     if wall.velocity_filter.time_constant is None:
-        knobs = _Knobs(device, wall, contact)
-        period = float(device.exact("sample_period"))
-        knob = knobs.time_constant(wall, period)
+        period = float(ends(device.sample_period)[1])
+        knob = _Knobs(asked).time_constant(period)
         tau = _first_scanned(knob, period, grain)
-        if tau is not None:
+        if tau is not None and asked.covers(_TURNED["time_constant"](asked.box, Exact(tau).fraction)):
             shown = outward(tau, knob)
             to = f"one-pole filter of {readable(shown, 's')}"
-            text = f"estimate velocity with a {to} (time constant) instead of the {now}"
+            text = f"estimate velocity with a {to} (time constant) instead of the {now}{hands}"
             yield Advice("velocity_filter", now, to, "", "change", text)
 
 

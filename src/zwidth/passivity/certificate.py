@@ -13,17 +13,21 @@ from pathlib import Path
 from typing import Any
 
 from zwidth.checker import Scope, Unreadable, Verified, judge, read_file, verify
+from zwidth.device import Device
+from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean
+from zwidth.passivity.corners import Loop, corners_decide
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.document import loop_document, unit_key
 from zwidth.passivity.linear.contact import DampedWall
-from zwidth.passivity.linear.delay_interval import Piece
+from zwidth.passivity.linear.delay_interval import Piece, prove_delays
 from zwidth.passivity.linear.linear import LinearProof
 from zwidth.passivity.linear.one_norm import NormBound
 from zwidth.passivity.linear.positivity import Positivity
 from zwidth.passivity.linear.relaxing_contact import RelaxingLaw
 from zwidth.passivity.result import Evidence
+from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.text import exact_text
 
 FORMAT = "zwidth certificate 1"
@@ -135,6 +139,30 @@ def _multiplier(decision: Decision) -> dict[str, Any]:
         assert law.norm is not None
         proof["norm"] = _norm(law.norm)
     return {"law": {"fed_with": "position", "never_pulls": law.never_pulls}, "proof": proof}
+
+
+def certify_box(
+    device: Device, law: Environment, corners: Sequence[Loop], decisions: Sequence[Decision]
+) -> list[dict[str, Any]] | None:
+    """Proofs that together cover the whole box of parameters, or None."""
+    if corners_decide(device, law, all(d.is_spring or d.covers_contact for d in decisions)):
+        return [certify(d) for d in decisions]
+    shortest, longest = ends(device.delay)
+    if any(d.is_clamped for d in decisions):  # contact is covered for certain delays only
+        return None
+    if shortest == longest or not corners_decide(device.replace(delay=Exact(shortest)), law):
+        return None
+    proofs = []
+    for corner, decision in zip(corners, decisions, strict=True):
+        if decision.is_spring:  # the longest delay decides; both ends are among the corners
+            proofs.append(certify(decision))
+        elif corner[0].exact("delay") == shortest:
+            assert isinstance(decision.viscous, LinearProof), "provable decisions only"
+            pieces = prove_delays(decision.loop, decision.viscous, longest)
+            if pieces is None:
+                return None
+            proofs.append(certify_delays(decision, pieces, longest))
+    return proofs
 
 
 def certify_delays(decision: Decision, pieces: Sequence[Piece], longest: Fraction) -> dict[str, Any]:

@@ -19,12 +19,11 @@ from zwidth.environment.system import is_system
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.pairs import Pair
-from zwidth.passivity.certificate import Certificate, certify, certify_delays
-from zwidth.passivity.corners import Loop, best_corner, corners_decide, worst_corners
+from zwidth.passivity.certificate import Certificate, certify_box
+from zwidth.passivity.corners import Loop, best_corner, worst_corners
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.found import Finding
 from zwidth.passivity.gap import has_gap, with_value_iteration
-from zwidth.passivity.linear.delay_interval import prove_delays
 from zwidth.passivity.linear.linear import LinearProof, LinearRefutation, decide_linear
 from zwidth.passivity.linear.loop import HIGH_DEGREE, linear_loop
 from zwidth.passivity.linear.supremum import tightest
@@ -35,7 +34,6 @@ from zwidth.passivity.witness.refutation import refute_friction
 from zwidth.passivity.witness.touching import refute_touching
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
-from zwidth.quantity.exact import Exact, ends
 
 if TYPE_CHECKING:
     from zwidth.arms import Arm
@@ -182,12 +180,16 @@ def check_by_closed_forms(
 ) -> LinearVerdict:
     """`check` without value iteration: exact, in milliseconds, of every hand."""
     asked, law = as_contact(contact), _as_law(device, environment)
+    return replace(_decided(device, law, asked), box=(device, law), asked=asked)
+
+
+def _decided(device: Device, law: Environment, asked: Contact) -> LinearVerdict:
     corners = worst_corners(device, law)
     _require_few(corners)
     decisions = [decide(*corner) for corner in corners]
     failing = [k for k, d in enumerate(decisions) if not d.is_provable]
     if not failing:
-        proofs = _proofs(device, law, corners, decisions)
+        proofs = certify_box(device, law, corners, decisions)
         if proofs is not None:
             found = _passive(device, law, corners, decisions, proofs, asked)
             touched = _touched(device, law, found)
@@ -237,30 +239,6 @@ def _as_law(device: Device, environment: Environment | Any) -> Environment:
     if type(environment).__name__ == "MatrixWall":
         raise InputError("a MatrixWall is of several coordinates: give an arm in the place of the device")
     return as_environment(environment)
-
-
-def _proofs(
-    device: Device, law: Environment, corners: list[Loop], decisions: list[Decision]
-) -> list[dict[str, Any]] | None:
-    """Proofs that together cover the whole box of parameters, or None."""
-    if corners_decide(device, law, all(d.is_spring or d.covers_contact for d in decisions)):
-        return [certify(d) for d in decisions]
-    shortest, longest = ends(device.delay)
-    if any(d.is_clamped for d in decisions):  # contact is covered for certain delays only
-        return None
-    if shortest == longest or not corners_decide(device.replace(delay=Exact(shortest)), law):
-        return None
-    proofs = []
-    for corner, decision in zip(corners, decisions, strict=True):
-        if decision.is_spring:  # the longest delay decides; both ends are among the corners
-            proofs.append(certify(decision))
-        elif corner[0].exact("delay") == shortest:
-            assert isinstance(decision.viscous, LinearProof), "provable decisions only"
-            pieces = prove_delays(decision.loop, decision.viscous, longest)
-            if pieces is None:
-                return None
-            proofs.append(certify_delays(decision, pieces, longest))
-    return proofs
 
 
 def _passive(

@@ -11,13 +11,15 @@ from typing import Any
 
 from zwidth.device.actuator import ActuatorCheck, actuator_checks
 from zwidth.passivity import parameter_limits
-from zwidth.passivity.advice import Advice, advise
+from zwidth.passivity.advice import Advice, Asked, advise
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
+from zwidth.passivity.corners import Loop
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.formulas.stability_plane import admissible_speed
+from zwidth.passivity.scope import Contact
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
-from zwidth.quantity.text import in_unit, in_words
+from zwidth.quantity.text import at_least, at_most, in_unit, in_words
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -28,9 +30,15 @@ class LinearVerdict(Verdict):
     ----------
     decision
         What is known of the loop, at the worst corner where intervals were given.
+    box
+        The loop with its intervals; None where it was not kept.
+    asked
+        Of which contact.
     """
 
     decision: Decision
+    box: Loop | None = None
+    asked: Contact = "made and broken"
 
     @cached_property
     def budget(self) -> Budget:
@@ -76,6 +84,14 @@ class LinearVerdict(Verdict):
         (see `max_gain`).
         """
         return parameter_limits.max_stiffness(self.device, self.environment, self._with_contact_broken)
+
+    @cached_property
+    def stiffest(self) -> float | None:
+        """The largest K that `check` calls passive, of contact as it was asked [N/m; N·m/rad]."""
+        contact = self.environment.unilateral and self.asked != "kept"
+        if self.decision.is_spring or contact == self._with_contact_broken:
+            return self.max_stiffness
+        return parameter_limits.max_stiffness(self.device, self.environment, contact)
 
     @cached_property
     def max_gain(self) -> float | None:
@@ -128,8 +144,14 @@ class LinearVerdict(Verdict):
     @cached_property
     def advice(self) -> tuple[Advice, ...]:
         """The smallest single changes that would do, or the slack of each parameter."""
-        contact, stiffest = self._with_contact_broken, lambda: self.max_stiffness
-        return advise(self.device, self.environment, self.is_proved, contact, stiffest)
+        at, law = (self.device, self.environment), self.environment
+        one_sided = law.unilateral and self.asked != "kept"
+        proved = self.outcome == "passive"
+        contact = self.scope.contact == "made and broken" if proved else one_sided and not self.is_proved
+        or_kept = one_sided and not (proved or self._in_contact_only or self.decision.is_clamped)
+        same = contact == self._with_contact_broken or self.decision.is_spring
+        stiffest = (lambda: self.max_stiffness) if same else (lambda: None)
+        return advise(Asked(at, self.box or at, contact), self.is_proved, or_kept, stiffest)
 
     @cached_property
     def actuator(self) -> tuple[ActuatorCheck, ...]:
@@ -168,10 +190,20 @@ class LinearVerdict(Verdict):
         unit = {name: GLOSSARY[name].unit_for(self.device.motion) for name in ("stiffness", "damping")}
         rows = [("limit", self.limit)]
         if parameter_limits.has_stiffness(self.environment):
-            rows.append(("largest passive stiffness", in_unit(self.max_stiffness, unit["stiffness"])))
+            rows.append(
+                (
+                    "largest passive stiffness",
+                    in_unit(at_most(self.max_stiffness, unit["stiffness"]), unit["stiffness"]),
+                )
+            )
         else:
-            rows.append(("largest passive gain", in_unit(self.max_gain, "times this law")))
-        rows.append(("required device damping", in_unit(self.required_damping, unit["damping"])))
+            rows.append(("largest passive gain", in_unit(at_most(self.max_gain, "1"), "times this law")))
+        rows.append(
+            (
+                "required device damping",
+                in_unit(at_least(self.required_damping, unit["damping"]), unit["damping"]),
+            )
+        )
         rows.append(("critical frequency", in_unit(self.critical_frequency, "Hz")))
         for name, value in self.margins.items():
             margin_unit = GLOSSARY[name].unit_for(self.device.motion)
@@ -180,7 +212,7 @@ class LinearVerdict(Verdict):
             speed = in_unit(self.admissible_speed, self.device.unit("velocity"))
             rows.append(("slower hands are safe up to", speed))
         if self.outcome == "passive in contact" and self.decision.contact_damping is not None:
-            enough = in_unit(float(self.decision.contact_damping), unit["damping"])
+            enough = in_unit(at_least(float(self.decision.contact_damping), unit["damping"]), unit["damping"])
             rows.append(("damping, contact broken too", enough))
         return [*rows, *super().rows()]
 

@@ -13,6 +13,7 @@ from math import inf
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
+from zwidth.passivity.corners import worst_corners
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.likely_limits import Change, likely_value
 from zwidth.passivity.linear.boundary import COARSE, Holds, largest_holding, smallest_holding
@@ -25,13 +26,19 @@ from zwidth.quantity.exact import Exact
 def provable(change: Change, value: Fraction, contact: bool = False) -> bool:
     """True when the loop with this value is proved passive; a value that cannot be built is not.
 
-    With `contact`, proved with contact made and broken.
+    With `contact`, proved with contact made and broken; with intervals, at each of their corners.
     """
     try:
-        decision = decide(*change(value))
-        return decision.is_provable and (not contact or decision.is_spring or decision.covers_contact)
+        device, law = change(value)
+        certain = device.is_certain and law.is_certain
+        corners = [(device, law)] if certain else worst_corners(device, law)
+        return all(_is_provable(decide(*corner), contact) for corner in corners)
     except (InputError, ZeroDivisionError):
         return False
+
+
+def _is_provable(decision: Decision, contact: bool) -> bool:
+    return decision.is_provable and (not contact or decision.is_spring or decision.covers_contact)
 
 
 def required_damping(decision: Decision, contact: bool = False) -> float | None:

@@ -10,6 +10,7 @@ of a number alone is proved does not say that none would do, so that those are l
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from math import inf
 
@@ -17,7 +18,7 @@ from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.errors import InputError
-from zwidth.passivity.advice import Advice, Knob, turn
+from zwidth.passivity.advice import Advice, Knob, between_rates, turn_all
 from zwidth.passivity.budget import DELAY, QUANTIZATION, SAMPLING
 from zwidth.passivity.formulas.nonlinear_spring import certify_spring, spring_need
 from zwidth.passivity.found import Need
@@ -50,9 +51,9 @@ def advise_on_spring(device: Device, spring: Environment, passive: bool) -> tupl
     kind = "slack" if passive else "change"
     found = []
     for knob, at in _knobs(device, spring):
-        advice = turn(knob, device.motion, kind)  # type: ignore[arg-type]
-        if isinstance(advice.to, float) and (advice.to == inf or _is_proved(at, advice.to)):
-            found.append(advice)
+        for advice in turn_all([knob], device.motion, kind):  # type: ignore[arg-type]
+            if isinstance(advice.to, float) and (advice.to == inf or _is_proved(at, advice.to)):
+                found.append(advice)
     return tuple(found)
 
 
@@ -64,7 +65,9 @@ def _knobs(device: Device, spring: Environment) -> Iterator[tuple[Knob, Callable
         return Knob(key, now, lambda value: _is_enough(at, value), more, name)
 
     now = float(device.exact("sample_period") ** -1)
-    yield knob("rate", now, of_device("rate"), True, "rate"), of_device("rate")
+    rate = knob("rate", now, of_device("rate"), True, "rate")
+    between = between_rates(now, float(device.exact("delay")))
+    yield replace(rate, between=between), of_device("rate")
     for key, more in (("damping", True), ("coulomb_friction", True), ("resolution", False)):
         name = {"damping": "device damping", "resolution": "encoder resolution"}.get(key, in_words(key))
         yield knob(key, float(device.exact(key)), of_device(key), more, name), of_device(key)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from decimal import Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from fractions import Fraction
 from math import floor, inf, log10
 
@@ -151,6 +151,27 @@ def in_unit(value: float | None, unit: str) -> str:
     if value == inf:
         return "any"
     return readable(value, unit) if "e-" in f"{value * spoken(unit)[0]:.6g}" else told(value, unit)
+
+
+def outward_decimal(value: float, more: bool, digits: int = 4) -> float:
+    """So many significant digits, never less with `more` and never more without; noise of doubles aside."""
+    told = Decimal(f"{value:.15g}")
+    if not told.is_finite() or told == 0:
+        return value
+    step = Decimal((0, (1,), told.adjusted() - digits + 1))
+    return float(told.quantize(step, ROUND_CEILING if more else ROUND_FLOOR))
+
+
+def at_most(value: float | None, unit: str, digits: int = 6) -> float | None:
+    """The same of a value up to which something holds, in the unit in which it is told."""
+    factor = spoken(unit)[0]
+    return None if value is None else outward_decimal(value * factor, False, digits) / factor
+
+
+def at_least(value: float | None, unit: str, digits: int = 6) -> float | None:
+    """Of a value from which on something holds."""
+    factor = spoken(unit)[0]
+    return None if value is None else outward_decimal(value * factor, True, digits) / factor
 
 
 def in_a_table(value: float, digits: int = 4) -> str:

@@ -14,7 +14,16 @@ from typing import Any, Literal
 from zwidth.device import Device
 from zwidth.errors import InputError
 from zwidth.pairs import Pair
-from zwidth.passivity.advice import Advice, Knob, outward, turn
+from zwidth.passivity.advice import (
+    Advice,
+    Knob,
+    between_delays,
+    between_rates,
+    between_sizes,
+    outward,
+    turn,
+    turn_all,
+)
 from zwidth.passivity.linear.boundary import Holds
 from zwidth.passivity.pairs.limits import grain_of, is_passive, largest_stiffness, samples_around, with_share
 from zwidth.quantity.exact import Exact
@@ -59,10 +68,10 @@ def advise(pair: Pair, passive: bool) -> tuple[Advice, ...]:
     kind: Literal["change", "slack"] = "slack" if passive else "change"
     grain = grain_of(pair)
     knobs = [*_of_the_coupling(pair), *_of_the_arms(pair)]
-    found = [turn(knob, pair.motion, kind, grain) for knob in knobs]
+    found = turn_all(knobs, pair.motion, kind, grain)
     if not passive:
         found += _both_arms(pair, grain)
-        found += [turn(knob, pair.motion, kind, grain) for knob in _more_local_damping(pair)]
+        found += turn_all(_more_local_damping(pair), pair.motion, kind, grain)
     if any(pair.compensations):
         found.append(_share(pair, kind, grain))
     return tuple(found)
@@ -103,7 +112,7 @@ def _stiffness_at(
         proved = "proved" if any(pair.compensations) else "passive"
         return StiffnessAt(parameter, times, None, unit, f"{where} no stiffness is {proved}")
     safe = outward(largest, next(_of_the_coupling(pair)), spoken(unit)[0])
-    text = f"{where} a stiffness of up to {told(safe, unit)} is passive"
+    text = f"{where} a stiffness of up to {told(safe, unit, 12)} is passive"
     return StiffnessAt(parameter, times, largest, unit, text)
 
 
@@ -129,14 +138,22 @@ def _at_rate(pair: Pair, rate: Fraction) -> Pair:
 
 
 def _of_the_coupling(pair: Pair) -> Iterator[Knob]:
-
     yield Knob("stiffness", float(pair.felt_stiffness), _holds(pair.stiffened), False, "stiffness")
     for key, quantity in (("damping", "virtual_damping"), ("local_damping", "local_damping")):
         gain: Exact = getattr(pair, key)
         if gain and getattr(pair, f"follower_{key}") is None:
             sign = -1 if gain < 0 else 1
             change: Change = lambda v, key=key, sign=sign: pair.replace(**{key: Exact(sign * v)})  # type: ignore[misc]  # noqa: E731
-            yield Knob(quantity, abs(float(gain)), _holds(change), False, in_words(quantity))
+            size = abs(float(gain))
+            yield Knob(
+                quantity,
+                size,
+                _holds(change),
+                False,
+                in_words(quantity),
+                between=between_sizes(size),
+                sign=sign,
+            )
     longer = max(pair.delay)
 
     def link(delay: Fraction) -> Pair:
@@ -144,8 +161,10 @@ def _of_the_coupling(pair: Pair) -> Iterator[Knob]:
         return pair.replace(delay=tuple(Exact(delay * part) for part in parts))
 
     name = "link delay" if pair.there == pair.back else "longer link delay, the other in proportion,"
-    yield Knob("link_delay", float(longer), _holds(link), False, name)
-    yield Knob("rate", float(1 / pair.sample_period), _holds(lambda rate: _at_rate(pair, rate)), True, "rate")
+    far, period = float(longer), float(pair.sample_period)
+    yield Knob("link_delay", far, _holds(link), False, name, between=between_delays(far, period))
+    holds = _holds(lambda rate: _at_rate(pair, rate))
+    yield Knob("rate", 1 / period, holds, True, "rate", between=between_rates(1 / period, far))
 
 
 def _of_the_arms(pair: Pair) -> Iterator[Knob]:
@@ -178,7 +197,7 @@ def _both_arms(pair: Pair, grain: int) -> Iterator[Advice]:
         if not isinstance(advice.to, float) or advice.to <= max(now):
             continue
         if now[0] != now[1]:
-            to = told(outward(advice.to, knob, spoken(advice.unit)[0]), advice.unit)
+            to = advice.text.rpartition(" to ")[2]
             advice = replace(advice, text=f"raise the {knob.name} to {to}")
         yield advice
 

@@ -1,0 +1,189 @@
+"""Advice is the bound of the outcome that is printed: each value is asked of `check` again, on both sides."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Any
+
+from strategies import seeds
+
+import zwidth as zw
+from zwidth.environment.environment import Environment
+from zwidth.passivity.advice import Advice
+from zwidth.passivity.check import check_by_closed_forms
+from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.units import parse_number
+from zwidth.rendering import OnePole, Window
+
+Loop = tuple[zw.Device, Any]
+
+_MORE = ("rate", "damping", "coulomb_friction", "time_constant")
+"""Of which the safer side is above."""
+
+_SAID = re.compile(r"(?:to|as low as) (-?[\d.e-]+) ?(\D*?)(?: while contact is kept)?(?: \(now .*\))?$")
+
+
+def rounded(value: float) -> Exact:
+    """As a person types it."""
+    return Exact(f"{value:.4g}")
+
+
+def drawn(rng: random.Random) -> Loop:
+    """A loop near its limit: with and without delay, encoder, friction, interval; any linear law."""
+    b, period = 10 ** rng.uniform(-2, 0.5), 10 ** rng.uniform(-4, -2.3)
+    late = rng.choice([0, 0, rng.randrange(1, 4), rng.uniform(0, 3), rng.uniform(0, 3)])
+    stiffness, damping = rng.uniform(0, 1.3) * b / period / (1 + late), rng.uniform(-0.3, 1) * b
+    numbers: dict[str, Any] = {
+        "damping": rounded(b),
+        "sample_period": rounded(period),
+        "delay": late * rounded(period).fraction if isinstance(late, int) else rounded(late * period),
+    }
+    if rng.random() < 0.6:
+        numbers["resolution"] = rounded(10 ** rng.uniform(-6, -4))
+    if rng.random() < 0.7:
+        numbers["coulomb_friction"] = rounded(10 ** rng.uniform(-3, 0))
+    if rng.random() < 0.12:
+        key = rng.choice([k for k in numbers if float(numbers[k])])
+        end = rounded(float(numbers[key]) * rng.uniform(1.01, 1.5))
+        numbers[key] = Interval(*sorted((Exact(numbers[key]), end), key=float))
+    device = zw.Device(**numbers, motion=rng.choice(["linear", "linear", "linear", "rotary"]))
+    return device, _law(rng, stiffness, damping, period)
+
+
+def _law(rng: random.Random, stiffness: float, damping: float, period: float) -> Environment:
+    k, b = rounded(stiffness), rounded(damping)
+    kind = rng.randrange(9)
+    if kind == 0:
+        return zw.Wall(k)
+    if kind < 5:
+        slow = OnePole(rounded(period * 10 ** rng.uniform(-1, 1)))
+        filters = [None, None, Window(rng.randrange(2, 6)), slow]
+        b = rng.choice([b, rounded(abs(damping) / 4)])
+        return zw.Wall(k, b, rng.choice(filters), clamped=rng.random() < 0.1)
+    branch, eta = rounded(stiffness * rng.uniform(0.1, 1)), rounded(abs(damping) * rng.uniform(0.2, 2) + 1e-4)
+    how = rng.choice(["backward", "tustin"])
+    if kind == 5:
+        return zw.Maxwell(branch, eta, discretization=how)
+    if kind < 8:
+        return zw.StandardLinearSolid(k, branch, eta, discretization=how)
+    lead = [0.7 * stiffness * period, stiffness]
+    return zw.ContinuousTransferFunction(lead, [period / 2, 1], discretization="tustin")
+
+
+def turned(loop: Loop, advice: Advice, value: float | Fraction) -> Loop:
+    """The loop with another value of what is advised on."""
+    device, law = loop
+    key, exact = advice.parameter, Exact(value)
+    if key == "stiffness":
+        return device, law.replace(stiffness=_end(law.stiffness, exact, False))
+    if key == "virtual_damping":
+        return device, law.replace(damping=exact)
+    if key == "time_constant":
+        return device, law.replace(velocity_filter=OnePole(exact))
+    if key == "rate":
+        period = Exact(1 / exact.fraction)
+        return device.replace(sample_period=_end(device.sample_period, period, False)), law
+    return device.replace(**{key: _end(getattr(device, key), exact, key in _MORE)}), law
+
+
+def _end(now: Any, value: Exact, low: bool) -> Any:
+    """The end of an interval that asks for more, moved; a value in the place of one."""
+    if not isinstance(now, Interval):
+        return value
+    if low:
+        return value if value.fraction >= now.high.fraction else Interval(value, now.high)
+    return value if value.fraction <= now.low.fraction else Interval(now.low, value)
+
+
+def faults(device: zw.Device, law: Any, contact: str, rng: random.Random) -> Iterator[str]:
+    """What is said of how far a number may or must go, and is not so."""
+    verdict = check_by_closed_forms(device, law, contact=contact)
+    for advice in verdict.advice:
+        if advice.parameter == "velocity_filter":
+            yield from _of_another_filter((device, law), advice, contact)
+        elif isinstance(advice.to, float):
+            told = f"{verdict.outcome}, {advice}:"
+            if advice.kind == "slack" and not advice.to and not advice.current:
+                yield f"{told} it has none of it"
+            elif advice.to < float("inf"):
+                yield from (f"{told} {fault}" for fault in _of_a_number((device, law), advice, contact, rng))
+
+
+def _of_a_number(loop: Loop, advice: Advice, contact: str, rng: random.Random) -> Iterator[str]:
+    to, now = advice.to, advice.current
+    assert isinstance(to, float)
+    assert isinstance(now, float)
+    more = advice.parameter in _MORE
+    said = _SAID.search(advice.text)
+    values = {"at its value": to}
+    if said is not None:
+        values["as it is printed"] = float(parse_number(f"{said[1]} {said[2]}", advice.unit, "it"))
+    if advice.kind == "slack" and to != now:
+        for part in (rng.random() for _ in range(6)):
+            values[f"{part} of the way"] = now + part * (to - now)
+    for where, value in values.items():
+        if not holds(turned(loop, advice, value), advice, contact):
+            yield f"not {where}, {value!r}"
+            return
+    high = 3e-3 if is_slow(loop) else 2e-6
+    beyond = to * (1 - high if more else 1 + high)
+    limited = not advice.is_alone and (to or not more)
+    if limited and holds(turned(loop, advice, beyond or 1e-14), advice, contact):
+        yield f"beyond, at {beyond!r}, too"
+
+
+def is_slow(loop: Loop) -> bool:
+    """Whether limits are looked for in larger steps."""
+    from zwidth.passivity.corners import worst_corners
+    from zwidth.passivity.parameter_limits import is_of_high_degree
+
+    return any(is_of_high_degree(*corner) for corner in worst_corners(*loop))
+
+
+def holds(loop: Loop, advice: Advice, contact: str) -> bool:
+    """Whether `check` says of it what the advice promises."""
+    kept = advice.text.partition(" (now")[0].endswith("while contact is kept")
+    try:
+        return check_by_closed_forms(*loop, contact="kept" if kept else contact).outcome == "passive"
+    except zw.InputError:
+        return False
+
+
+def _of_another_filter(loop: Loop, advice: Advice, contact: str) -> Iterator[str]:
+    device, law = loop
+    name, number = re.search(r"(window|one-pole filter) of ([\d.]+ ?\w+)", advice.text).groups()
+    is_window = name == "window"
+    other = Window(int(number.split()[0])) if is_window else OnePole(Exact(parse_number(number, "s", "it")))
+    if not holds((device, law.replace(velocity_filter=other)), advice, contact):
+        yield f"{advice}: not so"
+
+
+def test_a_spring_behind_a_part_of_a_sample_has_its_own_slack() -> None:
+    """With B = 0.2031 such a wall is passive in contact alone; the sensor has no steps, the device no f_c."""
+    device = zw.Device(damping="0.2", rate="2 kHz", delay="0.3 ms")
+    verdict = zw.check(device, zw.Wall(150))
+    told = {advice.parameter: advice.text for advice in verdict.advice}
+    assert told["virtual_damping"] == "virtual damping may go up to 0.09608 N·s/m (now 0 N·s/m)"
+    assert not {"resolution", "coulomb_friction"} & set(told)
+    kept = zw.check(device, zw.Wall(150, "0.1"))
+    assert kept.outcome == "passive in contact"
+    assert all(advice.text.partition(" (")[0].endswith("while contact is kept") for advice in kept.advice)
+
+
+def test_a_negative_damper_is_told_with_its_sign() -> None:
+    """From −0.02 down, not from 0.02 up."""
+    verdict = zw.check(zw.Device(damping="0.2", rate="2 kHz"), zw.Wall(150, "-0.02"))
+    (told,) = [advice for advice in verdict.advice if advice.parameter == "virtual_damping"]
+    assert told.current == -0.02
+    assert told.to < told.current
+    assert told.text.startswith("virtual damping may go down to -0.")
+
+
+@seeds(8)
+def test_advice_is_the_bound_of_the_outcome_that_is_printed(seed: int) -> None:
+    """At its value, and as it is printed, `check` says the same; just beyond it, it does not."""
+    rng = random.Random(seed)
+    assert list(faults(*drawn(rng), rng.choice(["made and broken"] * 3 + ["kept"]), rng)) == []
