@@ -26,10 +26,10 @@ _ROUNDED = """\
 def rounded(real: Real) -> str:
     """Refuses a compiler that computes a float or a double with other digits than its own.
 
-    FLT_EVAL_METHOD (C11 5.2.4.2.2; 16, 32 and 64 by ISO/IEC TS 18661-3 and C23; gcc gives 16 to processors that
-    compute in binary16) names the type up to which narrower ones are widened: none that a law has for 0, 16 and
-    32; float to double for 1 and 64, which leaves a law in doubles as it is.  2 and 128 widen a double too, 33
-    and 65 leave to the processor how far, and below 0 nobody knows.
+    FLT_EVAL_METHOD (C11 5.2.4.2.2; 16, 32 and 64 by ISO/IEC TS 18661-3 and C23; gcc gives 16 to processors
+    that compute in binary16) names the type up to which narrower ones are widened: none that a law has for 0,
+    16 and 32; float to double for 1 and 64, which leaves a law in doubles as it is.  2 and 128 widen a double
+    too, 33 and 65 leave to the processor how far, and below 0 nobody knows.  Whole numbers ask nothing of it.
     """
     kept = (0, 16, 32) if real == "float" else (0, 1, 16, 32, 64)
     also, too = (", 1, 64", ", double, double") if real == "double" else ("", "")
