@@ -107,7 +107,7 @@ def _one_at_a_time(compiled: Callable[..., Any], folder: Path) -> Callable[..., 
         with thread:
             if inside:
                 return compiled(dispatcher, signature)
-            with open(folder / f"{dispatcher.py_func.__module__}.lock", "w") as file:
+            with open(folder / f"{dispatcher.py_func.__module__}.lock", "w", encoding="utf-8") as file:
                 fcntl.flock(file, fcntl.LOCK_EX)
                 inside.append(dispatcher)
                 try:

@@ -25,7 +25,7 @@ def random_arm(path: Path, seed: int, joints: int, sliding: tuple[int, ...] = ()
         f'<joint name="hand" type="fixed"><parent link="l{joints}"/><child link="l{joints + 1}"/>'
         f"{_placed(rng)}</joint>"
     )
-    path.write_text(f'<robot name="random">{"".join(parts)}</robot>')
+    path.write_text(f'<robot name="random">{"".join(parts)}</robot>', encoding="utf-8")
     return path
 
 
@@ -65,5 +65,5 @@ def panda_like(path: Path, damping: float = 1.0) -> Path:
         f'<joint name="flange" type="fixed"><parent link="l{len(PANDA)}"/><child link="l{len(PANDA) + 1}"/>'
         '<origin xyz="0 0 0.107"/></joint>'
     )
-    path.write_text(f'<robot name="panda-like">{"".join(parts)}</robot>')
+    path.write_text(f'<robot name="panda-like">{"".join(parts)}</robot>', encoding="utf-8")
     return path

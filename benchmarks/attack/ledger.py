@@ -42,7 +42,7 @@ class Stretch:
 def read(path: Path) -> list[Stretch]:
     """All stretches, in the order of their seeds."""
     found: dict[tuple[int, int], Stretch] = {}
-    with path.open(newline="") as lines:
+    with path.open(encoding="utf-8", newline="") as lines:
         for row in csv.DictReader(lines):
             ends = int(row["first_seed"]), int(row["last_seed"])
             stretch = found.setdefault(ends, Stretch(*ends))
@@ -83,7 +83,7 @@ def next_seed(stretches: list[Stretch]) -> int:
 @contextmanager
 def alone(path: Path) -> Iterator[None]:
     """Only one run at a time may take seeds from a ledger."""
-    with path.open("a") as held:
+    with path.open("a", encoding="utf-8") as held:
         try:
             fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

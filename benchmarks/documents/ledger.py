@@ -62,7 +62,7 @@ def read(path: Path) -> list[Stretch]:
     found: dict[tuple[int, int], Stretch] = {}
     if not path.exists():
         return []
-    with path.open(newline="") as lines:
+    with path.open(encoding="utf-8", newline="") as lines:
         for row in csv.DictReader(lines):
             ends = int(row["first_seed"]), int(row["last_seed"])
             words = Counter({word: int(row[word.replace(" ", "_")]) for word in WORDS})

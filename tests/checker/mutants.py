@@ -200,7 +200,7 @@ def child(tried: Tried, all_sources: Sequence[Source], cases: Sequence[Reached],
     seconds = max(LEAST_SECONDS, TIMES_AS_LONG * sum(c.seconds for c in cases))
     signal.signal(signal.SIGVTALRM, signal.SIG_DFL)
     signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
-    size = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    size = int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[0]) * resource.getpagesize()
     resource.setrlimit(resource.RLIMIT_AS, (size + MOST_BYTES, size + MOST_BYTES))
     told = "alive"
     try:

@@ -24,7 +24,7 @@ ASKED = ["check", "wheel.toml", "--stiffness", "0.5 N*m/deg", "--hands", "none,h
 @pytest.fixture(autouse=True)
 def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("wheel.toml").write_text(WHEEL)
+    Path("wheel.toml").write_text(WHEEL, encoding="utf-8")
 
 
 def test_each_hand_is_told_in_degrees(capsys: pytest.CaptureFixture[str]) -> None:
@@ -44,12 +44,12 @@ def test_saved_proofs_are_checked(capsys: pytest.CaptureFixture[str]) -> None:
     out = capsys.readouterr().out
     assert "do not come to rest" in out
     assert "come to rest after every disturbance" in " ".join(out.split())
-    document = json.loads(Path("proof.json").read_text())
+    document = json.loads(Path("proof.json").read_text(encoding="utf-8"))
     assert {k: v["outcome"] for k, v in document["known_hands"].items()} == {
         "none": "unstable", "hands-on": "stable"
     }  # fmt: skip
     document["known_hands"]["none"]["certificate"] = document["known_hands"]["hands-on"]["certificate"]
-    Path("proof.json").write_text(json.dumps(document))
+    Path("proof.json").write_text(json.dumps(document), encoding="utf-8")
     assert main(["verify", "proof.json"]) == 1
     assert "shows something else" in " ".join(capsys.readouterr().out.split())
 

@@ -30,9 +30,9 @@ MEASURED = "device;stiffness [N/mm]\nkit-1; 0.41\nkit-2; 180 N/m\n"
 def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     for name, low, high in (("kit-1", "0.13", "0.19"), ("kit-2", "0.1", "0.12"), ("kit-3", "0.02", "0.03")):
-        Path(f"{name}.toml").write_text(KIT.format(low=low, high=high))
-    Path("wheel.toml").write_text(WHEEL)
-    Path("class.csv").write_text(MEASURED)
+        Path(f"{name}.toml").write_text(KIT.format(low=low, high=high), encoding="utf-8")
+    Path("wheel.toml").write_text(WHEEL, encoding="utf-8")
+    Path("class.csv").write_text(MEASURED, encoding="utf-8")
 
 
 def run(capsys: pytest.CaptureFixture[str], *typed: str) -> tuple[int, str, str]:
@@ -65,7 +65,7 @@ def test_what_was_measured_stands_beside_it(capsys: pytest.CaptureFixture[str]) 
     assert "shook from 0.9 to 1.58 times what is proved" in out
     assert "shook below what is proved: kit-2." in out
     assert "kit-3 active 40 – –" in out
-    heads, *rows = csv.reader(Path("table.csv").read_text().splitlines())
+    heads, *rows = csv.reader(Path("table.csv").read_text(encoding="utf-8").splitlines())
     assert heads[2:5:2] == ["largest passive stiffness [N/m]", "shook from [N/m]"]
     assert [row[4:] for row in rows] == [["410", "1.57692"], ["180", "0.9"], ["", ""]]
 
@@ -75,15 +75,16 @@ def test_saved_verdicts_are_checked(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(capsys, *KITS, "--stiffness", "30", "-o", "class.json")[0] == 0
     assert main(["verify", "class.json"]) == 0
     assert capsys.readouterr().out.count("VALID") >= 3
-    assert [one["device"] for one in json.loads(Path("class.json").read_text())["devices"]] == [
-        "kit-1", "kit-2", "kit-3"
-    ]  # fmt: skip
+    saved = json.loads(Path("class.json").read_text(encoding="utf-8"))
+    assert [one["device"] for one in saved["devices"]] == ["kit-1", "kit-2", "kit-3"]
 
 
 def test_wheels_are_told_in_degrees(capsys: pytest.CaptureFixture[str]) -> None:
     """About the axis, where one asks so; one file has the wall of both."""
-    Path("other.toml").write_text(WHEEL.replace("0.01", "0.02"))
-    Path("wall.toml").write_text('[environment]\ntype = "wall"\nstiffness = "0.1 N*m/deg"\n')
+    Path("other.toml").write_text(WHEEL.replace("0.01", "0.02"), encoding="utf-8")
+    Path("wall.toml").write_text(
+        '[environment]\ntype = "wall"\nstiffness = "0.1 N*m/deg"\n', encoding="utf-8"
+    )
     status, out, _ = run(capsys, "wheel.toml", "other.toml", "wall.toml")
     assert status == 0
     assert "up to 0.3491 N·m/deg, the limit of wheel" in out
@@ -118,7 +119,7 @@ def test_bad_input(typed: tuple[str, ...], said: str, capsys: pytest.CaptureFixt
 )  # fmt: skip
 def test_bad_tables(line: str, said: str, capsys: pytest.CaptureFixture[str]) -> None:
     """The line is named."""
-    Path("bad.csv").write_text(f"device,stiffness\n{line}\n")
+    Path("bad.csv").write_text(f"device,stiffness\n{line}\n", encoding="utf-8")
     status, _, err = run(capsys, "kit-1.toml", "kit-2.toml", "--stiffness", "9", "--measured", "bad.csv")
     assert status == 2
     assert said in err

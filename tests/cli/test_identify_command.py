@@ -141,10 +141,12 @@ def test_the_confidence_is_the_stated_one(run: Run) -> None:
 
 def test_an_environment_from_a_file(run: Run) -> None:
     """Its parameters can be overridden; a device in the same file is refused."""
-    Path("wall.toml").write_text('[environment]\ntype = "wall"\nstiffness = 1\n')
+    Path("wall.toml").write_text('[environment]\ntype = "wall"\nstiffness = 1\n', encoding="utf-8")
     assert "K = 1 N/m" in words(run("plain.csv", "wall.toml"))
     assert "K = 2 N/m" in words(run("plain.csv", "wall.toml", "--stiffness", "2"))
-    Path("both.toml").write_text("[device]\ndamping = 1\nrate = 1\n[environment]\nstiffness = 1\n")
+    Path("both.toml").write_text(
+        "[device]\ndamping = 1\nrate = 1\n[environment]\nstiffness = 1\n", encoding="utf-8"
+    )
     result = run("plain.csv", "both.toml")
     assert result.status == 2
     assert "the device comes from the log" in result.err
@@ -185,21 +187,21 @@ def test_several_logs_are_one(run: Run) -> None:
     """Runs of one device are identified together; a log of another rate is refused."""
     header, *lines = Path("plain.csv").read_text(encoding="utf-8").splitlines(keepends=True)
     half = len(lines) // 2
-    Path("one.csv").write_text(header + "".join(lines[:half]))
-    Path("two.csv").write_text(header + "".join(lines[half:]))
+    Path("one.csv").write_text(header + "".join(lines[:half]), encoding="utf-8")
+    Path("two.csv").write_text(header + "".join(lines[half:]), encoding="utf-8")
     whole, parts = run("plain.csv", "--json"), run("one.csv", "two.csv", "--json")
     found, again = json.loads(whole.out), json.loads(parts.out)
     key = "damping_N_s_per_m"
     assert again[key]["value"] == pytest.approx(found[key]["value"], rel=0.02)
     assert again["strokes"] == pytest.approx(found["strokes"], abs=4)
-    Path("slow.csv").write_text(header + "".join(lines[::2]))
+    Path("slow.csv").write_text(header + "".join(lines[::2]), encoding="utf-8")
     assert "identify them one by one" in run("one.csv", "slow.csv").err
 
 
 def test_files_are_not_replaced_unasked(run: Run) -> None:
     """Plot and device are kept; with --force both are written anew."""
     for path in ("mine.toml", "fig.png"):
-        Path(path).write_text("old")
+        Path(path).write_text("old", encoding="utf-8")
         option = "-o" if path.endswith("toml") else "--plot"
         result = run("plain.csv", option, path)
         assert result.status == 2

@@ -81,7 +81,7 @@ def test_what_is_saved_is_verified_on_both_sides(run: Run) -> None:
     assert "is passive, proved" not in words(result)
     document = json.loads(Path("limit.json").read_text(encoding="utf-8"))
     document["certificate"]["loop"]["damping_N_s_per_m"] = "0.1"
-    Path("forged.json").write_text(json.dumps(document))
+    Path("forged.json").write_text(json.dumps(document), encoding="utf-8")
     forged = run("verify", "forged.json")
     assert forged.status == 1
     assert "NOT VALID" in forged.out
@@ -92,7 +92,9 @@ def test_bounded_evidence_does_not_carry_a_verdict_for_every_hand(run: Run) -> N
     """A storage function alone cannot say that a loop is passive."""
     run(*BOUNDED, "-o", "limit.json")
     certificate = json.loads(Path("limit.json").read_text(encoding="utf-8"))["certificate"]
-    Path("verdict.json").write_text(json.dumps({"outcome": "passive", "certificate": certificate}))
+    Path("verdict.json").write_text(
+        json.dumps({"outcome": "passive", "certificate": certificate}), encoding="utf-8"
+    )
     result = run("verify", "verdict.json")
     assert result.status == 1
     assert "hands within bounds only" in words(result)
@@ -217,7 +219,8 @@ def test_a_spring_given_by_points_has_a_gain(tmp_path: Path, run: Run) -> None:
     """The parameter of a law without a stiffness of its own."""
     Path("detent.toml").write_text(
         '[environment]\ntype = "nonlinear-spring"\npositions = [-0.002, -0.001, 0, 0.001, 0.002]\n'
-        "forces = [0, -0.4, 0, 0.4, 0]\n"
+        "forces = [0, -0.4, 0, 0.4, 0]\n",
+        encoding="utf-8",
     )
     result = run("limit", "haptic-paddle", "detent.toml", "--parameter", "gain", "--tolerance", "0.1")
     assert result.status in (0, 3)

@@ -91,7 +91,7 @@ def test_answers_from_a_pipe_are_those_of_the_options(monkeypatch: pytest.Monkey
     answers = [*WHEEL.values()]
     piped(monkeypatch, *answers[:3], "", *answers[3:])
     assert main(["new", "device", "b.toml"]) == 0
-    assert Path("a.toml").read_text() == Path("b.toml").read_text()
+    assert Path("a.toml").read_text(encoding="utf-8") == Path("b.toml").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
@@ -123,8 +123,8 @@ def test_the_data_sheet_of_a_motor_gives_friction_and_largest_torque() -> None:
     constant = 60 / (2 * math.pi * 270)
     assert float(device.coulomb_friction) == pytest.approx(3 * constant * 0.2, rel=1e-5)
     assert float(device.force_limit) == pytest.approx(3 * constant * 10, rel=1e-5)
-    assert "1/(270 rpm/V) x 0.2 A x 3" in Path("my-device.toml").read_text()
-    assert "estimate" in Path("my-device.toml").read_text()
+    assert "1/(270 rpm/V) x 0.2 A x 3" in Path("my-device.toml").read_text(encoding="utf-8")
+    assert "estimate" in Path("my-device.toml").read_text(encoding="utf-8")
 
 
 def test_a_motor_that_pulls_from_a_drum() -> None:

@@ -344,11 +344,11 @@ TWO_LINK = ("workspace", "two-link", "--points", "10", "--stiffness", "200")
 
 def test_joints_that_damp_each_other_come_from_a_file(run: Run) -> None:
     """A matrix in [joints], in the report and in JSON; the proof is of it."""
-    Path("joints.toml").write_text(JOINTS)
+    Path("joints.toml").write_text(JOINTS, encoding="utf-8")
     status, out, _ = run(*TWO_LINK, "--joints", "joints.toml", "-o", "proof.json")
     assert status == 0
     assert "joint damping [[0.02, 0.005], [0.005, 0.01]] N·m·s/rad" in " ".join(out.split())
-    told = json.loads(Path("proof.json").read_text())
+    told = json.loads(Path("proof.json").read_text(encoding="utf-8"))
     assert told["joint_damping_N_m_s_rad"] == [[0.02, 0.005], [0.005, 0.01]]
     assert told["certificate"]["arm"]["damping_N_m_s_rad"] == [["0.02", "0.005"], ["0.005", "0.01"]]
     status, out, _ = run("verify", "proof.json")
@@ -381,7 +381,7 @@ def test_files_of_joints_that_cannot_be_used(
     run: Run, text: str, options: tuple[str, ...], words: str
 ) -> None:
     """One line each, status 2."""
-    Path("joints.toml").write_text(text)
+    Path("joints.toml").write_text(text, encoding="utf-8")
     status, _, err = run(*TWO_LINK, "--joints", "joints.toml", *options)
     assert status == 2
     assert words in err
@@ -390,7 +390,7 @@ def test_files_of_joints_that_cannot_be_used(
 
 def test_joints_by_file_and_by_options(run: Run) -> None:
     """What the file leaves out may come from options."""
-    Path("joints.toml").write_text("[joints]\ncoulomb_friction = [0.01, 0.01]")
+    Path("joints.toml").write_text("[joints]\ncoulomb_friction = [0.01, 0.01]", encoding="utf-8")
     status, out, _ = run(*TWO_LINK, "--joints", "joints.toml", "--joint-damping", "0.02,0.01")
     assert status == 0
     assert "joint damping 0.02, 0.01 N·m·s/rad" in " ".join(out.split())

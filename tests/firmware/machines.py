@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import json
+import os
 import shutil
 import subprocess
 from collections.abc import Mapping, Sequence
@@ -37,8 +38,20 @@ class Ran(NamedTuple):
     cells: Array
 
 
-needs_c = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler, cc, on this machine")
-needs_node = pytest.mark.skipif(shutil.which("node") is None, reason="there is no node on this machine")
+def _needs(name: str) -> pytest.MarkDecorator:
+    """Without a program a test is skipped by its name; where every target is asked for it fails."""
+    lacks = shutil.which(name) is None and not os.environ.get("ZWIDTH_EVERY_TARGET")
+    return pytest.mark.skipif(lacks, reason=f"{name} is not on this machine")
+
+
+needs_c, needs_node = _needs("cc"), _needs("node")
+
+
+def understood(compiler: str, *options: str) -> None:
+    """Skips the test where the compiler refuses the options for an empty file: of another processor, say."""
+    command = [compiler, *" ".join(options).split(), "-fsyntax-only", "-x", "c", os.devnull]
+    if options and subprocess.run(command, capture_output=True, check=False).returncode != 0:
+        pytest.skip(f"{compiler} on this machine does not take {' '.join(options)}")
 
 
 def same_bits(one: Array, other: Array) -> bool:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from machines import Ran, compiled_c, needs_c, needs_node, run_c, run_node, same_bits
+from machines import Ran, compiled_c, needs_c, needs_node, run_c, run_node, same_bits, understood
 from moved_plants import CELLS, PERIOD, PLANTS, hand_and_law, plant_in_c, plant_in_javascript
 from numba import njit
 from numpy.typing import NDArray
@@ -80,6 +80,7 @@ def test_the_header_moves_it_as_the_simulator_does(
     simulated: dict[str, tuple[Array, Ran]], options: tuple[str, ...], tmp_path: Path
 ) -> None:
     """Position, velocity and every energy after every period, with known and with given numbers."""
+    understood("cc", *options)
     programs = _programs()
     library = compiled_c("".join(plant_in_c(p, n) for n, (p, _) in programs.items()), tmp_path, options)
     for name, (_, numbers) in programs.items():

@@ -12,13 +12,30 @@ from zwidth.firmware.machine import Machine, rest_numbers
 from zwidth.firmware.program import Operation
 from zwidth.firmware.tidy import tidied
 
-GUARD = """\
-#if defined(__FAST_MATH__)
-#error "compile without -ffast-math: it changes the law that was proved"
+_ROUNDED = """\
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) \\
+    || defined(__NO_SIGNED_ZEROS__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "compile without -ffast-math and what is part of it: it changes the law that was proved"
 #endif
-#if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+/* 16, 0, 32{also}: only what is narrower than binary16, float, float{too} is computed with more digits */
+#if defined(__FLT_EVAL_METHOD__) && {refused}
 #error "numbers are kept with more digits than they have: compile with -msse2 -mfpmath=sse"
 #endif"""
+
+
+def rounded(real: Real) -> str:
+    """Refuses a compiler that computes a float or a double with other digits than its own.
+
+    FLT_EVAL_METHOD (C11 5.2.4.2.2; 16, 32 and 64 by ISO/IEC TS 18661-3 and C23; gcc gives 16 to processors
+    that compute in binary16) names the type up to which narrower ones are widened: none that a law has for 0,
+    16 and 32; float to double for 1 and 64, which leaves a law in doubles as it is.  2 and 128 widen a double
+    too, 33 and 65 leave to the processor how far, and below 0 nobody knows.  Whole numbers ask nothing of it.
+    """
+    kept = (0, 16, 32) if real == "float" else (0, 1, 16, 32, 64)
+    also, too = (", 1, 64", ", double, double") if real == "double" else ("", "")
+    refused = " && ".join(f"__FLT_EVAL_METHOD__ != {method}" for method in kept)
+    return _ROUNDED.format(also=also, too=too, refused=refused)
+
 
 DOUBLE = """\
 #if __SIZEOF_DOUBLE__ != 8
@@ -161,7 +178,7 @@ def _binary(machine: Machine, name: str) -> _Body:
     given = "int32_t counts" if law.resolution > 0 else f"{real} position"
     library = any(isinstance(s, Operation) and s.operator in _OF_MATH for s in law.program.statements())
     return _Body(
-        guards=[GUARD, *([DOUBLE] if real == "double" else [])],
+        guards=[rounded(real), *([DOUBLE] if real == "double" else [])],
         includes=[*(["#include <math.h>"] if library else []), "#include <stdint.h>"],
         force=real,
         given=given,

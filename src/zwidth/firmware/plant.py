@@ -16,7 +16,7 @@ from zwidth.elementary.logarithm import log, log1p
 from zwidth.errors import InputError
 from zwidth.firmware.c99 import C99
 from zwidth.firmware.c99 import KEYWORDS as OF_C
-from zwidth.firmware.header import AS_BEFORE, DOUBLE, GUARD, UNCONTRACTED
+from zwidth.firmware.header import AS_BEFORE, DOUBLE, UNCONTRACTED, rounded
 from zwidth.firmware.javascript import KEYWORDS as OF_JAVASCRIPT
 from zwidth.firmware.javascript import JavaScript
 from zwidth.firmware.program import Cells, Program, Variable
@@ -141,7 +141,7 @@ def plant_header(program: Program, *, name: str = "plant", about: Sequence[str] 
         "#include <math.h>",
         "#include <stdint.h>",
         "",
-        GUARD,
+        rounded("double"),
         DOUBLE,
         "",
         UNCONTRACTED,

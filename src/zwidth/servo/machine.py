@@ -98,7 +98,7 @@ def findings(granted: Granted, before: Moment, root: Path = Path("/")) -> list[F
 
 def _read(path: Path) -> str | None:
     try:
-        return path.read_text(errors="replace").strip()
+        return path.read_text(encoding="utf-8", errors="replace").strip()
     except OSError:
         return None
 

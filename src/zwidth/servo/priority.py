@@ -192,7 +192,7 @@ def memory_limit() -> int | None:
 
 def _may(capability: int) -> bool:
     """Whether the process has a capability of Linux, by its number."""
-    for line in Path("/proc/self/status").read_text().splitlines():
+    for line in Path("/proc/self/status").read_text(encoding="utf-8", errors="replace").splitlines():
         if line.startswith("CapEff:"):
             return bool(int(line.split()[1], 16) >> capability & 1)
     return False

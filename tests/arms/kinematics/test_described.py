@@ -96,7 +96,9 @@ def test_a_joint_may_have_the_name_of_its_link(urdf: Path) -> None:
     """The hand is at the link."""
     q = [0.4, 0.9]
     expected = read_arm(urdf, frame="tip").forward(q)
-    urdf.write_text(urdf.read_text(encoding="utf-8").replace('joint name="hand"', 'joint name="tip"'))
+    urdf.write_text(
+        urdf.read_text(encoding="utf-8").replace('joint name="hand"', 'joint name="tip"'), encoding="utf-8"
+    )
     assert read_arm(urdf, frame="tip").forward(q) == pytest.approx(expected)
 
 

@@ -49,7 +49,7 @@ def _finds(compiler: str, header: str) -> bool:
 
 def require(*targets: str) -> None:
     """Skip the test that asks, or fail it where every target is wanted, if one of them lacks a tool."""
-    lacks = [name for target in targets for name in missing(target)]
+    lacks = list(dict.fromkeys(name for target in targets for name in missing(target)))
     if not lacks:
         return
     reason = f"not on this machine: {', '.join(lacks)}"

@@ -27,17 +27,22 @@ def test_without_noise_counts_and_passes_it_finds_the_truth():
 
 
 def test_it_is_the_normal_equations_of_smoothed_differences():
-    """The same numbers by another road: one convolution for all passes, and the normal equations."""
+    """The same numbers by another road: one convolution of whole counts for all passes, normal equations.
+
+    A speed is exactly 0 in one row, where it turns: rounded, its sign would be the processor's.
+    """
     log = recorded([(0.06, 0.5, 5)], np.random.default_rng(2))
     block = next(log.blocks())
-    passes, kernel = 7, np.ones(1)
+    passes, kernel = 7, np.ones(1, dtype=np.int64)
     for _ in range(passes):
-        kernel = np.convolve(kernel, np.ones(3) / 3)
-    once = np.convolve(np.convolve(block.position, kernel, "valid"), [500.0, 0, -500.0], "valid")
-    speed = np.convolve(once, kernel, "valid")
-    matrix = np.stack(
-        [np.convolve(speed, [500.0, 0, -500.0], "valid"), speed[1:-1], np.sign(speed[1:-1])], axis=1
+        kernel = np.convolve(kernel, [1, 1, 1])
+    counts = np.rint(block.position / 22.4e-6).astype(np.int64)
+    speed = np.convolve(
+        np.convolve(np.convolve(counts, kernel, "valid"), [1, 0, -1], "valid"), kernel, "valid"
     )
+    assert not speed.all()
+    bend, speed, unit = np.convolve(speed, [1, 0, -1], "valid"), speed[1:-1], 22.4e-6 / 9.0**passes / 2e-3
+    matrix = np.stack([bend * unit / 2e-3, speed * unit, np.sign(speed)], axis=1)
     force = block.hand_force[16:-16]
     expected = np.linalg.solve(matrix.T @ matrix, matrix.T @ force)
     found = zw.identification.identify_published(log, passes=passes)

@@ -104,7 +104,10 @@ def table(recording: Recording, path: Path) -> Path:
         recording.hand_force.tolist(),
         strict=True,
     )
-    path.write_text("Zeit [s],Weg [mm],Kraft [N]\n" + "".join(f"{t!r},{x!r},{f!r}\n" for t, x, f in rows))
+    path.write_text(
+        "Zeit [s],Weg [mm],Kraft [N]\n" + "".join(f"{t!r},{x!r},{f!r}\n" for t, x, f in rows),
+        encoding="utf-8",
+    )
     return path
 
 

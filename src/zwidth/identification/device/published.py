@@ -131,7 +131,10 @@ def _rows(position: Array, force: Array, passes: int, period: float) -> tuple[Ar
     acceleration = _slope(speed, period)
     speed = speed[1:-1]
     edge = 2 * passes + 2
-    return np.stack([acceleration, speed, np.sign(speed)], axis=1), force[edge:-edge]
+    # what rounding leaves of a speed of 0, where the handle turns, has no side
+    rounded = 4 * (passes + 1) * np.finfo(float).eps * np.abs(position).max() / period
+    side = np.where(np.abs(speed) > rounded, np.sign(speed), 0.0)
+    return np.stack([acceleration, speed, side], axis=1), force[edge:-edge]
 
 
 def _smoothed(values: Array, passes: int) -> Array:
