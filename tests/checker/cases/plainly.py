@@ -58,6 +58,7 @@ OTHER_WORDS = {
     "is empty": "a state of the table is not on the grid",
     "must hold 0": "the average leaves the grid",
     "too many numbers": "without numpy and numba at most",
+    "more effort than": "without numpy and numba at most",
 }
 """What the twin says where the fast check says something else."""
 FOR_ITS_NUMBERS = "too large to be compared"

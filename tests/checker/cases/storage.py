@@ -141,7 +141,7 @@ STEEP = 1 << 46
 """Where numbers are too large to be compared."""
 SPRING_OF_1, TOO_LARGE = {"surface": "position", "taps_N_per_m": [1]}, "numbers are too large to be compared"
 FORCES_TOO_LARGE = "forces are too large to be compared"
-TOO_MUCH = "too many numbers"
+TOO_MUCH, TOO_LONG = "too many numbers", "more effort than"
 
 CASES = [
     *(
@@ -466,12 +466,12 @@ CASES = [
     refused(
         "a count in so many steps that it takes too long",
         small("storage", SPRING_OF_1, counts(0, 0, steps_per_count=10**5), [0], 0),
-        TOO_MUCH,
+        TOO_LONG,
     ),
     refused(
         "a law that relaxes, moves so far that it takes too long",
         relaxing(0, 4, [0], {}, largest_move_counts=10**7),
-        TOO_MUCH,
+        TOO_LONG,
     ),
     refused(
         "a law that relaxes, nothing at the first six states",

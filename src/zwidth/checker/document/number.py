@@ -52,6 +52,7 @@ def _decimal(text: str) -> Fraction:
     found = Decimal(text)
     if found and abs(found.adjusted()) > LARGEST_EXPONENT:
         raise Invalid(f"expected a finite number of ordinary size, got {text[:40]}")
+    spend(3, 3.4 * abs(found.adjusted()) if found else 0)
     return Fraction(found)
 
 
