@@ -221,7 +221,7 @@ def _called(node: ast.Call) -> Iterator[Mutant]:
     if name in ("min", "max") and len(node.args) > 1:
         for at in range(len(node.args)):
             yield _changed(node, _drop(node, "args", at))
-    for at, pair in enumerate(zip(node.args, node.args[1:])):
+    for at, pair in enumerate(zip(node.args, node.args[1:], strict=False)):
         if all(isinstance(one, (ast.Name, ast.Attribute)) for one in pair):
             yield _changed(node, _turned(node.args, at))
     if name in ("abs", "reversed", "bool") and len(node.args) == 1:
@@ -261,7 +261,7 @@ _FOUND: dict[type, Callable[[Any], Iterator[Mutant]]] = {
 
 
 def _exchanged(tree: ast.Module) -> Iterator[Mutant]:
-    """A name taken for another of its type: parameters and fields of one annotation, names bound side by side."""
+    """A name taken for another of its type: parameters and fields of one annotation, names bound together."""
     fields = _next_of_type(
         (part.target.id, ast.unparse(part.annotation), owner.name)
         for owner in ast.walk(tree)
