@@ -50,8 +50,8 @@ import zwidth
 HERE = Path(__file__).parent
 PACKAGE = "zwidth.checker"
 ROOT = Path(zwidth.__file__).parent / "checker"
-LEAST_SECONDS, TIMES_AS_LONG = 5, 20
-"""Of the processor, before a mutant counts as one that never ends."""
+LEAST_SECONDS, TIMES_AS_LONG = 2, 20
+"""Of the processor, before a case of a mutant counts as one that never ends."""
 MOST_BYTES = 2 << 30
 """Beside what is loaded."""
 COLUMNS = ("checker", "file", "line", "column", "change", "source", "outcome", "by", "seconds")
@@ -197,9 +197,8 @@ def _extent(tried: Tried) -> tuple[int, int]:
 
 def child(tried: Tried, all_sources: Sequence[Source], cases: Sequence[Reached], out: int) -> None:
     """In a process of its own: make the mistake, run the cases, tell the first that sees it."""
-    seconds = max(LEAST_SECONDS, TIMES_AS_LONG * sum(c.seconds for c in cases))
     signal.signal(signal.SIGVTALRM, signal.SIG_DFL)
-    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
+    signal.setitimer(signal.ITIMER_VIRTUAL, LEAST_SECONDS)
     size = int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[0]) * resource.getpagesize()
     resource.setrlimit(resource.RLIMIT_AS, (size + MOST_BYTES, size + MOST_BYTES))
     told = "alive"
@@ -208,7 +207,11 @@ def child(tried: Tried, all_sources: Sequence[Source], cases: Sequence[Reached],
         code = compile(ast.fix_missing_locations(tried.source.tree), str(tried.source.path), "exec")
         changed = [s._replace(code=code) if s is tried.source else s for s in all_sources]
         verify = loaded_anew(changed)
-        told = next((f"{c.case.name}: {w}" for c in cases if (w := failure(c.case, verify))), "alive")
+        for c in cases:
+            signal.setitimer(signal.ITIMER_VIRTUAL, max(LEAST_SECONDS, TIMES_AS_LONG * c.seconds))
+            if wrong := failure(c.case, verify):
+                told = f"{c.case.name}: {wrong}"
+                break
     except BaseException as error:
         told = f"loading it: {type(error).__name__}"
     os.write(out, told.encode()[:2000])
@@ -340,6 +343,10 @@ def main() -> int:
     of = digest(all_sources)
     excused = equivalents()
     rows = settled(read_ledger(options.ledger, of), excused)
+    for m in mutants:  # what is listed is not run
+        if reason := reason_for((m.source.file, m.text, m.mutant.change), excused):
+            told = dict(zip(COLUMNS, (of, *m.key, m.text, "equivalent", reason, "0"), strict=True))
+            rows.setdefault(m.key, told)
     left = [m for m in mutants if m.key not in rows]
     console.print(f"{total} mutants of the checker, {len(mutants)} in the sample, {len(left)} to be run")
     with _lines_run() as at_load:
@@ -354,10 +361,7 @@ def main() -> int:
             writer.writeheader()
         task = bar.add_task("mutants", total=len(left))
         for tried, outcome, by, seconds in run_all(left, all_sources, cases, at_load, options.processes):
-            named = tried.source.file, tried.text, tried.mutant.change
-            reason = reason_for(named, excused) if outcome == "alive" else ""
-            told = ("equivalent", reason) if reason else (outcome, by)
-            entry = (of, *tried.key, tried.text, *told, f"{seconds:.2f}")
+            entry = (of, *tried.key, tried.text, outcome, by, f"{seconds:.2f}")
             rows[tried.key] = dict(zip(COLUMNS, entry, strict=True))
             writer.writerow(rows[tried.key])
             file.flush()

@@ -1,4 +1,5 @@
-"""Small mistakes made in a source on purpose: every comparison, sign, constant, condition and early return.
+"""Small mistakes made in a source on purpose: every comparison, sign, constant, condition and early return,
+every term of a sum and element of a tuple left out, every name taken for another one of its type.
 
 A mutant is one change of one node of the syntax tree.  What is only said to people is left alone: messages,
 docstrings, annotations; and what is no condition of a proof: imports, decorators, `strict=True`.
@@ -7,7 +8,7 @@ docstrings, annotations; and what is no condition of a proof: imports, decorator
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
 
 _COMPARISONS: dict[type[ast.cmpop], tuple[type[ast.cmpop], ...]] = {
@@ -56,8 +57,9 @@ class Mutant(NamedTuple):
 
 
 def mutants_of(tree: ast.Module) -> Iterator[Mutant]:
-    """Every mutant of a module, in the order of its source."""
+    """Every mutant of a module, in the order of its source; names taken for others last."""
     yield from _of_body(tree, "body", False)
+    yield from _exchanged(tree)
 
 
 def _of_body(owner: ast.AST, field: str, inside: bool) -> Iterator[Mutant]:
@@ -166,6 +168,23 @@ def _joined(node: ast.BoolOp) -> Iterator[Mutant]:
 def _operators(node: Any) -> Iterator[Mutant]:
     for other in _OPERATORS.get(type(node.op), ()):
         yield _changed(node, _set(node, "op", other()))
+    if isinstance(node, ast.BinOp) and _is_sum(node):
+        yield _changed(node, lambda: _become(node, node.left))
+        if not _is_sum(node.left):
+            added = isinstance(node.op, ast.Add)
+            yield _changed(
+                node, lambda: _become(node, node.right if added else ast.UnaryOp(ast.USub(), node.right))
+            )
+
+
+def _is_sum(node: ast.expr) -> bool:
+    """A sum or a difference of two, and no text put together."""
+    if not isinstance(node, ast.BinOp) or not isinstance(node.op, (ast.Add, ast.Sub)):
+        return False
+    return not any(
+        isinstance(side, ast.JoinedStr) or (isinstance(side, ast.Constant) and isinstance(side.value, str))
+        for side in (node.left, node.right)
+    )
 
 
 def _signed(node: ast.UnaryOp) -> Iterator[Mutant]:
@@ -202,14 +221,16 @@ def _called(node: ast.Call) -> Iterator[Mutant]:
     if name in ("min", "max") and len(node.args) > 1:
         for at in range(len(node.args)):
             yield _changed(node, _drop(node, "args", at))
+    for at, pair in enumerate(zip(node.args, node.args[1:], strict=False)):
+        if all(isinstance(one, (ast.Name, ast.Attribute)) for one in pair):
+            yield _changed(node, _turned(node.args, at))
     if name in ("abs", "reversed", "bool") and len(node.args) == 1:
         yield _changed(node, lambda: _become(node, node.args[0]))
 
 
 def _listed(node: Any) -> Iterator[Mutant]:
-    """One of several names or words left out."""
-    words = all(isinstance(e, (ast.Name, ast.Constant, ast.Starred)) for e in node.elts)
-    if len(node.elts) > 1 and words and isinstance(getattr(node, "ctx", ast.Load()), ast.Load):
+    """One of several left out."""
+    if len(node.elts) > 1 and isinstance(getattr(node, "ctx", ast.Load()), ast.Load):
         for at in range(len(node.elts)):
             yield _changed(node, _drop(node, "elts", at))
 
@@ -237,6 +258,68 @@ _FOUND: dict[type, Callable[[Any], Iterator[Mutant]]] = {
     ast.Dict: _table,
     ast.IfExp: _chosen,
 }
+
+
+def _exchanged(tree: ast.Module) -> Iterator[Mutant]:
+    """A name taken for another of its type: parameters and fields of one annotation, names bound together."""
+    fields = _next_of_type(
+        (part.target.id, ast.unparse(part.annotation), owner.name)
+        for owner in ast.walk(tree)
+        if isinstance(owner, ast.ClassDef)
+        for part in owner.body
+        if isinstance(part, ast.AnnAssign) and isinstance(part.target, ast.Name)
+    )
+    for function in ast.walk(tree):
+        if not isinstance(function, ast.FunctionDef):
+            continue
+        names = _next_of_type(_typed(function))
+        for node in _computed(function.body):
+            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id in names:
+                yield _changed(node, _set(node, "id", names[node.id]))
+            elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load) and node.attr in fields:
+                yield _changed(node, _set(node, "attr", fields[node.attr]))
+
+
+def _typed(function: ast.FunctionDef) -> Iterator[tuple[str, ...]]:
+    """The names that a function is given or binds side by side, and what tells their type."""
+    for given in (*function.args.args, *function.args.kwonlyargs):
+        yield given.arg, ast.unparse(given.annotation) if given.annotation else ""
+    for node in ast.walk(function):
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Tuple):
+            for bound in node.targets[0].elts:
+                if isinstance(bound, ast.Name):
+                    yield bound.id, str(node.lineno)
+
+
+def _next_of_type(typed: Iterable[tuple[str, ...]]) -> dict[str, str]:
+    """For each name the next one of its type, for the last one the first."""
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for name, *told in typed:
+        groups.setdefault(tuple(told), []).append(name)
+    return {
+        name: other
+        for names in groups.values()
+        if len(set(names)) > 1
+        for name, other in zip(names, (*names[1:], names[0]), strict=True)
+    }
+
+
+def _computed(block: Iterable[ast.AST]) -> Iterator[ast.AST]:
+    """What is computed in a block: neither what is said, nor functions in it, which come by themselves."""
+    for node in block:
+        if isinstance(node, (ast.FunctionDef, ast.Raise, ast.JoinedStr, ast.Assert)):
+            continue
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in _SILENT:
+            continue
+        yield node
+        parts = (
+            value
+            for field, value in ast.iter_fields(node)
+            if field not in ("annotation", "returns", "decorator_list")
+        )
+        for value in parts:
+            inner = value if isinstance(value, list) else [value]
+            yield from _computed(part for part in inner if isinstance(part, ast.AST))
 
 
 def _conditions(node: Any, field: str, values: tuple[bool, ...], at: int | None = None) -> Iterator[Mutant]:
@@ -291,6 +374,15 @@ def _put(values: list[Any], at: int, value: Any) -> Callable[[], None]:
 
 def _set(node: Any, field: str, value: Any) -> Callable[[], None]:
     return lambda: setattr(node, field, value)
+
+
+def _turned(values: list[Any], at: int) -> Callable[[], None]:
+    """Two neighbours change places."""
+
+    def make() -> None:
+        values[at], values[at + 1] = values[at + 1], values[at]
+
+    return make
 
 
 def _drop(node: Any, field: str, at: int) -> Callable[[], None]:

@@ -17,6 +17,7 @@ def least(a: int, b: int = 2) -> str:
         raise ValueError("too small")
     for word in ("one", "two"):
         return f"{word} of {min(a, -b)}"
+    sizes = (a + b, less(a, b))
     return "the last of it"
 '''
 EXPECTED = {
@@ -28,6 +29,10 @@ EXPECTED = {
     "a refusal": (9, "removed"),
     "a word": (10, "('one', 'two') → ('two',)"),
     "an early return": (11, "removed"),
+    "a term left out": (12, "a + b → b"),
+    "an element left out": (12, "(a + b, less(a, b)) → (a + b,)"),
+    "two that change places": (12, "less(a, b) → less(b, a)"),
+    "a name of the same type": (12, "b → a"),
 }
 
 

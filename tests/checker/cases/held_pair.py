@@ -235,6 +235,15 @@ def sums_of_impulse_responses() -> str:
 
 
 FRICTION = Fraction("0.3130708513820214770908369")
+UNLIKE = put(
+    ENOUGH["a hand"],
+    {
+        "loop.leader.resolution_m": 1,
+        "loop.follower.resolution_m": "0.3",
+        "loop.leader.coulomb_friction_N": Fraction("0.758951418048486108999938") * (1 + TINY),
+    },
+)
+"""What each arm is told by the other is weighed by another spring."""
 BOX = put(
     with_damping(HAND, "0.3968"),
     {
@@ -316,6 +325,12 @@ CASES = [
     refused("nobody's name", put(NOBODY, {"held.arm": "both"}), "must be leader or follower"),
     accepted("encoders", counted(FRICTION * (1 + TINY)), "nowhere negative", encoder="counted"),
     refused("encoders, too little friction", counted(FRICTION * (1 - TINY)), "below the force error"),
+    accepted("encoders of unlike arms", UNLIKE),
+    refused(
+        "encoders of unlike arms, too little friction",
+        put(UNLIKE, {"loop.leader.coulomb_friction_N": Fraction("0.758951418048486108999938") * (1 - TINY)}),
+        "below the force error",
+    ),
     accepted(
         "a gain that friction does not stop",
         gains(

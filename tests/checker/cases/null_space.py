@@ -31,12 +31,16 @@ def rubbing(name: str, by: Fraction, joints: list[int] | None = None) -> Any:
     )
 
 
-def damped(name: str, by: Fraction) -> Any:
+def alike(document: Any, damping: Any) -> Any:
     """Its joints damped alike."""
+    joints = range(len(document["arm"]["joints"]))
+    return put(document, {f"arm.joints.{i}.damping_N_m_s_per_rad": damping for i in joints})
+
+
+def damped(name: str, by: Fraction) -> Any:
+    """All as the norms ask for, times a factor."""
     told = ARMS[name]
-    own = Fraction(told["damping_N_m_s_per_rad"]) * by
-    joints = range(len(told["document"]["arm"]["joints"]))
-    return put(told["document"], {f"arm.joints.{i}.damping_N_m_s_per_rad": own for i in joints})
+    return alike(told["document"], Fraction(told["damping_N_m_s_per_rad"]) * by)
 
 
 def moves(name: str, joint: int) -> bool:
@@ -63,6 +67,9 @@ POINT, PLANE, HELD, DAMPER = (
     for name in ("a point in space", "in pose in the plane", "a joint that is held", "a damper and a delay")
 )
 JOINT = "arm.joints.0."
+# of a damper alone: d_n (1 + η), and what the wall asks for
+DAMPER_AFAR = put(ARMS["a point, far from the rest"]["document"],
+                  {"spring.stiffness_N_m_per_rad": 0, "spring.damping_N_m_s_per_rad": 1})  # fmt: skip
 TILTED = POINT["arm"]["joints"][2]["rotation"]
 SLIDE = {
     "kind": "prismatic", "rotation": POINT["arm"]["joints"][0]["rotation"], "translation_m": ["0", "0", "0"],
@@ -79,6 +86,8 @@ CASES = [
     ),
     refused("one more sample of delay", put(damped("a damper and a delay", Fraction("1.00001")),
                                             {"loop.delay_samples": 3}), LESS),
+    accepted("a damper far from its rest", alike(DAMPER_AFAR, "1.44")),
+    refused("a damper far from its rest, without η", alike(DAMPER_AFAR, "1.43"), LESS),
     accepted("no range at all", put(POINT, {
         **{f"arm.joints.{i}.{end}_rad": at for i, at in enumerate(POINT["spring"]["rest_rad"])
            for end in ("low", "high")},

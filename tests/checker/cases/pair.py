@@ -187,6 +187,19 @@ SENT = proved(
     signs(at_one=1, factor=[2, -1]),
     signs(at_one=1),
 )
+# a drive in the follower's arm, whose β = b − K/4 is 2 as before; the leader errs by 2 ζ and by −2 ζ
+SENT_COUNTED = put(
+    SENT,
+    {
+        "loop.own_readings": 2,
+        "loop.follower.damping_N_s_per_m": "5/2",
+        **{
+            f"loop.{side}.{key}": value
+            for side in ("leader", "follower")
+            for key, value in (("resolution_m", 1), ("coulomb_friction_N", 2))
+        },
+    },
+)
 ITS_OWN = moved(loop(arm("1/2", 0, reflection=1, link_delay_s=1), arm(3, 2)), [0, 1, 1, 0], [0, 0, 0, 0])
 FACTORS, NEGATIVE = "do not multiply", "is not negative at this frequency"
 
@@ -261,6 +274,26 @@ CASES = [
     *edge("a force that is sent", SENT, put(SENT, {"loop.leader.damping_N_s_per_m": 5 - TINY}), FACTORS),
     accepted("a leader without a spring has no force to send", put(SENT, {"loop.follower.reflection": 3})),
     refused("a force sent with its sign turned", put(SENT, {"loop.leader.reflection": -1}), "≥ 0"),
+    *(
+        case
+        for side in ("leader", "follower")
+        for case in edge(
+            f"a force that is sent, in steps, the {side}",
+            SENT_COUNTED,
+            put(SENT_COUNTED, {f"loop.{side}.coulomb_friction_N": 2 - TINY}),
+            "below the force error",
+        )
+    ),
+    refused(
+        "no more than a spring that is sent may hold",
+        told(put(ITS_OWN, {"loop.leader.resolution_m": 1, "loop.follower.resolution_m": 1}), 1),
+        "no more than the 1 J stored",
+        1,
+    ),
+    accepted(
+        "more than a spring that is sent may hold",
+        told(put(ITS_OWN, {"loop.leader.resolution_m": 1, "loop.follower.resolution_m": "0.9"}), 1),
+    ),
     *edge(
         "one's own force, sent back",
         told(ITS_OWN, 1),
