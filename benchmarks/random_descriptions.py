@@ -3,8 +3,8 @@
     python benchmarks/random_descriptions.py --count 1000 --seed 1      # needs: pip install mujoco
 
 Compared: which joints there are, in which order, their limits, damping, friction, and in ten postures the
-position of the hand and its Jacobian, rotations too.  A joint that follows another (mimic in URDF, equality in MJCF)
-is put into MuJoCo's Jacobian by the chain rule.
+position of the hand and its Jacobian, rotations too.  A joint that follows another (mimic in URDF, equality
+in MJCF) is put into MuJoCo's Jacobian by the chain rule.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from zwidth.arms import PosedArm
-from zwidth.arms.kinematics.description_file import read_mechanism
+from zwidth.arms.kinematics.reading import read_mechanism
 from zwidth.errors import InputError
 
 TURNS = {"quat": 4, "axisangle": 4, "xyaxes": 6, "zaxis": 3, "euler": 3}

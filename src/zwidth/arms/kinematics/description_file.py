@@ -1,4 +1,4 @@
-"""A robot description as the table of its joints; what is wrong with a file becomes one message."""
+"""The XML of a robot description; what is wrong with it becomes one message, with the line."""
 
 from __future__ import annotations
 
@@ -9,11 +9,8 @@ from pathlib import Path
 from typing import NamedTuple
 from xml.parsers.expat import ExpatError, ParserCreate
 
-from zwidth.arms.kinematics.mechanism import Mechanism
 from zwidth.errors import InputError
-from zwidth.missing import did_you_mean
 
-_ENDINGS = (".urdf", ".xml", ".mjcf")
 _LARGEST = 2**25
 """[bytes] Largest description that is read."""
 
@@ -81,35 +78,7 @@ class Element(NamedTuple):
                 raise self.wrong(f"has an attribute {key[:40]!r}, which this format does not know")
 
 
-def read_mechanism(path: Path) -> Mechanism:
-    """What a .urdf, .xml or .mjcf file describes.
-
-    Raises
-    ------
-    InputError
-        If it is none of these, cannot be read, or nothing in it moves.
-    """
-    if path.suffix.lower() not in _ENDINGS:
-        raise InputError(f"an arm is described in a .urdf, .xml or .mjcf file, got {path.name!r}")
-    if not path.is_file():
-        raise InputError(f"there is no file {path}{did_you_mean(path)}")
-    from zwidth.arms.kinematics.mjcf import read_mjcf
-    from zwidth.arms.kinematics.urdf import read_urdf
-
-    try:
-        root = _parsed(path)
-        read = {"robot": read_urdf, "mujoco": read_mjcf}.get(root.tag)
-        if read is None:
-            raise root.wrong("is neither <robot>, of a URDF, nor <mujoco>, of an MJCF")
-        found = read(root, path.stem)
-    except InputError as error:
-        raise InputError(f"{path.name} cannot be read: {error}") from None
-    if not found.coordinates:
-        raise InputError(f"{path.name} has no joint that moves")
-    return found
-
-
-def _parsed(path: Path) -> Element:
+def parsed(path: Path) -> Element:
     """The tree; what is no XML is refused, and what leads elsewhere or has no end."""
     parser = ParserCreate()
     tree = _Tree(parser)

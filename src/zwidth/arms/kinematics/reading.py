@@ -13,12 +13,16 @@ from typing import Any
 import numpy as np
 
 from zwidth.arms.kinematics.described import DescribedArm
-from zwidth.arms.kinematics.description_file import read_mechanism
+from zwidth.arms.kinematics.description_file import parsed
 from zwidth.arms.kinematics.joint_damping import Damping
 from zwidth.arms.kinematics.mechanism import Coordinate, Mechanism
+from zwidth.arms.kinematics.mjcf import read_mjcf
 from zwidth.arms.kinematics.posed import PosedArm
+from zwidth.arms.kinematics.urdf import read_urdf
 from zwidth.errors import InputError
+from zwidth.missing import did_you_mean
 
+_ENDINGS = (".urdf", ".xml", ".mjcf")
 _FAR = 1e3
 """Limits beyond are none [rad; m]."""
 
@@ -98,6 +102,31 @@ def read_arm(
     if rest is not None:
         raise InputError("rest is where the rotation of a wall in pose rests; a point does not turn")
     return DescribedArm(**given)
+
+
+def read_mechanism(path: Path) -> Mechanism:
+    """What a .urdf, .xml or .mjcf file describes.
+
+    Raises
+    ------
+    InputError
+        If it is none of these, cannot be read, or nothing in it moves.
+    """
+    if path.suffix.lower() not in _ENDINGS:
+        raise InputError(f"an arm is described in a .urdf, .xml or .mjcf file, got {path.name!r}")
+    if not path.is_file():
+        raise InputError(f"there is no file {path}{did_you_mean(path)}")
+    try:
+        root = parsed(path)
+        read = {"robot": read_urdf, "mujoco": read_mjcf}.get(root.tag)
+        if read is None:
+            raise root.wrong("is neither <robot>, of a URDF, nor <mujoco>, of an MJCF")
+        found = read(root, path.stem)
+    except InputError as error:
+        raise InputError(f"{path.name} cannot be read: {error}") from None
+    if not found.coordinates:
+        raise InputError(f"{path.name} has no joint that moves")
+    return found
 
 
 def _for_each(values: Any, count: int) -> Any:
