@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import shlex
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -46,7 +45,5 @@ def test_each_command_works_as_typed(
         assert read <= there, line
         there |= written
         if read | written and any(mark in line for mark in RUN) and "--replay" not in line:
-            if "arm.urdf" in line and find_spec("pinocchio") is None:
-                continue
             status = main(argv)
             assert status in (0, 1, 3, 4), f"{line}\n{capsys.readouterr().err}"

@@ -171,7 +171,6 @@ def test_three_legs_with_couplings() -> None:
 
 def test_a_joint_beside_the_way_to_the_hand(tmp_path: Path) -> None:
     """Damped together with one that moves the hand it goes along, and less is lost: no certificate."""
-    pytest.importorskip("pinocchio")
     path = random_arm(tmp_path / "arm.urdf", 4, 3)
     b = random_damping(9, 3, 0.3)
     apart = b.copy()

@@ -43,8 +43,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_command_of_an_example_does_what_it_says(
     first: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    if first == "arm.urdf":
-        pytest.importorskip("pinocchio")
     (example,) = (e for e in EXAMPLES if e.files[0] == first)
     monkeypatch.chdir(folder)
     status, word = SAYS[first]

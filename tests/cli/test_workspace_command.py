@@ -195,7 +195,6 @@ def test_a_delay_is_reported_with_its_unit(run: Run) -> None:
 
 def test_a_description_from_the_command_line(run: Run, tmp_path: Path) -> None:
     """A URDF with its own damping; one joint held."""
-    pytest.importorskip("pinocchio")
     link = '<link name="{}"/>'
     joint = (
         '<joint name="{0}" type="revolute"><parent link="{1}"/><child link="{2}"/><origin xyz="{3} 0 0"/>'
@@ -233,7 +232,6 @@ POSED = ("workspace", "arm.urdf", "--pose", "--points", "10", "--hold", HELD, "-
 
 def test_a_wall_in_pose(run: Run, tmp_path: Path) -> None:
     """Its factor, the least damping, the motion with its turns; a wall of that factor holds."""
-    pytest.importorskip("pinocchio")
     random_arm(tmp_path / "arm.urdf", 4, 6)
     status, out, _ = run(*POSED, "--stiffness", "40000", "--rotational-stiffness", "400 N*m/rad")
     found = json.loads(out)
@@ -251,7 +249,6 @@ def test_a_wall_in_pose(run: Run, tmp_path: Path) -> None:
 @pytest.mark.parametrize("rest", [(), ("--rest", "middle")])
 def test_the_proof_of_a_wall_in_pose_is_verified(rest: tuple[str, ...], run: Run, tmp_path: Path) -> None:
     """Saved, read and proved again, with both units in the words; with more of the rotation it is refused."""
-    pytest.importorskip("pinocchio")
     random_arm(tmp_path / "arm.urdf", 4, 6)
     wall = ("--stiffness", "40", "--rotational-stiffness", "0.4 N*m/rad")
     assert run(*POSED[:-1], *rest, *wall, "-o", "proof.json")[0] == 0
@@ -270,7 +267,6 @@ def test_the_proof_of_a_wall_in_pose_is_verified(rest: tuple[str, ...], run: Run
 
 def test_a_wall_by_matrices(run: Run, tmp_path: Path) -> None:
     """A file with units in it says what the options say; couplings need a place of rest."""
-    pytest.importorskip("pinocchio")
     random_arm(tmp_path / "arm.urdf", 4, 6)
 
     def write() -> None:

@@ -141,7 +141,9 @@ def covered_factors(arm: Arm, wall: Wall | MatrixWall, period: float, jacobians:
 
 
 def with_encoders(arm: Arm) -> Chain | None:
-    """The arm, if it has encoders that step and its second derivatives are bounded."""
+    """The arm, if it has encoders that step and its second derivatives are bounded, joint by joint."""
+    if isinstance(arm, DescribedArm) and arm.follows:
+        return None
     return arm if isinstance(arm, (PlanarChain, DescribedArm)) and moving_steps(arm).any() else None
 
 

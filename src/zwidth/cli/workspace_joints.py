@@ -77,7 +77,12 @@ def read_joints(path: Path) -> dict[str, Any]:
 
 
 def damping_in_words(arm: Arm) -> str:
-    """Of each joint, or the matrix of joints that damp each other."""
+    """Of each joint, or the matrix of joints that damp each other; and where it comes from."""
+    source = getattr(arm, "damping_source", "")
+    return f"{_damping(arm)}, {source}" if source else _damping(arm)
+
+
+def _damping(arm: Arm) -> str:
     import numpy as np
 
     values, slides = np.asarray(arm.damping), arm.sliding

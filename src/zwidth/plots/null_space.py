@@ -120,7 +120,7 @@ def _pair(joints: Array, first: int, second: int) -> tuple[float, float]:
 def _names(found: NullSpace) -> list[str]:
     arm = found.question.arm
     if isinstance(arm, DescribedArm):
-        return [str(name) for name in arm.model.names][1:]
+        return list(arm.joint_names)
     return [f"q{i + 1}" for i in range(arm.joint_count)]
 
 

@@ -149,7 +149,6 @@ URDF_JOINT = (
 
 def test_described_arms_of_every_kind_of_joint(tmp_path: Path) -> None:
     """Axes along x, y, z and none of them, turning, sliding, without end: the document's J is pinocchio's."""
-    pytest.importorskip("pinocchio")
     kinds = [
         ("revolute", "0.6 0 0.8", 0.3), ("prismatic", "0 0.6 -0.8", 2.0), ("continuous", "0 1 0", 0.2),
         ("prismatic", "1 0 0", 2.0), ("revolute", "-1 0 0", 0.1), ("revolute", "0 0 1", 0.1),
@@ -182,7 +181,6 @@ def test_described_arms_of_every_kind_of_joint(tmp_path: Path) -> None:
 
 def test_joints_beside_the_way_to_the_hand_are_left_out(tmp_path: Path) -> None:
     """A gripper moves nothing that the wall feels; it is not in the document."""
-    pytest.importorskip("pinocchio")
     arm = (("a", "revolute", "l0", "l1", 0.05), ("b", "revolute", "l1", "l2", 0.04))
     grip = (("g", "revolute", "l2", "l3", 0.0),)
     joints = [

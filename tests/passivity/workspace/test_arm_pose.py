@@ -16,8 +16,6 @@ from zwidth.arms.pose import loss_in_pose
 from zwidth.arms.replay import replay_cycle
 from zwidth.passivity.workspace import Workspace
 
-pytest.importorskip("pinocchio")
-
 Array = npt.NDArray[np.float64]
 
 
@@ -103,19 +101,20 @@ def test_no_closed_path_takes_energy_out_wherever_the_wall_rests(tmp_path: Path)
 
 def test_the_work_of_a_held_force_is_that_of_the_difference(tmp_path: Path) -> None:
     """∫ f·v + Eᵀg·ω over a period, with pinocchio's velocities and scipy's quaternion, is F·Δy."""
-    import pinocchio as pin
     from scipy.integrate import quad_vec
     from scipy.spatial.transform import Rotation
 
+    pin = pytest.importorskip("pinocchio")
     arm: Any = _arm(tmp_path, 6)
-    rng, data = np.random.default_rng(11), arm.model.createData()
+    model = pin.buildModelFromUrdf(str(tmp_path / "arm.urdf"))
+    rng, data = np.random.default_rng(11), model.createData()
     start, end = rng.uniform(-0.4, 0.4, (2, 6))
-    force, number = rng.normal(size=6), arm.model.getFrameId(arm.frame)
+    force, number = rng.normal(size=6), model.getFrameId(arm.frame)
 
     def frame(q: Array) -> tuple[Array, Array]:
-        pin.computeJointJacobians(arm.model, data, q)
-        turned = pin.updateFramePlacement(arm.model, data, number).rotation.copy()
-        return turned, pin.getFrameJacobian(arm.model, data, number, pin.LOCAL_WORLD_ALIGNED)
+        pin.computeJointJacobians(model, data, q)
+        turned = pin.updateFramePlacement(model, data, number).rotation.copy()
+        return turned, pin.getFrameJacobian(model, data, number, pin.LOCAL_WORLD_ALIGNED)
 
     rest = frame(np.array(arm.rest))[0]
 
@@ -139,18 +138,18 @@ def test_the_proof_comes_close_to_the_limit(tmp_path: Path) -> None:
 
 def test_the_reported_energy_by_pinocchio(tmp_path: Path) -> None:
     """Summed again with rotation vectors from pinocchio, without the code that found it."""
-    import pinocchio as pin
-
+    pin = pytest.importorskip("pinocchio")
     arm: Any = _arm(tmp_path, 6, moving=1)
     wall = WALLS["as stiff every way"]
     motion = _space(arm, _times(wall, 1.05 * _space(arm, wall).stiffness_factor)).motion
     assert motion is not None
     wall = _times(wall, 1.05 * _space(arm, wall).stiffness_factor)
-    data, number = arm.model.createData(), arm.model.getFrameId(arm.frame)
+    model = pin.buildModelFromUrdf(str(tmp_path / "arm.urdf"))
+    data, number = model.createData(), model.getFrameId(arm.frame)
 
     def frame(q: Array) -> Any:
-        pin.forwardKinematics(arm.model, data, pin.integrate(arm.model, pin.neutral(arm.model), q))
-        return pin.updateFramePlacement(arm.model, data, number).copy()
+        pin.forwardKinematics(model, data, q)
+        return pin.updateFramePlacement(model, data, number).copy()
 
     rest, y = frame(np.array(arm.rest)), []
     for q in motion.joints:

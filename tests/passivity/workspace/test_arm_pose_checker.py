@@ -152,7 +152,6 @@ def test_the_matrix_is_that_of_the_motion(size: int, slides: tuple[int, ...], ev
 @pytest.mark.parametrize("rest", [None, {}, {"j0": 2.5, "j1": -3.0}])
 def test_the_matrix_is_that_of_the_arm(joints: int, rest: Any, tmp_path: Path) -> None:
     """The saved document and pinocchio's Jacobian, in the region and beyond, past half a turn, too."""
-    pytest.importorskip("pinocchio")
     hold = {f"j{i}": 0.03 * i for i in range(1, joints)}
     path = random_arm(tmp_path / "arm.urdf", joints, joints, sliding=(2,))
     arm = read_arm(path, pose=True, hold=hold, rest=rest)
@@ -228,7 +227,6 @@ def test_a_wall_that_is_not_alike_about_every_axis_is_taken_at_its_stiffest() ->
 @pytest.mark.parametrize("joints", [3, 6, 7])
 def test_both_sides_of_the_limit(joints: int, rest: Any, tmp_path: Path) -> None:
     """0.99 of it certified, with one joint or two that move; 1.01 refused by the checker, too."""
-    pytest.importorskip("pinocchio")
     hold = {f"j{i}": 0.03 * i for i in range(2 if joints == 3 else 1, joints)}
     arm = read_arm(random_arm(tmp_path / "arm.urdf", 10 + joints, joints), pose=True, hold=hold, rest=rest)
     limit = zw.workspace(arm, zw.arms.MatrixWall.in_pose(500, 5), rate=1000, points=20).stiffness_factor
@@ -249,7 +247,6 @@ def test_both_sides_of_the_limit(joints: int, rest: Any, tmp_path: Path) -> None
 
 def test_units_may_be_far_apart(tmp_path: Path) -> None:
     """A plane wall in doubles of 300 N/m beside a rotation of 10⁻⁴ N·m/rad: neither rounds the other away."""
-    pytest.importorskip("pinocchio")
     n, virtual = np.array([2.0, -1.0, 2.0]) / 3, np.array([[0.1, 0.02, 0], [0.02, -0.2, 0.03], [0, 0.03, 0]])
     stiffness, damping = np.zeros((2, 6, 6))
     stiffness[:3, :3], stiffness[3:, 3:] = 300 * np.outer(n, n), 1e-4 * np.eye(3)
@@ -353,7 +350,6 @@ def test_what_does_not_hold_is_refused(every: bool, path: str, value: Any, reaso
 @pytest.mark.parametrize("rest", [None, {}])
 def test_other_axes_and_a_larger_region_are_refused(rest: Any, tmp_path: Path) -> None:
     """Close to the limit: an axis turned by 0.3 rad is another arm; so is one whose joints go further."""
-    pytest.importorskip("pinocchio")
     path = random_arm(tmp_path / "arm.urdf", 13, 3)
     arm = read_arm(path, pose=True, hold={"j2": 0.1}, rest=rest)
     limit = zw.workspace(arm, zw.arms.MatrixWall.in_pose(500, 5), rate=1000, points=20).stiffness_factor

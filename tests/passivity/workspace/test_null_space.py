@@ -168,7 +168,6 @@ def test_on_the_command_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A Panda and a file of gains: a loop near the ready posture, the document, and what is refused."""
-    pytest.importorskip("pinocchio")
     monkeypatch.chdir(tmp_path)
     arm = str(panda_like(tmp_path / "panda.urdf"))
     ready = "j2=-0.785,j4=-2.356,j6=1.571,j7=0.785"
@@ -213,7 +212,6 @@ def test_on_the_command_line(
 
 def test_a_joint_that_is_held_does_not_move(tmp_path: Path) -> None:
     """Held, the last joint is in no motion, and its friction and damping do not count."""
-    pytest.importorskip("pinocchio")
     arm = panda_like(tmp_path / "panda.urdf")
     asked: dict[str, Any] = {"whole": True, "hold": {"j7": 0.3}}
     held = zw.arms.read_arm(arm, coulomb_friction=(0.2,) * 6 + (0,), damping=(1,) * 6 + (0.1,), **asked)
@@ -228,7 +226,6 @@ def test_a_joint_that_is_held_does_not_move(tmp_path: Path) -> None:
 
 def test_the_jacobian_of_the_task_knows_no_orientation_of_rest(tmp_path: Path) -> None:
     """P is that of the controller wherever the wall rests."""
-    pytest.importorskip("pinocchio")
     arm = zw.arms.read_arm(panda_like(tmp_path / "panda.urdf"), whole=True, pose=True)
     at = [0.1, -0.7, 0.2, -2.0, 0.3, 1.4, 0.5]
     turned = arm.resting([0.5, 0.3, 0.1, -1.0, 0.2, 0.9, 0.1])

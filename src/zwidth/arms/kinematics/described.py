@@ -1,4 +1,4 @@
-"""Arms from robot descriptions, computed by pinocchio.
+"""Arms from robot descriptions.
 
 The hand is at the origin of one frame, and what counts is its position: three
 coordinates.  In pose the turn of the frame counts too: `posed`.
@@ -7,14 +7,14 @@ coordinates.  In pose the turn of the frame counts too: `posed`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
 from zwidth.arms.kinematics.arm import Arm, Array, Axis, Sites, as_joints, middles
 from zwidth.arms.kinematics.chain import Placed
+from zwidth.arms.kinematics.mechanism import Frame, Joint, Mechanism, turned
 from zwidth.errors import InputError
 
 _MOST_MAPPED = 2
@@ -26,14 +26,17 @@ _DIGITS = 15
 
 @dataclass(frozen=True, kw_only=True)
 class DescribedArm(Arm):
-    """An arm that pinocchio computes; made by `read_arm`.
+    """An arm that a file describes; made by `read_arm`.
 
     Parameters
     ----------
     model
-        A `pinocchio.Model` whose joints have one coordinate each.
+        The table of its joints; those that follow another (mimic joints) move with it, and are no joints of
+        the arm: J and friction are those of the mechanism.
     frame
         Name of the frame at whose origin the hand is.
+    damping_source
+        What is to be known of damping that comes from the description; empty: it was given.
     joint_range
         (low, high) of each joint [rad; m]: where low = high the joint is held. On a map of cells two joints
         or fewer move.
@@ -41,13 +44,25 @@ class DescribedArm(Arm):
         As of `Arm`.
     """
 
-    model: Any
+    model: Mechanism = field(repr=False)
     frame: str
     joint_range: Sequence[tuple[float, float]]
+    damping_source: str = ""
 
     @property
     def joint_count(self) -> int:
-        return int(self.model.nv)
+        return len(self.model.coordinates)
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Of the joints that move by themselves, in order."""
+        return tuple(each.name for each in self.model.coordinates)
+
+    @property
+    def follows(self) -> bool:
+        """Whether joints between base and hand are not those of the arm one for one, in their order."""
+        own = [joint.coordinate for joint in self._path()]
+        return own != sorted(set(own)) or any(joint.factor != 1 for joint in self._path())
 
     def forward(self, joints: npt.ArrayLike) -> Array:
         """p (…, 3) [m]."""
@@ -78,10 +93,8 @@ class DescribedArm(Arm):
                 f"a map of cells moves one or two joints, here {len(moving)} would move: hold the others, or "
                 "ask for postures, zwidth.stiffness_over_postures or --postures"
             )
-        names = [self.model.names[i + 1] for i in range(self.joint_count)]
-        axes = tuple(
-            Axis(names[i], unit_of(self.model, i), middles(*self.joint_range[i], points)) for i in moving
-        )
+        names, units = self.joint_names, ["m" if slides else "rad" for slides in self.sliding]
+        axes = tuple(Axis(names[i], units[i], middles(*self.joint_range[i], points)) for i in moving)
         q = np.empty((*[points] * len(moving), self.joint_count))
         q[...] = [low for low, _ in self.joint_range]
         for axis, grid in zip(moving, np.meshgrid(*(a.middles for a in axes), indexing="ij"), strict=True):
@@ -90,9 +103,7 @@ class DescribedArm(Arm):
         halves = np.array([(high - low) / (2 * points) for low, high in self.joint_range])
         words = [
             f"{name} {f'from {low:.4g} to {high:.4g}' if high > low else f'held at {low:.4g}'} {unit}"
-            for name, unit, (low, high) in zip(
-                names, (unit_of(self.model, i) for i in range(len(names))), self.joint_range, strict=True
-            )
+            for name, unit, (low, high) in zip(names, units, self.joint_range, strict=True)
         ]
         rates, between = self._rates()
         change = np.full(q.shape[:-1], np.linalg.norm(rates @ halves[between]))
@@ -108,75 +119,80 @@ class DescribedArm(Arm):
 
     def _placed(self, joints: npt.ArrayLike) -> tuple[Array, Array]:
         """p (…, 3), and the Jacobians of velocity and angular velocity (…, 6, m)."""
-        import pinocchio as pin
-
         q = as_joints(joints, self.joint_count)
-        data, neutral = self.model.createData(), pin.neutral(self.model)
-        number = self._number()
-        flat = q.reshape(-1, self.joint_count)
-        positions, jacobians = np.empty((len(flat), 3)), np.empty((len(flat), 6, self.joint_count))
-        for k, row in enumerate(flat):
-            pin.computeJointJacobians(self.model, data, pin.integrate(self.model, neutral, row))
-            placed = pin.updateFramePlacement(self.model, data, number)
-            positions[k] = placed.translation
-            full = pin.getFrameJacobian(self.model, data, number, pin.LOCAL_WORLD_ALIGNED)
-            jacobians[k] = full.reshape(6, -1)  # one joint alone comes as a plain vector
-        return positions.reshape(*q.shape[:-1], 3), jacobians.reshape(*q.shape[:-1], 6, self.joint_count)
+        at, so_far = np.zeros((*q.shape[:-1], 3)), np.broadcast_to(np.eye(3), (*q.shape[:-1], 3, 3))
+        passed = []
+        for joint in self._path():
+            at = at + so_far @ np.array(joint.at.translation)
+            so_far = so_far @ np.array(joint.at.rotation)
+            axis = so_far @ np.array(joint.axis)
+            passed.append((joint, axis, at))
+            value = joint.factor * q[..., joint.coordinate] + joint.offset
+            if joint.slides:
+                at = at + value[..., None] * axis
+            else:
+                so_far = so_far @ turned(joint.axis, value)
+        position = at + so_far @ np.array(self._frame.at.translation)
+        jacobian = np.zeros((*q.shape[:-1], 6, self.joint_count))
+        for joint, axis, at in passed:
+            moved = axis if joint.slides else np.cross(axis, position - at)
+            jacobian[..., :3, joint.coordinate] += joint.factor * moved
+            jacobian[..., 3:, joint.coordinate] += 0.0 if joint.slides else joint.factor * axis
+        return position, jacobian
 
-    def _number(self) -> int:
-        """Of the frame; where a link and a joint share the name, of the link."""
-        import pinocchio as pin
-
-        named = [i for i, frame in enumerate(self.model.frames) if frame.name == self.frame]
-        links = [i for i in named if self.model.frames[i].type == pin.FrameType.BODY]
-        return (links or named)[-1]
+    @property
+    def _frame(self) -> Frame:
+        """Where a link and a joint share the name, that of the link."""
+        named = [frame for frame in self.model.frames if frame.name == self.frame]
+        return max(named, key=lambda frame: frame.is_body)
 
     @property
     def sliding(self) -> tuple[bool, ...]:
         """Of each joint whether it slides; the others turn."""
-        return tuple(slides(self.model, i) for i in range(self.joint_count))
+        return tuple(each.slides for each in self.model.coordinates)
 
     def placements(self) -> tuple[list[Placed], Array]:
-        """The joints between base and hand, z turned to each axis, and the hand in the last frame [m]."""
-        data, joints, before = self.model.createData(), list[Placed](), np.eye(3)
-        for number in self._path():
-            at, twist = self.model.jointPlacements[number], np.ravel(data.joints[number].S)
-            i = int(self.model.joints[number].idx_v)
-            sliding = slides(self.model, i)
-            turn = _turned_to(twist[:3] if sliding else twist[3:])
-            rotation, translation = before.T @ at.rotation @ turn, before.T @ at.translation
-            joints.append(Placed(i, sliding, np.round(rotation, _DIGITS), translation))
-            before = turn
-        frame = self.model.frames[self._number()]
-        return joints, before.T @ frame.placement.translation
+        """The joints between base and hand, z turned to each axis, and the hand in the last frame [m].
 
-    def _path(self) -> list[int]:
+        Of joints that follow others there is no such list: it is of an arm in which `follows` is False.
+        """
+        joints, before, moved = list[Placed](), np.eye(3), np.zeros(3)
+        for joint in self._path():
+            turn, axis = _turned_to(np.array(joint.axis)), np.array(joint.axis)
+            rotation = before @ np.array(joint.at.rotation) @ turn
+            translation = before @ np.array(joint.at.translation) + moved
+            joints.append(Placed(joint.coordinate, joint.slides, np.round(rotation, _DIGITS), translation))
+            before, moved = turn.T, np.zeros(3)
+            if joint.slides:
+                moved = joint.offset * np.array([0.0, 0.0, 1.0])
+            elif joint.offset:
+                before = turn.T @ turned(axis, joint.offset)
+        return joints, before @ np.array(self._frame.at.translation) + moved
+
+    def _path(self) -> list[Joint]:
         """The joints between the base and the hand, from the base on."""
-        path, joint = list[int](), self.model.frames[self._number()].parentJoint
-        while joint > 0:
-            path.insert(0, int(joint))
-            joint = self.model.parents[joint]
-        return path
+        return self.model.path(self._frame)
 
     def _rates(self) -> tuple[Array, list[int]]:
-        """Bounds on |∂²p/∂q_i∂q_j|: what lies beyond both joints where both turn, 1 where one slides, else 0;
-        and which joints lie between the base and the hand."""
-        frame = self.model.frames[self._number()]
-        beyond, length = {}, float(np.linalg.norm(frame.placement.translation))
-        for joint in reversed(self._path()):
-            i = self.model.joints[joint].idx_v
-            if slides(self.model, i):
-                length += max(map(abs, self.joint_range[i])) + (
-                    self.resolution[i] if self.resolution else 0.0
-                )
-            beyond[i] = length
-            length += float(np.linalg.norm(self.model.jointPlacements[joint].translation))
+        """Bounds on |∂²p/∂q_i∂q_j|, and which coordinates move the hand.
 
-        def rate(i: int, j: int) -> float:
-            sliding = slides(self.model, i) + slides(self.model, j)
-            return min(beyond[i], beyond[j]) if sliding == 0 else float(sliding == 1)
-
-        return np.array([[rate(i, j) for j in sorted(beyond)] for i in sorted(beyond)]), sorted(beyond)
+        Of two joints: what lies beyond both where both turn, 1 where one slides, else 0; summed over those
+        that a coordinate moves, times their factors.
+        """
+        beyond, length, path = list[float](), float(np.linalg.norm(self._frame.at.translation)), self._path()
+        for joint in reversed(path):
+            if joint.slides:
+                i = joint.coordinate
+                travel = max(map(abs, self.joint_range[i])) + (self.resolution[i] if self.resolution else 0.0)
+                length += abs(joint.factor) * travel + abs(joint.offset)
+            beyond.insert(0, length)
+            length += float(np.linalg.norm(joint.at.translation))
+        sliding = np.array([joint.slides for joint in path], dtype=np.int64)
+        each = np.where(np.add.outer(sliding, sliding) == 0, np.minimum.outer(beyond, beyond), 0.0)
+        each[np.add.outer(sliding, sliding) == 1] = 1.0
+        own = sorted({joint.coordinate for joint in path})
+        shares = np.array([[abs(j.factor) * (j.coordinate == i) for i in own] for j in path])
+        return shares.T @ each @ shares, own
 
 
 def _turned_to(axis: Array) -> Array:
@@ -185,14 +201,3 @@ def _turned_to(axis: Array) -> Array:
     x = np.cross(side, axis)
     x /= np.linalg.norm(x)
     return np.stack([x, np.cross(axis, x), axis], axis=-1)
-
-
-def slides(model: Any, i: int) -> bool:
-    """Whether coordinate i is that of a sliding joint."""
-    joint = next(j for j in model.joints if j.idx_v == i)
-    return "JointModelP" in joint.shortname()
-
-
-def unit_of(model: Any, i: int) -> str:
-    """Of coordinate i."""
-    return "m" if slides(model, i) else "rad"

@@ -17,20 +17,21 @@ import numpy as np
 import numpy.typing as npt
 
 from zwidth.arms.kinematics.arm import Arm, Array, Sites, as_joints
-from zwidth.arms.kinematics.described import DescribedArm, slides
+from zwidth.arms.kinematics.described import DescribedArm
+from zwidth.arms.kinematics.mechanism import Placement
 from zwidth.arms.kinematics.turn import SECOND_DERIVATIVE, about, coordinates, inverse, product, rates
 
 
 @dataclass(frozen=True, kw_only=True)
 class PosedArm(DescribedArm):
-    """An arm that pinocchio computes, held by its frame; made by `read_arm(…, pose=True)`.
+    """An arm that a file describes, held by its frame; made by `read_arm(…, pose=True)`.
 
     Parameters
     ----------
     rest
         The joints at which the frame has the orientation in which the wall rests [rad; m]. None: `sites` are
         for every orientation of rest; `forward` and `jacobian` for the middle of the ranges.
-    model, frame, joint_range, damping, coulomb_friction, resolution, torque_limit, name
+    model, frame, damping_source, joint_range, damping, coulomb_friction, resolution, torque_limit, name
         As of `DescribedArm`.
 
     Raises
@@ -53,8 +54,11 @@ class PosedArm(DescribedArm):
 
     @property
     def turning_curvature(self) -> float:
-        """Of e, |Σ ∂²e/∂q_i∂q_j w_i w_j| ≤ ½ (Σ |w_i|)² over the joints that turn the hand [1/rad]."""
-        return SECOND_DERIVATIVE * len(self._turning())
+        """Of e, |Σ ∂²e/∂q_i∂q_j w_i w_j| ≤ ½ (Σ |w_i|)² over the joints that turn the hand [1/rad].
+
+        Of n joints ½ n |w|²; one that moves several counts with the square of the sum of their factors.
+        """
+        return SECOND_DERIVATIVE * float((self._turning().sum(axis=0) ** 2).sum())
 
     @property
     def rests_anywhere(self) -> bool:
@@ -76,13 +80,14 @@ class PosedArm(DescribedArm):
     def sites(self, points: int) -> Sites:
         """As of `DescribedArm`, with a bound of its own for the rows of rotation."""
         sites, turning = super().sites(points), self._turning()
-        halves = np.array([(self.joint_range[i][1] - self.joint_range[i][0]) / (2 * points) for i in turning])
+        halves = turning @ np.diff(self.joint_range)[:, 0] / (2 * points)  # of each joint that turns
         if self.rest is None:  # an axis turns with the joints before it, |∂aᵢ/∂qⱼ| ≤ 1 for j < i
             columns, words = np.cumsum(halves) - halves, "in every orientation of rest of the wall"
         else:
             columns = np.full(len(turning), SECOND_DERIVATIVE * halves.sum())
             values = ", ".join(f"{value:.4g}" for value in self.rest)
             words = f"the rotation of the wall at rest with the joints at {values}"
+        columns = turning.T @ columns
         turned = np.full_like(sites.change, np.linalg.norm(columns))
         return sites._replace(
             change=np.hypot(sites.change, turned),
@@ -109,31 +114,24 @@ class PosedArm(DescribedArm):
 
     def _quaternion(self, joints: npt.ArrayLike) -> Array:
         """Of the frame, without a jump of its sign between any two positions (…, 4)."""
-        import pinocchio as pin
-
         q = as_joints(joints, self.joint_count)
-        straight, moved = self.model.createData(), self.model.createData()
-        neutral = pin.neutral(self.model)
-        pin.forwardKinematics(self.model, straight, neutral)
-        pin.forwardKinematics(self.model, moved, pin.integrate(self.model, neutral, np.ones(self.model.nv)))
-        frame = self.model.frames[self._number()]
-        turned = np.broadcast_to(_unit(frame.placement.rotation), (*q.shape[:-1], 4))
+        turned = np.broadcast_to(_unit(self._frame.at), (*q.shape[:-1], 4))
         for joint in reversed(self._path()):
-            at_rest = straight.liMi[joint].rotation
-            i = self.model.joints[joint].idx_v
-            if not slides(self.model, i):
-                axis = pin.log3(at_rest.T @ moved.liMi[joint].rotation)  # it has turned by one radian
-                turned = product(about(axis, q[..., i]), turned)
-            turned = product(_unit(at_rest), turned)
+            if not joint.slides:
+                value = joint.factor * q[..., joint.coordinate] + joint.offset
+                turned = product(about(np.array(joint.axis), value), turned)
+            turned = product(_unit(joint.at), turned)
         return turned
 
-    def _turning(self) -> list[int]:
-        """The joints between the base and the hand that turn it."""
-        return [i for i in self._rates()[1] if not slides(self.model, i)]
+    def _turning(self) -> Array:
+        """|factor| of each joint that turns the hand, from the base on, by the coordinate that moves it."""
+        path = [joint for joint in self._path() if not joint.slides]
+        rows = [[abs(j.factor) * (j.coordinate == i) for i in range(self.joint_count)] for j in path]
+        return np.array(rows).reshape(len(path), self.joint_count)
 
 
-def _unit(rotation: Array) -> Array:
-    import pinocchio as pin
+def _unit(at: Placement) -> Array:
+    from scipy.spatial.transform import Rotation
 
-    x, y, z, w = pin.Quaternion(rotation).coeffs()
+    x, y, z, w = Rotation.from_matrix(at.rotation).as_quat()
     return np.array([w, x, y, z])

@@ -1,4 +1,4 @@
-"""Reading robot descriptions: URDF and MJCF, by pinocchio.
+"""Reading robot descriptions: URDF and MJCF.
 
 Viscous and Coulomb friction and the limits of motion and effort are those of the
 description where they are not given.
@@ -12,11 +12,19 @@ from typing import Any
 
 import numpy as np
 
-from zwidth.arms.kinematics.described import DescribedArm, slides, unit_of
-from zwidth.arms.kinematics.description_file import read_model
+from zwidth.arms.kinematics.described import DescribedArm
+from zwidth.arms.kinematics.description_file import parsed
 from zwidth.arms.kinematics.joint_damping import Damping
+from zwidth.arms.kinematics.mechanism import Coordinate, Mechanism
+from zwidth.arms.kinematics.mjcf import read_mjcf
 from zwidth.arms.kinematics.posed import PosedArm
+from zwidth.arms.kinematics.urdf import read_urdf
 from zwidth.errors import InputError
+from zwidth.missing import did_you_mean
+
+_ENDINGS = (".urdf", ".xml", ".mjcf")
+_FAR = 1e3
+"""Limits beyond are none [rad; m]."""
 
 
 def read_arm(
@@ -32,7 +40,7 @@ def read_arm(
     rest: dict[str, float] | None = None,
     whole: bool = False,
 ) -> DescribedArm:
-    """Read an arm from a URDF or MJCF file; needs the extra `arms`, which is pinocchio.
+    """Read an arm from a URDF or MJCF file.
 
     Parameters
     ----------
@@ -62,39 +70,63 @@ def read_arm(
         If the file cannot be read, a name is not in it, or its joints have no damping at all.
     """
     path = Path(path)
-    model = read_model(path)
-    m, m_names = int(model.nv), [str(n) for n in model.names][1:]
-    if len(m_names) != m:
-        raise InputError(f"{path.name}: every joint must turn or slide about one axis")
-    frames = [str(f.name) for f in model.frames]
+    model = read_mechanism(path)
+    each, frames = model.coordinates, [frame.name for frame in model.frames]
+    m, names = len(each), [coordinate.name for coordinate in each]
     if frame is not None and frame not in frames:
-        raise InputError(f"{path.name} has no frame {frame!r}; it has {', '.join(frames[1:21])}")
-    b: Damping = tuple(model.damping) if damping is None else _for_each(damping, m)
+        raise InputError(f"{path.name} has no frame {frame!r}; it has {', '.join(frames[:20])}")
+    b: Damping = tuple(c.damping for c in each) if damping is None else _for_each(damping, m)
     if not np.any(b):
         raise InputError(
             f"{path.name} gives no joint any damping, and without damping no wall is passive; "
-            "measure it and give damping, on the command line --joint-damping, or write "
-            "<dynamics damping=…/> in the description"
+            f"measure it and give damping, on the command line --joint-damping, or write {model.damping_is} "
+            "in the description"
         )
-    limits = tuple(model.effortLimit) if torque_limit is None else tuple(_for_each(torque_limit, m))
+    limits = tuple(c.effort for c in each) if torque_limit is None else tuple(_for_each(torque_limit, m))
     given: dict[str, Any] = {
         "model": model,
         "frame": frame or frames[-1],
-        "joint_range": _ranges(model, m_names, {} if whole and hold is None else hold, whole),
+        "joint_range": _ranges(each, names, {} if whole and hold is None else hold, whole),
         "damping": b,
         "coulomb_friction": (
-            tuple(model.friction) if coulomb_friction is None else _for_each(coulomb_friction, m)
+            tuple(c.friction for c in each) if coulomb_friction is None else _for_each(coulomb_friction, m)
         ),
         "resolution": _for_each(resolution, m),
         "torque_limit": limits if all(0 < v < np.inf for v in limits) else (),
-        "name": str(model.name) or path.stem,
+        "name": model.name,
+        "damping_source": _source(model) if damping is None else "",
     }
     if pose:
-        resting = None if rest is None else _rest(given["joint_range"], m_names, rest)
+        resting = None if rest is None else _rest(given["joint_range"], names, rest)
         return PosedArm(rest=resting, **given)
     if rest is not None:
         raise InputError("rest is where the rotation of a wall in pose rests; a point does not turn")
     return DescribedArm(**given)
+
+
+def read_mechanism(path: Path) -> Mechanism:
+    """What a .urdf, .xml or .mjcf file describes.
+
+    Raises
+    ------
+    InputError
+        If it is none of these, cannot be read, or nothing in it moves.
+    """
+    if path.suffix.lower() not in _ENDINGS:
+        raise InputError(f"an arm is described in a .urdf, .xml or .mjcf file, got {path.name!r}")
+    if not path.is_file():
+        raise InputError(f"there is no file {path}{did_you_mean(path)}")
+    try:
+        root = parsed(path)
+        read = {"robot": read_urdf, "mujoco": read_mjcf}.get(root.tag)
+        if read is None:
+            raise root.wrong("is neither <robot>, of a URDF, nor <mujoco>, of an MJCF")
+        found = read(root, path.stem)
+    except InputError as error:
+        raise InputError(f"{path.name} cannot be read: {error}") from None
+    if not found.coordinates:
+        raise InputError(f"{path.name} has no joint that moves")
+    return found
 
 
 def _for_each(values: Any, count: int) -> Any:
@@ -103,16 +135,26 @@ def _for_each(values: Any, count: int) -> Any:
     return tuple(values) * count if alone else values
 
 
+def _source(model: Mechanism) -> str:
+    """Of damping that is the description's: that it may be none of the arm's."""
+    values = {each.damping for each in model.coordinates}
+    words = "from the description; simulators' files often hold placeholders: measure"
+    if len(model.coordinates) > 1 and all(float(f"{b:.0e}") == b for b in values):
+        told = "round numbers" if len(values) > 1 else "one number for every joint"
+        words = f"from the description, {told}, most likely a simulator's placeholders: measure"
+    return "; ".join([words, *model.notes])
+
+
 def _ranges(
-    model: Any, names: list[str], hold: dict[str, float] | None, whole: bool
+    each: Sequence[Coordinate], names: list[str], hold: dict[str, float] | None, whole: bool
 ) -> tuple[tuple[float, float], ...]:
     _named(hold or {}, names, "hold")
     ranges = []
-    for i, name in enumerate(names):
-        if hold is not None and name in hold:
-            low = high = _held(model, i, name, float(hold[name]))
+    for i, joint in enumerate(each):
+        if hold is not None and joint.name in hold:
+            low = high = _held(joint, float(hold[joint.name]))
         else:
-            low, high = _limits(model, i)
+            low, high = _limits(joint)
             if hold is None and i >= 2:
                 low = high = (low + high) / 2
         ranges.append((low, high))
@@ -137,24 +179,22 @@ def _named(given: dict[str, float], names: list[str], what: str) -> None:
         raise InputError(f"{what}: there is no joint {unknown[0]!r}; there are {', '.join(names)}")
 
 
-def _held(model: Any, i: int, name: str, value: float) -> float:
-    low, high = _written_limits(model, i) or (-np.inf, np.inf)
+def _held(joint: Coordinate, value: float) -> float:
+    low, high = joint.limits
     if not (np.isfinite(value) and low <= value <= high):
-        bounds = f"from {low:g} to {high:g} {unit_of(model, i)}" if np.isfinite(low) else "finite"
-        raise InputError(f"hold: {name} can be {bounds}, got {value:g}")
+        ends = f"from {low:g} to {high:g} {'m' if joint.slides else 'rad'}"
+        bounds = ends if np.isfinite(joint.limits).any() else "finite"
+        raise InputError(f"hold: {joint.name} can be {bounds}, got {value:g}")
     return value
 
 
-def _limits(model: Any, i: int) -> tuple[float, float]:
-    written = _written_limits(model, i)
-    if written is None and slides(model, i):
-        raise InputError(f"joint {i + 1} slides without limits; write them into the description, or hold it")
-    return written or (-float(np.pi), float(np.pi))
-
-
-def _written_limits(model: Any, i: int) -> tuple[float, float] | None:
-    joint = next(j for j in model.joints if j.idx_v == i)
-    if joint.nq != 1:
-        return None
-    low, high = (float(limit[joint.idx_q]) for limit in (model.lowerPositionLimit, model.upperPositionLimit))
-    return (low, high) if -1e3 < low < high < 1e3 else None
+def _limits(joint: Coordinate) -> tuple[float, float]:
+    """A joint that turns without limits goes round once."""
+    if max(map(abs, joint.limits)) < _FAR:
+        return joint.limits
+    if joint.slides:
+        raise InputError(
+            f"joint {joint.name!r}, line {joint.line}, slides without limits; write them into the "
+            "description, or hold it"
+        )
+    return (-float(np.pi), float(np.pi))

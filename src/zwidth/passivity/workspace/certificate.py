@@ -58,8 +58,8 @@ def arm_certificate(
     """
     if not isinstance(arm, (LeggedArm, PlanarChain, DescribedArm)):
         return None, "arms of this kind have no certificate"
-    if beside(arm):
-        return None, "joints on the way to the hand are damped together with joints beside it"
+    if why := unsaid(arm):
+        return None, why
     document: dict[str, Any] = {
         "format": FORMAT,
         "kind": "arm",
@@ -177,16 +177,20 @@ def _shared_damping(arm: Arm, unit: str, own: Sequence[int] | None = None) -> di
     return {f"damping_{unit}": _matrix(rows)} if b.ndim == 2 else {}
 
 
-def beside(arm: Written) -> bool:
-    """Whether a joint that moves the hand is damped together with one that does not.
+def unsaid(arm: Written) -> str:
+    """Why no document can say how an arm moves and is damped; empty where one can.
 
-    Then the part of the matrix that a document has is more than is lost: the other joint may go along.
+    Where a joint that moves the hand is damped together with one that does not, the part of the matrix that
+    a document has is more than is lost: the other joint may go along.
     """
     if isinstance(arm, LeggedArm):
-        return False
+        return ""
+    if isinstance(arm, DescribedArm) and arm.follows:
+        return "joints between base and hand follow others, for which it has no words"
     own = [at.joint for at in arm.placements()[0]]
     others = [i for i in range(arm.joint_count) if i not in own]
-    return bool(as_matrix(arm.damping)[np.ix_(own, others)].any())
+    coupled = as_matrix(arm.damping)[np.ix_(own, others)].any()
+    return "joints on the way to the hand are damped together with joints beside it" if coupled else ""
 
 
 def _add_steps(document: dict[str, Any], arm: Chain, steps: EncoderSteps, limits: tuple[float, ...]) -> None:

@@ -34,7 +34,7 @@ from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.workspace.null_space_certificate import largest_certified, null_space_certificate
 from zwidth.passivity.workspace.question import Question, asked_of
-from zwidth.passivity.workspace.report import finite, motion_document, wall_document
+from zwidth.passivity.workspace.report import arm_document, finite, motion_document, wall_document
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
@@ -189,7 +189,7 @@ class NullSpace(PassivityAnswer):
         arm, spring, turns = self.question.arm, self.spring, self.question.arm.turns
         size = task_jacobian(arm, spring.rest).shape[0]
         return {
-            "arm": arm.name,
+            **arm_document(arm),
             "wall": wall_document(self.question.wall, size, turns),
             "null_stiffness_N_m_per_rad": spring.stiffness,
             "null_damping_N_m_s_per_rad": spring.damping,
@@ -288,7 +288,7 @@ def _rest(
     """q_d, inside the ranges."""
     names = [f"q{i + 1}" for i in range(arm.joint_count)]
     if isinstance(arm, DescribedArm):
-        names = [str(name) for name in arm.model.names][1:]
+        names = list(arm.joint_names)
     if given is not None and not isinstance(given, Mapping):
         if len(given) != len(names):
             raise InputError(f"the null-space rest has a value for each of {len(names)} joints")

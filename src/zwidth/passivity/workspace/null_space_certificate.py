@@ -18,12 +18,12 @@ from zwidth.arms.null_space import NullSpaceSpring, moving, projector, task_jaco
 from zwidth.checker import verify
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.workspace.certificate import (
-    beside,
     chain_document,
     decimal_of,
     pose_document,
     text,
     texts,
+    unsaid,
     wall_matrices_document,
 )
 from zwidth.passivity.workspace.question import Question
@@ -80,11 +80,11 @@ def _begun(question: Question, spring: NullSpaceSpring) -> tuple[dict[str, Any] 
     """The document but for its distance, once it is seen to be of this arm; or why there is none."""
     arm = question.arm
     assert isinstance(arm, (DescribedArm, PlanarChain))
+    if why := unsaid(arm):
+        return None, why
     own = [at.joint for at in arm.placements()[0]]
     if set(moving(arm).tolist()) - set(own):
         return None, "a joint that does not move the hand moves, too: hold it"
-    if beside(arm):
-        return None, "joints on the way to the hand are damped together with joints beside it"
     friction = arm.coulomb_friction or (0.0,) * arm.joint_count
     if spring.stiffness and not all(friction[i] for i in moving(arm)):
         return None, "a joint has no Coulomb friction that is known"

@@ -32,7 +32,7 @@ from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.workspace.mapped import scaled_stiffness, stiffness_factors
 from zwidth.passivity.workspace.question import Question, asked_of
-from zwidth.passivity.workspace.report import finite, motion_document, wall_document
+from zwidth.passivity.workspace.report import arm_document, finite, motion_document, wall_document
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
 
@@ -180,7 +180,7 @@ class PostureMap(PassivityAnswer):
         """As plain data, units in the keys."""
         arm, motion = self.question.arm, self.motion
         return {
-            "arm": arm.name,
+            **arm_document(arm),
             "wall": wall_document(self.question.wall, 3 + arm.turns, arm.turns),
             "sample_period_s": self.question.period,
             "delay_samples": self.question.delay_samples,

@@ -5,12 +5,19 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
+from zwidth.arms import Arm, DescribedArm
 from zwidth.arms.encoders import EncoderSteps
 from zwidth.arms.matrix_wall import MatrixWall
 from zwidth.arms.motion import ArmMotion
 from zwidth.arms.need import wall_matrices
 from zwidth.environment.wall import Wall
 from zwidth.passivity.workspace.additions import Additions
+
+
+def arm_document(arm: Arm) -> dict[str, Any]:
+    """Its name, and what is to be known of damping that a description gave."""
+    source = arm.damping_source if isinstance(arm, DescribedArm) else ""
+    return {"arm": arm.name, **({"joint_damping_source": source} if source else {})}
 
 
 def wall_document(wall: Wall | MatrixWall, coordinates: int, turns: int) -> dict[str, Any]:

@@ -19,6 +19,7 @@ from zwidth.passivity.scope import Scope, Torque
 from zwidth.passivity.workspace.additions import Additions
 from zwidth.passivity.workspace.report import (
     additions_document,
+    arm_document,
     finite,
     motion_document,
     steps_document,
@@ -165,7 +166,7 @@ class Workspace(PassivityAnswer):
         data, motion, steps = self.data, self.motion, self.encoder_steps
         turns, largest = self.arm.turns, self.largest_stiffness
         return {
-            "arm": self.arm.name,
+            **arm_document(self.arm),
             "joint_damping_N_m_s_rad": np.asarray(self.arm.damping).tolist(),
             "region": self.region,
             "wall": wall_document(self.wall, self.coordinates, turns),
