@@ -254,3 +254,21 @@ def test_the_checker_runs_alone(tmp_path: Path) -> None:
     done = python("-S", "-c", program, str(tmp_path / "true.json"), PYTHONPATH=str(house.parents[1]))
     used = [name for name in done.stdout.splitlines()[-1].split() if not name.startswith("zwidth.checker")]
     assert used == ["zwidth", "zwidth.lazy"]
+
+
+@pytest.mark.parametrize(
+    ("scope", "fault"),
+    [
+        ({"contact": "Kept"}, "scope.contact must be"),
+        ({"encoder": "count"}, "scope.encoder must be"),
+        ({"force_limit_counted": "yes"}, "scope.force_limit_counted must be"),
+        ({"hands": {"which": "all"}}, "scope.hands.which must be"),
+        ({"hands": "every"}, "scope.hands must be an object"),
+        ({"motors": "any"}, "no document of this format has: scope.motors"),
+    ],
+)
+def test_every_entry_of_a_scope_is_read_or_refused(scope: Document, fault: str) -> None:
+    """A word that is not held against the evidence would state what nothing proves."""
+    evidence = next(e for (_, found), e in accepted().items() if found.shows == "passive")
+    judged = judge({"format": VERDICT, "outcome": "passive", "scope": scope, "certificate": evidence})
+    assert fault in judged.faults[0]

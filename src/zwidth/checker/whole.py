@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from .document.effort import spend
 from .document.file import Unreadable, require_shallow
 from .document.refusal import Invalid
-from .scope import ACTIVE, PASSIVE, STABLE, UNSTABLE
+from .scope import ACTIVE, BOTH_SIDES, BROKEN, COUNTED, IDEAL, KEPT, PASSIVE, STABLE, UNSTABLE
 
 EVIDENCE = ("certificate", "violation", "witness")
 """The entries that hold what can be checked: the first shows the better outcome, the others the worse."""
@@ -195,6 +195,24 @@ class Whole(NamedTuple):
     told: tuple[str, ...]
 
 
+_SCOPE = {
+    "contact": (BROKEN, KEPT, BOTH_SIDES),
+    "encoder": (IDEAL, COUNTED, "not counted"),
+    "fed_with": ("position", "penetration", ""),
+    "force_limit_counted": (True, False),
+    "force_steps_counted": (True, False),
+}
+"""What of a scope is held against the evidence, beside the hands."""
+_HANDS = ("every", "bounded", "known", "activity")
+_OF_A_SCOPE = Shape(
+    told=(
+        "sampling", "clamped", "damping", "coulomb_friction", "friction_speed", "largest_force",
+        "largest_moment", "transmission", "torque", "friction", "region", "bounds", "intervals", "assumed",
+        "law", "also",
+    )
+)  # fmt: skip
+"""What of it nothing proves."""
+
 _NONE = f"no evidence found: the object has no key kind, {', '.join(EVIDENCE[:-1])} or {EVIDENCE[-1]}"
 
 
@@ -233,7 +251,7 @@ def _statements(document: object, at: str, sort: str, told: list[str]) -> list[S
         elif key == "outcome" and shape.outcomes:
             outcome = _one_of(value, shape.outcomes, place + key)
         elif key == "scope":
-            scope = dict(_object(value, place + key))
+            scope = _scope(_object(value, place + key), place + key, told)
         elif key in shape.inside:
             how, inside = shape.inside[key]
             found = [_statements(one, there, inside, told) for there, one in _held(value, place + key, how)]
@@ -247,6 +265,20 @@ def _statements(document: object, at: str, sort: str, told: list[str]) -> list[S
         if stated and not (needs in evidence or (needs != "certificate" and "witness" in evidence)):
             raise Invalid(f"{place}{name} is stated, and no {needs} shows it")
     return [Statement(at, shape, outcome, scope, evidence, listed), *inner]
+
+
+def _scope(scope: Mapping[str, Any], at: str, told: list[str]) -> Mapping[str, Any]:
+    """What a scope says, each word as it may stand; `told` grows."""
+    for key, value in scope.items():
+        if key == "hands":
+            _one_of(_object(value, f"{at}.hands").get("which"), _HANDS, f"{at}.hands.which")
+        elif key not in _SCOPE:
+            _require_told(key, _OF_A_SCOPE, f"{at}.")
+            told.append(f"{at}.{key}")
+        elif not any(value is word or (word == value and isinstance(value, str)) for word in _SCOPE[key]):
+            words = " or ".join(str(word).lower() for word in _SCOPE[key])
+            raise Invalid(f"{at}.{key} must be {words}, got {str(value)[:40]!r}")
+    return scope
 
 
 def _held(value: object, at: str, how: str) -> Iterator[tuple[str, object]]:
