@@ -87,7 +87,7 @@ def test_wheels_are_told_in_degrees(capsys: pytest.CaptureFixture[str]) -> None:
     )
     status, out, _ = run(capsys, "wheel.toml", "other.toml", "wall.toml")
     assert status == 0
-    assert "up to 0.3491 N·m/deg, the limit of wheel" in out
+    assert "up to 0.349 N·m/deg, the limit of wheel" in out
     assert run(capsys, "wheel.toml", "other.toml", "--stiffness", "0.1 N*m/deg")[1] == out
 
 

@@ -58,7 +58,12 @@ def test_what_is_saved_is_verified(file, argv, words, tmp_path, capsys):
     assert main(["verify", str(saved)]) == 0
     assert words in " ".join(capsys.readouterr().out.split())
     told = json.loads(saved.read_text(encoding="utf-8"))
-    saved.write_text(json.dumps({**told, "format": "zwidth pair 1"}), encoding="utf-8")
+    told = {**told, "format": "zwidth pair 1"}
+    saved.write_text(json.dumps(told), encoding="utf-8")
+    assert main(["verify", str(saved)]) == 1
+    assert "no document of this format has: held" in " ".join(capsys.readouterr().out.split())
+    del told["held"]
+    saved.write_text(json.dumps(told), encoding="utf-8")
     assert main(["verify", str(saved)]) == 1
     assert "of which a known hand holds one" in " ".join(capsys.readouterr().out.split())
 

@@ -201,7 +201,7 @@ def test_a_picture_that_cannot_be_written_is_refused(tmp_path):
         verdict.plot(tmp_path / "check.jpg")
     kept = tmp_path / "kept.png"
     kept.write_bytes(b"mine")
-    with pytest.raises(zw.InputError, match="exists already"):
+    with pytest.raises(zw.InputError, match="kept.png exists"):
         save_figure(verdict.plot, kept)
     assert kept.read_bytes() == b"mine"
     with pytest.raises(zw.InputError, match="cannot be written"):
@@ -231,11 +231,11 @@ def test_check_figure_has_the_panels_that_apply(device, law, panels):
 
 
 def test_names_are_drawn_as_they_are():
-    """A dollar in a device's name starts no mathematics, and a long name is cut."""
+    """A dollar in a device's name starts no mathematics, a line's end is shown, and a long name is cut."""
     device = PADDLE.replace(name="$\\foo$ of\nour lab, " + "x" * 100)
     figure = plots.check_figure(zw.check(device, zw.Wall(stiffness=300)))
     figure.savefig(BytesIO())
-    assert figure.get_suptitle().startswith("$\\foo$ of our lab, xxx")
+    assert figure.get_suptitle().startswith("$\\foo$ of?our lab, xxx")
     plots.worst_case(device, 300).savefig(BytesIO())
 
 

@@ -180,7 +180,7 @@ def _narrower(stated: Statement, said: str | None, covered: Scope) -> str | None
     for counted, name in ((covered.force_limit, "force_limit"), (covered.force_steps, "force_steps")):
         if scope.get(f"{name}_counted") is True and not counted:
             return f"leaves out the {name.replace('_', ' ')}"
-    if covered.fed_with and scope and scope.get("fed_with") != covered.fed_with:
+    if covered.fed_with and scope and not kept and scope.get("fed_with") != covered.fed_with:
         return f"is of a law that is fed with the {covered.fed_with}"
     return None
 

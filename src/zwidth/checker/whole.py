@@ -60,6 +60,7 @@ class Shape(NamedTuple):
 _LOOP = ("limit", "advice", "required_damping")
 _OF_AN_ARM = (
     "arm",
+    "joint_damping",
     "wall",
     "sample_period",
     "delay_samples",
@@ -143,7 +144,7 @@ SHAPES: dict[str, Shape] = {
     "zwidth port 1": Shape(told=("port", "link", "motion")),
     "zwidth workspace 1": Shape(
         told=(
-            *_OF_AN_ARM, "joint_damping", "region", "torque", "encoder", "largest_forces", "largest_moments",
+            *_OF_AN_ARM, "region", "torque", "encoder", "largest_forces", "largest_moments",
             "can_be_refuted", "smallest_margin", "encoder_steps", "addition_to_all", "addition_to_one",
             "least_additions", "wall_leaves_out", "too_little", "proved_part",
         )

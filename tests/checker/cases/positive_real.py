@@ -219,7 +219,7 @@ CASES = [
     refused(
         "a burst of too many lines",
         put(FAST, {"motion.cycles": 500, "motion.power": 400, "system.numerator": [1] * 371}),
-        "too many lines",
+        "more effort",
     ),
     refused("no pace", put(FAST, {"motion.step_rad_per_s": 0}), "step_rad_per_s must be > 0"),
     refused("a pace below 0", put(FAST, {"motion.step_rad_per_s": -1}), "step_rad_per_s must be > 0"),
