@@ -201,7 +201,7 @@ def test_a_picture_that_cannot_be_written_is_refused(tmp_path):
         verdict.plot(tmp_path / "check.jpg")
     kept = tmp_path / "kept.png"
     kept.write_bytes(b"mine")
-    with pytest.raises(zw.InputError, match="kept.png exists"):
+    with pytest.raises(zw.InputError, match="exists; choose another name"):
         save_figure(verdict.plot, kept)
     assert kept.read_bytes() == b"mine"
     with pytest.raises(zw.InputError, match="cannot be written"):

@@ -90,7 +90,7 @@ def test_a_picture_is_not_replaced(found: zw.identification.Identified, tmp_path
     """An old file only with force."""
     path = tmp_path / "fig.png"
     path.touch()
-    with pytest.raises(zw.InputError, match="exists already"):
+    with pytest.raises(zw.InputError, match="exists; choose another name"):
         found.plot(path)
     assert not path.stat().st_size
     found.plot(path, force=True)

@@ -248,7 +248,7 @@ def test_without_the_library_for_bags_its_name_is_said(tmp_path: Path, monkeypat
     """The message says what to install."""
     monkeypatch.setitem(__import__("sys").modules, "rosbags.highlevel", None)
     path = tmp_path / "log.mcap"
-    path.write_bytes(b"\x89MCAP0\r\n" + bytes(100))
+    path.write_bytes(b"\x89MCAP0\r\n" + bytes(100) + b"\x89MCAP0\r\n")
     with pytest.raises(zw.InputError, match=r"zwidth\[logs\]"):
         zw.read_log(path)
 
