@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from zwidth.cli.main import _parser, main
-from zwidth.cli.options import joined
+from zwidth.cli.typed import joined
 
 ROOT = Path(__file__).resolve().parent.parent
 

@@ -16,7 +16,8 @@ import zwidth as zw
 from zwidth.cli.bars import bar, levels
 from zwidth.cli.decision import decided
 from zwidth.cli.main import main
-from zwidth.cli.options import device_parameters, environment_parameters, joined
+from zwidth.cli.options import device_parameters, environment_parameters
+from zwidth.cli.typed import joined
 from zwidth.device import catalogue
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.verdict import Verdict
