@@ -287,7 +287,7 @@ def test_damping_of_a_description_is_told_as_such(
     text = urdf.read_text(encoding="utf-8")
     for before, after in zip((0.02, 0.01), damping, strict=True):
         text = text.replace(f'damping="{before}"', f'damping="{after}"')
-    urdf.write_text(text)
+    urdf.write_text(text, encoding="utf-8")
     told = zw.workspace(read_arm(urdf), zw.Wall(1), rate=1000, points=4).to_dict()
     assert words in told["joint_damping_source"]
     given = zw.workspace(read_arm(urdf, damping=[0.1]), zw.Wall(1), rate=1000, points=4)
