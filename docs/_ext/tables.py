@@ -91,8 +91,17 @@ def settings(name: str) -> str:
     from zwidth.servo.devices.registry import CONNECTIONS
 
     made = CONNECTIONS[name].made
-    head = ("setting", "as delivered", "what it does to the force", "what is done", "where it stands")
-    rows = [(f"`{row[0]}`", *(cell.replace("|", "\\|") for cell in row[1:])) for row in made.settings]
+    rows = [
+        (
+            f"`{name}`" + (f": {delivered} as delivered" if delivered else ""),
+            f"{effect} ({place})" if place else effect,
+            done,
+        )
+        for name, delivered, effect, done, place in (
+            (cell.replace("|", "\\|") for cell in row) for row in made.settings
+        )
+    ]
+    head = ("setting", "what it does to the force", "what is done")
     return f"By {made.maker}.\n\n{markdown(head, rows)}"
 
 
