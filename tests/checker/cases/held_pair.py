@@ -254,6 +254,9 @@ BOX = put(
 )
 """Of its corners the heavy one that damps least, with the softer spring, needs most: 0.39666344."""
 
+# alone in its hand the follower's loop has the spectral radius 0.924, and 1.065 with D = 3
+SHAKEN = held(loop(arm(0, "0.1"), arm("0.5", "0.1", local_damping_N_s_per_m=2)), 1, "0.5", "0.1")
+
 ROUND = [0, 3, 4, 1, -3, -4, -1, 3, 4, 1, -2, -2, 0]
 MOTIONS = {
     "a hand": moved(HAND, "0.1", "0.01", [0, 1, -1, 2, -2, 1, 0], "10.7912174467386850853793611568"),
@@ -365,6 +368,12 @@ CASES = [
     refused(
         "a held arm that does not come to rest",
         with_damping(held(loop(arm(0, 1), arm(0, 1)), 1, 0, 0), 100),
+        "comes to rest in its hand could not be confirmed",
+    ),
+    accepted("a held arm whose damper lets it rest", with_damping(SHAKEN, 1000)),
+    refused(
+        "a held arm that its own damper shakes",
+        with_damping(put(SHAKEN, {"loop.follower.local_damping_N_s_per_m": 3}), 1000),
         "comes to rest in its hand could not be confirmed",
     ),
     refused("a drive", put(ENOUGH["nobody"], {"loop.own_readings": 2}), "without drives"),
