@@ -173,6 +173,19 @@ def test_a_spring_behind_a_part_of_a_sample_has_its_own_slack() -> None:
     assert all(advice.text.partition(" (")[0].endswith("while contact is kept") for advice in kept.advice)
 
 
+def test_a_rate_of_whole_samples_stands_alone() -> None:
+    """A hair more of it is a delay of a part of a sample, which asks for more: no limit, but where it is."""
+    device = zw.Device(
+        damping="0.6335", coulomb_friction="0.2706", resolution=0, sample_period="0.00154", delay="0.00462"
+    )
+    wall = zw.Wall(stiffness="97.52", damping="0.1236", velocity_filter=OnePole("0.004815"))
+    verdict = zw.check(device, wall)
+    (rate,) = (advice for advice in verdict.advice if advice.parameter == "rate")
+    assert verdict.outcome == "passive"
+    assert rate.is_alone
+    assert "for delays of whole samples alone" in rate.text
+
+
 def test_a_negative_damper_is_told_with_its_sign() -> None:
     """From −0.02 down, not from 0.02 up."""
     verdict = zw.check(zw.Device(damping="0.2", rate="2 kHz"), zw.Wall(150, "-0.02"))

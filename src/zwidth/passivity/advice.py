@@ -450,9 +450,16 @@ def turn(knob: Knob, motion: str, kind: Literal["change", "slack"], grain: int =
         to = None
     unit = GLOSSARY[knob.parameter.rpartition(".")[2]].unit_for(motion)
     shown = None if to is None else outward(to, knob, spoken(unit)[0])
-    is_alone = knob.in_samples and to == knob.current
+    is_alone = to == knob.current and (knob.in_samples or _stands_alone(knob))
     now, signed = knob.sign * knob.current or 0.0, None if to is None else knob.sign * to
-    return Advice(knob.parameter, now, signed, unit, kind, _text(knob, shown, unit, kind), is_alone)
+    text = _text(replace(knob, in_samples=is_alone), shown, unit, kind)
+    return Advice(knob.parameter, now, signed, unit, kind, text, is_alone)
+
+
+def _stands_alone(knob: Knob) -> bool:
+    """True where not even a hair to the safe side holds: a delay of whole samples that asks for less."""
+    beside = knob.current * (1 + 1e-9 if knob.more else 1 - 1e-9)
+    return knob.between is not None and knob.current > 0 and not knob.holds(Exact(beside).fraction)
 
 
 def _first_crossing(knob: Knob, to: float, grain: int) -> float:
