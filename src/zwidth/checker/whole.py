@@ -252,7 +252,7 @@ def _statements(document: object, at: str, sort: str, told: list[str]) -> list[S
         elif key == "outcome" and shape.outcomes:
             outcome = _one_of(value, shape.outcomes, place + key)
         elif key == "scope":
-            scope = _scope(_object(value, place + key), place + key, told)
+            scope = dict(_scope(_object(value, place + key), place + key, told))
         elif key in shape.inside:
             how, inside = shape.inside[key]
             found = [_statements(one, there, inside, told) for there, one in _held(value, place + key, how)]
