@@ -177,10 +177,11 @@ def _rate(
     fine = np.interp(
         np.arange(between * (times.size - 1) + 1) * ((times[1] - times[0]) / between), times, commanded
     )
-    best = (0.0, 1.0)
+    best, followed = (0.0, 1.0), np.empty_like(fine)
     for rate in np.unique(np.percentile(steep, _STEEP)):
         if rate > 0:
-            model = _followed(fine, applied[0], rate * (times[1] - times[0]) / between)[::between]
+            _follow(fine, applied[0], rate * (times[1] - times[0]) / between, followed)
+            model = followed[::between]
             rest = left(model)
             if rest < best[1]:
                 best = (float(rate), rest)
@@ -188,14 +189,12 @@ def _rate(
 
 
 @compiled
-def _followed(commanded: Array, start: float, most: float) -> Array:
-    """The command followed by no more than so much a step, from the step after."""
-    followed = np.empty_like(commanded)
+def _follow(commanded: Array, start: float, most: float, followed: Array) -> None:
+    """Fill in the command followed by no more than so much a step, from the step after."""
     followed[0] = start
     for k in range(1, commanded.size):
         missing = commanded[k - 1] - followed[k - 1]
         followed[k] = followed[k - 1] + min(max(missing, -most), most)
-    return followed
 
 
 def ramps(applied: Array) -> float:

@@ -70,8 +70,8 @@ def try_hands(near: End, leader: Hand, far: End, follower: Hand, positions: Arra
     samples = forces.shape[1]
     total, least = 0.0, 0.0
     for k in range(samples):
-        total += one_end(near, leader, k, positions[0], forces[0])
-        total += one_end(far, follower, k, positions[1], forces[1])
+        total += one_end(near, leader, k, positions[0, :], forces[0, :])
+        total += one_end(far, follower, k, positions[1, :], forces[1, :])
         post(far.hears, near.state)
         post(near.hears, far.state)
         least = min(least, total)

@@ -38,7 +38,7 @@ def after_every_reading(
         for move in range(-reach, reach + 1):
             count = int(counts[i]) + move
             if lowest <= count <= highest:
-                here = out[i, move + reach]
+                here = out[i, move + reach, :]
                 for j in range(here.size):
                     here[j] = rows[i, j]
                 after_reading(law, here, waiting, count, state)

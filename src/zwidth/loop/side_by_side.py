@@ -199,7 +199,7 @@ def _alone(b: Array, i: int) -> None:
 @compiled
 def _load(states: Array, numbers: Array, laws: Array, periods: Array, b: Array) -> None:
     for i in range(LANES):
-        p, law, h = packed_plant(numbers[i]), laws[i], periods[i]
+        p, law, h = packed_plant(numbers[i, :]), laws[i, :], periods[i]
         inverse = 1.0 / (p.mass + p.hand_mass)
         b[_X + i], b[_V + i], b[_SIDE + i] = states[i, POSITION], states[i, VELOCITY], states[i, DIRECTION]
         b[_HAND + i] = b[_ACT + i] = b[_VISC + i] = b[_DRY + i] = b[_SOURCE + i] = 0.0

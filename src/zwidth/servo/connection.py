@@ -14,13 +14,12 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite, nan
-from typing import Any, ClassVar, Literal, NamedTuple, TypeVar, cast
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
-from numba import float64, int64, njit, uint8
 from numpy.typing import NDArray
 
-from zwidth.compiled import Array
+from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import plain, read_number
@@ -59,15 +58,8 @@ and line, or page, in the version that `Connection.maker` names.
 
 REFUSES, TELLS, RESTORES, SETS, LEAVES = DONE = "read; refused", "read; told", "set; put back", "set", "left"
 
-_SIGNATURE = int64(float64[::1], uint8[::1], uint8[::1])
-
-F = TypeVar("F", bound=Callable[..., Any])
-
-
-def exchanged(function: F) -> F:
-    """Compile ``f(memory, inbox, outbox) -> status`` so that the loop can be given it; see `_SIGNATURE`."""
-    options: Any = {"cache": True, "nogil": True, "error_model": "numpy"}
-    return cast(F, njit(_SIGNATURE, **options)(function))
+exchanged = compiled
+"""Of ``f(memory, inbox, outbox) -> status``, which the loop is given."""
 
 
 class Opened(NamedTuple):

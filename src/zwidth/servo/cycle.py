@@ -131,7 +131,7 @@ def answer(
         _measure_energy(x, t, n)
         law = _change_law(x, laws, memories, rests, control, n, counts)
         if law != NONE:
-            wish = commanded(counts, laws[law], memories[law], x)
+            wish = commanded(counts, laws[law, :], memories[law, :], x)
         if isfinite(wish):
             f, limited = _cut(wish, n)
         else:
@@ -198,12 +198,12 @@ def _change_law(
         return served
     if served != NONE and n[QUIET] < n[SETTLED]:
         return served
-    put_at_rest(memories[wanted], rests[wanted], x)
-    begins = commanded(counts, laws[wanted], memories[wanted], x)
+    put_at_rest(memories[wanted, :], rests[wanted, :, :, :], x)
+    begins = commanded(counts, laws[wanted, :], memories[wanted, :], x)
     low, high = n[BEGINS + 2 * wanted], n[BEGINS + 2 * wanted + 1]
     if abs(begins) > n[NEAR] or x < low or x > high:
         return served
-    put_at_rest(memories[wanted], rests[wanted], x)
+    put_at_rest(memories[wanted, :], rests[wanted, :, :, :], x)
     control[SERVED] = wanted
     control[CHANGES] += 1
     return wanted

@@ -10,12 +10,9 @@ Of a compiled connection all of this is compiled, and runs without the interpret
 from __future__ import annotations
 
 from collections.abc import Callable
-from copy import deepcopy
-from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numba import float64, int64, njit, types, uint8, void
 
 from zwidth.compiled import Array, compiled
 from zwidth.servo.connection import (
@@ -107,6 +104,7 @@ def lateness(at: int, due: int, period: float) -> float:
     return min(max((at - due) * 1e-9, 0.0), period * (1.0 - 1e-9))
 
 
+@compiled
 def _run(
     measure: Callable[[Array, Bytes, Bytes], int],
     apply: Callable[[Array, Bytes, Bytes], int],
@@ -142,7 +140,7 @@ def _run(
         memory[TIME], memory[INDEX] = k * n[PERIOD] + late, k
         memory[UNTIL] = at + ANSWERED * period
         status = measure(memory, inbox, outbox)
-        row = ring[control[ROWS] % ring.shape[0]]
+        row = ring[control[ROWS] % ring.shape[0], :]
         t = memory[TIME]
         force = answer(status, k, t, at, memory, laws, memories, rests, control, n, counts, row)
         memory[FORCE] = -n[SENSE] * force
@@ -157,34 +155,10 @@ def _run(
                 return
 
 
-@cache
-def _compiled_run() -> Callable[..., None]:
-    """The loop, compiled once for every connection: what it asks is called by its address."""
-    asked = types.FunctionType(int64(float64[::1], uint8[::1], uint8[::1]))
-    numbers, words, octets = float64[::1], int64[::1], uint8[::1]
-    table = float64[:, ::1]
-    signature = void(
-        asked, asked, int64, numbers, octets, octets,
-        table, table, float64[:, :, :, ::1], words, numbers, numbers, table, words,
-    )  # fmt: skip
-    options: Any = {"cache": True, "nogil": True, "error_model": "numpy"}
-    found: Callable[..., None] = njit(signature, **options)(_run)
-    return found
-
-
 def run_compiled(connection: CompiledConnection, opened: Opened, last: int, shared: Shared) -> None:
     """Run the loop over a compiled connection, up to sample `last` or, below 0, until it ends."""
     kind = type(connection)
-    _compiled_run()(kind.measure, kind.apply, last, *opened, *shared)
-
-
-def _compile(memory: Array, shared: Shared) -> None:
-    """Have what the loop in Python calls compiled, or loaded, before the clock runs; on copies."""
-    loop = deepcopy(shared)
-    await_sample(0, now(), float(loop.numbers[PERIOD]) * 1e9, 0, 0)
-    lateness(0, 0, float(loop.numbers[PERIOD]))
-    answer(GOOD, 0, 0.0, now(), memory.copy(), *loop[:-2], loop.ring[0])
-    noted(loop.ring[0], 0.0, 0.0, loop.control, loop.numbers, loop.spread)
+    _run(kind.measure, kind.apply, last, *opened, *shared)
 
 
 def run_library(connection: LibraryConnection, opened: Opened, last: int, shared: Shared) -> None:
@@ -192,7 +166,6 @@ def run_library(connection: LibraryConnection, opened: Opened, last: int, shared
     memory, n, control = opened.memory, shared.numbers, shared.control
     ring, spread, step = shared.ring, shared.spread, float(n[PERIOD])
     k = zeros = 0
-    _compile(memory, shared)
     most = int(n[AWAKE_MOST])
     start, awake = now(), min(MARGIN, most)
     while zeros < ZEROS:

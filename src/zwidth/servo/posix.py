@@ -5,38 +5,19 @@ The clock is monotonic and counts nanoseconds.
 
 from __future__ import annotations
 
+import os
 import sys
-from typing import Any
+import time
 
 import numpy as np
-from llvmlite import ir
-from numba import types
-from numba.core import cgutils as typed_cgutils
-from numba.extending import intrinsic as typed_intrinsic
 from numpy.typing import NDArray
 
 from zwidth.compiled import compiled
 from zwidth.errors import InputError
 
-cgutils: Any = typed_cgutils
-intrinsic: Any = typed_intrinsic  # their types are not those that compiled code has
-
 Bytes = NDArray[np.uint8]
 
 SUPPORTED = sys.platform != "win32"
-
-_MONOTONIC = 6 if sys.platform == "darwin" else 1
-"""Its number in <time.h>."""
-
-
-def _system(name: str, returns: Any, *arguments: Any) -> Any:
-    """A function of the system's C library, called by its name."""
-    return types.ExternalFunction(name, returns(*arguments))
-
-
-if SUPPORTED:
-    _read = _system("read", types.intp, types.int32, types.intp, types.intp)
-    _write = _system("write", types.intp, types.int32, types.intp, types.intp)
 
 
 def check_supported() -> None:
@@ -54,51 +35,20 @@ def check_supported() -> None:
         )
 
 
-@intrinsic  # type: ignore[untyped-decorator]
-def _monotonic(typing: Any) -> Any:
-    """The clock, into a place of the stack: an array would be allocated at every call."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        word, small = ir.IntType(64), ir.IntType(32)
-        at = cgutils.alloca_once(builder, word, size=2)
-        kind = ir.FunctionType(small, [small, word.as_pointer()])
-        ask = cgutils.get_or_insert_function(builder.module, kind, "clock_gettime")
-        builder.call(ask, [small(_MONOTONIC), at])
-        seconds = builder.mul(builder.load(at), word(1_000_000_000))
-        return builder.add(seconds, builder.load(builder.gep(at, [small(1)])))
-
-    return types.int64(), generate
-
-
-@intrinsic  # type: ignore[untyped-decorator]
-def _sleep(typing: Any, nanoseconds: Any) -> Any:
-    """nanosleep, its time in a place of the stack."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        word, small = ir.IntType(64), ir.IntType(32)
-        at = cgutils.alloca_once(builder, word, size=2)
-        second = word(1_000_000_000)
-        builder.store(builder.sdiv(arguments[0], second), at)
-        builder.store(builder.srem(arguments[0], second), builder.gep(at, [small(1)]))
-        kind = ir.FunctionType(small, [word.as_pointer(), word.as_pointer()])
-        ask = cgutils.get_or_insert_function(builder.module, kind, "nanosleep")
-        builder.call(ask, [at, word.as_pointer()(None)])
-        return context.get_dummy_value()
-
-    return types.void(types.int64), generate
+# In C these five are written by hand, in `native/system.c`: what is here runs where there is no C.
 
 
 @compiled
 def now() -> int:
     """The monotonic clock [ns]."""
-    return int(_monotonic())
+    return time.monotonic_ns()
 
 
 @compiled
 def pause(nanoseconds: int) -> None:
     """Sleep so long at least; not at all for 0 and less."""
     if nanoseconds > 0:
-        _sleep(nanoseconds)
+        time.sleep(nanoseconds * 1e-9)
 
 
 @compiled
@@ -110,14 +60,20 @@ def read_some(descriptor: int, into: Bytes, start: int) -> int:
     room = into.shape[0] - start
     if room <= 0:
         return 0
-    count = _read(descriptor, into[start:].ctypes.data, room)
-    return count if count > 0 else (-2 if count == 0 else -1)
+    try:
+        count = os.readv(descriptor, [memoryview(into)[start:]])
+    except OSError:
+        return -1
+    return count if count > 0 else -2
 
 
 @compiled
 def write_all(descriptor: int, what: Bytes, count: int) -> bool:
     """Give the first bytes to the system, at once; False if it did not take them all."""
-    return _write(descriptor, what.ctypes.data, count) == count
+    try:
+        return os.write(descriptor, memoryview(what)[:count]) == count
+    except OSError:
+        return False
 
 
 @compiled

@@ -132,7 +132,7 @@ def halves(rows: Array, knee: float) -> tuple[Array, Array]:
 @compiled
 def _products(parts: Array, even: Array, odd: Array, stroke: NDArray[np.int64]) -> None:
     for n in range(even.shape[0]):
-        part = parts[stroke[n]]
+        part = parts[stroke[n], :, :]
         for i in range(even.shape[1]):
             for j in range(even.shape[1]):
                 part[i, j] += 0.5 * (even[n, i] * odd[n, j] + odd[n, i] * even[n, j])

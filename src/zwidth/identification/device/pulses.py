@@ -215,7 +215,7 @@ def _weigh(
                 if actuator.size > 0:
                     f -= held[at] * actuator[centre + k]
                     df += held_slope[at] * actuator[centre + k]
-            row = rows[found]
+            row = rows[found, :]
             row[EVEN_ACCELERATION] = 2.0 * a0 / (h * width * width)
             row[ODD_ACCELERATION] = 2.0 * a1 / (h * width * width)
             row[EVEN_VELOCITY] = 2.0 * v0 / (h * width)

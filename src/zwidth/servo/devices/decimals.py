@@ -8,8 +8,6 @@ read floating point numbers accurately", PLDI 1990).  Beyond that it is within t
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from zwidth.compiled import compiled
@@ -90,7 +88,7 @@ def write_decimal(value: float, decimals: int, into: Bytes, start: int) -> int:
 
 
 @compiled
-def _is_digit(byte: Any) -> bool:
+def _is_digit(byte: int) -> bool:
     return _ZERO <= byte <= _NINE
 
 

@@ -7,16 +7,12 @@ the rest of the frame, times x¹⁶, divided by a polynomial over two elements (
 
 from __future__ import annotations
 
-from typing import Any
+import struct
 
-from llvmlite import ir
-from numba import types
-from numba.extending import intrinsic as typed_intrinsic
+import numpy as np
 
 from zwidth.compiled import compiled
 from zwidth.servo.posix import Bytes
-
-intrinsic: Any = typed_intrinsic  # its type is not what compiled code has
 
 CCITT = 0x1021
 """x¹⁶ + x¹² + x⁵ + 1, of ITU-T V.41."""
@@ -50,13 +46,13 @@ def put(frame: Bytes, at: int, count: int, value: int) -> int:
 @compiled
 def get_float32(frame: Bytes, at: int) -> float:
     """The IEEE 754 single in four bytes; it may be no number."""
-    return float(_float_of(get_unsigned(frame, at, 4)))
+    return _float_of(get_unsigned(frame, at, 4))
 
 
 @compiled
 def put_float32(frame: Bytes, at: int, value: float) -> int:
     """Write a number as an IEEE 754 single, rounded to the nearest; the place after it."""
-    return put(frame, at, 4, int(_bits_of(value)))
+    return put(frame, at, 4, _bits_of(value))
 
 
 @compiled
@@ -70,23 +66,17 @@ def crc16(frame: Bytes, start: int, stop: int, polynomial: int, initial: int) ->
     return rest
 
 
-@intrinsic  # type: ignore[untyped-decorator]
-def _float_of(typing: Any, bits: Any) -> Any:
+# In C the two that follow are written by hand, in `native/system.c`.
+
+
+@compiled
+def _float_of(bits: int) -> float:
     """The single whose bits these are."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        word = builder.trunc(arguments[0], ir.IntType(32))
-        return builder.fpext(builder.bitcast(word, ir.FloatType()), ir.DoubleType())
-
-    return types.float64(types.int64), generate
+    return float(struct.unpack("<f", struct.pack("<I", bits & 0xFFFFFFFF))[0])
 
 
-@intrinsic  # type: ignore[untyped-decorator]
-def _bits_of(typing: Any, value: Any) -> Any:
+@compiled
+def _bits_of(value: float) -> int:
     """The bits of the single nearest to a number."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        single = builder.fptrunc(arguments[0], ir.FloatType())
-        return builder.zext(builder.bitcast(single, ir.IntType(32)), ir.IntType(64))
-
-    return types.int64(types.float64), generate
+    with np.errstate(over="ignore"):
+        return int(np.float32(value).view(np.uint32))

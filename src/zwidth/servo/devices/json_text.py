@@ -7,8 +7,6 @@ or ends too early.  A member's name is compared byte by byte: one written with e
 
 from __future__ import annotations
 
-from typing import Any
-
 from zwidth.compiled import compiled
 from zwidth.servo.posix import Bytes
 
@@ -56,7 +54,7 @@ def skip_value(text: Bytes, at: int, end: int) -> int:
 
 
 @compiled
-def member(text: Bytes, at: int, end: int, name: Any) -> int:
+def member(text: Bytes, at: int, end: int, name: Bytes) -> int:
     """Where the value of the member of this name starts, in the object that starts here; ABSENT, −1."""
     if at >= end or text[at] != _BRACE:
         return -1
@@ -98,7 +96,7 @@ def next_element(text: Bytes, at: int, end: int) -> int:
 
 
 @compiled
-def is_string(text: Bytes, at: int, end: int, wanted: Any) -> bool:
+def is_string(text: Bytes, at: int, end: int, wanted: Bytes) -> bool:
     """True if the value that starts here is this string, letter by letter."""
     length = wanted.shape[0]
     if at < 0 or at + length + 2 > end or text[at] != _QUOTE or text[at + length + 1] != _QUOTE:

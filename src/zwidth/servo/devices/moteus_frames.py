@@ -130,8 +130,8 @@ def addressed(line: Bytes, count: int, servo: int, source: int, checked: bool) -
 
 @compiled
 def _bytes(out: Bytes, at: int, what: tuple[int, ...]) -> int:
-    for i, byte in enumerate(what):
-        out[at + i] = byte
+    for i in range(len(what)):
+        out[at + i] = what[i]
     return at + len(what)
 
 
@@ -187,8 +187,8 @@ def _begins(line: Bytes, count: int, word: tuple[int, ...]) -> bool:
     if count < len(word):
         return False
     same = True
-    for i, letter in enumerate(word):
-        same = same and line[i] == letter
+    for i in range(len(word)):
+        same = same and line[i] == word[i]
     return same
 
 

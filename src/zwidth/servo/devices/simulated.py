@@ -19,7 +19,7 @@ from zwidth.device.amplifier import Amplifier
 from zwidth.device.device import Device
 from zwidth.environment import Wall
 from zwidth.errors import InputError
-from zwidth.loop.kernel import apply_due, in_interval, packed_plant, travel
+from zwidth.loop.kernel import Hand, apply_due, in_interval, packed_plant, travel
 from zwidth.loop.law import measured
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
@@ -31,6 +31,7 @@ from zwidth.loop.plant import (
     STATE_SIZE,
     VELOCITY,
     VISCOUS,
+    Plant,
 )
 from zwidth.loop.series import WORK
 from zwidth.loop.setup import Setup, prepare
@@ -52,6 +53,7 @@ from zwidth.servo.connection import (
     blank,
     exchanged,
 )
+from zwidth.servo.posix import Bytes
 
 if TYPE_CHECKING:
     from zwidth.operator.operator import Signal
@@ -86,8 +88,8 @@ def _missed(s: Array, commands: Array, times: Array, j: int) -> None:
 def _through(
     s: Array,
     state: Array,
-    plant: Any,
-    hand: Any,
+    plant: Plant,
+    hand: Hand,
     end: float,
     commands: Array,
     times: Array,
@@ -97,15 +99,15 @@ def _through(
     """One interval, from the time that the plant is at to `end`, with the commands that fall into it."""
     start = s[CLOCK]
     h, waiting = end - start, int(s[WAITING])
+    room = arrivals[: 2 * waiting].reshape((2, waiting))
     for i in range(waiting):
         inside, into = times[i] < end, times[i] - start
         late = inside and into >= h  # by rounding only: it is applied when the next interval begins
-        arrivals[0, i] = 0.0 if inside and not late else 1.0
-        arrivals[1, i] = into
+        room[0, i] = 0.0 if inside and not late else 1.0
+        room[1, i] = into
         if late:
             times[i] = end
     due = 0
-    room = arrivals[:, :waiting]
     due = apply_due(state, plant, due, 0, 0.0, 0, 0.0, room, commands)
     due = travel(state, plant, hand, 0.0, h, h, due, 0, 0, 0.0, room, commands, work)
     for i in range(due, waiting):
@@ -115,7 +117,7 @@ def _through(
 
 
 @exchanged
-def _measure(s: Array, inbox: Any, outbox: Any) -> int:
+def _measure(s: Array, inbox: Bytes, outbox: Bytes) -> int:
     """Move the plant to the time of this sample and read the encoder."""
     at = ARRAYS
     plant = packed_plant(s[at : at + _PLANT])
@@ -144,7 +146,7 @@ def _measure(s: Array, inbox: Any, outbox: Any) -> int:
         if j > s[LAST]:
             _missed(s, commands, times, j)
         hand = in_interval(j, end - s[CLOCK], False, state[POSITION], force, anchor, target, switch)
-        _through(s, state, plant, hand, end, commands, times, arrivals.reshape(2, room), work)
+        _through(s, state, plant, hand, end, commands, times, arrivals, work)
     s[LAST] = k
     s[READING] = measured(state[POSITION], s[COUNT], s[SHIFT])
     s[TOLD], s[TOLD + 1] = state[POSITION], state[VELOCITY]
@@ -155,7 +157,7 @@ def _measure(s: Array, inbox: Any, outbox: Any) -> int:
 
 
 @exchanged
-def _apply(s: Array, inbox: Any, outbox: Any) -> int:
+def _apply(s: Array, inbox: Bytes, outbox: Bytes) -> int:
     """Give the force to the amplifier: it comes after the delay."""
     at, room = ARRAYS + _PLANT + STATE_SIZE + WORK, int(s[ROOM])
     _send(s, s[at : at + room], s[at + room : at + 2 * room], s[TIME], -s[FORCE])

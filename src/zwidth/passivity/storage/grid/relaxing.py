@@ -231,10 +231,11 @@ class RelaxingSweep(Sweep):
         lowest = grid.domain.lowest
         cells, _, levels, edges = self.value.shape
         frame = lowest, grid.readings[0], grid.levels, grid.steps, grid.domain.reach
+        path = np.empty((_LONGEST, 2), np.int64)
         for _ in range(_STARTS):
             cell, node = int(random.integers(max(0, -lowest), cells)), int(random.integers(edges))
             start = cell, node, float(grid.readings[0] + random.integers(levels) / grid.levels)
-            path = follow(law, self.value, start, delay, grid.nodes, grid.costs, frame, _LONGEST)
+            follow(law, self.value, start, delay, grid.nodes, grid.costs, frame, path)
             counts = path[:, 0] + lowest
             positions = counts * grid.steps + grid.nodes[path[:, 1]]
             gain, first, last = best_cycle(law, counts, positions, path @ [edges, 1], delay, grid.costs)

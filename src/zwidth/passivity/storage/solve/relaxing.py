@@ -51,7 +51,7 @@ def sweep_relaxing(
                 m = at[row, i]
                 for n2 in range(low, high + 1):
                     h2 = (n - n2 + reach) * older + newer if histories > 1 else 0
-                    goals = value[n2, h2] if first <= n2 < last else before[n2, h2]
+                    goals = value[n2, h2, :, :] if first <= n2 < last else before[n2, h2, :, :]
                     for j2 in range(edges):
                         a = goals[m, j2]
                         step = goals[m + 1, j2] - a
@@ -85,7 +85,7 @@ def sweep_relaxing(
                 late = min(late, 1 << 16)
                 for n2 in range(low, high + 1):
                     h2 = (n - n2 + reach) * older + newer if histories > 1 else 0
-                    goals = value[n2, h2] if first <= n2 < last else before[n2, h2]
+                    goals = value[n2, h2, :, :] if first <= n2 < last else before[n2, h2, :, :]
                     for j2 in range(edges):
                         goal = goals[m, j2]
                         for j in range(edges):

@@ -10,7 +10,7 @@ as it really becomes, and of a cycle that it makes counts what it gains once a h
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +38,7 @@ class RelaxingForce(NamedTuple):
 
 
 @compiled
-def felt(law: Any, count: int, average: float) -> tuple[float, float]:
+def felt(law: RelaxingForce, count: int, average: float) -> tuple[float, float]:
     """The force at this count, and what the average then becomes."""
     u = max(count, 0) if law.penetration else count
     force = law.spring * u + law.branch * (u - average)
@@ -51,26 +51,25 @@ def felt(law: Any, count: int, average: float) -> tuple[float, float]:
 
 @compiled
 def follow(
-    law: Any,
+    law: RelaxingForce,
     value: Integers,
     start: tuple[int, int, float],
     delay: int,
     nodes: Integers,
     costs: Integers,
     frame: tuple[int, int, int, int, int],
-    moves: int,
-) -> Integers:
-    """Cell and node at each of so many moves, each the best by V between two levels.
+    path: Integers,
+) -> None:
+    """Fill in cell and node at each move, the best by V between two levels.
 
     `start` is the cell, where it was for long, the node and the average; `frame` is the count of the lowest
     cell and of the lowest level, levels and steps per count, and the reach in cells.
     """
     lowest, low, per_count, steps, reach = frame
     cells, _, levels, edges = value.shape
-    path = np.empty((moves, 2), np.int64)
     n, j, average = start
     readings = np.full(delay + 1, n)
-    for k in range(moves):
+    for k in range(path.shape[0]):
         path[k, 0], path[k, 1] = n, j
         force, average = felt(law, readings[delay] + lowest, average)
         level = min((average - low) * per_count, levels - 1.0)
@@ -95,12 +94,11 @@ def follow(
         for i in range(delay, 0, -1):
             readings[i] = readings[i - 1]
         readings[0] = n
-    return path
 
 
 @compiled
 def best_cycle(
-    law: Any, counts: Integers, positions: Integers, places: Integers, delay: int, costs: Integers
+    law: RelaxingForce, counts: Integers, positions: Integers, places: Integers, delay: int, costs: Integers
 ) -> tuple[float, int, int]:
     """The largest gain of a cycle on the way, and its first move and the one after its last; 0, 0, 0 of none.
 
@@ -126,7 +124,7 @@ def best_cycle(
 
 
 @compiled
-def settled_gain(law: Any, counts: Integers, positions: Integers, delay: int, costs: Integers) -> float:
+def settled_gain(law: RelaxingForce, counts: Integers, positions: Integers, delay: int, costs: Integers) -> float:
     """What a cycle gains in each round when the law has settled to it, in energy units; 0 where too fast."""
     size = counts.size
     zero, one = 0.0, 1.0  # one round takes the average a to zero + (one − zero) a

@@ -1,0 +1,153 @@
+"""All step functions of the package as one text in C, and how each is reached from outside."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+from typing import Any
+
+from zwidth.native.function import Function, Read, Signature, head_of, literal, signature_of
+from zwidth.native.names import Defined, Octets, OutsideError, Package
+from zwidth.native.types import ITEMS, REAL, Asked, Cells, Maybe, Nothing, Number, Several, Type
+
+PRELUDE = Path(__file__).with_name("prelude.c")
+BY_HAND = Path(__file__).with_name("system.c")
+
+
+class Translation:
+    """Of the step functions of a package."""
+
+    def __init__(self, root: Path) -> None:
+        self.package = Package(root)
+        self._signatures: dict[tuple[str, str], Signature] = {}
+        self._several: dict[str, Several] = {}
+        self._asked: dict[str, Asked] = {}
+        self._tables: dict[tuple[Any, ...], str] = {}
+        self._by_hand = BY_HAND.read_text(encoding="utf-8")
+
+    def text(self) -> str:
+        """The whole text.
+
+        Raises
+        ------
+        OutsideError
+            If a step function is outside what can be translated; all that are, line by line.
+        """
+        bodies, faults = list[str](), list[str]()
+        own = list(self.package.step_functions())
+        for of in own:
+            try:
+                name = self.signature(of).name
+                if f" {name}(" not in self._by_hand:
+                    bodies.append(Function(self, of).written())
+            except OutsideError as fault:
+                faults.append(str(fault))
+        if faults:
+            raise OutsideError("\n".join(faults))
+        heads = [f"{head_of(s)};" for s in self._signatures.values()]
+        entries = [_entry(s) for s in self._signatures.values()]
+        return "\n".join(
+            [PRELUDE.read_text(encoding="utf-8"), *self._types(), *self._written_tables(), *heads, self._by_hand]
+            + [*bodies, *entries, ""]
+        )
+
+    def signature(self, of: Defined) -> Signature:
+        key = of.module.name, of.node.name
+        if key not in self._signatures:
+            found = signature_of(of, c_name(*key))
+            for kind in (*(t for _, t in found.takes), found.returns):
+                self._declare(kind)
+            self._signatures[key] = found
+        return self._signatures[key]
+
+    def several(self, of: Several) -> Several:
+        self._declare(of)
+        return of
+
+    def _declare(self, of: Type) -> None:
+        if isinstance(of, Several):
+            for part in of.items:
+                self._declare(part)
+            self._several.setdefault(of.c, of)
+        if isinstance(of, Asked):
+            self._asked.setdefault(of.c, of)
+
+    def table(self, values: tuple[Any, ...]) -> Read:
+        item = _item(values)
+        name = self._tables.setdefault((item, *values), f"zw_table{len(self._tables)}")
+        of = Cells(item)
+        return Read(f"(({of.c}){{({ITEMS[item][1]} *){name}, {{{len(values)}, 1, 1, 1}}}})", of)
+
+    def _types(self) -> list[str]:
+        told = [
+            f"typedef struct {{ {' '.join(f'{part.c} f{n};' for n, part in enumerate(of.items))} }} {name};"
+            for name, of in self._several.items()
+        ]
+        asked = [
+            f"typedef {of.returns.c} (*{name})({', '.join(part.c for part in of.takes)});"
+            for name, of in self._asked.items()
+        ]
+        return told + asked
+
+    def _written_tables(self) -> list[str]:
+        told = []
+        for (item, *values), name in self._tables.items():
+            numbers = ", ".join(literal(float(v) if item == "float64" else v).c for v in values)
+            told.append(f"static const {ITEMS[item][1]} {name}[] = {{{numbers}}};")
+        return told
+
+
+def _item(values: tuple[Any, ...]) -> str:
+    if isinstance(values, Octets):
+        return "uint8"
+    return "int64" if all(isinstance(v, int) for v in values) else "float64"
+
+
+def c_name(module: str, function: str) -> str:
+    """What a step function is called in C."""
+    return f"{module.removeprefix('zwidth.').replace('.', '_')}_{function}"
+
+
+def _entry(signature: Signature) -> str:
+    """How it is reached from outside: numbers and arrays in a row of words, and what it returns there, too."""
+    at, given = 0, []
+    for _, of in signature.takes:
+        text, at = _taken(of, at)
+        given.append(text)
+    call = f"{signature.name}({', '.join(given)})"
+    lines = [f"ZW_SEEN void zwx_{signature.name}(zw_word *w) {{"]
+    if isinstance(signature.returns, Nothing):
+        lines.append(f"    (void)w; {call};")
+    else:
+        lines.append(f"    {signature.returns.c} r = {call};")
+        lines += [f"    {text}" for text in _told("r", signature.returns, 0)[0]]
+    return "\n".join([*lines, "}"])
+
+
+def _taken(of: Type, at: int) -> tuple[str, int]:
+    if isinstance(of, Number):
+        return f"w[{at}].{'f' if of == REAL else 'i'}", at + 1
+    if isinstance(of, Maybe):
+        return f"(zw_maybe){{w[{at}].f, w[{at + 1}].i}}", at + 2
+    if isinstance(of, Cells):
+        n = ", ".join(f"w[{at + k}].i" for k in range(1, 5))
+        return f"({of.c}){{w[{at}].p, {{{n}}}}}", at + 5
+    if isinstance(of, Asked):
+        return f"({of.c})w[{at}].p", at + 1
+    assert isinstance(of, Several)
+    parts = []
+    for part in of.items:
+        text, at = _taken(part, at)
+        parts.append(text)
+    return f"({of.c}){{{', '.join(parts)}}}", at
+
+
+def _told(name: str, of: Type, at: int) -> tuple[list[str], int]:
+    if isinstance(of, Number):
+        return [f"w[{at}].{'f' if of == REAL else 'i'} = {name};"], at + 1
+    lines = []
+    if isinstance(of, Several):
+        for n, part in enumerate(of.items):
+            more, at = _told(f"{name}.f{n}", part, at)
+            lines += more
+    return lines, at

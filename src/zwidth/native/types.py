@@ -1,0 +1,167 @@
+"""The types of a step function: numbers, arrays, tuples and named tuples, as its annotations say."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Union
+
+from zwidth.native.names import Defined, Expression, Module
+
+
+@dataclass(frozen=True)
+class Number:
+    """A double, a whole number of 64 bits, or True and False."""
+
+    kind: str
+
+    @property
+    def c(self) -> str:
+        return "double" if self.kind == "f" else "int64_t"
+
+
+REAL, WHOLE, TRUTH = Number("f"), Number("i"), Number("b")
+
+
+@dataclass(frozen=True)
+class Nothing:
+    """What a function returns that returns nothing."""
+
+    c = "void"
+
+
+@dataclass(frozen=True)
+class Maybe:
+    """A real number, or None."""
+
+    c = "zw_maybe"
+
+
+@dataclass(frozen=True)
+class Cells:
+    """An array, contiguous, of up to four dimensions."""
+
+    item: str
+
+    @property
+    def c(self) -> str:
+        return f"zw_{ITEMS[self.item][0]}s"
+
+    @property
+    def of(self) -> Number:
+        return REAL if self.item == "float64" else WHOLE
+
+
+ITEMS = {"float64": ("real", "double"), "int64": ("whole", "int64_t"), "uint8": ("byte", "uint8_t")}
+"""Of the elements of an array: their name here, and in C."""
+
+
+@dataclass(frozen=True)
+class Several:
+    """A tuple; where it is a named one, with the names of its fields."""
+
+    items: tuple[Type, ...]
+    names: tuple[str, ...] = ()
+
+    @property
+    def c(self) -> str:
+        return "zw_" + _spelled(self)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A function that is handed over."""
+
+    takes: tuple[Type, ...]
+    returns: Type
+
+    @property
+    def c(self) -> str:
+        return "zw_" + _spelled(self)
+
+
+Type = Union[Number, Nothing, Maybe, Cells, Several, Asked]
+
+
+def _spelled(of: Type) -> str:
+    """A name for it in C that two different ones cannot share."""
+    if isinstance(of, Number):
+        return of.kind
+    if isinstance(of, Cells):
+        return ITEMS[of.item][0][0].upper()
+    if isinstance(of, Several):
+        return f"t{len(of.items)}" + "".join(map(_spelled, of.items))
+    if isinstance(of, Asked):
+        return f"p{len(of.takes)}" + "".join(map(_spelled, (*of.takes, of.returns)))
+    return "n" if isinstance(of, Nothing) else "m"
+
+
+def joined(a: Type | None, b: Type | None) -> Type | None:
+    """What can hold both; None if nothing can."""
+    if a is None or b is None or a == b:
+        return a if b is None else b
+    if isinstance(a, Number) and isinstance(b, Number):
+        return REAL if REAL in (a, b) else WHOLE
+    if isinstance(a, Several) and isinstance(b, Several) and len(a.items) == len(b.items):
+        if a.names and b.names and a.names != b.names:
+            return None
+        parts = [joined(x, y) for x, y in zip(a.items, b.items, strict=True)]
+        known = tuple(p for p in parts if p is not None)
+        return Several(known, a.names or b.names) if len(known) == len(parts) else None
+    return None
+
+
+_PLAIN: dict[str, Type] = {"float": REAL, "int": WHOLE, "bool": TRUTH}
+
+
+def annotated(node: ast.expr | None, module: Module) -> Type:
+    """What an annotation says.
+
+    Raises
+    ------
+    OutsideError
+        If no step function can take it.
+    """
+    if node is None:
+        raise module.outside(ast.Pass(), "a step function says what it takes and returns")
+    if isinstance(node, ast.Constant) and node.value is None:
+        return Nothing()
+    if isinstance(node, ast.Name):
+        if node.id in _PLAIN:
+            return _PLAIN[node.id]
+        found = module.meaning(node.id)
+        if isinstance(found, Expression) and found.part is None:
+            return annotated(found.node, found.module)
+        if isinstance(found, Defined) and isinstance(found.node, ast.ClassDef):
+            return fields(found)
+    if isinstance(node, ast.BinOp) and ast.unparse(node) == "float | None":
+        return Maybe()
+    if isinstance(node, ast.Subscript):
+        of = ast.unparse(node.value)
+        inner = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
+        if ast.unparse(node) == "tuple[int, ...]":
+            return Cells("int64")  # a table that is written out
+        if of == "tuple":
+            return Several(tuple(annotated(part, module) for part in inner))
+        if of == "NDArray" and ast.unparse(node.slice).removeprefix("np.") in ITEMS:
+            return Cells(ast.unparse(node.slice).removeprefix("np."))
+        if of == "Callable" and len(inner) == 2 and isinstance(inner[0], ast.List):
+            takes = tuple(annotated(part, module) for part in inner[0].elts)
+            return Asked(takes, annotated(inner[1], module))
+    raise module.outside(node, f"a step function cannot take {ast.unparse(node)}")
+
+
+def fields(of: Defined) -> Several:
+    """A named tuple."""
+    assert isinstance(of.node, ast.ClassDef)
+    if [ast.unparse(base) for base in of.node.bases] != ["NamedTuple"]:
+        raise of.module.outside(of.node, f"{of.node.name} is no named tuple")
+    told = [n for n in of.node.body if isinstance(n, ast.AnnAssign) and isinstance(n.target, ast.Name)]
+    names = tuple(n.target.id for n in told if isinstance(n.target, ast.Name))
+    return Several(tuple(annotated(n.annotation, of.module) for n in told), names)
+
+
+def leaves(of: Type) -> Sequence[Type]:
+    """The numbers and arrays that a value is made of, in order."""
+    return [leaf for part in of.items for leaf in leaves(part)] if isinstance(of, Several) else [of]
