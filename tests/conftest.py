@@ -81,38 +81,3 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     from xdist.scheduler import WorkStealingScheduling
 
     return WorkStealingScheduling(config, log)
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _compiled_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """What one process compiles the others wait for, and read from the disk."""
-    if os.name != "posix" or "PYTEST_XDIST_WORKER" not in os.environ:
-        yield
-        return
-    from numba.core.dispatcher import Dispatcher
-
-    with pytest.MonkeyPatch.context() as patch:
-        shared = tmp_path_factory.getbasetemp().parent
-        patch.setattr(Dispatcher, "compile", _one_at_a_time(Dispatcher.compile, shared))
-        yield
-
-
-def _one_at_a_time(compiled: Callable[..., Any], folder: Path) -> Callable[..., Any]:
-    """Compiles what a function calls along with it: only the outermost waits, for others of its file."""
-    import fcntl
-
-    inside, thread = [], RLock()
-
-    def waiting(dispatcher: Any, signature: Any) -> Any:
-        with thread:
-            if inside:
-                return compiled(dispatcher, signature)
-            with open(folder / f"{dispatcher.py_func.__module__}.lock", "w", encoding="utf-8") as file:
-                fcntl.flock(file, fcntl.LOCK_EX)
-                inside.append(dispatcher)
-                try:
-                    return compiled(dispatcher, signature)
-                finally:
-                    inside.clear()
-
-    return waiting

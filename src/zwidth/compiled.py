@@ -1,64 +1,39 @@
-"""How the step functions are compiled.
+"""How the step functions are compiled: ahead, to C, with the package.
 
-They take scalars and float64 arrays, neither allocate nor raise, and are the
-same for the processor and for CUDA, which compiles what this decorator wraps.
-Rounding is that of the source: no contraction, no reassociation, so that one
-loop and a thousand side by side give the same bits.
-
-What is kept on disk is keyed by the file of each function alone, although one
-function holds the code of all that it calls.  So whatever is older than the
-youngest source beside it is thrown away first.
+They take scalars and contiguous arrays, do not raise, and are written in the part of Python that
+`native.function` translates.  Rounding is that of the source: no contraction, no reassociation, so that one
+loop and a thousand side by side give the same bits, as do C and Python.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
-from pathlib import Path
+from functools import wraps
 from typing import Any, TypeVar, cast
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-
-
-_PACKAGE = Path(__file__).parent
-
-_TOGETHER = (
-    ("elementary", "scene", "rendering", "loop", "links", "network", "servo"),
-    ("passivity/storage/solve",),
-    ("checker/storage",),
-    ("identification/tissue",),
-    ("maps",),
-)
-"""Chapters whose functions call each other."""
-
-
-def _discard_stale(chapters: tuple[str, ...]) -> None:
-    folders = [_PACKAGE / chapter for chapter in chapters]
-    youngest = max(path.stat().st_mtime for folder in folders for path in folder.rglob("*.py"))
-    for index in (path for folder in folders for path in folder.rglob("*.nbi")):
-        with suppress(OSError):
-            if index.stat().st_mtime < youngest:
-                index.unlink()
-
-
-for _chapters in _TOGETHER:
-    _discard_stale(_chapters)
-
-
-def is_compiled(chapter: str) -> bool:
-    """True where a chapter of the package, "loop", has been compiled before and is kept on disk."""
-    return any((_PACKAGE / chapter).rglob("*.nbi"))
-
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
 def compiled(function: F) -> F:
-    """Compile for the processor, kept on disk; the lock of Python is not held."""
-    # nothing calls them by address: without the wrapper for that a tenth of the compiling is saved
-    options: Any = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
-    return cast(F, njit(**options)(function))
+    """A step function: run by the library that was built of it, the lock of Python not held meanwhile.
+
+    Where there is no library it runs as it is written.
+    """
+    call: Callable[..., Any] | None = None
+
+    @wraps(function)
+    def step(*arguments: Any) -> Any:
+        nonlocal call
+        if call is None:
+            from zwidth.native.library import bound
+
+            call = bound(function) or function
+        return call(*arguments)
+
+    step.py_func = function  # type: ignore[attr-defined]
+    return cast(F, step)

@@ -124,8 +124,14 @@ class Function:
                 self._shape(node.targets[0], node.value)
                 return
             value = self.read(node.value)
+            if len(node.targets) > 1 and value.type is not None:
+                name = self._fresh()
+                self._say(f"{{ {value.type.c} {name} = {value.c};")
+                value = Read(name, value.type)
             for target in node.targets:
                 self._assign(target, value, node.value)
+            if len(node.targets) > 1 and value.type is not None:
+                self._say("}")
         elif isinstance(node, ast.AnnAssign) and node.value is not None:
             self._assign(node.target, self.read(node.value), node.value)
         elif isinstance(node, ast.AugAssign):
@@ -139,7 +145,11 @@ class Function:
                 self._block(node.orelse)
             self._say("}")
         elif isinstance(node, ast.While) and not node.orelse:
-            self._say(f"while ({self.truth(node.test)}) {{")
+            before = len(self.lines)
+            head = f"while ({self.truth(node.test)}) {{"
+            if len(self.lines) > before:
+                raise self.module.outside(node, "what a loop waits for is told without parts of arrays")
+            self._say(head)
             self._block(node.body)
             self._say("}")
         elif isinstance(node, ast.For) and not node.orelse:
@@ -407,7 +417,7 @@ class Function:
         for k, place in enumerate(places):
             index = self._index(place, name, k)
             at_c = index if not k else f"({at_c}) * {name}.n[{k}] + {index}"
-        return Read(f"{name}.p[{at_c}]", owner.type.of)
+        return Read(f"{name}.p[ZW_AT({at_c}, {name}.n)]", owner.type.of)
 
     def _index(self, place: ast.expr, array: str, k: int) -> str:
         known = self.module.value(place, self.types)
@@ -423,9 +433,8 @@ class Function:
         if not isinstance(last, ast.Slice) or last.step or any(ast.unparse(p) != ":" for p in rest):
             raise self.module.outside(node, "of an array a part is a[i:j], and a row a[i, :]")
         n, at = f"{array.c}.n", "0"
-        for k, place in enumerate(fixed):
-            index = self._index(place, array.c, k)
-            at = f"(({at}) * {n}[{k}] + {index})"
+        for m, place in enumerate(fixed):
+            at = f"(({at}) * {n}[{m}] + {self._index(place, array.c, m)})"
         first = self._index(last.lower, array.c, k) if last.lower else "0"
         end = self._index(last.upper, array.c, k) if last.upper else f"{n}[{k}]"
         kind = ITEMS[array.type.item][0]

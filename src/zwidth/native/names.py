@@ -63,6 +63,10 @@ class Package:
             self._read[name] = Module(self, name, path) if path.is_file() else None
         return self._read[name]
 
+    def read(self) -> list[Path]:
+        """The files that were read so far, in their order."""
+        return sorted(module.path for module in self._read.values() if module)
+
     def step_functions(self) -> Iterator[Defined]:
         """All that are decorated with `compiled`, file by file."""
         for path in sorted(self.root.rglob("*.py")):

@@ -17,6 +17,18 @@ static inline void zw_let_go(void *owned) { free(*(void **)owned); }
 #define zw_own __attribute__((cleanup(zw_let_go), unused)) void *
 
 static inline int64_t zw_size(const int64_t *n) { return n[0] * n[1] * n[2] * n[3]; }
+#ifdef ZW_CHECKED /* for those who look for a step that leaves its array */
+#include <stdio.h>
+static inline int64_t zw_inside(int64_t at, const int64_t *n, const char *where, int line) {
+    if (at >= 0 && at < zw_size(n)) return at;
+    fprintf(stderr, "%s, line %d: %lld of %lld\n", where, line, (long long)at, (long long)zw_size(n));
+    abort();
+}
+#define ZW_AT(at, n) zw_inside(at, n, __func__, __LINE__)
+#else
+#define ZW_AT(at, n) (at)
+#endif
+
 static inline double zw_min_real(double a, double b) { return b < a ? b : a; }
 static inline double zw_max_real(double a, double b) { return b > a ? b : a; }
 static inline int64_t zw_min_whole(int64_t a, int64_t b) { return b < a ? b : a; }

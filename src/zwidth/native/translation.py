@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import ast
+import json
 from pathlib import Path
 from typing import Any
 
+from zwidth.native.build import c_name, digest
 from zwidth.native.function import Function, Read, Signature, head_of, literal, signature_of
 from zwidth.native.names import Defined, Octets, OutsideError, Package
-from zwidth.native.types import ITEMS, REAL, Asked, Cells, Maybe, Nothing, Number, Several, Type
+from zwidth.native.types import ITEMS, REAL, Asked, Cells, Maybe, Nothing, Number, Several, Type, told
 
 PRELUDE = Path(__file__).with_name("prelude.c")
 BY_HAND = Path(__file__).with_name("system.c")
@@ -45,11 +46,26 @@ class Translation:
         if faults:
             raise OutsideError("\n".join(faults))
         heads = [f"{head_of(s)};" for s in self._signatures.values()]
-        entries = [_entry(s) for s in self._signatures.values()]
+        own_names = {self.signature(of).name for of in own}
+        entries = [_entry(s) for s in self._signatures.values() if s.name in own_names]
         return "\n".join(
             [PRELUDE.read_text(encoding="utf-8"), *self._types(), *self._written_tables(), *heads, self._by_hand]
-            + [*bodies, *entries, ""]
+            + [*bodies, *entries, self._told(), ""]
         )
+
+    def _told(self) -> str:
+        """What each function takes and returns, and of which sources all this is made."""
+        table: dict[str, Any] = {
+            s.name: {"takes": [(name, told(of)) for name, of in s.takes], "returns": told(s.returns)}
+            for s in self._signatures.values()
+        }
+        sources = [*self.package.read(), *sorted(PRELUDE.parent.glob("*"))]
+        sources = [path for path in sources if path.suffix in (".py", ".c")]
+        root = self.package.root.parent
+        table["sources"] = [path.relative_to(root).as_posix() for path in sources]
+        table["digest"] = digest(sources)
+        text = json.dumps(json.dumps(table, separators=(",", ":")))
+        return f"ZW_SEEN const char zw_told[] = {text};"
 
     def signature(self, of: Defined) -> Signature:
         key = of.module.name, of.node.name
@@ -79,7 +95,7 @@ class Translation:
         return Read(f"(({of.c}){{({ITEMS[item][1]} *){name}, {{{len(values)}, 1, 1, 1}}}})", of)
 
     def _types(self) -> list[str]:
-        told = [
+        several = [
             f"typedef struct {{ {' '.join(f'{part.c} f{n};' for n, part in enumerate(of.items))} }} {name};"
             for name, of in self._several.items()
         ]
@@ -87,25 +103,20 @@ class Translation:
             f"typedef {of.returns.c} (*{name})({', '.join(part.c for part in of.takes)});"
             for name, of in self._asked.items()
         ]
-        return told + asked
+        return several + asked
 
     def _written_tables(self) -> list[str]:
-        told = []
+        tables = []
         for (item, *values), name in self._tables.items():
             numbers = ", ".join(literal(float(v) if item == "float64" else v).c for v in values)
-            told.append(f"static const {ITEMS[item][1]} {name}[] = {{{numbers}}};")
-        return told
+            tables.append(f"static const {ITEMS[item][1]} {name}[] = {{{numbers}}};")
+        return tables
 
 
 def _item(values: tuple[Any, ...]) -> str:
     if isinstance(values, Octets):
         return "uint8"
     return "int64" if all(isinstance(v, int) for v in values) else "float64"
-
-
-def c_name(module: str, function: str) -> str:
-    """What a step function is called in C."""
-    return f"{module.removeprefix('zwidth.').replace('.', '_')}_{function}"
 
 
 def _entry(signature: Signature) -> str:
@@ -121,7 +132,14 @@ def _entry(signature: Signature) -> str:
     else:
         lines.append(f"    {signature.returns.c} r = {call};")
         lines += [f"    {text}" for text in _told("r", signature.returns, 0)[0]]
-    return "\n".join([*lines, "}"])
+    lines.append("}")
+    if isinstance(signature.returns, Number) and [of for _, of in signature.takes] == _EXCHANGED:
+        lines.append(f"ZW_SEEN void *const zwp_{signature.name} = (void *){signature.name};")
+    return "\n".join(lines)
+
+
+_EXCHANGED = [Cells("float64"), Cells("uint8"), Cells("uint8")]
+"""What a function takes that the loop is given: see `servo.connection`."""
 
 
 def _taken(of: Type, at: int) -> tuple[str, int]:

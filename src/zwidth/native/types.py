@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Union
+from dataclasses import dataclass, field
+from typing import Any, Union
 
 from zwidth.native.names import Defined, Expression, Module
 
@@ -63,6 +62,8 @@ class Several:
 
     items: tuple[Type, ...]
     names: tuple[str, ...] = ()
+    where: str = field(default="", compare=False)
+    """Of a named one: module and class."""
 
     @property
     def c(self) -> str:
@@ -159,9 +160,18 @@ def fields(of: Defined) -> Several:
         raise of.module.outside(of.node, f"{of.node.name} is no named tuple")
     told = [n for n in of.node.body if isinstance(n, ast.AnnAssign) and isinstance(n.target, ast.Name)]
     names = tuple(n.target.id for n in told if isinstance(n.target, ast.Name))
-    return Several(tuple(annotated(n.annotation, of.module) for n in told), names)
+    where = f"{of.module.name}:{of.node.name}"
+    return Several(tuple(annotated(n.annotation, of.module) for n in told), names, where)
 
 
-def leaves(of: Type) -> Sequence[Type]:
-    """The numbers and arrays that a value is made of, in order."""
-    return [leaf for part in of.items for leaf in leaves(part)] if isinstance(of, Several) else [of]
+def told(of: Type) -> Any:
+    """As JSON."""
+    if isinstance(of, Number):
+        return of.kind
+    if isinstance(of, Cells):
+        return {"cells": of.item}
+    if isinstance(of, Several):
+        return {"several": [told(part) for part in of.items], "class": of.where}
+    if isinstance(of, Asked):
+        return {"asked": [told(part) for part in (*of.takes, of.returns)]}
+    return "n" if isinstance(of, Nothing) else "m"

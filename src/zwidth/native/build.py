@@ -1,0 +1,142 @@
+"""The library of all step functions: made by a C compiler when the package is built, opened when it is used.
+
+An installed package has it beside this file.  In a checkout it is made anew where a source that it was made
+of has changed.  Where there is neither a library nor a compiler, the step functions run as plain Python.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import json
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import warnings
+from collections.abc import Iterable
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, NamedTuple
+
+PACKAGE = Path(__file__).parent.parent
+BUILT = Path(__file__).with_name("steps.dll" if os.name == "nt" else "steps.so")
+
+FLAGS = (
+    "-std=gnu11", "-O2", "-fPIC", "-shared", "-fwrapv", "-ffp-contract=off", "-fno-math-errno",
+    "-fvisibility=hidden",
+)  # fmt: skip
+"""Rounding is that of the source: nothing contracted, nothing taken together otherwise."""
+
+
+class Library(NamedTuple):
+    """What was built, opened; `table` says of each step function what it takes and returns."""
+
+    opened: Any
+    table: dict[str, Any]
+
+
+def c_name(module: str, function: str) -> str:
+    """What a step function is called in C."""
+    return f"{module.removeprefix('zwidth.').replace('.', '_')}_{function}"
+
+
+@cache
+def library() -> Library | None:
+    """The library; None where it cannot be had, which is told once."""
+    found = _opened(BUILT) if BUILT.is_file() else None
+    if _is_checkout() and (found is None or _is_old(found.table)):
+        sys.stderr.write("zwidth: the step functions have changed and are built anew\n")
+        try:
+            found = build()
+        except OSError as fault:
+            _tell(str(fault))
+            return None
+    if found is None:
+        _tell(f"{BUILT.name} is not there")
+    return found
+
+
+def _tell(why: str) -> None:
+    warnings.warn(
+        f"the step functions run as plain Python, a hundred times as slow: {why}; with a C compiler (gcc, clang, "
+        "or the package ziglang) `pip install` builds them",
+        RuntimeWarning,
+        stacklevel=4,
+    )
+
+
+def _opened(path: Path) -> Library:
+    opened = ctypes.CDLL(str(path))
+    text = ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(opened, "zw_told")))
+    return Library(opened, json.loads(text))
+
+
+def _is_checkout() -> bool:
+    return (PACKAGE.parent.parent / "hatch_build.py").is_file()
+
+
+def _is_old(table: dict[str, Any]) -> bool:
+    """True if a source differs from what the library was made of; looked into only if it is younger."""
+    made = BUILT.stat().st_mtime_ns
+    sources = [PACKAGE.parent / name for name in table["sources"]]
+    try:
+        if all(path.stat().st_mtime_ns < made for path in sources):
+            return False
+        return digest(sources) != table["digest"]
+    except FileNotFoundError:
+        return True
+
+
+def digest(sources: Iterable[Path]) -> str:
+    """Of what the library is made of, and how."""
+    whole = hashlib.sha256(repr(FLAGS).encode())
+    for path in sources:
+        whole.update(path.read_bytes())
+    return whole.hexdigest()
+
+
+def compiler() -> list[str] | None:
+    """The C compiler: that of the variable CC, the system's, or the one of the package ziglang."""
+    if told := os.environ.get("CC"):  # with what else it is to be given: CC="gcc -DZW_CHECKED"
+        return shlex.split(told)
+    for name in ("cc", "gcc", "clang"):
+        if found := shutil.which(name):
+            return [found]
+    return [sys.executable, "-m", "ziglang", "cc"] if find_spec("ziglang") else None
+
+
+def build() -> Library:
+    """Translate all step functions, compile them, and put the library in its place.
+
+    Raises
+    ------
+    OutsideError
+        If a step function is outside what is translated, with file and line.
+    OSError
+        If there is no compiler, it fails, or the library cannot be written.
+    """
+    from zwidth.native.translation import Translation
+
+    command = compiler()
+    if command is None:
+        raise FileNotFoundError("there is no C compiler")
+    text = Translation(PACKAGE).text()
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder) / "steps.c"
+        source.write_text(text, encoding="utf-8")
+        made = BUILT.with_name(f"{BUILT.name}.{os.getpid()}")
+        run = [*command, *FLAGS, "-o", str(made), str(source), "-lm"]
+        done = subprocess.run(run, capture_output=True, text=True, encoding="utf-8", check=False)
+        if done.returncode:
+            raise OSError(f"{shlex.join(run[:2])} failed: {done.stderr.strip()[-2000:]}")
+        found = _opened(made)  # under its own name: another of the same name is not opened anew
+        os.replace(made, BUILT)
+    return found
+
+
+if __name__ == "__main__":
+    build()
