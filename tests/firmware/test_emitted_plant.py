@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from machines import Ran, compiled_c, needs_c, needs_node, run_c, run_node, same_bits, understood
 from moved_plants import CELLS, PERIOD, PLANTS, hand_and_law, plant_in_c, plant_in_javascript
-from numba import njit
 from numpy.typing import NDArray
 
 import zwidth as zw
@@ -27,7 +26,7 @@ Array = NDArray[np.float64]
 @pytest.fixture(scope="module")
 def simulated() -> dict[str, tuple[Array, Ran]]:
     """Inputs of each plant; state after every period, and in the end, by the compiled functions."""
-    step: Any = njit(error_model="numpy")(one_period)
+    step = one_period
     made = {}
     for name, (plant, hand) in PLANTS.items():
         rows = hand_and_law(hand, 1500, 3)

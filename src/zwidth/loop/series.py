@@ -19,8 +19,9 @@ from zwidth.loop.plant import Plant
 TERMS = 28
 """Room for the coefficients of one series; 24 of them are below 1e-23."""
 
-WORK = 4 * TERMS
-"""Length of the scratch array: the coefficients of v, ξ, φ and of a product."""
+KEPT = 4 * TERMS
+WORK = KEPT + 5
+"""Length of the scratch array: the coefficients of v, ξ, φ and of a product, and what `step` keeps."""
 
 _ROUNDING = 2.3e-16
 _SEARCH = 200

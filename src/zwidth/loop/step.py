@@ -25,6 +25,7 @@ from zwidth.loop.plant import (
     Plant,
 )
 from zwidth.loop.series import (
+    KEPT,
     TERMS,
     expand,
     first_zero,
@@ -105,7 +106,7 @@ def _stretch(
             return _rest(state, plant, drive, h)
         state[DIRECTION] = 1.0 if external > 0.0 else -1.0
     if drive.rate == 0.0 and transient == 0.0 and plant.stiffness == 0.0:
-        return _slide_free(state, plant, drive, h)
+        return _slide_free(state, plant, drive, h, work)
     return _slide_tied(state, plant, drive, h, work)
 
 
@@ -177,7 +178,7 @@ def _crossing(drive: Drive, lag: float, level: float, side: float, start: float,
 
 
 @compiled
-def _slide_free(state: Array, plant: Plant, drive: Drive, h: float) -> float:
+def _slide_free(state: Array, plant: Plant, drive: Drive, h: float, work: Array) -> float:
     inverse = 1.0 / (plant.mass + plant.hand_mass)
     drag = plant.damping + plant.hand_damping
     side, v0, f = state[DIRECTION], state[VELOCITY], state[FORCE]
@@ -188,7 +189,7 @@ def _slide_free(state: Array, plant: Plant, drive: Drive, h: float) -> float:
         base, held = others * inverse, f  # the actuator's part comes last: its force is known last
     a0 = base - held * inverse
     t = h
-    h1, h2, h3 = free_response(drag * inverse, t)
+    h1, h2, h3 = _kept_response(drag * inverse, t, work)
     v1 = (v0 + base * h1) - held * (inverse * h1)
     stopped = v1 * side <= 0.0 and a0 * side < 0.0
     if stopped:
@@ -201,6 +202,15 @@ def _slide_free(state: Array, plant: Plant, drive: Drive, h: float) -> float:
     book(state, plant, drive, t, moved, 0.0, squares, f * moved, v0, v1)
     _arrive(state, (state[POSITION] + ahead) - held * (inverse * h2), v1, stopped)
     return t
+
+
+@compiled
+def _kept_response(rate: float, t: float, work: Array) -> tuple[float, float, float]:
+    """`free_response`, and that of the interval before where it is the same: with a regular clock, always."""
+    if work[KEPT] != rate or work[KEPT + 1] != t:
+        work[KEPT], work[KEPT + 1] = rate, t
+        work[KEPT + 2], work[KEPT + 3], work[KEPT + 4] = free_response(rate, t)
+    return work[KEPT + 2], work[KEPT + 3], work[KEPT + 4]
 
 
 @compiled

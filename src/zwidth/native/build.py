@@ -26,7 +26,7 @@ PACKAGE = Path(__file__).parent.parent
 BUILT = Path(__file__).with_name("steps.dll" if os.name == "nt" else "steps.so")
 
 FLAGS = (
-    "-std=gnu11", "-O2", "-fPIC", "-shared", "-fwrapv", "-ffp-contract=off", "-fno-math-errno",
+    "-std=gnu11", "-O3", "-fPIC", "-shared", "-fwrapv", "-ffp-contract=off", "-fno-math-errno",
     "-fvisibility=hidden",
 )  # fmt: skip
 """Rounding is that of the source: nothing contracted, nothing taken together otherwise."""
