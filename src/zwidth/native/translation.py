@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -62,7 +63,7 @@ class Translation:
         sources = [*self.package.read(), *sorted(PRELUDE.parent.glob("*"))]
         sources = [path for path in sources if path.suffix in (".py", ".c")]
         root = self.package.root.parent
-        table["sources"] = [path.relative_to(root).as_posix() for path in sources]
+        table["sources"] = [os.path.relpath(path, root) for path in sources]
         table["digest"] = digest(sources)
         text = json.dumps(json.dumps(table, separators=(",", ":")))
         return f"ZW_SEEN const char zw_told[] = {text};"

@@ -1,0 +1,97 @@
+"""Where the library comes from, and what there is without one."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from zwidth.loop.free import free_response
+from zwidth.loop.kernel import packed_plant
+from zwidth.loop.ledger import book
+from zwidth.native import build
+
+MOTIONS = """
+import sys, hashlib
+import numpy as np
+from zwidth.native import build, library
+if sys.argv[1] == "plain":
+    build.library = library.library = lambda: None
+import zwidth as zw
+from zwidth.bench.laws import standard_laws
+
+device = zw.Device(
+    mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, rate=1000, delay="0.3 ms", force_limit=9
+)
+for name, law in standard_laws(device, zw.Wall(600)).items():
+    for hand in (zw.operators.Dowel(), zw.operators.Finger()):
+        trace = zw.simulate(device, law, hand, 0.05)
+        seen = [np.ravel(v.values) for v in trace.data_vars.values() if v.dtype.kind == "f"]
+        print(name, hashlib.sha256(np.concatenate(seen).tobytes()).hexdigest())
+"""
+
+
+def ran(how: str) -> str:
+    command = [sys.executable, "-c", MOTIONS, how]
+    return subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=True).stdout
+
+
+@pytest.mark.skipif(build.library() is None, reason="no library of step functions here")
+def test_without_the_library_python_gives_the_same_bits() -> None:
+    """Every law of the bench, tied and free hands."""
+    assert len(ran("library").splitlines()) > 40
+    assert ran("library") == ran("plain")
+
+
+def test_a_call_gives_back_what_the_annotations_say() -> None:
+    assert packed_plant(np.arange(9.0)) == packed_plant.py_func(np.arange(9.0))
+    assert free_response(2.0, 0.25) == free_response.py_func(2.0, 0.25)
+
+
+@pytest.mark.skipif(build.library() is None, reason="no library of step functions here")
+@pytest.mark.parametrize("given", [np.zeros(9, int), np.zeros((9, 2))[:, 0], np.zeros(9, np.float32)])
+def test_another_array_is_refused(given: object) -> None:
+    """Silently copied it would be the copy that is changed."""
+    with pytest.raises(TypeError, match="contiguous arrays of <f8"):
+        packed_plant(given)
+
+
+@pytest.mark.skipif(build.library() is None, reason="no library of step functions here")
+def test_too_few_arguments_are_an_error_of_python() -> None:
+    with pytest.raises(TypeError, match="argument"):
+        book()
+
+
+def test_without_compiler_and_library_it_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(build, "BUILT", tmp_path / "steps.so")
+    monkeypatch.setattr(build, "compiler", lambda: None)
+    with pytest.warns(RuntimeWarning, match=r"as plain Python.*there is no C compiler"):
+        assert build.library.__wrapped__() is None
+
+
+def test_a_compiler_that_fails_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(build, "BUILT", tmp_path / "steps.so")
+    monkeypatch.setattr(build, "compiler", lambda: [sys.executable, "-c", "raise SystemExit('no such thing')"])
+    with pytest.warns(RuntimeWarning, match="no such thing"):
+        assert build.library.__wrapped__() is None
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(build.library() is None or not build._is_checkout(), reason="a checkout with a compiler")
+def test_a_checkout_builds_anew_what_has_changed(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(build, "BUILT", tmp_path / "steps.so")
+    assert build.library.__wrapped__() is not None
+    assert "built anew" in capsys.readouterr().err
+    assert build.library.__wrapped__() is not None
+    assert capsys.readouterr().err == ""
+    os.utime(tmp_path / "steps.so", ns=(0, 0))  # older than its sources, which are those that it was made of
+    assert build.library.__wrapped__() is not None
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr(build, "digest", lambda sources: "another")
+    assert build._is_old(build._opened(tmp_path / "steps.so").table)
