@@ -199,11 +199,9 @@ def test_the_readme_table_is_what_comes_out() -> None:
 
 
 def _bounds() -> dict[str, set[str]]:
-    """The lower bounds of each library that is asked for, but for those of the docs and of the card."""
+    """The lower bounds of each library that is asked for, but for those of the docs."""
     project = PYPROJECT["project"]
-    extras = [
-        asked for name, asked in project["optional-dependencies"].items() if name not in ("docs", "gpu")
-    ]
+    extras = [asked for name, asked in project["optional-dependencies"].items() if name != "docs"]
     bounds: dict[str, set[str]] = {}
     for line in [*project["dependencies"], *(line for lines in extras for line in lines)]:
         asked = re.fullmatch(r"([\w-]+)(\[[\w,]+\])?>=([\d.]+)(;.+)?", line)

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 
@@ -159,35 +155,3 @@ def test_ctrl_c_keeps_the_loops_that_are_finished() -> None:
     finished = np.isfinite(batch.position.values)
     assert LANES <= finished.sum() < finished.size
     assert batch.attrs["interrupted"].startswith(f"{finished.sum()} of ")
-
-
-def test_without_a_card_the_message_says_so() -> None:
-    """No traceback out of CUDA."""
-    from numba import cuda
-
-    if cuda.is_available():
-        pytest.skip("there is a card")
-    with pytest.raises(zw.InputError, match="graphics card"):
-        zw.simulation.simulate_batch(
-            PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 0.1, vary={"stiffness": [100.0]}, backend="gpu"
-        )
-
-
-_ON_CARD = """
-import numpy as np, zwidth as zw
-device = zw.catalogue.device("haptic-paddle").replace(delay="1.3 ms")
-wall, hand = zw.Wall(300, damping=0.1), zw.operators.Finger(start=-0.002)
-vary = {"environment.stiffness": [100.0, 700.0], "operator.stiffness": [100.0, 500.0]}
-card = zw.simulation.simulate_batch(device, wall, hand, 0.05, vary=vary, backend="gpu")
-own = zw.simulation.simulate_batch(device, wall, hand, 0.05, vary=vary)
-assert np.isfinite(card.position.values).all() and (card.deepest_position > 0).all()
-for name in own.data_vars:
-    assert (card[name] == own[name]).all(), name
-"""
-
-
-def test_the_kernel_of_the_card_computes_what_the_processor_does() -> None:
-    """Thread by thread in numba's simulator of CUDA, which runs the kernel as Python."""
-    environment = {**os.environ, "NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1"}
-    done = subprocess.run([sys.executable, "-c", _ON_CARD], env=environment, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr

@@ -1,10 +1,7 @@
-"""The simulator with a Hunt–Crossley contact: commands, collisions, ledger, batches, the card's kernel."""
+"""The simulator with a Hunt–Crossley contact: commands, collisions, ledger, batches."""
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from math import log1p
 
 import numpy as np
@@ -114,22 +111,3 @@ def test_a_batch_has_the_bits_of_single_loops() -> None:
                 alone = zw.simulate(PADDLE, zw.HuntCrossley(k, n, d), hand, 0.1)
                 found = batch.position.sel(stiffness=k, exponent=n, dissipation=d)
                 assert float(found) == float(alone.position[-1])
-
-
-_ON_CARD = """
-import zwidth as zw
-device, contact = zw.catalogue.device("haptic-paddle"), zw.HuntCrossley(2e4, 1.5, 2)
-hand, vary = zw.operators.Dowel(), {"device.damping": [0.1, 0.4]}
-card = zw.simulation.simulate_batch(device, contact, hand, 0.05, vary=vary, backend="gpu")
-own = zw.simulation.simulate_batch(device, contact, hand, 0.05, vary=vary)
-for name in own.data_vars:
-    assert (card[name] == own[name]).all(), name
-assert float(own.samples_inside.max()) > 0
-"""
-
-
-def test_the_kernel_of_the_card_runs_a_contact() -> None:
-    """In numba's simulator of CUDA, which runs the kernel as Python."""
-    environment = {**os.environ, "NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1"}
-    done = subprocess.run([sys.executable, "-c", _ON_CARD], env=environment, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr

@@ -1,10 +1,6 @@
-"""The simulator with a spring through points: commands, ledger, batches, the card's kernel."""
+"""The simulator with a spring through points: commands, ledger, batches."""
 
 from __future__ import annotations
-
-import os
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -93,22 +89,3 @@ def test_a_batch_has_the_bits_of_single_loops() -> None:
     for damping in (0.1, 0.4):
         alone = zw.simulate(PADDLE.replace(damping=damping), SPRING, hand, 0.2)
         assert float(batch.position.sel(damping=damping)) == float(alone.position[-1])
-
-
-_ON_CARD = """
-import zwidth as zw
-device = zw.catalogue.device("haptic-paddle")
-hand, vary = zw.operators.Dowel(), {"device.damping": [0.1, 0.4]}
-for law in (zw.NonlinearSpring([-0.01, 0, 0.001, 0.02], [-3, 0, 0.2, 7]), zw.Wall(300, 0.5, clamped=True)):
-    card = zw.simulation.simulate_batch(device, law, hand, 0.05, vary=vary, backend="gpu")
-    own = zw.simulation.simulate_batch(device, law, hand, 0.05, vary=vary)
-    for name in own.data_vars:
-        assert (card[name] == own[name]).all(), name
-"""
-
-
-def test_the_kernel_of_the_card_runs_points_and_clamps() -> None:
-    """In numba's simulator of CUDA, which runs the kernel as Python."""
-    environment = {**os.environ, "NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1"}
-    done = subprocess.run([sys.executable, "-c", _ON_CARD], env=environment, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr

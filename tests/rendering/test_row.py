@@ -1,11 +1,6 @@
-"""All laws in one row: simulated alone, side by side, on the card's kernel; every joule accounted for."""
+"""All laws in one row: simulated alone, side by side; every joule accounted for."""
 
 from __future__ import annotations
-
-import os
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -81,26 +76,3 @@ def test_a_batch_has_the_bits_of_single_loops():
         alone = zw.simulate(DEVICE.replace(damping=damping), LAW, HAND, 0.2)
         assert float(batch.position.sel(damping=damping)) == float(alone.position[-1])
     assert float(batch.samples_inside.min()) > 20
-
-
-_ON_CARD = """
-import zwidth as zw
-from prescribed import DEVICE
-from test_row import HAND, LAW
-vary = {"device.damping": [0.1, 0.4]}
-card = zw.simulation.simulate_batch(DEVICE, LAW, HAND, 0.05, vary=vary, backend="gpu")
-own = zw.simulation.simulate_batch(DEVICE, LAW, HAND, 0.05, vary=vary)
-for name in own.data_vars:
-    assert (card[name] == own[name]).all(), name
-assert float(own.samples_inside.max()) > 0
-"""
-
-
-def test_the_kernel_of_the_card_runs_them():
-    """In numba's simulator of CUDA, which runs the kernel as Python."""
-    environment = {**os.environ, "NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1"}
-    environment["PYTHONPATH"] = os.pathsep.join(
-        [str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")]
-    )
-    done = subprocess.run([sys.executable, "-c", _ON_CARD], env=environment, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr

@@ -1,6 +1,6 @@
 """The compiled laws by their codes, written out.
 
-What numba keeps on disk is found again only for functions that are called by their names.
+Step functions are translated to C, and call each other by their names.
 """
 
 from __future__ import annotations

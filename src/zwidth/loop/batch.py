@@ -97,7 +97,6 @@ def simulate_batch(
     vary: Mapping[str, Sequence[Any]],
     together: bool = False,
     workers: int | None = None,
-    backend: str = "cpu",
     progress: Progress | None = None,
     **options: Any,
 ) -> xr.Dataset:
@@ -116,9 +115,6 @@ def simulate_batch(
         all, then the second values, …, along one dimension `case`.
     workers
         By default as many as there are processors.
-    backend
-        "cpu", or "gpu" for a graphics card with CUDA (install the extra `gpu`): the same step
-        functions, one loop per thread, equal to rounding.
     progress
         Called with (loops done, loops in all).
     options
@@ -142,12 +138,7 @@ def simulate_batch(
     made: dict[Any, Any] = {}  # keeps every part alive, so that `known` may go by identity
     known: dict[Any, Frame] = {}
     setups = [_prepare(base, owners, choice, duration, made, known) for choice in choices]
-    if backend == "gpu":
-        states, summaries, finished = _run_on_card(setups)
-    elif backend == "cpu":
-        states, summaries, finished = _run_all(setups, _workers(workers), progress)
-    else:
-        raise InputError(f'backend is "cpu" or "gpu", got {backend!r}')
+    states, summaries, finished = _run_all(setups, _workers(workers), progress)
     return _dataset(base, axes, owners, together, states, summaries, finished)
 
 
@@ -278,14 +269,6 @@ def _run_all(
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
     return states, summaries, finished
-
-
-def _run_on_card(setups: list[Setup]) -> tuple[Array, Array, NDArray[np.bool_]]:
-    from zwidth.loop.gpu import run_on_gpu  # CUDA is an extra
-
-    states, summaries = np.array([setup.state for setup in setups]), np.zeros((len(setups), SUMMARY))
-    run_on_gpu(setups, states, summaries)
-    return states, summaries, np.ones(len(setups), dtype=bool)
 
 
 def _blocks(setups: list[Setup]) -> list[list[int]]:

@@ -4,8 +4,7 @@ The plant is device and hand moving together:
 
     M v̇ = G(t) − D v − k (x − x_a(t)) − f_c sgn v,   M = m + m_h,   D = b + c
 
-Everything is float64 in flat arrays, so that thousands of loops lie side by
-side and the same functions run on a graphics card.
+Everything is float64 in flat arrays, so that thousands of loops lie side by side.
 """
 
 from __future__ import annotations

@@ -191,13 +191,12 @@ def test_bounds_are_chosen_where_none_are_given():
 
 
 def test_what_cannot_be_iterated_is_said():
-    """Part of a sample of delay, no force limit to count, an ideal encoder, a card."""
+    """Part of a sample of delay, no force limit to count, an ideal encoder."""
     law = zw.render(zw.Wall(200), FREE)
     for at, more, said in (
         (device(delay=Fraction(1, 2)), {}, "delays of whole samples"),
         (DEVICE, {"force_limit": True}, "force_limit is to be counted in"),
         (DEVICE.replace(resolution=0), {}, "ideal encoder"),
-        (DEVICE, {"backend": "gpu"}, "leave out backend"),
     ):
         with pytest.raises(zw.InputError, match=said):
             zw.available_storage(at, law, **more)

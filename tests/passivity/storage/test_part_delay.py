@@ -112,12 +112,6 @@ def test_tampered():
         assert not checker.verify(changed).valid
 
 
-def test_not_on_a_graphics_card():
-    """Said at once."""
-    with pytest.raises(zw.InputError, match="processor"):
-        available_storage(device("0.3", "0.02", "0.5"), zw.Wall(300), **BOUNDS, backend="gpu")
-
-
 def test_a_delay_of_very_many_samples_is_too_large_at_once() -> None:
     """A search that raises the rate comes there: the power of the number of moves is not worked out."""
     device = zw.Device(

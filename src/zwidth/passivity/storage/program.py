@@ -116,13 +116,13 @@ class DynamicProgram:
         return ("rounded power",)
 
     def prove(
-        self, steps: int, until: Until | None = None, progress: Progress | None = None, backend: str = "cpu"
+        self, steps: int, until: Until | None = None, progress: Progress | None = None
     ) -> StorageFunction | None:
         """A storage function on so many steps per count that the checker accepts, or None."""
         if self.too_large is not None or self._moves(steps) > _MOST_CHECKED:
             return None
         grid = self._grid(self.losses, self.domain, steps, "outer")
-        iteration = value_iteration(grid, until, progress, backend)
+        iteration = value_iteration(grid, until, progress)
         return None if iteration.value is None else StorageFunction(iteration, self.motion)
 
     def warm_up(self) -> None:
@@ -158,9 +158,7 @@ class DynamicProgram:
         limit = freely() if until is None else until
         return prove_on_cells(self.law, self.losses, self.domain, self.motion, cells, limit, progress)
 
-    def refute(
-        self, steps: int, until: Until | None = None, progress: Progress | None = None, backend: str = "cpu"
-    ) -> Gain | None:
+    def refute(self, steps: int, until: Until | None = None, progress: Progress | None = None) -> Gain | None:
         """A motion that gains, recomputed exactly, or None."""
         if self.domain.within.highest < 1:  # no reading inside lies within the bounds
             return None
@@ -170,7 +168,7 @@ class DynamicProgram:
             cells = replace(self.losses, resolution=self.losses.resolution * every)
             fine = max(self._fine_enough(steps) // every, _STEPS_OF_MANY) * every
             grid = self._grid(cells, domain, fine, "inner", every)
-            iteration = value_iteration(grid, until, progress, backend)
+            iteration = value_iteration(grid, until, progress)
             motion = gain(iteration, self.motion, self.bounds) if iteration.cycle else None
             if motion is not None:
                 return motion

@@ -112,7 +112,6 @@ def available_storage(
     effort: float = EFFORT,
     seconds: float | None = None,
     progress: Progress | None = None,
-    backend: str = "cpu",
 ) -> AvailableStorage:
     """The most energy that a hand can take out of one loop, by dynamic programming.
 
@@ -148,14 +147,11 @@ def available_storage(
         Time after which it is "undecided" as well [s]; `cut_by_time` says where it was. Default: none.
     progress
         Told the number of states that still improve, round by round.
-    backend
-        "cpu", or "gpu" for a graphics card with CUDA (install the extra `gpu`): the same V to the bit.
 
     Raises
     ------
     InputError
-        If the law remembers for ever, the encoder is ideal, or the grid is too large;
-        or if `backend` is neither, or there is no card.
+        If the law remembers for ever, the encoder is ideal, or the grid is too large.
     """
     program = program_of(device, environment, penetration, speed, force_limit, force_resolution, friction)
     law = as_environment(environment)
@@ -171,13 +167,13 @@ def available_storage(
             return AvailableStorage("passive", said, device, law, slow, None, None)
     for steps, fine in zip(STEPS, (*FINE, None, None), strict=True):
         half = Until(done, done.spent + (most - done.spent) / 2 - program.checking(steps))
-        storage = program.prove(steps, half, progress, backend)
+        storage = program.prove(steps, half, progress)
         if storage is not None:
             certificate = storage.certificate()
             done.spend(program.checking(steps))
             if certificate.verify():  # nothing is claimed that the checker does not accept
                 return AvailableStorage("passive", said, device, law, certificate, None, storage)
-        motion = None if fine is None else program.refute(fine, whole, progress, backend)
+        motion = None if fine is None else program.refute(fine, whole, progress)
         if motion is not None:
             return AvailableStorage("active", said, device, law, None, motion, None)
         if whole.is_over:

@@ -35,11 +35,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.errors import InputError
 from zwidth.passivity.storage.domain import Domain
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.passivity.storage.losses import Integers, Losses, inner_costs, outer_costs
-from zwidth.passivity.storage.solve.gpu import OnCard
 from zwidth.passivity.storage.solve.hull import NOWHERE, sweep
 from zwidth.passivity.storage.solve.parts import sweep_parts, sweep_turning
 from zwidth.passivity.storage.solve.value_iteration import BestMoves, Move, Sweep
@@ -298,25 +296,11 @@ class Grid:
         """Where each cell begins, in steps from the first."""
         return np.arange(self.domain.cells, dtype=np.int64) * self.steps
 
-    def sweep(self, backend: str = "cpu") -> Sweep:
-        """What value iteration begins with, and the kernel that improves it.
-
-        Raises
-        ------
-        InputError
-            If a graphics card is asked for and there is none, or where a move may cost what is not
-            f_c d + (b/T) d².
-        """
+    def sweep(self) -> Sweep:
+        """What value iteration begins with, and the kernel that improves it."""
         tables: tuple[Any, ...]
         groups = len(self.forces) * (self.histories // self.width if self.memory else 1)
         rest = self.first_guess.copy(), groups, self.move_at
-        if backend == "gpu":
-            if self.losses.part < 1 or self.losses.curve is not None:
-                raise InputError(
-                    "delays of part of a sample and friction curves are for the processor: leave out "
-                    "backend='gpu'"
-                )
-            return OnCard(*rest, self.forces, self.costs, self.nodes, self.domain.reach, self.steps)
         tables = self.forces, self.costs, self.nodes, self.places, self.domain.reach
         if self.losses.part == 1:
             work = _BY_ONE_HULL if self.hull_steps else _BY_HULLS

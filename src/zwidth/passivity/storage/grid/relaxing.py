@@ -25,7 +25,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.errors import InputError
 from zwidth.passivity.storage.grid.grid import Grid
 from zwidth.passivity.storage.losses import Integers
 from zwidth.passivity.storage.solve.effort import Until
@@ -176,10 +175,8 @@ class RelaxingGrid(Grid):
         levels = self.readings[0] + np.arange(self.averages) / self.levels
         return "average_reading", levels, value[:, self.histories // 2].transpose(1, 0, 2).astype(float)
 
-    def sweep(self, backend: str = "cpu") -> Sweep:
-        """What value iteration begins with, and the kernel that improves it; InputError but on the "cpu"."""
-        if backend != "cpu":
-            raise InputError("laws that relax are for the processor: leave out backend='gpu'")
+    def sweep(self) -> Sweep:
+        """What value iteration begins with, and the kernel that improves it."""
         return RelaxingSweep(self)
 
     @property

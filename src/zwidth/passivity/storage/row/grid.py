@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.errors import InputError
 from zwidth.passivity.storage.grid.grid import Grid
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.passivity.storage.losses import Integers
@@ -67,10 +66,8 @@ class RowGrid(Grid):
                 found[:, i] = here.min(axis=0), here.max(axis=0)
         return "remembered", ["least", "most"], found
 
-    def sweep(self, backend: str = "cpu") -> Sweep:
-        """What value iteration begins with, and the kernel that improves it; InputError but on the "cpu"."""
-        if backend != "cpu":
-            raise InputError("laws in a chain are for the processor: leave out backend='gpu'")
+    def sweep(self) -> Sweep:
+        """What value iteration begins with, and the kernel that improves it."""
         tables = self.table.successors, self.forces, self.costs, self.nodes
         moves = self.table.successors.shape[1] * self.nodes.size
         return BestMoves(

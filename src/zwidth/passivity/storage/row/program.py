@@ -104,11 +104,11 @@ class RowProgram:
         return tabulate(self.law, self.domain, self.most)
 
     def prove(
-        self, steps: int, until: Until | None = None, progress: Progress | None = None, backend: str = "cpu"
+        self, steps: int, until: Until | None = None, progress: Progress | None = None
     ) -> RowStorage | None:
         """A storage function on so many steps per count, or None."""
         grid = RowGrid(NO_LAW, self.losses, self.domain, steps, "outer", table=self.table)
-        iteration = value_iteration(grid, until, progress, backend)
+        iteration = value_iteration(grid, until, progress)
         return None if iteration.value is None else RowStorage(iteration, self.motion, self.law)
 
     def prove_on_cells(
@@ -116,9 +116,7 @@ class RowProgram:
     ) -> None:
         """Nothing: a table has the states of every count."""
 
-    def refute(
-        self, steps: int, until: Until | None = None, progress: Progress | None = None, backend: str = "cpu"
-    ) -> Gain | None:
+    def refute(self, steps: int, until: Until | None = None, progress: Progress | None = None) -> Gain | None:
         """A motion that gains, replayed by the simulator, or None."""
         within = self.domain.within
         if within.highest < 1:  # no reading inside lies within the bounds
@@ -126,7 +124,7 @@ class RowProgram:
         same = (within.lowest, within.highest) == (self.domain.lowest, self.domain.highest)
         table = self.table if same else tabulate(self.law, within, self.most)
         grid = RowGrid(NO_LAW, self.losses, within, steps, "inner", table=table)
-        iteration = value_iteration(grid, until, progress, backend)
+        iteration = value_iteration(grid, until, progress)
         return row_gain(iteration, self.law, self.device, self.environment) if iteration.cycle else None
 
 

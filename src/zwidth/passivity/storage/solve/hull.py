@@ -15,8 +15,7 @@ side of the hand, and of these only corners between the slopes that occur.  Left
 out of this are moves of less than two steps, which cost φ |d| alone, and the
 farthest cells, of which not every point is in reach of every node.
 
-Among equally good moves the one with the least d is taken.  The processor and the
-graphics card run the same functions.
+Among equally good moves the one with the least d is taken.
 """
 
 from __future__ import annotations

@@ -23,7 +23,6 @@ from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from zwidth.errors import InputError
 from zwidth.passivity.storage.losses import Integers
 from zwidth.passivity.storage.solve.cycle import best_cycle
 from zwidth.passivity.storage.solve.effort import Until, freely
@@ -160,8 +159,8 @@ class BestMoves(Sweep):
 class Sweepable(Protocol):
     """What value iteration asks of a grid."""
 
-    def sweep(self, backend: str) -> Sweep:
-        """V at the start and what improves it, on the "cpu" or the "gpu"; InputError if not there."""
+    def sweep(self) -> Sweep:
+        """V at the start and what improves it."""
 
 
 G = TypeVar("G", bound=Sweepable)
@@ -190,7 +189,7 @@ class ValueIteration(Generic[G]):
 
 
 def value_iteration(
-    grid: G, until: Until | None = None, progress: Progress | None = None, backend: str = "cpu"
+    grid: G, until: Until | None = None, progress: Progress | None = None
 ) -> ValueIteration[G]:
     """Improve every state until a storage function or a gaining cycle is left.
 
@@ -202,17 +201,8 @@ def value_iteration(
         When to give up; None: never.
     progress
         Called after each round with the number of states that improved.
-    backend
-        "cpu", or "gpu" for a graphics card with CUDA.
-
-    Raises
-    ------
-    InputError
-        If `backend` is neither, the grid is not iterated there, or there is no card or no CUDA.
     """
-    if backend not in ("cpu", "gpu"):
-        raise InputError(f'backend is "cpu" or "gpu", got {backend!r}')
-    sweep = grid.sweep(backend)
+    sweep = grid.sweep()
     limit = freely() if until is None else until
     rounds = 0
     with ThreadPoolExecutor(sweep.threads) as pool:
