@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from threading import RLock
 from typing import Any
 
 import pytest
@@ -20,7 +19,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 settings.register_profile(
     "explore",  # --hypothesis-profile=explore: other examples in every run
-    deadline=None,  # a busy machine, or one that compiles first, is no mistake
+    deadline=None,  # a busy machine is no mistake
     suppress_health_check=[HealthCheck.too_slow],
     print_blob=True,
 )
@@ -75,7 +74,7 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Each process begins elsewhere, so that they seldom want the same compiled; who is done helps out."""
+    """Each process has a part of its own; who is done helps out."""
     if config.getoption("dist") != "load":
         return None
     from xdist.scheduler import WorkStealingScheduling

@@ -70,25 +70,6 @@ def complaint(result: Result) -> str:
     return result.err
 
 
-@pytest.mark.parametrize(
-    ("argv", "what"),
-    [
-        (("limit", "haptic-paddle", "--stiffness", "100"), "the value iteration"),
-        (
-            ("simulate", "haptic-paddle", "--stiffness", "100", "--operator", "dowel", "--duration", "1"),
-            "the simulator",
-        ),
-    ],
-)
-def test_who_compiles_first_is_told(run: Run, monkeypatch: pytest.MonkeyPatch, argv, what: str) -> None:
-    """One line on stderr; the report is the same."""
-    usual = run(*argv)
-    monkeypatch.setattr("zwidth.compiled.is_compiled", lambda chapter: False)
-    first = run(*argv)
-    assert first.err == f"zwidth: compiling {what}, once; this takes some seconds\n"
-    assert (usual.status, usual.err) == (first.status, "")
-
-
 # --- check ------------------------------------------------------------------
 
 

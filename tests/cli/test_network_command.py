@@ -179,16 +179,7 @@ def test_there_is_no_process_of_another_name(tmp_path, capsys):
     assert 'no process is called "fare"; there are: near, far, paddle' in capsys.readouterr().err
 
 
-@pytest.fixture
-def compiled(tmp_path):
-    """What the processes need compiled, so that none of them waits for it."""
-    plan = load_plan(tmp_path / file(tmp_path, SCENE + NETWORK))
-    for name in plan.names:
-        plan.runs(name, Exact("0.01"))
-
-
 @pytest.mark.real_time
-@pytest.mark.usefixtures("compiled")
 def test_a_bad_link_is_run_by_real_processes_and_one_that_is_killed_leaves_no_force(tmp_path):
     p = free_ports(4)
     text = SCENE + NETWORK + line("paddle", p[0], p[1], 'delay = "4 ms"\njitter = "4 ms"\nloss = 0.2')
@@ -219,7 +210,6 @@ def test_a_bad_link_is_run_by_real_processes_and_one_that_is_killed_leaves_no_fo
     assert paddle["energy_received_J"] > 0
 
 
-@pytest.mark.usefixtures("compiled")
 def test_all_processes_are_started_by_one_command(tmp_path, capfd):
     assert main(["network", file(tmp_path, SCENE + NETWORK), "--duration", "0.3 s", "--json"]) == 0
     told = json.loads(capfd.readouterr().out)

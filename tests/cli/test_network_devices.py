@@ -110,8 +110,6 @@ def test_a_board_feels_the_scene_and_no_force_once_the_scene_is_killed(tmp_path,
     line = f'\n[[network.line]]\nname = "paddle"\nchannel = "{channel()}"\n'
     with HapkitEmulator(lambda exchange: round(200 * math.sin(0.05 * exchange))) as board:
         path = file(tmp_path, KIT + SLOW, board.port, line)
-        load_plan(path).runs("room", Exact(1)).step()  # compiled once, not by both
-        load_plan(path).runs("paddle", Exact(1))
         children = {name: process(path, name) for name in ("room", "paddle")}
         seen = []
         for text in children["paddle"].stderr:

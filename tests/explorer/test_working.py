@@ -5,9 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Iterator
-from functools import partial
 from itertools import count
-from pathlib import Path
 from queue import Queue
 from threading import Thread, local
 from typing import Any
@@ -45,19 +43,6 @@ def endless(value: int) -> int:
     """Something that never ends."""
     time.sleep(3600)
     return value
-
-
-def until(place: Path) -> None:
-    """What is done before anything else: it ends when the job has ended."""
-    while not place.exists():
-        time.sleep(0.05)
-
-
-def slow(value: Path) -> int:
-    """Something that takes longer than a job may."""
-    time.sleep(120 * LOOK)
-    value.touch()
-    return 7
 
 
 def test_a_process_that_does_not_start_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -127,19 +112,6 @@ def test_what_dies_or_takes_too_long_is_said_and_replaced(workers: Workers) -> N
     assert "without an answer" in asked(workers, ended, 1).message
     assert "took more than" in asked(workers, endless, 1).message
     assert asked(workers, doubled, 4) == Answer(8)
-
-
-def test_no_job_takes_too_long_before_what_comes_first_is_done(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What waits for a compiler, or competes with it, is not refused for that."""
-    monkeypatch.setattr("zwidth.explorer.working._PREPARING", 10**6)  # looks are cheap here
-    place = tmp_path / "done"
-    workers = Workers(2, longest=100.0, first=partial(until, place))
-    try:
-        assert asked(workers, slow, place) == Answer(7)
-    finally:
-        workers.close()
 
 
 def test_the_newest_job_alone_is_done() -> None:

@@ -90,10 +90,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _replayed(verdict: Verdict) -> FiniteStiffnessReplay:
-    from zwidth.cli.compile_notice import warn_of_compiling
-    from zwidth.passivity.finite_stiffness import replay  # the simulator takes its time
+    from zwidth.passivity.finite_stiffness import replay
 
-    warn_of_compiling()
     return replay(verdict)
 
 

@@ -69,10 +69,8 @@ def run(arguments: argparse.Namespace) -> int:
     loop, radius = _touched(tables, overrides(arguments))
     own = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
     from zwidth.bench.laws import standard_laws
-    from zwidth.cli.compile_notice import warn_of_compiling
     from zwidth.traces import compare
 
-    warn_of_compiling()
     yours = {} if own is loop.environment else {YOURS: own}
     fastest = _speed(arguments.fastest)
     if radius is None:
@@ -131,7 +129,6 @@ def _few(found: LawComparison) -> Iterator[Part]:
 def _pairs(arguments: argparse.Namespace, tables: Mapping[str, Table], save: Path | None) -> int:
     """Two arms joined in each of the ways that there are, the stiffness in all the same."""
     from zwidth.bench.pairs import schemes
-    from zwidth.cli.compile_notice import warn_of_compiling
     from zwidth.cli.simulate_pair import pair_with_options
     from zwidth.traces import compare
 
@@ -140,7 +137,6 @@ def _pairs(arguments: argparse.Namespace, tables: Mapping[str, Table], save: Pat
     if foreign:
         raise InputError(f"{foreign[0]} is of rendering laws: ways to join two arms are compared without it")
     pair = pair_with_options(arguments, tables)
-    warn_of_compiling()
     found = compare(schemes(pair))
     give_out(found, save, None, arguments.json)
     return 0

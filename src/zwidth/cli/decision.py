@@ -75,10 +75,8 @@ def decided(loop: Specification, contact: str = "made and broken") -> Verdict:
         closed = check_by_closed_forms(device, law, contact=contact)
         if contact == "kept" or not has_gap(device, law, closed):
             return closed
-    from zwidth.cli.compile_notice import warn_of_compiling_the_iteration
     from zwidth.traces.progress import falling, progress_bar
 
-    warn_of_compiling_the_iteration()
     with progress_bar("states") as progress:
         if closed is not None:
             return with_value_iteration(device, law, closed, falling(progress))

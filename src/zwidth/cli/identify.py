@@ -105,14 +105,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _found(arguments: argparse.Namespace, confidence: float) -> Result:
-    from zwidth.cli.compile_notice import warn_of_compiling_the_estimates
     from zwidth.identification.logs import Log
     from zwidth.identification.recording import identify, log_from
     from zwidth.traces.progress import progress_bar
 
     options = _options(arguments)
     environment_of = _environment(arguments)
-    warn_of_compiling_the_estimates()
     with as_options():
         reading = _reading(arguments)
         logs = [log_from(Path(name), **reading) for name in (arguments.log, *_further_logs(arguments))]

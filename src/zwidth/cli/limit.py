@@ -79,10 +79,8 @@ def run(arguments: argparse.Namespace) -> int:
         _refuse_without_stiffness(loop)
     parameter = named(arguments.parameter or "stiffness")
     options = _options(arguments, loop.device.motion)
-    from zwidth.cli.compile_notice import warn_of_compiling_the_iteration
     from zwidth.traces import passive_limit
 
-    warn_of_compiling_the_iteration()
     bracket = passive_limit(loop.device, loop.environment, parameter, **options)
     if save is not None:
         bracket.save(save)

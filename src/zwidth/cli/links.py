@@ -64,7 +64,6 @@ def run(arguments: argparse.Namespace) -> int:
             "a link has two ends: name one device for both, or leader and follower; "
             f"got {len(arguments.sources)}"
         )
-    from zwidth.cli.compile_notice import warn_of_compiling_the_links
     from zwidth.links import Schedule, compare
     from zwidth.traces.progress import progress_bar
 
@@ -77,7 +76,6 @@ def run(arguments: argparse.Namespace) -> int:
         "smoothing": arguments.smoothing or 0,
         "hold_back": arguments.hold_back,
     }
-    warn_of_compiling_the_links()
     with progress_bar("ports") as progress:
         found = compare(devices[0], devices[-1], link, **more, progress=progress)
     give_out(found, save, plot, arguments.json)

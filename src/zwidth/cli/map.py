@@ -80,7 +80,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth map`: 0."""
-    from zwidth.cli.compile_notice import warn_of_compiling_the_map
     from zwidth.maps import z_width
 
     plot, proof = targets(arguments.plot, arguments.certify, arguments.force, "--certify")
@@ -89,7 +88,6 @@ def run(arguments: argparse.Namespace) -> int:
         keep_axis(tables["device"], [arguments.stiffness, arguments.virtual_damping])
     device = _device(arguments, tables)
     options = _options(arguments, device.motion, tables.get("environment"))
-    warn_of_compiling_the_map()
     try:
         found = z_width(device, **options)
     except KeyboardInterrupt:

@@ -76,12 +76,10 @@ def _described(plan: Plan) -> list[Part]:
 
 
 def _one(plan: Plan, name: str, duration: Exact, as_json: bool) -> int:
-    from zwidth.cli.compile_notice import warn_of_compiling
     from zwidth.servo.port_run import PortRun
     from zwidth.servo.priority import RealTime
     from zwidth.servo.safety import ASKED, DONE
 
-    warn_of_compiling()
     signal.signal(signal.SIGTERM, _interrupted)
     peer = plan.peer(name, duration)
     real = peer.runs if isinstance(peer.runs, PortRun) else None
@@ -142,10 +140,7 @@ class _Watch:
 
 def _all(plan: Plan, file: str, typed: str, as_json: bool) -> int:
     """Every process as a child of this one; what they print comes out here."""
-    from zwidth.cli.compile_notice import warn_of_compiling
-
-    warn_of_compiling()
-    for name in plan.names:  # what has to be compiled is compiled once, not by all of them together
+    for name in plan.names:  # what cannot run is told once, before any is started
         plan.runs(name, Exact(1))
     signal.signal(signal.SIGTERM, _interrupted)
     command = [sys.executable, "-m", "zwidth", "network", file, "--duration", typed]

@@ -33,14 +33,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth replay`: 0, or 1 where a law gives other forces than were given."""
-    from zwidth.cli.compile_notice import warn_of_compiling
     from zwidth.servo.recording import read_recording
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if save is not None and save.suffix.lower() != _SAVED:
         raise InputError(f"--save: the file must end in {_SAVED}, got {str(save)!r}")
     recording = read_recording(arguments.recording)
-    warn_of_compiling()
     laws = list(_replayed(recording))
     _write(recording, plot, save)
     if arguments.json:

@@ -97,7 +97,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth serve`: 0 where it ran to its end, 5 where the force ended by a fault, else as `check`."""
-    from zwidth.cli.compile_notice import warn_of_compiling_the_servo
     from zwidth.cli.decision import decided, exit_status
     from zwidth.cli.serve_commands import listen
     from zwidth.servo.proving import NotProved
@@ -114,7 +113,6 @@ def run(arguments: argparse.Namespace) -> int:
     connection, placement = _connection(arguments, tables, loop.device.motion)
     commands = [partial(listen, arguments)] if arguments.commands else []
     asked = contact(arguments)
-    warn_of_compiling_the_servo()
     try:
         report = serve(
             loop.device,
@@ -137,12 +135,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _serve_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> int:
-    from zwidth.cli.compile_notice import warn_of_compiling_the_servo
     from zwidth.cli.decision import exit_status
     from zwidth.cli.serve_pair import served_pair
     from zwidth.servo.pair import PairNotProved
 
-    warn_of_compiling_the_servo()
     try:
         report = served_pair(arguments, tables)
     except PairNotProved as refused:

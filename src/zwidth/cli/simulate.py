@@ -106,7 +106,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tuple[xr.Dataset, str, str]:
     """The touch, and what is to be said where it met nothing, and where the hand is one of another device."""
-    from zwidth.cli.compile_notice import warn_of_compiling
     from zwidth.cli.simulation_tables import (
         FOLLOWER,
         build_touch,
@@ -129,7 +128,6 @@ def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tu
     duration = touch.duration
     if duration is None:
         duration = own_duration(touch.operator, float(loop.device.exact("sample_period")))
-    warn_of_compiling()
     trace = simulate(loop.device, environment, touch.operator, duration, **touch.options)
     return (
         trace,

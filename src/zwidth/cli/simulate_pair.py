@@ -26,7 +26,6 @@ def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -
     InputError
         If anything cannot be used.
     """
-    from zwidth.cli.compile_notice import warn_of_compiling
     from zwidth.cli.simulation_tables import (
         FOLLOWER,
         build_follower,
@@ -44,7 +43,6 @@ def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -
     follower = build_follower(tables.get(FOLLOWER), of_follower, pair.motion)
     if touch.duration is None:
         raise InputError("no duration is given: set --duration, for example --duration '2 s'")
-    warn_of_compiling()
     return simulate(pair, touch.operator, follower, touch.duration, **touch.options)
 
 

@@ -96,7 +96,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth sweep`: 0."""
-    from zwidth.cli.compile_notice import warn_of_compiling
     from zwidth.cli.sweep_loop import asked
     from zwidth.sweeps.run import sweep
 
@@ -106,8 +105,6 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(f"--of is one of {', '.join(VERBS)}, got {quoted(of)}")
     vary = _varied(arguments.vary)
     loop = asked(arguments, of, vary)
-    if of == "simulate":
-        warn_of_compiling()
     try:
         found = sweep(
             loop.subject,

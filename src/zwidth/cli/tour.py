@@ -88,12 +88,10 @@ def _active(out: Console) -> None:
 
 
 def _touched(out: Console) -> None:
-    from zwidth.cli.compile_notice import warn_of_compiling
     from zwidth.cli.trace_report import trace_headline
     from zwidth.operator import Dowel
     from zwidth.traces import simulate
 
-    warn_of_compiling()
     out.print(trace_headline(simulate(catalogue.device("haptic-paddle"), Wall(_STIFF), Dowel(), 2.0)))
 
 

@@ -12,9 +12,8 @@ import numpy as np
 
 from zwidth.environment import Environment, Wall
 from zwidth.errors import InputError
-from zwidth.explorer.starts import first
 from zwidth.explorer.state import State
-from zwidth.operator import OPERATORS, Finger, ParametricOperator
+from zwidth.operator import OPERATORS, ParametricOperator
 from zwidth.operator.usual import usual_kind
 from zwidth.passivity.check import check
 from zwidth.passivity.witness.witness import Witness
@@ -104,14 +103,8 @@ def touched(state: State) -> Touch:
     return _touch(loop.device, loop.environment, operator_of(state))
 
 
-def compiled() -> None:
-    """Compile the simulator, once on a machine, before anybody asks for a touch."""
-    loop = first().loop()
-    _touch(loop.device, loop.environment, Finger())
-
-
 def _touch(device: Any, environment: Environment, hand: ParametricOperator) -> Touch:
-    from zwidth.energy import ledger  # with the compiled loop, which takes its time to load
+    from zwidth.energy import ledger  # xarray takes its time
     from zwidth.loop.simulate import simulate
     from zwidth.plots.trace import thinned
 

@@ -26,7 +26,6 @@ from tornado.ioloop import IOLoop
 
 from zwidth.errors import InputError
 from zwidth.explorer.access import ANY, TOKEN, TokenAccess, hosts, token_for
-from zwidth.explorer.computing import compiled
 from zwidth.explorer.page import full_page, page_of
 from zwidth.explorer.session import Session
 from zwidth.explorer.starts import first
@@ -93,7 +92,7 @@ class _Server:
         secret = "" if token is None else f"?{TOKEN}={token}"
         self.address = f"http://{shown}:{self._port}/{secret}"
         self._open = 0
-        self._workers = Workers(first=compiled)
+        self._workers = Workers()
         self._ready = Event()
         self._failure: BaseException | None = None
         self._loop = asyncio.new_event_loop()

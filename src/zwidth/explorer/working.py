@@ -16,23 +16,17 @@ from typing import Any, NamedTuple
 from zwidth.errors import InputError
 
 LONGEST = 60.0
-"""A job may take [s]: it is seconds, but for the first of its kind on a machine, which compiles."""
+"""A job may take [s]: it is seconds."""
 
 LONGEST_WAIT = 1.0
 """For a job that nobody waits for any more [s]: a new process takes about as long."""
 
 _STEP = 0.05
 
-_PREPARING = 5
-"""So many times as long as any job may what comes first take, and whatever waits for it."""
-
 _NO_PROCESS = (
     "what takes longer could not be computed: no process could be started beside this one; a script starts "
     'it under `if __name__ == "__main__":`'
 )
-
-_NOBODY = 0
-"""Asks for what comes first: no page has this number."""
 
 
 class Answer(NamedTuple):
@@ -59,15 +53,10 @@ class Workers:
         How many.
     longest
         A job may take [s].
-    first
-        What is done before anything else, such as compiling; until it is done no job takes too long.
     """
 
-    def __init__(
-        self, count: int = 2, longest: float = LONGEST, first: Callable[[], object] | None = None
-    ) -> None:
+    def __init__(self, count: int = 2, longest: float = LONGEST) -> None:
         self._longest = longest
-        self._prepared = first is None
         self._changed = Condition()
         self._waiting: dict[tuple[int, str], _Job] = {}
         self._newest: dict[tuple[int, str], int] = {}
@@ -76,13 +65,8 @@ class Workers:
         self._threads = [
             Thread(target=self._work, name=f"zwidth work {n}", daemon=True) for n in range(count)
         ]
-        if first is not None:
-            self.submit(_NOBODY, "first", first, (), self._is_prepared)
         for thread in self._threads:
             thread.start()
-
-    def _is_prepared(self, answer: Answer) -> None:
-        self._prepared = True
 
     def submit(
         self,
@@ -159,15 +143,12 @@ class Workers:
     def _answer(self, process: _Process, job: _Job) -> Answer | None:
         """The answer; None where the process must be ended because nobody waits."""
         process.send(job.compute, job.arguments)
-        began = counted = monotonic()
+        began = monotonic()
         while not process.answers(_STEP):
-            now = monotonic()
-            since = now - began
+            since = monotonic() - began
             if not self._is_wanted(job) and (since > LONGEST_WAIT or self._closed):
                 return None
-            if not self._prepared and since < _PREPARING * self._longest:
-                counted = now
-            elif now - counted > self._longest:
+            if since > self._longest:
                 process.end()
                 return Answer(
                     None,

@@ -102,7 +102,7 @@ class Port(Parametric):
         return replace(self)
 
     def warm(self) -> None:
-        """Compile what has to be, before a clock runs; this port stays as it is."""
+        """Have the step functions found in their library before a clock runs; this port stays as it is."""
         one, other = self.anew(), self.anew()
         other.meet(one.run)
         other.receive()

@@ -80,7 +80,7 @@ class DeviceRun:
         self._work = np.zeros(WORK)
         self._k = 0
         arm = self._arm._replace(**{name: getattr(self._arm, name).copy() for name in _CHANGED})
-        _measure(arm, 0)  # what has to be compiled is compiled before the clock runs
+        _measure(arm, 0)  # step functions are found in their library before the clock runs
         _move(arm, 0, 0.0, self._setup.tick, True, self._work)
         port.warm()
 

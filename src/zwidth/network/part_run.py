@@ -39,7 +39,7 @@ class PartRun:
 
     def __init__(self, part: Part, sample_period: RealLike) -> None:
         self.part = part
-        # what has to be compiled is compiled before the clock runs
+        # step functions are found in their library before the clock runs
         SceneRun(part.scene, sample_period).step()
         self._run = SceneRun(part.scene, sample_period)
         self.felt = 0.0

@@ -33,6 +33,6 @@ def is_beyond(limit: Exact | Interval, witness: Witness | Gain) -> bool:
 def _peak_force(witness: Witness | Gain) -> float:
     if isinstance(witness, Witness):
         return witness.peak_force
-    from zwidth.passivity.storage.evidence.playback import peak_force  # numba is there by now
+    from zwidth.passivity.storage.evidence.playback import peak_force  # loaded by now
 
     return peak_force(witness)

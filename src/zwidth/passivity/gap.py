@@ -33,7 +33,7 @@ def with_value_iteration(
     device: Device, law: Environment, verdict: Verdict, progress: Callable[[int], None] | None = None
 ) -> Verdict:
     """The verdict with what available storage adds to it; as it is where that cannot be computed."""
-    from zwidth.passivity.storage.solution import available_storage  # numpy and numba take their time
+    from zwidth.passivity.storage.solution import available_storage  # numpy and xarray take their time
 
     try:
         found = available_storage(device, law, effort=EFFORT, progress=progress)

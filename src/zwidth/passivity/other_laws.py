@@ -155,7 +155,7 @@ def _on_paper(verdict: Verdict) -> Verdict | None:
 
 def _by_values(verdict: Verdict, progress: Progress | None) -> Verdict:
     """What value iteration adds: a motion refutes, a proof of bounded hands stands beside the verdict."""
-    from zwidth.passivity.storage.solution import available_storage  # numpy and numba take their time
+    from zwidth.passivity.storage.solution import available_storage  # numpy and xarray take their time
 
     try:
         device, law = verdict.device, verdict.environment

@@ -42,7 +42,7 @@ def cycle(gain: Gain) -> Figure:
 
 def draw_cycle(rows: Sequence[Axes], gain: Gain) -> None:
     """The same on three given axes, one above the other."""
-    from zwidth.passivity.storage.evidence.playback import settled_round  # numba takes its time
+    from zwidth.passivity.storage.evidence.playback import settled_round  # loaded by now
 
     motion = "rotary" if gain.unit == "rad" else "linear"
     once = settled_round(gain)

@@ -158,7 +158,7 @@ _LATER = {kind.class_name: kind.module for kind in (*LAWS.values(), *ESTIMATORS.
     "RenderingLaw": "rendering.rendering_law",
     "render": "rendering.rendered",
 }
-"""Where they are, until they are first used: the compiler of their steps takes its time to load."""
+"""Where they are, until they are first used: numpy, which their steps need, takes its time to load."""
 
 __all__ = sorted((*_LATER, "BackwardDifference", "OnePole", "VelocityFilter", "VirtualCoupling", "Window"))  # noqa: PLE0605  # what the type checker needs stands above
 

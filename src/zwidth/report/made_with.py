@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib.metadata import version
 from platform import python_version
 
-_LIBRARIES = ("matplotlib", "numba", "numpy", "python-flint", "scipy")
+_LIBRARIES = ("matplotlib", "numpy", "python-flint", "scipy")
 
 
 def versions(*more: str) -> list[tuple[str, str]]:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from zwidth.passivity.pairs.evidence import PairWitness
 from zwidth.passivity.storage.evidence.gain import Gain
+from zwidth.passivity.storage.evidence.playback import settled_round
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.showing import Part, Table
@@ -55,8 +56,6 @@ def _of_a_witness(found: Witness) -> _Steps:
 
 
 def _of_a_gain(found: Gain) -> _Steps:
-    from zwidth.passivity.storage.evidence.playback import settled_round  # numba takes its time
-
     once = settled_round(found)
     times = [found.sample_period * t for t in once.times]
     motion = "rotary" if found.unit == "rad" else "linear"

@@ -52,8 +52,8 @@ def judged_gap(since: float, longest: float) -> int:
     return GAP if since > longest else RUNNING
 
 
-def compile_judging() -> None:
-    """Have what a loop in Python calls compiled, or loaded, before the clock runs."""
+def find_judging() -> None:
+    """Have what a loop in Python calls found in its library before the clock runs."""
     judged_answer(GOOD, bad_in_a_row(GOOD, 0.0), 0.0)
     judged_reading(0.0, nan, 0.0)
     judged_gap(0.0, 0.0)

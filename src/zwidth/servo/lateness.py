@@ -132,7 +132,7 @@ def measure_lateness(
         pass
     kinds = (ordinary, wanted) if "priority" in asked else (ordinary,)
     period = round(sample_period * 1e9)
-    turn(ordinary, period, 2, lambda share: None)  # what has to be compiled is compiled before it counts
+    turn(ordinary, period, 2, lambda share: None)  # found in its library before it counts
     rounds = max(round(duration / (len(kinds) * TURN)), 1)
     count = max(round(duration / (rounds * len(kinds) * sample_period)), 1)
     turns: list[list[Lateness]] = [[] for _ in kinds]

@@ -40,7 +40,7 @@ from zwidth.servo.connection import (
 )
 from zwidth.servo.judging import (
     bad_in_a_row,
-    compile_judging,
+    find_judging,
     judged_answer,
     judged_gap,
     judged_reading,
@@ -206,7 +206,7 @@ class PairServo:
             raise InputError("a pair's forces have no limit of their change here; leave out slew")
         self._period = pair.sample_period
         self._law = PairLaw(pair)
-        compile_judging()
+        find_judging()
         self._real_time = real_time or RealTime()
         self._stop = threading.Event()
         self.measured: Measured | None = None

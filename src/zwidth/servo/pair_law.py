@@ -56,7 +56,7 @@ class PairLaw:
         )
         self._arms = setup.arms
         self.begin()
-        self.forces(0.0, 0.0)  # compiled before the clock runs
+        self.forces(0.0, 0.0)  # found in their library before the clock runs
         self.begin()
 
     def begin(self) -> None:

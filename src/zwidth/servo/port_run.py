@@ -40,7 +40,7 @@ from zwidth.servo.connection import (
 )
 from zwidth.servo.judging import (
     bad_in_a_row,
-    compile_judging,
+    find_judging,
     judged_answer,
     judged_gap,
     judged_reading,
@@ -170,7 +170,7 @@ class PortRun:
         self._longest = float(longest)
         self._kept: deque[float] = deque([0.0] * (0 if simulated else waits - connection.late))
         self.port.warm()
-        compile_judging()
+        find_judging()
         self.connection, self.placement = connection, placement or Placement()
         self._period = float(period)
         self._axis: Axis | None = None

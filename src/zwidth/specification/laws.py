@@ -87,7 +87,7 @@ def behind_laws(environment: Environment, tables: Iterable[Table], motion: str) 
     laws = [build_law(law, motion) for law in tables]
     if not laws:
         return environment
-    from zwidth.rendering import render  # the compiler of their steps takes its time
+    from zwidth.rendering import render
 
     return render(environment, *laws)
 

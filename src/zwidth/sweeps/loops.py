@@ -214,7 +214,7 @@ def _law(loop: Loop, new: Changes) -> Loop:
 
 
 def chain_of(environment: Environment | None) -> tuple[Any, ...]:
-    """The laws in a chain: asked of an attribute, for the compiler of their steps takes its time to load."""
+    """The laws in a chain: asked of an attribute, since numpy takes its time to load."""
     return getattr(environment, "laws", ())
 
 

@@ -68,8 +68,7 @@ def passive_limit(
         How much is done before the bracket so far is returned: 1 is about a second of one core. Work is
         counted, not time, so that every machine finds the same, to the last bit.
     seconds
-        Time after which it is returned as well [s]; that of compiling, once, is not counted. `cut_by_time`
-        says where it was. Default: none.
+        Time after which it is returned as well [s]; `cut_by_time` says where it was. Default: none.
     iterate
         False for closed conditions alone, however long they take.
     progress
@@ -98,10 +97,8 @@ def passive_limit(
         return _by_closed_forms(Search(asked, tolerance, Effort(), inf, progress), counted)
     ideal = ends(device.resolution)[1] == 0
     in_a_row = bool(laws_of(law))
-    if not (ideal or in_a_row or is_stepped(law)) and isinstance(
-        first := program_of(device, law, *counted), DynamicProgram
-    ):
-        first.warm_up()
+    if not (ideal or in_a_row or is_stepped(law)):
+        program_of(device, law, *counted)  # what cannot be iterated is refused before anything is searched
     search = Search(asked, tolerance, Effort(time_limit(seconds)), most, progress)
     if friction is not None and asked.name in ("device.damping", "device.coulomb_friction"):
         raise InputError(f"{parameter} plays no part beside a friction curve: leave out one of the two")

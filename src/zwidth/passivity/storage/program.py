@@ -8,7 +8,6 @@ State: position, and what the law remembers.  Move: Δx in one sample.  Reward:
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from typing import Any
 
 from zwidth.device.device import Device
@@ -29,7 +28,7 @@ from zwidth.passivity.storage.hand_bounds import HandBounds, hand_bounds
 from zwidth.passivity.storage.law import FiniteLaw, finite_law
 from zwidth.passivity.storage.losses import Losses
 from zwidth.passivity.storage.row.program import RowProgram, row_program
-from zwidth.passivity.storage.solve.effort import Effort, Until, freely
+from zwidth.passivity.storage.solve.effort import Until, freely
 from zwidth.passivity.storage.solve.value_iteration import Progress, value_iteration
 from zwidth.quantity.exact import RealLike
 from zwidth.rendering.rendered import laws_of
@@ -124,27 +123,6 @@ class DynamicProgram:
         grid = self._grid(self.losses, self.domain, steps, "outer")
         iteration = value_iteration(grid, until, progress)
         return None if iteration.value is None else StorageFunction(iteration, self.motion)
-
-    def warm_up(self) -> None:
-        """Iterate on a few cells, so that what is compiled is compiled before any time is counted."""
-        if self.losses.curve is not None:
-            return
-        enough = sum(map(abs, self.law.taps), Fraction(0)) * self.losses.period * 9 + 1
-        easy = replace(self.losses, damping=self.losses.damping + enough, coulomb_friction=enough)
-        for reach in (1, 30) if self.is_large else (1,):
-            remembered = self.law.memory + self.losses.delay
-            outside = 1 - (remembered + 1) * reach if self.law.surface != "none" else -2 * reach - 1
-            few = DynamicProgram(
-                self.law, easy, Domain(min(outside, -2 * reach - 1), 2 * reach, reach), self.motion
-            )
-            if reach > 1:
-                few.prove_on_cells(4)
-                few.refute(4, Until(Effort(), 1.0))
-                continue
-            found = few.prove(1)
-            if found is not None:
-                found.certificate().verify()
-            few.refute(4)
 
     @property
     def has_cells(self) -> bool:

@@ -156,7 +156,6 @@ def available_storage(
     program = program_of(device, environment, penetration, speed, force_limit, force_resolution, friction)
     law = as_environment(environment)
     said = program_scope(device, law, program)
-    program.warm_up()
     most, done = checked_effort(effort), Effort(time_limit(seconds))
     whole = Until(done, most)
     counted = force_limit or force_resolution or friction is not None

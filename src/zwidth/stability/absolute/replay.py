@@ -33,7 +33,7 @@ def replay_motion(
     rounds
         Periods to simulate.
     """
-    from zwidth.loop.simulate import simulate  # loads numba, which takes its time
+    from zwidth.loop.simulate import simulate  # xarray takes its time
     from zwidth.operator.tracking import Tracking
 
     own = hand.hand if isinstance(hand, Operator) else hand

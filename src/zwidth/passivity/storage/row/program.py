@@ -54,9 +54,6 @@ class RowProgram:
         """Nothing: a domain that is too large has no table, and no dynamic program."""
         return
 
-    def warm_up(self) -> None:
-        """Nothing: the table is made by the functions that are compiled."""
-
     @property
     def has_cells(self) -> bool:
         """False: a table has the states of single counts."""
