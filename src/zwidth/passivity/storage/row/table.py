@@ -120,8 +120,9 @@ def tabulate(law: RowLaw, domain: Domain, most: int = MOST_STATES) -> Table:
         rows, counts = np.array(found.rows[done:last]), np.array(found.counts[done:last])
         done += len(rows)
         onward = np.zeros((len(rows), len(moves), rows.shape[1]))
+        read = counts.astype(float)
         after_every_reading(
-            law.packed, rows, counts, law.waiting, domain.lowest, domain.highest, scratch(), onward
+            law.packed, rows, read, law.waiting, domain.lowest, domain.highest, scratch(), onward
         )
         then = counts[:, None] + moves
         on_grid = (then >= domain.lowest) & (then <= domain.highest)
