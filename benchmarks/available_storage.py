@@ -180,13 +180,12 @@ def counted(grid: Grid) -> dict:
     return {"pairs": pairs, "targets": targets, "hull_points": points, "states": states}
 
 
-@njit
 def _counts(values, forces, costs, nodes, steps, reach):
     cells, edges = len(forces), nodes.size
     scratch = np.empty((3, (2 * reach + 1) * edges), np.int64)
     pairs = targets = points = states = 0
     for n in range(cells):
-        here = (forces[n] != NOWHERE).sum()
+        here = int((forces[n] != NOWHERE).sum())
         states += here * edges
         low, high = max(0, n - reach), min(cells - 1, n + reach)
         targets += (high - low + 1) * edges
@@ -194,11 +193,8 @@ def _counts(values, forces, costs, nodes, steps, reach):
         points += edges * worthwhile(
             values, forces, costs, nodes, steps, n, reach, least, most, scratch[0], scratch[1], scratch[2]
         )
-        for n2 in range(low, high + 1):
-            for j in range(edges):
-                for j2 in range(edges):
-                    if abs((n2 - n) * steps + nodes[j2] - nodes[j]) < costs.size:
-                        pairs += here
+        far = (np.arange(low, high + 1) - n)[:, None, None] * steps + nodes - nodes[:, None]
+        pairs += here * int((np.abs(far) < costs.size).sum())
     return pairs, targets, points, states
 
 

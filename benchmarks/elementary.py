@@ -2,65 +2,73 @@
 
     python benchmarks/elementary.py [--turns 5]
 
-Two tables: nanoseconds of each function in a compiled loop over random arguments, ours and `math`'s, and
+Two tables: nanoseconds of each function in a loop in C over random arguments, ours and `math`'s, and
 nanoseconds of a sample in loops that call them, as they are and with `math`'s put in their place.  Each
-simulator is a process of its own with a cache of its own; they take turns, and the least of each is printed.
+simulator is a process of its own with a library of its own; they take turns, and the least is printed.
 """
 
 from __future__ import annotations
 
 import argparse
+import ctypes
 import json
-import math
-import os
+import re
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 import zwidth as zw
-from zwidth.elementary import exponential, hyperbolic, logarithm, power
+from zwidth.loop.setup import empty_record, prepare
+from zwidth.loop.simulate import run_setup
+from zwidth.native import build
+from zwidth.native.translation import Translation
 
 SAMPLES = 50_000
 REPEATS = 5
 
-Library = dict[str, Callable[..., float]]
-
-
-def librarys() -> Library:
-    """The functions of the C library, compiled."""
-    return {
-        "exp": njit(lambda x: math.exp(x)),
-        "expm1": njit(lambda x: math.expm1(x)),
-        "log": njit(lambda x: math.log(x)),
-        "log1p": njit(lambda x: math.log1p(x)),
-        "tanh": njit(lambda x: math.tanh(x)),
-        "power": njit(lambda x, n: x**n),
-    }
-
-
-def ours() -> Library:
-    """Those of zwidth."""
-    return {name: getattr(place, name) for name, place in PLACES.items()}
-
-
-PLACES: dict[str, Any] = {
-    "exp": exponential,
-    "expm1": exponential,
-    "log": logarithm,
-    "log1p": logarithm,
-    "tanh": hyperbolic,
-    "power": power,
+WHERE = {
+    "exp": "exponential",
+    "expm1": "exponential",
+    "log": "logarithm",
+    "log1p": "logarithm",
+    "tanh": "hyperbolic",
+    "power": "power",
 }
+"""The module of each."""
+
+ADD = """
+ZW_SEEN double added_{name}(const double *x, int64_t count, double n) {{
+  double total = 0;
+  (void)n;
+  for (int i = 0; i < 50; i++) for (int64_t k = 0; k < count; k++) total += {call};
+  return total;
+}}
+"""
+
+
+def built(which: str, folder: Path) -> Path:
+    """A library of all step functions with our functions, or the C library's, and loops that add up."""
+    text = Translation(build.PACKAGE).text()
+    for name, module in WHERE.items():
+        own = f"elementary_{module}_{name}"
+        called = own if which == "ours" else name.replace("power", "pow")
+        text = re.sub(rf"(?<!double ){own}\(", f"{called}(", text)  # calls alone
+        text += ADD.format(name=name, call=f"{called}(x[k]{', n' if name == 'power' else ''})")
+    source, library = folder / f"{which}.c", folder / f"{which}.so"
+    source.write_text(text, encoding="utf-8")
+    command = [*build.compiler(), *build.FLAGS, "-w", "-o", str(library), str(source), "-lm"]
+    subprocess.run(command, check=True)
+    return library
 
 
 def least(run: Callable[[], object], repeats: int) -> float:
-    """The shortest of some runs [ns]; the first, which compiles, does not count."""
+    """The shortest of some runs [ns]; the first does not count."""
     run()
     found = []
     for _ in range(repeats):
@@ -70,39 +78,32 @@ def least(run: Callable[[], object], repeats: int) -> float:
     return 1e9 * min(found)
 
 
-def of_a_call(function: Callable[..., float], x: Any, further: tuple[float, ...]) -> float:
+def of_a_call(library: Any, name: str, x: np.ndarray, n: float) -> float:
     """One call, in a loop that adds up [ns]."""
-
-    @njit
-    def add(x: Any, further: tuple[float, ...]) -> float:
-        total = 0.0
-        for _ in range(50):
-            for one in x:
-                total += function(one, *further)
-        return total
-
-    return least(lambda: add(x, further), 2 * REPEATS) / (50 * len(x))
+    add = getattr(library, f"added_{name}")
+    add.restype, add.argtypes = ctypes.c_double, (ctypes.c_void_p, ctypes.c_int64, ctypes.c_double)
+    return least(lambda: add(x.ctypes.data, len(x), n), 2 * REPEATS) / (50 * len(x))
 
 
-def functions() -> str:
+def functions(libraries: dict[str, Path]) -> str:
     """The first table."""
     random = np.random.default_rng(0)
     below, speeds = -3 * random.random(2000), 3 * random.standard_normal(2000)
     sizes = 10 ** (6 * random.random(2000) - 5)
     cases = [
-        ("exp", "−3 … 0", below, ()),
-        ("expm1", "−3 … 0", below, ()),
-        ("log", "1e-5 … 10", sizes, ()),
-        ("log1p", "−0.9 … 0", 0.3 * below, ()),
-        ("tanh", "about 3", speeds, ()),
-        ("power", "1e-5 … 10, n = 1", sizes, (1.0,)),
-        ("power", "1e-5 … 10, n = 1.5", sizes, (1.5,)),
-        ("power", "1e-5 … 10, n = 2.2", sizes, (2.2,)),
+        ("exp", "−3 … 0", below, 0),
+        ("expm1", "−3 … 0", below, 0),
+        ("log", "1e-5 … 10", sizes, 0),
+        ("log1p", "−0.9 … 0", 0.3 * below, 0),
+        ("tanh", "about 3", speeds, 0),
+        ("power", "1e-5 … 10, n = 1", sizes, 1.0),
+        ("power", "1e-5 … 10, n = 1.5", sizes, 1.5),
+        ("power", "1e-5 … 10, n = 2.2", sizes, 2.2),
     ]
     lines = ["| function | arguments | ours [ns] | math [ns] | ratio |", "|---|---|---:|---:|---:|"]
-    own, other = ours(), librarys()
-    for name, about, x, further in cases:
-        one, two = of_a_call(own[name], x, further), of_a_call(other[name], x, further)
+    opened = [ctypes.CDLL(str(library)) for library in libraries.values()]
+    for name, about, x, n in cases:
+        one, two = (of_a_call(library, name, x, n) for library in opened)
         lines.append(f"| {name} | {about} | {one:.1f} | {two:.1f} | {one / two:.2f} |")
     return "\n".join(lines)
 
@@ -120,14 +121,9 @@ def loops() -> dict[str, tuple[Any, Any]]:
     }
 
 
-def simulated(library: bool) -> dict[str, float]:
+def simulated(library: Path) -> dict[str, float]:
     """Nanoseconds of a sample of each loop, its trajectory recorded."""
-    if library:
-        for name, function in librarys().items():
-            setattr(PLACES[name], name, function)
-    from zwidth.loop.setup import empty_record, prepare  # they take the functions as they are now
-    from zwidth.loop.simulate import run_setup
-
+    build.BUILT = library
     hand = 1.0 + 0.5 * np.sin(2 * np.pi * 5e-3 * np.arange(SAMPLES))
     device = zw.Device(
         mass="0.036", damping="0.15", coulomb_friction="0.12", resolution="22.4 um", sample_period="1 ms"
@@ -146,17 +142,15 @@ def simulated(library: bool) -> dict[str, float]:
     return found
 
 
-def simulators(turns: int) -> str:
+def simulators(libraries: dict[str, Path], turns: int) -> str:
     """The second table."""
     found: dict[str, dict[str, list[float]]] = {"ours": {}, "math": {}}
-    with tempfile.TemporaryDirectory() as folder:
-        for _ in range(turns):
-            for which, values in found.items():
-                environment = os.environ | {"NUMBA_CACHE_DIR": os.path.join(folder, which)}
-                command = [sys.executable, __file__, "--simulate", which]
-                run = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-                for name, ns in json.loads(run.stdout).items():
-                    values.setdefault(name, []).append(ns)
+    for _ in range(turns):
+        for which, values in found.items():
+            command = [sys.executable, __file__, "--simulate", str(libraries[which])]
+            run = subprocess.run(command, capture_output=True, encoding="utf-8", check=True)
+            for name, ns in json.loads(run.stdout).items():
+                values.setdefault(name, []).append(ns)
     lines = ["| a sample of | ours [ns] | math [ns] | ratio |", "|---|---:|---:|---:|"]
     for name, own in found["ours"].items():
         one, two = min(own), min(found["math"][name])
@@ -168,12 +162,14 @@ def main() -> None:
     """Both tables, or the times of one simulator."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--turns", type=int, default=5, help="of both simulators")
-    parser.add_argument("--simulate", choices=("ours", "math"), help=argparse.SUPPRESS)
+    parser.add_argument("--simulate", type=Path, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.simulate:
-        print(json.dumps(simulated(arguments.simulate == "math")))
+        print(json.dumps(simulated(arguments.simulate)))
         return
-    print(functions(), simulators(arguments.turns), sep="\n\n")
+    with tempfile.TemporaryDirectory() as folder:
+        libraries = {which: built(which, Path(folder)) for which in ("ours", "math")}
+        print(functions(libraries), simulators(libraries, arguments.turns), sep="\n\n")
 
 
 if __name__ == "__main__":

@@ -16,7 +16,6 @@ from pathlib import Path
 from time import perf_counter
 
 import numpy as np
-from numba import njit
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "firmware"))
@@ -35,13 +34,11 @@ from zwidth.loop.series import WORK
 OPTIONS = (("-std=c99", "-O2"), ("-std=gnu99", "-O3", "-march=native"))
 
 
-@njit
 def _by_counts(law, memory, given, out):
     for k in range(len(given)):
         out[k, 0] = sampled_force(law, memory, int(given[k]))
 
 
-@njit
 def _by_position(law, memory, given, out):
     for k in range(len(given)):
         out[k, 0] = sampled_force_at(law, memory, given[k])
@@ -86,22 +83,18 @@ def of_laws(names: list[str], steps: int, folder: Path) -> int:
     return total
 
 
-@njit(error_model="numpy")
 def _periods(state, work, plant, rows, out, anchored):
     for k in range(len(rows)):
         anchor, speed = (rows[k, 2], rows[k, 3]) if anchored else (0.0, 0.0)
-        one_period_compiled(state, work, plant, rows[k, 0], rows[k, 1], anchor, speed, PERIOD)
+        one_period(state, work, plant, rows[k, 0], rows[k, 1], anchor, speed, PERIOD)
         out[k] = state
-
-
-one_period_compiled = njit(error_model="numpy")(one_period)
 
 
 def of_plants(steps: int, folder: Path) -> int:
     """The table of the plants."""
     print(
         f"\n{'plant':18} {'C lines':>8} {'bytes':>7} {'JS':>6} {'bytes':>7}",
-        f"{'numba':>8} {'C':>8} {'node':>8} differ",
+        f"{'C':>8} {'node':>8} differ",
     )
     total = 0
     for name, (plant, hand) in PLANTS.items():
@@ -110,25 +103,20 @@ def of_plants(steps: int, folder: Path) -> int:
         alone = folder / name
         alone.mkdir()
         library = compiled_c(plant_in_c(program, name), alone)
-        taken = []
-        for _ in range(2):  # the first compiles
-            state, work, out = np.zeros(STATE_SIZE), np.zeros(WORK), np.empty((steps, STATE_SIZE))
-            taken.append(timed(_periods, state, work, plant, rows, out, hand == "anchored")[0])
-        taken[0] = taken.pop()
+        state, work, out = np.zeros(STATE_SIZE), np.zeros(WORK), np.empty((steps, STATE_SIZE))
+        _periods(state, work, plant, rows, out, hand == "anchored")
         expected = Ran(out, np.concatenate([state, work]))
-        seconds, in_c = timed(run_c, library, name, rows, CELLS, STATE_SIZE)
-        taken.append(seconds)
+        in_c_for, in_c = timed(run_c, library, name, rows, CELLS, STATE_SIZE)
         files, given = {f"{name}.mjs": text}, {name: (rows, CELLS, STATE_SIZE)}
         few = {name: (rows[:1], CELLS, STATE_SIZE)}
         start = timed(run_node, plant_in_javascript(name), folder, few, files)[0]
         seconds, in_node = timed(run_node, plant_in_javascript(name), folder, given, files)
-        taken.append(seconds - start)
         wrong = sum(
             differing(a, b) for other in (in_c, in_node[name]) for a, b in zip(expected, other, strict=True)
         )
         sizes = (header.count("\n"), len(header), text.count("\n"), len(text))
         print(f"{name:18} {sizes[0]:8} {sizes[1]:7} {sizes[2]:6} {sizes[3]:7}", end=" ")
-        print(*(f"{1e9 * t / steps:5.0f} ns" for t in taken), f"{wrong:7}")
+        print(*(f"{1e9 * t / steps:5.0f} ns" for t in (in_c_for, seconds - start)), f"{wrong:7}")
         total += wrong
     return total
 

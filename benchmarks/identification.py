@@ -130,7 +130,7 @@ def speed(samples):
             "hand_force_N": np.tile(once["hand_force"], repeats),
         }
     )
-    identify(log)  # compiled
+    identify(log)  # loaded
     with tempfile.TemporaryDirectory() as folder:
         files = {"csv": Path(folder, "log.csv"), "parquet": Path(folder, "log.parquet")}
         pyarrow.csv.write_csv(table, files["csv"])

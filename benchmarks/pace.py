@@ -93,7 +93,7 @@ def main() -> None:
     print(f"{'':34}{'50 %':>9}{'99 %':>9}{'99.9 %':>9}{'worst':>9}   [µs]")
     rounds = max(round(arguments.duration / (2 * TURN)), 1)
     with busy(arguments.core):
-        turn(RealTime(priority=0, memory=False), 1_000_000, 2, lambda share: None)  # compile
+        turn(RealTime(priority=0, memory=False), 1_000_000, 2, lambda share: None)  # load
         for rate in RATES:
             for fifo in kinds:
                 found: list[Counter[int]] = [Counter(), Counter()]

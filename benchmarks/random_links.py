@@ -114,7 +114,6 @@ def draw_hand(random: np.random.Generator, p: Array, draws: Array, none: Array) 
     return Hand(size, half, until, 30.0 * p[PERIOD], draws if random.random() < 0.3 else none)
 
 
-@njit(nogil=True)
 def attack(
     code: float, random: np.random.Generator, count: int, near: End, far: End, draws: Array, found: Array
 ) -> None:
@@ -171,7 +170,7 @@ def run(code: float, seed: int, count: int) -> Array:
 
 
 def side_by_side(work: Callable[[int], Array]) -> list[Array]:
-    """The lock of Python is not held."""
+    """The lock of Python is not held while links are drawn and run."""
     with ThreadPoolExecutor(_WORKERS) as pool:
         return list(pool.map(work, range(_WORKERS)))
 

@@ -76,7 +76,6 @@ def _draw(rng, numbers, law, force, anchor):
     return late, offset, period, reach * rng.standard_normal(), reach / period * 0.1 * rng.standard_normal()
 
 
-@njit
 def _residuals(loops, rng, worst):
     """The largest residuals relative to the energy moved; `worst` gets the numbers of the worst loop."""
     state, numbers, law = np.zeros(STATE_SIZE), np.zeros(9), np.zeros(laws.HEADER + 2)

@@ -70,7 +70,7 @@ def main() -> None:
     duration = parser.parse_args().duration
     if shutil.which("cyclictest") is None:
         sys.exit("cyclictest is not installed: it is in the package rt-tests")
-    served(1000, 0, 0.5)  # compiled before anything is timed
+    served(1000, 0, 0.5)  # loaded before anything is timed
     turns = max(2, round(duration / TURN))
     print(f"load of the last minute: {os.getloadavg()[0]:.2f} on {os.cpu_count()} cores")
     print(f"{'':26}{'50 %':>9}{'99 %':>9}{'99.9 %':>9}{'worst':>9}   [µs]")

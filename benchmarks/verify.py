@@ -1,6 +1,6 @@
 """How long `verify` takes over documents of every kind, beside the time to prove them.
 
-Each maker of documents is run once so that everything is compiled and loaded, and then timed: from one
+Each maker of documents is run once so that everything is loaded, and then timed: from one
 document to the next is the time to prove, the prover's own check with it.  Documents that are written down
 without a search, as those of some arms, have none.  Verifying is timed five times, and the shortest counts.
 Processor time.
