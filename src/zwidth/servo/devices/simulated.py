@@ -74,8 +74,9 @@ ARRAYS = OWN + 12
 @compiled
 def _send(s: Array, commands: Array, times: Array, t: float, command: float) -> None:
     waiting = int(s[WAITING])
-    commands[waiting], times[waiting] = command, t + s[DELAY]
-    s[WAITING] = waiting + 1
+    if waiting < commands.shape[0]:  # when nobody measures any more the last forces go nowhere
+        commands[waiting], times[waiting] = command, t + s[DELAY]
+        s[WAITING] = waiting + 1
 
 
 @compiled
