@@ -10,7 +10,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 sys.path.insert(0, str(Path(__file__).parent / "src"))
 
-from zwidth.native.build import BUILT, build, compiler  # noqa: E402
+from zwidth.native.build import BUILT, build, compiler
 
 
 class StepFunctions(BuildHookInterface[Any]):

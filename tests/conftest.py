@@ -11,6 +11,8 @@ import pytest
 from hypothesis import HealthCheck, settings
 from real_time import undisturbed
 
+from zwidth.native.build import library
+
 # no window, and no settings of one's own for pictures: before anything imports matplotlib
 os.environ["MPLBACKEND"] = "agg"
 os.environ["MATPLOTLIBRC"] = str(Path(__file__).parent / "matplotlibrc")
@@ -59,6 +61,7 @@ def _messages_in_one_line() -> Iterator[None]:
 def pytest_configure(config: pytest.Config) -> None:
     """Marks of these tests."""
     config.addinivalue_line("markers", "real_time: made again if the machine stood still, see real_time.py")
+    library()  # where a source has changed it is built now, before other processes ask for it
 
 
 @pytest.hookimpl(tryfirst=True)

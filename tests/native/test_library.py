@@ -14,6 +14,7 @@ from zwidth.loop.free import free_response
 from zwidth.loop.kernel import packed_plant
 from zwidth.loop.ledger import book
 from zwidth.native import build
+from zwidth.servo.cycle import put_at_rest
 
 MOTIONS = """
 import sys, hashlib
@@ -25,7 +26,8 @@ import zwidth as zw
 from zwidth.bench.laws import standard_laws
 
 device = zw.Device(
-    mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, rate=1000, delay="0.3 ms", force_limit=9
+    mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, rate=1000, delay="0.3 ms",
+    force_limit=9,
 )
 for name, law in standard_laws(device, zw.Wall(600)).items():
     for hand in (zw.operators.Dowel(), zw.operators.Finger()):
@@ -53,11 +55,21 @@ def test_a_call_gives_back_what_the_annotations_say() -> None:
 
 
 @pytest.mark.skipif(build.library() is None, reason="no library of step functions here")
-@pytest.mark.parametrize("given", [np.zeros(9, int), np.zeros((9, 2))[:, 0], np.zeros(9, np.float32)])
-def test_another_array_is_refused(given: object) -> None:
-    """Silently copied it would be the copy that is changed."""
-    with pytest.raises(TypeError, match="contiguous arrays of <f8"):
+@pytest.mark.parametrize("given", [np.zeros(9, int), np.zeros(9, np.float32)])
+def test_an_array_of_other_numbers_is_refused(given: object) -> None:
+    """Copied silently it would be the copy that is changed."""
+    with pytest.raises(TypeError, match="takes an array of <f8 here"):
         packed_plant(given)
+
+
+def test_a_column_is_taken_and_changed_as_it_is() -> None:
+    """Of a table only rows lie one number behind the other."""
+    table = np.arange(27.0).reshape(9, 3)
+    assert packed_plant(table[:, 1]) == packed_plant(table[:, 1].copy())
+    lines = np.ones((2, 2, 9))
+    put_at_rest(table[:, 1], lines, 4.0)
+    assert (table[:, 1] == 5.0).all()
+    assert (table[:, 0] == np.arange(0.0, 27.0, 3.0)).all()
 
 
 @pytest.mark.skipif(build.library() is None, reason="no library of step functions here")
@@ -75,13 +87,17 @@ def test_without_compiler_and_library_it_is_told(monkeypatch: pytest.MonkeyPatch
 
 def test_a_compiler_that_fails_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(build, "BUILT", tmp_path / "steps.so")
-    monkeypatch.setattr(build, "compiler", lambda: [sys.executable, "-c", "raise SystemExit('no such thing')"])
+    monkeypatch.setattr(
+        build, "compiler", lambda: [sys.executable, "-c", "raise SystemExit('no such thing')"]
+    )
     with pytest.warns(RuntimeWarning, match="no such thing"):
         assert build.library.__wrapped__() is None
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.skipif(build.library() is None or not build._is_checkout(), reason="a checkout with a compiler")
+@pytest.mark.skipif(
+    build.compiler() is None or not build._is_checkout(), reason="no checkout, or no C compiler"
+)
 def test_a_checkout_builds_anew_what_has_changed(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -54,7 +54,8 @@ def step(x: float, y: float, n: int, a: Array) -> float:
     rest = a[1:].copy()
     rest[FIRST], rest[SECOND] = rest[SECOND], rest[FIRST]
     a[-1] = inner(rest, pair, steep=0.25)
-    return total + a[-1] + floor(x) + ceil(y) + round(y) + np.floor(x / 3.0) + x % 0.7 + y // 0.3 + sqrt(abs(x))
+    whole = floor(x) + ceil(y) + round(y)
+    return total + a[-1] + whole + np.floor(x / 3.0) + x % 0.7 + y // 0.3 + sqrt(abs(x))
 
 
 @compiled
@@ -121,7 +122,10 @@ def test_c_has_the_bits_of_python(package: Path) -> None:
         ("def step(x: str) -> float: return 1.0", "cannot take str"),
         ("def step(x: float) -> float: return math.gamma(x)", "math.gamma"),
         ("def step(x: float) -> float:\n    y = [x]\n    return y[0]", "[x]"),
-        ("def step(x: float) -> float:\n    x = 1\n    for y in (1, 2):\n        break\n    return x", "to its end"),
+        (
+            "def step(x: float) -> float:\n    x = 1\n    for y in (1, 2):\n        break\n    return x",
+            "to its end",
+        ),
         ("def step(x: float) -> int: return x", "where"),
         ("def step(x: float, *y: float) -> float: return x", "one by one"),
         ("def step(a: Array) -> float:\n    y = a\n    y = 1.0\n    return y", "y would be"),

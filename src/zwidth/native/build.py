@@ -14,7 +14,6 @@ import shlex
 import shutil
 import subprocess
 import sys
-import tempfile
 import warnings
 from collections.abc import Iterable
 from functools import cache
@@ -62,8 +61,8 @@ def library() -> Library | None:
 
 def _tell(why: str) -> None:
     warnings.warn(
-        f"the step functions run as plain Python, a hundred times as slow: {why}; with a C compiler (gcc, clang, "
-        "or the package ziglang) `pip install` builds them",
+        f"the step functions run as plain Python, a hundred times as slow: {why}; with a C compiler (gcc, "
+        "clang, or the package ziglang) `pip install` builds them",
         RuntimeWarning,
         stacklevel=4,
     )
@@ -86,7 +85,7 @@ def _is_old(table: dict[str, Any]) -> bool:
     try:
         if all(path.stat().st_mtime_ns < made for path in sources):
             return False
-        return digest(sources) != table["digest"]
+        return digest(sources) != str(table["digest"])
     except FileNotFoundError:
         return True
 
@@ -125,16 +124,13 @@ def build() -> Library:
     if command is None:
         raise FileNotFoundError("there is no C compiler")
     text = Translation(PACKAGE).text()
-    with tempfile.TemporaryDirectory() as folder:
-        source = Path(folder) / "steps.c"
-        source.write_text(text, encoding="utf-8")
-        made = BUILT.with_name(f"{BUILT.name}.{os.getpid()}")
-        run = [*command, *FLAGS, "-o", str(made), str(source), "-lm"]
-        done = subprocess.run(run, capture_output=True, text=True, encoding="utf-8", check=False)
-        if done.returncode:
-            raise OSError(f"{shlex.join(run[:2])} failed: {done.stderr.strip()[-2000:]}")
-        found = _opened(made)  # under its own name: another of the same name is not opened anew
-        os.replace(made, BUILT)
+    made = BUILT.with_name(f"{BUILT.name}.{os.getpid()}")
+    run = [*command, *FLAGS, "-o", str(made), "-x", "c", "-", "-lm"]
+    done = subprocess.run(run, input=text, capture_output=True, text=True, encoding="utf-8", check=False)
+    if done.returncode:
+        raise OSError(f"{shlex.join(command)} failed: {done.stderr.strip()[-2000:]}")
+    found = _opened(made)  # under its own name: another of the same name is not opened anew
+    os.replace(made, BUILT)
     return found
 
 

@@ -192,8 +192,12 @@ class Function:
         parts = node.iter.elts if isinstance(node.iter, ast.Tuple) else None
         if parts is None and isinstance(known, tuple | range):
             parts = [ast.copy_location(ast.Constant(v), node.iter) for v in known]
-        if parts is None or any(isinstance(n, ast.Break | ast.Continue) for s in node.body for n in ast.walk(s)):
-            raise self.module.outside(node, "a loop goes over a range, or over what is written out, to its end")
+        if parts is None or any(
+            isinstance(n, ast.Break | ast.Continue) for s in node.body for n in ast.walk(s)
+        ):
+            raise self.module.outside(
+                node, "a loop goes over a range, or over what is written out, to its end"
+            )
         for part in parts:
             self._say("{")
             self._assign(node.target, self.read(part), part)
@@ -261,7 +265,11 @@ class Function:
             return f"{value.c}.value"
         if isinstance(to, Maybe) and isinstance(value.type, Number):
             return f"(zw_maybe){{{value.c}, 1}}"
-        if isinstance(value.type, Several) and isinstance(to, Several) and len(to.items) == len(value.type.items):
+        if (
+            isinstance(value.type, Several)
+            and isinstance(to, Several)
+            and len(to.items) == len(value.type.items)
+        ):
             if value.type.items == to.items:
                 return value.c
             name = self._fresh()
@@ -365,7 +373,10 @@ class Function:
             left = right
             if len(node.ops) > 1 and any(isinstance(n, ast.Call) for n in ast.walk(right)):
                 raise self.module.outside(node, "what stands between two comparisons is no call")
-        return Read(f"((int64_t){' && '.join(parts)})" if len(parts) == 1 else f"((int64_t)({' && '.join(parts)}))", TRUTH)
+        return Read(
+            f"((int64_t){' && '.join(parts)})" if len(parts) == 1 else f"((int64_t)({' && '.join(parts)}))",
+            TRUTH,
+        )
 
     def _boolop(self, node: ast.BoolOp) -> Read:
         for value in node.values:
@@ -451,7 +462,10 @@ class Function:
 
     def _call(self, node: ast.Call) -> Read:
         name = ast.unparse(node.func)
-        if name in ("min", "max", "abs", "int", "float", "bool", "len", "round") and self.module.meaning(name) is None:
+        if (
+            name in ("min", "max", "abs", "int", "float", "bool", "len", "round")
+            and self.module.meaning(name) is None
+        ):
             return self._builtin(name, node)
         if isinstance(node.func, ast.Attribute) and name.startswith(("np.", "math.")):
             return self._of_library(node.func.attr, node)
@@ -479,13 +493,21 @@ class Function:
         if isinstance(node, ast.Name):
             asked = self.types.get(node.id)
             return asked if asked is not None else self.module.meaning(node.id)
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id not in self.types:
+        if (
+            isinstance(node, ast.Attribute)
+            and isinstance(node.value, ast.Name)
+            and node.value.id not in self.types
+        ):
             owner = self.module.meaning(node.value.id)
             return owner.meaning(node.attr) if isinstance(owner, Module) else None
         return None
 
     def _given(
-        self, node: ast.Call, takes: tuple[tuple[str, Type], ...], defaults: dict[str, ast.expr], owner: Module
+        self,
+        node: ast.Call,
+        takes: tuple[tuple[str, Type], ...],
+        defaults: dict[str, ast.expr],
+        owner: Module,
     ) -> list[str]:
         told: dict[str, tuple[Read, ast.expr]] = {}
         flat: list[tuple[Read, ast.expr]] = []
@@ -502,7 +524,9 @@ class Function:
             if name not in told:
                 told[name] = (literal(owner.value(default)), node)
         if len(flat) > len(takes) or set(told) != {name for name, _ in takes}:
-            raise self.module.outside(node, f"{ast.unparse(node.func)} takes {', '.join(n for n, _ in takes)}")
+            raise self.module.outside(
+                node, f"{ast.unparse(node.func)} takes {', '.join(n for n, _ in takes)}"
+            )
         return [self._argument(*told[name], of) for name, of in takes]
 
     def _argument(self, value: Read, node: ast.expr, of: Type) -> str:
@@ -539,7 +563,11 @@ class Function:
             return Read(f"((int64_t)({_ASKED[name]}({self.read(node.args[0]).c}) != 0))", TRUTH)
         if name in _LIBRARY:
             text = f"{_LIBRARY[name]}({self.read(node.args[0]).c})"
-            return Read(f"((int64_t){text})", WHOLE) if from_math and name in ("floor", "ceil") else Read(text, REAL)
+            return (
+                Read(f"((int64_t){text})", WHOLE)
+                if from_math and name in ("floor", "ceil")
+                else Read(text, REAL)
+            )
         if name == "radians":
             return Read(f"({self.read(node.args[0]).c} * {literal(0.017453292519943295).c})", REAL)
         if name in ("empty", "zeros", "full", "arange", "empty_like"):
@@ -554,7 +582,7 @@ class Function:
         kind = "real"
         if more:
             kind = ITEMS[ast.unparse(more[0]).removeprefix("np.")][0]
-        elif filling is not None and self.read(filling).type == WHOLE or name == "arange":
+        elif (filling is not None and self.read(filling).type == WHOLE) or name == "arange":
             kind = "whole"
         shape = size.elts if isinstance(size, ast.Tuple) else [size]
         self.owned += 1

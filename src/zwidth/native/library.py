@@ -39,7 +39,7 @@ def _caller(entry: Any, takes: list[Any], returns: Any) -> Callable[..., Any]:
     codes, given = "", list[str]()
     space: dict[str, Any] = {
         "pack": struct.pack, "unpack_from": struct.unpack_from, "entry": entry, "array": _array,
-        "address": _address,
+        "address": _address, "Spread": _Spread, "gathered": _gathered,
     }  # fmt: skip
     for name, of in takes:
         more, text = _row(of, name)
@@ -50,7 +50,10 @@ def _caller(entry: Any, takes: list[Any], returns: Any) -> Callable[..., Any]:
     room = f"{codes}{8 * (size - len(codes))}x"
     lines = [
         f"def call({', '.join(name for name, _ in takes)}):",
-        f"    row = bytearray(pack({', '.join([repr(room), *given])}))",
+        "    try:",
+        f"        row = bytearray(pack({', '.join([repr(room), *given])}))",
+        "    except Spread:",
+        f"        return gathered(call, ({''.join(f'{name}, ' for name, _ in takes)}))",
         "    entry(Row.from_buffer(row))",
     ]
     if back:
@@ -94,13 +97,29 @@ def _back(of: Any, space: dict[str, Any]) -> tuple[str, str]:
     return ("", "") if of == "n" else (codes, text) if (text := built(of)) else ("", "")
 
 
+class _Spread(Exception):
+    """An array whose numbers do not lie one behind the other."""
+
+
 def _array(given: Any, code: str) -> tuple[int, int, int, int, int]:
     """Address and shape."""
     told = given.__array_interface__
-    if told["typestr"] != code or told["strides"] is not None:
-        raise TypeError(f"a step function takes contiguous arrays of {code}, not {given.dtype} {told['strides']}")
+    if told["typestr"] != code:
+        raise TypeError(f"a step function takes an array of {code} here, not of {told['typestr']}")
+    if told["strides"] is not None:
+        raise _Spread
     words = (told["data"][0], *told["shape"], 1, 1, 1)
-    return words[:5]  # type: ignore[return-value]
+    return words[:5]
+
+
+def _gathered(call: Callable[..., Any], given: tuple[Any, ...]) -> Any:
+    """The same with copies of such arrays, which are written back."""
+    close = [np.ascontiguousarray(g) if isinstance(g, np.ndarray) else g for g in given]
+    found = call(*close)
+    for own, copy in zip(given, close, strict=True):
+        if copy is not own and own.flags.writeable:
+            own[...] = copy
+    return found
 
 
 class _Numbers(ctypes.Structure):

@@ -40,13 +40,34 @@ class Octets(tuple[int, ...]):
     """A table of bytes."""
 
 
-_NUMPY = SimpleNamespace(
-    frombuffer=lambda octets, _: Octets(octets), uint8=None,
-    inf=math.inf, nan=math.nan, pi=math.pi, array=tuple, float64=float, int64=int, finfo=lambda _: _DOUBLE
-)
 _DOUBLE = SimpleNamespace(eps=2.0**-52, tiny=2.0**-1022, max=(2.0 - 2.0**-52) * 2.0**1023)
+_NUMPY = SimpleNamespace(
+    frombuffer=lambda octets, _: Octets(octets),
+    uint8=None,
+    inf=math.inf,
+    nan=math.nan,
+    pi=math.pi,
+    array=tuple,
+    float64=float,
+    int64=int,
+    finfo=lambda _: _DOUBLE,
+)
 _LIBRARIES: dict[str, Any] = {"math": math, "numpy": _NUMPY}
-_HARMLESS = ("range", "tuple", "len", "sum", "min", "max", "abs", "float", "int", "zip", "enumerate", "sorted", "ord")
+_HARMLESS = (
+    "range",
+    "tuple",
+    "len",
+    "sum",
+    "min",
+    "max",
+    "abs",
+    "float",
+    "int",
+    "zip",
+    "enumerate",
+    "sorted",
+    "ord",
+)
 
 
 class Package:

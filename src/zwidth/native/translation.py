@@ -49,10 +49,9 @@ class Translation:
         heads = [f"{head_of(s)};" for s in self._signatures.values()]
         own_names = {self.signature(of).name for of in own}
         entries = [_entry(s) for s in self._signatures.values() if s.name in own_names]
-        return "\n".join(
-            [PRELUDE.read_text(encoding="utf-8"), *self._types(), *self._written_tables(), *heads, self._by_hand]
-            + [*bodies, *entries, self._told(), ""]
-        )
+        prelude = PRELUDE.read_text(encoding="utf-8")
+        before = [prelude, *self._types(), *self._written_tables(), *heads, self._by_hand]
+        return "\n".join([*before, *bodies, *entries, self._told(), ""])
 
     def _told(self) -> str:
         """What each function takes and returns, and of which sources all this is made."""
@@ -121,7 +120,7 @@ def _item(values: tuple[Any, ...]) -> str:
 
 
 def _entry(signature: Signature) -> str:
-    """How it is reached from outside: numbers and arrays in a row of words, and what it returns there, too."""
+    """How it is reached from outside: numbers and arrays in a row of words; what it returns, too."""
     at, given = 0, []
     for _, of in signature.takes:
         text, at = _taken(of, at)

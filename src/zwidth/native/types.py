@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass, field
-from typing import Any, Union
+from typing import Any, TypeAlias
 
 from zwidth.native.names import Defined, Expression, Module
 
@@ -82,7 +82,7 @@ class Asked:
         return "zw_" + _spelled(self)
 
 
-Type = Union[Number, Nothing, Maybe, Cells, Several, Asked]
+Type: TypeAlias = "Number | Nothing | Maybe | Cells | Several | Asked"
 
 
 def _spelled(of: Type) -> str:

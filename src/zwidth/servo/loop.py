@@ -18,7 +18,6 @@ from zwidth.compiled import Array, compiled
 from zwidth.servo.connection import (
     CLOSED,
     FORCE,
-    GOOD,
     INDEX,
     READING,
     REFUSED,
@@ -158,7 +157,7 @@ def _run(
 def run_compiled(connection: CompiledConnection, opened: Opened, last: int, shared: Shared) -> None:
     """Run the loop over a compiled connection, up to sample `last` or, below 0, until it ends."""
     kind = type(connection)
-    _run(kind.measure, kind.apply, last, *opened, *shared)
+    _run(kind.measure, kind.apply, last, *opened, *shared)  # type: ignore[arg-type]  # arrays of three kinds
 
 
 def run_library(connection: LibraryConnection, opened: Opened, last: int, shared: Shared) -> None:

@@ -61,7 +61,7 @@ def read_some(descriptor: int, into: Bytes, start: int) -> int:
     if room <= 0:
         return 0
     try:
-        count = os.readv(descriptor, [memoryview(into)[start:]])
+        count = os.readv(descriptor, [into[start:].data])
     except OSError:
         return -1
     return count if count > 0 else -2
@@ -71,7 +71,7 @@ def read_some(descriptor: int, into: Bytes, start: int) -> int:
 def write_all(descriptor: int, what: Bytes, count: int) -> bool:
     """Give the first bytes to the system, at once; False if it did not take them all."""
     try:
-        return os.write(descriptor, memoryview(what)[:count]) == count
+        return os.write(descriptor, what[:count].data) == count
     except OSError:
         return False
 

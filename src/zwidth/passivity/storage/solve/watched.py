@@ -124,7 +124,9 @@ def best_cycle(
 
 
 @compiled
-def settled_gain(law: RelaxingForce, counts: Integers, positions: Integers, delay: int, costs: Integers) -> float:
+def settled_gain(
+    law: RelaxingForce, counts: Integers, positions: Integers, delay: int, costs: Integers
+) -> float:
     """What a cycle gains in each round when the law has settled to it, in energy units; 0 where too fast."""
     size = counts.size
     zero, one = 0.0, 1.0  # one round takes the average a to zero + (one − zero) a
