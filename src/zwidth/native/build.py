@@ -38,11 +38,6 @@ class Library(NamedTuple):
     table: dict[str, Any]
 
 
-def c_name(module: str, function: str) -> str:
-    """What a step function is called in C."""
-    return f"{module.removeprefix('zwidth.').replace('.', '_')}_{function}"
-
-
 @cache
 def library() -> Library | None:
     """The library; None where it cannot be had, which is told once."""
@@ -52,14 +47,14 @@ def library() -> Library | None:
         try:
             found = build()
         except OSError as fault:
-            _tell(str(fault))
+            _warn(str(fault))
             return None
     if found is None:
-        _tell(f"{BUILT.name} is not there")
+        _warn(f"{BUILT.name} is not there")
     return found
 
 
-def _tell(why: str) -> None:
+def _warn(why: str) -> None:
     warnings.warn(
         f"the step functions run as plain Python, a hundred times as slow: {why}; with a C compiler (gcc, "
         "clang, or the package ziglang) `pip install` builds them",
@@ -123,7 +118,12 @@ def build() -> Library:
     command = compiler()
     if command is None:
         raise FileNotFoundError("there is no C compiler")
-    text = Translation(PACKAGE).text()
+    translation = Translation(PACKAGE)
+    text = translation.text()
+    sources = translation.sources()
+    table = {**translation.table(), "digest": digest(sources)}
+    table["sources"] = [os.path.relpath(path, PACKAGE.parent) for path in sources]
+    text += f"ZW_SEEN const char zw_told[] = {json.dumps(json.dumps(table))};\n"
     made = BUILT.with_name(f"{BUILT.name}.{os.getpid()}")
     run = [*command, *FLAGS, "-o", str(made), "-x", "c", "-", "-lm"]
     done = subprocess.run(run, input=text, capture_output=True, text=True, encoding="utf-8", check=False)

@@ -53,7 +53,7 @@ class Around(Protocol):
 
     def several(self, of: Several) -> Several: ...
 
-    def table(self, values: tuple[Any, ...]) -> Read: ...
+    def constants(self, values: tuple[Any, ...]) -> Read: ...
 
 
 _OF_C = ("ceil", "sqrt", "sin", "cos", "exp", "expm1", "log1p", "log2")
@@ -312,7 +312,7 @@ class Function:
             return Read(to.name, Asked(tuple(of for _, of in to.takes), to.returns))
         known = self.module.value(node)
         if isinstance(known, tuple):
-            return self.around.table(known)
+            return self.around.constants(known)
         if self.is_last:
             raise self.module.outside(node, f"{node.id} is not known")
         return Read(f"{node.id}_", None)
@@ -531,7 +531,7 @@ class Function:
 
     def _argument(self, value: Read, node: ast.expr, of: Type) -> str:
         known = self.module.value(node, self.types) if isinstance(of, Cells) else None
-        return self.around.table(known).c if isinstance(known, tuple) else self.cast(value, of, node)
+        return self.around.constants(known).c if isinstance(known, tuple) else self.cast(value, of, node)
 
     def _builtin(self, name: str, node: ast.Call) -> Read:
         given = [self.read(a) for a in node.args]

@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from zwidth.native.build import c_name, library
+from zwidth.native.build import library
+from zwidth.native.names import c_name
 
 _CODES = {"float64": "<f8", "int64": "<i8", "uint8": "|u1"}
 _SCALARS = {"f": "d", "i": "q", "b": "q"}

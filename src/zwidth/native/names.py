@@ -219,3 +219,8 @@ class _Attributes:
             return self._known[name]
         except NameError:
             raise AttributeError(name) from None
+
+
+def c_name(module: str, function: str) -> str:
+    """What a step function is called in C."""
+    return f"{module.removeprefix('zwidth.').replace('.', '_')}_{function}"

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import json
-import os
 from pathlib import Path
 from typing import Any
 
-from zwidth.native.build import c_name, digest
 from zwidth.native.function import Function, Read, Signature, head_of, literal, signature_of
-from zwidth.native.names import Defined, Octets, OutsideError, Package
+from zwidth.native.names import Defined, Octets, OutsideError, Package, c_name
 from zwidth.native.types import ITEMS, REAL, Asked, Cells, Maybe, Nothing, Number, Several, Type, told
 
 PRELUDE = Path(__file__).with_name("prelude.c")
@@ -51,21 +48,19 @@ class Translation:
         entries = [_entry(s) for s in self._signatures.values() if s.name in own_names]
         prelude = PRELUDE.read_text(encoding="utf-8")
         before = [prelude, *self._types(), *self._written_tables(), *heads, self._by_hand]
-        return "\n".join([*before, *bodies, *entries, self._told(), ""])
+        return "\n".join([*before, *bodies, *entries, ""])
 
-    def _told(self) -> str:
-        """What each function takes and returns, and of which sources all this is made."""
-        table: dict[str, Any] = {
+    def table(self) -> dict[str, Any]:
+        """What each function takes and returns; after `text`."""
+        return {
             s.name: {"takes": [(name, told(of)) for name, of in s.takes], "returns": told(s.returns)}
             for s in self._signatures.values()
         }
-        sources = [*self.package.read(), *sorted(PRELUDE.parent.glob("*"))]
-        sources = [path for path in sources if path.suffix in (".py", ".c")]
-        root = self.package.root.parent
-        table["sources"] = [os.path.relpath(path, root) for path in sources]
-        table["digest"] = digest(sources)
-        text = json.dumps(json.dumps(table, separators=(",", ":")))
-        return f"ZW_SEEN const char zw_told[] = {text};"
+
+    def sources(self) -> list[Path]:
+        """The files that the text was made of, those of the translator among them; after `text`."""
+        own = (path for path in sorted(PRELUDE.parent.glob("*")) if path.suffix in (".py", ".c"))
+        return [*self.package.read(), *own]
 
     def signature(self, of: Defined) -> Signature:
         key = of.module.name, of.node.name
@@ -88,7 +83,7 @@ class Translation:
         if isinstance(of, Asked):
             self._asked.setdefault(of.c, of)
 
-    def table(self, values: tuple[Any, ...]) -> Read:
+    def constants(self, values: tuple[Any, ...]) -> Read:
         item = _item(values)
         name = self._tables.setdefault((item, *values), f"zw_table{len(self._tables)}")
         of = Cells(item)
