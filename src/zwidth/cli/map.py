@@ -221,7 +221,7 @@ def _row(name: str, found: xr.Dataset) -> tuple[str, str, str]:
     count = int(found[name].values.sum())
     if not count and name in _BROKEN and found.attrs["not_covered"]:
         return _region(name, found), "not covered", ""
-    most = float(found['largest_stiffness'].sel(region=name))
+    most = float(found["largest_stiffness"].sel(region=name))
     largest = f"{outward_decimal(most, False, 6):.6g}" if count else "none"
     return _region(name, found), largest, f"{count / found['passive'].size:.1%}"
 

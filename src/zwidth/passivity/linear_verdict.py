@@ -11,11 +11,12 @@ from typing import Any
 
 from zwidth.device.actuator import ActuatorCheck, actuator_checks
 from zwidth.passivity import parameter_limits
-from zwidth.passivity.advice import Advice, Asked, advise
+from zwidth.passivity.advice import Advice
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.corners import Loop
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.formulas.stability_plane import admissible_speed
+from zwidth.passivity.loop_advice import Asked, advise
 from zwidth.passivity.scope import Contact
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
