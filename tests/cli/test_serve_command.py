@@ -73,6 +73,8 @@ def test_sense_is_not_rounded(capsys: pytest.CaptureFixture[str]) -> None:
         (["--safety.bad-answers", "1.5"], "number of samples"),
         (["--watch", "wall"], "terminal, browser, foxglove"),
         (["--watch", "terminal", "--watch-port", "1"], "--watch-port goes with"),
+        (["--watch", "browser", "--watch-origin", "https://app.example"], "goes with --watch foxglove"),
+        (["--watch", "foxglove", "--watch-origin", "null"], "is no origin of pages"),
         (["--operator", "fingr"], "did you mean"),
         (["-o", "session.csv"], "ends in .mcap"),
         (["-o", "session.parquet"], "zwidth replay run.mcap -o run.nc"),

@@ -326,7 +326,7 @@ def test_a_wall_in_pose_is_reported_and_drawn(run: Run, tmp_path: Path) -> None:
     words = " ".join(out.split())
     assert status == 1
     assert "in the worst direction of the joints" in words
-    assert re.search("stiffness 0.9[0-9]* times everywhere", words)
+    assert re.search("stiffness 0.9[0-9]* times at every point of the map", words)
     assert "its stiffness times 0.9" in words
     assert (tmp_path / "map.png").stat().st_size > 10_000
 

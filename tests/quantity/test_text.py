@@ -6,14 +6,18 @@ from math import inf
 
 import pytest
 
+from zwidth.quantity.spoken import answers_in
 from zwidth.quantity.text import (
     alike,
+    enough,
     in_a_table,
     in_unit,
     in_words,
     quantity_unit,
     readable,
     shown,
+    shown_at_least,
+    shown_at_most,
     unit_text,
 )
 
@@ -42,10 +46,10 @@ def test_a_value_with_its_unit(value: float | None, unit: str, text: str) -> Non
 
 
 def test_a_value_in_a_unit_that_is_kept() -> None:
-    """Six digits; a tiny one has four and a prefix, and what is no number is a word."""
+    """Six digits; a tiny one has a prefix, and what is no number is a word."""
     assert in_unit(0.0123456789, "N*s/m") == "0.0123457 N·s/m"
-    assert in_unit(-2.39684e-05, "N*m") == "-23.97 µN·m"
-    assert in_unit(7.123456e-05, "N*m*s/rad") == "71.23 µN·m·s/rad"
+    assert in_unit(-2.39684e-05, "N*m") == "-23.9684 µN·m"
+    assert in_unit(7.123456e-05, "N*m*s/rad") == "71.2346 µN·m·s/rad"
     assert (in_unit(None, "N/m"), in_unit(inf, "N/m")) == ("none", "any")
 
 
@@ -93,3 +97,13 @@ def test_values_of_one_line_have_one_prefix() -> None:
     assert alike("N*m", (0.0027471, 0.05), (4, 4)) == ("2.747 mN·m", "50 mN·m")
     assert alike("N*m*s/rad", (2.0, 3.7e-5), (4, 4)) == ("2 N·m·s/rad", "37 µN·m·s/rad")
     assert alike("m", (0.3, 0.0001), (4, 4)) == ("0.3 m", "100 µm")
+
+
+def test_a_limit_is_rounded_to_the_side_on_which_it_holds() -> None:
+    """Also a tiny one with a prefix, and one in degrees."""
+    assert shown_at_most(416.96, "N/m") == "416.9 N/m"
+    assert shown_at_least(416.92, "N/m") == "417 N/m"
+    assert enough(7.12345612e-05, "N*m*s/rad") == "71.2346 µN·m·s/rad"
+    with answers_in("deg"):
+        assert shown_at_most(1.0, "N*m/rad") == "0.01745 N·m/deg"
+        assert shown_at_least(1.0, "N*m/rad") == "0.01746 N·m/deg"

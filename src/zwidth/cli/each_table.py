@@ -18,7 +18,7 @@ from zwidth.passivity.result import Documented
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import at_most, in_words, outward_decimal, shown, unit_text
+from zwidth.quantity.text import at_most, in_words, outward_decimal, shown_at_most, unit_text
 from zwidth.quantity.units import parse_number
 from zwidth.showing import Part, Table
 from zwidth.specification.table import plain, quoted
@@ -168,7 +168,7 @@ class EachDevice(Documented):
 
     def _in_words(self, stiffness: float) -> str:
         unit = GLOSSARY["stiffness"].unit_for(self.motion)
-        return shown(at_most(stiffness, unit, 4), unit)
+        return shown_at_most(stiffness, unit)
 
 
 def _short(number: float | None) -> str:

@@ -18,7 +18,7 @@ from zwidth.identification.device.table import BOTH_SIDES, rows, source_name
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.text import at_most, shown
+from zwidth.quantity.text import shown, shown_at_most
 
 _SHOWN = 0.95
 """Confidence of the intervals in the table."""
@@ -72,7 +72,7 @@ def _claim(found: Result) -> str:
     turn = found.identified.motion == "rotary"
     seen, unit = shown(found.identified.speed, "rad/s" if turn else "m/s", 3), "N*m/rad" if turn else "N/m"
     return (
-        f"Spring walls up to {shown(at_most(stiffest, unit, 4), unit)} are passive on this device, "
+        f"Spring walls up to {shown_at_most(stiffest, unit)} are passive on this device, "
         f"{confidence}, as far as its friction was seen: up to {seen}."
     )
 

@@ -25,7 +25,7 @@ from zwidth.cli.page import (
 )
 from zwidth.passivity.bracket import Bracket
 from zwidth.passivity.in_short import in_short
-from zwidth.quantity.text import at_least, at_most, in_words, shown
+from zwidth.quantity.text import in_words, shown
 from zwidth.specification.read import Specification
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def _all(out: Console, bracket: Bracket, loop: Specification) -> None:
     out.print(below(grid(_loop(bracket, loop))))
     out.print(below(_values(bracket)))
     if bracket.witness is not None:
-        at = _shown(bracket, bracket.proved_active)
+        _, at = _ends(bracket)
         section(out, f"the motion, at {at}", motion_lines(bracket.witness, fancy))
     section(out, "assumes", items(bracket.assumptions, "dim"))
 
@@ -64,7 +64,7 @@ def _of_every_hand(bracket: Bracket) -> list[Row]:
     """The two values of every hand, where the bracket is about bounded ones."""
     if bracket.hand == "every hand":
         return []
-    passive, active = (_shown(bracket, side) for side in bracket.every_hand)
+    passive, active = _told(bracket, bracket.every_hand)
     return [("every hand", f"proved passive: {passive}; active: {active}")]
 
 
@@ -77,11 +77,7 @@ def _headline(bracket: Bracket) -> Padding:
 
 
 def _claim(bracket: Bracket) -> str:
-    name, passive, active = (
-        _name(bracket),
-        _shown(bracket, bracket.proved_passive),
-        _shown(bracket, bracket.proved_active),
-    )
+    name, (passive, active) = _name(bracket), _ends(bracket)
     if bracket.proved_passive is None and bracket.proved_active is None:
         return f"Neither a proof nor a motion was found for any {name} that was tried."
     if bracket.proved_active is None:
@@ -114,25 +110,27 @@ def _values(bracket: Bracket) -> Table:
     table = Table(box=None, padding=(0, 3, 0, 0), header_style="dim", pad_edge=False)
     table.add_column(_name(bracket), style="dim")
     bounded = bracket.hand != "every hand"
-    columns = [("this hand" if bounded else "every hand", (bracket.proved_passive, bracket.proved_active))]
+    columns = [("this hand" if bounded else "every hand", _ends(bracket))]
     if bounded:
-        columns.append(("every hand", bracket.every_hand))
+        columns.append(("every hand", _told(bracket, bracket.every_hand)))
     for title, _ in columns:
         table.add_column(title)
     for row, side in enumerate(("proved passive", "active")):
-        table.add_row(side, *(_shown(bracket, values[row]) for _, values in columns))
+        table.add_row(side, *(texts[row] for _, texts in columns))
     return table
 
 
-def _shown(bracket: Bracket, value: float | None) -> str:
-    if value is None:
-        return "none known"
-    passive, active = bracket.proved_passive, bracket.proved_active
-    if passive is not None and active is not None:
-        refuted = value in (active, bracket.every_hand[1])
-        outward = at_least if (passive > active) != refuted else at_most
-        value = outward(value, bracket.unit, _DIGITS)
-    return shown(value, bracket.unit, _DIGITS)
+def _ends(bracket: Bracket) -> tuple[str, str]:
+    return _told(bracket, (bracket.proved_passive, bracket.proved_active))
+
+
+def _told(bracket: Bracket, values: tuple[float | None, float | None]) -> tuple[str, str]:
+    """A proved and a refuted value, each rounded to its own side."""
+    proved, refuted = (
+        "none known" if value is None else shown(value, bracket.unit, _DIGITS)
+        for value in bracket.outward(values, _DIGITS)
+    )
+    return proved, refuted
 
 
 def _name(bracket: Bracket) -> str:

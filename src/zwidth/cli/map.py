@@ -14,7 +14,7 @@ from zwidth.cli.output import print_json, print_message, print_report, say_writt
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken_data
-from zwidth.quantity.text import shown, told_quantity, unit_text
+from zwidth.quantity.text import outward_decimal, shown, told_quantity, unit_text
 from zwidth.quantity.units import parse_number
 from zwidth.showing import Part
 from zwidth.showing import Table as ShownTable
@@ -219,7 +219,8 @@ def _row(name: str, found: xr.Dataset) -> tuple[str, str, str]:
     count = int(found[name].values.sum())
     if not count and name in _BROKEN and found.attrs["not_covered"]:
         return _region(name, found), "not covered", ""
-    largest = f"{float(found['largest_stiffness'].sel(region=name)):.6g}" if count else "none"
+    most = float(found["largest_stiffness"].sel(region=name))
+    largest = f"{outward_decimal(most, False, 6):.6g}" if count else "none"
     return _region(name, found), largest, f"{count / found['passive'].size:.1%}"
 
 

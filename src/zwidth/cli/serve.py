@@ -44,11 +44,6 @@ OF_A_PAIR = (*PAIR_TABLES, "follower_connection", "follower_operator")
 
 FACES = ("terminal", "browser", "foxglove")
 
-_READERS = (
-    "\nuntil this ends, any web page that is open in a browser here can read position, force and energy there"
-)
-"""Foxglove's SDK has no way to ask where a reader comes from."""
-
 FAULT = 5
 """Exit status where the force ended by itself."""
 
@@ -78,6 +73,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help=f"draw it while it runs: {', '.join(FACES)}; may be given for each",
     )
     run.add_argument("--watch-port", metavar="N", action=Once, help="port of browser or foxglove")
+    run.add_argument(
+        "--watch-origin",
+        metavar="URL",
+        action=Once,
+        help="whose pages may read foxglove, too",
+    )
     run.add_argument(
         "--commands",
         action="store_true",
@@ -179,30 +180,41 @@ def _faces(arguments: argparse.Namespace) -> list[Callable[[Servo], Callable[[],
         raise InputError(f"--watch is one of {', '.join(FACES)}, got {unknown[0]!r}")
     if len(set(wanted)) < len(wanted):
         raise InputError("--watch names a face twice")
-    port = _port(arguments.watch_port, wanted)
-    return [partial(begin_watching, face, port) for face in wanted]
+    port, origin = _port(arguments.watch_port, wanted), _origin(arguments.watch_origin, wanted)
+    return [partial(begin_watching, face, port, origin if face == "foxglove" else {}) for face in wanted]
 
 
-def _port(typed: str | None, wanted: list[str]) -> int | None:
+def _port(typed: str | None, wanted: list[str]) -> dict[str, Any]:
     if typed is None:
-        return None
+        return {}
     if sum(face != "terminal" for face in wanted) != 1:
         raise InputError("--watch-port goes with one of --watch browser and --watch foxglove")
     if not typed.isdecimal() or not 0 <= int(typed) < 65536:
         raise InputError(f"--watch-port is a port from 1 to 65535, or 0 for any that is free, got {typed!r}")
-    return int(typed)
+    return {"port": int(typed)}
 
 
-def begin_watching(face: str, port: int | None, servo: Servo) -> Callable[[], Any]:
+def _origin(typed: str | None, wanted: list[str]) -> dict[str, Any]:
+    if typed is None:
+        return {}
+    from zwidth.servo.live.page import checked_origin
+
+    if "foxglove" not in wanted:
+        raise InputError("--watch-origin goes with --watch foxglove")
+    return {"origin": checked_origin(typed)}
+
+
+def begin_watching(
+    face: str, port: dict[str, Any], origin: dict[str, Any], servo: Servo
+) -> Callable[[], Any]:
     """Open a face on what is served; returns what closes it."""
     from zwidth.servo import live
 
     if face == "terminal":
         return _in_terminal(servo)
-    given = {} if port is None else {"port": port}
-    page = (live.open_page if face == "browser" else live.serve_foxglove)(servo.rows, **given)
+    page = (live.open_page if face == "browser" else live.serve_foxglove)(servo.rows, **port, **origin)
     with quiet_pipe(sys.stderr):
-        print(f"live at {page.address}{_READERS if face == 'foxglove' else ''}", file=sys.stderr)
+        print(f"live at {page.address}", file=sys.stderr)
     return page.close
 
 

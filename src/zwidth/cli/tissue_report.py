@@ -14,7 +14,7 @@ from zwidth.identification.logs import Finding
 from zwidth.identification.tissue import TissueTest
 from zwidth.passivity.bracket import Bracket
 from zwidth.passivity.outcome import TOLD
-from zwidth.quantity.text import outward_decimal, shown
+from zwidth.quantity.text import shown
 
 _FEW = 4
 """Findings in a short report."""
@@ -128,17 +128,13 @@ def _wall(wall: Wall | None) -> Iterator[Row]:
 
 
 def _scale(bracket: Bracket) -> str:
-    passive, active = bracket.proved_passive, bracket.proved_active
+    passive, active = bracket.outward((bracket.proved_passive, bracket.proved_active), 4)
     if passive is None and active is None:
         return "neither a proof nor a motion was found for any scale of this tissue"
     if passive is None:
         return f"no scale is proved passive; at {active:.4g} times a hand takes energy out"
-    told = f"up to {outward_decimal(passive, False):.4g} times this tissue is proved passive"
-    return (
-        told
-        if active is None
-        else f"{told}; at {outward_decimal(active, True):.4g} times a hand takes energy out"
-    )
+    told = f"up to {passive:.4g} times this tissue is proved passive"
+    return told if active is None else f"{told}; at {active:.4g} times a hand takes energy out"
 
 
 def _assumed(test: TissueTest) -> Iterator[str]:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import islice
-from math import isfinite
+from math import inf, isfinite
 from typing import TYPE_CHECKING
 
 from zwidth.cli.workspace_arm import arm_in_words
 from zwidth.cli.workspace_joints import damping_in_words
 from zwidth.cli.workspace_wall import wall_in_words
-from zwidth.quantity.text import at_least, at_most, outward_decimal, shown
+from zwidth.quantity.text import outward_decimal, shown, shown_at_least, shown_at_most
 
 if TYPE_CHECKING:
     from zwidth.arms import ArmMotion, EncoderSteps
@@ -63,12 +63,12 @@ def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
     low, high = (shown(float(v), unit) for v in (data[kind].min(), data[kind].max()))
     yield "margin", f"{low} to {high} {where}"
     if space.largest_stiffness is None:
-        factors = f"{space.stiffness_factor:.4g} times everywhere"
-        yield "stiffness", f"{factors}, {float(data['stiffness_factor'].max()):.4g} times at the best point"
+        factors = f"{outward_decimal(space.stiffness_factor, False):.4g} times at every point of the map"
+        yield "stiffness", f"{factors}, {float(data['stiffness_factor'].max()):.4g} times at the best"
     else:
-        best = shown(float(data["largest_stiffness"].max()), "N/m")
-        everywhere = shown(space.largest_stiffness, "N/m")
-        yield "largest stiffness", f"{everywhere} everywhere, {best} at the best point"
+        best = shown_at_most(float(data["largest_stiffness"].max()), "N/m")
+        everywhere = shown_at_most(space.largest_stiffness, "N/m")
+        yield "largest stiffness", f"{everywhere} at every point of the map, {best} at the best"
     if motion is not None:
         yield "motion", _motion(motion)
     if "resolution" in data:
@@ -124,10 +124,8 @@ def _joints(space: Workspace) -> str:
 def _changes(space: Workspace) -> Iterator[tuple[str, str]]:
     if not any(space.added.to_all.enough):
         return
-    if space.largest_stiffness is None and space.stiffness_factor > 0:
-        yield "wall", f"its stiffness times {outward_decimal(space.stiffness_factor, False):.4g}, and no more"
-    elif space.largest_stiffness:
-        yield "wall", f"no stiffer than {shown(at_most(space.largest_stiffness, 'N/m', 4), 'N/m')}"
+    if 0 < space.stiffness_factor < inf:
+        yield "wall", _softer(space)
     enough, fails = space.added.least
     total, too_little = sum(enough), sum(fails)
     parts = [
@@ -145,10 +143,24 @@ def _changes(space: Workspace) -> Iterator[tuple[str, str]]:
             yield f"joint {joint + 1} alone", text
 
 
+def _softer(space: Workspace) -> str:
+    """How stiff a wall is proved, and beyond what a point of the map fails."""
+    fails, k = space.stiffness_factor, space.largest_stiffness
+    proved = space.added.stiffest(fails)
+    most = proved or fails
+    if k is None:
+        text = f"its stiffness times {outward_decimal(most, False):.4g}, and no more"
+        beyond = f"{outward_decimal(fails, True):.4g} times"
+    else:
+        text = f"no stiffer than {shown_at_most(k * most / fails, 'N/m')}"
+        beyond = shown_at_least(k, "N/m")
+    return f"{text}; more than {beyond} fails" if proved else f"{text}, by the points of the map alone"
+
+
 def _too_little(fails: float) -> str:
     """Below which less of it fails at some point of the map, where that is known."""
-    return f"; less than {shown(at_most(fails, 'N*m*s/rad', 4), 'N*m*s/rad')} fails" if fails else ""
+    return f"; less than {shown_at_most(fails, 'N*m*s/rad')} fails" if fails else ""
 
 
 def _enough(damping: float) -> str:
-    return shown(at_least(damping, "N*m*s/rad", 4), "N*m*s/rad")
+    return shown_at_least(damping, "N*m*s/rad")

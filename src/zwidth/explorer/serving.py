@@ -5,11 +5,9 @@ Every browser has a session of its own; there are so many at most, and what is s
 
 from __future__ import annotations
 
-import asyncio
 import logging
 from collections.abc import Callable
 from functools import partial
-from threading import Event, Thread
 from typing import Any
 
 from bokeh.document import Document
@@ -32,6 +30,7 @@ from zwidth.explorer.starts import first
 from zwidth.explorer.state import State, from_query
 from zwidth.explorer.working import Workers
 from zwidth.servo.live.page import HOST, Page, checked_port, guarded, origins
+from zwidth.servo.live.serving import Serving
 
 MOST_SESSIONS = 16
 """Pages that are open at once."""
@@ -80,7 +79,7 @@ class _Server:
 
     def __init__(self, state: State, port: int, address: str, token: str | None, most: int) -> None:
         try:
-            self._sockets, self._port = bind_sockets(address, port)
+            sockets, self._port = bind_sockets(address, port)
         except OSError as error:
             raise InputError(
                 f"{address} port {port} cannot be served here: {error.strerror}; give another one, or port 0 "
@@ -93,39 +92,12 @@ class _Server:
         self.address = f"http://{shown}:{self._port}/{secret}"
         self._open = 0
         self._workers = Workers()
-        self._ready = Event()
-        self._failure: BaseException | None = None
-        self._loop = asyncio.new_event_loop()
-        self._ended = asyncio.Event()
-        self._thread = Thread(target=self._run, name="zwidth explorer", daemon=True)
-        self._thread.start()
-        self._ready.wait()
-        if self._failure is not None:
-            raise self._failure
+        self._serving = Serving(sockets, self._made, "zwidth explorer")
 
-    def _run(self) -> None:
-        asyncio.set_event_loop(self._loop)
-        try:
-            self._loop.run_until_complete(self._serve())
-        except BaseException as error:
-            self._failure = error
-        finally:
-            self._ready.set()
-            self._loop.close()
-
-    async def _serve(self) -> None:
-        """Until it is closed."""
+    def _made(self) -> tuple[Any, Callable[[], None]]:
+        """A server of Bokeh, and what ends it."""
         for name in ("bokeh.server.views.ws", "tornado.access"):
             logging.getLogger(name).setLevel(logging.CRITICAL)  # what a browser does is not worth a line
-        server, http = self._made()
-        server.start()
-        http.add_sockets(self._sockets)
-        self._ready.set()
-        await self._ended.wait()
-        server.stop()
-        await http.close_all_connections()
-
-    def _made(self) -> tuple[Any, Any]:
         access = NullAuth() if self._token is None else TokenAccess(self._token, f"zwidth_{self._port}")
         tornado = BokehTornado(
             build_applications({"/": self._make}, title="zwidth: explore a loop", location=False),
@@ -137,7 +109,9 @@ class _Server:
         )
         own = guarded(tornado, self._hosts, self._port, addresses=self._any)
         http = HTTPServer(own, max_body_size=LARGEST_MESSAGE)
-        return BaseServer(IOLoop.current(), tornado, http), http
+        server = BaseServer(IOLoop.current(), tornado, http)
+        server.start()
+        return http, server.stop
 
     def _make(self) -> Template:
         """The page of a new browser."""
@@ -169,9 +143,7 @@ class _Server:
 
     def close(self) -> None:
         """End the thread, then the processes."""
-        if self._thread.is_alive():
-            self._loop.call_soon_threadsafe(self._ended.set)
-        self._thread.join()
+        self._serving.close()
         self._workers.close()
 
 

@@ -9,7 +9,7 @@ from zwidth.passivity.found import Found
 from zwidth.passivity.linear.linear import LinearRefutation
 from zwidth.passivity.wording import claim_of_passivity, describe_hands, intervals, lines
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import in_unit, in_words
+from zwidth.quantity.text import enough, in_unit, in_words
 
 
 def claim(verdict: Found) -> str:
@@ -119,7 +119,7 @@ def _not_found(verdict: Found) -> str:
     found = "Neither a proof for every hand nor a motion that takes energy out was found"
     unit = verdict.device.unit
     lacking = [
-        f"{in_words(need.name)} of {in_unit(need.needed, unit(need.name))} is proved enough, and there is "
+        f"{in_words(need.name)} of {enough(need.needed, unit(need.name))} is proved enough, and there is "
         f"{in_unit(need.has, unit(need.name))}"
         for need in verdict.needs
         if need.has < need.needed
@@ -151,7 +151,7 @@ def _open(decision: Decision) -> str:
     need, least = decision.sufficient_friction, decision.necessary_friction
     has = float(decision.setting.coulomb_friction)
     unit = GLOSSARY["coulomb_friction"].unit_for(decision.setting.motion)
-    enough = "no amount is proved enough" if need is None else f"{in_unit(float(need), unit)} is enough"
+    does = "no amount is proved enough" if need is None else f"{enough(float(need), unit)} is enough"
     edge = in_unit(least, unit)
     below = (
         f"straddling an encoder edge should gain below {edge}, yet no such motion was found short enough"
@@ -160,7 +160,7 @@ def _open(decision: Decision) -> str:
     )
     return (
         "Viscous damping is enough, but for an encoder with this law no exact condition on Coulomb friction "
-        f"is proved: {enough}, {below}, and the device has {in_unit(has, unit)}."
+        f"is proved: {does}, {below}, and the device has {in_unit(has, unit)}."
     )
 
 
@@ -173,8 +173,8 @@ def _clamped(decision: Decision) -> str:
         loop, has, motion = decision.loop, float(decision.setting.coulomb_friction), decision.setting.motion
         b, f = (GLOSSARY[name].unit_for(motion) for name in ("damping", "coulomb_friction"))
         known = (
-            f"and what is proved enough is not there: damping of {in_unit(float(damping), b)}, the device "
-            f"has {in_unit(float(loop.damping), b)}; Coulomb friction of {in_unit(float(friction), f)}, it "
+            f"and what is proved enough is not there: damping of {enough(float(damping), b)}, the device "
+            f"has {in_unit(float(loop.damping), b)}; Coulomb friction of {enough(float(friction), f)}, it "
             f"has {in_unit(has, f)}."
         )
     return f"The linear criterion does not cover a law whose force is clamped, {known}"

@@ -11,15 +11,16 @@ from typing import Any
 
 from zwidth.device.actuator import ActuatorCheck, actuator_checks
 from zwidth.passivity import parameter_limits
-from zwidth.passivity.advice import Advice, Asked, advise
+from zwidth.passivity.advice import Advice
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.corners import Loop
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.formulas.stability_plane import admissible_speed
+from zwidth.passivity.loop_advice import Asked, advise
 from zwidth.passivity.scope import Contact
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
-from zwidth.quantity.text import at_least, at_most, in_unit, in_words
+from zwidth.quantity.text import at_most, enough, in_unit, in_words
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -190,20 +191,11 @@ class LinearVerdict(Verdict):
         unit = {name: GLOSSARY[name].unit_for(self.device.motion) for name in ("stiffness", "damping")}
         rows = [("limit", self.limit)]
         if parameter_limits.has_stiffness(self.environment):
-            rows.append(
-                (
-                    "largest passive stiffness",
-                    in_unit(at_most(self.max_stiffness, unit["stiffness"]), unit["stiffness"]),
-                )
-            )
+            most = at_most(self.max_stiffness, unit["stiffness"])
+            rows.append(("largest passive stiffness", in_unit(most, unit["stiffness"])))
         else:
             rows.append(("largest passive gain", in_unit(at_most(self.max_gain, "1"), "times this law")))
-        rows.append(
-            (
-                "required device damping",
-                in_unit(at_least(self.required_damping, unit["damping"]), unit["damping"]),
-            )
-        )
+        rows.append(("required device damping", enough(self.required_damping, unit["damping"])))
         rows.append(("critical frequency", in_unit(self.critical_frequency, "Hz")))
         for name, value in self.margins.items():
             margin_unit = GLOSSARY[name].unit_for(self.device.motion)
@@ -212,8 +204,8 @@ class LinearVerdict(Verdict):
             speed = in_unit(self.admissible_speed, self.device.unit("velocity"))
             rows.append(("slower hands are safe up to", speed))
         if self.outcome == "passive in contact" and self.decision.contact_damping is not None:
-            enough = in_unit(at_least(float(self.decision.contact_damping), unit["damping"]), unit["damping"])
-            rows.append(("damping, contact broken too", enough))
+            damping = enough(float(self.decision.contact_damping), unit["damping"])
+            rows.append(("damping, contact broken too", damping))
         return [*rows, *super().rows()]
 
 

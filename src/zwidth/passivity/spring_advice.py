@@ -12,16 +12,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from math import inf
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.errors import InputError
-from zwidth.passivity.advice import Advice, Knob, between_rates, turn_all
+from zwidth.passivity.advice import Advice
 from zwidth.passivity.budget import DELAY, QUANTIZATION, SAMPLING
 from zwidth.passivity.formulas.nonlinear_spring import certify_spring, spring_need
 from zwidth.passivity.found import Need
+from zwidth.passivity.knob import Knob, between_rates, turn_all
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import in_words
 
@@ -66,7 +68,7 @@ def _knobs(device: Device, spring: Environment) -> Iterator[tuple[Knob, Callable
 
     now = float(device.exact("sample_period") ** -1)
     rate = knob("rate", now, of_device("rate"), True, "rate")
-    between = between_rates(now, float(device.exact("delay")))
+    between = partial(between_rates, now, float(device.exact("delay")))
     yield replace(rate, between=between), of_device("rate")
     for key, more in (("damping", True), ("coulomb_friction", True), ("resolution", False)):
         name = {"damping": "device damping", "resolution": "encoder resolution"}.get(key, in_words(key))

@@ -15,7 +15,7 @@ from zwidth.passivity.advice import Advice, in_lines
 from zwidth.passivity.document import save_json, unit_key
 from zwidth.passivity.found import Found
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import in_unit, in_words
+from zwidth.quantity.text import enough, in_unit, in_words
 from zwidth.showing import Lines, Part
 
 
@@ -165,7 +165,7 @@ class Verdict(Found):
         for need in self.needs:
             unit = GLOSSARY[need.name].unit_for(self.device.motion)
             name = in_words(need.name)
-            rows.append((f"required {name}", in_unit(need.needed, unit)))
+            rows.append((f"required {name}", enough(need.needed, unit)))
             rows.append((f"margin of {name}", in_unit(need.has - need.needed, unit)))
         if self.witness is not None:
             rows.append(("motion", self.witness.describe()))

@@ -52,7 +52,7 @@ def _proved(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
     assert bracket.storage is not None
     axes = figure.add_subplot(place)
     draw_storage(axes, bracket.storage)
-    text = f"{_value(bracket, bracket.proved_passive)}\n{axes.get_title(loc='left')}"
+    text = f"{_values(bracket)[0]}\n{axes.get_title(loc='left')}"
     heading(axes, text, color=OUTCOME["passive"])
 
 
@@ -64,11 +64,18 @@ def _refuted(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
     for upper in axes[:-1]:
         upper.tick_params(labelbottom=False)
     draw_motion(axes, bracket.witness)
-    text = f"{_value(bracket, bracket.proved_active)}\n{top.get_title(loc='left')}"
+    text = f"{_values(bracket)[1]}\n{top.get_title(loc='left')}"
     heading(top, text, color=OUTCOME["active"])
 
 
+def _values(bracket: Bracket) -> tuple[str, str]:
+    """What was proved and what was refuted, to the four digits of a picture."""
+    proved, refuted = bracket.outward((bracket.proved_passive, bracket.proved_active), 4)
+    return _value(bracket, proved), _value(bracket, refuted)
+
+
 def _value(bracket: Bracket, value: float | None) -> str:
-    assert value is not None
+    if value is None:
+        return ""
     factor, unit = scale([value], bracket.unit)
     return f"{number(value * factor)} {unit}".rstrip()

@@ -145,12 +145,12 @@ def _readable_prefix(value: float, unit: str, digits: int) -> tuple[int, str]:
 
 
 def in_unit(value: float | None, unit: str) -> str:
-    """A value of six digits, a tiny one of four with a prefix; "none" and "any" for what is no number."""
+    """A value of six digits, a tiny one with a prefix; "none" and "any" for what is no number."""
     if value is None:
         return "none"
     if value == inf:
         return "any"
-    return readable(value, unit) if "e-" in f"{value * spoken(unit)[0]:.6g}" else told(value, unit)
+    return readable(value, unit, 6) if "e-" in f"{value * spoken(unit)[0]:.6g}" else told(value, unit)
 
 
 def outward_decimal(value: float, more: bool, digits: int = 4) -> float:
@@ -172,6 +172,21 @@ def at_least(value: float | None, unit: str, digits: int = 6) -> float | None:
     """Of a value from which on something holds."""
     factor = spoken(unit)[0]
     return None if value is None else outward_decimal(value * factor, True, digits) / factor
+
+
+def shown_at_most(value: float | None, unit: str, digits: int = 4) -> str:
+    """`shown` of a value up to which something holds, never rounded up."""
+    return shown(at_most(value, unit, digits), unit, digits)
+
+
+def shown_at_least(value: float | None, unit: str, digits: int = 4) -> str:
+    """`shown` of a value from which on something holds, never rounded down."""
+    return shown(at_least(value, unit, digits), unit, digits)
+
+
+def enough(value: float | None, unit: str) -> str:
+    """`in_unit` of a value from which on something holds, never rounded down."""
+    return in_unit(at_least(value, unit), unit)
 
 
 def in_a_table(value: float, digits: int = 4) -> str:

@@ -7,28 +7,39 @@ import struct
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
+from socket import SO_RCVBUF, SOL_SOCKET, create_connection
+from socket import socket as Socket
 from typing import Any
 
 import numpy as np
 import pytest
 from live_rows import WrittenRows
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-from websockets.exceptions import WebSocketException
+from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from zwidth.errors import InputError
-from zwidth.servo.live.foxglove import JSON_TOPIC, ROS2_TOPIC, serve_foxglove
+from zwidth.servo.live.foxglove import serve_foxglove
 from zwidth.servo.live.messages import ros2_schema
+from zwidth.servo.live.stream import JSON_TOPIC, ROS2_TOPIC
 
 HANGS = 60.0
 """Nothing comes any more [s]."""
 
 
+PAGE = "https://app.example"
+"""Of a web application that is named, or not."""
+
+
 @contextmanager
-def reading(address: str, topic: str) -> Iterator[tuple[ClientConnection, dict[str, Any]]]:
-    """A client of the protocol `foxglove.sdk.v1` that reads one topic, and what it was told of it."""
-    with connect(address, subprotocols=["foxglove.sdk.v1"]) as socket:  # type: ignore[list-item]
+def reading(address: str, topic: str, **more: Any) -> Iterator[tuple[ClientConnection, dict[str, Any]]]:
+    """A client of the protocol `foxglove.sdk.v1` that reads one topic, and what it was told of it.
+
+    One whose queue is full does not read that the other side ends it, and waits for that.
+    """
+    more = {"subprotocols": ["foxglove.sdk.v1"], "max_queue": None, **more}
+    with connect(address, **more) as socket:
         channels: dict[str, dict[str, Any]] = {}
         while topic not in channels:
             said = json.loads(socket.recv(timeout=HANGS))
@@ -53,15 +64,17 @@ def messages(socket: ClientConnection, wanted: int) -> list[tuple[int, bytes]]:
 class Growing(WrittenRows):
     """Rows of which some more are there at each look."""
 
+    more = 10
+
     def after(self, count: int) -> tuple[int, Any]:
         """Ten more."""
-        self.count = min(self.count + 10, len(self.table))
+        self.count = min(self.count + self.more, len(self.table))
         return super().after(count)
 
 
-def growing() -> Growing:
+def growing(count: int = 20000) -> Growing:
     """Every third reading is no number."""
-    rows = Growing(np.arange(20000.0))
+    rows = Growing(np.arange(float(count)))
     rows.table[::3, rows.COLUMNS.index("position_m")] = np.nan
     return rows
 
@@ -123,6 +136,171 @@ def test_names_of_ros_2_are_its_own() -> None:
     assert definition.splitlines()[1] == "float64 wished_force_n_m  # wished_force_N_m"
 
 
+def test_a_reader_takes_either_name_of_the_protocol() -> None:
+    """The first that both know; what it is told to begin with is the same."""
+    told = []
+    with serve_foxglove(growing(), 0) as page:
+        for offered in (["other", "foxglove.websocket.v1"], ["foxglove.websocket.v1", "foxglove.sdk.v1"]):
+            with connect(page.address, subprotocols=offered) as socket:  # type: ignore[arg-type]
+                assert socket.subprotocol == offered[1]
+                told.append([json.loads(socket.recv(timeout=HANGS)) for _ in range(2)])
+    assert told[0] == told[1]
+    info, advertised = told[0]
+    assert (info["op"], info["name"]) == ("serverInfo", "a paddle <b>in a wall</b>")
+    assert info["capabilities"] == []
+    assert (advertised["op"], len(advertised["channels"])) == ("advertise", 2)
+
+
+@pytest.mark.parametrize(
+    "origin", [None, "http://localhost:8080", "http://127.0.0.1", "https://[::1]:3000", "file://", PAGE]
+)
+def test_programs_and_pages_of_this_machine_are_let_in(origin: Any) -> None:
+    """PlotJuggler names no origin, Electron a file; a web application is let in where it is named."""
+    with (
+        serve_foxglove(growing(), 0, PAGE + "/") as page,
+        reading(page.address, JSON_TOPIC, origin=origin) as (socket, _),
+    ):
+        assert len(messages(socket, 3)) == 3
+
+
+@pytest.mark.parametrize(
+    "origin",
+    [
+        "http://elsewhere.example",
+        "http://localhost.elsewhere.example",
+        "http://localhost@elsewhere.example",
+        "ftp://localhost",
+        "null",
+        "",
+        "http://[",
+        PAGE,
+    ],
+)
+@pytest.mark.parametrize("site", ["cross-site", "none"])
+def test_pages_of_others_are_refused(origin: Any, site: str) -> None:
+    """Before anybody asks the loop for a row."""
+    rows = growing()
+    with serve_foxglove(rows, 0) as page, pytest.raises(InvalidStatus, match="403"):
+        connect(page.address, origin=origin, additional_headers={"Sec-Fetch-Site": site})
+    assert rows.asked == 0
+
+
+@pytest.mark.parametrize("origin", [None, "http://elsewhere.example:PORT", "http://127.0.0.1:PORT", PAGE])
+def test_a_name_that_comes_to_mean_this_machine_is_refused(origin: Any) -> None:
+    """Whatever page asks: of the same origin as that name, of this machine, of one that may, or of none."""
+    rows = growing()
+    with serve_foxglove(rows, 0, PAGE) as page:
+        port = int(page.address.rpartition(":")[2])
+        origin = origin and origin.replace("PORT", str(port))
+        with create_connection(("127.0.0.1", port)) as stream, pytest.raises(InvalidStatus, match="421"):
+            connect(f"ws://elsewhere.example:{port}", sock=stream, origin=origin)
+    assert rows.asked == 0
+
+
+@pytest.mark.parametrize("origin", ["null", "*", "app.example", "https://app.example/page", "https://", ""])
+def test_what_is_no_origin_is_not_let_in(origin: str) -> None:
+    """Any site can have pages that a browser calls null."""
+    with pytest.raises(InputError, match="is no origin of pages"):
+        serve_foxglove(growing(), 0, origin)
+
+
+def test_a_reader_that_is_slow_holds_up_nobody() -> None:
+    """Who keeps up gets every row meanwhile; who does not gets the newest when he reads on, and not all."""
+    rows = growing(40000)
+    rows.more = 100
+    with serve_foxglove(rows, 0) as page, closing(Socket()) as stream:
+        stream.setsockopt(SOL_SOCKET, SO_RCVBUF, 4096)
+        stream.connect(("127.0.0.1", int(page.address.rpartition(":")[2])))
+        slowly = reading(page.address, JSON_TOPIC, sock=stream, max_queue=1, close_timeout=0.1)
+        with slowly as (slow, _), reading(page.address, ROS2_TOPIC) as (fast, _):
+            kept_up = [struct.unpack_from("<d", data, 4)[0] for _, data in messages(fast, 12000)]
+            got = [-1.0]
+            while got[-1] < kept_up[-1]:
+                got += [json.loads(data)["sample"] for _, data in messages(slow, 1)]
+    assert set(np.diff(kept_up)) == {1.0}
+    assert (np.diff(got) > 0).all()
+    assert len(got) < 9000
+
+
+def test_nothing_is_made_for_a_topic_that_nobody_reads(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No row is asked for before somebody subscribes, and no JSON is made for who reads the other topic."""
+
+    def unwanted(*_: Any) -> Any:
+        raise AssertionError("nobody reads this")
+
+    monkeypatch.setattr("zwidth.servo.live.stream.json_messages", unwanted)
+    rows = growing()
+    with serve_foxglove(rows, 0) as page, connect(page.address) as idle:
+        assert json.loads(idle.recv(timeout=HANGS))["op"] == "serverInfo"
+        assert rows.asked == 0
+        with reading(page.address, ROS2_TOPIC) as (socket, _):
+            assert len(messages(socket, 30)) == 30
+
+
+def test_a_subscription_ends_when_it_is_asked_to() -> None:
+    """And its number can be used for the other topic; the loop is asked for nothing while there is none."""
+    with serve_foxglove(growing(), 0) as page, reading(page.address, JSON_TOPIC) as (socket, channel):
+        messages(socket, 3)
+        socket.send(json.dumps({"op": "unsubscribe", "subscriptionIds": [7]}))
+        other = [{"id": 7, "channelId": 3 - channel["id"]}]
+        socket.send(json.dumps({"op": "subscribe", "subscriptions": other}))
+        data = b"{"
+        while data[:1] == b"{":  # what was on its way
+            data = messages(socket, 1)[0][1]
+        assert all(data[:4] == b"\0\1\0\0" for _, data in messages(socket, 50))
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "subscribe",
+        "[]",
+        "{}",
+        b"\x01\x00",
+        "[" * 60000,
+        '{"op": "subscribe", "subscriptions": [{"id": -1, "channelId": 1}]}',
+        '{"op": "subscribe", "subscriptions": [{"id": 1, "channelId": {}}]}',
+        '{"op": "unsubscribe", "subscriptionIds": 7}',
+    ],
+)
+def test_what_is_not_of_the_protocol_ends_that_reader_alone(said: str | bytes) -> None:
+    """With the reason; nothing of it is shown or logged."""
+    with serve_foxglove(growing(), 0) as page, reading(page.address, JSON_TOPIC) as (socket, _):
+        with connect(page.address) as other:
+            other.send(said)
+            with pytest.raises(ConnectionClosed, match="not of Foxglove's"):
+                messages(other, 1)
+        assert len(messages(socket, 30)) == 30
+
+
+def test_what_is_not_offered_is_passed_over() -> None:
+    """A topic that is not there, and wishes of programs that know more of the protocol."""
+    with serve_foxglove(growing(), 0) as page, reading(page.address, JSON_TOPIC) as (socket, _):
+        socket.send(json.dumps({"op": "subscribe", "subscriptions": [{"id": 8, "channelId": 99}]}))
+        socket.send(json.dumps({"op": "getParameters", "parameterNames": []}))
+        assert len(messages(socket, 30)) == 30
+
+
+def test_a_loop_that_cannot_be_read_ends_the_stream_and_nothing_else(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is said that no more will come."""
+    rows = growing()
+
+    def failing(_: int) -> Any:
+        raise RuntimeError("gone")
+
+    with serve_foxglove(rows, 0) as page:
+        with reading(page.address, JSON_TOPIC) as (socket, _):
+            messages(socket, 3)
+            monkeypatch.setattr(rows, "after", failing)
+            with pytest.raises(ConnectionClosed, match="1011"):
+                messages(socket, 10000)
+        assert "a live stream has ended" in caplog.text
+        with connect(page.address) as other:
+            assert json.loads(other.recv(timeout=HANGS))["op"] == "serverInfo"
+
+
 def test_nobody_on_another_machine_is_answered() -> None:
     """The address is that of the machine itself."""
     with serve_foxglove(growing(), 0) as page:
@@ -133,7 +311,7 @@ def test_a_port_in_use_is_refused() -> None:
     """With what to do about it."""
     with serve_foxglove(growing(), 0) as page:
         port = int(page.address.rpartition(":")[2])
-        with pytest.raises(InputError, match="give another one, or 0"):
+        with pytest.raises(InputError, match=rf"^port {port} .*give another one, or 0 for a free one$"):
             serve_foxglove(growing(), port)
 
 
@@ -144,21 +322,24 @@ def test_what_is_no_port_is_refused(port: Any) -> None:
         serve_foxglove(growing(), port)
 
 
-def test_without_the_sdk_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_tornado_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """And what needs none."""
-    monkeypatch.setitem(sys.modules, "foxglove", None)
+    monkeypatch.setitem(sys.modules, "tornado.netutil", None)
     with pytest.raises(InputError, match=r"pip install 'zwidth\[serve\]'"):
         serve_foxglove(growing(), 0)
 
 
 def test_close_ends_it_once() -> None:
-    """Again is no fault; nobody asks the loop any more."""
+    """Again is no fault; whoever reads is told so, and nobody asks the loop any more."""
     rows = growing()
     page = serve_foxglove(rows, 0)
-    page.close()
-    page.close()
-    asked = rows.asked
-    # The server's own thread may take the line for a moment more, and then drop it.
-    with pytest.raises((OSError, WebSocketException)):
+    with reading(page.address, JSON_TOPIC) as (socket, _):
+        messages(socket, 3)
+        page.close()
+        page.close()
+        asked = rows.asked
+        with pytest.raises(ConnectionClosed, match="1001"):
+            messages(socket, 10000)
+    with pytest.raises(ConnectionRefusedError):
         connect(page.address)
     assert rows.asked == asked

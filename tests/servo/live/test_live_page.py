@@ -285,7 +285,7 @@ def test_a_port_in_use_is_refused(page: Page) -> None:
 
 def test_without_bokeh_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """And what needs none."""
-    monkeypatch.setitem(sys.modules, "bokeh.server.util", None)
+    monkeypatch.setitem(sys.modules, "bokeh.application", None)
     with pytest.raises(InputError, match=r"pip install 'zwidth\[serve\]'.*terminal"):
         open_page(buzzing(), open_browser=False)
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import Any
 
+from zwidth.passivity.bracket.parameter import more_is_safer
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.result import Result, evidence_of
 from zwidth.passivity.scope import Scope
@@ -17,7 +18,7 @@ from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import describe_hands, lines
 from zwidth.quantity.glossary import unit_suffix
-from zwidth.quantity.text import in_unit, in_words
+from zwidth.quantity.text import at_least, at_most, in_unit, in_words
 
 
 @dataclass(frozen=True, repr=False)
@@ -86,13 +87,22 @@ class Bracket(Result):
             return inf
         return abs(self.proved_active - self.proved_passive) / max(self.proved_active, self.proved_passive)
 
+    def outward(
+        self, values: tuple[float | None, float | None], digits: int = 6
+    ) -> tuple[float | None, float | None]:
+        """A proved and a refuted value so rounded that each still is: away from what is between them."""
+        sides = (at_least, at_most) if more_is_safer(self.parameter) else (at_most, at_least)
+        proved, refuted = (side(v, self.unit, digits) for side, v in zip(sides, values, strict=True))
+        return proved, refuted
+
     def describe(self) -> str:
         """The bracket in a sentence."""
         name = in_words(self.parameter).replace("environment.", "").replace("device.", "device ")
         if self.proved_passive is None and self.proved_active is None:
             given = "in the time given" if self.cut_by_time else "with the effort given"
             return f"{name}: nothing was decided {given}"
-        passive, active = in_unit(self.proved_passive, self.unit), in_unit(self.proved_active, self.unit)
+        ends = self.outward((self.proved_passive, self.proved_active))
+        passive, active = (in_unit(value, self.unit) for value in ends)
         if self.proved_active is None:
             return f"{name}: {passive} is proved passive, and nothing is refuted"
         if self.proved_passive is None:

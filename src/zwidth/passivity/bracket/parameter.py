@@ -100,7 +100,7 @@ def _of_environment(device: Device, environment: Environment, key: str) -> Param
 
     unit = met.unit_of(key, device.motion)
     first = abs(float(now)) or _guess(device, key)
-    return Parameter(f"environment.{key}", unit, first, change, key in _MORE_OF_A_LAW_IS_SAFER)
+    return _parameter(f"environment.{key}", unit, first, change)
 
 
 def _of_device(device: Device, environment: Environment, key: str) -> Parameter:
@@ -110,7 +110,17 @@ def _of_device(device: Device, environment: Environment, key: str) -> Parameter:
         return device.replace(**{key: value}), environment
 
     now = float(known) or _guess(device, key)
-    return Parameter(f"device.{key}", device.unit(key), now, change, key in MORE_IS_SAFER)
+    return _parameter(f"device.{key}", device.unit(key), now, change)
+
+
+def _parameter(name: str, unit: str, now: float, change: Callable[[Exact], Loop]) -> Parameter:
+    return Parameter(name, unit, now, change, more_is_safer(name))
+
+
+def more_is_safer(name: str) -> bool:
+    """Whether a loop needs enough of a parameter, and does not have too much of it."""
+    owner, _, key = name.partition(".")
+    return key in (MORE_IS_SAFER if owner == "device" else _MORE_OF_A_LAW_IS_SAFER)
 
 
 def _guess(device: Device, key: str) -> float:

@@ -14,16 +14,8 @@ from typing import Any, Literal
 from zwidth.device import Device
 from zwidth.errors import InputError
 from zwidth.pairs import Pair
-from zwidth.passivity.advice import (
-    Advice,
-    Knob,
-    between_delays,
-    between_rates,
-    between_sizes,
-    outward,
-    turn,
-    turn_all,
-)
+from zwidth.passivity.advice import Advice
+from zwidth.passivity.knob import Knob, between_delays, between_rates, between_sizes, outward, turn, turn_all
 from zwidth.passivity.linear.boundary import Holds
 from zwidth.passivity.pairs.limits import grain_of, is_passive, largest_stiffness, samples_around, with_share
 from zwidth.quantity.exact import Exact
@@ -83,7 +75,7 @@ def _share(pair: Pair, kind: Literal["change", "slack"], grain: int) -> Advice:
     advice = turn(knob, pair.motion, kind, grain)
     if not isinstance(advice.to, float):
         return advice
-    part = f"{100 * outward(advice.to, knob):.6g} % of what it is"
+    part = f"{100 * outward(advice.to, knob):.12g} % of what it is"
     if kind == "change":
         return replace(advice, text=f"lower the compensation of friction to {part}")
     return replace(advice, text=f"compensation of friction may go up to {part}")
@@ -151,7 +143,7 @@ def _of_the_coupling(pair: Pair) -> Iterator[Knob]:
                 _holds(change),
                 False,
                 in_words(quantity),
-                between=between_sizes(size),
+                between=partial(between_sizes, size),
                 sign=sign,
             )
     longer = max(pair.delay)
@@ -162,9 +154,9 @@ def _of_the_coupling(pair: Pair) -> Iterator[Knob]:
 
     name = "link delay" if pair.there == pair.back else "longer link delay, the other in proportion,"
     far, period = float(longer), float(pair.sample_period)
-    yield Knob("link_delay", far, _holds(link), False, name, between=between_delays(far, period))
+    yield Knob("link_delay", far, _holds(link), False, name, between=partial(between_delays, far, period))
     holds = _holds(lambda rate: _at_rate(pair, rate))
-    yield Knob("rate", 1 / period, holds, True, "rate", between=between_rates(1 / period, far))
+    yield Knob("rate", 1 / period, holds, True, "rate", between=partial(between_rates, 1 / period, far))
 
 
 def _of_the_arms(pair: Pair) -> Iterator[Knob]:

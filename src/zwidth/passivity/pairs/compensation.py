@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from zwidth.passivity.pairs.criterion import PairCriterion
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import outward_decimal, shown
 
 _ARMS = ("leader", "follower")
 
@@ -42,7 +42,7 @@ def compensation_rows(criterion: PairCriterion, share: float | None) -> Iterator
     most = (
         "none: without it the pair is not passive either"
         if share is None
-        else f"{100 * share:.4g} % of this on both sides, with all else as it is"
+        else f"{outward_decimal(100 * share, False):.4g} % of this on both sides, with all else as it is"
     )
     yield "largest compensation", most
 

@@ -29,7 +29,7 @@ from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
 from zwidth.passivity.pairs.slow import refute_compensation
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import shown, shown_at_least, shown_at_most
 from zwidth.showing import Lines, Part
 
 _DIGITS = (2, 3, 4, 6, 9, 13)
@@ -244,18 +244,20 @@ class PairVerdict(PassivityAnswer):
             "largest stiffness",
             f"none is {proved}"
             if largest is None
-            else f"{shown(largest, unit['stiffness'])} with all else as it is",
+            else f"{shown_at_most(largest, unit['stiffness'])} with all else as it is",
         )
         needs = zip(("leader", "follower"), self.required_damping, self.required_friction, strict=True)
         for name, damping, friction in needs:
             device: Device = getattr(pair, name)
-            enough = "none is enough" if damping is None else f"{shown(damping, unit['damping'])} needed"
+            enough = (
+                "none is enough" if damping is None else f"{shown_at_least(damping, unit['damping'])} needed"
+            )
             yield f"damping of the {name}", f"{shown(device.damping, unit['damping'])}, {enough}"
             if friction != 0:
                 enough = (
                     "none is enough"
                     if friction is None
-                    else f"{shown(friction, unit['coulomb_friction'])} needed"
+                    else f"{shown_at_least(friction, unit['coulomb_friction'])} needed"
                 )
                 has = shown(device.coulomb_friction, unit["coulomb_friction"])
                 yield f"friction of the {name}", f"{has}, {enough}"

@@ -1,4 +1,4 @@
-"""How much more damping in the joints would do: the smallest that is proved, and below what it fails.
+"""How much more damping in the joints would do, or how much softer a wall: what is proved, and what fails.
 
     fails    what is lacking at some point of the map: less of it, and δ_m − JᵀRJ is not ⪰ 0 there
     enough   what the bounds between the points ask for: more than is needed, most of all of parallel arms
@@ -11,16 +11,19 @@ and there it is the bounds that decide.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import isfinite
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from zwidth.arms.joints import as_matrix, single_addition
 from zwidth.arms.least import least_additions
+from zwidth.arms.matrix_wall import MatrixWall
+from zwidth.environment.environment import certain
+from zwidth.environment.wall import Wall
 from zwidth.passivity.workspace.certificate import arm_certificate
 from zwidth.passivity.workspace.question import Question
 
@@ -28,6 +31,9 @@ Array = npt.NDArray[np.float64]
 
 _STEPS = (1 / 8, 1 / 2)
 """Of the way from what fails to what is enough."""
+
+_SOFTER = (0.01, 0.05, 0.2)
+"""Than the wall that fails at a point of the map."""
 
 _MOST_PROVED = 4
 """Joints of an arm of which the checker is asked."""
@@ -84,6 +90,13 @@ class Additions:
     def _joints(self) -> int:
         return int(self.points.shape[-1])
 
+    def stiffest(self, fails: float) -> float | None:
+        """How many times as stiff a wall is proved, `fails` at a point of the map; None where none was."""
+        if self._joints > _MOST_PROVED:
+            return None
+        tried = (fails * (1 - softer) for softer in _SOFTER)
+        return next((k for k in tried if self._proves(wall=_stiffer(self.question.wall, k))), None)
+
     def _smallest(self, needed: Callable[[Array], Array]) -> Addition:
         enough = needed(self.cells)
         if not enough.any():
@@ -97,15 +110,21 @@ class Additions:
         steps = [fails + share * (far - fails) for share in _STEPS]
         near = (1 + _NEAR) * fails
         for tried in steps if steps[0].sum() < near.sum() else [near, *steps]:
-            if self._proves(tried):
+            damping = as_matrix(self.question.arm.damping) + np.diag(tried)
+            if self._proves(arm=self.question.arm.replace(damping=damping)):
                 return Addition(_numbers(tried), _numbers(fails))
         return Addition(_numbers(enough), _numbers(fails))
 
-    def _proves(self, more: Array) -> bool:
-        asked = self.question
-        damped = asked.arm.replace(damping=as_matrix(asked.arm.damping) + np.diag(more))
-        loop = (damped, asked.wall, asked.rate, asked.delay_samples, asked.held_to)
+    def _proves(self, **changed: Any) -> bool:
+        asked = replace(self.question, **changed)
+        loop = (asked.arm, asked.wall, asked.rate, asked.delay_samples, asked.held_to)
         return arm_certificate(*loop)[0] is not None
+
+
+def _stiffer(wall: Wall | MatrixWall, times: float) -> Wall | MatrixWall:
+    if isinstance(wall, Wall):
+        return wall.replace(stiffness=times * certain(wall.stiffness, "stiffness"))
+    return replace(wall, stiffness=times * np.array(wall.stiffness))
 
 
 def _to_all(matrices: Array) -> Array:

@@ -34,7 +34,7 @@ from zwidth.passivity.workspace.mapped import scaled_stiffness, stiffness_factor
 from zwidth.passivity.workspace.question import Question, asked_of
 from zwidth.passivity.workspace.report import arm_document, finite, motion_document, wall_document
 from zwidth.quantity.exact import RealLike
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import outward_decimal, shown, shown_at_most
 
 if TYPE_CHECKING:
     import xarray
@@ -138,13 +138,13 @@ class PostureMap(PassivityAnswer):
                 "none: at some posture its virtual damping alone is too much for the joints",
             )
         elif self.largest_stiffness is None:
-            yield "stiffness", f"{self.stiffness_factor:.4g} times everywhere, {best:.4g} times at best"
+            yield "stiffness", f"{_down(self.stiffness_factor)} times everywhere, {_down(best)} times at best"
         else:
             most = float(scaled_stiffness(self.question.wall, np.array(best), 3))
-            everywhere = shown(self.largest_stiffness, "N/m")
+            everywhere = shown_at_most(self.largest_stiffness, "N/m")
             yield (
                 "largest stiffness",
-                f"{everywhere} at every posture tried, {shown(most, 'N/m')} at the best",
+                f"{everywhere} at every posture tried, {shown_at_most(most, 'N/m')} at the best",
             )
         if self.damping_factor is not None:
             yield "virtual damping", self._damping(self.damping_factor)
@@ -158,7 +158,7 @@ class PostureMap(PassivityAnswer):
 
     def _damping(self, factor: float) -> str:
         """How much of it the joints pay for, and from which frequency on more of it gains."""
-        text = f"the joints pay for {factor:.4g} times this much of it at every posture tried"
+        text = f"the joints pay for {_down(factor)} times this much of it at every posture tried"
         slow = acos(-factor) / (2 * pi) * self.question.rate if 0 < factor < 1 else 0.0
         _, damper = wall_matrices(self.question.wall, 3 + self.question.arm.turns)
         if not slow or self.question.delay_samples or np.linalg.eigvalsh(damper)[0] < 0:
@@ -171,9 +171,9 @@ class PostureMap(PassivityAnswer):
             return "no Coulomb friction is known that covers them: any wall may buzz"
         if not factor:
             return "Coulomb friction does not cover those of the virtual damping: it may buzz"
-        most = f"{factor:.4g} times this stiffness"
+        most = f"{_down(factor)} times this stiffness"
         if not self.question.arm.turns:
-            most = shown(float(scaled_stiffness(self.question.wall, np.array(factor), 3)), "N/m")
+            most = shown_at_most(float(scaled_stiffness(self.question.wall, np.array(factor), 3)), "N/m")
         return f"Coulomb friction covers them up to {most}, by a light touch; a stiffer wall may buzz"
 
     def numbers(self) -> dict[str, Any]:
@@ -192,6 +192,10 @@ class PostureMap(PassivityAnswer):
             "encoder_factor": None if self.encoder_factor is None else finite(self.encoder_factor),
             "motion": None if motion is None else motion_document(motion, arm.turns),
         }
+
+
+def _down(factor: float) -> str:
+    return f"{outward_decimal(factor, False):.4g}"
 
 
 def stiffness_over_postures(

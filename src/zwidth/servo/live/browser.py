@@ -7,19 +7,18 @@ it does.
 
 from __future__ import annotations
 
-import asyncio
 import logging
 import webbrowser
-from threading import Event, Thread
+from collections.abc import Callable
 from typing import Any
 
-from zwidth.errors import InputError
 from zwidth.servo.live.document import SPANS, Shown, make_document
 from zwidth.servo.live.envelope import Envelope
 from zwidth.servo.live.library import library
 from zwidth.servo.live.page import HOST, OWN, Page, checked_port, guarded, origins
 from zwidth.servo.live.reader import Reader
 from zwidth.servo.live.rows import CURVES, News, Rows
+from zwidth.servo.live.serving import Serving, bound
 from zwidth.servo.live.tally import Tally
 
 FRAME = 0.05
@@ -66,55 +65,21 @@ class _Server:
     """The thread that serves, and the one that reads."""
 
     def __init__(self, rows: Rows, port: int, surface: float | None, frame: float) -> None:
-        util = library("bokeh.server.util", "Bokeh")
-        try:
-            self._sockets, self._port = util.bind_sockets(HOST, port)
-        except OSError as error:
-            raise InputError(
-                f"port {port} cannot be served here: {error.strerror}; give another one, or 0 for a free one"
-            ) from None
+        sockets, self._port = bound(port)
         self.address = f"http://{HOST}:{self._port}/"
         self._envelope, self._tally = Envelope(len(CURVES), SPANS), Tally(rows)
         self._shown = Shown(rows, self._envelope, self._tally, surface, frame)
+        self._serving = Serving(sockets, self._made, "zwidth live page")
         self._reader = Reader(rows, self._take, frame)
-        self._ready = Event()
-        self._failure: BaseException | None = None
-        self._loop = asyncio.new_event_loop()
-        self._ended = asyncio.Event()
-        self._thread = Thread(target=self._run, name="zwidth live page", daemon=True)
-        self._thread.start()
-        self._ready.wait()
-        if self._failure is not None:
-            self._reader.close()
-            raise self._failure
 
     def _take(self, news: News) -> None:
         self._tally.add(news)
         self._envelope.add(news.times, news.curves)
 
-    def _run(self) -> None:
-        try:
-            self._loop.run_until_complete(self._serve())
-        except BaseException as error:
-            self._failure = error
-        finally:
-            self._ready.set()
-            self._loop.close()
-
-    async def _serve(self) -> None:
-        """Until it is closed."""
+    def _made(self) -> tuple[Any, Callable[[], None]]:
+        """A server of Bokeh for pages of its own alone, and what ends it."""
         # a viewer that leaves is no fault: not worth a line over whatever the terminal shows
         logging.getLogger("bokeh.server.views.ws").setLevel(logging.ERROR)
-        server, http = self._made()
-        server.start()
-        http.add_sockets(self._sockets)
-        self._ready.set()
-        await self._ended.wait()
-        server.stop()
-        await http.close_all_connections()
-
-    def _made(self) -> tuple[Any, Any]:
-        """A server of Bokeh on the sockets that are bound already, for pages of its own alone."""
         application = library("bokeh.application", "Bokeh").Application
         handler = library("bokeh.application.handlers", "Bokeh").FunctionHandler
         tornado = library("bokeh.server.tornado", "Bokeh").BokehTornado(
@@ -123,11 +88,11 @@ class _Server:
         )
         http = library("tornado.httpserver", "Tornado").HTTPServer(guarded(tornado, OWN, self._port))
         loop = library("tornado.ioloop", "Tornado").IOLoop.current()
-        return library("bokeh.server.server", "Bokeh").BaseServer(loop, tornado, http), http
+        server = library("bokeh.server.server", "Bokeh").BaseServer(loop, tornado, http)
+        server.start()
+        return http, server.stop
 
     def close(self) -> None:
         """End both threads."""
         self._reader.close()
-        if self._thread.is_alive():
-            self._loop.call_soon_threadsafe(self._ended.set)
-        self._thread.join()
+        self._serving.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection
 from ipaddress import ip_address
 from types import SimpleNamespace, TracebackType
@@ -62,6 +63,21 @@ def checked_port(port: int) -> int:
             f"{port!r} is no port: give a whole number from 1 to 65535, or 0 for one that is free"
         )
     return port
+
+
+def checked_origin(origin: str) -> str:
+    """What a browser calls pages of one site, such as "https://app.foxglove.dev".
+
+    Raises
+    ------
+    InputError
+        If it is no scheme and host; "null" is none, since pages of any site may be called so.
+    """
+    if not re.fullmatch(r"[a-z][a-z0-9+.-]*://[^\s/?#@]+/?", origin, re.IGNORECASE):
+        raise InputError(
+            f"{origin!r} is no origin of pages: give scheme and host, such as https://app.foxglove.dev"
+        )
+    return origin.rstrip("/").lower()
 
 
 def origins(names: Collection[str], port: int) -> list[str]:

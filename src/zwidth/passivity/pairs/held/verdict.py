@@ -30,7 +30,7 @@ from zwidth.passivity.pairs.verdict import check_pair
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Hands, Scope
 from zwidth.quantity.exact import ends
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import shown, shown_at_least, shown_at_most
 
 
 def check_held_pair(pair: Pair, leader: Any = ANY, follower: Any = ANY) -> HeldVerdict:
@@ -247,14 +247,17 @@ class HeldVerdict(PassivityAnswer):
             ("with anything that damps as much", self.largest_stiffness_of_any_such_hand),
             ("with two hands that do anything", self.largest_stiffness_of_two_hands),
         ):
-            yield name, "none is passive" if value is None else shown(value, unit["stiffness"])
+            yield name, "none is passive" if value is None else shown_at_most(value, unit["stiffness"])
         device = getattr(self.pair, free)
         for name, key, need in (
             (f"damping of the {free}", "damping", self.required_damping),
             (f"friction of the {free}", "coulomb_friction", self.required_friction),
         ):
             if need:
-                yield name, f"{shown(getattr(device, key), unit[key])}, {shown(need, unit[key])} needed"
+                yield (
+                    name,
+                    f"{shown(getattr(device, key), unit[key])}, {shown_at_least(need, unit[key])} needed",
+                )
         if self.violation is not None:
             yield "violated", self.violation.describe()
         if self.witness is not None:

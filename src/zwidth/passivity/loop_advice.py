@@ -1,0 +1,218 @@
+"""What to change: the smallest change that makes an active loop passive, or the slack of a passive one.
+
+Every value given was itself proved passive, all else as it was, and of the same hands as the outcome: a loop
+that is passive with contact made and broken stays so.  Where a proof of hands that keep contact is all that
+was found, the advice says so.
+
+What is asked for is convex in the K and the B of a wall, and more b, more f_c and a finer encoder never hurt:
+beyond their limits nothing holds again.  In a delay, a period or the time constant of a filter that may
+be (behind a part of a sample a wall asks for more than behind a whole one): of these the way is looked at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property, partial
+from math import inf
+from typing import Any
+
+from zwidth.environment import OnePole, Wall, Window
+from zwidth.environment.wall import wall_of
+from zwidth.passivity.advice import Advice, Kind
+from zwidth.passivity.certificate import Certificate, certify_box
+from zwidth.passivity.corners import Loop, worst_corners
+from zwidth.passivity.decision import decide
+from zwidth.passivity.knob import Guess, Knob, between_delays, between_rates, between_sizes, outward, turn_all
+from zwidth.passivity.likely_limits import likely_damping, likely_friction, likely_resolution, likely_value
+from zwidth.passivity.linear.boundary import COARSE, COARSER, Holds, smallest_holding
+from zwidth.passivity.parameter_limits import has_stiffness, is_of_high_degree, provable
+from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.quantity.text import in_words, readable
+
+_WINDOWS = (2, 3, 4, 5, 6, 8, 10, 15, 20)
+
+_KEPT = " while contact is kept"
+
+_OF = {"damping": "device ", "resolution": "encoder ", "time_constant": "filter "}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is to be proved of which loop: `box`, with its intervals, `at` their corner that asks for most.
+
+    `contact` is as for `provable`.
+    """
+
+    at: Loop
+    box: Loop
+    contact: bool = False
+
+    def knobs(self, stiffest: Guess) -> Iterator[Knob]:
+        """All numbers that can be turned, from the device to the law; `stiffest` as for `advise`."""
+        law, (whole, of_box) = self.at[1], self.box
+        period, delay = ends(whole.sample_period)[1], ends(whole.delay)[1]
+        hertz, late, sample = float(1 / period), float(delay), float(period)
+        between = partial(between_rates, hertz, late)
+        in_samples = delay > 0 and self._in_samples
+        yield self._searched("rate", 1 / period, True, sample, between=between, in_samples=in_samples)
+        yield from self._losses()
+        between = partial(between_delays, late, sample)
+        yield self._searched("delay", delay, False, sample, between=between, in_samples=self._in_samples)
+        wall = wall_of(law)
+        if has_stiffness(law):
+            now = ends(of_box.stiffness)[1]  # type: ignore[attr-defined]
+            on_the_way = None if wall is not None else partial(between_sizes, float(now))
+            yield self._knob("stiffness", now, False, likely=stiffest, between=on_the_way)
+        if wall is not None:
+            yield from self._of_wall(wall)
+
+    def _losses(self) -> Iterator[Knob]:
+        """What takes energy out, and the encoder: of these it is known what a loop asks for."""
+        decision = decide(*self.at)
+        of_one = replace(decision, setting=replace(decision.setting, resolution=Fraction(1)))
+        for key, more, needed, of in (
+            ("damping", True, likely_damping, decision),
+            ("coulomb_friction", True, likely_friction, decision),
+            ("resolution", False, likely_resolution, of_one),
+        ):
+            yield self._knob(key, self.at[0].exact(key), more, likely=partial(needed, of, self.contact))
+
+    def _of_wall(self, wall: Wall) -> Iterator[Knob]:
+        whole = self.box[1]
+        if isinstance(getattr(whole, "damping", None), Exact):
+            b = ends(wall.damping)[0]
+            usual = float(self.at[0].exact("damping")) or 1.0
+            yield self._searched("virtual_damping", abs(b), False, usual, sign=-1 if b < 0 else 1)
+        tau = getattr(getattr(whole, "velocity_filter", None), "time_constant", None)
+        if isinstance(tau, Exact) and wall.damping != 0:
+            between = partial(between_sizes, float(tau))
+            yield self._searched("time_constant", tau.fraction, True, 0.0, between=between)
+
+    def filtered(self, begin: float) -> Knob:
+        """Of a one-pole filter in the place of that of the wall [s]; looked for from `begin` on."""
+        knob = self._searched("time_constant", Fraction(begin), True, begin)
+        return replace(knob, current=0.0, holds=self._proved("time_constant"))
+
+    def _searched(self, key: str, now: Fraction, more: bool, other: float, **how: Any) -> Knob:
+        """A knob of which secants say where its limit is likely; `other` as for `likely_value`."""
+        change = partial(turned, self.at, key, sign=how.get("sign", 1))
+        likely = partial(likely_value, change, self.contact, float(now), other, more)
+        return self._knob(key, now, more, likely=likely, **how)
+
+    def _knob(self, key: str, now: Fraction, more: bool, **how: Any) -> Knob:
+        holds = self._proved(key, now, how.get("sign", 1))
+        return Knob(key, float(now), holds, more, _OF.get(key, "") + in_words(key), **how)
+
+    def _proved(self, key: str, now: Fraction | None = None, sign: int = 1) -> Holds:
+        """Whether the loop with a value is proved passive; as it is, it is decided once for all knobs."""
+        change = partial(turned, self.box, key, sign=sign)
+        return lambda size: self._here if size == now else provable(change, size, self.contact)
+
+    @cached_property
+    def _in_samples(self) -> bool:
+        """True where contact made and broken is proved, and with a delay half a sample longer never is."""
+        device, law = self.at
+        decision = decide(device, law)
+        if decision.is_spring or not (self.contact or decision.is_clamped):
+            return False
+        longer = device.exact("delay") + device.exact("sample_period") / 2
+        return decide(device.replace(delay=Exact(longer)), law).contact_damping is None
+
+    @cached_property
+    def _here(self) -> bool:
+        return provable(lambda _: self.box, Fraction(0), self.contact)
+
+    def is_confirmed(self, advice: Advice) -> bool:
+        """Whether between the ends of intervals a value is proved as well, as the checker sees it."""
+        if not isinstance(advice.to, float) or advice.to in (advice.current, inf):
+            return True
+        return self.covers(turned(self.box, advice.parameter, Exact(advice.to).fraction))
+
+    def covers(self, loop: Loop) -> bool:
+        """Whether the checker finds it proved for all values of a loop that is provable at its corners."""
+        if self.at == self.box:
+            return True
+        corners = worst_corners(*loop)
+        proofs = certify_box(*loop, corners, [decide(*corner) for corner in corners])
+        covered = None if proofs is None else Certificate(tuple(proofs)).covered()
+        return covered is not None and not (self.contact and covered.contact == "kept")
+
+
+def advise(
+    asked: Asked, passive: bool, or_kept: bool = False, stiffest: Guess = lambda: None
+) -> tuple[Advice, ...]:
+    """Advice on every parameter of a loop: how far each may go of a `passive` one, else what to change.
+
+    With `or_kept` a proof of hands that keep contact is better than none; `stiffest` is the loop's
+    `max_stiffness`, which is then not looked for twice.
+    """
+    found = tuple(_advised(asked, passive, "" if asked.contact or not or_kept else _KEPT, stiffest))
+    if passive or not (asked.contact and or_kept) or any(advice.to is not None for advice in found):
+        return found
+    return tuple(_advised(replace(asked, contact=False), passive, _KEPT, lambda: None))
+
+
+def _advised(asked: Asked, passive: bool, hands: str, stiffest: Guess) -> Iterator[Advice]:
+    kind: Kind = "slack" if passive else "change"
+    device, law = asked.at
+    is_high = is_of_high_degree(*asked.at)
+    grain = COARSER if is_high else COARSE
+    knobs = (replace(knob, hands=hands) for knob in asked.knobs(stiffest))
+    if is_high:  # to find where a limit is likely takes as long as to find it
+        knobs = (replace(knob, likely=lambda: None) for knob in knobs)
+    yield from filter(asked.is_confirmed, turn_all(knobs, device.motion, kind, grain))
+    wall = wall_of(law)
+    if not passive and wall is not None and wall.damping != 0:
+        yield from _estimators(asked, wall, hands, grain)
+
+
+def turned(loop: Loop, key: str, value: Fraction, sign: int = 1) -> Loop:
+    """The loop with a value of one of its parameters; an interval with its worse end there."""
+    device, law = loop
+    if key == "stiffness":
+        return device, law.replace(stiffness=_moved(law.stiffness, value, False))  # type: ignore[attr-defined]
+    if key == "virtual_damping":
+        return device, law.replace(damping=Exact(sign * value))
+    if key == "time_constant":
+        return device, law.replace(velocity_filter=OnePole(Exact(value)))
+    if key == "rate" and not isinstance(device.sample_period, Interval):
+        return device.replace(rate=Exact(value)), law
+    if key == "rate":
+        key, value = "sample_period", 1 / value
+    more = key in ("damping", "coulomb_friction")
+    return device.replace(**{key: _moved(getattr(device, key), value, more)}), law
+
+
+def _moved(now: Exact | Interval, value: Fraction, more: bool) -> Exact | Interval:
+    """A value, or an interval with its worse end there; one value where its other end would be worse."""
+    if not isinstance(now, Interval):
+        return Exact(value)
+    low, high = ends(now)
+    if more:
+        return Exact(value) if value >= high else Interval(Exact(value), now.high)
+    return Exact(value) if value <= low else Interval(now.low, Exact(value))
+
+
+def _estimators(asked: Asked, wall: Wall, hands: str, grain: int) -> Iterator[Advice]:
+    """Another velocity estimator that makes the loop passive, if one of the usual does."""
+    now = wall.velocity_filter.describe()
+    device, law = asked.box
+
+    def told(to: str, of: str = "") -> Advice:
+        text = f"estimate velocity with a {to}{of} instead of the {now}{hands}"
+        return Advice("velocity_filter", now, to, "", "change", text)
+
+    for samples in _WINDOWS:
+        other = device, law.replace(velocity_filter=Window(samples))
+        if provable(lambda _, other=other: other, Fraction(0), asked.contact) and asked.covers(other):  # type: ignore[misc]
+            yield told(f"window of {samples} samples")
+            break
+    if wall.velocity_filter.time_constant is None:
+        period = float(ends(device.sample_period)[1])
+        knob = asked.filtered(period)
+        first = next((t for t in (period * 2**power for power in range(10)) if knob.proves(t)), None)
+        tau = first and smallest_holding(knob.holds, first, grain, knob.likely())
+        if tau is not None and asked.covers(turned(asked.box, "time_constant", Exact(tau).fraction)):
+            yield told(f"one-pole filter of {readable(outward(tau, knob), 's')}", " (time constant)")
