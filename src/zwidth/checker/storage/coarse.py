@@ -85,14 +85,12 @@ def coarse_storage(told: Read) -> str:
             moves.append((forces, _costs(law, losses, line, unit, off, part)))
     largest = int(value.max())
     for forces, costs in moves:
-        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (len(costs) + 1)
+        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * width
     if largest >= _EXACT:
         raise Invalid("the numbers are too large to be compared exactly")
-    from .moves import first_violation_in_parts_on_line, first_violation_on_line
+    from .moves import first_violation
 
-    look: Any = first_violation_on_line if len(moves) == 1 else first_violation_in_parts_on_line
-    tables = [table.astype(np.float64) for move in moves for table in move]
-    at = look(value.astype(np.float64), _exists(line), *tables, np.array(line.places), line.reach)
+    at = first_violation(value[:, :, None], _exists(line), moves, line.inside.index(True), line.reach)
     if at >= 0:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
     return proved(told, losses)

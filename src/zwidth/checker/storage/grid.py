@@ -80,15 +80,13 @@ def storage(told: Read) -> str:
             moves.append((forces, costs_of(losses, unit, off, part, max_move, steps)))
     largest = int(value.max())
     for forces, costs in moves:
-        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (len(costs) + 1)
+        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * width * steps
     if largest >= _EXACT:
         raise Invalid("the numbers are too large to be compared exactly")
     exists = _exists(low, high, reach, memory)
-    from .moves import first_violation, first_violation_in_parts
+    from .moves import first_violation
 
-    look: Any = first_violation if len(moves) == 1 else first_violation_in_parts
-    tables = [table.astype(np.float64) for move in moves for table in move]
-    at = look(value.astype(np.float64), exists, *tables, reach, steps)
+    at = first_violation(value, exists, moves, 0, reach)
     if at >= 0:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
     return proved(told.domain, losses, law)

@@ -1,276 +1,170 @@
-"""Every move from every state, one after the other, in doubles that hold whole numbers exactly."""
+"""Every move from every state, in doubles or integers that hold whole numbers exactly, many states at a time.
+
+V(s, x) ≥ V(s', x') − F d − c(|d|) for every move d = x' − x.  From one distance to the next, all states of a
+block are looked at together: V(s', x') − F x' less a number is compared with V(s, x) − F x, place by place.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
+
+AT_ONCE = 1 << 15
+"""Moves of one distance that are looked at together: so few that they stay near the processor."""
+ROOM = 1 << 21
+"""Numbers of one array."""
+
+Parts = Sequence[tuple[Any, Any]]
+Following = Iterator[tuple[Any, Any]]
+"""Reading by reading the states that follow, −1 off the grid, and by how many places they stand elsewhere."""
 
 
-@njit(cache=True, parallel=True)
-def first_violation(value: Any, exists: Any, forces: Any, costs: Any, reach: int, steps: int) -> int:
+def first_violation(value: Any, exists: Any, moves: Parts, inside: int, reach: int) -> int:
     """The first state from which some move takes out more energy than V falls; −1 if there is none.
 
-    value is (cells, histories, steps + 1), forces and exists are (cells, histories).
+    value is (cells, histories, nodes), exists is (cells, histories).  Cells of one node are corners of a line:
+    the first that is `inside` stands where the last one outside does.  `moves` are the parts of an interval,
+    the hand anywhere between them: of each the forces, which are (cells, histories), and what a move costs.
+    Later forces do not depend on the oldest reading.
     """
     cells, histories, nodes = value.shape
-    width = 2 * reach + 1
-    older = histories // width if histories > 1 else 1
-    worst = np.full(cells, -1, np.int64)
-    for n in prange(cells):
-        gain, move = np.empty(width * nodes), np.empty(width * nodes)
-        for newer in range(older):
-            for j in range(nodes):
-                size = 0
-                for n2 in range(max(0, n - reach), min(cells, n + reach + 1)):
-                    h2 = (n - n2 + reach) * older + newer if histories > 1 else 0
-                    for j2 in range(nodes):
-                        d = (n2 - n) * steps + j2 - j
-                        if abs(d) < costs.size:
-                            gain[size] = value[n2, h2, j2] - costs[abs(d)]
-                            move[size] = d
-                            size += 1
-                done_force, done_best = np.nan, 0.0
-                for oldest in range(width if histories > 1 else 1):
-                    h = newer * width + oldest if histories > 1 else 0
-                    if not exists[n, h]:
-                        continue
-                    f = forces[n, h]
-                    if f != done_force:
-                        best = 0.0
-                        for t in range(size):
-                            best = max(best, gain[t] - f * move[t])
-                        done_force, done_best = f, best
-                    if value[n, h, j] < done_best and worst[n] < 0:
-                        worst[n] = (n * histories + h) * nodes + j
-    for n in range(cells):
-        if worst[n] >= 0:
-            return int(worst[n])
-    return -1
+    oldest = 2 * reach + 1 if histories > 1 else 1
+    older = histories // oldest
+    near = min(reach, cells - 1)
+
+    def following(groups: Any) -> Following:
+        n, newer = groups // older, groups % older
+        for k in range(-near, near + 1):
+            then = n + k
+            place = then * histories + (reach - k) * older + newer if histories > 1 else then
+            shift = (n >= inside).astype(np.int64) - (then >= inside)
+            yield np.where((then >= 0) & (then < cells), place, -1), shift
+
+    return _first(value.reshape(-1, nodes), exists.ravel(), moves, following, near, oldest)
 
 
-@njit(cache=True, parallel=True)
-def first_violation_in_parts(
-    value: Any,
-    exists: Any,
-    forces: Any,
-    costs: Any,
-    later_forces: Any,
-    later_costs: Any,
-    reach: int,
-    steps: int,
+def first_violation_in_table(value: Any, successors: Any, forces: Any, costs: Any) -> int:
+    """The same where a table says which state follows, −1 off the grid; value is (states, nodes)."""
+
+    def following(states: Any) -> Following:
+        for then in successors[states].T:
+            yield then, np.zeros(1, np.int64)
+
+    exists = np.ones(len(value), np.bool_)
+    return _first(value, exists, [(forces, costs)], following, successors.shape[1] // 2, 1)
+
+
+def _first(
+    value: Any, exists: Any, moves: Parts, following: Callable[[Any], Following], reach: int, oldest: int
 ) -> int:
-    """The same where each interval is two moves with two forces, the hand anywhere between them."""
-    cells, histories, nodes = value.shape
-    width = 2 * reach + 1
-    older = histories // width
-    worst = np.full(cells, -1, np.int64)
-    for n in prange(cells):
-        low, high = max(0, n - reach), min(cells, n + reach + 1)
-        start, size = (low - n) * steps, (high - low) * steps + 1
-        goal, middle = np.empty(size), np.empty(size)
-        for newer in range(older):
-            any_h = -1
-            for oldest in range(width):
-                if exists[n, newer * width + oldest]:
-                    any_h = newer * width + oldest
-            if any_h < 0:
-                continue
-            later = later_forces[n, any_h]  # does not depend on the oldest reading
-            goal[:] = -1.0
-            for n2 in range(low, high):
-                h2 = (n - n2 + reach) * older + newer
-                for j2 in range(nodes):
-                    at = (n2 - low) * steps + j2
-                    goal[at] = max(goal[at], value[n2, h2, j2])
-            for m in range(size):
-                middle[m] = goal[m]
-                for to in range(max(0, m - later_costs.size + 1), min(size, m + later_costs.size)):
-                    middle[m] = max(middle[m], goal[to] - later * (to - m) - later_costs[abs(to - m)])
-            for oldest in range(width):
-                h = newer * width + oldest
-                if not exists[n, h]:
-                    continue
-                f = forces[n, h]
-                for j in range(nodes):
-                    best = 0.0
-                    at = j - start
-                    for m in range(max(0, at - costs.size + 1), min(size, at + costs.size)):
-                        best = max(best, middle[m] - f * (m - at) - costs[abs(m - at)])
-                    if value[n, h, j] < best and worst[n] < 0:
-                        worst[n] = (n * histories + h) * nodes + j
-    for n in range(cells):
-        if worst[n] >= 0:
-            return int(worst[n])
+    """States that differ in the oldest of their readings alone, so many, lead to the same ones."""
+    nodes = value.shape[1]
+    start = reach * max(1, nodes - 1)
+    places = 2 * start + nodes
+    forces, costs = moves[0][0].ravel(), moves[0][1]
+    at_once = max(1, min(AT_ONCE // nodes, ROOM // places))
+    for groups in _blocks(np.arange(len(value) // oldest), at_once):
+        states = np.arange(groups[0] * oldest, (groups[-1] + 1) * oldest)
+        states = states[exists[states]]
+        if not states.size:
+            continue
+        goal = _goal(value, following(groups), places, len(groups))
+        for later_forces, later_costs in moves[:0:-1]:
+            middle = _best(goal, later_forces.ravel()[groups * oldest], later_costs, 0, places)
+            goal = np.where(goal < 0, goal, middle)
+        for some in _blocks(states, at_once):
+            reached = goal.take(some // oldest - groups[0], axis=1)
+            bad = value[some] < _best(reached, forces[some], costs, start, nodes).T
+            if bad.any():
+                at = int(bad.argmax())
+                return int(some[at // nodes]) * nodes + at % nodes
     return -1
 
 
-@njit(cache=True, parallel=True)
-def first_violation_in_table(value: Any, successors: Any, forces: Any, costs: Any, steps: int) -> int:
-    """The same where a table says which state follows, −1 off the grid; value is (states, steps + 1)."""
-    states, nodes = value.shape
-    reach = successors.shape[1] // 2
-    worst = np.full(states, -1, np.int64)
-    for s in prange(states):
-        for j in range(nodes):
-            for move in range(2 * reach + 1):
-                then = successors[s, move]
-                if then < 0:
-                    continue
-                for j2 in range(nodes):
-                    d = (move - reach) * steps + j2 - j
-                    if abs(d) < costs.size and value[s, j] < value[then, j2] - forces[s] * d - costs[abs(d)]:
-                        worst[s] = s * nodes + j
-    for s in range(states):
-        if worst[s] >= 0:
-            return int(worst[s])
-    return -1
+def _blocks(all_of_them: Any, size: int) -> Iterator[Any]:
+    for first in range(0, len(all_of_them), size):
+        yield all_of_them[first : first + size]
 
 
-@njit(cache=True)
-def _between(value: Any, n: int, h: int, at: int, j: int) -> int:
-    """V at a level given in 2⁻¹⁶ parts, rounded up."""
-    level, part = at >> 16, at & 0xFFFF
-    here = value[n, h, level, j]
-    if part == 0:
-        return int(here)
-    return int(here - ((-(value[n, h, level + 1, j] - here) * part) >> 16))
+def _goal(value: Any, following: Following, places: int, groups: int) -> Any:
+    """The most that is stored at every place that a move may lead to, and −∞ off the grid; a column each."""
+    goal, nodes = np.full((places, groups), -np.inf), value.shape[1]
+    for k, (then, shift) in enumerate(following):
+        there = np.where(then >= 0, value[then].T, -np.inf)
+        for by in range(shift.min(), shift.max() + 1):
+            at = goal[k * max(1, nodes - 1) + by :][:nodes]
+            np.maximum(at, there, out=at, where=shift == by)
+    return goal
 
 
-@njit(cache=True, parallel=True)
+def _best(goal: Any, forces: Any, costs: Any, start: int, nodes: int) -> Any:
+    """The most that a move from each of some places can bring, the first of them at `start`."""
+    fed = np.arange(-start, len(goal) - start)[:, None] * forces.astype(np.float64)
+    here = fed[start : start + nodes].copy()
+    np.subtract(goal, fed, out=fed)
+    best, one = np.full(here.shape, -np.inf), np.empty(here.shape)
+    for d in range(max(1 - len(costs), 1 - start - nodes), min(len(costs), len(goal) - start)):
+        first, last = max(0, -start - d), min(nodes, len(goal) - start - d)
+        brought = np.subtract(fed[start + d + first : start + d + last], costs[abs(d)], out=one[first:last])
+        np.maximum(best[first:last], brought, out=best[first:last])
+    return np.add(best, here, out=best)
+
+
 def first_relaxing_violation(
-    value: Any,
-    rows: Any,
-    inwards: Any,
-    outwards: Any,
-    lower: Any,
-    upper: Any,
-    costs: Any,
-    reach: int,
-    steps: int,
+    value: Any, rows: Any, forces: Any, images: Any, costs: Any, reach: int
 ) -> int:
     """The first state from which some move takes out more energy than V falls; −1 if there is none.
 
-    value is (cells, histories, levels, steps + 1); lower and upper enclose the image of each level.
+    value is (cells, histories, levels, nodes); forces inwards and outwards, and where a level goes at least
+    and at most, in 2⁻¹⁶ parts of a level, are (2, rows, levels).
     """
     cells, histories, levels, nodes = value.shape
-    older = histories // (2 * reach + 1) if histories > 1 else 1
-    worst = np.full(cells, -1, np.int64)
-    for n in prange(cells):
-        for h in range(histories):
-            row = rows[n, h]
-            if row < 0:
-                continue
-            for n2 in range(max(0, n - reach), min(cells, n + reach + 1)):
-                h2 = (n - n2 + reach) * older + h // (2 * reach + 1) if histories > 1 else 0
-                for j in range(nodes):
-                    for j2 in range(nodes):
-                        d = (n2 - n) * steps + j2 - j
-                        if abs(d) >= costs.size:
-                            continue
-                        cost = costs[abs(d)]
-                        for i in range(levels):
-                            f = inwards[row, i] if d > 0 else outwards[row, i]
-                            have = value[n, h, i, j] + f * d + cost
-                            goal = max(
-                                _between(value, n2, h2, lower[row, i], j2),
-                                _between(value, n2, h2, upper[row, i], j2),
-                            )
-                            bad = have < goal
-                            if i + 1 < levels:
-                                passed = (lower[row, i] >> 16) + 1  # the level that the image may pass
-                                gap = passed * (1 << 16) - upper[row, i]
-                                if passed * (1 << 16) < upper[row, i + 1] and gap >= 0:
-                                    width = upper[row, i + 1] - lower[row, i]
-                                    f = inwards[row, i + 1] if d > 0 else outwards[row, i + 1]
-                                    rise = value[n, h, i + 1, j] + f * d + cost - have
-                                    early = (gap << 16) // width
-                                    late = min(-((-(gap + 1) << 16) // max(width - 2, 1)), 1 << 16)
-                                    least = have + min((rise * early) >> 16, (rise * late) >> 16)
-                                    bad = bad or least < value[n2, h2, passed, j2]
-                            if bad and worst[n] < 0:
-                                worst[n] = ((n * histories + h) * levels + i) * nodes + j
-    for n in range(cells):
-        if worst[n] >= 0:
-            return int(worst[n])
+    oldest = 2 * reach + 1 if histories > 1 else 1
+    near, steps = min(reach, cells - 1), nodes - 1
+    start, flat = near * steps, value.reshape(-1, nodes)
+    places = 2 * start + nodes
+    most = max(1, min(AT_ONCE // nodes, ROOM // places) // levels)
+    for states in _blocks(np.flatnonzero(rows.ravel() >= 0), most):
+        row, n, newer = rows.ravel()[states], states // histories, states % histories // oldest
+        (lower, upper), passed = images[:, row], (images[0, row] >> 16) + 1
+        gap = (passed << 16) - upper  # to the level that the image may pass
+        s, i = np.nonzero((passed[:, :-1] << 16 < upper[:, 1:]) & (gap[:, :-1] >= 0))
+        gap, width, passed = gap[s, i], upper[s, i + 1] - lower[s, i], passed[s, i]
+        early = (gap << 16) // width
+        late = np.minimum(-((-(gap + 1) << 16) // np.maximum(width - 2, 1)), 1 << 16)
+        goal = np.full((places, len(states), levels), np.iinfo(np.int64).min)
+        kink = np.full((places, len(s)), np.iinfo(np.int64).min)
+        for k in range(-near, near + 1):
+            on = np.flatnonzero((n + k >= 0) & (n + k < cells))
+            h = (reach - k) * (histories // oldest) + newer if histories > 1 else 0 * newer
+            place = ((n + k) * histories + h) * levels
+            found = [_between(flat, place[on, None], end[on], levels) for end in (lower, upper)]
+            at = slice(start + k * steps, start + k * steps + nodes)
+            goal[at, on] = np.maximum(goal[at, on], np.maximum(*found).transpose(2, 0, 1))
+            hit = np.flatnonzero((n[s] + k >= 0) & (n[s] + k < cells))
+            kink[at, hit] = np.maximum(kink[at, hit], flat[place[s[hit]] + passed[hit]].T)
+        here = value.reshape(-1, levels, nodes)[states].transpose(2, 0, 1).copy()
+        low, rise = here[:, s, i], here[:, s, i + 1] - here[:, s, i]
+        bad, bad_between = np.zeros(here.shape, np.bool_), np.zeros(low.shape, np.bool_)
+        for d in range(max(1 - len(costs), -start - steps), min(len(costs), start + nodes)):
+            first, last = max(0, -start - d), min(nodes, places - start - d)
+            j, to = slice(first, last), slice(start + d + first, start + d + last)
+            paid = forces[0 if d > 0 else 1, row] * d + costs[abs(d)]
+            bad[j] |= here[j] + paid < goal[to]
+            more = rise[j] + (paid[s, i + 1] - paid[s, i])
+            least = np.minimum(more * early, more * late) >> 16
+            bad_between[j] |= low[j] + paid[s, i] + least < kink[to]
+        bad[:, s, i] |= bad_between
+        if bad.any():
+            at = int(bad.transpose(1, 2, 0).argmax())
+            return int(states[at // (levels * nodes)]) * levels * nodes + at % (levels * nodes)
     return -1
 
 
-@njit(cache=True)
-def _corners(value: Any, places: Any, n: int, newer: int, reach: int, goal: Any) -> int:
-    """The best value at every place within reach of corner n; returns how far out the first place is."""
-    corners, histories = value.shape
-    older = histories // (2 * reach + 1) if histories > 1 else 1
-    low, high = max(0, n - reach), min(corners, n + reach + 1)
-    goal[:] = -1.0
-    for n2 in range(low, high):
-        h2 = (n - n2 + reach) * older + newer if histories > 1 else 0
-        at = places[n2] - places[low]
-        goal[at] = max(goal[at], value[n2, h2])
-    return int(places[n] - places[low])
-
-
-@njit(cache=True, parallel=True)
-def first_violation_on_line(value: Any, exists: Any, forces: Any, costs: Any, places: Any, reach: int) -> int:
-    """As first_violation, V at the corners of a line; value, exists and forces are (corners, histories)."""
-    corners, histories = value.shape
-    width = 2 * reach + 1 if histories > 1 else 1
-    worst = np.full(corners, -1, np.int64)
-    for n in prange(corners):
-        size = places[min(corners - 1, n + reach)] - places[max(0, n - reach)] + 1
-        goal = np.empty(size)
-        for newer in range(histories // width):
-            start = _corners(value, places, n, newer, reach, goal)
-            for h in range(newer * width, (newer + 1) * width):
-                for to in range(size):
-                    d = to - start
-                    if not exists[n, h] or abs(d) >= costs.size:
-                        continue
-                    if value[n, h] < goal[to] - forces[n, h] * d - costs[abs(d)]:
-                        worst[n] = n * histories + h
-    for n in range(corners):
-        if worst[n] >= 0:
-            return int(worst[n])
-    return -1
-
-
-@njit(cache=True, parallel=True)
-def first_violation_in_parts_on_line(
-    value: Any,
-    exists: Any,
-    forces: Any,
-    costs: Any,
-    later_forces: Any,
-    later_costs: Any,
-    places: Any,
-    reach: int,
-) -> int:
-    """The same where each interval is two moves with two forces, the hand anywhere between them."""
-    corners, histories = value.shape
-    width = 2 * reach + 1
-    worst = np.full(corners, -1, np.int64)
-    for n in prange(corners):
-        size = places[min(corners - 1, n + reach)] - places[max(0, n - reach)] + 1
-        goal, middle = np.empty(size), np.empty(size)
-        for newer in range(histories // width):
-            start = _corners(value, places, n, newer, reach, goal)
-            later = np.nan
-            for h in range(newer * width, (newer + 1) * width):
-                if not exists[n, h]:
-                    continue
-                if later != later_forces[n, h]:
-                    later = later_forces[n, h]
-                    for m in range(size):
-                        middle[m] = goal[m]
-                        for to in range(max(0, m - later_costs.size + 1), min(size, m + later_costs.size)):
-                            lost = later * (to - m) + later_costs[abs(to - m)]
-                            middle[m] = max(middle[m], goal[to] - lost)
-                for m in range(max(0, start - costs.size + 1), min(size, start + costs.size)):
-                    lost = forces[n, h] * (m - start) + costs[abs(m - start)]
-                    if value[n, h] < middle[m] - lost:
-                        worst[n] = n * histories + h
-    for n in range(corners):
-        if worst[n] >= 0:
-            return int(worst[n])
-    return -1
+def _between(flat: Any, place: Any, at: Any, levels: int) -> Any:
+    """V at levels given in 2⁻¹⁶ parts, rounded up."""
+    level = at >> 16
+    here, above = flat[place + level], flat[place + np.minimum(level + 1, levels - 1)]
+    return here - ((-(above - here) * (at & 0xFFFF)[..., None]) >> 16)

@@ -398,7 +398,7 @@ def _require_few(nodes: int, each: int) -> None:
     """The moves are counted before any is tried."""
     if nodes * each > MOST_MOVES:
         raise Invalid(
-            f"the grid has {nodes * each} moves: without numpy and numba at most {MOST_MOVES} can be checked"
+            f"the grid has {nodes * each} moves: without numpy at most {MOST_MOVES} can be checked"
         )
 
 

@@ -68,8 +68,7 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
     rise = int(np.abs(np.diff(value, axis=2)).max()) + 2 * abs(branch) * len(costs) if levels > 1 else 0
     if span >= _MOST or max(rise, int(np.abs(forces).max()) * len(costs)) * PART >= 2**62:
         raise Invalid("the numbers are too large to be compared exactly")
-    tables = (rows, forces[0], forces[1], images[0], images[1], costs.astype(np.int64))
-    at = first_relaxing_violation(value, *tables, reach, steps)
+    at = first_relaxing_violation(value, rows, forces, images, costs, reach)
     if at >= 0:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
     return proved(domain, losses, law)
