@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from zwidth.checker.storage import moves
+from zwidth.checker.storage import domain, moves
 
 
 def one_by_one(value: Any, state: Any, goals: Any, parts: Any) -> bool:
@@ -74,8 +74,8 @@ def test_the_first_state_that_stores_too_little(line: bool, memory: int, parts: 
             for j in range(nodes):
                 each = [(f[n, h], costs) for f, costs in told]
                 bad[n, h, j] = exists[n, h] and one_by_one(value[n, h, j], j, goals, each)
-        monkeypatch.setattr(moves, "AT_ONCE", 1 << trial % 9)
-        monkeypatch.setattr(moves, "ROOM", 1 << trial % 11)
+        monkeypatch.setattr(domain, "AT_ONCE", 1 << trial % 9)
+        monkeypatch.setattr(domain, "ROOM", 1 << trial % 11)
         found.add(first(bad))
         assert moves.first_violation(value, exists, told, inside, reach) == first(bad), trial
     assert -1 in found
@@ -141,8 +141,8 @@ def test_the_first_level_that_stores_too_little(memory: int, monkeypatch: Any) -
                     bad[n, h, i, j] |= wrong or passes(
                         have, value[n, h, :, j] + paid, images[:, row], i, there
                     )
-        monkeypatch.setattr(moves, "AT_ONCE", 1 << trial % 9)
-        monkeypatch.setattr(moves, "ROOM", 1 << trial % 11)
+        monkeypatch.setattr(domain, "AT_ONCE", 1 << trial % 9)
+        monkeypatch.setattr(domain, "ROOM", 1 << trial % 11)
         found.add(first(bad))
         assert moves.first_relaxing_violation(value, rows, forces, images, costs, reach) == first(bad), trial
     assert -1 in found

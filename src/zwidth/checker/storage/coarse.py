@@ -24,7 +24,7 @@ from ..document.effort import reserve, spend
 from ..document.fields import Number, Packed, Read, Record, Whole, document
 from ..document.number import down
 from ..document.refusal import Invalid
-from .domain import PAIR, histories_of
+from .domain import histories_of, spend_moves
 from .packed import storage_of
 
 MOST_VALUES = 4_000_000
@@ -76,7 +76,10 @@ def coarse_storage(told: Read) -> str:
     if shape[0] * shape[1] > MOST_VALUES:
         raise Invalid("the grid is larger than can be checked")
     reserve(60 * shape[0] * shape[1])
-    spend(PAIR * shape[0] * shape[1] * (2 * width + 1) * (2 if losses.part < 1 else 1))
+    states, parts = shape[0] * shape[1], 1 if losses.part == 1 else 2
+    spend(0.5 * states * (line.memory + 2) * parts)
+    places = 2 * min(line.reach, shape[0] - 1) + 1
+    spend_moves(states, states // (width if line.memory else 1), places, 1, parts)
     value = storage_of(told.storage, shape)
     moves = []
     for age, part in ((losses.delay, losses.part), (losses.delay - 1, 1 - losses.part)):

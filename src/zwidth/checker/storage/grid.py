@@ -26,7 +26,7 @@ from ..contact.law import LAW, LOSSES, Law, Losses, law_of, losses_of
 from ..document.effort import reserve, spend
 from ..document.fields import Number, Packed, Read, Record, Whole, document, only_if
 from ..document.refusal import Invalid
-from .domain import DOMAIN, MOST_MOVES, MOST_VALUES, PAIR, costs_of, proved
+from .domain import DOMAIN, MOST_MOVES, MOST_VALUES, costs_of, proved, spend_moves
 from .packed import storage_of
 from .relaxing import storage_of_relaxing
 
@@ -66,8 +66,9 @@ def storage(told: Read) -> str:
     if states * (steps + 1) > MOST_VALUES:
         raise Invalid("the grid is larger than can be checked")
     reserve(16 * states * (steps + 1) + 8 * (states + width**memory) * (memory + 3))
-    spend(0.05 * states * (memory + 2))
-    spend(PAIR * states * width * (steps + 1) ** 2 * (2 if losses.part < 1 else 1))
+    spend((0.2 * (memory + 2) if law.step is None and not law.rate else 40) * states)
+    places = 2 * min(reach, cells - 1) * steps + steps + 1
+    spend_moves(states, states // (width if memory else 1), places, steps + 1, 1 if losses.part == 1 else 2)
     _require_small(law, losses, unit, max(abs(low), abs(high)), reach)
     if law.surface != "none" and low > 1 - (memory + 1) * reach:
         raise Invalid("the grid must reach so far out that a hand beyond it has been forgotten")

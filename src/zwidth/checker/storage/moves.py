@@ -11,10 +11,7 @@ from typing import Any
 
 import numpy as np
 
-AT_ONCE = 1 << 15
-"""Moves of one distance that are looked at together: so few that they stay near the processor."""
-ROOM = 1 << 21
-"""Numbers of one array."""
+from .domain import at_once
 
 Parts = Sequence[tuple[Any, Any]]
 Following = Iterator[tuple[Any, Any]]
@@ -64,8 +61,8 @@ def _first(
     start = reach * max(1, nodes - 1)
     places = 2 * start + nodes
     forces, costs = moves[0][0].ravel(), moves[0][1]
-    at_once = max(1, min(AT_ONCE // nodes, ROOM // places))
-    for groups in _blocks(np.arange(len(value) // oldest), at_once):
+    size = at_once(nodes, places)
+    for groups in _blocks(np.arange(len(value) // oldest), size):
         states = np.arange(groups[0] * oldest, (groups[-1] + 1) * oldest)
         states = states[exists[states]]
         if not states.size:
@@ -74,7 +71,7 @@ def _first(
         for later_forces, later_costs in moves[:0:-1]:
             middle = _best(goal, later_forces.ravel()[groups * oldest], later_costs, 0, places)
             goal = np.where(goal < 0, goal, middle)
-        for some in _blocks(states, at_once):
+        for some in _blocks(states, size):
             reached = goal.take(some // oldest - groups[0], axis=1)
             bad = value[some] < _best(reached, forces[some], costs, start, nodes).T
             if bad.any():
@@ -112,9 +109,7 @@ def _best(goal: Any, forces: Any, costs: Any, start: int, nodes: int) -> Any:
     return np.add(best, here, out=best)
 
 
-def first_relaxing_violation(
-    value: Any, rows: Any, forces: Any, images: Any, costs: Any, reach: int
-) -> int:
+def first_relaxing_violation(value: Any, rows: Any, forces: Any, images: Any, costs: Any, reach: int) -> int:
     """The first state from which some move takes out more energy than V falls; −1 if there is none.
 
     value is (cells, histories, levels, nodes); forces inwards and outwards, and where a level goes at least
@@ -122,49 +117,62 @@ def first_relaxing_violation(
     """
     cells, histories, levels, nodes = value.shape
     oldest = 2 * reach + 1 if histories > 1 else 1
-    near, steps = min(reach, cells - 1), nodes - 1
-    start, flat = near * steps, value.reshape(-1, nodes)
+    near, steps, nowhere = min(reach, cells - 1), nodes - 1, np.iinfo(np.int64).min
+    start, value, rows = near * steps, value.reshape(-1, levels, nodes), rows.ravel()
     places = 2 * start + nodes
-    most = max(1, min(AT_ONCE // nodes, ROOM // places) // levels)
-    for states in _blocks(np.flatnonzero(rows.ravel() >= 0), most):
-        row, n, newer = rows.ravel()[states], states // histories, states % histories // oldest
-        (lower, upper), passed = images[:, row], (images[0, row] >> 16) + 1
-        gap = (passed << 16) - upper  # to the level that the image may pass
-        s, i = np.nonzero((passed[:, :-1] << 16 < upper[:, 1:]) & (gap[:, :-1] >= 0))
-        gap, width, passed = gap[s, i], upper[s, i + 1] - lower[s, i], passed[s, i]
-        early = (gap << 16) // width
-        late = np.minimum(-((-(gap + 1) << 16) // np.maximum(width - 2, 1)), 1 << 16)
-        goal = np.full((places, len(states), levels), np.iinfo(np.int64).min)
-        kink = np.full((places, len(s)), np.iinfo(np.int64).min)
+    size = max(1, at_once(nodes, places) // levels)
+    for states in _blocks(np.flatnonzero(rows >= 0), size):
+        row, n, newer = rows[states], states // histories, states % histories // oldest
+        below, passed, early, late = _passing(images[:, row])
+        ends = [_between(end) for end in images[:, row]]
+        goal = np.full((places, len(states) * levels), nowhere)
+        kink = np.full((places, len(passed)), nowhere)
         for k in range(-near, near + 1):
-            on = np.flatnonzero((n + k >= 0) & (n + k < cells))
-            h = (reach - k) * (histories // oldest) + newer if histories > 1 else 0 * newer
-            place = ((n + k) * histories + h) * levels
-            found = [_between(flat, place[on, None], end[on], levels) for end in (lower, upper)]
+            on = (n + k >= 0) & (n + k < cells)
+            place = (n + k) * histories + ((reach - k) * (histories // oldest) + newer if histories > 1 else 0)
+            there = value[np.where(on, place, 0)].transpose(2, 0, 1)
+            there = np.where(on[:, None], there, nowhere).reshape(nodes, -1)
             at = slice(start + k * steps, start + k * steps + nodes)
-            goal[at, on] = np.maximum(goal[at, on], np.maximum(*found).transpose(2, 0, 1))
-            hit = np.flatnonzero((n[s] + k >= 0) & (n[s] + k < cells))
-            kink[at, hit] = np.maximum(kink[at, hit], flat[place[s[hit]] + passed[hit]].T)
-        here = value.reshape(-1, levels, nodes)[states].transpose(2, 0, 1).copy()
-        low, rise = here[:, s, i], here[:, s, i + 1] - here[:, s, i]
+            for level, above, part in ends:
+                here = there.take(level, axis=1)
+                between = here - ((here - there.take(above, axis=1)) * part >> 16)  # rounded up
+                np.maximum(goal[at], between, out=goal[at])
+            np.maximum(kink[at], there.take(passed, axis=1), out=kink[at])
+        here = value[states].transpose(2, 0, 1).reshape(nodes, -1)
+        low = here.take(below, axis=1)
+        rise = here.take(below + 1, axis=1) - low
         bad, bad_between = np.zeros(here.shape, np.bool_), np.zeros(low.shape, np.bool_)
-        for d in range(max(1 - len(costs), -start - steps), min(len(costs), start + nodes)):
+        for d in range(max(1 - len(costs), 1 - start - nodes), min(len(costs), start + nodes)):
             first, last = max(0, -start - d), min(nodes, places - start - d)
             j, to = slice(first, last), slice(start + d + first, start + d + last)
-            paid = forces[0 if d > 0 else 1, row] * d + costs[abs(d)]
+            paid = forces[0 if d > 0 else 1, row].ravel() * d + costs[abs(d)]
             bad[j] |= here[j] + paid < goal[to]
-            more = rise[j] + (paid[s, i + 1] - paid[s, i])
+            more = rise[j] + (paid[below + 1] - paid[below])
             least = np.minimum(more * early, more * late) >> 16
-            bad_between[j] |= low[j] + paid[s, i] + least < kink[to]
-        bad[:, s, i] |= bad_between
+            bad_between[j] |= low[j] + paid[below] + least < kink[to]
+        bad[:, below] |= bad_between
         if bad.any():
-            at = int(bad.transpose(1, 2, 0).argmax())
+            at = int(bad.reshape(nodes, len(states), levels).transpose(1, 2, 0).argmax())
             return int(states[at // (levels * nodes)]) * levels * nodes + at % (levels * nodes)
     return -1
 
 
-def _between(flat: Any, place: Any, at: Any, levels: int) -> Any:
-    """V at levels given in 2⁻¹⁶ parts, rounded up."""
-    level = at >> 16
-    here, above = flat[place + level], flat[place + np.minimum(level + 1, levels - 1)]
-    return here - ((-(above - here) * (at & 0xFFFF)[..., None]) >> 16)
+def _between(image: Any) -> tuple[Any, Any, Any]:
+    """The level below and above each image, by place among those of all states, and the part between."""
+    levels = image.shape[1]
+    level = image >> 16
+    first = levels * np.arange(len(image))[:, None]
+    return (first + level).ravel(), (first + np.minimum(level + 1, levels - 1)).ravel(), (image & 0xFFFF).ravel()
+
+
+def _passing(images: Any) -> tuple[Any, Any, Any, Any]:
+    """Where the image passes a level on the way from one level to the next: both, and how far on at least
+    and at most.
+    """
+    (lower, upper), levels = images, images.shape[2]
+    passed = (lower >> 16) + 1
+    gap = (passed << 16) - upper
+    s, i = np.nonzero((passed[:, :-1] << 16 < upper[:, 1:]) & (gap[:, :-1] >= 0))
+    gap, width = gap[s, i], upper[s, i + 1] - lower[s, i]
+    late = np.minimum(-((-(gap + 1) << 16) // np.maximum(width - 2, 1)), 1 << 16)
+    return s * levels + i, s * levels + passed[s, i], (gap << 16) // width, late
