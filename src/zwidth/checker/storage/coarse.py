@@ -88,14 +88,13 @@ def coarse_storage(told: Read) -> str:
             moves.append((forces, _costs(law, losses, line, unit, off, part)))
     largest = int(value.max())
     for forces, costs in moves:
-        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * width
+        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (line.reach + 1)
     if largest >= _EXACT:
         raise Invalid("the numbers are too large to be compared exactly")
-    from .moves import first_violation
+    from .moves import violated
 
-    at = first_violation(value[:, :, None], _exists(line), moves, line.inside.index(True), line.reach)
-    if at >= 0:
-        raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    if violated(value[:, :, None], _exists(line), moves, line.inside.index(True), line.reach):
+        raise Invalid("a move takes out more energy than was stored")
     return proved(told, losses)
 
 

@@ -18,10 +18,10 @@ from ..document.number import down
 MOST_VALUES = 60_000_000
 MOST_MOVES = 10_000_000
 AT_ONCE, ROOM = 1 << 15, 1 << 19
-"""Moves of one distance that are looked at together, so few that they stay near the processor; and numbers."""
+"""Moves of one distance that are looked at together, so few that the processor has them at hand; numbers."""
 MOVE, PLACE, FOUND, CALL = 1 / 80, 0.1, 0.2, 15.0
-"""Steps of work for a move; for a place that it may lead to, once for each state, and once more for all states
-that lead to the same ones; and for an operation on a block of states, however few.
+"""Steps of work for a move; for a place that it may lead to, once for each state, and once more for all that
+lead to the same ones; and for an operation on a block of states, however few.
 """
 
 FARTHEST = 10**7
@@ -72,9 +72,7 @@ def costs_of(losses: Losses, unit: Fraction, off: int, part: Fraction, max_move:
     return np.array(least, dtype=object)
 
 
-def spend_moves(
-    states: int, groups: int, places: int, nodes: int, parts: int = 1, slower: float = 1
-) -> None:
+def spend_moves(states: int, groups: int, places: int, nodes: int, parts: int = 1, slower: float = 1) -> None:
     """Before all moves from the nodes of so many states, which in groups lead to the same places."""
     reserve(32 * places)
     call = CALL / at_once(nodes, places)

@@ -81,15 +81,14 @@ def storage(told: Read) -> str:
             moves.append((forces, costs_of(losses, unit, off, part, max_move, steps)))
     largest = int(value.max())
     for forces, costs in moves:
-        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * width * steps
+        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (reach + 1) * steps
     if largest >= _EXACT:
         raise Invalid("the numbers are too large to be compared exactly")
     exists = _exists(low, high, reach, memory)
-    from .moves import first_violation
+    from .moves import violated
 
-    at = first_violation(value, exists, moves, 0, reach)
-    if at >= 0:
-        raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    if violated(value, exists, moves, 0, reach):
+        raise Invalid("a move takes out more energy than was stored")
     return proved(told.domain, losses, law)
 
 

@@ -18,13 +18,13 @@ Following = Iterator[tuple[Any, Any]]
 """Reading by reading the states that follow, −1 off the grid, and by how many places they stand elsewhere."""
 
 
-def first_violation(value: Any, exists: Any, moves: Parts, inside: int, reach: int) -> int:
-    """The first state from which some move takes out more energy than V falls; −1 if there is none.
+def violated(value: Any, exists: Any, moves: Parts, inside: int, reach: int) -> bool:
+    """True where from some state some move takes out more energy than V falls.
 
-    value is (cells, histories, nodes), exists is (cells, histories).  Cells of one node are corners of a line:
-    the first that is `inside` stands where the last one outside does.  `moves` are the parts of an interval,
-    the hand anywhere between them: of each the forces, which are (cells, histories), and what a move costs.
-    Later forces do not depend on the oldest reading.
+    value is (cells, histories, nodes), exists is (cells, histories).  Cells of one node are corners of a
+    line: the first that is `inside` stands where the last one outside does.  `moves` are the parts of an
+    interval, the hand anywhere between them: of each the forces, which are (cells, histories), and what a
+    move costs.  Later forces do not depend on the oldest reading.
     """
     cells, histories, nodes = value.shape
     oldest = 2 * reach + 1 if histories > 1 else 1
@@ -39,10 +39,10 @@ def first_violation(value: Any, exists: Any, moves: Parts, inside: int, reach: i
             shift = (n >= inside).astype(np.int64) - (then >= inside)
             yield np.where((then >= 0) & (then < cells), place, -1), shift
 
-    return _first(value.reshape(-1, nodes), exists.ravel(), moves, following, near, oldest)
+    return _violated(value.reshape(-1, nodes), exists.ravel(), moves, following, near, oldest)
 
 
-def first_violation_in_table(value: Any, successors: Any, forces: Any, costs: Any) -> int:
+def violated_in_table(value: Any, successors: Any, forces: Any, costs: Any) -> bool:
     """The same where a table says which state follows, −1 off the grid; value is (states, nodes)."""
 
     def following(states: Any) -> Following:
@@ -50,12 +50,12 @@ def first_violation_in_table(value: Any, successors: Any, forces: Any, costs: An
             yield then, np.zeros(1, np.int64)
 
     exists = np.ones(len(value), np.bool_)
-    return _first(value, exists, [(forces, costs)], following, successors.shape[1] // 2, 1)
+    return _violated(value, exists, [(forces, costs)], following, successors.shape[1] // 2, 1)
 
 
-def _first(
+def _violated(
     value: Any, exists: Any, moves: Parts, following: Callable[[Any], Following], reach: int, oldest: int
-) -> int:
+) -> bool:
     """States that differ in the oldest of their readings alone, so many, lead to the same ones."""
     nodes = value.shape[1]
     start = reach * max(1, nodes - 1)
@@ -73,11 +73,9 @@ def _first(
             goal = np.where(goal < 0, goal, middle)
         for some in _blocks(states, size):
             reached = goal.take(some // oldest - groups[0], axis=1)
-            bad = value[some] < _best(reached, forces[some], costs, start, nodes).T
-            if bad.any():
-                at = int(bad.argmax())
-                return int(some[at // nodes]) * nodes + at % nodes
-    return -1
+            if (value[some] < _best(reached, forces[some], costs, start, nodes).T).any():
+                return True
+    return False
 
 
 def _blocks(all_of_them: Any, size: int) -> Iterator[Any]:
@@ -98,7 +96,7 @@ def _goal(value: Any, following: Following, places: int, groups: int) -> Any:
 
 def _best(goal: Any, forces: Any, costs: Any, start: int, nodes: int) -> Any:
     """The most that a move from each of some places can bring, the first of them at `start`."""
-    fed = np.arange(-start, len(goal) - start)[:, None] * forces.astype(np.float64)
+    fed = (np.arange(len(goal)) - len(goal) // 2)[:, None] * forces.astype(np.float64)
     here = fed[start : start + nodes].copy()
     np.subtract(goal, fed, out=fed)
     best, one = np.full(here.shape, -np.inf), np.empty(here.shape)
@@ -109,8 +107,8 @@ def _best(goal: Any, forces: Any, costs: Any, start: int, nodes: int) -> Any:
     return np.add(best, here, out=best)
 
 
-def first_relaxing_violation(value: Any, rows: Any, forces: Any, images: Any, costs: Any, reach: int) -> int:
-    """The first state from which some move takes out more energy than V falls; −1 if there is none.
+def violated_relaxing(value: Any, rows: Any, forces: Any, images: Any, costs: Any, reach: int) -> bool:
+    """True where from some state some move takes out more energy than V falls.
 
     value is (cells, histories, levels, nodes); forces inwards and outwards, and where a level goes at least
     and at most, in 2⁻¹⁶ parts of a level, are (2, rows, levels).
@@ -129,7 +127,9 @@ def first_relaxing_violation(value: Any, rows: Any, forces: Any, images: Any, co
         kink = np.full((places, len(passed)), nowhere)
         for k in range(-near, near + 1):
             on = (n + k >= 0) & (n + k < cells)
-            place = (n + k) * histories + ((reach - k) * (histories // oldest) + newer if histories > 1 else 0)
+            place = (n + k) * histories + (
+                (reach - k) * (histories // oldest) + newer if histories > 1 else 0
+            )
             there = value[np.where(on, place, 0)].transpose(2, 0, 1)
             there = np.where(on[:, None], there, nowhere).reshape(nodes, -1)
             at = slice(start + k * steps, start + k * steps + nodes)
@@ -141,20 +141,16 @@ def first_relaxing_violation(value: Any, rows: Any, forces: Any, images: Any, co
         here = value[states].transpose(2, 0, 1).reshape(nodes, -1)
         low = here.take(below, axis=1)
         rise = here.take(below + 1, axis=1) - low
-        bad, bad_between = np.zeros(here.shape, np.bool_), np.zeros(low.shape, np.bool_)
         for d in range(max(1 - len(costs), 1 - start - nodes), min(len(costs), start + nodes)):
             first, last = max(0, -start - d), min(nodes, places - start - d)
             j, to = slice(first, last), slice(start + d + first, start + d + last)
             paid = forces[0 if d > 0 else 1, row].ravel() * d + costs[abs(d)]
-            bad[j] |= here[j] + paid < goal[to]
+            bad = (here[j] + paid < goal[to]).any()
             more = rise[j] + (paid[below + 1] - paid[below])
             least = np.minimum(more * early, more * late) >> 16
-            bad_between[j] |= low[j] + paid[below] + least < kink[to]
-        bad[:, below] |= bad_between
-        if bad.any():
-            at = int(bad.reshape(nodes, len(states), levels).transpose(1, 2, 0).argmax())
-            return int(states[at // (levels * nodes)]) * levels * nodes + at % (levels * nodes)
-    return -1
+            if bad or (low[j] + paid[below] + least < kink[to]).any():
+                return True
+    return False
 
 
 def _between(image: Any) -> tuple[Any, Any, Any]:
@@ -162,7 +158,11 @@ def _between(image: Any) -> tuple[Any, Any, Any]:
     levels = image.shape[1]
     level = image >> 16
     first = levels * np.arange(len(image))[:, None]
-    return (first + level).ravel(), (first + np.minimum(level + 1, levels - 1)).ravel(), (image & 0xFFFF).ravel()
+    return (
+        (first + level).ravel(),
+        (first + np.minimum(level + 1, levels - 1)).ravel(),
+        (image & 0xFFFF).ravel(),
+    )
 
 
 def _passing(images: Any) -> tuple[Any, Any, Any, Any]:

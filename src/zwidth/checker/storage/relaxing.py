@@ -29,7 +29,7 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
     """Check every move; says what was proved."""
     import numpy as np
 
-    from .moves import first_relaxing_violation
+    from .moves import violated_relaxing
 
     assert law.relaxing is not None
     if law.limit is not None:
@@ -71,9 +71,8 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
     rise = int(np.abs(np.diff(value, axis=2)).max()) + 2 * abs(branch) * len(costs) if levels > 1 else 0
     if span >= _MOST or max(rise, int(np.abs(forces).max()) * len(costs)) * PART >= 2**62:
         raise Invalid("the numbers are too large to be compared exactly")
-    at = first_relaxing_violation(value, rows, forces, images, costs, reach)
-    if at >= 0:
-        raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    if violated_relaxing(value, rows, forces, images, costs, reach):
+        raise Invalid("a move takes out more energy than was stored")
     return proved(domain, losses, law)
 
 
