@@ -31,7 +31,7 @@ from .packed import storage_of
 from .relaxing import storage_of_relaxing
 
 _EXACT = 2**53
-AT_ONCE = 10**6
+AT_ONCE = 10**5
 """Forces computed at once in whole numbers of any size, which take room."""
 
 STORAGE = document(
@@ -66,9 +66,13 @@ def storage(told: Read) -> str:
     if states * (steps + 1) > MOST_VALUES:
         raise Invalid("the grid is larger than can be checked")
     reserve(16 * states * (steps + 1) + 8 * (states + width**memory) * (memory + 3))
-    spend((0.2 * (memory + 2) if law.step is None and not law.rate else 40) * states)
+    parts = 1 if losses.part == 1 else 2
+    if law.step is None and not law.rate:
+        spend(parts * 0.2 * (memory + 2) * states)
+    else:
+        spend(parts * (10 * states + (100 * cells * width if law.points else 0)))
     places = 2 * min(reach, cells - 1) * steps + steps + 1
-    spend_moves(states, states // (width if memory else 1), places, steps + 1, 1 if losses.part == 1 else 2)
+    spend_moves(states, states // (width if memory else 1), places, steps + 1, parts)
     _require_small(law, losses, unit, max(abs(low), abs(high)), reach)
     if law.surface != "none" and low > 1 - (memory + 1) * reach:
         raise Invalid("the grid must reach so far out that a hand beyond it has been forgotten")
@@ -173,8 +177,10 @@ def _unrounded(law: Law, losses: Losses, unit: Fraction, ages: list[Any]) -> Any
         per_count = [c * losses.resolution for c in law.taps]
         whole = lcm(*(c.denominator for c in per_count))
         parts = sum(int(c * whole) * a.astype(object) for c, a in zip(per_count, fed, strict=True))
-        several, place = np.unique(parts, return_inverse=True)
-        wished = [Fraction(n, whole) for n in several]
+        assert law.step is not None
+        step, of_units = law.step * whole, law.step / unit
+        steps = (2 * parts * step.denominator + step.numerator) // (2 * step.numerator)
+        return (steps * of_units.numerator // of_units.denominator).astype(np.int64)
     if law.step is not None:
         wished = [(w / law.step + Fraction(1, 2)) // 1 * law.step for w in wished]
     units = np.array([int(w // unit) for w in wished], dtype=np.int64)
