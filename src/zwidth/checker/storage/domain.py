@@ -19,7 +19,7 @@ MOST_VALUES = 60_000_000
 MOST_MOVES = 10_000_000
 AT_ONCE, ROOM = 1 << 15, 1 << 19
 """Moves of one distance that are looked at together, so few that the processor has them at hand; numbers."""
-MOVE, PLACE, FOUND, CALL = 1 / 80, 0.1, 0.2, 15.0
+MOVE, PLACE, FOUND, CALL = 1 / 80, 0.1, 0.3, 15.0
 """Steps of work for a move; for a place that it may lead to, once for each state, and once more for all that
 lead to the same ones; and for an operation on a block of states, however few.
 """
