@@ -127,10 +127,8 @@ def violated_relaxing(value: Any, rows: Any, forces: Any, images: Any, costs: An
         kink = np.full((places, len(passed)), nowhere)
         for k in range(-near, near + 1):
             on = (n + k >= 0) & (n + k < cells)
-            place = (n + k) * histories + (
-                (reach - k) * (histories // oldest) + newer if histories > 1 else 0
-            )
-            there = value[np.where(on, place, 0)].transpose(2, 0, 1)
+            h = (reach - k) * (histories // oldest) + newer if histories > 1 else 0
+            there = value[np.where(on, (n + k) * histories + h, 0)].transpose(2, 0, 1)
             there = np.where(on[:, None], there, nowhere).reshape(nodes, -1)
             at = slice(start + k * steps, start + k * steps + nodes)
             for level, above, part in ends:
@@ -155,14 +153,10 @@ def violated_relaxing(value: Any, rows: Any, forces: Any, images: Any, costs: An
 
 def _between(image: Any) -> tuple[Any, Any, Any]:
     """The level below and above each image, by place among those of all states, and the part between."""
-    levels = image.shape[1]
-    level = image >> 16
+    levels, level = image.shape[1], image >> 16
     first = levels * np.arange(len(image))[:, None]
-    return (
-        (first + level).ravel(),
-        (first + np.minimum(level + 1, levels - 1)).ravel(),
-        (image & 0xFFFF).ravel(),
-    )
+    above = np.minimum(level + 1, levels - 1)
+    return (first + level).ravel(), (first + above).ravel(), (image & 0xFFFF).ravel()
 
 
 def _passing(images: Any) -> tuple[Any, Any, Any, Any]:

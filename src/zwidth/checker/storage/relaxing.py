@@ -49,10 +49,10 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
     if high < low or (high - low + 1) * columns * levels * (steps + 1) > MOST_VALUES:
         raise Invalid("the grid is empty, or larger than can be checked")
     states = (high - low + 1) * columns * levels * (steps + 1)
-    reserve(24 * states)
     pairs, bits = states // (steps + 1), law.relaxing[0].denominator.bit_length()
     spend(30 * pairs // levels * (losses.delay + 1) + 8 * pairs, bits, 64)
     places = 2 * min(reach, high - low) * steps + steps + 1
+    reserve(24 * (states + places * levels))
     spend_moves(pairs, 2 * pairs, places, steps + 1, slower=SLOWER)
     if law.surface == "penetration" and low > 1 - (losses.delay + 1) * reach:
         raise Invalid("the grid must reach so far out that a hand beyond it feels no force")
