@@ -176,7 +176,7 @@ def _unrounded(law: Law, losses: Losses, unit: Fraction, ages: list[Any]) -> Any
         fed = [np.where(a > 0, a, 0) if law.surface == "penetration" else a for a in ages]
         per_count = [c * losses.resolution for c in law.taps]
         whole = lcm(*(c.denominator for c in per_count))
-        parts = sum(int(c * whole) * a.astype(object) for c, a in zip(per_count, fed, strict=True))
+        parts: Any = sum(int(c * whole) * a.astype(object) for c, a in zip(per_count, fed, strict=True))
         assert law.step is not None
         step, of_units = law.step * whole, law.step / unit
         steps = (2 * parts * step.denominator + step.numerator) // (2 * step.numerator)
