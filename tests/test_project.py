@@ -56,14 +56,14 @@ def test_checking_a_wall_needs_no_numerical_library() -> None:
 def test_the_checker_imports_the_standard_library_only() -> None:
     """What re-proves a certificate shares no code with what found it; its parts know each other alone.
 
-    A storage function has millions of moves: to go through them takes numpy and numba, but for the slow twin.
+    A storage function has millions of moves: to go through them takes numpy, but for the slow twin.
     """
     house = SOURCE / "checker"
     files = sorted(house.rglob("*.py"))
     assert files
     for file in files:
         is_fast = file.parent.name == "storage" and file.name != "plainly.py"
-        many = {"numpy", "numba"} if is_fast else set()
+        many = {"numpy"} if is_fast else set()
         allowed = sys.stdlib_module_names | many
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Import):

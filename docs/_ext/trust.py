@@ -68,7 +68,7 @@ def rows() -> list[tuple[str, str, str, str]]:
         found.append((kind, len(files), sum(map(lines_in, files)), arrays))
     found.sort(key=lambda row: row[2])
     return [
-        (f"`{kind}`", str(count), str(lines), "numpy, numba" if arrays else "standard library")
+        (f"`{kind}`", str(count), str(lines), "numpy" if arrays else "standard library")
         for kind, count, lines, arrays in found
     ]
 

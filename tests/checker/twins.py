@@ -19,7 +19,7 @@ class Said(NamedTuple):
 
 
 def fast(document: Any) -> Said:
-    """With numpy and numba."""
+    """With numpy."""
     return _said(FAST, document)
 
 

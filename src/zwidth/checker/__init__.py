@@ -2,8 +2,8 @@
 
 Written from the mathematics alone: Chebyshev sums for the criterion, Bernstein coefficients for its sign,
 Schur and Cohn's recursion for roots, a plain recursion for the energy of a motion, every move one by one for
-a storage function.  The standard library does for all but the last, whose many moves need numpy and numba,
-and have a slow twin without them.  It imports nothing else of zwidth, and zwidth imports of it what stands
+a storage function.  The standard library does for all but the last, whose many moves need numpy, and
+have a slow twin without them.  It imports nothing else of zwidth, and zwidth imports of it what stands
 here: keep it so.
 
 Everything is exact, or enclosed where e^A, sines and roots come in: numbers are integers, or text such as

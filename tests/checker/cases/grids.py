@@ -236,18 +236,18 @@ def costs_of_cells_are_below_what_is_lost() -> str:
     return ""
 
 
-def without_numba_the_twin_checks() -> str:
+def without_numpy_the_twin_checks() -> str:
     """Of each kind of storage function, where nothing is stored."""
-    numba, modules = sys.modules.get("numba"), sys.modules
+    numpy, modules = sys.modules.get("numpy"), sys.modules
     for name in ("spring", "coarse", "row"):
         told = plain(put(STORAGES[name]["document"], {"storage": packed([0] * len(STORED[name]))}))
-        modules["numba"] = None  # type: ignore[assignment]
+        modules["numpy"] = None  # type: ignore[assignment]
         try:
             found = import_module("zwidth.checker").verify(told)
         finally:
-            del modules["numba"]
-            if numba is not None:
-                modules["numba"] = numba
+            del modules["numpy"]
+            if numpy is not None:
+                modules["numpy"] = numpy
         if found.valid or "with the readings" not in found.reason or TAKES not in found.reason:
             return f"{name}: {found.reason}"
     return ""
@@ -261,7 +261,7 @@ CHECKS = (
     averages_go_where_the_law_sends_them,
     forces_at_corners_are_those_of_the_law,
     costs_of_cells_are_below_what_is_lost,
-    without_numba_the_twin_checks,
+    without_numpy_the_twin_checks,
 )
 
 CASES = [Case(check.__name__.replace("_", " "), check, "") for check in CHECKS]

@@ -34,7 +34,7 @@ def checked(told: Read) -> str:
 def _is_fast() -> bool:
     """True where what the fast checks need can be imported."""
     try:
-        import_module("numba")
+        import_module("numpy")
     except ImportError:
         return False
     return True

@@ -24,7 +24,7 @@ from ..document.effort import reserve, spend
 from ..document.fields import Number, Packed, Read, Record, Whole, document
 from ..document.number import down
 from ..document.refusal import Invalid
-from .domain import PAIR, histories_of
+from .domain import histories_of, spend_moves
 from .packed import storage_of
 
 MOST_VALUES = 4_000_000
@@ -76,7 +76,10 @@ def coarse_storage(told: Read) -> str:
     if shape[0] * shape[1] > MOST_VALUES:
         raise Invalid("the grid is larger than can be checked")
     reserve(60 * shape[0] * shape[1])
-    spend(PAIR * shape[0] * shape[1] * (2 * width + 1) * (2 if losses.part < 1 else 1))
+    states, parts = shape[0] * shape[1], 1 if losses.part == 1 else 2
+    spend(0.5 * states * (line.memory + 2) * parts)
+    places = 2 * min(line.reach, shape[0] - 1) + 1
+    spend_moves(states, states // (width if line.memory else 1), places, 1, parts)
     value = storage_of(told.storage, shape)
     moves = []
     for age, part in ((losses.delay, losses.part), (losses.delay - 1, 1 - losses.part)):
@@ -85,16 +88,13 @@ def coarse_storage(told: Read) -> str:
             moves.append((forces, _costs(law, losses, line, unit, off, part)))
     largest = int(value.max())
     for forces, costs in moves:
-        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (len(costs) + 1)
+        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (line.reach + 1)
     if largest >= _EXACT:
         raise Invalid("the numbers are too large to be compared exactly")
-    from .moves import first_violation_in_parts_on_line, first_violation_on_line
+    from .moves import violated
 
-    look: Any = first_violation_on_line if len(moves) == 1 else first_violation_in_parts_on_line
-    tables = [table.astype(np.float64) for move in moves for table in move]
-    at = look(value.astype(np.float64), _exists(line), *tables, np.array(line.places), line.reach)
-    if at >= 0:
-        raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    if violated(value[:, :, None], _exists(line), moves, line.inside.index(True), line.reach):
+        raise Invalid("a move takes out more energy than was stored")
     return proved(told, losses)
 
 

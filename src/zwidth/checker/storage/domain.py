@@ -11,13 +11,18 @@ from math import ceil
 from typing import Any
 
 from ..contact.law import Law, Losses
+from ..document.effort import reserve, spend
 from ..document.fields import Number, Read, Whole
 from ..document.number import down
 
 MOST_VALUES = 60_000_000
 MOST_MOVES = 10_000_000
-PAIR = 1 / 30
-"""What a move from one node to one other costs, in steps of work: 300 million take a second."""
+AT_ONCE, ROOM = 1 << 15, 1 << 19
+"""Moves of one distance that are looked at together, so few that the processor has them at hand; numbers."""
+MOVE, PLACE, FOUND, CALL = 1 / 80, 0.1, 0.3, 15.0
+"""Steps of work for a move; for a place that it may lead to, once for each state, and once more for all that
+lead to the same ones; and for an operation on a block of states, however few.
+"""
 
 FARTHEST = 10**7
 """Count."""
@@ -47,7 +52,10 @@ def costs_of(losses: Losses, unit: Fraction, off: int, part: Fraction, max_move:
     """What a move over 0, 1, … steps in a part of the interval costs."""
     import numpy as np
 
-    far = np.arange(ceil(max_move * steps * part) + 1, dtype=object)
+    count = ceil(max_move * steps * part) + 1
+    reserve(100 * count * (1 + len(losses.models)))
+    spend(15 * count * len(losses.models))
+    far = np.arange(count, dtype=object)
     costs = []
     for friction, damping in losses.models:
         drag = damping / (part * losses.period) * (losses.resolution / steps) // unit
@@ -62,6 +70,20 @@ def costs_of(losses: Losses, unit: Fraction, off: int, part: Fraction, max_move:
         for end in (d, d + 1):
             least[end] = used[end] if least[end] is None else min(least[end], used[end])
     return np.array(least, dtype=object)
+
+
+def spend_moves(states: int, groups: int, places: int, nodes: int, parts: int = 1, slower: float = 1) -> None:
+    """Before all moves from the nodes of so many states, which in groups lead to the same places."""
+    reserve(32 * places)
+    call = CALL / at_once(nodes, places)
+    of_state = PLACE + nodes * MOVE * slower + 2 * call
+    of_group = FOUND + (parts - 1) * places * MOVE + 10 * call
+    spend(places * (states * of_state + groups * of_group + 10 * CALL))
+
+
+def at_once(nodes: int, places: int) -> int:
+    """So many states are looked at together."""
+    return max(1, min(AT_ONCE // nodes, ROOM // places))
 
 
 def histories_of(reach: int, memory: int) -> list[tuple[int, ...]]:

@@ -26,12 +26,12 @@ from ..contact.law import LAW, LOSSES, Law, Losses, law_of, losses_of
 from ..document.effort import reserve, spend
 from ..document.fields import Number, Packed, Read, Record, Whole, document, only_if
 from ..document.refusal import Invalid
-from .domain import DOMAIN, MOST_MOVES, MOST_VALUES, PAIR, costs_of, proved
+from .domain import DOMAIN, MOST_MOVES, MOST_VALUES, costs_of, proved, spend_moves
 from .packed import storage_of
 from .relaxing import storage_of_relaxing
 
 _EXACT = 2**53
-AT_ONCE = 10**6
+AT_ONCE = 10**5
 """Forces computed at once in whole numbers of any size, which take room."""
 
 STORAGE = document(
@@ -66,8 +66,13 @@ def storage(told: Read) -> str:
     if states * (steps + 1) > MOST_VALUES:
         raise Invalid("the grid is larger than can be checked")
     reserve(16 * states * (steps + 1) + 8 * (states + width**memory) * (memory + 3))
-    spend(0.05 * states * (memory + 2))
-    spend(PAIR * states * width * (steps + 1) ** 2 * (2 if losses.part < 1 else 1))
+    parts = 1 if losses.part == 1 else 2
+    if law.step is None and not law.rate:
+        spend(parts * 0.2 * (memory + 2) * states)
+    else:
+        spend(parts * (10 * states + (100 * cells * width if law.points else 0)))
+    places = 2 * min(reach, cells - 1) * steps + steps + 1
+    spend_moves(states, states // (width if memory else 1), places, steps + 1, parts)
     _require_small(law, losses, unit, max(abs(low), abs(high)), reach)
     if law.surface != "none" and low > 1 - (memory + 1) * reach:
         raise Invalid("the grid must reach so far out that a hand beyond it has been forgotten")
@@ -80,17 +85,14 @@ def storage(told: Read) -> str:
             moves.append((forces, costs_of(losses, unit, off, part, max_move, steps)))
     largest = int(value.max())
     for forces, costs in moves:
-        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (len(costs) + 1)
+        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (reach + 1) * steps
     if largest >= _EXACT:
         raise Invalid("the numbers are too large to be compared exactly")
     exists = _exists(low, high, reach, memory)
-    from .moves import first_violation, first_violation_in_parts
+    from .moves import violated
 
-    look: Any = first_violation if len(moves) == 1 else first_violation_in_parts
-    tables = [table.astype(np.float64) for move in moves for table in move]
-    at = look(value.astype(np.float64), exists, *tables, reach, steps)
-    if at >= 0:
-        raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    if violated(value, exists, moves, 0, reach):
+        raise Invalid("a move takes out more energy than was stored")
     return proved(told.domain, losses, law)
 
 
@@ -174,9 +176,11 @@ def _unrounded(law: Law, losses: Losses, unit: Fraction, ages: list[Any]) -> Any
         fed = [np.where(a > 0, a, 0) if law.surface == "penetration" else a for a in ages]
         per_count = [c * losses.resolution for c in law.taps]
         whole = lcm(*(c.denominator for c in per_count))
-        parts = sum(int(c * whole) * a.astype(object) for c, a in zip(per_count, fed, strict=True))
-        several, place = np.unique(parts, return_inverse=True)
-        wished = [Fraction(n, whole) for n in several]
+        parts: Any = sum(int(c * whole) * a.astype(object) for c, a in zip(per_count, fed, strict=True))
+        assert law.step is not None
+        step, of_units = law.step * whole, law.step / unit
+        steps = (2 * parts * step.denominator + step.numerator) // (2 * step.numerator)
+        return (steps * of_units.numerator // of_units.denominator).astype(np.int64)
     if law.step is not None:
         wished = [(w / law.step + Fraction(1, 2)) // 1 * law.step for w in wished]
     units = np.array([int(w // unit) for w in wished], dtype=np.int64)

@@ -1,276 +1,172 @@
-"""Every move from every state, one after the other, in doubles that hold whole numbers exactly."""
+"""Every move from every state, in doubles or integers that hold whole numbers exactly, many states at a time.
+
+V(s, x) ≥ V(s', x') − F d − c(|d|) for every move d = x' − x.  From one distance to the next, all states of a
+block are looked at together: V(s', x') − F x' less a number is compared with V(s, x) − F x, place by place.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
+
+from .domain import at_once
+
+Parts = Sequence[tuple[Any, Any]]
+Following = Iterator[tuple[Any, Any]]
+"""Reading by reading the states that follow, −1 off the grid, and by how many places they stand elsewhere."""
 
 
-@njit(cache=True, parallel=True)
-def first_violation(value: Any, exists: Any, forces: Any, costs: Any, reach: int, steps: int) -> int:
-    """The first state from which some move takes out more energy than V falls; −1 if there is none.
+def violated(value: Any, exists: Any, moves: Parts, inside: int, reach: int) -> bool:
+    """True where from some state some move takes out more energy than V falls.
 
-    value is (cells, histories, steps + 1), forces and exists are (cells, histories).
+    value is (cells, histories, nodes), exists is (cells, histories).  Cells of one node are corners of a
+    line: the first that is `inside` stands where the last one outside does.  `moves` are the parts of an
+    interval, the hand anywhere between them: of each the forces, which are (cells, histories), and what a
+    move costs.  Later forces do not depend on the oldest reading.
     """
     cells, histories, nodes = value.shape
-    width = 2 * reach + 1
-    older = histories // width if histories > 1 else 1
-    worst = np.full(cells, -1, np.int64)
-    for n in prange(cells):
-        gain, move = np.empty(width * nodes), np.empty(width * nodes)
-        for newer in range(older):
-            for j in range(nodes):
-                size = 0
-                for n2 in range(max(0, n - reach), min(cells, n + reach + 1)):
-                    h2 = (n - n2 + reach) * older + newer if histories > 1 else 0
-                    for j2 in range(nodes):
-                        d = (n2 - n) * steps + j2 - j
-                        if abs(d) < costs.size:
-                            gain[size] = value[n2, h2, j2] - costs[abs(d)]
-                            move[size] = d
-                            size += 1
-                done_force, done_best = np.nan, 0.0
-                for oldest in range(width if histories > 1 else 1):
-                    h = newer * width + oldest if histories > 1 else 0
-                    if not exists[n, h]:
-                        continue
-                    f = forces[n, h]
-                    if f != done_force:
-                        best = 0.0
-                        for t in range(size):
-                            best = max(best, gain[t] - f * move[t])
-                        done_force, done_best = f, best
-                    if value[n, h, j] < done_best and worst[n] < 0:
-                        worst[n] = (n * histories + h) * nodes + j
-    for n in range(cells):
-        if worst[n] >= 0:
-            return int(worst[n])
-    return -1
+    oldest = 2 * reach + 1 if histories > 1 else 1
+    older = histories // oldest
+    near = min(reach, cells - 1)
+
+    def following(groups: Any) -> Following:
+        n, newer = groups // older, groups % older
+        for k in range(-near, near + 1):
+            then = n + k
+            place = then * histories + (reach - k) * older + newer if histories > 1 else then
+            shift = (n >= inside).astype(np.int64) - (then >= inside)
+            yield np.where((then >= 0) & (then < cells), place, -1), shift
+
+    return _violated(value.reshape(-1, nodes), exists.ravel(), moves, following, near, oldest)
 
 
-@njit(cache=True, parallel=True)
-def first_violation_in_parts(
-    value: Any,
-    exists: Any,
-    forces: Any,
-    costs: Any,
-    later_forces: Any,
-    later_costs: Any,
-    reach: int,
-    steps: int,
-) -> int:
-    """The same where each interval is two moves with two forces, the hand anywhere between them."""
-    cells, histories, nodes = value.shape
-    width = 2 * reach + 1
-    older = histories // width
-    worst = np.full(cells, -1, np.int64)
-    for n in prange(cells):
-        low, high = max(0, n - reach), min(cells, n + reach + 1)
-        start, size = (low - n) * steps, (high - low) * steps + 1
-        goal, middle = np.empty(size), np.empty(size)
-        for newer in range(older):
-            any_h = -1
-            for oldest in range(width):
-                if exists[n, newer * width + oldest]:
-                    any_h = newer * width + oldest
-            if any_h < 0:
-                continue
-            later = later_forces[n, any_h]  # does not depend on the oldest reading
-            goal[:] = -1.0
-            for n2 in range(low, high):
-                h2 = (n - n2 + reach) * older + newer
-                for j2 in range(nodes):
-                    at = (n2 - low) * steps + j2
-                    goal[at] = max(goal[at], value[n2, h2, j2])
-            for m in range(size):
-                middle[m] = goal[m]
-                for to in range(max(0, m - later_costs.size + 1), min(size, m + later_costs.size)):
-                    middle[m] = max(middle[m], goal[to] - later * (to - m) - later_costs[abs(to - m)])
-            for oldest in range(width):
-                h = newer * width + oldest
-                if not exists[n, h]:
-                    continue
-                f = forces[n, h]
-                for j in range(nodes):
-                    best = 0.0
-                    at = j - start
-                    for m in range(max(0, at - costs.size + 1), min(size, at + costs.size)):
-                        best = max(best, middle[m] - f * (m - at) - costs[abs(m - at)])
-                    if value[n, h, j] < best and worst[n] < 0:
-                        worst[n] = (n * histories + h) * nodes + j
-    for n in range(cells):
-        if worst[n] >= 0:
-            return int(worst[n])
-    return -1
+def violated_in_table(value: Any, successors: Any, forces: Any, costs: Any) -> bool:
+    """The same where a table says which state follows, −1 off the grid; value is (states, nodes)."""
+
+    def following(states: Any) -> Following:
+        for then in successors[states].T:
+            yield then, np.zeros(1, np.int64)
+
+    exists = np.ones(len(value), np.bool_)
+    return _violated(value, exists, [(forces, costs)], following, successors.shape[1] // 2, 1)
 
 
-@njit(cache=True, parallel=True)
-def first_violation_in_table(value: Any, successors: Any, forces: Any, costs: Any, steps: int) -> int:
-    """The same where a table says which state follows, −1 off the grid; value is (states, steps + 1)."""
-    states, nodes = value.shape
-    reach = successors.shape[1] // 2
-    worst = np.full(states, -1, np.int64)
-    for s in prange(states):
-        for j in range(nodes):
-            for move in range(2 * reach + 1):
-                then = successors[s, move]
-                if then < 0:
-                    continue
-                for j2 in range(nodes):
-                    d = (move - reach) * steps + j2 - j
-                    if abs(d) < costs.size and value[s, j] < value[then, j2] - forces[s] * d - costs[abs(d)]:
-                        worst[s] = s * nodes + j
-    for s in range(states):
-        if worst[s] >= 0:
-            return int(worst[s])
-    return -1
+def _violated(
+    value: Any, exists: Any, moves: Parts, following: Callable[[Any], Following], reach: int, oldest: int
+) -> bool:
+    """States that differ in the oldest of their readings alone, so many, lead to the same ones."""
+    nodes = value.shape[1]
+    start = reach * max(1, nodes - 1)
+    places = 2 * start + nodes
+    forces, costs = moves[0][0].ravel(), moves[0][1]
+    size = at_once(nodes, places)
+    for groups in _blocks(np.arange(len(value) // oldest), size):
+        states = np.arange(groups[0] * oldest, (groups[-1] + 1) * oldest)
+        states = states[exists[states]]
+        if not states.size:
+            continue
+        goal = _goal(value, following(groups), places, len(groups))
+        for later_forces, later_costs in moves[:0:-1]:
+            middle = _best(goal, later_forces.ravel()[groups * oldest], later_costs, 0, places)
+            goal = np.where(goal < 0, goal, middle)
+        for some in _blocks(states, size):
+            reached = goal.take(some // oldest - groups[0], axis=1)
+            if (value[some] < _best(reached, forces[some], costs, start, nodes).T).any():
+                return True
+    return False
 
 
-@njit(cache=True)
-def _between(value: Any, n: int, h: int, at: int, j: int) -> int:
-    """V at a level given in 2⁻¹⁶ parts, rounded up."""
-    level, part = at >> 16, at & 0xFFFF
-    here = value[n, h, level, j]
-    if part == 0:
-        return int(here)
-    return int(here - ((-(value[n, h, level + 1, j] - here) * part) >> 16))
+def _blocks(all_of_them: Any, size: int) -> Iterator[Any]:
+    for first in range(0, len(all_of_them), size):
+        yield all_of_them[first : first + size]
 
 
-@njit(cache=True, parallel=True)
-def first_relaxing_violation(
-    value: Any,
-    rows: Any,
-    inwards: Any,
-    outwards: Any,
-    lower: Any,
-    upper: Any,
-    costs: Any,
-    reach: int,
-    steps: int,
-) -> int:
-    """The first state from which some move takes out more energy than V falls; −1 if there is none.
+def _goal(value: Any, following: Following, places: int, groups: int) -> Any:
+    """The most that is stored at every place that a move may lead to, and −∞ off the grid; a column each."""
+    goal, nodes = np.full((places, groups), -np.inf), value.shape[1]
+    for k, (then, shift) in enumerate(following):
+        there = np.where(then >= 0, value[then].T, -np.inf)
+        for by in range(shift.min(), shift.max() + 1):
+            at = goal[k * max(1, nodes - 1) + by :][:nodes]
+            np.maximum(at, there, out=at, where=shift == by)
+    return goal
 
-    value is (cells, histories, levels, steps + 1); lower and upper enclose the image of each level.
+
+def _best(goal: Any, forces: Any, costs: Any, start: int, nodes: int) -> Any:
+    """The most that a move from each of some places can bring, the first of them at `start`."""
+    fed = (np.arange(len(goal)) - len(goal) // 2)[:, None] * forces.astype(np.float64)
+    here = fed[start : start + nodes].copy()
+    np.subtract(goal, fed, out=fed)
+    best, one = np.full(here.shape, -np.inf), np.empty(here.shape)
+    for d in range(max(1 - len(costs), 1 - start - nodes), min(len(costs), len(goal) - start)):
+        first, last = max(0, -start - d), min(nodes, len(goal) - start - d)
+        brought = np.subtract(fed[start + d + first : start + d + last], costs[abs(d)], out=one[first:last])
+        np.maximum(best[first:last], brought, out=best[first:last])
+    return np.add(best, here, out=best)
+
+
+def violated_relaxing(value: Any, rows: Any, forces: Any, images: Any, costs: Any, reach: int) -> bool:
+    """True where from some state some move takes out more energy than V falls.
+
+    value is (cells, histories, levels, nodes); forces inwards and outwards, and where a level goes at least
+    and at most, in 2⁻¹⁶ parts of a level, are (2, rows, levels).
     """
     cells, histories, levels, nodes = value.shape
-    older = histories // (2 * reach + 1) if histories > 1 else 1
-    worst = np.full(cells, -1, np.int64)
-    for n in prange(cells):
-        for h in range(histories):
-            row = rows[n, h]
-            if row < 0:
-                continue
-            for n2 in range(max(0, n - reach), min(cells, n + reach + 1)):
-                h2 = (n - n2 + reach) * older + h // (2 * reach + 1) if histories > 1 else 0
-                for j in range(nodes):
-                    for j2 in range(nodes):
-                        d = (n2 - n) * steps + j2 - j
-                        if abs(d) >= costs.size:
-                            continue
-                        cost = costs[abs(d)]
-                        for i in range(levels):
-                            f = inwards[row, i] if d > 0 else outwards[row, i]
-                            have = value[n, h, i, j] + f * d + cost
-                            goal = max(
-                                _between(value, n2, h2, lower[row, i], j2),
-                                _between(value, n2, h2, upper[row, i], j2),
-                            )
-                            bad = have < goal
-                            if i + 1 < levels:
-                                passed = (lower[row, i] >> 16) + 1  # the level that the image may pass
-                                gap = passed * (1 << 16) - upper[row, i]
-                                if passed * (1 << 16) < upper[row, i + 1] and gap >= 0:
-                                    width = upper[row, i + 1] - lower[row, i]
-                                    f = inwards[row, i + 1] if d > 0 else outwards[row, i + 1]
-                                    rise = value[n, h, i + 1, j] + f * d + cost - have
-                                    early = (gap << 16) // width
-                                    late = min(-((-(gap + 1) << 16) // max(width - 2, 1)), 1 << 16)
-                                    least = have + min((rise * early) >> 16, (rise * late) >> 16)
-                                    bad = bad or least < value[n2, h2, passed, j2]
-                            if bad and worst[n] < 0:
-                                worst[n] = ((n * histories + h) * levels + i) * nodes + j
-    for n in range(cells):
-        if worst[n] >= 0:
-            return int(worst[n])
-    return -1
+    oldest = 2 * reach + 1 if histories > 1 else 1
+    near, steps, nowhere = min(reach, cells - 1), nodes - 1, np.iinfo(np.int64).min
+    start, value, rows = near * steps, value.reshape(-1, levels, nodes), rows.ravel()
+    places = 2 * start + nodes
+    size = max(1, at_once(nodes, places) // levels)
+    for states in _blocks(np.flatnonzero(rows >= 0), size):
+        row, n, newer = rows[states], states // histories, states % histories // oldest
+        below, passed, early, late = _passing(images[:, row])
+        ends = [_between(end) for end in images[:, row]]
+        goal = np.full((places, len(states) * levels), nowhere)
+        kink = np.full((places, len(passed)), nowhere)
+        for k in range(-near, near + 1):
+            on = (n + k >= 0) & (n + k < cells)
+            h = (reach - k) * (histories // oldest) + newer if histories > 1 else 0
+            there = value[np.where(on, (n + k) * histories + h, 0)].transpose(2, 0, 1)
+            there = np.where(on[:, None], there, nowhere).reshape(nodes, -1)
+            at = slice(start + k * steps, start + k * steps + nodes)
+            for level, above, part in ends:
+                here = there.take(level, axis=1)
+                between = here - ((here - there.take(above, axis=1)) * part >> 16)  # rounded up
+                np.maximum(goal[at], between, out=goal[at])
+            np.maximum(kink[at], there.take(passed, axis=1), out=kink[at])
+        here = value[states].transpose(2, 0, 1).reshape(nodes, -1)
+        low = here.take(below, axis=1)
+        rise = here.take(below + 1, axis=1) - low
+        for d in range(max(1 - len(costs), 1 - start - nodes), min(len(costs), start + nodes)):
+            first, last = max(0, -start - d), min(nodes, places - start - d)
+            j, to = slice(first, last), slice(start + d + first, start + d + last)
+            paid = forces[0 if d > 0 else 1, row].ravel() * d + costs[abs(d)]
+            bad = (here[j] + paid < goal[to]).any()
+            more = rise[j] + (paid[below + 1] - paid[below])
+            least = np.minimum(more * early, more * late) >> 16
+            if bad or (low[j] + paid[below] + least < kink[to]).any():
+                return True
+    return False
 
 
-@njit(cache=True)
-def _corners(value: Any, places: Any, n: int, newer: int, reach: int, goal: Any) -> int:
-    """The best value at every place within reach of corner n; returns how far out the first place is."""
-    corners, histories = value.shape
-    older = histories // (2 * reach + 1) if histories > 1 else 1
-    low, high = max(0, n - reach), min(corners, n + reach + 1)
-    goal[:] = -1.0
-    for n2 in range(low, high):
-        h2 = (n - n2 + reach) * older + newer if histories > 1 else 0
-        at = places[n2] - places[low]
-        goal[at] = max(goal[at], value[n2, h2])
-    return int(places[n] - places[low])
+def _between(image: Any) -> tuple[Any, Any, Any]:
+    """The level below and above each image, by place among those of all states, and the part between."""
+    levels, level = image.shape[1], image >> 16
+    first = levels * np.arange(len(image))[:, None]
+    above = np.minimum(level + 1, levels - 1)
+    return (first + level).ravel(), (first + above).ravel(), (image & 0xFFFF).ravel()
 
 
-@njit(cache=True, parallel=True)
-def first_violation_on_line(value: Any, exists: Any, forces: Any, costs: Any, places: Any, reach: int) -> int:
-    """As first_violation, V at the corners of a line; value, exists and forces are (corners, histories)."""
-    corners, histories = value.shape
-    width = 2 * reach + 1 if histories > 1 else 1
-    worst = np.full(corners, -1, np.int64)
-    for n in prange(corners):
-        size = places[min(corners - 1, n + reach)] - places[max(0, n - reach)] + 1
-        goal = np.empty(size)
-        for newer in range(histories // width):
-            start = _corners(value, places, n, newer, reach, goal)
-            for h in range(newer * width, (newer + 1) * width):
-                for to in range(size):
-                    d = to - start
-                    if not exists[n, h] or abs(d) >= costs.size:
-                        continue
-                    if value[n, h] < goal[to] - forces[n, h] * d - costs[abs(d)]:
-                        worst[n] = n * histories + h
-    for n in range(corners):
-        if worst[n] >= 0:
-            return int(worst[n])
-    return -1
-
-
-@njit(cache=True, parallel=True)
-def first_violation_in_parts_on_line(
-    value: Any,
-    exists: Any,
-    forces: Any,
-    costs: Any,
-    later_forces: Any,
-    later_costs: Any,
-    places: Any,
-    reach: int,
-) -> int:
-    """The same where each interval is two moves with two forces, the hand anywhere between them."""
-    corners, histories = value.shape
-    width = 2 * reach + 1
-    worst = np.full(corners, -1, np.int64)
-    for n in prange(corners):
-        size = places[min(corners - 1, n + reach)] - places[max(0, n - reach)] + 1
-        goal, middle = np.empty(size), np.empty(size)
-        for newer in range(histories // width):
-            start = _corners(value, places, n, newer, reach, goal)
-            later = np.nan
-            for h in range(newer * width, (newer + 1) * width):
-                if not exists[n, h]:
-                    continue
-                if later != later_forces[n, h]:
-                    later = later_forces[n, h]
-                    for m in range(size):
-                        middle[m] = goal[m]
-                        for to in range(max(0, m - later_costs.size + 1), min(size, m + later_costs.size)):
-                            lost = later * (to - m) + later_costs[abs(to - m)]
-                            middle[m] = max(middle[m], goal[to] - lost)
-                for m in range(max(0, start - costs.size + 1), min(size, start + costs.size)):
-                    lost = forces[n, h] * (m - start) + costs[abs(m - start)]
-                    if value[n, h] < middle[m] - lost:
-                        worst[n] = n * histories + h
-    for n in range(corners):
-        if worst[n] >= 0:
-            return int(worst[n])
-    return -1
+def _passing(images: Any) -> tuple[Any, Any, Any, Any]:
+    """Where the image passes a level on the way from one level to the next: both, and how far on at least
+    and at most.
+    """
+    (lower, upper), levels = images, images.shape[2]
+    passed = (lower >> 16) + 1
+    gap = (passed << 16) - upper
+    s, i = np.nonzero((passed[:, :-1] << 16 < upper[:, 1:]) & (gap[:, :-1] >= 0))
+    gap, width = gap[s, i], upper[s, i + 1] - lower[s, i]
+    late = np.minimum(-((-(gap + 1) << 16) // np.maximum(width - 2, 1)), 1 << 16)
+    return s * levels + i, s * levels + passed[s, i], (gap << 16) // width, late

@@ -8,7 +8,7 @@ from math import prod
 from struct import unpack
 from typing import Any
 
-from ..document.effort import reserve
+from ..document.effort import reserve, spend
 from ..document.refusal import Invalid
 
 WHOLE, DOUBLE = "<i8", "<f8"
@@ -29,6 +29,7 @@ def listed(text: str, count: int, kind: str = WHOLE) -> list[Any]:
 def _unpacked(text: str, count: int) -> bytes:
     size = 8 * count
     reserve(2 * size)
+    spend(0.1 * count)
     try:
         packed = base64.b64decode(text, validate=True)
         raw = zlib.decompressobj().decompress(packed, size + 1)

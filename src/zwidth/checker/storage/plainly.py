@@ -397,9 +397,7 @@ def _stored(text: str, count: int) -> list[int]:
 def _require_few(nodes: int, each: int) -> None:
     """The moves are counted before any is tried."""
     if nodes * each > MOST_MOVES:
-        raise Invalid(
-            f"the grid has {nodes * each} moves: without numpy and numba at most {MOST_MOVES} can be checked"
-        )
+        raise Invalid(f"the grid has {nodes * each} moves: without numpy at most {MOST_MOVES} can be checked")
 
 
 def _spend(moves: int, numbers: Sequence[Fraction]) -> None:

@@ -16,11 +16,11 @@ from ..contact.law import Law, Losses
 from ..document.effort import reserve, spend
 from ..document.fields import Read
 from ..document.refusal import Invalid
-from .domain import MOST_MOVES, MOST_VALUES, PAIR, costs_of, histories_of, proved
+from .domain import MOST_MOVES, MOST_VALUES, costs_of, histories_of, proved, spend_moves
 from .packed import storage_of
 
 PART = 2**16
-SLOWER = 3
+SLOWER = 8
 """Than a move without levels."""
 _MOST = 2**61
 
@@ -29,7 +29,7 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
     """Check every move; says what was proved."""
     import numpy as np
 
-    from .moves import first_relaxing_violation
+    from .moves import violated_relaxing
 
     assert law.relaxing is not None
     if law.limit is not None:
@@ -49,8 +49,11 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
     if high < low or (high - low + 1) * columns * levels * (steps + 1) > MOST_VALUES:
         raise Invalid("the grid is empty, or larger than can be checked")
     states = (high - low + 1) * columns * levels * (steps + 1)
-    reserve(24 * states)
-    spend(SLOWER * PAIR * states * (2 * reach + 1) * (steps + 1))
+    pairs, bits = states // (steps + 1), law.relaxing[0].denominator.bit_length()
+    spend(30 * pairs // levels * (losses.delay + 1) + 8 * pairs, bits, 64)
+    places = 2 * min(reach, high - low) * steps + steps + 1
+    reserve(24 * (states + places * levels))
+    spend_moves(pairs, 2 * pairs, places, steps + 1, slower=SLOWER)
     if law.surface == "penetration" and low > 1 - (losses.delay + 1) * reach:
         raise Invalid("the grid must reach so far out that a hand beyond it feels no force")
     value = storage_of(told.storage, (high - low + 1, columns, levels, steps + 1))
@@ -68,10 +71,8 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
     rise = int(np.abs(np.diff(value, axis=2)).max()) + 2 * abs(branch) * len(costs) if levels > 1 else 0
     if span >= _MOST or max(rise, int(np.abs(forces).max()) * len(costs)) * PART >= 2**62:
         raise Invalid("the numbers are too large to be compared exactly")
-    tables = (rows, forces[0], forces[1], images[0], images[1], costs.astype(np.int64))
-    at = first_relaxing_violation(value, *tables, reach, steps)
-    if at >= 0:
-        raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    if violated_relaxing(value, rows, forces, images, costs, reach):
+        raise Invalid("a move takes out more energy than was stored")
     return proved(domain, losses, law)
 
 
@@ -81,18 +82,17 @@ def _forces(
     """Force by reading and level, for a move inwards and for one outwards."""
     import numpy as np
 
-    both = np.zeros((2, high - low + 1, levels), dtype=np.int64)
-    for n in range(low, high + 1):
-        u = max(n, 0) if law.surface == "penetration" else n
-        line = [spring * u + branch * ((u - least) * per_count - i) for i in range(levels)]
-        if law.surface != "none" and n <= 0:
-            continue
-        for i, f in enumerate(line):
-            near = line[max(i - 1, 0) : i + 2]
-            both[1, n - low, i] = max(f, 0) if law.clamped else f
-            # max(0, f) is no line where f changes its sign: inwards, 0 is below it and costs the hand less
-            both[0, n - low, i] = 0 if law.clamped and min(near) <= 0 else f
-    return both
+    readings = np.arange(low, high + 1)[:, None]
+    u = np.maximum(readings, 0) if law.surface == "penetration" else readings
+    line = spring * u + branch * ((u - least) * per_count - np.arange(levels))
+    if law.surface != "none":
+        line = np.where(readings > 0, line, 0)
+    if not law.clamped:
+        return np.stack([line, line])
+    # max(0, f) is no line where f changes its sign: inwards, 0 is below it and costs the hand less
+    ends = np.pad(line, ((0, 0), (1, 1)), mode="edge")
+    near = np.minimum(np.minimum(ends[:, :-2], ends[:, 2:]), line)
+    return np.stack([np.where(near <= 0, 0, line), np.maximum(line, 0)])
 
 
 def _images(law: Law, low: int, high: int, least: int, per_count: int, levels: int) -> Any:
@@ -101,15 +101,15 @@ def _images(law: Law, low: int, high: int, least: int, per_count: int, levels: i
 
     assert law.relaxing is not None
     pole: Fraction = law.relaxing[0]
+    per_level = np.arange(levels, dtype=object) * PART * pole.numerator
     both = np.zeros((2, high - low + 1, levels), dtype=np.int64)
     for n in range(low, high + 1):
         u = max(n, 0) if law.surface == "penetration" else n
-        for i in range(levels):
-            image = (pole * i + (1 - pole) * (u - least) * per_count) * PART
-            if law.resets and u <= 0:
-                image = Fraction(-least * per_count * PART)
-            both[0, n - low, i] = image // 1
-            both[1, n - low, i] = -(-image // 1)
+        image = per_level + (pole.denominator - pole.numerator) * (u - least) * per_count * PART
+        if law.resets and u <= 0:
+            image[:] = -least * per_count * PART * pole.denominator
+        both[0, n - low] = image // pole.denominator
+        both[1, n - low] = -(-image // pole.denominator)
     return both
 
 

@@ -14,11 +14,11 @@ from typing import Any
 
 from ..contact.law import LOSSES, losses_of
 from ..contact.row_motion import TOLD_LAW
-from ..document.effort import reserve, spend
+from ..document.effort import reserve
 from ..document.fields import List, Number, Packed, Read, Record, Whole, document
 from ..document.number import down
 from ..document.refusal import Invalid
-from .domain import DOMAIN, MOST_MOVES, MOST_VALUES, PAIR, costs_of
+from .domain import DOMAIN, MOST_MOVES, MOST_VALUES, costs_of, spend_moves
 from .packed import DOUBLE, storage_of, values_of
 
 _EXACT = 2**53
@@ -61,7 +61,7 @@ def storage_of_row(told: Read) -> str:
     if states * max(2 * reach + 1, steps + 1) > MOST_VALUES:
         raise Invalid("the table is larger than can be checked")
     reserve(24 * states * (2 * reach + steps + 2))
-    spend(PAIR * states * (2 * reach + 1) * (steps + 1) ** 2)
+    spend_moves(states, states, (2 * reach + 1) * steps + 1, steps + 1)
     counts = values_of(table.counts, (states,))
     successors = values_of(table.successors, (states, 2 * reach + 1))
     _require_closed(counts, successors, low, high, reach)
@@ -70,16 +70,13 @@ def storage_of_row(told: Read) -> str:
     forces = _in_units(values_of(table.forces, (states,), DOUBLE), unit)
     value = storage_of(told.storage, (states, steps + 1))
     costs = costs_of(losses, unit, 1, losses.part, max_move, steps)  # a force is rounded down once
-    largest = int(value.max()) + int(abs(costs).max()) + max(map(abs, forces)) * (len(costs) + 1)
+    largest = int(value.max()) + int(abs(costs).max()) + max(map(abs, forces)) * (reach + 1) * steps
     if largest >= _EXACT:
         raise Invalid("the numbers are too large to be compared exactly")
-    from .moves import first_violation_in_table
+    from .moves import violated_in_table
 
-    at = first_violation_in_table(
-        value, successors, np.array(forces, np.int64), costs.astype(np.int64), steps
-    )
-    if at >= 0:
-        raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    if violated_in_table(value, successors, np.array(forces, np.int64), costs):
+        raise Invalid("a move takes out more energy than was stored")
     return proved(domain, states)
 
 
