@@ -150,9 +150,14 @@ def _is_said(node: ast.AST) -> bool:
 
 def _compared(node: ast.Compare) -> Iterator[Mutant]:
     for at, operator in enumerate(node.ops):
-        with_zero = isinstance(node.comparators[at], ast.Constant)
-        for other in _COMPARISONS[type(operator)][: 1 if with_zero and _is_equality(operator) else None]:
+        only = _is_equality(operator) and _is_constant(node.comparators[at])
+        for other in _COMPARISONS[type(operator)][: 1 if only else None]:
             yield _changed(node, _put(node.ops, at, other()))
+
+
+def _is_constant(node: ast.expr) -> bool:
+    """A number, or a word, by itself or by the name of it: words have no order that means anything."""
+    return isinstance(node, ast.Constant) or (isinstance(node, ast.Name) and node.id.isupper())
 
 
 def _is_equality(operator: ast.cmpop) -> bool:
