@@ -330,6 +330,69 @@ def turns_are_bounded() -> str:
     )
 
 
+def what_an_arm_is_made_of_is_as_it_is_told() -> str:
+    """Ends of cells and of boxes, matrices without a sign, and what is known of a projector, one by one."""
+    cells, region, pose, null = (part(f"arm.{name}") for name in ("cells", "region", "pose", "null_space"))
+    projector, enclosed, bits = part("arm.projector"), part("exact.enclosed").Enclosed, part("arm.cells").BITS
+    numbers = [
+        (x.middle, x.slopes, x.radius)
+        for x in (
+            cells._coordinate((4, 5), 0, [1]), cells._coordinate((4, 4), 0, [1]),
+            cells._coordinate((-6, 10), 1, [0, 1, 3]), cells._coordinate((-6, 11), 0, [0]),
+        )
+    ]  # fmt: skip
+    if numbers != [(4, (), 1), (4, (), 0), (2, (0, 8, 0), 0), (2, (9,), 0)]:
+        return f"coordinates {numbers}"
+    for matrix, right in (
+        ([[1, 0], [1]], True), ([[1, 1], [1]], False), ([[2, 1], [1]], True), ([[2, 2], [1]], False),
+        ([[2, 1, 0], [1, 0], [1]], True), ([[2, 1, 1], [2, 2], [2]], False), ([[0]], False),
+        ([[5, 2, 1], [3, 1], [1]], True), ([[5, 2, 1], [3, 2], [1]], False), ([[1, 0, 0], [1, 1], [2]], True),
+    ):  # fmt: skip
+        if cells.positive([[enclosed(bits, x) for x in row] for row in matrix]) is not right:
+            return f"{matrix} is told wrongly"
+    for rows, right in (
+        ([[0, 0], [0, "-1/2"]], False), ([[0, 0], [0, 0]], True), ([[0, 0], [0, "1/2"]], True),
+        ([[1, 1], [1, 1]], True), ([[0, 0, 0], [0, 0, 1], [0, 1, 0]], False), ([[4, 2], [2, "9/10"]], False),
+    ):  # fmt: skip
+        if region._semidefinite([[Fraction(x) for x in row] for row in rows]) is not right:
+            return f"{rows} is told wrongly"
+    wall = SimpleNamespace(stiffness=[[1]], virtual_damping=[[-2]], damping_bound=[[3]])
+    if region.matrices_of(wall, pose.Pose(0, False)) != ([[1]], [[-2]], [[3]]):
+        return "the matrices of a wall"
+    for row in range(3):
+        need = [[Fraction(int((i, k) in ((row, 4), (4, row)))) for k in range(6)] for i in range(6)]
+        if not refuses(pose.for_every_rest, need, pose.Pose(3, True)):
+            return "forces and turns coupled"
+    for places, signs in product(permutations(range(3)), product((1, -1), repeat=3)):
+        turn = [[Fraction(signs[i] * (places[i] == k)) for k in range(3)] for i in range(3)]
+        mirrored = _determinant([[(x, 0) for x in row] for row in turn])[0] < 0
+        if refuses(pose._quaternion, turn) is not mirrored:
+            return f"{turn} mirrors: {mirrored}"
+    joint = SimpleNamespace(low=Fraction(-1), high=Fraction(2))
+    chain, rest = SimpleNamespace(joints=[joint] * 3), [Fraction(-1), Fraction(1, 2), Fraction(3, 2)]
+    box = null._box(chain, SimpleNamespace(rest=rest, distance=Fraction(1)))
+    if box != [(-1, 0), (Fraction(-1, 2), Fraction(3, 2)), (Fraction(1, 2), 2)]:
+        return f"a box {box}"
+    around = projector.Near([[enclosed(bits, 3 << bits - 2, (), 1 << bits - 3)]], Fraction(1, 5), [])
+    loop = SimpleNamespace(delay_samples=1, sample_period=Fraction(1, 10))
+    spring = SimpleNamespace(stiffness=Fraction(4), damping=Fraction(2))
+    left = null._left([[Fraction(9)]], around, loop, spring)  # 9 − (0.6 + 2) (3/4 + 1/8) − 2/5
+    if left != [[9 - Fraction(13, 5) * Fraction(7, 8) - Fraction(2, 5)]]:
+        return f"{left} is left"
+    if projector._most(enclosed(bits, -3, (1, -2), 4)) != 10:
+        return "the most of a number"
+    for sign, off in ((1, Fraction(0)), (-1, Fraction(0)), (1, Fraction(1, 16))):
+        # ∓[[8, 4], [4, 2]], its eigenvalues 0 and ∓10, and each entry twice as far off as those of Y₁
+        y_1 = [
+            [[enclosed(bits, sign * x << bits, (), int(off * 2**bits)) for x in row] for row in y]
+            for y in ([[4, 1], [3, 0]], [[2, 2], [0, 0]])
+        ]
+        most = projector._form(y_1, 0, [0, 1])
+        if not 10 + off * Fraction(36, 10) <= most <= 10 + off * 8 + Fraction(1, 100):
+            return f"a form of up to {float(most)}"
+    return ""
+
+
 def sizes_of_matrices_are_not_below() -> str:
     """√(‖A‖₁ ‖A‖∞) or ‖A‖_F, the smaller; a root is not below."""
     encoders, chain = part("arm.encoders"), part("arm.chain")
@@ -366,6 +429,7 @@ CHECKS = (
     lines_of_a_burst_are_those_of_the_port,
     rotations_are_those_of_their_quaternions,
     turns_are_bounded,
+    what_an_arm_is_made_of_is_as_it_is_told,
     sizes_of_matrices_are_not_below,
     a_friction_curve_goes_on,
 )
