@@ -393,6 +393,92 @@ def what_an_arm_is_made_of_is_as_it_is_told() -> str:
     return ""
 
 
+def what_a_hand_moves_is_bounded() -> str:
+    """A mass and its inverse beside a usual one; when all is rational; how far it may move in a sample."""
+    motion, enclosed, bits = part("known_hand.held_motion"), part("exact.enclosed").Enclosed, 40
+    for off in (Fraction(0), Fraction(1, 10), Fraction(1, 2), Fraction(9, 10)):
+        heavy, light = motion._near_1(1 - off, 1 + off, bits)
+        spare = off**2 / (1 - off) / 2
+        if light.radius > spare * 2**bits + 4 or heavy.radius > 2:
+            return f"{off}: {light.radius} is too wide"
+        for at in (-1, Fraction(-1, 2), 0, Fraction(1, 3), 1):
+            for found, right in ((heavy, 1 + off * at), (light, 1 / (1 + off * at))):
+                slope = found.slopes[0] * at if found.slopes else 0
+                if abs(right * 2**bits - found.middle - slope) > found.radius:
+                    return f"{right} of {off} at {at}"
+    nothing, some = (Fraction(0),) * 2, (Fraction(0), Fraction(1))
+    for damping, stiffness in product((nothing, some), repeat=2):
+        moved = motion.Motion(some, damping, stiffness, Fraction(1), Fraction(0))
+        if moved.is_free is not (damping == stiffness == nothing):
+            return f"free with {damping}, {stiffness}"
+    still, most = enclosed(8, 0), motion.LARGEST_NORM - 200
+    for spring, loss in product((still, enclosed(8, most << 8, (100 << 8,), 101 << 8)), repeat=2):
+        if refuses(motion._pushed, spring, loss, Fraction(1), 8) is not (
+            spring is not still or loss is not still
+        ):
+            return "moved too far"
+    near = enclosed(8, most << 8, (100 << 8,), 100 << 8)
+    return "not moved too far" if refuses(motion._pushed, near, still, Fraction(1), 8) else ""
+
+
+def what_two_arms_lose_is_summed_up() -> str:
+    """What counts to the side of less, of a motion as of encoders, one by one."""
+    coupling, passive, motion, held = (
+        part(f"pair.{name}") for name in ("coupling", "passive", "motion", "held_motion")
+    )
+    zero, nothing = Fraction(0), passive.NO_LINE
+    side = coupling.Side(
+        Fraction(1),
+        zero,
+        Fraction(1),
+        [zero, zero],
+        [zero, zero],
+        0,
+        [zero, zero],
+        0,
+        0,
+        zero,
+        Fraction(1),
+        None,
+        1,
+    )
+    if passive._beyond_springs(side._replace(own=[3, 0], other=[1, 0], echo=[2, 0]), nothing):
+        return "a spring alone"
+    for more in ({"own": [0, 1]}, {"other": [0, 1]}, {"echo": [0, 1]}, {"part": Fraction(1, 2)}):
+        if not passive._beyond_springs(side._replace(**more), nothing):
+            return f"{more} is a spring"
+    if not passive._beyond_springs(side, nothing._replace(moving=1)):
+        return "compensation is a spring"
+    other = side._replace(other=[Fraction(5), zero])
+    for often, right in ((1, [2, 4]), (2, [6, 4])):  # readings of a drive are not those that come back
+        own = side._replace(own=[Fraction(3), Fraction(-1)], echo=[Fraction(-2), zero], often=often)
+        own = own._replace(other=[zero, Fraction(-2)])
+        other = other._replace(own=[Fraction(1), Fraction(2)], often=often)
+        loop = SimpleNamespace(sample_period=Fraction(1))
+        found = list(passive._errors(loop, [own, other], [nothing, nothing]))
+        if found != [Fraction(right[0] + 2, 2), Fraction(3 + 5, 2)]:
+            return f"errors {found} of {often} readings"
+    arm = object.__new__(motion._Arm)
+    arm.bounds, arm.helped, arm.pushed = {2: (3, 5)}, 0, 0
+    for move, way, helped, pushed in (
+        (2, 4, 8, 12),
+        (2, -4, 0, -8),
+        (-2, 4, -8, -28),
+        (-2, -4, 0, -16),
+        (0, 9, 0, -16),
+    ):
+        arm._help(move, way)
+        if (arm.helped, arm.pushed) != (helped, pushed):
+            return f"{move} by {way} gives {arm.helped}, {arm.pushed}"
+    enclosed = part("exact.enclosed").Enclosed
+    told = SimpleNamespace(free=side, period=Fraction(2), scale=4)
+    cost = held._cost(
+        told, [zero, Fraction(2), Fraction(1)], [enclosed(8, 512, (), 3), enclosed(8, 256, (), 1)]
+    )
+    right = Fraction(512 * 2 - 256 + 7, 4 << 8) + (4 + 1) / Fraction(2)
+    return "" if cost == right else f"{cost} for a motion, not {right}"
+
+
 def sizes_of_matrices_are_not_below() -> str:
     """√(‖A‖₁ ‖A‖∞) or ‖A‖_F, the smaller; a root is not below."""
     encoders, chain = part("arm.encoders"), part("arm.chain")
@@ -430,6 +516,8 @@ CHECKS = (
     rotations_are_those_of_their_quaternions,
     turns_are_bounded,
     what_an_arm_is_made_of_is_as_it_is_told,
+    what_a_hand_moves_is_bounded,
+    what_two_arms_lose_is_summed_up,
     sizes_of_matrices_are_not_below,
     a_friction_curve_goes_on,
 )
