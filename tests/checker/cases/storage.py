@@ -283,7 +283,7 @@ CASES = [
         refused(
             f"{name}, too little at the first state alone",
             put(STORAGES[name]["document"], {"storage": packed([0] + [10**13] * (len(STORED[name]) - 1))}),
-            "from state 0 a move",
+            "a move takes out more energy",
         )
         for name in STORED
     ),
@@ -479,6 +479,6 @@ CASES = [
             STORAGES["solid"]["document"],
             {"storage": packed([0] * 6 + [10**13] * (len(STORED["solid"]) - 6))},
         ),
-        "from state 0 a move",
+        "a move takes out more energy",
     ),
 ]

@@ -88,13 +88,12 @@ def coarse_storage(told: Read) -> str:
         largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (len(costs) + 1)
     if largest >= _EXACT:
         raise Invalid("the numbers are too large to be compared exactly")
-    from .moves import first_violation_in_parts_on_line, first_violation_on_line
+    from .moves import violated_in_parts_on_line, violated_on_line
 
-    look: Any = first_violation_on_line if len(moves) == 1 else first_violation_in_parts_on_line
+    look: Any = violated_on_line if len(moves) == 1 else violated_in_parts_on_line
     tables = [table.astype(np.float64) for move in moves for table in move]
-    at = look(value.astype(np.float64), _exists(line), *tables, np.array(line.places), line.reach)
-    if at >= 0:
-        raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    if look(value.astype(np.float64), _exists(line), *tables, np.array(line.places), line.reach):
+        raise Invalid("a move takes out more energy than was stored")
     return proved(told, losses)
 
 

@@ -84,13 +84,12 @@ def storage(told: Read) -> str:
     if largest >= _EXACT:
         raise Invalid("the numbers are too large to be compared exactly")
     exists = _exists(low, high, reach, memory)
-    from .moves import first_violation, first_violation_in_parts
+    from .moves import violated, violated_in_parts
 
-    look: Any = first_violation if len(moves) == 1 else first_violation_in_parts
+    look: Any = violated if len(moves) == 1 else violated_in_parts
     tables = [table.astype(np.float64) for move in moves for table in move]
-    at = look(value.astype(np.float64), exists, *tables, reach, steps)
-    if at >= 0:
-        raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    if look(value.astype(np.float64), exists, *tables, reach, steps):
+        raise Invalid("a move takes out more energy than was stored")
     return proved(told.domain, losses, law)
 
 

@@ -9,15 +9,15 @@ from numba import njit, prange
 
 
 @njit(cache=True, parallel=True)
-def first_violation(value: Any, exists: Any, forces: Any, costs: Any, reach: int, steps: int) -> int:
-    """The first state from which some move takes out more energy than V falls; −1 if there is none.
+def violated(value: Any, exists: Any, forces: Any, costs: Any, reach: int, steps: int) -> bool:
+    """True where from some state some move takes out more energy than V falls.
 
     value is (cells, histories, steps + 1), forces and exists are (cells, histories).
     """
     cells, histories, nodes = value.shape
     width = 2 * reach + 1
     older = histories // width if histories > 1 else 1
-    worst = np.full(cells, -1, np.int64)
+    fails = np.zeros(cells, np.bool_)
     for n in prange(cells):
         gain, move = np.empty(width * nodes), np.empty(width * nodes)
         for newer in range(older):
@@ -42,16 +42,13 @@ def first_violation(value: Any, exists: Any, forces: Any, costs: Any, reach: int
                         for t in range(size):
                             best = max(best, gain[t] - f * move[t])
                         done_force, done_best = f, best
-                    if value[n, h, j] < done_best and worst[n] < 0:
-                        worst[n] = (n * histories + h) * nodes + j
-    for n in range(cells):
-        if worst[n] >= 0:
-            return int(worst[n])
-    return -1
+                    if value[n, h, j] < done_best:
+                        fails[n] = True
+    return bool(fails.any())
 
 
 @njit(cache=True, parallel=True)
-def first_violation_in_parts(
+def violated_in_parts(
     value: Any,
     exists: Any,
     forces: Any,
@@ -60,23 +57,21 @@ def first_violation_in_parts(
     later_costs: Any,
     reach: int,
     steps: int,
-) -> int:
+) -> bool:
     """The same where each interval is two moves with two forces, the hand anywhere between them."""
     cells, histories, nodes = value.shape
     width = 2 * reach + 1
     older = histories // width
-    worst = np.full(cells, -1, np.int64)
+    fails = np.zeros(cells, np.bool_)
     for n in prange(cells):
         low, high = max(0, n - reach), min(cells, n + reach + 1)
         start, size = (low - n) * steps, (high - low) * steps + 1
         goal, middle = np.empty(size), np.empty(size)
         for newer in range(older):
-            any_h = -1
+            any_h = 0
             for oldest in range(width):
                 if exists[n, newer * width + oldest]:
                     any_h = newer * width + oldest
-            if any_h < 0:
-                continue
             later = later_forces[n, any_h]  # does not depend on the oldest reading
             goal[:] = -1.0
             for n2 in range(low, high):
@@ -98,20 +93,17 @@ def first_violation_in_parts(
                     at = j - start
                     for m in range(max(0, at - costs.size + 1), min(size, at + costs.size)):
                         best = max(best, middle[m] - f * (m - at) - costs[abs(m - at)])
-                    if value[n, h, j] < best and worst[n] < 0:
-                        worst[n] = (n * histories + h) * nodes + j
-    for n in range(cells):
-        if worst[n] >= 0:
-            return int(worst[n])
-    return -1
+                    if value[n, h, j] < best:
+                        fails[n] = True
+    return bool(fails.any())
 
 
 @njit(cache=True, parallel=True)
-def first_violation_in_table(value: Any, successors: Any, forces: Any, costs: Any, steps: int) -> int:
+def violated_in_table(value: Any, successors: Any, forces: Any, costs: Any, steps: int) -> bool:
     """The same where a table says which state follows, −1 off the grid; value is (states, steps + 1)."""
     states, nodes = value.shape
     reach = successors.shape[1] // 2
-    worst = np.full(states, -1, np.int64)
+    fails = np.zeros(states, np.bool_)
     for s in prange(states):
         for j in range(nodes):
             for move in range(2 * reach + 1):
@@ -121,11 +113,8 @@ def first_violation_in_table(value: Any, successors: Any, forces: Any, costs: An
                 for j2 in range(nodes):
                     d = (move - reach) * steps + j2 - j
                     if abs(d) < costs.size and value[s, j] < value[then, j2] - forces[s] * d - costs[abs(d)]:
-                        worst[s] = s * nodes + j
-    for s in range(states):
-        if worst[s] >= 0:
-            return int(worst[s])
-    return -1
+                        fails[s] = True
+    return bool(fails.any())
 
 
 @njit(cache=True)
@@ -139,7 +128,7 @@ def _between(value: Any, n: int, h: int, at: int, j: int) -> int:
 
 
 @njit(cache=True, parallel=True)
-def first_relaxing_violation(
+def violated_relaxing(
     value: Any,
     rows: Any,
     inwards: Any,
@@ -149,14 +138,14 @@ def first_relaxing_violation(
     costs: Any,
     reach: int,
     steps: int,
-) -> int:
-    """The first state from which some move takes out more energy than V falls; −1 if there is none.
+) -> bool:
+    """True where from some state some move takes out more energy than V falls.
 
     value is (cells, histories, levels, steps + 1); lower and upper enclose the image of each level.
     """
     cells, histories, levels, nodes = value.shape
     older = histories // (2 * reach + 1) if histories > 1 else 1
-    worst = np.full(cells, -1, np.int64)
+    fails = np.zeros(cells, np.bool_)
     for n in prange(cells):
         for h in range(histories):
             row = rows[n, h]
@@ -177,7 +166,8 @@ def first_relaxing_violation(
                                 _between(value, n2, h2, lower[row, i], j2),
                                 _between(value, n2, h2, upper[row, i], j2),
                             )
-                            bad = have < goal
+                            if have < goal:
+                                fails[n] = True
                             if i + 1 < levels:
                                 passed = (lower[row, i] >> 16) + 1  # the level that the image may pass
                                 gap = passed * (1 << 16) - upper[row, i]
@@ -188,13 +178,9 @@ def first_relaxing_violation(
                                     early = (gap << 16) // width
                                     late = min(-((-(gap + 1) << 16) // max(width - 2, 1)), 1 << 16)
                                     least = have + min((rise * early) >> 16, (rise * late) >> 16)
-                                    bad = bad or least < value[n2, h2, passed, j2]
-                            if bad and worst[n] < 0:
-                                worst[n] = ((n * histories + h) * levels + i) * nodes + j
-    for n in range(cells):
-        if worst[n] >= 0:
-            return int(worst[n])
-    return -1
+                                    if least < value[n2, h2, passed, j2]:
+                                        fails[n] = True
+    return bool(fails.any())
 
 
 @njit(cache=True)
@@ -212,11 +198,11 @@ def _corners(value: Any, places: Any, n: int, newer: int, reach: int, goal: Any)
 
 
 @njit(cache=True, parallel=True)
-def first_violation_on_line(value: Any, exists: Any, forces: Any, costs: Any, places: Any, reach: int) -> int:
-    """As first_violation, V at the corners of a line; value, exists and forces are (corners, histories)."""
+def violated_on_line(value: Any, exists: Any, forces: Any, costs: Any, places: Any, reach: int) -> bool:
+    """As `violated`, V at the corners of a line; value, exists and forces are (corners, histories)."""
     corners, histories = value.shape
     width = 2 * reach + 1 if histories > 1 else 1
-    worst = np.full(corners, -1, np.int64)
+    fails = np.zeros(corners, np.bool_)
     for n in prange(corners):
         size = places[min(corners - 1, n + reach)] - places[max(0, n - reach)] + 1
         goal = np.empty(size)
@@ -228,15 +214,12 @@ def first_violation_on_line(value: Any, exists: Any, forces: Any, costs: Any, pl
                     if not exists[n, h] or abs(d) >= costs.size:
                         continue
                     if value[n, h] < goal[to] - forces[n, h] * d - costs[abs(d)]:
-                        worst[n] = n * histories + h
-    for n in range(corners):
-        if worst[n] >= 0:
-            return int(worst[n])
-    return -1
+                        fails[n] = True
+    return bool(fails.any())
 
 
 @njit(cache=True, parallel=True)
-def first_violation_in_parts_on_line(
+def violated_in_parts_on_line(
     value: Any,
     exists: Any,
     forces: Any,
@@ -245,11 +228,11 @@ def first_violation_in_parts_on_line(
     later_costs: Any,
     places: Any,
     reach: int,
-) -> int:
+) -> bool:
     """The same where each interval is two moves with two forces, the hand anywhere between them."""
     corners, histories = value.shape
     width = 2 * reach + 1
-    worst = np.full(corners, -1, np.int64)
+    fails = np.zeros(corners, np.bool_)
     for n in prange(corners):
         size = places[min(corners - 1, n + reach)] - places[max(0, n - reach)] + 1
         goal, middle = np.empty(size), np.empty(size)
@@ -269,8 +252,5 @@ def first_violation_in_parts_on_line(
                 for m in range(max(0, start - costs.size + 1), min(size, start + costs.size)):
                     lost = forces[n, h] * (m - start) + costs[abs(m - start)]
                     if value[n, h] < middle[m] - lost:
-                        worst[n] = n * histories + h
-    for n in range(corners):
-        if worst[n] >= 0:
-            return int(worst[n])
-    return -1
+                        fails[n] = True
+    return bool(fails.any())

@@ -73,13 +73,11 @@ def storage_of_row(told: Read) -> str:
     largest = int(value.max()) + int(abs(costs).max()) + max(map(abs, forces)) * (len(costs) + 1)
     if largest >= _EXACT:
         raise Invalid("the numbers are too large to be compared exactly")
-    from .moves import first_violation_in_table
+    from .moves import violated_in_table
 
-    at = first_violation_in_table(
-        value, successors, np.array(forces, np.int64), costs.astype(np.int64), steps
-    )
-    if at >= 0:
-        raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    tables = successors, np.array(forces, np.int64), costs.astype(np.int64)
+    if violated_in_table(value, *tables, steps):
+        raise Invalid("a move takes out more energy than was stored")
     return proved(domain, states)
 
 
