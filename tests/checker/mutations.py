@@ -42,6 +42,10 @@ _FUNCTIONS = {
 }  # fmt: skip
 _SILENT = frozenset({"Verification", "Invalid", "TypeVar", "Context"})
 """Calls that make messages or types."""
+_TYPES = frozenset({"Callable", "Literal", "Mapping", "dict", "list", "tuple"})
+"""Of what is in their brackets nothing is looked at when it runs."""
+_IN_ANY_ORDER = frozenset({"min", "max", "multiply", "dot", "_dot"})
+"""Calls whose arguments may change places."""
 _NO_CONDITION = frozenset({"strict", "dtype", "cache", "parallel", "ndigits"})
 
 
@@ -124,7 +128,7 @@ def _of_expression(root: ast.AST, returned: bool) -> Iterator[Mutant]:
         return
     if isinstance(root, ast.Call) and ast.unparse(root.func) in _SILENT:
         return
-    if isinstance(root, ast.Subscript) and ast.unparse(root.value) == "Literal":
+    if isinstance(root, ast.Subscript) and ast.unparse(root.value) in _TYPES:
         return
     yield from _FOUND.get(type(root), lambda _: iter(()))(root)  # type: ignore[arg-type, return-value]
     for field, value in ast.iter_fields(root):
@@ -227,7 +231,7 @@ def _called(node: ast.Call) -> Iterator[Mutant]:
         for at in range(len(node.args)):
             yield _changed(node, _drop(node, "args", at))
     for at, pair in enumerate(zip(node.args, node.args[1:], strict=False)):
-        if all(isinstance(one, (ast.Name, ast.Attribute)) for one in pair):
+        if name not in _IN_ANY_ORDER and all(isinstance(one, (ast.Name, ast.Attribute)) for one in pair):
             yield _changed(node, _turned(node.args, at))
     if name in ("abs", "reversed", "bool") and len(node.args) == 1:
         yield _changed(node, lambda: _become(node, node.args[0]))

@@ -354,6 +354,23 @@ def what_is_left_of_a_matrix_is_bounded() -> str:
     return ""
 
 
+def what_is_small_shrinks_every_vector() -> str:
+    """Matrices ≥ 0 by their largest eigenvalue: below 1 or not."""
+    is_small = module("crossing")._is_small
+    for told, right in (
+        ([["0"]], True), ([["1/2"]], True), ([["15/16"]], True), ([["1"]], False), ([["17/16"]], False),
+        ([["2"]], False), ([["3"]], False), ([["1/4", "4"], ["1/16", "1/4"]], True), ([], True),
+        ([["0", "4"], ["1/8", "0"]], True), ([["0", "4"], ["1/4", "0"]], False), ([["0", "2"], ["2", "0"]],
+         False),
+        ([["1/2", "1/2"], ["1/2", "1/2"]], False), ([["1/2", "0"], ["9", "1/2"]], True), ([["0", "9"], ["0",
+         "1"]], False),
+    ):  # fmt: skip
+        bounds = [[int(Fraction(x) * 256) for x in row] for row in told]
+        if is_small(bounds, 8) is not right:
+            return f"{told} is {'not ' * right}small"
+    return ""
+
+
 def no_root_crosses_unseen() -> str:
     """A factor whose root meets the circle at the end of what varies; none where that is far away."""
     if not _never(([-2, 1], [0, 1]), [[5, -6, 4]], Fraction(1, 100)):
@@ -581,6 +598,7 @@ CHECKS = (
     coprime_polynomials_are_told,
     the_circle_becomes_an_axis,
     what_is_left_of_a_matrix_is_bounded,
+    what_is_small_shrinks_every_vector,
     no_root_crosses_unseen,
     halves_are_the_same_polynomial,
     sizes_of_a_product_are_bounded,

@@ -370,6 +370,25 @@ def what_an_arm_is_made_of_is_as_it_is_told() -> str:
             return f"{turn} mirrors: {mirrored}"
     joint = SimpleNamespace(low=Fraction(-1), high=Fraction(2))
     chain, rest = SimpleNamespace(joints=[joint] * 3), [Fraction(-1), Fraction(1, 2), Fraction(3, 2)]
+    encoders, chain_of = part("arm.encoders"), part("arm.chain")
+    wider = encoders.with_steps(
+        chain_of.Chain([chain_of.Joint(False, [], [], Fraction(1), Fraction(2))], [], []),
+        encoders.Encoders([Fraction(1, 10)], [], []),
+    ).joints[0]
+    if (wider.low, wider.high) != (Fraction(9, 10), Fraction(21, 10)):
+        return "a step to either side"
+    held, moves = (SimpleNamespace(slides=False, low=0, high=high) for high in (0, 1))
+    read = SimpleNamespace(resolution=Fraction(3), coulomb_friction=Fraction(2), largest_column=Fraction(5))
+    if encoders.encoders_of(SimpleNamespace(joints=[read] * 2), SimpleNamespace(joints=[held, moves])) != (
+        [0, 3], [2, 2], [5, 5]
+    ):  # fmt: skip
+        return "what a joint that stays is read with"
+    unit = [[Fraction(i == k) for k in range(3)] for i in range(3)]
+    link = chain_of.Joint(False, unit, [Fraction(0)] * 3, Fraction(0), Fraction(1))
+    one = chain_of.Chain([link], [Fraction(3), Fraction(0), Fraction(0)], [])
+    ((below,),) = encoders.columns_below(one, encoders.Encoders([], [], [Fraction(4)]))([enclosed(bits, 0)])
+    if abs((16 - 9 * chain_of.LONGER**2) * 2**bits - below.middle) > 9:
+        return "a column below the longest"
     box = null._box(chain, SimpleNamespace(rest=rest, distance=Fraction(1)))
     if box != [(-1, 0), (Fraction(-1, 2), Fraction(3, 2)), (Fraction(1, 2), 2)]:
         return f"a box {box}"

@@ -68,7 +68,7 @@ def storage(told: Read) -> str:
     reserve(16 * states * (steps + 1) + 8 * (states + width**memory) * (memory + 3))
     spend(0.05 * states * (memory + 2))
     spend(PAIR * states * width * (steps + 1) ** 2 * (2 if losses.part < 1 else 1))
-    _require_small(law, losses, unit, max(abs(low), abs(high)), reach)
+    _require_small(law, losses, unit, max(-low, high), reach)
     if law.surface != "none" and low > 1 - (memory + 1) * reach:
         raise Invalid("the grid must reach so far out that a hand beyond it has been forgotten")
     shape = (cells, width**memory, steps + 1)
@@ -155,7 +155,7 @@ def _forces(
         total = np.minimum(np.maximum(total, -most), most)
     if law.surface != "none":
         total = np.where(ages[0] <= 0, 0, total)
-    off = len(law.taps) * max(abs(low), abs(high)) + 2  # each tap is rounded down, times a reading
+    off = len(law.taps) * max(-low, high) + 2  # each tap is rounded down, times a reading
     return total, off
 
 
