@@ -13,6 +13,7 @@ from importlib import import_module
 from itertools import zip_longest
 from pathlib import Path
 from pkgutil import iter_modules
+from tempfile import TemporaryDirectory
 
 import zwidth
 
@@ -45,6 +46,23 @@ def schemas_are_those_that_are_shipped() -> str:
     return ""
 
 
+def schemas_are_written() -> str:
+    """One for each kind; no other is left, and nothing else is touched."""
+    schema = import_module("zwidth.checker.schema")
+    with TemporaryDirectory() as name:
+        folder = Path(name, "new")
+        schema.write(folder)
+        names = {path.name for path in folder.iterdir()}
+        for other in ("other.json", "notes.txt"):
+            (folder / other).touch()
+        schema.write(folder)
+        if {path.name for path in folder.iterdir()} != {*names, "notes.txt"} or "spring.json" not in names:
+            return f"{names}"
+        return (
+            "" if (folder / "spring.json").read_text(encoding="utf-8") == schema.text_of("spring") else "text"
+        )
+
+
 def rows_are_those_that_were_shown() -> str:
     """What a proof shows of itself."""
     return first_other("shown.txt", shown())
@@ -70,6 +88,7 @@ def formats_are_those_that_were_told() -> str:
 
 CASES = [
     Case("schemas are those that are shipped", schemas_are_those_that_are_shipped, ""),
+    Case("schemas are written", schemas_are_written, ""),
     Case("rows", rows_are_those_that_were_shown, ""),
     Case("formats", formats_are_those_that_were_told, ""),
 ]

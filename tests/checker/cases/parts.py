@@ -520,11 +520,74 @@ def a_friction_curve_goes_on() -> str:
     for speed, force in ((0, 2), (1, 2), ("3/2", 4), (2, 6), (3, 5), (4, 4), (6, 4)):
         if told._force(Fraction(speed)) != force:
             return f"{told._force(Fraction(speed))} at {speed}"
+    for friction, damping in ((Fraction(1), Fraction(-1)), (Fraction(-1), Fraction(1, 2))):
+        if not refuses(
+            law._models_below,
+            [[friction, damping]],
+            [(Fraction(0), Fraction(9)), (Fraction(1), Fraction(10))],
+        ):
+            return f"a model of {friction} and {damping}"
     rising = told._replace(curve=points[:2])
     return "" if rising._force(Fraction(3)) == 10 else "beyond the last point"
 
 
+def a_violation_is_the_criterion_at_a_point() -> str:
+    """Up to a power of the denominator of cos θ, whatever the law and its delay are."""
+    loop, criterion, violation = (part(f"loop.{name}") for name in ("loop", "criterion", "violation"))
+    value, random = part("exact.polynomial").value, Random(4)
+    for above, below, whole, late in product((1, 3), (1, 2, 3), (0, 2), (Fraction(0), Fraction(1, 3))):
+        n, d = ([Fraction(random.randrange(1, 9)) for _ in range(size)] for size in (above, below))
+        size = max(above, below)
+        n, d = (side + [Fraction(0)] * (size - len(side)) for side in (n, d))
+        p = loop.Loop(n, d, Fraction(2), Fraction(0), Fraction(0), Fraction(1, 2), whole, late, False)
+        c = Fraction(random.randrange(-6, 7), 7)
+        right = (
+            value(criterion.bounded_criterion(p, late * (1 - late)), c)
+            if late
+            else value(criterion.criterion(p), c)
+        )
+        found = violation.criterion_at(p, c)
+        power = 1
+        while power < 7**40 and found != right * power:
+            power *= 7 if c else 10**99
+        if found != right * (power if c else 1):
+            return f"{found}, where {right} is the criterion of {p} at {c}"
+    return ""
+
+
+def contact_is_kept_by_motions_that_stay_inside() -> str:
+    """At every sample but the first and the last; where the law has no surface nobody asks."""
+    scope = part("scope")
+    for positions, right in (
+        ((0, 1, 2, 0), scope.KEPT), ((0, 0, 2, 0), scope.BROKEN), ((0, -1, 2, 3, 0), scope.BROKEN),
+        ((0, 2, -1, 0), scope.BROKEN), ((0, 1, 2, 0, 0), scope.BROKEN), ((0, 5), scope.KEPT), ((-1, 1, -1),
+         scope.KEPT),
+    ):  # fmt: skip
+        for unilateral in (True, False):
+            loop = SimpleNamespace(unilateral=unilateral, resolution=0)
+            found = scope.of_a_motion(SimpleNamespace(positions=positions, loop=loop)).contact
+            if found != (right if unilateral else scope.BOTH_SIDES):
+                return f"{positions}: {found}"
+    return ""
+
+
+def a_cycle_gains_in_all_and_again() -> str:
+    """More than nothing, both times."""
+    kinds, loop = part("kinds"), SimpleNamespace(sample_period=1)
+    told = SimpleNamespace(energy=None, sample_period=None, loop=loop)
+    for sums, right in (((0, 1), False), ((1, 0), False), ((-1, 1), False), ((2, 3), True)):
+        found = kinds._round_again(lambda _, sums=sums: tuple(map(Fraction, sums)))(told)
+        if found.valid is not right or (found.energy, found.gain) != sums:
+            return f"{sums}: {found}"
+        if not right and f"extracts {min(sums)} J: none" not in found.reason:
+            return found.reason
+    return ""
+
+
 CHECKS = (
+    a_violation_is_the_criterion_at_a_point,
+    contact_is_kept_by_motions_that_stay_inside,
+    a_cycle_gains_in_all_and_again,
     what_is_spent_adds_up,
     numbers_are_read_and_told,
     polynomials_are_multiplied,

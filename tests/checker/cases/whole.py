@@ -11,6 +11,7 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from decimal import Decimal
+from fractions import Fraction
 from importlib import import_module
 from io import StringIO
 from itertools import product
@@ -20,6 +21,7 @@ from typing import Any
 
 from . import Case, plain
 from .parts import part
+from .spring import spring
 
 Document = dict[str, Any]
 VERDICT = "zwidth verdict 1"
@@ -456,6 +458,16 @@ def rows_are_of_what_was_checked() -> str:
     return ""
 
 
+def what_a_check_finds_is_told() -> str:
+    """Energy, what a round more gives, and what joints have to spare, each in its place."""
+    kinds, told = part("kinds"), ("all of it", Fraction(2), Fraction(3), ((4.0,),))
+    found = kinds.Found(told[0], True, *told[1:])
+    kind = kinds.KINDS["spring"]._replace(check=lambda _: found)
+    with put_in_place("one", KINDS={"spring": kind}):
+        said = part("one").verify(spring(4))
+    return "" if (said.reason, said.energy, said.gain, said.surplus) == told and said.valid else f"{said}"
+
+
 def run(main: Callable[..., Any], *arguments: str) -> tuple[Any, str, str]:
     """What a command returns, or leaves with, and what it says."""
     out, err, before = StringIO(), StringIO(), sys.argv
@@ -598,6 +610,7 @@ CHECKS = (
     a_wrong_word_is_that_of_its_statement,
     words_are_of_what_is_covered,
     rows_are_of_what_was_checked,
+    what_a_check_finds_is_told,
     the_command_says_what_was_found,
     files_are_read_with_every_digit,
     reading_counts_as_effort,
