@@ -571,6 +571,31 @@ def contact_is_kept_by_motions_that_stay_inside() -> str:
     return ""
 
 
+def a_motion_in_contact_is_read_as_late_as_it_is() -> str:
+    """Forces of two ages, bounds of speed in each part of a sample, and roundings that are never a gain."""
+    motion, bounds = part("contact.motion"), part("contact.bounds")
+    law = SimpleNamespace(force=lambda readings, _: readings[0], averaged=lambda average, _: average)
+    for delay, right in ((0, (9, 9)), (1, (7, 9)), (2, (5, 7)), (3, (4, 5))):
+        losses, state = SimpleNamespace(delay=delay, resolution=1), motion._State([0] * 5, [0] * 5)
+        for reading in (4, 5, 7, 9):
+            found = state.read(reading, law, losses, 1)
+        if found != right:
+            return f"{found}, {delay} samples late"
+    losses = SimpleNamespace(resolution=2)
+    for stiffness in (3, -3):
+        relaxing = SimpleNamespace(relaxing=(Fraction(1, 2), Fraction(stiffness)))
+        if motion._uncertainty(relaxing, losses, [0, 5, 4]) != Fraction(3 * 6 * 2 * 2) / motion.FINEST:
+            return f"roundings of {stiffness}"
+    losses = SimpleNamespace(part=Fraction(1, 4), period=Fraction(2))
+    for speed, right in ((Fraction(2), True), (Fraction(19, 10), False)):
+        for path, turn in (([0, 4], 1), ([4, 0], 3), ([0, 1], 1), ([1, 4], 1)):
+            if bounds._slow(losses, path, [turn], speed) is not right:
+                return f"{path} by {turn} at {speed}"
+        if bounds._slow(SimpleNamespace(part=1, period=Fraction(2)), [0, 4, 0], [], speed) is not right:
+            return f"in one at {speed}"
+    return ""
+
+
 def a_cycle_gains_in_all_and_again() -> str:
     """More than nothing, both times."""
     kinds, loop = part("kinds"), SimpleNamespace(sample_period=1)
@@ -587,6 +612,7 @@ def a_cycle_gains_in_all_and_again() -> str:
 CHECKS = (
     a_violation_is_the_criterion_at_a_point,
     contact_is_kept_by_motions_that_stay_inside,
+    a_motion_in_contact_is_read_as_late_as_it_is,
     a_cycle_gains_in_all_and_again,
     what_is_spent_adds_up,
     numbers_are_read_and_told,
