@@ -206,7 +206,7 @@ def on_a_line() -> str:
         two, reach = round_ % 2 == 1, random.choice((1, 2))
         corners, histories = (
             random.randrange(3, 7),
-            (2 * reach + 1) ** random.choice((1, 2) if two else (0, 1, 2)),
+            (2 * reach + 1) ** random.choice((1, 2) if two else (0, 1, 2, 2)),
         )
         at = random.randrange(1, corners)
         places = np.array([*range(at), *range(at - 1, corners - 1)])
@@ -334,7 +334,19 @@ def a_level_that_is_passed_counts() -> str:
             found = _from_one_cell(value, images, pushed, inwards, 30_000, least)
             if found is (right < 0):
                 return f"{pole}, {start}, {first}, {second}, {i}, {level}, {cost}: {found}"
+            if inwards and _mirrored(value, images, pushed, 30_000, least) is not found:
+                return f"{pole}, {start}, {first}, {second}, {i}, {level}, {cost}, the other way: {not found}"
+            # what a force gives may as well be in V where the move begins
+            stored = value.copy()
+            stored[0, 0, :, 0] = np.array(pushed) + 4000
+            if inwards and _from_one_cell(stored, images, [0] * 4, True, 90_000, least - 4000) is not found:
+                return f"{pole}, {start}, {first}, {second}, {i}, {level}, {cost}, stored: {not found}"
     return ""
+
+
+def _mirrored(value: Any, images: Sequence[Fraction], pushed: Sequence[int], stays: int, moves: int) -> bool:
+    """The same outwards, from the second node to the first."""
+    return _from_one_cell(value[..., ::-1].copy(), images, [-f for f in pushed], False, stays, moves)
 
 
 def _from_one_cell(

@@ -171,7 +171,7 @@ def violated_relaxing(
                             if i + 1 < levels:
                                 passed = (lower[row, i] >> 16) + 1  # the level that the image may pass
                                 gap = passed * (1 << 16) - upper[row, i]
-                                if passed * (1 << 16) < upper[row, i + 1] and gap >= 0:
+                                if passed * (1 << 16) < upper[row, i + 1]:
                                     width = upper[row, i + 1] - lower[row, i]
                                     f = inwards[row, i + 1] if d > 0 else outwards[row, i + 1]
                                     rise = value[n, h, i + 1, j] + f * d + cost - have
