@@ -231,7 +231,8 @@ def _called(node: ast.Call) -> Iterator[Mutant]:
         for at in range(len(node.args)):
             yield _changed(node, _drop(node, "args", at))
     for at, pair in enumerate(zip(node.args, node.args[1:], strict=False)):
-        if name not in _IN_ANY_ORDER and all(isinstance(one, (ast.Name, ast.Attribute)) for one in pair):
+        named = all(isinstance(one, (ast.Name, ast.Attribute)) for one in pair)
+        if named and name not in _IN_ANY_ORDER and len(set(map(ast.unparse, pair))) == 2:
             yield _changed(node, _turned(node.args, at))
     if name in ("abs", "reversed", "bool") and len(node.args) == 1:
         yield _changed(node, lambda: _become(node, node.args[0]))

@@ -389,6 +389,12 @@ def a_level_that_is_passed_at_once_counts() -> str:
         found = _from_one_cell(value, images, pushed, True, LARGE, least)
         if found is (right < 0):
             return f"{least - LARGE} more: {found}"
+    # level 1 is passed half way to where there is more by half of V: just there a 65536th of that is lacking
+    images, pushed = [Fraction(1, 2), Fraction(3, 2), Fraction(2)], [0, LARGE >> 1, 0]
+    for more, right in ((-(1 << 23), True), (1 << 25, False)):
+        found = _from_one_cell(value, images, pushed, True, LARGE, LARGE - (LARGE >> 2) + more)
+        if found is not right:
+            return f"{more} more half way: {found}"
     return ""
 
 

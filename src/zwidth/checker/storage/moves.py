@@ -16,7 +16,7 @@ def violated(value: Any, exists: Any, forces: Any, costs: Any, reach: int, steps
     """
     cells, histories, nodes = value.shape
     width = 2 * reach + 1
-    older = histories // width if histories > 1 else 1
+    older = max(1, histories // width)
     fails = np.zeros(cells, np.bool_)
     for n in prange(cells):
         gain, move = np.empty(width * nodes), np.empty(width * nodes)
@@ -144,7 +144,7 @@ def violated_relaxing(
     value is (cells, histories, levels, steps + 1); lower and upper enclose the image of each level.
     """
     cells, histories, levels, nodes = value.shape
-    older = histories // (2 * reach + 1) if histories > 1 else 1
+    older = max(1, histories // (2 * reach + 1))
     fails = np.zeros(cells, np.bool_)
     for n in prange(cells):
         for h in range(histories):
@@ -187,7 +187,7 @@ def violated_relaxing(
 def _corners(value: Any, places: Any, n: int, newer: int, reach: int, goal: Any) -> int:
     """The best value at every place within reach of corner n; returns how far out the first place is."""
     corners, histories = value.shape
-    older = histories // (2 * reach + 1) if histories > 1 else 1
+    older = max(1, histories // (2 * reach + 1))
     low, high = max(0, n - reach), min(corners, n + reach + 1)
     goal[:] = -1.0
     for n2 in range(low, high):
