@@ -22,6 +22,7 @@ import ast
 import csv
 import hashlib
 import random
+import re
 import resource
 import signal
 import sys
@@ -30,10 +31,12 @@ import tomllib
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
-from fnmatch import fnmatchcase
+from fnmatch import fnmatchcase, translate
+from functools import cache
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from importlib.util import spec_from_loader
+from itertools import product
 from pathlib import Path
 from types import CodeType, FrameType, ModuleType
 from typing import Any, NamedTuple
@@ -275,17 +278,29 @@ class Equivalent(NamedTuple):
     reason: str
 
     def covers(self, named: tuple[str, str, str]) -> bool:
-        return all(
-            fnmatchcase(own, said.replace("[", "[[]"))
-            for own, said in zip(named, (self.file, self.source, self.change), strict=True)
-        )
+        said = (self.file, self.source, self.change)
+        return all(_pattern(one).match(own) for own, one in zip(named, said, strict=True))
+
+
+@cache
+def _pattern(told: str) -> re.Pattern[str]:
+    """Text in which a * stands for anything."""
+    return re.compile(translate(told.replace("[", "[[]")))
 
 
 def equivalents() -> list[Equivalent]:
     """What `equivalent.toml` lists: in file, source and change a * stands for anything."""
     with (HERE / "equivalent.toml").open("rb") as file:
         listed = tomllib.load(file).get("mutant", [])
-    return [Equivalent(e["file"], e["source"], e.get("change", "*"), e["reason"]) for e in listed]
+    return [
+        Equivalent(e["file"], source, change, e["reason"])
+        for e in listed
+        for source, change in product(_several(e["source"]), _several(e.get("change", "*")))
+    ]
+
+
+def _several(told: str | list[str]) -> list[str]:
+    return [told] if isinstance(told, str) else told
 
 
 def reason_for(named: tuple[str, str, str], excused: Sequence[Equivalent]) -> str:

@@ -42,6 +42,10 @@ _FUNCTIONS = {
 }  # fmt: skip
 _SILENT = frozenset({"Verification", "Invalid", "TypeVar", "Context"})
 """Calls that make messages or types."""
+_TYPES = frozenset({"Callable", "Literal", "Mapping", "dict", "list", "tuple"})
+"""Of what is in their brackets nothing is looked at when it runs."""
+_IN_ANY_ORDER = frozenset({"min", "max", "multiply", "dot", "_dot"})
+"""Calls whose arguments may change places."""
 _NO_CONDITION = frozenset({"strict", "dtype", "cache", "parallel", "ndigits"})
 
 
@@ -124,7 +128,7 @@ def _of_expression(root: ast.AST, returned: bool) -> Iterator[Mutant]:
         return
     if isinstance(root, ast.Call) and ast.unparse(root.func) in _SILENT:
         return
-    if isinstance(root, ast.Subscript) and ast.unparse(root.value) == "Literal":
+    if isinstance(root, ast.Subscript) and ast.unparse(root.value) in _TYPES:
         return
     yield from _FOUND.get(type(root), lambda _: iter(()))(root)  # type: ignore[arg-type, return-value]
     for field, value in ast.iter_fields(root):
@@ -150,9 +154,14 @@ def _is_said(node: ast.AST) -> bool:
 
 def _compared(node: ast.Compare) -> Iterator[Mutant]:
     for at, operator in enumerate(node.ops):
-        with_zero = isinstance(node.comparators[at], ast.Constant)
-        for other in _COMPARISONS[type(operator)][: 1 if with_zero and _is_equality(operator) else None]:
+        only = _is_equality(operator) and _is_constant(node.comparators[at])
+        for other in _COMPARISONS[type(operator)][: 1 if only else None]:
             yield _changed(node, _put(node.ops, at, other()))
+
+
+def _is_constant(node: ast.expr) -> bool:
+    """A number, or a word, by itself or by the name of it: words have no order that means anything."""
+    return isinstance(node, ast.Constant) or (isinstance(node, ast.Name) and node.id.isupper())
 
 
 def _is_equality(operator: ast.cmpop) -> bool:
@@ -222,7 +231,8 @@ def _called(node: ast.Call) -> Iterator[Mutant]:
         for at in range(len(node.args)):
             yield _changed(node, _drop(node, "args", at))
     for at, pair in enumerate(zip(node.args, node.args[1:], strict=False)):
-        if all(isinstance(one, (ast.Name, ast.Attribute)) for one in pair):
+        named = all(isinstance(one, (ast.Name, ast.Attribute)) for one in pair)
+        if named and name not in _IN_ANY_ORDER and len(set(map(ast.unparse, pair))) == 2:
             yield _changed(node, _turned(node.args, at))
     if name in ("abs", "reversed", "bool") and len(node.args) == 1:
         yield _changed(node, lambda: _become(node, node.args[0]))

@@ -25,6 +25,7 @@ EXPECTED = {
     "a default": (6, "2 → 1"),
     "a comparison": (8, "a < b → a <= b"),
     "a condition": (8, "a < b and (not a == LIMIT) → True"),
+    "an equality": (8, "a == LIMIT → a != LIMIT"),
     "one of two conditions": (8, "a < b and (not a == LIMIT) → a < b"),
     "a refusal": (9, "removed"),
     "a word": (10, "('one', 'two') → ('two',)"),
@@ -53,6 +54,7 @@ def test_every_mutant_is_another_source() -> None:
     assert ast.unparse(tree) not in sources
     assert len(set(sources)) == len(sources)
     assert {(m.line, m.change) for m in found} >= set(EXPECTED.values())
+    assert (8, "a == LIMIT → a <= LIMIT") not in {(m.line, m.change) for m in found}
 
 
 def test_what_is_said_to_people_is_left_alone() -> None:

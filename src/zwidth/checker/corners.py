@@ -55,7 +55,7 @@ def _frozen(value: Any) -> Any:
     """What a corner says, every digit of it, in a form that can be compared."""
     if isinstance(value, Read):
         return tuple((name, _frozen(inner)) for name, inner in vars(value).items())
-    return tuple(map(_frozen, value)) if isinstance(value, (list, tuple)) else value
+    return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
 _BETWEEN = "nothing is said of what lies between them"

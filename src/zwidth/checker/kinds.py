@@ -115,7 +115,7 @@ def _as_told(told: Read, found: Found) -> Found:
     """Refused where the energy, or the sample period beside the motion, is not the one that is told."""
     energy, period = found.energy or Fraction(0), told.loop.sample_period
     for name, unit, said, is_, room in (
-        ("the energy", "J", told.energy, energy, abs(energy) / 10**9),
+        ("the energy", "J", told.energy, energy, energy / 10**9),
         ("T", "s", told.sample_period, period, Fraction(0)),
     ):
         if said is not None and abs(said - is_) > room:

@@ -15,7 +15,7 @@ from .one import Verified, verify
 from .scope import ACTIVE, COUNTED, INDEX, KEPT, NO_INDEX, PASSIVE, STABLE, UNSTABLE, Scope
 from .whole import IN_CONTACT, NO_STEPS, PAPER, UNDECIDED, Statement, read_whole
 
-_BETTER, _WORSE = (PASSIVE, STABLE, INDEX), (ACTIVE, UNSTABLE, NO_INDEX)
+_BETTER, _WORSE = (PASSIVE, STABLE), (ACTIVE, UNSTABLE)
 """What a certificate shows, and what a violation and a motion."""
 
 _SHOWN_BY = {
@@ -93,7 +93,7 @@ def judge(document: object) -> Judged:
 def _part(stated: Statement, name: str, seen: dict[str, Verified]) -> Part:
     """A piece of evidence, checked once where it is given more often, and held against what is stated."""
     evidence = stated.evidence[name]
-    same = json.dumps(evidence, sort_keys=True, default=str)
+    same = json.dumps(evidence, default=str)
     if same not in seen:
         seen[same] = verify(evidence)
     found = seen[same]
@@ -105,7 +105,7 @@ def _part(stated: Statement, name: str, seen: dict[str, Verified]) -> Part:
             else f"this {name} is no such thing: the"
         )
         found = Verified(False, f"{says} evidence {misfit}")
-    return Part(stated.place(name) if name else "", evidence, found)
+    return Part(stated.place(name), evidence, found)
 
 
 def _not_shown(stated: Statement) -> Iterator[str]:
@@ -132,8 +132,6 @@ def _misfit(stated: Statement, name: str, evidence: Mapping[str, Any], covered: 
         return misfit
     if shows in (INDEX, NO_INDEX):
         return _misfit_of_a_port(evidence, shows, said)
-    if said == PAPER:
-        return "is no proof on paper"
     needed = _SHOWN_BY.get(str(said))
     if (shows not in (_BETTER if name == "certificate" else _WORSE)) if needed is None else needed != shows:
         return {

@@ -219,16 +219,16 @@ _NONE = f"no evidence found: the object has no key kind, {', '.join(EVIDENCE[:-1
 
 def read_whole(document: object) -> Whole:
     """What a document states and holds; `Unreadable` where there is nothing to check, else `Invalid`."""
-    require_shallow(document)
     if not isinstance(document, Mapping):
         raise Unreadable("expected a JSON object with a certificate, a violation or a witness")
-    if not {"kind", "format", "outcome", *EVIDENCE, *SHAPES[VERDICT].inside} & set(document):
+    require_shallow(document)
+    if not {"kind", "format", *EVIDENCE, *SHAPES[VERDICT].inside} & set(document):
         raise Unreadable(_NONE)
     told: list[str] = []
     if "kind" in document:
         statements = [Statement("", Shape(outcomes=()), None, {}, {"": document})]
     else:
-        statements = _statements(document, "", str(document.get("format", VERDICT))[:60], told)
+        statements = _statements(document, "", str(document.get("format", VERDICT)), told)
     if not any(statement.evidence for statement in statements):
         raise Unreadable(_NONE)
     return Whole(tuple(statements), tuple(told))
@@ -244,7 +244,9 @@ def _statements(document: object, at: str, sort: str, told: list[str]) -> list[S
             f"no evidence found: a document of format {str(given)[:60]!r} holds none that is checked"
         )
     inner: list[Statement] = []
-    evidence, outcome, scope, listed = dict[str, Mapping[str, Any]](), None, dict[str, Any](), None
+    evidence: dict[str, Mapping[str, Any]] = {}
+    scope: Mapping[str, Any] = {}
+    outcome = listed = None
     for key, value in document.items():
         if key in EVIDENCE:
             if value is not None:
@@ -252,7 +254,7 @@ def _statements(document: object, at: str, sort: str, told: list[str]) -> list[S
         elif key == "outcome" and shape.outcomes:
             outcome = _one_of(value, shape.outcomes, place + key)
         elif key == "scope":
-            scope = dict(_scope(_object(value, place + key), place + key, told))
+            scope = _scope(_object(value, place + key), place + key, told)
         elif key in shape.inside:
             how, inside = shape.inside[key]
             found = [_statements(one, there, inside, told) for there, one in _held(value, place + key, how)]
@@ -300,8 +302,8 @@ def _object(value: object, at: str) -> Mapping[str, Any]:
     return value
 
 
-def _one_of(value: object, words: tuple[str, ...], at: str) -> str:
-    if not isinstance(value, str) or value not in words:
+def _one_of(value: Any, words: tuple[str, ...], at: str) -> Any:
+    if value not in words:
         raise Invalid(f"{at} must be {', '.join(words[:-1])} or {words[-1]}, got {str(value)[:40]!r}")
     return value
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from importlib import import_module
 from itertools import product
-from math import floor, isqrt
+from math import comb, floor, isqrt
 from random import Random
 from typing import Any
 
@@ -178,6 +178,16 @@ def _not_curved(found: Any, x: Any, first: int) -> str:
     return wrong or ("too wide" if found.radius > allowed * Fraction(101, 100) else "")
 
 
+def series_keep_what_their_angle_is_off() -> str:
+    """By some units."""
+    functions, x = module("functions"), module("enclosed").Enclosed(40, 3 << 40, (), 1000)
+    if functions._ends(module("enclosed").Enclosed(8, 5, (), 3)) != (2, 8):
+        return "the ends of a number"
+    found = [functions._series(x, first) for first in (0, 1)]
+    wrong = (outside(f, x, lambda v, first=first: sine(v, first), 1 << 16) for first, f in enumerate(found))
+    return next((w for w in wrong if w), "")
+
+
 def angles_have_few_turns() -> str:
     """64 rad is the largest."""
     functions, enclosed = module("functions"), module("enclosed").Enclosed
@@ -304,7 +314,8 @@ def coprime_polynomials_are_told() -> str:
     first = 2**61 - 1
     if are_coprime([first], [first]) is not True or not are_coprime([1, 1], [1, first]):
         return "a highest coefficient that one prime divides"
-    return ""
+    every = first * (2**89 - 1) * (2**127 - 1)
+    return "a root that every prime takes away" if are_coprime([1, every], [1, every]) else ""
 
 
 def the_circle_becomes_an_axis() -> str:
@@ -318,6 +329,46 @@ def the_circle_becomes_an_axis() -> str:
             if sum(x.middle * w ** (order - i) for i, x in enumerate(found)) != right:
                 return f"{told}"
     return "" if crossing.never_crosses([enclosed(8, 3, (), 1)]) else "a constant"
+
+
+def what_is_left_of_a_matrix_is_bounded() -> str:
+    """|I − C H R| for any C and R, rounded up once."""
+    crossing, enclosed, random, bits = module("crossing"), module("enclosed").Enclosed, Random(8), 6
+    for size, part, _ in product((1, 2, 3), (1, 16), range(10)):
+        h = [
+            [enclosed(bits, random.randrange(-200, 200), (), random.randrange(3)) for _ in range(size)]
+            for _ in range(size)
+        ]
+        left, right = (
+            [[Fraction(random.randrange(-20, 21), part) for _ in range(size)] for _ in range(size)]
+            for _ in range(2)
+        )
+        found = crossing._deviation(h, *([[float(x) for x in row] for row in side] for side in (left, right)))
+        for i, j in product(range(size), repeat=2):
+            parts = [(left[i][k] * right[j][m], h[k][m]) for k, m in product(range(size), repeat=2)]
+            off = abs((i == j) - sum(c * Fraction(x.middle, 1 << bits) for c, x in parts))
+            off += sum(abs(c) * Fraction(x.radius, 1 << bits) for c, x in parts)
+            # C, R and their products each have six bits here: nothing but the last step is rounded
+            if found[i][j] != -(-off * (1 << bits) // 1):
+                return f"{found[i][j]}, not {float(off * (1 << bits))}"
+    return ""
+
+
+def what_is_small_shrinks_every_vector() -> str:
+    """Matrices ≥ 0 by their largest eigenvalue: below 1 or not."""
+    is_small = module("crossing")._is_small
+    for told, right in (
+        ([["0"]], True), ([["1/2"]], True), ([["15/16"]], True), ([["1"]], False), ([["17/16"]], False),
+        ([["2"]], False), ([["3"]], False), ([["1/4", "4"], ["1/16", "1/4"]], True), ([], True),
+        ([["0", "4"], ["1/8", "0"]], True), ([["0", "4"], ["1/4", "0"]], False), ([["0", "2"], ["2", "0"]],
+         False),
+        ([["1/2", "1/2"], ["1/2", "1/2"]], False), ([["1/2", "0"], ["9", "1/2"]], True), ([["0", "9"], ["0",
+         "1"]], False),
+    ):  # fmt: skip
+        bounds = [[int(Fraction(x) * 256) for x in row] for row in told]
+        if is_small(bounds, 8) is not right:
+            return f"{told} is {'not ' * right}small"
+    return ""
 
 
 def no_root_crosses_unseen() -> str:
@@ -500,6 +551,36 @@ def rational_numbers_are_enclosed() -> str:
     return ""
 
 
+def halves_are_the_same_polynomial() -> str:
+    """Bernstein coefficients on both halves, times 2ⁿ."""
+    split, random = module("positivity")._split, Random(9)
+    for degree, _ in product(range(6), range(5)):
+        b = [random.randrange(-99, 100) for _ in range(degree + 1)]
+        left = [sum(comb(i, k) * b[k] for k in range(i + 1)) << degree - i for i in range(degree + 1)]
+        right = [
+            sum(comb(i, k) * b[degree - k] for k in range(i + 1)) << degree - i for i in range(degree + 1)
+        ][::-1]
+        if split(b) != (left, right):
+            return f"{b}: {split(b)}"
+    return ""
+
+
+def sizes_of_a_product_are_bounded() -> str:
+    """Every coefficient of a polynomial within bounds times one of whole numbers."""
+    enclosed, random = module("enclosed").Enclosed, Random(10)
+    for first, second in product(range(1, 5), repeat=2):
+        a = [enclosed(8, random.randrange(-50, 50), (), random.randrange(5)) for _ in range(first)]
+        e = [random.randrange(-9, 10) for _ in range(second)]
+        right = [
+            abs(sum(a[i].middle * e[k - i] for i in range(first) if 0 <= k - i < second))
+            + sum(a[i].radius * abs(e[k - i]) for i in range(first) if 0 <= k - i < second)
+            for k in range(first + second - 1)
+        ]
+        if module("one_norm")._sizes(a, e) != right:
+            return f"{first} by {second}"
+    return ""
+
+
 CHECKS = (
     functions_are_rounded_outward,
     curvature_is_bounded_closely,
@@ -507,6 +588,7 @@ CHECKS = (
     what_may_be_0_has_no_inverse,
     sines_are_rounded_outward,
     series_are_cut_off_outward,
+    series_keep_what_their_angle_is_off,
     angles_have_few_turns,
     roots_are_told_inside_from_outside,
     roots_next_to_the_circle_are_told,
@@ -515,7 +597,11 @@ CHECKS = (
     what_is_open_is_not_decided,
     coprime_polynomials_are_told,
     the_circle_becomes_an_axis,
+    what_is_left_of_a_matrix_is_bounded,
+    what_is_small_shrinks_every_vector,
     no_root_crosses_unseen,
+    halves_are_the_same_polynomial,
+    sizes_of_a_product_are_bounded,
     sums_of_products_are_rounded_once,
     what_may_not_be_0_is_not_left_out,
     what_a_quotient_loses_is_kept,

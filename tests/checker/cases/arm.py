@@ -473,6 +473,11 @@ CASES = [
         "rows, and as many columns",
     ),
     refused(
+        "rows of two lengths",
+        put(MIXED, {"wall.stiffness_N_per_m": [["1", "0", "0"], ["0", "1"], ["0", "0", "1"]]}),
+        "rows, and as many columns",
+    ),
+    refused(
         "a matrix of four rows",
         put(MIXED, {"wall.stiffness_N_per_m": [["0"] * 4] * 4}),
         "wall.stiffness_N_per_m must have 1 to 3 entries",
@@ -641,6 +646,14 @@ CASES = [
         "of length 1, at right angles",
     ),
     refused("one leg", put(TWO, {"arm.legs": TWO["arm"]["legs"][:1]}), "arm.legs must have 2 to 3 entries"),
+    *(
+        refused(
+            f"{end} of too many coordinates",
+            put(TWO, {f"arm.{end}_m": ["0.02", "0.09", "0"]}),
+            "as many legs",
+        )
+        for end in ("low", "high")
+    ),
     refused("a region turned round", put(TWO, {"arm.low_m": ["0.03", "0.09"]}), "low ≤ high"),
     *(
         refused(f"a leg, {key} is {value}", put(TWO, {f"{LEG}{key}": value}), f"{key} must be")

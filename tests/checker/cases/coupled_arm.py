@@ -87,6 +87,7 @@ CASES: list[Case] = [
     refused("neither", without(table(1), MATRIX), "damping of each joint is missing"),
     refused("a number of one joint alone", without(MIXED, "arm.joints.1.damping_N_s_per_m"), "is missing"),
     refused("not symmetric", table(1, **{f"{MATRIX}.0": ["0.59", "0.0600000001"]}), "not symmetric"),
+    refused("not symmetric below", table(1, **{f"{MATRIX}.0": ["0.59", "0.0599999999"]}), "not symmetric"),
     refused(
         "one of three pairs not symmetric",
         put(damped("coupled chain", 9), {f"{MATRIX}.2.1": "0.0001"}),

@@ -1,9 +1,10 @@
 """What is declared of every kind: its JSON Schema as it is shipped, and how a document is shown, `shown.txt`.
+Of every format: what documents consist of, `formats.txt`.
 
     python -m zwidth.checker.schema
     (cd tests/checker && python -m cases.declared)
 
-write both anew.
+write all anew.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from importlib import import_module
 from itertools import zip_longest
 from pathlib import Path
 from pkgutil import iter_modules
+from tempfile import TemporaryDirectory
 
 import zwidth
 
@@ -44,17 +46,53 @@ def schemas_are_those_that_are_shipped() -> str:
     return ""
 
 
+def schemas_are_written() -> str:
+    """One for each kind; no other is left, and nothing else is touched."""
+    schema = import_module("zwidth.checker.schema")
+    with TemporaryDirectory() as name:
+        folder = Path(name, "new")
+        schema.write(folder)
+        names = {path.name for path in folder.iterdir()}
+        for other in ("other.json", "notes.txt"):
+            (folder / other).touch()
+        schema.write(folder)
+        if {path.name for path in folder.iterdir()} != {*names, "notes.txt"} or "spring.json" not in names:
+            return f"{names}"
+        return (
+            "" if (folder / "spring.json").read_text(encoding="utf-8") == schema.text_of("spring") else "text"
+        )
+
+
 def rows_are_those_that_were_shown() -> str:
-    """The first line that is not as in the file."""
-    told, now = (HERE / "shown.txt").read_text(encoding="utf-8").splitlines(), shown()
-    pairs = zip_longest(told, now, fillvalue="")
+    """What a proof shows of itself."""
+    return first_other("shown.txt", shown())
+
+
+def first_other(file: str, now: list[str]) -> str:
+    """The first line that is not as in a file."""
+    pairs = zip_longest((HERE / file).read_text(encoding="utf-8").splitlines(), now, fillvalue="")
     return next((f"{said!r}, now {line!r}" for said, line in pairs if said != line), "")
+
+
+def formats() -> list[str]:
+    """What a document of each format consists of, and a scope."""
+    whole = import_module("zwidth.checker.whole")
+    lines = [f"{name}: {one}" for table in (whole.SHAPES, whole._SCOPE) for name, one in table.items()]
+    return [*lines, str(whole._OF_A_SCOPE), f"{whole._HANDS}", f"{whole.EVIDENCE}"]
+
+
+def formats_are_those_that_were_told() -> str:
+    """An entry that is missed would be refused, and one more would be told without proof."""
+    return first_other("formats.txt", formats())
 
 
 CASES = [
     Case("schemas are those that are shipped", schemas_are_those_that_are_shipped, ""),
+    Case("schemas are written", schemas_are_written, ""),
     Case("rows", rows_are_those_that_were_shown, ""),
+    Case("formats", formats_are_those_that_were_told, ""),
 ]
 
 if __name__ == "__main__":
-    (HERE / "shown.txt").write_text("\n".join(shown()) + "\n", encoding="utf-8")
+    for name, told in (("shown.txt", shown()), ("formats.txt", formats())):
+        (HERE / name).write_text("\n".join(told) + "\n", encoding="utf-8")

@@ -67,6 +67,13 @@ CASES = [
         fed_with="",
     ),
     refused("friction, the largest slope", put(RISING, {"loop.coulomb_friction_N": 4 - TINY}), FRICTION),
+    # x = 6 N/m · T = 3 and 3/8 of a sample more: w = x (½ + 3/8), b ≥ (w + x)/2
+    *edge(
+        "a stiff spring and a part of a sample",
+        STIFF := spring([[-1, -6], [1, 6]], damping_N_s_per_m="45/16", delay_s="3/16", coulomb_friction_N=6),
+        put(STIFF, {"loop.damping_N_s_per_m": Fraction(45, 16) - TINY}),
+        DAMPING,
+    ),
     *edge("the steepest part falls", FALLING, put(FALLING, {"loop.coulomb_friction_N": 4 - TINY}), FRICTION),
     refused(
         "damping, the steepest part falls", put(FALLING, {"loop.damping_N_s_per_m": "0.499999999"}), DAMPING

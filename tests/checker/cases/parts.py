@@ -330,6 +330,174 @@ def turns_are_bounded() -> str:
     )
 
 
+def what_an_arm_is_made_of_is_as_it_is_told() -> str:
+    """Ends of cells and of boxes, matrices without a sign, and what is known of a projector, one by one."""
+    cells, region, pose, null = (part(f"arm.{name}") for name in ("cells", "region", "pose", "null_space"))
+    projector, enclosed, bits = part("arm.projector"), part("exact.enclosed").Enclosed, part("arm.cells").BITS
+    numbers = [
+        (x.middle, x.slopes, x.radius)
+        for x in (
+            cells._coordinate((4, 5), 0, [1]), cells._coordinate((4, 4), 0, [1]),
+            cells._coordinate((-6, 10), 1, [0, 1, 3]), cells._coordinate((-6, 11), 0, [0]),
+        )
+    ]  # fmt: skip
+    if numbers != [(4, (), 1), (4, (), 0), (2, (0, 8, 0), 0), (2, (9,), 0)]:
+        return f"coordinates {numbers}"
+    for matrix, right in (
+        ([[1, 0], [1]], True), ([[1, 1], [1]], False), ([[2, 1], [1]], True), ([[2, 2], [1]], False),
+        ([[2, 1, 0], [1, 0], [1]], True), ([[2, 1, 1], [2, 2], [2]], False), ([[0]], False),
+        ([[5, 2, 1], [3, 1], [1]], True), ([[5, 2, 1], [3, 2], [1]], False), ([[1, 0, 0], [1, 1], [2]], True),
+    ):  # fmt: skip
+        if cells.positive([[enclosed(bits, x) for x in row] for row in matrix]) is not right:
+            return f"{matrix} is told wrongly"
+    for rows, right in (
+        ([[0, 0], [0, "-1/2"]], False), ([[0, 0], [0, 0]], True), ([[0, 0], [0, "1/2"]], True),
+        ([[1, 1], [1, 1]], True), ([[0, 0, 0], [0, 0, 1], [0, 1, 0]], False), ([[4, 2], [2, "9/10"]], False),
+    ):  # fmt: skip
+        if region._semidefinite([[Fraction(x) for x in row] for row in rows]) is not right:
+            return f"{rows} is told wrongly"
+    wall = SimpleNamespace(stiffness=[[1]], virtual_damping=[[-2]], damping_bound=[[3]])
+    if region.matrices_of(wall, pose.Pose(0, False)) != ([[1]], [[-2]], [[3]]):
+        return "the matrices of a wall"
+    for row in range(3):
+        need = [[Fraction(int((i, k) in ((row, 4), (4, row)))) for k in range(6)] for i in range(6)]
+        if not refuses(pose.for_every_rest, need, pose.Pose(3, True)):
+            return "forces and turns coupled"
+    for places, signs in product(permutations(range(3)), product((1, -1), repeat=3)):
+        turn = [[Fraction(signs[i] * (places[i] == k)) for k in range(3)] for i in range(3)]
+        mirrored = _determinant([[(x, 0) for x in row] for row in turn])[0] < 0
+        if refuses(pose._quaternion, turn) is not mirrored:
+            return f"{turn} mirrors: {mirrored}"
+    joint = SimpleNamespace(low=Fraction(-1), high=Fraction(2))
+    chain, rest = SimpleNamespace(joints=[joint] * 3), [Fraction(-1), Fraction(1, 2), Fraction(3, 2)]
+    encoders, chain_of = part("arm.encoders"), part("arm.chain")
+    wider = encoders.with_steps(
+        chain_of.Chain([chain_of.Joint(False, [], [], Fraction(1), Fraction(2))], [], []),
+        encoders.Encoders([Fraction(1, 10)], [], []),
+    ).joints[0]
+    if (wider.low, wider.high) != (Fraction(9, 10), Fraction(21, 10)):
+        return "a step to either side"
+    held, moves = (SimpleNamespace(slides=False, low=0, high=high) for high in (0, 1))
+    read = SimpleNamespace(resolution=Fraction(3), coulomb_friction=Fraction(2), largest_column=Fraction(5))
+    if encoders.encoders_of(SimpleNamespace(joints=[read] * 2), SimpleNamespace(joints=[held, moves])) != (
+        [0, 3], [2, 2], [5, 5]
+    ):  # fmt: skip
+        return "what a joint that stays is read with"
+    unit = [[Fraction(i == k) for k in range(3)] for i in range(3)]
+    link = chain_of.Joint(False, unit, [Fraction(0)] * 3, Fraction(0), Fraction(1))
+    one = chain_of.Chain([link], [Fraction(3), Fraction(0), Fraction(0)], [])
+    ((below,),) = encoders.columns_below(one, encoders.Encoders([], [], [Fraction(4)]))([enclosed(bits, 0)])
+    if abs((16 - 9 * chain_of.LONGER**2) * 2**bits - below.middle) > 9:
+        return "a column below the longest"
+    box = null._box(chain, SimpleNamespace(rest=rest, distance=Fraction(1)))
+    if box != [(-1, 0), (Fraction(-1, 2), Fraction(3, 2)), (Fraction(1, 2), 2)]:
+        return f"a box {box}"
+    around = projector.Near([[enclosed(bits, 3 << bits - 2, (), 1 << bits - 3)]], Fraction(1, 5), [])
+    loop = SimpleNamespace(delay_samples=1, sample_period=Fraction(1, 10))
+    spring = SimpleNamespace(stiffness=Fraction(4), damping=Fraction(2))
+    left = null._left([[Fraction(9)]], around, loop, spring)  # 9 − (0.6 + 2) (3/4 + 1/8) − 2/5
+    if left != [[9 - Fraction(13, 5) * Fraction(7, 8) - Fraction(2, 5)]]:
+        return f"{left} is left"
+    if projector._most(enclosed(bits, -3, (1, -2), 4)) != 10:
+        return "the most of a number"
+    for sign, off in ((1, Fraction(0)), (-1, Fraction(0)), (1, Fraction(1, 16))):
+        # ∓[[8, 4], [4, 2]], its eigenvalues 0 and ∓10, and each entry twice as far off as those of Y₁
+        y_1 = [
+            [[enclosed(bits, sign * x << bits, (), int(off * 2**bits)) for x in row] for row in y]
+            for y in ([[4, 1], [3, 0]], [[2, 2], [0, 0]])
+        ]
+        most = projector._form(y_1, 0, [0, 1])
+        if not 10 + off * Fraction(36, 10) <= most <= 10 + off * 8 + Fraction(1, 100):
+            return f"a form of up to {float(most)}"
+    return ""
+
+
+def what_a_hand_moves_is_bounded() -> str:
+    """A mass and its inverse beside a usual one; when all is rational; how far it may move in a sample."""
+    motion, enclosed, bits = part("known_hand.held_motion"), part("exact.enclosed").Enclosed, 40
+    for off in (Fraction(0), Fraction(1, 10), Fraction(1, 2), Fraction(9, 10)):
+        heavy, light = motion._near_1(1 - off, 1 + off, bits)
+        spare = off**2 / (1 - off) / 2
+        if light.radius > spare * 2**bits + 4 or heavy.radius > 2:
+            return f"{off}: {light.radius} is too wide"
+        for at in (-1, Fraction(-1, 2), 0, Fraction(1, 3), 1):
+            for found, right in ((heavy, 1 + off * at), (light, 1 / (1 + off * at))):
+                slope = found.slopes[0] * at if found.slopes else 0
+                if abs(right * 2**bits - found.middle - slope) > found.radius:
+                    return f"{right} of {off} at {at}"
+    nothing, some = (Fraction(0),) * 2, (Fraction(0), Fraction(1))
+    for damping, stiffness in product((nothing, some), repeat=2):
+        moved = motion.Motion(some, damping, stiffness, Fraction(1), Fraction(0))
+        if moved.is_free is not (damping == stiffness == nothing):
+            return f"free with {damping}, {stiffness}"
+    still, most = enclosed(8, 0), motion.LARGEST_NORM - 200
+    for spring, loss in product((still, enclosed(8, most << 8, (100 << 8,), 101 << 8)), repeat=2):
+        if refuses(motion._pushed, spring, loss, Fraction(1), 8) is not (
+            spring is not still or loss is not still
+        ):
+            return "moved too far"
+    near = enclosed(8, most << 8, (100 << 8,), 100 << 8)
+    return "not moved too far" if refuses(motion._pushed, near, still, Fraction(1), 8) else ""
+
+
+def what_two_arms_lose_is_summed_up() -> str:
+    """What counts to the side of less, of a motion as of encoders, one by one."""
+    coupling, passive, motion, held = (
+        part(f"pair.{name}") for name in ("coupling", "passive", "motion", "held_motion")
+    )
+    zero, nothing = Fraction(0), passive.NO_LINE
+    side = coupling.Side(
+        Fraction(1),
+        zero,
+        Fraction(1),
+        [zero, zero],
+        [zero, zero],
+        0,
+        [zero, zero],
+        0,
+        0,
+        zero,
+        Fraction(1),
+        None,
+        1,
+    )
+    if passive._beyond_springs(side._replace(own=[3, 0], other=[1, 0], echo=[2, 0]), nothing):
+        return "a spring alone"
+    for more in ({"own": [0, 1]}, {"other": [0, 1]}, {"echo": [0, 1]}, {"part": Fraction(1, 2)}):
+        if not passive._beyond_springs(side._replace(**more), nothing):
+            return f"{more} is a spring"
+    if not passive._beyond_springs(side, nothing._replace(moving=1)):
+        return "compensation is a spring"
+    other = side._replace(other=[Fraction(5), zero])
+    for often, right in ((1, [2, 4]), (2, [6, 4])):  # readings of a drive are not those that come back
+        own = side._replace(own=[Fraction(3), Fraction(-1)], echo=[Fraction(-2), zero], often=often)
+        own = own._replace(other=[zero, Fraction(-2)])
+        other = other._replace(own=[Fraction(1), Fraction(2)], often=often)
+        loop = SimpleNamespace(sample_period=Fraction(1))
+        found = list(passive._errors(loop, [own, other], [nothing, nothing]))
+        if found != [Fraction(right[0] + 2, 2), Fraction(3 + 5, 2)]:
+            return f"errors {found} of {often} readings"
+    arm = object.__new__(motion._Arm)
+    arm.bounds, arm.helped, arm.pushed = {2: (3, 5)}, 0, 0
+    for move, way, helped, pushed in (
+        (2, 4, 8, 12),
+        (2, -4, 0, -8),
+        (-2, 4, -8, -28),
+        (-2, -4, 0, -16),
+        (0, 9, 0, -16),
+    ):
+        arm._help(move, way)
+        if (arm.helped, arm.pushed) != (helped, pushed):
+            return f"{move} by {way} gives {arm.helped}, {arm.pushed}"
+    enclosed = part("exact.enclosed").Enclosed
+    told = SimpleNamespace(free=side, period=Fraction(2), scale=4)
+    cost = held._cost(
+        told, [zero, Fraction(2), Fraction(1)], [enclosed(8, 512, (), 3), enclosed(8, 256, (), 1)]
+    )
+    right = Fraction(512 * 2 - 256 + 7, 4 << 8) + (4 + 1) / Fraction(2)
+    return "" if cost == right else f"{cost} for a motion, not {right}"
+
+
 def sizes_of_matrices_are_not_below() -> str:
     """√(‖A‖₁ ‖A‖∞) or ‖A‖_F, the smaller; a root is not below."""
     encoders, chain = part("arm.encoders"), part("arm.chain")
@@ -352,11 +520,100 @@ def a_friction_curve_goes_on() -> str:
     for speed, force in ((0, 2), (1, 2), ("3/2", 4), (2, 6), (3, 5), (4, 4), (6, 4)):
         if told._force(Fraction(speed)) != force:
             return f"{told._force(Fraction(speed))} at {speed}"
+    for friction, damping in ((Fraction(1), Fraction(-1)), (Fraction(-1), Fraction(1, 2))):
+        if not refuses(
+            law._models_below,
+            [[friction, damping]],
+            [(Fraction(0), Fraction(9)), (Fraction(1), Fraction(10))],
+        ):
+            return f"a model of {friction} and {damping}"
     rising = told._replace(curve=points[:2])
     return "" if rising._force(Fraction(3)) == 10 else "beyond the last point"
 
 
+def a_violation_is_the_criterion_at_a_point() -> str:
+    """Up to a power of the denominator of cos θ, whatever the law and its delay are."""
+    loop, criterion, violation = (part(f"loop.{name}") for name in ("loop", "criterion", "violation"))
+    value, random = part("exact.polynomial").value, Random(4)
+    for above, below, whole, late in product((1, 3), (1, 2, 3), (0, 2), (Fraction(0), Fraction(1, 3))):
+        n, d = ([Fraction(random.randrange(1, 9)) for _ in range(size)] for size in (above, below))
+        size = max(above, below)
+        n, d = (side + [Fraction(0)] * (size - len(side)) for side in (n, d))
+        p = loop.Loop(n, d, Fraction(2), Fraction(0), Fraction(0), Fraction(1, 2), whole, late, False)
+        c = Fraction(random.randrange(-6, 7), 7)
+        right = (
+            value(criterion.bounded_criterion(p, late * (1 - late)), c)
+            if late
+            else value(criterion.criterion(p), c)
+        )
+        found = violation.criterion_at(p, c)
+        power = 1
+        while power < 7**40 and found != right * power:
+            power *= 7 if c else 10**99
+        if found != right * (power if c else 1):
+            return f"{found}, where {right} is the criterion of {p} at {c}"
+    return ""
+
+
+def contact_is_kept_by_motions_that_stay_inside() -> str:
+    """At every sample but the first and the last; where the law has no surface nobody asks."""
+    scope = part("scope")
+    for positions, right in (
+        ((0, 1, 2, 0), scope.KEPT), ((0, 0, 2, 0), scope.BROKEN), ((0, -1, 2, 3, 0), scope.BROKEN),
+        ((0, 2, -1, 0), scope.BROKEN), ((0, 1, 2, 0, 0), scope.BROKEN), ((0, 5), scope.KEPT), ((-1, 1, -1),
+         scope.KEPT),
+    ):  # fmt: skip
+        for unilateral in (True, False):
+            loop = SimpleNamespace(unilateral=unilateral, resolution=0)
+            found = scope.of_a_motion(SimpleNamespace(positions=positions, loop=loop)).contact
+            if found != (right if unilateral else scope.BOTH_SIDES):
+                return f"{positions}: {found}"
+    return ""
+
+
+def a_motion_in_contact_is_read_as_late_as_it_is() -> str:
+    """Forces of two ages, bounds of speed in each part of a sample, and roundings that are never a gain."""
+    motion, bounds = part("contact.motion"), part("contact.bounds")
+    law = SimpleNamespace(force=lambda readings, _: readings[0], averaged=lambda average, _: average)
+    for delay, right in ((0, (9, 9)), (1, (7, 9)), (2, (5, 7)), (3, (4, 5))):
+        losses, state = SimpleNamespace(delay=delay, resolution=1), motion._State([0] * 5, [0] * 5)
+        for reading in (4, 5, 7, 9):
+            found = state.read(reading, law, losses, 1)
+        if found != right:
+            return f"{found}, {delay} samples late"
+    losses = SimpleNamespace(resolution=2)
+    for stiffness in (3, -3):
+        relaxing = SimpleNamespace(relaxing=(Fraction(1, 2), Fraction(stiffness)))
+        if motion._uncertainty(relaxing, losses, [0, 5, 4]) != Fraction(3 * 6 * 2 * 2) / motion.FINEST:
+            return f"roundings of {stiffness}"
+    losses = SimpleNamespace(part=Fraction(1, 4), period=Fraction(2))
+    for speed, right in ((Fraction(2), True), (Fraction(19, 10), False)):
+        for path, turn in (([0, 4], 1), ([4, 0], 3), ([0, 1], 1), ([1, 4], 1)):
+            if bounds._slow(losses, path, [turn], speed) is not right:
+                return f"{path} by {turn} at {speed}"
+        if bounds._slow(SimpleNamespace(part=1, period=Fraction(2)), [0, 4, 0], [], speed) is not right:
+            return f"in one at {speed}"
+    return ""
+
+
+def a_cycle_gains_in_all_and_again() -> str:
+    """More than nothing, both times."""
+    kinds, loop = part("kinds"), SimpleNamespace(sample_period=1)
+    told = SimpleNamespace(energy=None, sample_period=None, loop=loop)
+    for sums, right in (((0, 1), False), ((1, 0), False), ((-1, 1), False), ((2, 3), True)):
+        found = kinds._round_again(lambda _, sums=sums: tuple(map(Fraction, sums)))(told)
+        if found.valid is not right or (found.energy, found.gain) != sums:
+            return f"{sums}: {found}"
+        if not right and f"extracts {min(sums)} J: none" not in found.reason:
+            return found.reason
+    return ""
+
+
 CHECKS = (
+    a_violation_is_the_criterion_at_a_point,
+    contact_is_kept_by_motions_that_stay_inside,
+    a_motion_in_contact_is_read_as_late_as_it_is,
+    a_cycle_gains_in_all_and_again,
     what_is_spent_adds_up,
     numbers_are_read_and_told,
     polynomials_are_multiplied,
@@ -366,6 +623,9 @@ CHECKS = (
     lines_of_a_burst_are_those_of_the_port,
     rotations_are_those_of_their_quaternions,
     turns_are_bounded,
+    what_an_arm_is_made_of_is_as_it_is_told,
+    what_a_hand_moves_is_bounded,
+    what_two_arms_lose_is_summed_up,
     sizes_of_matrices_are_not_below,
     a_friction_curve_goes_on,
 )

@@ -54,7 +54,7 @@ def plainly(document: Any) -> tuple[bool, str]:
 # --- the documents of the other files -----------------------------------------------------------
 
 OTHER_WORDS = {
-    "from state 0 a move": TAKES,
+    "a move takes out more energy": TAKES,
     "is empty": "a state of the table is not on the grid",
     "must hold 0": "the average leaves the grid",
     "too many numbers": "without numpy at most",

@@ -151,6 +151,14 @@ def within(k: Any, wide: Any) -> Any:
 
 
 CASES = [
+    *(
+        refused(
+            f"a damped mass under less spring than any bits tell, {kind}",
+            hand(kind, [HAIR], [1], damping_N_s_per_m=1),
+            "could not be confirmed",
+        )
+        for kind in ("stability", "instability")
+    ),
     Case("the polynomial is enclosed", the_polynomial_is_enclosed, ""),
     Case("a box encloses its values", a_box_encloses_its_values, ""),
     accepted(

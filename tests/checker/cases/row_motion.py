@@ -71,6 +71,10 @@ CASES = [
     ),
     refused("no round", motion([0, 1, 0], [0, 2], (0, 2, 0)), "repeats.times must be ≥ 1"),
     refused("part of a sample", put(THERE, {"loop.delay_s": "1/4"}), "whole samples"),
+    accepted(
+        "as deep as its bound, under more N than m",
+        put(THERE, {"energy_J": 3, "bounds": {"depth_m": 1, "speed_m_per_s": 1}}),
+    ),
     refused(
         "deeper than its bound", put(THERE, {"bounds": {"depth_m": "1/2"}}), "does not keep to its depth"
     ),

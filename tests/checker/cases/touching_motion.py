@@ -81,6 +81,19 @@ CASES = [
             {"loop.delay_s": "5/4", "positions_m": [0, 1, 1, 0], "switch_positions_m": ["1/4", 1, "3/4"]},
         ),
     ),
+    # forces 0, 2, 4: −1 · 2, 3/4 · 2, −1 · 4, and 23/3 b
+    taken(
+        "a quarter late, farther in",
+        "7/2",
+        put(
+            QUARTER,
+            {
+                "positions_m": [0, 1, 2, 0],
+                "switch_positions_m": ["1/2", "5/4", 1],
+                "loop.damping_N_s_per_m": "3/23",
+            },
+        ),
+    ),
     taken("fed with the penetration", 2, put(DAMPED, {"loop.damping_N_s_per_m": "1/2"})),
     taken("fed with the position", 6, put(DAMPED, {"law.fed_with": "position"})),
     taken("it damps, penetration", 1, put(LONGER, {"loop.damping_N_s_per_m": "1/8"})),

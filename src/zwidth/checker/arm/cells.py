@@ -65,9 +65,7 @@ def _part_to_halve(cell: Cell, matrix: Function, fails: str) -> int | None:
             return None
     except NotPositive:
         pass
-    _require_at_middle(cell, matrix, fails)
-    if not moving:
-        raise Invalid(f"{fails} by so little that rounding hides it")
+    _require_at_middle(cell, matrix, fails)  # it refuses a cell that cannot be halved
     return max(moving, key=lambda j: _moved_by(cell, matrix, j))
 
 
@@ -161,7 +159,6 @@ def _positive(matrix: Whole) -> bool:
             return False
         for row in rows[k + 1 :]:
             factor = row[k]
-            for c in range(k + 1, len(rows)):
-                row[c] = (row[c] * pivot - factor * pivot_row[c]) // before
+            row[:] = [(x * pivot - factor * y) // before for x, y in zip(row, pivot_row, strict=True)]
         before = pivot
     return True

@@ -234,4 +234,4 @@ def root_above(x: Fraction) -> Fraction:
     top, bottom = isqrt(x.numerator), isqrt(x.denominator)
     if (top * top, bottom * bottom) == (x.numerator, x.denominator):
         return Fraction(top, bottom)
-    return Fraction(isqrt(int(x * 4**BITS) + 1) + 1, 2**BITS)
+    return Fraction(isqrt(int(x * 4**BITS)) + 1, 2**BITS)

@@ -108,8 +108,7 @@ def _bend(chain: Chain, encoders: Encoders, i: int, j: int) -> Fraction:
 
 def _sizes(stiffness: Matrix, damping: Matrix, period: Fraction, pose: Pose) -> Matrix:
     """Bounds on ‖K_ab‖ + 2 ‖B_ab‖/T."""
-    point = len(stiffness) - pose.turns
-    blocks = [slice(0, point), slice(point, None)] if pose.turns else [slice(0, None)]
+    blocks = [slice(-pose.turns), slice(-pose.turns, None)] if pose.turns else [slice(None)]
     return [
         [
             _size([row[c] for row in stiffness[r]]) + 2 * _size([row[c] for row in damping[r]]) / period

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from itertools import combinations_with_replacement
+from itertools import product
 from typing import NamedTuple
 
 from ..document.fields import Choice, List, Number, Read, Record, numbers
@@ -105,13 +105,13 @@ def legs_surplus(
     def surplus(position: Sequence[Enclosed]) -> list[list[Enclosed]]:
         found = [[-r for r in row[i:]] for i, row in enumerate(need)]
         normals, levers = zip(*(_normal(leg, position) for leg in enclosed), strict=True)
-        for (i, normal), (j, other) in combinations_with_replacement(enumerate(normals), 2):
+        for (i, normal), (j, other) in product(enumerate(normals), repeat=2):
             if not arm.damping[i][j]:
                 continue
             weight = _over_levers(arm.legs, levers, i, j) * damping[i][j]
             for r, row in enumerate(found):
                 for k, c in enumerate(range(r, len(found))):
-                    row[k] = row[k] + _pair(normal, other, r, c, i == j) * weight
+                    row[k] = row[k] + normal[r] * other[c] * weight
         return found
 
     return surplus
@@ -123,11 +123,6 @@ def _over_levers(legs: Sequence[Leg], levers: Sequence[Enclosed], i: int, j: int
         return inverse(levers[i])
     both = inverse(root(levers[i]) * root(levers[j]))
     return both if legs[i].bend == legs[j].bend else -both
-
-
-def _pair(a: Sequence[Enclosed], b: Sequence[Enclosed], r: int, c: int, same: bool) -> Enclosed:
-    """The entry of a aᵀ, or of a bᵀ + b aᵀ."""
-    return a[r] * a[c] if same else a[r] * b[c] + b[r] * a[c]
 
 
 class _Enclosed(NamedTuple):

@@ -73,7 +73,7 @@ def near(
     place = Place(chain, jacobian(chain, 3)(joints), axes(joints), *size, moving)
     here = [place.of_hand(p, a) for p, a in zip(place.points, place.axes, strict=True)]  # its columns
     extra = constant(regularization)
-    whole = here + (_times_unit(extra, len(here[0])) if regularization else [])
+    whole = [*here, *_times_unit(extra, len(here[0]))]
     back = _inverse(whole)
     row_space = [[dot(w, column) for column in whole] for w in back]
     inside = [[(UNIT - x if i == k else -x) for k, x in enumerate(row)] for i, row in enumerate(row_space)]
@@ -202,8 +202,7 @@ def _norm(layers: list[list[Rows]]) -> Fraction:
     """Not below |Σ e_k e_j T_kj v| for |e| = |v| = 1: T laid out by its rows, or by k; or of one T alone."""
     rows = range(len(layers[0][0]))
     laid_out = [[[x for layer in layers for t in layer for x in t[i]] for i in rows]]
-    if len(layers) > 1:
-        laid_out.append([[x for t in layer for row in t for x in row] for layer in layers])
+    laid_out.append([[x for t in layer for row in t for x in row] for layer in layers])
     grams = ([[dot(a, b) for b in lines[i:]] for i, a in enumerate(lines)] for lines in laid_out)
     return root_above(min(map(_largest, grams)))
 
@@ -212,7 +211,7 @@ def _largest(upper: Rows) -> Fraction:
     """Not below the largest eigenvalue of a symmetric matrix, from the diagonal on, nor below 0."""
     size = range(len(upper))
     full = [[upper[min(i, k)][abs(i - k)] for k in size] for i in size]
-    high = max(sum(_most(x) for x in row) for row in full) + 1
+    high = max(sum(_most(x) for x in row) for row in full)
     low = 0
     for _ in range(HALVINGS):
         middle = (low + high) // 2

@@ -157,7 +157,8 @@ def _is_held(loop: Read) -> bool:
     follows = "follows the arm" if loop.encoder == "ideal" else "follows the readings"
     if loop.torque not in ("held", follows):
         raise Invalid(f"the torque {follows}, or is held")
-    return bool(loop.torque == "held")
+    held: bool = loop.torque == "held"
+    return held
 
 
 def _limits(loop: Read, pose: Pose, bounded: bool) -> tuple[Fraction, Fraction]:

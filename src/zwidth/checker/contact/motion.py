@@ -6,7 +6,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 from ..document.effort import spend
-from ..document.fields import Read, document, numbers, only_if
+from ..document.fields import Read, document, numbers
 from ..document.refusal import Invalid
 from ..document.unit import LENGTH
 from ..loop.motion import REPEAT, TOLD, switch_positions
@@ -41,8 +41,8 @@ def contact_motion_energy(told: Read) -> tuple[Fraction, Fraction]:
     `times` times; it must return to where it began.  It keeps to the bounds that are stated.
     """
     losses, law, x = losses_of(told.loop), law_of(told.law), told.positions
-    switches = switch_positions(told, losses.part < 1) if losses.part < 1 else x[1:]
-    only_if(losses.part < 1, told.switch_positions, "switch_positions")
+    given = switch_positions(told, losses.part < 1)
+    switches = given if losses.part < 1 else x[1:]
     require_within(told.bounds, losses, x, switches)
     first, last, times = closed_cycle(told.repeats, x)
     taps = law.memory + 1
@@ -50,7 +50,7 @@ def contact_motion_energy(told: Read) -> tuple[Fraction, Fraction]:
     if start > 0 or law.force([start] * taps) != 0:
         raise Invalid("the motion must begin at rest where the law gives no force")
 
-    resting = Fraction(0) if law.surface == "penetration" or law.relaxing is None else start
+    resting = Fraction(0) if law.surface == "penetration" else start
     state = _State([start] * (taps + losses.delay + 1), [resting] * (losses.delay + 1))
 
     def run(begin: int, end: int) -> Fraction:

@@ -49,11 +49,10 @@ def multiplier_contact(told: Read) -> str:
 def _circle(p: Loop, rest: list[Fraction], multiplier: Fraction, left: Fraction) -> list[Fraction]:
     """4 λ κ |D|² − |D − λ ζ^{d+1} N_G|², ascending in c."""
     moved = [Fraction(0)] * (p.whole + 1) + [multiplier * c for c in accumulate(rest[:-1])]
-    size = max(len(moved), len(p.denominator))
-    moved, d = ([*c, *[Fraction(0)] * (size - len(c))] for c in (moved, p.denominator))
+    d = [*p.denominator, *[Fraction(0)] * (len(moved) - len(p.denominator))]
     scale = common_scale((*moved, *d))
     bottom = [int(c * scale) for c in d]
     gap = [int((x - y) * scale) for x, y in zip(d, moved, strict=True)]
     share = 4 * multiplier * left
-    squares = (square_modulus(part, size) for part in (bottom, gap))
+    squares = (square_modulus(part, len(d)) for part in (bottom, gap))
     return [share * x - y for x, y in zip(*squares, strict=True)]

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from decimal import Decimal, DecimalException
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 from .effort import spend
 
@@ -49,16 +50,14 @@ def read_file(path: str | Path) -> object:
         raise Unreadable(f"not JSON: {error}") from None
 
 
-def require_shallow(document: object) -> None:
+def require_shallow(document: Mapping[str, object]) -> None:
     """Refuse what is nested deeper than any document is, before anything goes down into it."""
-    level = [document]
+    level: list[Any] = [document]
     for _ in range(DEEPEST):
         level = [
             inner
             for value in level
-            for inner in (
-                value.values() if isinstance(value, Mapping) else value if isinstance(value, list) else ()
-            )
+            for inner in (value.values() if isinstance(value, Mapping) else value)
             if isinstance(inner, (Mapping, list))
         ]
         if not level:

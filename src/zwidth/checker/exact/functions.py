@@ -75,11 +75,14 @@ def _series(x: Enclosed, first: int) -> Enclosed:
 
 
 def _taylor(x: Enclosed, value: tuple[int, int], rate: tuple[int, int], bend: int) -> Enclosed:
-    """f(m) and f'(m) lie between two numbers each, |f''| is at most `bend` wherever x may be."""
+    """f(m) and f'(m) lie between two numbers each, |f''| is at most `bend` wherever x may be.
+
+    Both pairs are at least a unit apart, so that half of it and a middle rounded down are no more than that.
+    """
     bits, reach = x.bits, x.reach
     slope = sum(rate) // 2
     slopes = tuple(slope * s >> bits for s in x.slopes)
-    off = abs(slope) * x.radius + (rate[1] - rate[0] + 1) * reach + (bend * reach * reach >> bits + 1) + reach
+    off = abs(slope) * x.radius + (rate[1] - rate[0]) * reach + (bend * reach * reach >> bits + 1)
     middle = sum(value) // 2
-    radius = (off >> bits) + 1 + len(slopes) + value[1] - value[0] + 1
+    radius = (off >> bits) + 1 + len(slopes) + value[1] - value[0]
     return Enclosed(bits, middle, slopes, radius)

@@ -77,7 +77,7 @@ def in_powers(sums: Sequence[Exact], kind: int) -> list[Exact]:
     last: list[Exact] = []
     for c in reversed(sums[1:]):
         later, last = _recurred(c, later, last, 2), later
-    return _recurred(sums[0], later, last, kind) if sums else []
+    return _recurred(sums[0], later, last, kind)
 
 
 def _recurred(c: Exact, later: list[Exact], last: list[Exact], times: int) -> list[Exact]:

@@ -51,9 +51,9 @@ def product(proof: Read) -> list[int]:
 
 
 def _require_proportional(a: list[int], b: list[int]) -> None:
-    """a = κ b with κ > 0."""
-    size = max(len(a), len(b))
-    a, b = a + [0] * (size - len(a)), b + [0] * (size - len(b))
+    """a = κ b with κ > 0, b not the longer one."""
+    size = len(a)
+    b = b + [0] * (size - len(b))
     pivot = next((i for i in range(size) if a[i] or b[i]), None)
     if pivot is None:
         return

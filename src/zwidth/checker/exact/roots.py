@@ -37,7 +37,7 @@ def in_left_half_plane(descending: Sequence[Fraction]) -> bool:
     for a in whole:
         in_zeta = [x + a * c for x, c in zip([0, *in_zeta], power, strict=True)]
         power = [2 * x + y for x, y in zip([*power, 0], [0, *power], strict=True)]
-    return bool(whole[0]) and _decay(in_zeta[::-1])
+    return _decay(in_zeta[::-1])  # one that begins with 0 has a root at z = −1
 
 
 def _decay(in_zeta: list[int]) -> bool:

@@ -2,8 +2,10 @@
 
     p ← (pₙ p(z) − p₀ zⁿ p(1/z))/z,  one degree less, while |p₀| < |pₙ|
 
-All roots of the first p lie inside exactly if |p₀| < |pₙ| holds to the end.  Only signs that are certain
-count.  A polynomial of whole numbers, `bits` = 0, is decided exactly.
+All roots of the first p lie inside exactly if |p₀| < |pₙ| holds to the end.  With p(1) > 0, which stays so,
+p₀ < pₙ is enough: where p₀ ≤ −pₙ all that follow begin with 0 or less, to the last, pₙ z + p₀, which then has
+p₀ > 0 ≥ pₙ.  Only signs that are certain count.  A polynomial of whole numbers, `bits` = 0, is decided
+exactly.
 """
 
 from __future__ import annotations
@@ -20,11 +22,9 @@ def decays(in_zeta: list[Enclosed]) -> bool | None:
         return None if at_one is None else False
     p = in_z(in_zeta)
     while len(p) > 1:
-        signs = (p[0] - p[-1]).sign, (p[0] + p[-1]).sign
-        if -1 in signs or 0 in signs:
-            return False
-        if None in signs:
-            return None
+        sign = (p[0] - p[-1]).sign
+        if sign != 1:
+            return None if sign is None else False
         p = _scaled([p[0] * x - p[-1] * y for x, y in zip(p[:-1], p[:0:-1], strict=True)])
     return True
 

@@ -39,7 +39,7 @@ class Motion(NamedTuple):
     @property
     def is_free(self) -> bool:
         """True without spring and damper: all is rational then."""
-        return self.damping[1] == self.stiffness[1] == 0
+        return not (self.damping[1] or self.stiffness[1])
 
     @property
     def norm(self) -> Fraction:

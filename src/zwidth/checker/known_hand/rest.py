@@ -71,8 +71,10 @@ def stability(told: Read) -> str:
     if middle == loop.motion:
         return "device, hand and wall come to rest after every disturbance, contact kept"
     boxes = _covered(loop)
-    count = "1 box" if boxes == 1 else f"{boxes} boxes"
-    return f"device, hand and wall come to rest for every value in the intervals, contact kept, {count}"
+    return (
+        "device, hand and wall come to rest for every value in the intervals, contact kept, "
+        f"{boxes} box{'es' * (boxes != 1)}"
+    )
 
 
 def instability(told: Read) -> str:

@@ -75,7 +75,7 @@ def _repeats(above: list[Enclosed], below: list[Enclosed], wall: Read, bits: int
         off = row[-1] - gap
         for weight, x in zip(row, start, strict=False):
             off = off + weight * x
-        sides.append(None if off.sign is None else (off.sign > 0) == inside and off.sign != 0)
+        sides.append(None if off.sign is None else off.sign == (1 if inside else -1))
     return False if False in sides else None if None in sides else True
 
 

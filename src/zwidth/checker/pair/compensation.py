@@ -63,12 +63,12 @@ def line_of(law: Read | None, r: Fraction, speed: str = "last move") -> Line:
     """The tangent at r of F tanh(v/v_s), its height rounded up, and C."""
     if law is None:
         return NO_LINE
-    most, height, slope = law.compensated_coulomb_friction, law.compensated_coulomb_friction, Fraction(0)
+    height, slope = law.compensated_coulomb_friction, Fraction(0)
     if r < 1:
         if not law.compensation_speed:
             raise Invalid("compensation in the direction of motion at any speed has no tangent below 1")
         rest = 1 - r**2
-        height, slope = most * (r - rest * artanh_below(r)), most / law.compensation_speed * rest
+        height, slope = height * (r - rest * artanh_below(r)), height / law.compensation_speed * rest
     if speed == "any mean":
         return Line(height, law.compensated_damping + slope, Fraction(0))
     return Line(height, slope / 2, law.compensated_damping + slope / 2)

@@ -69,7 +69,7 @@ def held_pair(told: Read) -> str:
     boxes = _covered(held)
     hands = "the hand on the other arm"
     if held.motion != held.motion.middle:
-        hands = f"every such hand, in {boxes} {'box' if boxes == 1 else 'boxes'}, the other one"
+        hands = f"every such hand, in {boxes} box{'es' * (boxes != 1)}, the other one"
     return f"with the {told.held.arm} held, the work of {hands} is nowhere negative"
 
 
@@ -153,7 +153,7 @@ def _criterion(held: Held, port: Port) -> list[Enclosed]:
     """q times positive numbers, ascending in u; times b where α > 0."""
     b, part, period = held.free.damping, held.free.part, held.period
     late = [*[0] * held.free.whole, part.denominator - part.numerator, part.numerator]
-    mixed = [Enclosed(held.bits, 0), *times(port.numerator, in_w(late))]
+    mixed = times(port.numerator, [0, *in_w(late)])
     power = b if part else Fraction(1)
     weights = [
         2 * power * b * port.scale**2,

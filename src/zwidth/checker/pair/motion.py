@@ -112,7 +112,7 @@ class _Arm:
     def hear(self, partner: _Arm) -> None:
         """Take what has arrived of the other."""
         heard = partner.sent[self.side.age : self.side.age + 2]
-        back = self.sent[self.side.echo_age : self.side.echo_age + 2]
+        back = self.sent[self.side.echo_age :]
         parts = (*self.other, *self.echo), (*heard, *back)
         self.told = sum(c * v for c, v in zip(*parts, strict=True))
 
@@ -139,7 +139,7 @@ class _Arm:
 
     def _help(self, move: int, way: int) -> None:
         """What compensation gives on a way, tanh rounded to the side of less."""
-        if not move or not way:
+        if not move:
             return
         self.helped += move * way
         along = way if move > 0 else -way
@@ -182,7 +182,7 @@ class _Arm:
 def _run(arms: Sequence[_Arm], repeats: Sequence[Read], often: int) -> None:
     """Sample by sample, and repeated parts in closed form once nothing older is remembered."""
     for arm in arms:
-        arm.sent = [0] * (max(arm.side.echo_age for arm in arms) + 2)
+        arm.sent = [0] * (arm.side.echo_age + 2)  # both links there and back, of one age for both arms
     before = 0
     for part in repeats:
         _forward(arms, before, part.first, often)

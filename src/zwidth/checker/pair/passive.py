@@ -226,10 +226,6 @@ def _driven(
             return None
         if beta == -gamma:
             raise Invalid("the drive of an arm is at the very edge of gaining by itself")
-        if gamma == 0:
-            tops.append([beta, Fraction(0)])
-            bottoms.append([Fraction(1), Fraction(0)])
-            continue
         size = bits([beta.numerator, beta.denominator, gamma.numerator, gamma.denominator])
         spend(20 * often, often * size, size)
         t, t_next, u, u_next = Fraction(1), beta, Fraction(0), Fraction(1)

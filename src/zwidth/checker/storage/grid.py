@@ -73,7 +73,7 @@ def storage(told: Read) -> str:
         spend(parts * (10 * states + (100 * cells * width if law.points else 0)))
     places = 2 * min(reach, cells - 1) * steps + steps + 1
     spend_moves(states, states // (width if memory else 1), places, steps + 1, parts)
-    _require_small(law, losses, unit, max(abs(low), abs(high)), reach)
+    _require_small(law, losses, unit, max(-low, high), reach)
     if law.surface != "none" and low > 1 - (memory + 1) * reach:
         raise Invalid("the grid must reach so far out that a hand beyond it has been forgotten")
     shape = (cells, width**memory, steps + 1)
@@ -158,7 +158,7 @@ def _forces(
         total = np.minimum(np.maximum(total, -most), most)
     if law.surface != "none":
         total = np.where(ages[0] <= 0, 0, total)
-    off = len(law.taps) * max(abs(low), abs(high)) + 2  # each tap is rounded down, times a reading
+    off = len(law.taps) * max(-low, high) + 2  # each tap is rounded down, times a reading
     return total, off
 
 

@@ -59,7 +59,7 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
     value = storage_of(told.storage, (high - low + 1, columns, levels, steps + 1))
     spring = int(law.taps[0] * losses.resolution // unit)
     branch = int(law.relaxing[1] * losses.resolution / per_count // unit)
-    farthest = max(abs(low), abs(high))
+    farthest = max(-low, high)
     if abs(spring) * farthest + abs(branch) * levels >= _MOST:
         raise Invalid("the forces are too large to be compared exactly")
     off = farthest + 2 + 2 * levels + 2
@@ -68,7 +68,7 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
     images = _images(law, low, high, least, per_count, levels)
     rows = _rows(low, high, reach, losses.delay)
     span = int(value.max()) + 2 * int(np.abs(forces).max()) * len(costs) + int(abs(costs).max())
-    rise = int(np.abs(np.diff(value, axis=2)).max()) + 2 * abs(branch) * len(costs) if levels > 1 else 0
+    rise = int(np.abs(np.diff(value, axis=2)).max()) + 2 * abs(branch) * len(costs)
     if span >= _MOST or max(rise, int(np.abs(forces).max()) * len(costs)) * PART >= 2**62:
         raise Invalid("the numbers are too large to be compared exactly")
     if violated_relaxing(value, rows, forces, images, costs, reach):
