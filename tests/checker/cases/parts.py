@@ -585,6 +585,7 @@ def rounds_are_summed_once_they_are_alike() -> str:
         (True, 0, [0, 0], [3, 3], ([0], [6]), 3, 1, 6), (True, 3, [0, 0], [3, 3], ([0], [6]), 3, 2, None),
         (False, 0, [1], [1], ([2], [2]), 0, 0, 0), (False, 0, [1], [2], ([2], [2]), 0, 0, None),
         (False, 0, [1], [1], ([2], [3]), 0, 0, None), (False, 0, [3], [3], ([3], [2]), 0, 0, None),
+        (False, 0, [0, 0], [3, 3], ([0], [7]), 3, 0, None),
     ):  # fmt: skip
         run = object.__new__(motion._Run)
         run.p, run.encoder = SimpleNamespace(unilateral=unilateral), encoder
@@ -598,6 +599,9 @@ def rounds_are_summed_once_they_are_alike() -> str:
         found = run._push(before, forces[0], advance, lowest)
         if found != right or (found is None) is not (right is None):
             return f"{before} to {after}, {forces}, by {advance}: {found}"
+        run.denominator = [3, -1]  # by 3 nothing whole is remembered
+        if advance and run._push(before, forces[0], advance, 2) is not None:
+            return f"{advance} over 2"
     return ""
 
 
