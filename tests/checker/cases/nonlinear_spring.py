@@ -74,6 +74,7 @@ CASES = [
         put(STIFF, {"loop.damping_N_s_per_m": Fraction(45, 16) - TINY}),
         DAMPING,
     ),
+    refused("no damping", put(RISING, {"loop.damping_N_s_per_m": 0}), DAMPING),
     *edge("the steepest part falls", FALLING, put(FALLING, {"loop.coulomb_friction_N": 4 - TINY}), FRICTION),
     refused(
         "damping, the steepest part falls", put(FALLING, {"loop.damping_N_s_per_m": "0.499999999"}), DAMPING

@@ -571,6 +571,40 @@ def contact_is_kept_by_motions_that_stay_inside() -> str:
     return ""
 
 
+def rounds_are_summed_once_they_are_alike() -> str:
+    """Where what is remembered has moved on by as much as the hand over H(1), and every force with it."""
+    motion = part("loop.motion")
+    for unilateral, encoder, before, after, forces, advance, lowest, right in (
+        (False, 0, [2, 5], [5, 8], ([1, 2], [7, 8]), 3, 0, 6), (False, 3, [0, 0], [3, 3], ([0], [6]), 3, -9,
+         6),
+        (False, 0, [1, 1], [3, 3], ([1], [7]), 3, 0, None), (False, 0, [0, 0], [3, 4], ([1], [7]), 3, 0,
+         None),
+        (False, 0, [0, 0], [3, 3], ([1], [6]), 3, 0, None), (False, 0, [0, 0], [3, 3], ([0, 0], [6, 5]), 3,
+         0, None),
+        (False, 2, [0, 0], [3, 3], ([0], [6]), 3, 0, None), (True, 0, [0, 0], [3, 3], ([0], [6]), 3, 0, None),
+        (True, 0, [0, 0], [3, 3], ([0], [6]), 3, 1, 6), (True, 3, [0, 0], [3, 3], ([0], [6]), 3, 2, None),
+        (False, 0, [1], [1], ([2], [2]), 0, 0, 0), (False, 0, [1], [2], ([2], [2]), 0, 0, None),
+        (False, 0, [1], [1], ([2], [3]), 0, 0, None), (False, 0, [3], [3], ([3], [2]), 0, 0, None),
+        (False, 0, [0, 0], [3, 3], ([0], [7]), 3, 0, None),
+    ):  # fmt: skip
+        run = object.__new__(motion._Run)
+        run.p, run.encoder = SimpleNamespace(unilateral=unilateral), encoder
+        run.numerator, run.denominator, run.scale, run.memory, run.forces = (
+            [3, -1],
+            [2, -1],
+            1,
+            after,
+            forces[1],
+        )
+        found = run._push(before, forces[0], advance, lowest)
+        if found != right or (found is None) is not (right is None):
+            return f"{before} to {after}, {forces}, by {advance}: {found}"
+        run.denominator = [3, -1]  # by 3 nothing whole is remembered
+        if advance and run._push(before, forces[0], advance, 2) is not None:
+            return f"{advance} over 2"
+    return ""
+
+
 def a_motion_in_contact_is_read_as_late_as_it_is() -> str:
     """Forces of two ages, bounds of speed in each part of a sample, and roundings that are never a gain."""
     motion, bounds = part("contact.motion"), part("contact.bounds")
@@ -612,6 +646,7 @@ def a_cycle_gains_in_all_and_again() -> str:
 CHECKS = (
     a_violation_is_the_criterion_at_a_point,
     contact_is_kept_by_motions_that_stay_inside,
+    rounds_are_summed_once_they_are_alike,
     a_motion_in_contact_is_read_as_late_as_it_is,
     a_cycle_gains_in_all_and_again,
     what_is_spent_adds_up,

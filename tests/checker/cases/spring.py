@@ -26,6 +26,7 @@ PARTS = {  # samples of delay: b/(KT), where the root above is rational
 }
 
 CASES = [
+    refused("no damping", spring(0), "the damping is below"),
     *edge(
         "b is KT/2",
         spring(4),

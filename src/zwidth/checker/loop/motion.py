@@ -57,7 +57,7 @@ def stored_at_start(told: Read) -> Fraction:
     p = loop_of(told.loop)
     spring_wall = p.unilateral and not any(p.numerator[1:]) and not any(p.denominator[1:])
     at_one = sum(p.denominator)
-    if spring_wall or p.resolution == 0 or at_one == 0:
+    if spring_wall or at_one == 0:
         return Fraction(0)
     return max(sum(p.numerator) / at_one, Fraction(0)) * p.resolution**2 / 8
 
