@@ -131,6 +131,7 @@ def test_c_has_the_bits_of_python(package: Path) -> None:
         ("def step(a: Array) -> float:\n    y = a\n    y = 1.0\n    return y", "y would be"),
         ("def step(x: float) -> float: return other(x)\ndef other(x: float) -> float: return x", "decorate"),
         ("def step(x: float) -> float: return x or 1.0", "neither True nor False"),
+        ("def step(a: Array) -> Array: return a[1:]", "returns none"),
         ("def step(x: int) -> float: return Pair(x)", "takes left, right"),
         ("def step(x: float) -> float:\n    try:\n        return x\n    finally:\n        pass", "Try"),
     ],

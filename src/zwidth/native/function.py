@@ -629,8 +629,14 @@ def signature_of(of: Defined, name: str) -> Signature:
         raise module.outside(node, "a step function takes its arguments one by one")
     takes = tuple((a.arg, annotated(a.annotation, module)) for a in given.args)
     named = given.args[len(given.args) - len(given.defaults) :]
+    if _has_cells(returns := annotated(node.returns, module)):
+        raise module.outside(node, "a step function fills in an array that it is given, and returns none")
     defaults = {a.arg: value for a, value in zip(named, given.defaults, strict=True)}
-    return Signature(name, takes, annotated(node.returns, module), defaults, module)
+    return Signature(name, takes, returns, defaults, module)
+
+
+def _has_cells(of: Type) -> bool:
+    return isinstance(of, Cells) or (isinstance(of, Several) and any(map(_has_cells, of.items)))
 
 
 def literal(value: float) -> Read:

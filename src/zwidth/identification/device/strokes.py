@@ -140,14 +140,18 @@ def count_without_steps(position: Array) -> float:
     return max(NOISE_COUNTS * noise, FINEST * float(np.ptp(position)))
 
 
-@compiled
 def counted(position: Array, count: float) -> Array:
     """Readings of a position without steps, [counts]: an edge is passed by half a count or not at all."""
     readings = np.empty(position.size)
+    _count(position, count, readings)
+    return readings
+
+
+@compiled
+def _count(position: Array, count: float, readings: Array) -> None:
     reading = np.floor(position[0] / count)
     for k in range(position.size):
         inside = position[k] / count - reading
         if inside < -HYSTERESIS or inside > 1.0 + HYSTERESIS:
             reading = np.floor(position[k] / count)
         readings[k] = reading
-    return readings
