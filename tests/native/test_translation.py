@@ -132,6 +132,11 @@ def test_c_has_the_bits_of_python(package: Path) -> None:
         ("def step(x: float) -> float: return other(x)\ndef other(x: float) -> float: return x", "decorate"),
         ("def step(x: float) -> float: return x or 1.0", "neither True nor False"),
         ("def step(a: Array) -> Array: return a[1:]", "returns none"),
+        ("def step(x: float) -> Pair:\n    return Pair(x, x) if x > 0 else (1, 2)", "a line of its own"),
+        (
+            "def step(a: Array) -> None:\n    a[at()] += 1.0\n@compiled\ndef at() -> int: return 0",
+            "is no call",
+        ),
         ("def step(x: int) -> float: return Pair(x)", "takes left, right"),
         ("def step(x: float) -> float:\n    try:\n        return x\n    finally:\n        pass", "Try"),
     ],

@@ -135,6 +135,12 @@ class Function:
         elif isinstance(node, ast.AnnAssign) and node.value is not None:
             self._assign(node.target, self.read(node.value), node.value)
         elif isinstance(node, ast.AugAssign):
+            if any(
+                isinstance(self._callee(n.func), Defined)
+                for n in ast.walk(node.target)
+                if isinstance(n, ast.Call)
+            ):
+                raise self.module.outside(node, "where a number is changed in place, the place is no call")
             whole = ast.copy_location(ast.BinOp(_as_read(node.target), node.op, node.value), node)
             self._assign(node.target, self.read(whole), whole)
         elif isinstance(node, ast.If):
@@ -386,6 +392,15 @@ class Function:
         return Read(f"((int64_t){self.truth(node)})", TRUTH)
 
     def _ifexp(self, node: ast.IfExp) -> Read:
+        before = len(self.lines)
+        found = self._either(node)
+        if any("zw_part_" not in line for line in self.lines[before:]):
+            raise self.module.outside(
+                node, "of two values one is calculated, so neither wants a line of its own"
+            )
+        return found
+
+    def _either(self, node: ast.IfExp) -> Read:
         a, b = self.read(node.body), self.read(node.orelse)
         of = joined(a.type, b.type)
         if of is None:

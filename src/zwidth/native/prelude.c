@@ -49,11 +49,15 @@ static inline double zw_floor(double x) {
 #endif
 }
 
+/* divided by 0 a whole number is 0: Python raises, the processor would end the process */
 static inline int64_t zw_over_whole(int64_t a, int64_t b) {
+    if (b == 0) return 0;
+    if (b == -1) return -a;
     int64_t q = a / b;
     return q * b != a && (a < 0) != (b < 0) ? q - 1 : q;
 }
 static inline int64_t zw_rest_whole(int64_t a, int64_t b) {
+    if (b == 0 || b == -1) return 0;
     int64_t r = a % b;
     return r != 0 && (r < 0) != (b < 0) ? r + b : r;
 }
