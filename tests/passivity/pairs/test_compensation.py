@@ -306,6 +306,5 @@ def test_it_is_told():
     taken = numbers["compensation_takes"]["leader"]
     assert taken["coulomb_friction_N"] == pytest.approx(0.1)
     assert 0.06 < taken["damping_N_s_per_m"] < 0.06 + 0.3 / 0.35
-    assert dict(verdict.rows())["largest compensation"].startswith(
-        f"{100 * verdict.largest_compensation:.4g} %"
-    )
+    shown = dict(verdict.rows())["largest compensation"].partition(" %")[0]
+    assert 0 <= 100 * verdict.largest_compensation - float(shown) < 0.1  # what is shown is passive, too
