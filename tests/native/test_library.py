@@ -82,7 +82,7 @@ def test_without_compiler_and_library_it_is_told(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(build, "BUILT", tmp_path / "steps.so")
     monkeypatch.setattr(build, "compiler", lambda: None)
     with pytest.warns(RuntimeWarning, match=r"as plain Python.*there is no C compiler"):
-        assert build.library.__wrapped__() is None
+        assert build._library.__wrapped__() is None
 
 
 def test_a_compiler_that_fails_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -91,7 +91,7 @@ def test_a_compiler_that_fails_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path
         build, "compiler", lambda: [sys.executable, "-c", "raise SystemExit('no such thing')"]
     )
     with pytest.warns(RuntimeWarning, match="no such thing"):
-        assert build.library.__wrapped__() is None
+        assert build._library.__wrapped__() is None
     assert not list(tmp_path.iterdir())
 
 
@@ -102,12 +102,12 @@ def test_a_checkout_builds_anew_what_has_changed(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(build, "BUILT", tmp_path / "steps.so")
-    assert build.library.__wrapped__() is not None
+    assert build._library.__wrapped__() is not None
     assert "built anew" in capsys.readouterr().err
-    assert build.library.__wrapped__() is not None
+    assert build._library.__wrapped__() is not None
     assert capsys.readouterr().err == ""
     os.utime(tmp_path / "steps.so", ns=(0, 0))  # older than its sources, which are those that it was made of
-    assert build.library.__wrapped__() is not None
+    assert build._library.__wrapped__() is not None
     assert capsys.readouterr().err == ""
     monkeypatch.setattr(build, "digest", lambda sources: "another")
     assert build._is_old(build._opened(tmp_path / "steps.so").table)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from zwidth.cli.options import given, overrides
 from zwidth.errors import InputError
 from zwidth.pairs import Pair
-from zwidth.passivity.document import unit_key
+from zwidth.quantity.glossary import GLOSSARY
 from zwidth.specification.pairs import option_keys, pair_of
 from zwidth.specification.read import PAIR_TABLES
 from zwidth.specification.table import Table
@@ -75,7 +75,7 @@ def pair_measures(trace: xr.Dataset) -> dict[str, Any]:
     motion = str(trace.attrs["motion"])
     found = trace.zwidth
     return {
-        unit_key("stiffness", motion).replace("stiffness", "felt_stiffness"): found.felt_stiffness,
-        unit_key("position", motion).replace("position", "tracking_error"): found.tracking_error,
+        GLOSSARY["stiffness"].key_for(motion).replace("stiffness", "felt_stiffness"): found.felt_stiffness,
+        GLOSSARY["position"].key_for(motion).replace("position", "tracking_error"): found.tracking_error,
         "energy": found.energy.to_dict(),
     }

@@ -19,6 +19,7 @@ from collections.abc import Iterable
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
+from threading import RLock
 from typing import Any, NamedTuple
 
 PACKAGE = Path(__file__).parent.parent
@@ -38,9 +39,17 @@ class Library(NamedTuple):
     table: dict[str, Any]
 
 
-@cache
 def library() -> Library | None:
     """The library; None where it cannot be had, which is told once."""
+    with _ONE_AT_A_TIME:
+        return _library()
+
+
+_ONE_AT_A_TIME = RLock()
+
+
+@cache
+def _library() -> Library | None:
     found = _opened(BUILT) if BUILT.is_file() else None
     if _is_checkout() and (found is None or _is_old(found.table)):
         sys.stderr.write("zwidth: the step functions have changed and are built anew\n")
