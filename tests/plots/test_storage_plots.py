@@ -60,12 +60,13 @@ def test_cycle_shows_positions_edges_forces_and_the_joules():
 
 
 def test_both_sides_of_a_limit_stand_beside_each_other():
-    """The storage function at one value, the motion at the other."""
+    """The storage function at one value, the motion at the other; each as text still on its own side."""
     bracket = zw.limit(PADDLE, zw.Wall(100, 0.05), **BOUNDS)
     figure = plots.limit_figure(bracket)
     left, *right = figure.axes
-    assert left.get_title(loc="left").startswith(f"{bracket.proved_passive:.4g} N/m")
-    assert right[0].get_title(loc="left").startswith(f"{bracket.proved_active:.4g} N/m")
+    passive, active = (float(axes.get_title(loc="left").split()[0]) for axes in (left, right[0]))
+    assert 0 <= bracket.proved_passive - passive < 0.1
+    assert 0 <= active - bracket.proved_active < 0.1
     assert len(right) == 3
 
 
