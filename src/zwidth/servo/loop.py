@@ -10,6 +10,7 @@ Of a compiled connection all of this is compiled, and runs without the interpret
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import deepcopy
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from zwidth.compiled import Array, compiled
 from zwidth.servo.connection import (
     CLOSED,
     FORCE,
+    GOOD,
     INDEX,
     READING,
     REFUSED,
@@ -160,11 +162,21 @@ def run_compiled(connection: CompiledConnection, opened: Opened, last: int, shar
     _run(kind.measure, kind.apply, last, *opened, *shared)  # type: ignore[arg-type]  # arrays of three kinds
 
 
+def _find(memory: Array, shared: Shared) -> None:
+    """Have what the loop in Python calls found in the library before the clock runs; on copies."""
+    loop = deepcopy(shared)
+    await_sample(0, now(), float(loop.numbers[PERIOD]) * 1e9, 0, 0)
+    lateness(0, 0, float(loop.numbers[PERIOD]))
+    answer(GOOD, 0, 0.0, now(), memory.copy(), *loop[:-2], loop.ring[0])
+    noted(loop.ring[0], 0.0, 0.0, loop.control, loop.numbers, loop.spread)
+
+
 def run_library(connection: LibraryConnection, opened: Opened, last: int, shared: Shared) -> None:
     """The same over a library, in Python: whatever else runs in Python delays it."""
     memory, n, control = opened.memory, shared.numbers, shared.control
     ring, spread, step = shared.ring, shared.spread, float(n[PERIOD])
     k = zeros = 0
+    _find(memory, shared)
     most = int(n[AWAKE_MOST])
     start, awake = now(), min(MARGIN, most)
     while zeros < ZEROS:
