@@ -8,9 +8,10 @@ c₀ = ½ on.
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
-from . import TINY, Fraction, accepted, edge, put, refused, without
+from . import TINY, Case, Fraction, accepted, edge, put, refused, without
 from .contact import DAMPED, FILTERED
 from .linear import (
     AT_MINUS_ONE,
@@ -81,6 +82,21 @@ CLOSE = put(FULL, {"proof.angle": "3.14", "below_Hz": "0.4997"})
 # no law: 2b everywhere, and 0 where the hand gives out what b takes
 IDLE = banded(linear(1, CONSTANT, [0]), 1, CONSTANT, 1, signs(square=()), 4, -1, "1/2")
 REDUCED = everywhere(spring(4))
+
+
+def least_cosines() -> str:
+    """Below the cosine by 10⁻¹⁶ at most, by twice as many terms of the series; −1 beyond π."""
+    least = import_module("zwidth.checker.bounded_hand.active_hand")._least_cosine
+    for k in range(1, 33):
+        x, cosine, term = Fraction(k, 8), Fraction(0), Fraction(1)
+        for n in range(32):
+            cosine, term = cosine + term, -term * x**2 / ((2 * n + 1) * (2 * n + 2))
+        wanted = cosine if k < 26 else Fraction(-1)
+        if not max(Fraction(-1), wanted - Fraction(1, 10**16)) <= least(x) <= wanted:
+            return f"{float(least(x))} up to {x}"
+    near = Fraction(31415926535897932384, 10**19) - Fraction(1, 10**25)
+    return "" if least(near) >= -1 else "below −1"
+
 
 CASES = [
     accepted(
@@ -260,6 +276,7 @@ CASES = [
     ),
     refused("the criterion with b fails", put(LATE, {"proof.positivity": CONSTANT}), WRONG),
     refused("part of a sample", put(LATE, {"loop.delay_s": "5/4"}), "whole samples"),
+    refused("steps without a norm", without(COUNTED, "proof.norm"), "norm is missing"),
     refused(
         "a closed loop",
         put(LATE, {"proof.stability": {"kind": "closed loop", "offset": 1}}),
@@ -280,4 +297,5 @@ CASES = [
             ("proof.cosine", "cosine is missing"),
         )
     ),
+    Case("the least cosine up to an angle", least_cosines, ""),
 ]

@@ -373,6 +373,18 @@ CASES = [
         put(THERE, {"loop.friction_models_N_N_s_per_m": [[0, 0]]}),
         "friction_models is of no use here",
     ),
+    *(
+        refused(
+            f"a friction curve, and {name}",
+            put(curved([0, 1], [1, 1]), {f"loop.{name}_{unit}": 1}),
+            f"{name} is of no use here",
+        )
+        for name, unit in (("damping", "N_s_per_m"), ("coulomb_friction", "N"))
+    ),
+    *(
+        refused(f"neither {name} nor a friction curve", without(THERE, f"loop.{name}_{unit}"), "is missing")
+        for name, unit in (("damping", "N_s_per_m"), ("coulomb_friction", "N"))
+    ),
     refused("no models", curved([0, 1], [1, 1], models=[]), "must have 1 to 10001 entries"),
     refused("a model below 0", curved([0, 1], [1, 1], models=[[-1, 0]]), "of a model are ≥ 0"),
     # where it begins, and the rounds

@@ -5,9 +5,10 @@ The edges of each proof stand in the file of its kind; here is what several of t
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
-from . import accepted, put, refused, without
+from . import Case, accepted, plain, positive_real, put, refused, without
 from .active_hand import REDUCED
 from .contact import DAMPED
 from .linear import CONSTANT, FILTER, SPRING, linear, signs
@@ -37,7 +38,16 @@ SOFTER = put(DAMPED, {"law.stiffness_N_per_m": 3, "loop.numerator": [15, -18, 6]
 QUARTER = linear(3, signs(["41/8", -3]), [1, 0], [1, "-1/4"])
 OTHER_WEIGHTS = put(DAMPED, {"law.weights": [1], "loop.numerator": [10, -6, 0]})
 BY_NORM = [quantized(told, norm(top=[k]), 2, 3) for told, k in ((PLAIN, 3), (LESS, 2))]
+EXTRACTION = next(case.document for case in positive_real.CASES if case.energy is not None)
 LIMITED, STEPPED = STORAGES["limited"]["document"], STORAGES["stepped"]["document"]
+
+
+def rows_are_those_of_the_first() -> str:
+    """In its units."""
+    verify = import_module("zwidth.checker").verify
+    own = verify(plain(turned(SIX))).rows
+    return "" if verify(plain(corners(turned(SIX), EIGHT))).rows == own else f"not {own}"
+
 
 CASES = [
     accepted(
@@ -76,8 +86,11 @@ CASES = [
             ("a shorter denominator", (spring(4, [6, 0], [1, 0]), EIGHT)),
             ("another weight", (DAMPED, OTHER_WEIGHTS)),
             ("two kinds", (EIGHT, PLAIN)),
+            ("two kinds, one device", (spring(2, [3]), LESS)),
+            ("two kinds, one device, in the other order", (LESS, spring(2, [3]))),
             ("another in the third place", (EIGHT, SIX, spring(5, [4]))),
             ("a slide and a turn", (EIGHT, turned(SIX))),
+            ("a turn and a slide", (turned(SIX), EIGHT)),
             ("laws that relax", (ONE, put(ONE, {"loop.damping_N_s_per_m": 3}))),
             ("points", (RISING, put(RISING, {"loop.damping_N_s_per_m": 99}))),
         )
@@ -115,6 +128,10 @@ CASES = [
     refused("one that fails", corners(EIGHT, spring(3)), "damping is below"),
     refused("no proof", corners(EIGHT, THERE), "must be a proof"),
     refused("evidence against", corners(EIGHT, PULLS), "must be a proof"),
+    refused("energy out of a port", corners(EXTRACTION), "must be a proof"),
+    refused("the same in another format", corners(EIGHT, {**EIGHT, "format": "words"}), "given twice"),
+    accepted("the same, proved for more", corners(spring(2, [3]), PLAIN)),
+    Case("rows", rows_are_those_of_the_first, ""),
     refused("the same twice", corners(EIGHT, SIX, EIGHT), "given twice"),
     refused("the same in other digits", corners(EIGHT, spring("4.0")), "given twice"),
     refused("no list", {"kind": "corners", "corners": {"0": EIGHT}}, "must be a list"),

@@ -77,6 +77,12 @@ CASES = [
         put(STIFF, {"loop.coulomb_friction_N": 3 - TINY}),
         "Coulomb friction is below",
     ),
+    *edge(
+        "finer steps",
+        put(WALL, {"loop.resolution_m": "1/2", "loop.coulomb_friction_N": 1}),
+        put(WALL, {"loop.resolution_m": "1/2", "loop.coulomb_friction_N": 1 - TINY}),
+        "Coulomb friction is below",
+    ),
     accepted(
         "an ideal encoder",
         without(put(WALL, {"loop.resolution_m": 0, "loop.coulomb_friction_N": 0}), "proof.norm"),

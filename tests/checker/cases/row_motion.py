@@ -67,7 +67,7 @@ CASES = [
     refused("a force too few", put(THERE, {"forces_N": [0]}), "one force for each move"),
     *(
         refused(f"rounds of {part}", motion([0, 1, 0], [0, 2], part), "return to where it began")
-        for part in ((0, 1, 3), (1, 1, 3), (2, 0, 3), (0, 3, 3))
+        for part in ((0, 1, 3), (1, 2, 3), (1, 1, 3), (2, 0, 3), (0, 3, 3))
     ),
     refused("no round", motion([0, 1, 0], [0, 2], (0, 2, 0)), "repeats.times must be ≥ 1"),
     refused("part of a sample", put(THERE, {"loop.delay_s": "1/4"}), "whole samples"),

@@ -173,7 +173,6 @@ CASES = [
         put(THERE, {"positions_m": ["1/4", "5/4", "1/4"], "loop.resolution_m": "1/2", "energy_J": 1}),
         energy=1,
     ),
-    refused("it ends elsewhere", put(THERE, {"positions_m": [0, 1, "-1/10"]}), "return to where it began"),
     refused(
         "a switch position too many",
         put(QUARTER, {"switch_positions_m": ["1/4", "3/4", 0]}),
@@ -196,4 +195,8 @@ CASES = [
     ),
     refused("an entry of the law that no proof has", put(THERE, {"law.remark": 1}), "entries"),
     refused("no positions", without(THERE, "positions_m"), "positions_m is missing"),
+    *(
+        refused(f"it ends at {end}", put(THERE, {"positions_m": [0, 1, end]}), "return to where it began")
+        for end in ("1/2", "-1/2")
+    ),
 ]
