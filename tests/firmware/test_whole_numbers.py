@@ -16,7 +16,7 @@ from firmware.emulated.required import require
 import zwidth as zw
 from zwidth.firmware.emit import emit
 from zwidth.firmware.fixed_text import HELPERS, NARROW
-from zwidth.firmware.program import Branch, Cells, Constant, Load, Operation, Program, Set, Store, Variable
+from zwidth.firmware.program import Branch, Cells, Constant, Load, Operation, Program, Store, Variable, set_to
 from zwidth.firmware.tidy import tidied
 
 
@@ -71,18 +71,16 @@ def test_what_changes_nothing_is_left_out() -> None:
         Operation(a, "copy", (given,)),
         Load(b, memory, zero),
         Operation(c, "-", (b, zero)),
-        Set(changing, a),
+        set_to(changing, a),
         Operation(d, "copy", (changing,)),
-        Branch(Constant(True, "truth"), [Set(changing, c)], [Set(changing, zero)]),
+        Branch(Constant(True, "truth"), [set_to(changing, c)], [set_to(changing, zero)]),
         Store(memory, zero, d),
     ]
     program = tidied(Program((given,), (memory,), list(body), (changing,)))
-    made = [s.operator for s in program.statements() if isinstance(s, Operation)]
-    assert made == ["copy"]
-    sets = [s.value for s in program.statements() if isinstance(s, Set)]
-    assert sets == [given, b, zero]
+    made = [(s.result.changes, s.operands) for s in program.statements() if isinstance(s, Operation)]
+    assert made == [(True, (given,)), (False, (changing,)), (True, (b,)), (True, (zero,))]
     assert len(body) == 7
-    assert body[3].value is a
+    assert body[3].operands == (a,)
 
 
 def test_a_coefficient_that_is_a_unit_by_chance() -> None:

@@ -315,7 +315,9 @@ def _is_harmless(statement: Statement) -> bool:
     """Whether it may be computed also where its result is not asked for."""
     if isinstance(statement, Load):
         return not isinstance(statement.index, Variable)
-    return isinstance(statement, Operation) and statement.operator not in _MAY_FAIL
+    if not isinstance(statement, Operation) or statement.result.changes:
+        return False
+    return statement.operator not in _MAY_FAIL
 
 
 def _copied(value: Any, held: set[int], block: list[Statement]) -> Any:

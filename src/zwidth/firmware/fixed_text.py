@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from zwidth.firmware.c99 import C99
-from zwidth.firmware.program import Constant, Operand, Operation, Statement, Variable
+from zwidth.firmware.program import Constant, Load, Operand, Operation, Variable
 
 NARROW = 2**15 - 1
 """The largest number of 16 bits."""
@@ -68,7 +68,7 @@ class FixedC99(C99):
         """A whole number of its word."""
         return str(value) if abs(value) <= NARROW else f"{value}L" if self.word == 32 else f"{value}LL"
 
-    def made(self, statement: Statement) -> str:
+    def made(self, statement: Operation | Load) -> str:
         if isinstance(statement, Operation) and statement.operator in ("<<", ">>", "product", "scaled"):
             a, b = statement.operands[:2]
             if statement.operator == "product":

@@ -20,7 +20,6 @@ from zwidth.firmware.program import (
     Operand,
     Operation,
     Program,
-    Set,
     Statement,
     Store,
     Table,
@@ -30,6 +29,7 @@ from zwidth.firmware.program import (
     everything,
     operands,
 )
+from zwidth.native.kinds import by_kind
 
 _INFIX = {"+", "-", "*", "/", "<", "<=", "==", "!=", ">", ">="}
 _LOOSE = {"and", "or", "not", "select"}
@@ -64,7 +64,7 @@ class Printer(ABC):
         for given in self.program.parameters:  # these keep their names
             self._names[given] = given.hint
             self._taken.add(given.hint)
-        self._inside: dict[Variable, Statement] = {}
+        self._inside: dict[Variable, Operation | Load] = {}
         reads = [o for s in self.program.statements() for o in operands(s)]
         self._reads = Counter(o for o in [*reads, *self.program.results] if isinstance(o, Variable))
         table = f"{self.function}_table" if self.function else "table"
@@ -138,8 +138,7 @@ class Printer(ABC):
     def changing(self) -> list[str]:
         """The declarations of the variables that change."""
         chosen = {v for v, once in self._chosen.values() if once}
-        sets = (s.variable for s in self.program.statements() if isinstance(s, Set))
-        found = [v for v in sets if v not in chosen]
+        found = [v for v in map(_set, self.program.statements()) if v and v not in chosen]
         return [self.declared(v, self.name(v)) for v in dict.fromkeys(found)]
 
     def read(self, operand: Operand, alone: bool = False) -> str:
@@ -156,11 +155,10 @@ class Printer(ABC):
         )
         return text if bare else f"({text})"
 
-    def made(self, statement: Statement) -> str:
+    def made(self, statement: Operation | Load) -> str:
         """The expression of an operation or a load."""
         if isinstance(statement, Load):
             return self.load(statement.source, statement.index)
-        assert isinstance(statement, Operation), "results come from operations and loads"
         o, of = statement.operator, statement.operands
         kind = of[0].kind
         if o in _INFIX:
@@ -185,44 +183,45 @@ class Printer(ABC):
 
     def block(self, body: list[Statement], depth: int) -> list[str]:
         """The lines of a block."""
-        pad = "    " * depth
-        lines: list[str] = []
-        for s in body:
-            if isinstance(s, Operation | Load):
-                if s.result not in self._inside:
-                    text = self.made(s)
-                    lines.append(pad + self.given(s.result, self.name(s.result), text))
-            elif isinstance(s, Store):
-                place = self.place(s.target, s.target.name, self.read(s.index, alone=True))
-                lines.append(f"{pad}{place} = {self.read(s.value, alone=True)};")
-            elif isinstance(s, Set):
-                lines.append(f"{pad}{self.name(s.variable)} = {self.read(s.value, alone=True)};")
-            elif isinstance(s, Call):
-                given = [self.read(a, alone=True) for a in s.arguments]
-                lines += [pad + line for line in self.called(s, [self.name(r) for r in s.results], given)]
-            elif isinstance(s, Leave):
-                lines.append(f"{pad}break;")
-            elif isinstance(s, Branch):
-                lines += self.branch(s, depth)
-            else:
-                lines += self.loop(s, depth)
-        return lines
+        return [line for s in body for line in by_kind(self, s)(s, depth, "    " * depth)]
 
-    def branch(self, s: Branch, depth: int) -> list[str]:
-        pad = "    " * depth
+    def _operation(self, s: Operation | Load, depth: int, pad: str) -> list[str]:
+        if s.result in self._inside:
+            return []
+        name, text = self.name(s.result), self.made(s)
+        return [pad + (f"{name} = {text};" if s.result.changes else self.given(s.result, name, text))]
+
+    _load = _operation
+
+    def _store(self, s: Store, depth: int, pad: str) -> list[str]:
+        place = self.place(s.target, s.target.name, self.read(s.index, alone=True))
+        return [f"{pad}{place} = {self.read(s.value, alone=True)};"]
+
+    def _call(self, s: Call, depth: int, pad: str) -> list[str]:
+        given = [self.read(a, alone=True) for a in s.arguments]
+        return [pad + line for line in self.called(s, [self.name(r) for r in s.results], given)]
+
+    def _leave(self, s: Leave, depth: int, pad: str) -> list[str]:
+        return [f"{pad}break;"]
+
+    def _branch(self, s: Branch, depth: int, pad: str) -> list[str]:
+        before: list[str] = []
         if s in self._chosen:
             line = pad + self.choice(s, *self._chosen[s])
             if len(line) <= LONGEST_LINE:
                 return [line]
             variable, once = self._chosen[s]
             if once:
-                lines = [pad + self.declared(variable, self.name(variable))]
-                return [*lines, *self.in_full(s, depth)]
-        return self.in_full(s, depth)
+                before = [pad + self.declared(variable, self.name(variable))]
+        then, other = self.block(s.then, depth + 1), self.block(s.other, depth + 1)
+        if not then and other:
+            return [*before, f"{pad}if (!({self.read(s.test, alone=True)})) {{", *other, f"{pad}}}"]
+        lines = [*before, f"{pad}if ({self.read(s.test, alone=True)}) {{", *then]
+        return [*lines, f"{pad}}} else {{", *other, f"{pad}}}"] if other else [*lines, f"{pad}}}"]
 
     def choice(self, s: Branch, variable: Variable, once: bool) -> str:
         """A branch that sets one variable, on one line."""
-        parts = [next(x for x in arm if isinstance(x, Set)).value for arm in (s.then, s.other)]
+        parts = [next(operands(x)[0] for x in arm if _set(x)) for arm in (s.then, s.other)]
         text = self.chosen(s.test, *parts)
         name = self.name(variable)
         return self.given(variable, name, text) if once else f"{name} = {text};"
@@ -235,24 +234,15 @@ class Printer(ABC):
             return self.operation("or", "truth", [self.read(test), self.read(b)])
         return self.operation("select", "truth", [self.read(test), self.read(a), self.read(b)])
 
-    def in_full(self, s: Branch, depth: int) -> list[str]:
-        """A branch as blocks."""
-        pad = "    " * depth
-        then, other = self.block(s.then, depth + 1), self.block(s.other, depth + 1)
-        if not then and other:
-            return [f"{pad}if (!({self.read(s.test, alone=True)})) {{", *other, f"{pad}}}"]
-        lines = [f"{pad}if ({self.read(s.test, alone=True)}) {{", *then]
-        return [*lines, f"{pad}}} else {{", *other, f"{pad}}}"] if other else [*lines, f"{pad}}}"]
+    def _while(self, s: While, depth: int, pad: str) -> list[str]:
+        before = self.block(s.before, depth + 1)
+        body = self.block(s.body, depth + 1)
+        if not before:
+            return [f"{pad}while ({self.read(s.test, alone=True)}) {{", *body, f"{pad}}}"]
+        leave = f"{pad}    if (!{self.read(s.test)}) {{ break; }}"
+        return [f"{pad}for (;;) {{", *before, leave, *body, f"{pad}}}"]
 
-    def loop(self, s: Count | While, depth: int) -> list[str]:
-        pad = "    " * depth
-        if isinstance(s, While):
-            before = self.block(s.before, depth + 1)
-            body = self.block(s.body, depth + 1)
-            if not before:
-                return [f"{pad}while ({self.read(s.test, alone=True)}) {{", *body, f"{pad}}}"]
-            leave = f"{pad}    if (!{self.read(s.test)}) {{ break; }}"
-            return [f"{pad}for (;;) {{", *before, leave, *body, f"{pad}}}"]
+    def _count(self, s: Count, depth: int, pad: str) -> list[str]:
         stop = self.read(s.stop)
         n = self.name(s.counter)
         start, compare = self.read(s.start, alone=True), "<" if s.step > 0 else ">"
@@ -280,12 +270,12 @@ def _is_call(text: str) -> bool:
 def _find_inside(
     block: list[Statement],
     reads: Counter[Variable],
-    inside: dict[Variable, Statement],
+    inside: dict[Variable, Operation | Load],
     last: tuple[Operand, ...],
 ) -> None:
     """Results that are read once, in the same block or by `last`, by what may be written around them."""
-    open_loads: dict[Variable, Statement] = {}
-    pure: dict[Variable, Statement] = {}
+    open_loads: dict[Variable, Operation | Load] = {}
+    pure: dict[Variable, Operation | Load] = {}
 
     def take(operands: tuple[Operand, ...], also_open: bool = True) -> None:
         for o in operands:
@@ -305,7 +295,7 @@ def _find_inside(
             _find_inside(inner, reads, inside, operands(s) if test else ())
         if isinstance(s, Call) and not s.program.cells:
             continue
-        if not isinstance(s, Operation | Load):
+        if _set(s) or not isinstance(s, Operation | Load):
             open_loads.clear()  # what was read before may be changed behind
             continue
         changing = any(
@@ -319,11 +309,11 @@ def _find_inside(
 
 
 def _chosen(
-    block: list[Statement], reads: Counter[Variable], inside: dict[Variable, Statement]
+    block: list[Statement], reads: Counter[Variable], inside: dict[Variable, Operation | Load]
 ) -> dict[Branch, tuple[Variable, bool]]:
     """Branches that only set one variable; whether nothing else sets it, and it is read behind it alone."""
     found: dict[Branch, tuple[Variable, bool]] = {}
-    sets = Counter(s.variable for s in everything(block) if isinstance(s, Set))
+    sets = Counter(map(_set, everything(block)))
 
     def go(block: list[Statement]) -> None:
         for k, s in enumerate(block):
@@ -343,14 +333,19 @@ def _chosen(
     return found
 
 
-def _only_set(block: list[Statement], inside: dict[Variable, Statement]) -> Variable | None:
+def _only_set(block: list[Statement], inside: dict[Variable, Operation | Load]) -> Variable | None:
     """The variable that a block sets, if it does nothing else."""
     shown = [s for s in block if not (isinstance(s, Operation | Load) and s.result in inside)]
-    return shown[0].variable if len(shown) == 1 and isinstance(shown[0], Set) else None
+    return _set(shown[0]) if len(shown) == 1 else None
+
+
+def _set(s: Statement) -> Variable | None:
+    """The variable that changes and that a statement sets."""
+    return s.result if isinstance(s, Operation) and s.result.changes else None
 
 
 def _is_open(
-    operand: Variable, inside: dict[Variable, Statement], open_loads: dict[Variable, Statement]
+    operand: Variable, inside: dict[Variable, Operation | Load], open_loads: dict[Variable, Operation | Load]
 ) -> bool:
     """Whether what is written in this place is itself read from what may change."""
     made = inside.get(operand)

@@ -27,11 +27,11 @@ from zwidth.firmware.program import (
     Leave,
     Load,
     Program,
-    Set,
     Statement,
     Store,
     Variable,
     While,
+    set_to,
     without_unused,
 )
 from zwidth.firmware.source import Source, source_of
@@ -71,7 +71,7 @@ def specialised(
     parameters = tuple(a for a in _flat(arguments) if isinstance(a, Variable))
     cells = tuple(a for a in arguments if isinstance(a, Cells))
     program = Program(parameters, cells, body, tuple(as_operand(r) for r in _flat(results)))
-    return without_unused(cut_tables(without_unused(program)))
+    return cut_tables(without_unused(program))
 
 
 def _flat(arguments: Sequence[Any]) -> list[Any]:
@@ -125,7 +125,7 @@ class _Writer(Expressions):
         set_all(self.returned, value, block, lambda what: self.source.refuse(node, what))
         if self.exits.depth:
             assert self.exits.done is not None, "a loop that may return has it"
-            block.append(Set(self.exits.done, Constant(True, "truth")))
+            block.append(set_to(self.exits.done, Constant(True, "truth")))
             block.append(Leave())
 
     # ---- statements
@@ -393,7 +393,7 @@ class _Writer(Expressions):
             if not isinstance(value, bool | int | float | Variable):
                 raise self.source.refuse(node, f"{name} is no number, and the loop changes it")
             variable = Variable(kind_of(value), name, changes=True)
-            block.append(Set(variable, as_operand(value)))
+            block.append(set_to(variable, as_operand(value)))
             self.names[name] = Changing(variable)
             held.append(name)
         for name in counters(body):  # each loop inside gives its own anew
@@ -406,7 +406,7 @@ class _Writer(Expressions):
         """The body of a loop."""
         if returns(node.body) and self.exits.done is None:
             self.exits.done = Variable("truth", "done", changes=True)
-            block.append(Set(self.exits.done, Constant(False, "truth")))
+            block.append(set_to(self.exits.done, Constant(False, "truth")))
         before = dict(self.names)
         self.nested += 1
         self.exits.depth += 1

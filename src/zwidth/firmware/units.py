@@ -15,7 +15,7 @@ from math import log2
 from typing import Any
 
 from zwidth.firmware.evaluation import NoBound
-from zwidth.firmware.program import Constant, Load, Operand, Operation, Program, Set, Store, Table, Variable
+from zwidth.firmware.program import Constant, Load, Operand, Operation, Program, Store, Table, Variable
 
 _FINE = 6
 """Parts of a count, as a power of two, in which a place between two counts is kept."""
@@ -162,8 +162,6 @@ def units_of(program: Program, scale: Scale) -> Units:
                 _keep(units, units.values, s.result, known)
             elif isinstance(s, Store):
                 _keep(units, units.cells, _index(s.index), units.of(s.value))
-            elif isinstance(s, Set) and s.variable.kind != "truth":
-                _keep(units, units.values, s.variable, units.of(s.value))
         if before != (units.values, units.cells):
             continue
         unknown = [

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from zwidth.firmware.arithmetic import as_operand, converted, kind_of
-from zwidth.firmware.program import Cells, Set, Statement, Variable
+from zwidth.firmware.program import Cells, Statement, Variable, set_to
 
 
 @dataclass(eq=False)
@@ -22,11 +22,6 @@ class Unknown:
     """A name that only one branch has given: it cannot be read."""
 
 
-def is_sequence(value: Any) -> bool:
-    """A tuple, or a record of numbers."""
-    return isinstance(value, tuple)
-
-
 def rebuilt(like: Any, parts: list[Any]) -> Any:
     """A tuple, or a record, of the same kind with other parts."""
     return type(like)(*parts) if hasattr(like, "_fields") else tuple(parts)
@@ -36,7 +31,7 @@ def same(a: Any, b: Any) -> bool:
     """Whether two values are known to be one."""
     if a is b:
         return True
-    if is_sequence(a) and is_sequence(b) and len(a) == len(b):
+    if isinstance(a, tuple) and isinstance(b, tuple) and len(a) == len(b):
         return all(same(x, y) for x, y in zip(a, b, strict=True))
     plain = (bool, int, float)
     if isinstance(a, plain) and isinstance(b, plain) and type(a) is type(b):
@@ -57,7 +52,7 @@ def joined(
         return a
     if isinstance(a, Unknown) or isinstance(b, Unknown):
         return Unknown()
-    if is_sequence(a) and is_sequence(b) and len(a) == len(b):
+    if isinstance(a, tuple) and isinstance(b, tuple) and len(a) == len(b):
         parts = [joined(x, y, first, second, hint, refuse) for x, y in zip(a, b, strict=True)]
         return rebuilt(a, parts)
     if not all(isinstance(v, bool | int | float | Variable) for v in (a, b)):
@@ -67,8 +62,8 @@ def joined(
     if kinds and "truth" in kinds:
         raise refuse(f"{hint} is a truth on one way and a number on the other")
     variable = Variable(kind, hint, changes=True)
-    first.append(Set(variable, as_operand(converted(a, kind, first))))
-    second.append(Set(variable, as_operand(converted(b, kind, second))))
+    first.append(set_to(variable, as_operand(converted(a, kind, first))))
+    second.append(set_to(variable, as_operand(converted(b, kind, second))))
     return variable
 
 
@@ -88,6 +83,6 @@ def set_all(variables: Any, value: Any, block: list[Statement], refuse: Callable
         value = converted(value, variables.kind, block)
         if kind_of(value) != variables.kind:
             raise refuse("a function returns numbers of one kind: write 0.0 for a real 0")
-        block.append(Set(variables, as_operand(value)))
+        block.append(set_to(variables, as_operand(value)))
     elif variables is not None or value is not None:
         raise refuse("a function returns as many numbers on every way")
