@@ -38,7 +38,7 @@ from zwidth.firmware.program import (
     Store,
     Variable,
 )
-from zwidth.native.kinds import by_kind
+from zwidth.native.reader import by_kind
 
 Rounded = Operation | Store
 

@@ -29,7 +29,7 @@ from zwidth.firmware.program import (
     everything,
     operands,
 )
-from zwidth.native.kinds import by_kind
+from zwidth.native.reader import by_kind
 
 _INFIX = {"+", "-", "*", "/", "<", "<=", "==", "!=", ">", ">="}
 _LOOSE = {"and", "or", "not", "select"}

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections import namedtuple
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from zwidth.firmware.arithmetic import as_operand, converted, kind_of
 from zwidth.firmware.program import Cells, Statement, Variable, set_to
+from zwidth.native.names import Defined
+from zwidth.native.types import fields
 
 
 @dataclass(eq=False)
@@ -20,6 +24,19 @@ class Changing:
 @dataclass(eq=False)
 class Unknown:
     """A name that only one branch has given: it cannot be read."""
+
+
+@cache
+def record(of: Defined) -> Any:
+    """The class of a named tuple."""
+    return namedtuple(of.node.name, fields(of).names)
+
+
+def flat(value: Any) -> list[Any]:
+    """The numbers of a tuple, and of those inside it; of one number that alone, of None none."""
+    if value is None:
+        return []
+    return [x for part in value for x in flat(part)] if isinstance(value, tuple) else [value]
 
 
 def rebuilt(like: Any, parts: list[Any]) -> Any:
