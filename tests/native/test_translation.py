@@ -138,7 +138,7 @@ def test_c_has_the_bits_of_python(package: Path) -> None:
             "is no call",
         ),
         ("def step(x: int) -> float: return Pair(x)", "takes left, right"),
-        ("def step(x: float) -> float:\n    try:\n        return x\n    finally:\n        pass", "Try"),
+        ("def step(x: float) -> float:\n    try:\n        return x\n    finally:\n        pass", "try:"),
     ],
 )
 def test_what_is_outside_is_told_with_file_and_line(package: Path, text: str, said: str) -> None:

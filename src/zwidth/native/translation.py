@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from zwidth.native.function import Function, Read, Signature, head_of, literal, signature_of
+from zwidth.native.expressions import Read, literal
 from zwidth.native.names import Defined, Octets, OutsideError, Package, c_name
+from zwidth.native.signature import Signature, signature_of
+from zwidth.native.statements import Function
 from zwidth.native.types import ITEMS, REAL, Asked, Cells, Maybe, Nothing, Number, Several, Type, told
 
 PRELUDE = Path(__file__).with_name("prelude.c")
@@ -43,7 +45,7 @@ class Translation:
                 faults.append(str(fault))
         if faults:
             raise OutsideError("\n".join(faults))
-        heads = [f"{head_of(s)};" for s in self._signatures.values()]
+        heads = [f"{s.head()};" for s in self._signatures.values()]
         own_names = {self.signature(of).name for of in own}
         entries = [_entry(s) for s in self._signatures.values() if s.name in own_names]
         prelude = PRELUDE.read_text(encoding="utf-8")
