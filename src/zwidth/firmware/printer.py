@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 from zwidth.firmware.program import (
     Branch,
@@ -35,6 +37,8 @@ _INFIX = {"+", "-", "*", "/", "<", "<=", "==", "!=", ">", ">="}
 _LOOSE = {"and", "or", "not", "select"}
 """Operators whose operands stand in parentheses."""
 
+AS_IN_C = {"and": "{} && {}", "or": "{} || {}", "not": "!{}", "select": "{} ? {} : {}"}
+
 LONGEST_LINE = 110
 """Beyond which a choice between two numbers is written as two blocks."""
 
@@ -56,7 +60,12 @@ class Printer(ABC):
     function: str = ""
     """The name of the function, where it stands apart."""
     helpers: set[str] = field(default_factory=set)
-    """Functions that the text calls besides those of the language."""
+    """What was said of `SAID`."""
+
+    SAID: ClassVar[Mapping[str, str]]
+    """How a language says an operation, or one of a kind of numbers, as "abs integer"."""
+    HELPERS: ClassVar[Mapping[str, str]]
+    """The function that it then calls, where that is none of its own; divisors are positive."""
 
     def __post_init__(self) -> None:
         self._names: dict[Variable, str] = {}
@@ -79,9 +88,19 @@ class Printer(ABC):
     def constant(self, constant: Constant) -> str:
         """A number."""
 
-    @abstractmethod
     def operation(self, operator: str, kind: str, read: list[str]) -> str:
         """What is no infix operator: "abs", "min", "%" …; `kind` of the first operand."""
+        key = f"{operator} {kind}" if f"{operator} {kind}" in self.SAID else operator
+        self.helpers.add(key)
+        return self.SAID[key].format(*read, **self.words())
+
+    def words(self) -> dict[str, str]:
+        """What the texts of this language have in braces."""
+        return {}
+
+    def helper_lines(self) -> list[str]:
+        """The functions that the text calls, in the order in which they may stand."""
+        return [text.format(**self.words()) for key, text in self.HELPERS.items() if key in self.helpers]
 
     @abstractmethod
     def declared(self, variable: Variable, name: str) -> str:
