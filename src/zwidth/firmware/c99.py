@@ -87,7 +87,7 @@ class C99(Printer):
         return super().infix(operator, kind, left, right)
 
     def declared(self, variable: Variable, name: str) -> str:
-        return f"    {self.type_of(variable)} {name} = 0;"
+        return f"{self.type_of(variable)} {name} = 0;"
 
     def given(self, variable: Variable, name: str, text: str) -> str:
         return f"const {self.type_of(variable)} {name} = {text};"
@@ -114,7 +114,7 @@ class C99(Printer):
         program, name = self.program, f"{self.prefix}_{self.function}"
         cells = [f"{self.prefix}_state *s"] if program.cells else []
         given = ", ".join([*cells, *(f"{self.type_of(v)} {self.name(v)}" for v in program.parameters)])
-        body = [*self.changing(), *self.block(program.body, 1)]
+        body = self.lines()
         results = [self.read(r, alone=True) for r in program.results]
         lines, kind = [*self.table_lines()], "void"
         if len(results) == 1:

@@ -72,7 +72,7 @@ class JavaScript(Printer):
     def whole_function(self) -> list[str]:
         program = self.program
         given = [*(["s"] if program.cells else []), *(self.name(v) for v in program.parameters)]
-        body = [*(f"    {line}" for line in self.changing()), *self.block(program.body, 1)]
+        body = self.lines()
         results = [self.read(r, alone=True) for r in program.results]
         if results:
             body.append(f"    return {_one_or_list(results)};")

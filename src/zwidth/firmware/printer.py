@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
@@ -154,11 +154,12 @@ class Printer(ABC):
         """The tables and their names."""
         return self._tables
 
-    def changing(self) -> list[str]:
-        """The declarations of the variables that change."""
+    def lines(self) -> list[str]:
+        """The program, in the body of a function: the variables that change, and the statements."""
         chosen = {v for v, once in self._chosen.values() if once}
         found = [v for v in map(_set, self.program.statements()) if v and v not in chosen]
-        return [self.declared(v, self.name(v)) for v in dict.fromkeys(found)]
+        declared = [self.declared(v, self.name(v)) for v in dict.fromkeys(found)]
+        return [*(f"    {line}" for line in declared), *self.block(self.program.body, 1)]
 
     def read(self, operand: Operand, alone: bool = False) -> str:
         """An operand, in parentheses where it is more than a name and does not stand alone."""
@@ -272,6 +273,11 @@ class Printer(ABC):
     @abstractmethod
     def counter(self) -> str:
         """How the counter of a loop is declared."""
+
+
+def comment(lines: Sequence[str]) -> list[str]:
+    """Lines as a comment of C and of JavaScript."""
+    return ["/*", *(f" * {line}".rstrip() for line in lines), " */"]
 
 
 def _is_call(text: str) -> bool:
