@@ -18,7 +18,7 @@ from zwidth.firmware.program import (
     operands,
     without_unused,
 )
-from zwidth.firmware.values import flat, rebuilt
+from zwidth.firmware.values import each, flat, rebuilt
 from zwidth.native.names import Defined
 
 Write = Callable[[dict[str, Any], list[Statement]], Any]
@@ -58,7 +58,7 @@ class Apart:
             name = source.node.name.strip("_") + (f"_{again + 1}" if again else "")
             self.written[key] = name, program, asked, value
         name, program, asked, value = self.written[key]
-        results = _fresh(value)
+        results = each(value, lambda v: Variable(kind_of(v)))
         block.append(Call(tuple(flat(results)), name, program, tuple(compress(arguments, asked))))
         return results
 
@@ -70,13 +70,9 @@ def _taken(
     if isinstance(value, tuple):
         keys.append((type(value), len(value)))
         fields = getattr(value, "_fields", range(len(value)))
-        return rebuilt(
-            value,
-            [
-                _taken(part, f"{name}_{of}", False, parameters, arguments, keys)
-                for of, part in zip(fields, value, strict=True)
-            ],
-        )
+        named = zip(fields, value, strict=True)
+        parts = [_taken(v, f"{name}_{of}", False, parameters, arguments, keys) for of, v in named]
+        return rebuilt(value, parts)
     number = isinstance(value, Variable) or (is_known(value) and whole)
     if not number:
         keys.append((type(value), repr(value)) if is_known(value) or isinstance(value, Cells) else id(value))
@@ -86,10 +82,3 @@ def _taken(
     parameters.append(parameter)
     arguments.append(as_operand(value))
     return parameter
-
-
-def _fresh(value: Any) -> Any:
-    """Variables in the place of numbers."""
-    if isinstance(value, tuple):
-        return rebuilt(value, [_fresh(part) for part in value])
-    return None if value is None else Variable(kind_of(value))

@@ -15,7 +15,7 @@ import numpy as np
 
 from zwidth.firmware.arithmetic import applied, as_operand, converted, is_known, kind_of
 from zwidth.firmware.program import OPERATORS, Branch, Cells, Load, Operation, Statement, Table, Variable
-from zwidth.firmware.values import Changing, Unknown, joined, rebuilt, record
+from zwidth.firmware.values import Changing, Unknown, each, joined, record
 from zwidth.native.names import Attributes, Defined, floor
 from zwidth.native.reader import SPELLED, Reader
 
@@ -72,9 +72,17 @@ class Expressions(Reader, ABC):
         return found
 
     def settled(self, node: ast.expr) -> Any:
-        """A value that stays as it is when a loop goes on."""
+        """A value that stays as it is when a loop goes on: what that is changing is read now."""
         held = {id(h.variable) for h in self.names.values() if isinstance(h, Changing)}
-        return _copied(self.read(node), held, self.block)
+
+        def copied(value: Any) -> Any:
+            if id(value) not in held:
+                return value
+            result = Variable(value.kind)
+            self.block.append(Operation(result, "copy", (value,)))
+            return result
+
+        return each(self.read(node), copied)
 
     def read(self, node: ast.expr) -> Any:
         """What an expression is."""
@@ -293,14 +301,3 @@ def _is_harmless(statement: Statement) -> bool:
     if not isinstance(statement, Operation) or statement.result.changes:
         return False
     return statement.operator not in _MAY_FAIL
-
-
-def _copied(value: Any, held: set[int], block: list[Statement]) -> Any:
-    """A value, with those of the variables that a loop is changing read now."""
-    if isinstance(value, tuple):
-        return rebuilt(value, [_copied(v, held, block) for v in value])
-    if id(value) in held:
-        result = Variable(value.kind)
-        block.append(Operation(result, "copy", (value,)))
-        return result
-    return value

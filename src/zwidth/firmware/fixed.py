@@ -20,6 +20,7 @@ from zwidth.firmware.program import (
     Statement,
     Store,
     Variable,
+    factor,
     rewritten,
 )
 from zwidth.firmware.units import SAME, Scale, Unit, Units, units_of
@@ -298,11 +299,10 @@ class _Lowering:
 
     def times(self, s: Operation, unit: Unit) -> Operand:
         """A product with a known number."""
-        a, b = s.operands
-        x, c = (a, b) if isinstance(b, Constant) else (b, a)
-        assert isinstance(c, Constant), "units_of has refused the rest"
+        found = factor(s)
+        assert found is not None, "units_of has refused the rest"
+        x, by = found
         assert isinstance(x, Variable), "what is known twice is computed before"
-        by = 1.0 / float(c.value) if s.operator == "/" else float(c.value)
         own, n = self.unit(x), self.largest(x)
         named = self.names[x]
         if by == 0.0:

@@ -189,6 +189,18 @@ def set_to(variable: Variable, value: Operand) -> Operation:
     return Operation(variable, "copy", (value,))
 
 
+def factor(s: Operation) -> tuple[Operand, float] | None:
+    """(x, c) of a product x c or c x, or of x/(1/c), with a known number; None of another operation."""
+    a, b = s.operands[0], s.operands[-1]
+    if s.operator == "*" and isinstance(a, Constant):
+        return b, float(a.value)
+    if s.operator == "*" and isinstance(b, Constant):
+        return a, float(b.value)
+    if s.operator == "/" and isinstance(b, Constant) and b.value:
+        return a, 1.0 / float(b.value)
+    return None
+
+
 def blocks(statement: Statement) -> tuple[list[Statement], ...]:
     """The blocks inside a statement."""
     return tuple(getattr(statement, key) for key in _HOLDS.get(type(statement), ()))

@@ -20,6 +20,7 @@ from zwidth.firmware.program import (
     Statement,
     Store,
     Variable,
+    factor,
     operands,
     with_rule,
 )
@@ -62,14 +63,9 @@ class _Rules:
             self.same[s.result] = Constant(0.0, "real")
         elif s.operator == "negate" or (s.operator == "-" and _is(a, 0.0)):
             return [self.scaled(s, b, -1.0)]
-        elif s.operator == "*" and isinstance(a, Constant):
-            return [self.scaled(s, b, float(a.value))]
-        elif s.operator == "*" and isinstance(b, Constant):
-            return [self.scaled(s, a, float(b.value))]
-        elif s.operator == "/" and isinstance(b, Constant) and b.value:
-            return [self.scaled(s, a, 1.0 / float(b.value))]
         else:
-            return [s]
+            found = factor(s)
+            return [self.scaled(s, *found) if found else s]
         return []
 
     def scaled(self, s: Operation, x: Operand, by: float) -> Operation:

@@ -37,7 +37,7 @@ from zwidth.firmware.program import (
 )
 from zwidth.firmware.source import source_of
 from zwidth.firmware.syntax import EndOfLoop, NextPass, assigned, behind, counters, may_leave, returns
-from zwidth.firmware.values import Changing, Unknown, flat, joined, set_all, variables_like
+from zwidth.firmware.values import Changing, Unknown, each, flat, joined, set_all
 from zwidth.native.names import Defined, OutsideError
 from zwidth.native.reader import counted
 
@@ -142,7 +142,8 @@ class _Writer(Expressions):
             self.returned = value
             return _OVER
         if self.returned is None:
-            self.returned = variables_like(value, self.of.node.name)
+            name = self.of.node.name
+            self.returned = each(value, lambda v: Variable(kind_of(v), name, changes=True))
         set_all(self.returned, value, self.block, partial(self.outside, node))
         if self.depth:
             assert self.done is not None, "a loop that may return has it"

@@ -44,6 +44,13 @@ def rebuilt(like: Any, parts: list[Any]) -> Any:
     return type(like)(*parts) if hasattr(like, "_fields") else tuple(parts)
 
 
+def each(value: Any, of: Callable[[Any], Any]) -> Any:
+    """What is made of a number, or of each of a tuple and of those inside it; of None nothing."""
+    if isinstance(value, tuple):
+        return rebuilt(value, [each(part, of) for part in value])
+    return None if value is None else of(value)
+
+
 def same(a: Any, b: Any) -> bool:
     """Whether two values are known to be one."""
     if a is b:
@@ -82,13 +89,6 @@ def joined(
     first.append(set_to(variable, as_operand(converted(a, kind, first))))
     second.append(set_to(variable, as_operand(converted(b, kind, second))))
     return variable
-
-
-def variables_like(value: Any, hint: str) -> Any:
-    """Variables for a number, or for each of a tuple."""
-    if isinstance(value, tuple):
-        return rebuilt(value, [variables_like(v, hint) for v in value])
-    return None if value is None else Variable(kind_of(value), hint, changes=True)
 
 
 def set_all(variables: Any, value: Any, block: list[Statement], refuse: Callable[[str], Exception]) -> None:

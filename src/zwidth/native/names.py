@@ -75,20 +75,8 @@ _NUMPY = SimpleNamespace(
 )
 _LIBRARIES: dict[str, Any] = {"math": math, "numpy": _NUMPY}
 _HARMLESS = (
-    "range",
-    "tuple",
-    "len",
-    "sum",
-    "min",
-    "max",
-    "abs",
-    "float",
-    "int",
-    "zip",
-    "enumerate",
-    "sorted",
-    "ord",
-)
+    "range", "tuple", "len", "sum", "min", "max", "abs", "float", "int", "zip", "enumerate", "sorted", "ord",
+)  # fmt: skip
 
 
 class Package:
