@@ -203,7 +203,8 @@ def factor(s: Operation) -> tuple[Operand, float] | None:
 
 def blocks(statement: Statement) -> tuple[list[Statement], ...]:
     """The blocks inside a statement."""
-    return tuple(getattr(statement, key) for key in _HOLDS.get(type(statement), ()))
+    held = _HOLDS.get(type(statement))
+    return tuple(getattr(statement, key) for key in held) if held else ()
 
 
 def everything(block: list[Statement]) -> Iterator[Statement]:

@@ -126,11 +126,7 @@ class _Writer(Expressions):
         self.todo = outer
         return bool(over)
 
-    def _endofloop(self, node: EndOfLoop) -> None:
-        pass
-
-    def _pass(self, node: ast.Pass) -> None:
-        pass
+    _endofloop = Expressions._pass
 
     def _nextpass(self, node: NextPass) -> None:
         self.bind(node.target, node.value)

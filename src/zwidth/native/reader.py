@@ -46,6 +46,9 @@ class Reader:
             raise self.outside(node, f"{text} is outside what is translated")
         return found
 
+    def _pass(self, node: ast.Pass) -> None:
+        pass
+
 
 def counted(node: ast.For) -> tuple[ast.expr, ast.expr, ast.expr] | None:
     """Start, stop and step of a loop over a range; None of another."""

@@ -46,9 +46,6 @@ class Function(Expressions):
                 continue  # what it gives a name is told the next time
         self.depth -= 1
 
-    def _pass(self, node: ast.Pass) -> None:
-        pass
-
     def _expr(self, node: ast.Expr) -> None:
         if not isinstance(node.value, ast.Constant):
             self.say(f"{self.read(node.value).c};")
