@@ -40,6 +40,7 @@ class C99(Printer):
 
     SAID: ClassVar[Mapping[str, str]] = {
         **AS_IN_C,
+        "copy": "{}",
         "abs": "fabs{suffix}({})",
         "abs integer": "{prefix}_size({})",
         "floor": "floor{suffix}({})",
@@ -76,15 +77,12 @@ class C99(Printer):
         return real_text(constant.value, self.real) if constant.kind == "real" else str(int(constant.value))
 
     def operation(self, operator: str, kind: str, read: list[str]) -> str:
+        if operator == "-" and kind == "real" and read[0] in ("0.0", "0.0f"):
+            # gcc makes −x of 0.0 − x where it knows that x is not −0.0, and so −0.0 of 0.0 − 0.0
+            operator, read = "0.0 -", read[1:]
         if operator == "//":
             self.helpers.add("%")
         return super().operation(operator, kind, read)
-
-    def infix(self, operator: str, kind: str, left: str, right: str) -> str:
-        if operator == "-" and kind == "real" and left in ("0.0", "0.0f"):
-            # gcc makes −x of 0.0 − x where it knows that x is not −0.0, and so −0.0 of 0.0 − 0.0
-            return self.operation("0.0 -", kind, [right])
-        return super().infix(operator, kind, left, right)
 
     def declared(self, variable: Variable, name: str) -> str:
         return f"{self.type_of(variable)} {name} = 0;"

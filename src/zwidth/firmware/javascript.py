@@ -25,6 +25,11 @@ class JavaScript(Printer):
 
     SAID: ClassVar[Mapping[str, str]] = {
         **AS_IN_C,
+        "copy": "{}",
+        "==": "{} === {}",
+        "!=": "{} !== {}",
+        "* integer": "{} * {} + 0",  # there is no whole −0
+        "negate integer": "0 - {}",
         "abs": "Math.abs({})",
         "floor": "Math.floor({})",
         "ceil": "Math.ceil({})",
@@ -46,13 +51,6 @@ class JavaScript(Printer):
         if constant.kind == "truth":
             return "true" if constant.value else "false"
         return real_text(constant.value, "double") if constant.kind == "real" else str(int(constant.value))
-
-    def infix(self, operator: str, kind: str, left: str, right: str) -> str:
-        text = f"{left} { {'==': '===', '!=': '!=='}.get(operator, operator) } {right}"
-        return f"{text} + 0" if operator == "*" and kind == "integer" else text  # there is no whole −0
-
-    def negated(self, kind: str, text: str) -> str:
-        return f"0 - {text}" if kind == "integer" else f"-{text}"
 
     def declared(self, variable: Variable, name: str) -> str:
         return f"let {name} = {'false' if variable.kind == 'truth' else '0'};"

@@ -33,11 +33,15 @@ from zwidth.firmware.program import (
 )
 from zwidth.native.reader import by_kind
 
-_INFIX = {"+", "-", "*", "/", "<", "<=", "==", "!=", ">", ">="}
-_LOOSE = {"and", "or", "not", "select"}
-"""Operators whose operands stand in parentheses."""
-
-AS_IN_C = {"and": "{} && {}", "or": "{} || {}", "not": "!{}", "select": "{} ? {} : {}"}
+AS_IN_C = {
+    **{o: f"{{}} {o} {{}}" for o in ("+", "-", "*", "/", "<", "<=", "==", "!=", ">", ">=")},
+    "negate": "-{}",
+    "and": "{} && {}",
+    "or": "{} || {}",
+    "not": "!{}",
+    "select": "{} ? {} : {}",
+}
+"""Operations that C and JavaScript write alike, with operands in parentheses."""
 
 LONGEST_LINE = 110
 """Beyond which a choice between two numbers is written as two blocks."""
@@ -89,7 +93,7 @@ class Printer(ABC):
         """A number."""
 
     def operation(self, operator: str, kind: str, read: list[str]) -> str:
-        """What is no infix operator: "abs", "min", "%" …; `kind` of the first operand."""
+        """An expression of operands that are written; `kind` of the first."""
         key = f"{operator} {kind}" if f"{operator} {kind}" in self.SAID else operator
         self.helpers.add(key)
         return self.SAID[key].format(*read, **self.words())
@@ -180,22 +184,7 @@ class Printer(ABC):
         if isinstance(statement, Load):
             return self.load(statement.source, statement.index)
         o, of = statement.operator, statement.operands
-        kind = of[0].kind
-        if o in _INFIX:
-            return self.infix(o, kind, self.read(of[0]), self.read(of[1]))
-        if o == "copy":
-            return self.read(of[0], alone=True)
-        if o == "negate":
-            return self.negated(kind, self.read(of[0]))
-        return self.operation(o, kind, [self.read(x, alone=o not in _LOOSE) for x in of])
-
-    def infix(self, operator: str, kind: str, left: str, right: str) -> str:
-        """An infix operator."""
-        return f"{left} {operator} {right}"
-
-    def negated(self, kind: str, text: str) -> str:
-        """The negative."""
-        return f"-{text}"
+        return self.operation(o, of[0].kind, [self.read(x, alone=o not in AS_IN_C) for x in of])
 
     def load(self, source: Cells | Table, index: Operand) -> str:
         name = self._tables[source] if isinstance(source, Table) else source.name
