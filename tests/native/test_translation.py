@@ -54,6 +54,14 @@ def step(x: float, y: float, n: int, a: Array) -> float:
     rest = a[1:].copy()
     rest[FIRST], rest[SECOND] = rest[SECOND], rest[FIRST]
     a[-1] = inner(rest, pair, steep=0.25)
+    for k in range(4):
+        if k > 0:
+            below += last * k
+        else:
+            below = 0.25
+        above = x if k == 0 else above + y
+        last = above - k
+    total = total - below
     whole = floor(x) + ceil(y) + round(y)
     return total + a[-1] + whole + np.floor(x / 3.0) + x % 0.7 + y // 0.3 + sqrt(abs(x))
 

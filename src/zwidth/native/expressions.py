@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from contextlib import suppress
 from typing import Any, NamedTuple, Protocol
 
 from zwidth.native.names import Defined, Module, is_step_function
@@ -202,7 +203,13 @@ class Expressions(Reader):
 
     def _ifexp(self, node: ast.IfExp) -> Read:
         before = len(self.lines)
-        a, b = self.read(node.body), self.read(node.orelse)
+        arms: list[Read] = []
+        for part in (node.body, node.orelse):  # one is enough to tell the type of both for now
+            with suppress(NotYet):
+                arms.append(self.read(part))
+        if not arms:
+            raise NotYet
+        a, b = arms[0], arms[-1]
         of = joined(a.type, b.type)
         if of is None:
             raise self.outside(node, f"{ast.unparse(node)} is of two types")
