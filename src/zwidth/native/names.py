@@ -193,7 +193,8 @@ class Module:
         try:
             return self._known[name]
         except NameError:
-            return self.meaning(name)
+            found = self.meaning(name)
+            return found if isinstance(found, Defined) else None
 
     def value(self, node: ast.expr, but: Any = ()) -> Any:
         """The number or tuple that an expression is, None if it is none; the names in `but` have no value."""
