@@ -134,19 +134,12 @@ class _Lowering:
         if self.largest(result) > _FORCE:
             raise TooLarge
         self.now, self.out = None, []
-        given = self.read(result, self.unit(result))
+        unit = self.unit(result)
+        given = self.read(result, unit)
         made = Program(program.parameters, program.cells, [*body, *self.out], (given,))
         narrow = frozenset(self.names[v] for v, n in self.count.items() if n <= _NARROW and v in self.names)
-        return Fixed(
-            made,
-            self.units,
-            self.constants,
-            self.roundings,
-            self.most,
-            narrow,
-            self.unit(result),
-            frozenset(self.to_zero),
-        )
+        zero = frozenset(self.to_zero)
+        return Fixed(made, self.units, self.constants, self.roundings, self.most, narrow, unit, zero)
 
     def rule(self, s: Statement) -> list[Statement]:
         """A statement in whole numbers."""
