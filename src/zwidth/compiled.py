@@ -1,7 +1,7 @@
 """How the step functions are compiled: ahead, to C, with the package.
 
 They take scalars and contiguous arrays, do not raise, and are written in the part of Python that
-`native.function` translates.  Rounding is that of the source: no contraction, no reassociation, so that one
+`native.statements` translates.  Rounding is that of the source: no contraction, no reassociation, so that one
 loop and a thousand side by side give the same bits, as do C and Python.
 """
 

@@ -10,7 +10,7 @@ from typing import Any
 import zwidth as zw
 from zwidth.environment.environment import Environment
 from zwidth.firmware.law import LawProgram
-from zwidth.firmware.program import Branch, Constant, Load, Operand, Operation, Set, Statement, Store
+from zwidth.firmware.program import Branch, Constant, Load, Operand, Operation, Statement, Store
 
 BITS = 400
 """Of what is remembered: it is rounded to 2⁻⁴⁰⁰, since an endless response has endless digits."""
@@ -85,8 +85,6 @@ class ExactProgram:
                 self.values[s.result] = self.cells[s.index.value]
             elif isinstance(s, Store):
                 self.cells[s.index.value] = kept(self._value(s.value))
-            elif isinstance(s, Set):
-                self.values[s.variable] = self._value(s.value)
             else:
                 assert isinstance(s, Branch)
                 self._block(s.then if self._value(s.test) else s.other)

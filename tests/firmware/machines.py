@@ -180,7 +180,7 @@ export const {name} = (() => {{
 def program_in_c(program: Program, name: str) -> str:
     """A function for `run_c`; the program has one array of cells at most."""
     c = C99(program, OF_C, prefix=name)
-    body = [*c.changing(), *c.block(program.body, 1)]
+    body = c.lines()
     size = program.cells[0].size if program.cells else 1
     cell = program.cells[0].name if program.cells else "m"
     types = [c.type_of(v) for v in program.parameters]
@@ -213,7 +213,7 @@ INCLUDES = "#include <math.h>\n#include <stdint.h>\n"
 def program_in_javascript(program: Program, name: str) -> str:
     """A function for `run_node`."""
     js = JavaScript(program, OF_JAVASCRIPT)
-    body = [*(f"    {line}" for line in js.changing()), *js.block(program.body, 1)]
+    body = js.lines()
     functions = js.function_lines()
     cell = program.cells[0].name if program.cells else "m"
     names = ", ".join(v.hint for v in program.parameters)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+import os
 from typing import Any
 
 import numpy as np
 
 Array = Any
+
+WHERE = float(os.name == "posix")
 
 
 def power(m: Array, x: float, k: int) -> float:
@@ -111,6 +114,10 @@ def sent_along(m: Array, x: float, k: int) -> float:
 
 def unknown_name(m: Array, x: float, k: int) -> float:
     return x + nowhere  # type: ignore[name-defined]  # noqa: F821  # here: nowhere
+
+
+def told_when_it_runs(m: Array, x: float, k: int) -> float:
+    return x + WHERE  # here: WHERE is not known here
 
 
 def changed_list(m: Array, x: float, k: int) -> float:

@@ -182,6 +182,10 @@ def ordered(a: float, b: float) -> tuple[float, float]:
     return (b, a) if b < a else (a, b)
 
 
+def whole_quotient(m: Array, x: float, k: int) -> float:
+    return x + (k - 5) // 3
+
+
 def whole_zero(m: Array, x: float, k: int) -> float:
     return x / float(-k * 0) + x / float(int(0.1 * x)) + (0.0 - float(k - k)) / x
 
@@ -211,6 +215,7 @@ FUNCTIONS = (
     place_asked_once,
     stop_asked_once,
     records,
+    whole_quotient,
 )
 """Those that Python computes as they stand."""
 

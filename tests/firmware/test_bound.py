@@ -28,7 +28,7 @@ from zwidth.firmware.bound import (
     scaled,
 )
 from zwidth.firmware.evaluation import Evaluation, Exact
-from zwidth.firmware.program import Branch, Cells, Constant, Load, Operation, Program, Set, Store, Variable
+from zwidth.firmware.program import Branch, Cells, Constant, Load, Operation, Program, Store, Variable, set_to
 
 
 @dataclass
@@ -164,7 +164,7 @@ def branching(random: Random) -> Program:
         v, w = Variable("real", "v"), Variable("real", "w")
         given = Operation(v, "*", (Constant(random.uniform(-0.8, 0.8), "real"), random.choice([m, u])))
         add = random.choice([u, Constant(random.uniform(-4, 4), "real")])
-        ways.append([given, Operation(w, random.choice(["+", "-", "min", "max"]), (v, add)), Set(y, w)])
+        ways.append([given, Operation(w, random.choice(["+", "-", "min", "max"]), (v, add)), set_to(y, w)])
     body.append(Branch(test, *ways))
     body.append(Store(cells, Constant(0, "integer"), y))
     return Program((x,), (cells,), body, (y,))
@@ -174,6 +174,7 @@ def ran(program: Program, x: float, m: float, off: Callable[[], float]) -> tuple
     """Result and memory, with an error at every operation, store and set."""
     values, held = {program.parameters[0]: x}, [m]
     do = {"*": lambda a, b: a * b, "+": lambda a, b: a + b, "-": lambda a, b: a - b, "min": min, "max": max}
+    do["copy"] = lambda a: a  # a set
     tests = {"<": float.__lt__, "<=": float.__le__, ">": float.__gt__, ">=": float.__ge__}
 
     def value(o: object) -> float:
@@ -187,8 +188,6 @@ def ran(program: Program, x: float, m: float, off: Callable[[], float]) -> tuple
                 values[s.result] = tests[s.operator](value(s.operands[0]) + off(), value(s.operands[1]))
             elif isinstance(s, Operation):
                 values[s.result] = do[s.operator](*map(value, s.operands)) + off()
-            elif isinstance(s, Set):
-                values[s.variable] = value(s.value) + off()
             elif isinstance(s, Store):
                 held[0] = value(s.value) + off()
             else:

@@ -14,10 +14,14 @@ from firmware.emulated.host import HostLaw
 from firmware.emulated.required import require
 
 import zwidth as zw
+from zwidth.firmware.bound import plain
 from zwidth.firmware.emit import emit
+from zwidth.firmware.evaluation import Evaluation, Exact
+from zwidth.firmware.fixed import lowered
 from zwidth.firmware.fixed_text import HELPERS, NARROW
-from zwidth.firmware.program import Branch, Cells, Constant, Load, Operation, Program, Set, Store, Variable
+from zwidth.firmware.program import Branch, Cells, Constant, Load, Operation, Program, Store, Variable, set_to
 from zwidth.firmware.tidy import tidied
+from zwidth.firmware.units import Scale, Unit
 
 
 def test_a_narrow_product_is_the_wide_one(tmp_path: Path) -> None:
@@ -71,18 +75,39 @@ def test_what_changes_nothing_is_left_out() -> None:
         Operation(a, "copy", (given,)),
         Load(b, memory, zero),
         Operation(c, "-", (b, zero)),
-        Set(changing, a),
+        set_to(changing, a),
         Operation(d, "copy", (changing,)),
-        Branch(Constant(True, "truth"), [Set(changing, c)], [Set(changing, zero)]),
+        Branch(Constant(True, "truth"), [set_to(changing, c)], [set_to(changing, zero)]),
         Store(memory, zero, d),
     ]
     program = tidied(Program((given,), (memory,), list(body), (changing,)))
-    made = [s.operator for s in program.statements() if isinstance(s, Operation)]
-    assert made == ["copy"]
-    sets = [s.value for s in program.statements() if isinstance(s, Set)]
-    assert sets == [given, b, zero]
+    made = [(s.result.changes, s.operands) for s in program.statements() if isinstance(s, Operation)]
+    assert made == [(True, (given,)), (False, (changing,)), (True, (b,)), (True, (zero,))]
     assert len(body) == 7
-    assert body[3].value is a
+    assert body[3].operands == (a,)
+
+
+def test_a_set_in_another_unit_is_a_set() -> None:
+    """y is a position on one way and a force on the other: both ways set one whole number, in one unit."""
+    n, y = Variable("integer", "n"), Variable("real", "y", changes=True)
+    real, x, f = (Variable("real", name) for name in ("real", "x", "f"))
+    inside = Variable("truth", "inside")
+    ways = [set_to(y, x)], [Operation(f, "*", (Constant(300.0, "real"), x)), set_to(y, f)]
+    body = [
+        Operation(real, "real", (n,)),
+        Operation(x, "*", (Constant(1e-4, "real"), real)),
+        Operation(inside, ">", (x, Constant(0.0, "real"))),
+        Branch(inside, *ways),
+    ]
+    program = Program((n,), (), body, (y,))
+    evaluation = Evaluation(Exact())
+    evaluation.run(program, {n: plain(-100.0, 100.0)}, [])
+    found = lowered(program, Scale(1e-4, 0.01, 4), evaluation.seen, [])
+    branch = found.program.body[-1]
+    sets = [way[-1].result for way in (branch.then, branch.other)]
+    assert sets[0] is sets[1] is found.program.results[0]
+    assert sets[0].changes
+    assert (branch.then[-2].operator, found.result) == ("scaled", Unit(0, 1, 4))
 
 
 def test_a_coefficient_that_is_a_unit_by_chance() -> None:

@@ -54,6 +54,14 @@ def step(x: float, y: float, n: int, a: Array) -> float:
     rest = a[1:].copy()
     rest[FIRST], rest[SECOND] = rest[SECOND], rest[FIRST]
     a[-1] = inner(rest, pair, steep=0.25)
+    for k in range(4):
+        if k > 0:
+            below += last * k
+        else:
+            below = 0.25
+        above = x if k == 0 else above + y
+        last = above - k
+    total = total - below
     whole = floor(x) + ceil(y) + round(y)
     return total + a[-1] + whole + np.floor(x / 3.0) + x % 0.7 + y // 0.3 + sqrt(abs(x))
 
@@ -138,7 +146,7 @@ def test_c_has_the_bits_of_python(package: Path) -> None:
             "is no call",
         ),
         ("def step(x: int) -> float: return Pair(x)", "takes left, right"),
-        ("def step(x: float) -> float:\n    try:\n        return x\n    finally:\n        pass", "Try"),
+        ("def step(x: float) -> float:\n    try:\n        return x\n    finally:\n        pass", "try:"),
     ],
 )
 def test_what_is_outside_is_told_with_file_and_line(package: Path, text: str, said: str) -> None:

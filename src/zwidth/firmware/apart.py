@@ -18,8 +18,8 @@ from zwidth.firmware.program import (
     operands,
     without_unused,
 )
-from zwidth.firmware.source import Source
-from zwidth.firmware.values import rebuilt
+from zwidth.firmware.values import each, flat, rebuilt
+from zwidth.native.names import Defined
 
 Write = Callable[[dict[str, Any], list[Statement]], Any]
 """Writes a function, given what its arguments stand for, into a block: what it gives back."""
@@ -32,16 +32,16 @@ class Apart:
     Of their arguments numbers become parameters; what is known inside of a record stays known.
     """
 
-    sources: frozenset[Source] = frozenset()
+    sources: frozenset[Defined] = frozenset()
     written: dict[Any, tuple[str, Program, tuple[bool, ...], Any]] = field(default_factory=dict)
     """By what is known of the arguments: name, program, which parameters it reads, what it gives back."""
 
-    def call(self, source: Source, names: dict[str, Any], write: Write, block: list[Statement]) -> Any:
+    def call(self, source: Defined, names: dict[str, Any], write: Write, block: list[Statement]) -> Any:
         """Call one, written now if it has not been."""
         inner: dict[str, Any] = {}
         parameters: list[Variable] = []
         arguments: list[Operand] = []
-        keys: list[Any] = [id(source)]
+        keys: list[Any] = [source]
         for name, value in names.items():
             inner[name] = _taken(value, name, True, parameters, arguments, keys)
         key = tuple(keys)
@@ -49,17 +49,17 @@ class Apart:
             body: list[Statement] = []
             value = write(inner, body)
             cells = tuple(c for c in inner.values() if isinstance(c, Cells))
-            whole = Program(tuple(parameters), cells, body, tuple(as_operand(v) for v in _flat(value)))
+            whole = Program(tuple(parameters), cells, body, tuple(as_operand(v) for v in flat(value)))
             program = without_unused(whole)
             read = {o for s in program.statements() for o in operands(s)} | set(program.results)
             asked = tuple(p in read for p in parameters)
             program.parameters = tuple(compress(parameters, asked))
-            again = sum(1 for k in self.written if k[0] == id(source))
-            name = source.name.strip("_") + (f"_{again + 1}" if again else "")
+            again = sum(1 for k in self.written if k[0] == source)
+            name = source.node.name.strip("_") + (f"_{again + 1}" if again else "")
             self.written[key] = name, program, asked, value
         name, program, asked, value = self.written[key]
-        results = _fresh(value)
-        block.append(Call(tuple(_flat(results)), name, program, tuple(compress(arguments, asked))))
+        results = each(value, lambda v: Variable(kind_of(v)))
+        block.append(Call(tuple(flat(results)), name, program, tuple(compress(arguments, asked))))
         return results
 
 
@@ -70,13 +70,9 @@ def _taken(
     if isinstance(value, tuple):
         keys.append((type(value), len(value)))
         fields = getattr(value, "_fields", range(len(value)))
-        return rebuilt(
-            value,
-            [
-                _taken(part, f"{name}_{of}", False, parameters, arguments, keys)
-                for of, part in zip(fields, value, strict=True)
-            ],
-        )
+        named = zip(fields, value, strict=True)
+        parts = [_taken(v, f"{name}_{of}", False, parameters, arguments, keys) for of, v in named]
+        return rebuilt(value, parts)
     number = isinstance(value, Variable) or (is_known(value) and whole)
     if not number:
         keys.append((type(value), repr(value)) if is_known(value) or isinstance(value, Cells) else id(value))
@@ -86,16 +82,3 @@ def _taken(
     parameters.append(parameter)
     arguments.append(as_operand(value))
     return parameter
-
-
-def _flat(value: Any) -> list[Any]:
-    if value is None:
-        return []
-    return [x for part in value for x in _flat(part)] if isinstance(value, tuple) else [value]
-
-
-def _fresh(value: Any) -> Any:
-    """Variables in the place of numbers."""
-    if isinstance(value, tuple):
-        return rebuilt(value, [_fresh(part) for part in value])
-    return None if value is None else Variable(kind_of(value))

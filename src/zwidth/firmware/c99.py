@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
-from zwidth.firmware.printer import Printer
+from zwidth.firmware.printer import AS_IN_C, Printer
 from zwidth.firmware.program import Call, Cells, Constant, Table, Variable
 
 Real = Literal["double", "float"]
-
-_LIBRARY = {"abs": "fabs", "floor": "floor", "ceil": "ceil", "sqrt": "sqrt"}
 
 _OF_CPP = (
     "alignas alignof and and_eq asm bitand bitor catch char16_t char32_t class compl concept const_cast "
@@ -22,76 +21,14 @@ _OF_CPP = (
 )
 """Words that C++ keeps for itself: a header is included there, too."""
 
-KEYWORDS = frozenset(
-    [
-        *_OF_CPP.split(),
-        "auto",
-        "break",
-        "case",
-        "char",
-        "const",
-        "continue",
-        "default",
-        "do",
-        "double",
-        "else",
-        "enum",
-        "extern",
-        "float",
-        "for",
-        "goto",
-        "if",
-        "inline",
-        "int",
-        "long",
-        "register",
-        "restrict",
-        "return",
-        "short",
-        "signed",
-        "sizeof",
-        "static",
-        "struct",
-        "switch",
-        "typedef",
-        "union",
-        "unsigned",
-        "void",
-        "volatile",
-        "while",
-        "abs",
-        "fabs",
-        "fabsf",
-        "ceilf",
-        "floorf",
-        "fmod",
-        "fmodf",
-        "sqrtf",
-        "floor",
-        "ceil",
-        "sqrt",
-        "s",
-        "counts",
-        "table",
-        "true",
-        "false",
-        "bool",
-    ]
+_OWN = (
+    "auto break case char const continue default do double else enum extern float for goto if inline int "
+    "long register restrict return short signed sizeof static struct switch typedef union unsigned void "
+    "volatile while abs fabs fabsf ceilf floorf fmod fmodf sqrtf floor ceil sqrt s counts table true false "
+    "bool"
 )
 
-HELPERS = {
-    "opposite": "static inline {real} {prefix}_opposite({real} a) {{ return a == 0 ? 0 : -a; }}",
-    "size": "static inline int32_t {prefix}_size(int32_t a) {{ return a < 0 ? -a : a; }}",
-    "least": "static inline {real} {prefix}_least({real} a, {real} b) {{ return b < a ? b : a; }}",
-    "most": "static inline {real} {prefix}_most({real} a, {real} b) {{ return b > a ? b : a; }}",
-    "rest": "static inline int32_t {prefix}_rest(int32_t a, int32_t b) "
-    "{{ int32_t r = a % b; return r < 0 ? r + b : r; }}",
-    "whole": "static inline int32_t {prefix}_whole(int32_t a, int32_t b) "
-    "{{ return (a - {prefix}_rest(a, b)) / b; }}",
-    "remainder": "static inline {real} {prefix}_remainder({real} a, {real} b) "
-    "{{ {real} r = fmod{suffix}(a, b); return r < 0 ? r + b : r + 0; }}",
-}
-"""Functions that a text may need; divisors are positive."""
+KEYWORDS = frozenset(f"{_OF_CPP} {_OWN}".split())
 
 
 @dataclass
@@ -101,48 +38,54 @@ class C99(Printer):
     real: Real = "double"
     prefix: str = "law"
 
-    @property
-    def suffix(self) -> str:
-        """Of the functions and the constants."""
-        return "f" if self.real == "float" else ""
+    SAID: ClassVar[Mapping[str, str]] = {
+        **AS_IN_C,
+        "copy": "{}",
+        "abs": "fabs{suffix}({})",
+        "abs integer": "{prefix}_size({})",
+        "floor": "floor{suffix}({})",
+        "ceil": "ceil{suffix}({})",
+        "sqrt": "sqrt{suffix}({})",
+        "real": "({real})({})",
+        "integer": "(int32_t)({})",
+        "min": "{prefix}_least({}, {})",
+        "min integer": "({1}) < ({0}) ? ({1}) : ({0})",
+        "max": "{prefix}_most({}, {})",
+        "max integer": "({1}) > ({0}) ? ({1}) : ({0})",
+        "//": "{prefix}_whole({}, {})",
+        "%": "{prefix}_rest({}, {})",
+        "% real": "{prefix}_remainder({}, {})",
+        "0.0 -": "{prefix}_opposite({})",
+    }
+    HELPERS: ClassVar[Mapping[str, str]] = {
+        "0.0 -": "static inline {real} {prefix}_opposite({real} a) {{ return a == 0 ? 0 : -a; }}",
+        "abs integer": "static inline int32_t {prefix}_size(int32_t a) {{ return a < 0 ? -a : a; }}",
+        "min": "static inline {real} {prefix}_least({real} a, {real} b) {{ return b < a ? b : a; }}",
+        "max": "static inline {real} {prefix}_most({real} a, {real} b) {{ return b > a ? b : a; }}",
+        "%": "static inline int32_t {prefix}_rest(int32_t a, int32_t b) "
+        "{{ int32_t r = a % b; return r < 0 ? r + b : r; }}",
+        "//": "static inline int32_t {prefix}_whole(int32_t a, int32_t b) "
+        "{{ return (a - {prefix}_rest(a, b)) / b; }}",
+        "% real": "static inline {real} {prefix}_remainder({real} a, {real} b) "
+        "{{ {real} r = fmod{suffix}(a, b); return r < 0 ? r + b : r + 0; }}",
+    }
+
+    def words(self) -> dict[str, str]:
+        return {"real": self.real, "prefix": self.prefix, "suffix": "f" if self.real == "float" else ""}
 
     def constant(self, constant: Constant) -> str:
         return real_text(constant.value, self.real) if constant.kind == "real" else str(int(constant.value))
 
     def operation(self, operator: str, kind: str, read: list[str]) -> str:
-        if operator == "abs" and kind == "integer":
-            self.helpers.add("size")
-            return f"{self.prefix}_size({read[0]})"
-        if operator in _LIBRARY:
-            return f"{_LIBRARY[operator]}{self.suffix}({read[0]})"
-        if operator in ("and", "or"):
-            return f"{read[0]} {'&&' if operator == 'and' else '||'} {read[1]}"
-        if operator == "not":
-            return f"!{read[0]}"
-        if operator == "select":
-            return f"{read[0]} ? {read[1]} : {read[2]}"
-        if operator == "real":
-            return f"({self.real})({read[0]})"
-        if operator == "integer":
-            return f"(int32_t)({read[0]})"
-        helper = {"min": "least", "max": "most", "//": "whole", "%": "rest"}[operator]
-        if operator == "%" and kind == "real":
-            helper = "remainder"
-        if operator in ("min", "max") and kind == "integer":
-            sign = "<" if operator == "min" else ">"
-            return f"({read[1]}) {sign} ({read[0]}) ? ({read[1]}) : ({read[0]})"
-        self.helpers |= {helper, "rest"} if helper == "whole" else {helper}
-        return f"{self.prefix}_{helper}({', '.join(read)})"
-
-    def infix(self, operator: str, kind: str, left: str, right: str) -> str:
-        if operator == "-" and kind == "real" and left in ("0.0", "0.0f"):
+        if operator == "-" and kind == "real" and read[0] in ("0.0", "0.0f"):
             # gcc makes −x of 0.0 − x where it knows that x is not −0.0, and so −0.0 of 0.0 − 0.0
-            self.helpers.add("opposite")
-            return f"{self.prefix}_opposite({right})"
-        return f"{left} {operator} {right}"
+            operator, read = "0.0 -", read[1:]
+        if operator == "//":
+            self.helpers.add("%")
+        return super().operation(operator, kind, read)
 
     def declared(self, variable: Variable, name: str) -> str:
-        return f"    {self.type_of(variable)} {name} = 0;"
+        return f"{self.type_of(variable)} {name} = 0;"
 
     def given(self, variable: Variable, name: str, text: str) -> str:
         return f"const {self.type_of(variable)} {name} = {text};"
@@ -169,7 +112,7 @@ class C99(Printer):
         program, name = self.program, f"{self.prefix}_{self.function}"
         cells = [f"{self.prefix}_state *s"] if program.cells else []
         given = ", ".join([*cells, *(f"{self.type_of(v)} {self.name(v)}" for v in program.parameters)])
-        body = [*self.changing(), *self.block(program.body, 1)]
+        body = self.lines()
         results = [self.read(r, alone=True) for r in program.results]
         lines, kind = [*self.table_lines()], "void"
         if len(results) == 1:
@@ -188,11 +131,6 @@ class C99(Printer):
     def type_of(self, variable: Variable) -> str:
         """The type of a variable."""
         return {"real": self.real, "integer": "int32_t", "truth": "int"}[variable.kind]
-
-    def helper_lines(self) -> list[str]:
-        """The functions that the text calls, in the order in which they may stand."""
-        values = {"real": self.real, "prefix": self.prefix, "suffix": self.suffix}
-        return [text.format(**values) for name, text in HELPERS.items() if name in self.helpers]
 
     def table_lines(self) -> list[str]:
         """The tables of the program."""

@@ -34,13 +34,13 @@ from zwidth.firmware.program import (
     Operand,
     Operation,
     Program,
-    Set,
     Statement,
     Store,
     Variable,
 )
+from zwidth.native.reader import by_kind
 
-Rounded = Operation | Store | Set
+Rounded = Operation | Store
 
 
 class NoBound(Exception):
@@ -140,27 +140,14 @@ class Evaluation:
     def block(self, body: list[Statement], way: _Way, keep: bool) -> None:
         """Follow a block; `keep` the bounds of its results."""
         for s in body:
-            if isinstance(s, Operation):
-                self.operation(s, way, keep)
-            elif isinstance(s, Load):
-                self.load(s, way, keep)
-            elif isinstance(s, Store):
-                value = self.value(s.value, way, s)
-                way.cells[_place(s.index)] = self.rounded(s, (value,), value)
-            elif isinstance(s, Set):
-                self.set(s, way, keep)
-            elif isinstance(s, Branch):
-                self.branch(s, way, keep)
-            else:
+            follow = by_kind(self, s)
+            if follow is None:
                 raise NoBound("it runs through a loop whose passes depend on what is measured")
+            follow(s, way, keep)
 
-    def set(self, s: Set, way: _Way, keep: bool) -> None:
-        if s.variable.kind == "truth":
-            way.truths[s.variable] = replace(self.truth(s.value, way), test=None)
-            return
+    def _store(self, s: Store, way: _Way, keep: bool) -> None:
         value = self.value(s.value, way, s)
-        way.values[s.variable] = self.rounded(s, (value,), value)
-        self.keep(s.variable, way.values[s.variable], keep)
+        way.cells[_place(s.index)] = self.rounded(s, (value,), value)
 
     def keep(self, variable: Variable, value: Bound, keep: bool) -> None:
         """Note what a result can be."""
@@ -177,7 +164,7 @@ class Evaluation:
         error = self.arithmetic.constant(number, statement) if operand.kind == "real" and number else 0.0
         return plain(number, number, error, signed=True)
 
-    def load(self, s: Load, way: _Way, keep: bool) -> None:
+    def _load(self, s: Load, way: _Way, keep: bool) -> None:
         if isinstance(s.source, Cells):
             value = way.cells[_place(s.index)]
         else:
@@ -190,9 +177,10 @@ class Evaluation:
         way.values[s.result] = value
         self.keep(s.result, value, keep)
 
-    def operation(self, s: Operation, way: _Way, keep: bool) -> None:
+    def _operation(self, s: Operation, way: _Way, keep: bool) -> None:
         if s.result.kind == "truth":
-            way.truths[s.result] = self.tested(s, way)
+            truth = self.tested(s, way)
+            way.truths[s.result] = replace(truth, test=None) if s.result.changes else truth
             return
         of = tuple(self.value(o, way, s) for o in s.operands)
         value = _result(s, of) if s is not self.converter else _to_the_nearest(of[0])
@@ -234,7 +222,7 @@ class Evaluation:
         away = a.low - b.high > doubt or b.low - a.high > doubt
         return Truth(true, false, exact or away, Test(s.operator, s.operands[0], s.operands[1], rounding))
 
-    def branch(self, s: Branch, way: _Way, keep: bool) -> None:
+    def _branch(self, s: Branch, way: _Way, keep: bool) -> None:
         """Both ways of a branch, as far as they can be taken, joined."""
         truth = self.truth(s.test, way)
         ways = []

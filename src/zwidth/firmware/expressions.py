@@ -3,45 +3,35 @@
 from __future__ import annotations
 
 import ast
-import inspect
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from zwidth.firmware.arithmetic import applied, as_operand, converted, is_known, kind_of
-from zwidth.firmware.program import Branch, Cells, Load, Operation, Statement, Table, Variable
-from zwidth.firmware.source import Source, source_of
-from zwidth.firmware.values import Changing, Unknown, joined, rebuilt
+from zwidth.firmware.program import OPERATORS, Branch, Cells, Load, Operation, Statement, Table, Variable
+from zwidth.firmware.values import Changing, Unknown, each, joined, record
+from zwidth.native.names import Attributes, Defined, floor
+from zwidth.native.reader import SPELLED, Reader
 
-_BINARY: dict[type, str] = {
-    ast.Add: "+",
-    ast.Sub: "-",
-    ast.Mult: "*",
-    ast.Div: "/",
-    ast.FloorDiv: "//",
-    ast.Mod: "%",
-    ast.Lt: "<",
-    ast.LtE: "<=",
-    ast.Eq: "==",
-    ast.NotEq: "!=",
-    ast.Gt: ">",
-    ast.GtE: ">=",
-}
 _FUNCTIONS: dict[Any, str] = {
     abs: "abs",
+    min: "min",
+    max: "max",
     math.fabs: "abs",
     math.sqrt: "sqrt",
-    np.sqrt: "sqrt",
-    np.floor: "floor",
+    floor: "floor",
+    math.floor: "floor",
+    math.ceil: "ceil",
     float: "real",
     int: "integer",
 }
-_OF_REALS = {math.fabs, math.sqrt, np.sqrt, np.floor}
-_BUILTIN = {"abs": abs, "min": min, "max": max, "float": float, "int": int, "range": range}
+_OF_REALS = {math.fabs, math.sqrt, floor, float}
 _MAY_FAIL = {"//", "%", "integer"}
 """What is not computed where Python would not: a divisor may be 0 there, a number too large."""
 
@@ -50,280 +40,264 @@ MOST_BITS = 31
 
 
 @dataclass
-class Expressions(ABC):
+class Expressions(Reader, ABC):
     """Reads the expressions of one call.
 
     Parameters
     ----------
-    source
+    of
         The function.
     names
         What each of its names stands for now.
+    block
+        Where statements are written.
     calls
         The functions that are being written out, this one last.
     """
 
-    source: Source
+    of: Defined
     names: dict[str, Any]
-    calls: tuple[Source, ...] = ()
+    block: list[Statement]
+    calls: tuple[Defined, ...] = ()
 
     @abstractmethod
-    def written_in_place(self, called: Source, names: dict[str, Any], block: list[Statement]) -> Any:
-        """What a call gives back; its statements are written into the block."""
+    def written_in_place(self, called: Defined, names: dict[str, Any]) -> Any:
+        """What a call gives back, written out."""
 
-    def settled(self, node: ast.expr, block: list[Statement]) -> Any:
-        """A value that stays as it is when a loop goes on."""
+    def inside(self, block: list[Statement], write: Callable[[], Any]) -> Any:
+        """What is found while it is written into another block."""
+        before, self.block = self.block, block
+        found = write()
+        self.block = before
+        return found
+
+    def settled(self, node: ast.expr) -> Any:
+        """A value that stays as it is when a loop goes on: what that is changing is read now."""
         held = {id(h.variable) for h in self.names.values() if isinstance(h, Changing)}
-        return _copied(self.read(node, block), held, block)
 
-    def read(self, node: ast.expr, block: list[Statement]) -> Any:
+        def copied(value: Any) -> Any:
+            if id(value) not in held:
+                return value
+            result = Variable(value.kind)
+            self.block.append(Operation(result, "copy", (value,)))
+            return result
+
+        return each(self.read(node), copied)
+
+    def read(self, node: ast.expr) -> Any:
         """What an expression is."""
-        if isinstance(node, ast.Constant) and isinstance(node.value, bool | int | float | None):
-            return node.value
-        if isinstance(node, ast.Name):
-            return self.name(node)
-        if isinstance(node, ast.Attribute):
-            return self.attribute(node, block)
-        if isinstance(node, ast.Tuple):
-            return tuple(self.settled(e, block) for e in node.elts)
-        if isinstance(node, ast.Subscript):
-            return self.element(node, block)
-        if isinstance(node, ast.BinOp):
-            pair = self.read(node.left, block), self.read(node.right, block)
-            return self.operate(node, pair, node.op, block)
-        if isinstance(node, ast.UnaryOp):
-            return self.unary(node, block)
-        if isinstance(node, ast.Compare):
-            return self.compare(node, block)
-        if isinstance(node, ast.BoolOp):
-            return self.conditions(node, block)
-        if isinstance(node, ast.IfExp):
-            return self.either(node, block)
-        if isinstance(node, ast.Call):
-            return self.call(node, block)
-        raise self.source.refuse(node, f"{ast.unparse(node)} cannot be emitted")
+        return self.method(node)(node)
 
-    def name(self, node: ast.Name) -> Any:
+    def _constant(self, node: ast.Constant) -> Any:
+        if isinstance(node.value, bool | int | float | None):
+            return node.value
+        raise self.outside(node, f"{ast.unparse(node)} is no number")
+
+    def _name(self, node: ast.Name) -> Any:
         """What a name stands for: in the function, in its module, in Python."""
         if node.id in self.names:
             value = self.names[node.id]
             if isinstance(value, Unknown):
-                raise self.source.refuse(node, f"{node.id} has no value on some way here")
+                raise self.outside(node, f"{node.id} has no value on some way here")
             return value.variable if isinstance(value, Changing) else value
-        if node.id in self.source.known:
-            return self.source.known[node.id]
-        if node.id in _BUILTIN:
-            return _BUILTIN[node.id]
-        raise self.source.refuse(node, f"{node.id} is not known here")
+        found = self.module.told(node.id)
+        if found is None:
+            raise self.outside(node, f"{node.id} is not known here")
+        return found
 
-    def attribute(self, node: ast.Attribute, block: list[Statement]) -> Any:
+    def _attribute(self, node: ast.Attribute) -> Any:
         """A field of a record, or a name of a module."""
-        held = self.read(node.value, block)
-        if not (hasattr(held, "_fields") or inspect.ismodule(held)) or not hasattr(held, node.attr):
-            raise self.source.refuse(node, f"{ast.unparse(node)} is in no record and no module")
+        held = self.read(node.value)
+        is_one = hasattr(held, "_fields") or isinstance(held, Attributes | ModuleType | SimpleNamespace)
+        if not is_one or not hasattr(held, node.attr):
+            raise self.outside(node, f"{ast.unparse(node)} is not known here")
         return getattr(held, node.attr)
 
-    def place(self, node: ast.Subscript, size: int, block: list[Statement]) -> Any:
+    def _tuple(self, node: ast.Tuple) -> Any:
+        return tuple(self.settled(e) for e in node.elts)
+
+    def place(self, node: ast.Subscript, size: int) -> Any:
         """The index of an array or a tuple of this size."""
-        index = self.read(node.slice, block) if not isinstance(node.slice, ast.Slice) else None
+        index = self.read(node.slice) if not isinstance(node.slice, ast.Slice) else None
         if not isinstance(index, int | Variable) or kind_of(index) != "integer":
-            raise self.source.refuse(node, f"{ast.unparse(node)}: an index is a whole number")
+            raise self.outside(node, f"{ast.unparse(node)}: an index is a whole number")
         if not isinstance(index, Variable) and not 0 <= index < size:
-            raise self.source.refuse(node, f"{ast.unparse(node)}: there is no number at {index} of {size}")
+            raise self.outside(node, f"{ast.unparse(node)}: there is no number at {index} of {size}")
         return index
 
-    def element(self, node: ast.Subscript, block: list[Statement]) -> Any:
+    def _subscript(self, node: ast.Subscript) -> Any:
         """A number of an array or a tuple."""
-        held = self.read(node.value, block)
+        held = self.read(node.value)
         if isinstance(held, Cells):
-            result = Variable("real")
-            block.append(Load(result, held, as_operand(self.place(node, held.size, block))))
-            return result
+            return self.loaded(held, self.place(node, held.size))
         if not isinstance(held, tuple | np.ndarray):
-            raise self.source.refuse(node, f"{ast.unparse(node.value)} is no array and no tuple")
-        index = self.place(node, len(held), block)
+            raise self.outside(node, f"{ast.unparse(node.value)} is no array and no tuple")
+        index = self.place(node, len(held))
         if is_known(index):
             return held[index].item() if isinstance(held, np.ndarray) else held[index]
         if not all(is_known(v) and kind_of(v) == "real" for v in held):
-            raise self.source.refuse(node, "an index that is not known goes into real numbers that are known")
+            raise self.outside(node, "an index that is not known goes into real numbers that are known")
+        return self.loaded(Table("", tuple(float(v) for v in held)), index)
+
+    def loaded(self, held: Cells | Table, index: Any) -> Variable:
+        """A number that is read when the program runs."""
         result = Variable("real")
-        block.append(Load(result, Table("", tuple(float(v) for v in held)), as_operand(index)))
+        self.block.append(Load(result, held, as_operand(index)))
         return result
 
-    def apply(self, node: ast.AST, name: str, values: tuple[Any, ...], block: list[Statement]) -> Any:
+    def apply(self, node: ast.AST, name: str, *values: Any) -> Any:
         """The result of an operator."""
         for value in values:
             if not (is_known(value) or isinstance(value, Variable)):
-                raise self.source.refuse(node, "here stands what is no number")
+                raise self.outside(node, "here stands what is no number")
             if is_known(value) and kind_of(value) == "integer" and int(value).bit_length() > MOST_BITS:
-                raise self.source.refuse(node, f"{value} is no whole number of 32 bits")
+                raise self.outside(node, f"{value} is no whole number of 32 bits")
         try:
-            return applied(name, values, block)
+            return applied(name, values, self.block)
         except (ArithmeticError, ValueError):
             text = ", ".join(str(v) for v in values)
-            raise self.source.refuse(node, f"{name} of {text} has no value") from None
+            raise self.outside(node, f"{name} of {text} has no value") from None
 
-    def condition(self, value: Any, node: ast.AST, block: list[Statement]) -> Any:
+    def condition(self, node: ast.expr) -> Any:
         """True or false; a number holds where it is not 0."""
+        value = self.read(node)
         if isinstance(value, tuple) or kind_of(value) == "truth":
             return value
-        return self.apply(node, "!=", (value, 0.0 if kind_of(value) == "real" else 0), block)
+        return self.apply(node, "!=", value, 0.0 if kind_of(value) == "real" else 0)
 
-    def operate(
-        self, node: ast.AST, values: tuple[Any, Any], operator: ast.operator, block: list[Statement]
-    ) -> Any:
+    def _binop(self, node: ast.BinOp) -> Any:
+        return self.operate(node, self.read(node.left), node.op, self.read(node.right))
+
+    def operate(self, node: ast.AST, left: Any, operator: ast.operator, right: Any) -> Any:
         """A binary operator."""
-        name = _BINARY.get(type(operator))
-        if name is None:
-            raise self.source.refuse(node, f"the operator {type(operator).__name__} cannot be emitted")
-        if any(isinstance(v, tuple) or kind_of(v) == "truth" for v in values):
-            raise self.source.refuse(node, "arithmetic is for numbers")
-        if name == "//" and "real" in (kind_of(values[0]), kind_of(values[1])):
-            if not is_known(values[1]) or values[1] != 1.0:
-                raise self.source.refuse(node, "of real numbers // is emitted by 1.0 only, as the floor")
-            return self.apply(node, "floor", (converted(values[0], "real", block),), block)
-        if name in ("//", "%") and is_known(values[1]) and values[1] <= 0:
-            raise self.source.refuse(node, "divisors of // and % are positive")
-        return self.apply(node, name, values, block)
+        name = SPELLED.get(type(operator))
+        if name not in OPERATORS:
+            raise self.outside(node, f"the operator {type(operator).__name__} cannot be emitted")
+        if any(isinstance(v, tuple) or kind_of(v) == "truth" for v in (left, right)):
+            raise self.outside(node, "arithmetic is for numbers")
+        if name == "//" and "real" in (kind_of(left), kind_of(right)):
+            if not is_known(right) or right != 1.0:
+                raise self.outside(node, "of real numbers // is emitted by 1.0 only, as the floor")
+            return self.apply(node, "floor", converted(left, "real", self.block))
+        if name in ("//", "%") and is_known(right) and right <= 0:
+            raise self.outside(node, "divisors of // and % are positive")
+        return self.apply(node, name, left, right)
 
-    def unary(self, node: ast.UnaryOp, block: list[Statement]) -> Any:
+    def _unaryop(self, node: ast.UnaryOp) -> Any:
         """A sign, or `not`."""
-        value = self.read(node.operand, block)
         if isinstance(node.op, ast.Not):
-            return self.apply(node, "not", (self.condition(value, node, block),), block)
+            return self.apply(node, "not", self.condition(node.operand))
+        value = self.read(node.operand)
         if isinstance(node.op, ast.USub) and not isinstance(value, tuple) and kind_of(value) != "truth":
-            return self.apply(node, "negate", (value,), block)
-        raise self.source.refuse(node, f"{ast.unparse(node)} cannot be emitted")
+            return self.apply(node, "negate", value)
+        raise self.outside(node, f"{ast.unparse(node)} cannot be emitted")
 
-    def compare(self, node: ast.Compare, block: list[Statement]) -> Any:
+    def _compare(self, node: ast.Compare) -> Any:
         """One comparison, or several in a row: the later ones only where the first hold."""
 
-        def chain(k: int, left: Any, inner: list[Statement]) -> Any:
-            right = self.settled(node.comparators[k], inner)
-            one = self.comparison(node, left, node.ops[k], right, inner)
+        def chain(k: int, left: Any) -> Any:
+            right = self.settled(node.comparators[k])
+            one = self.comparison(node, left, node.ops[k], right)
             if k + 1 == len(node.ops):
                 return one
-            return self.joined_tests(one, False, lambda b: chain(k + 1, right, b), node, inner)
+            return self.joined_tests(one, False, lambda: chain(k + 1, right), node)
 
-        return chain(0, self.settled(node.left, block), block)
+        return chain(0, self.settled(node.left))
 
-    def comparison(
-        self, node: ast.AST, left: Any, operator: ast.cmpop, right: Any, block: list[Statement]
-    ) -> Any:
+    def comparison(self, node: ast.AST, left: Any, operator: ast.cmpop, right: Any) -> Any:
         """One comparison of two numbers, or with None."""
         if isinstance(operator, ast.Is | ast.IsNot):
             return (left is right) == isinstance(operator, ast.Is)
-        name = _BINARY.get(type(operator))
+        name = SPELLED.get(type(operator))
         if name is None or isinstance(left, tuple) or isinstance(right, tuple):
-            raise self.source.refuse(node, "this comparison cannot be emitted")
+            raise self.outside(node, "this comparison cannot be emitted")
         if (kind_of(left) == "truth") != (kind_of(right) == "truth"):
-            raise self.source.refuse(node, "a condition is compared with a condition, a number with a number")
-        return self.apply(node, name, (left, right), block)
+            raise self.outside(node, "a condition is compared with a condition, a number with a number")
+        return self.apply(node, name, left, right)
 
-    def conditions(self, node: ast.BoolOp, block: list[Statement]) -> Any:
+    def _boolop(self, node: ast.BoolOp) -> Any:
         """`and`, `or`."""
         decides = isinstance(node.op, ast.Or)
-        result = self.condition(self.read(node.values[0], block), node, block)
+        result = self.condition(node.values[0])
         for further in node.values[1:]:
-
-            def one(b: list[Statement], further: ast.expr = further) -> Any:
-                return self.condition(self.read(further, b), further, b)
-
-            result = self.joined_tests(result, decides, one, node, block)
+            result = self.joined_tests(result, decides, partial(self.condition, further), node)
         return result
 
-    def joined_tests(
-        self,
-        first: Any,
-        decides: bool,
-        second: Callable[[list[Statement]], Any],
-        node: ast.AST,
-        block: list[Statement],
-    ) -> Any:
+    def joined_tests(self, first: Any, decides: bool, second: Callable[[], Any], node: ast.AST) -> Any:
         """Two conditions; the second is not computed where the first decides, if that can be noticed."""
         if is_known(first):
-            return first if bool(first) == decides else second(block)
+            return first if bool(first) == decides else second()
         inner: list[Statement] = []
-        further = second(inner)
+        further = self.inside(inner, second)
         if all(_is_harmless(s) for s in inner):
-            block += inner
-            return self.apply(node, "or" if decides else "and", (first, further), block)
+            self.block += inner
+            return self.apply(node, "or" if decides else "and", first, further)
         made = Branch(as_operand(first))
         arms = (made.other, made.then) if decides else (made.then, made.other)
         arms[0].extend(inner)
-        result = joined(further, decides, *arms, "", lambda what: self.source.refuse(node, what))
-        block.append(made)
+        result = joined(further, decides, *arms, "", partial(self.outside, node))
+        self.block.append(made)
         return result
 
-    def either(self, node: ast.IfExp, block: list[Statement]) -> Any:
+    def _ifexp(self, node: ast.IfExp) -> Any:
         """`a if c else b`."""
-        test = self.condition(self.read(node.test, block), node, block)
+        test = self.condition(node.test)
         if is_known(test):
-            return self.read(node.body if test else node.orelse, block)
+            return self.read(node.body if test else node.orelse)
         made = Branch(as_operand(test))
-        a, b = self.settled(node.body, made.then), self.settled(node.orelse, made.other)
-        result = joined(a, b, made.then, made.other, "", lambda what: self.source.refuse(node, what))
-        block.append(made)
+        a = self.inside(made.then, lambda: self.settled(node.body))
+        b = self.inside(made.other, lambda: self.settled(node.orelse))
+        result = joined(a, b, made.then, made.other, "", partial(self.outside, node))
+        self.block.append(made)
         return result
 
-    def call(self, node: ast.Call, block: list[Statement]) -> Any:
+    def _call(self, node: ast.Call) -> Any:
         """A function: an operator, a record, or one that is written out in place."""
-        function = self.read(node.func, block)
+        function = self.read(node.func)
+        name = _FUNCTIONS.get(function) if callable(function) else None
+        if not name and not isinstance(function, Defined):
+            raise self.outside(node, f"{ast.unparse(node.func)} cannot be emitted")
         if any(isinstance(a, ast.Starred) for a in node.args) or any(k.arg is None for k in node.keywords):
-            raise self.source.refuse(node, "arguments are given one by one")
-        values = [self.settled(a, block) for a in node.args]
-        named = {k.arg: self.settled(k.value, block) for k in node.keywords if k.arg}
-        if hasattr(function, "_fields"):
-            return function(*values, **named)
-        if function in (min, max) or function in (math.floor, math.ceil) or function in _FUNCTIONS:
-            return self.operator_call(node, function, values, block)
-        if not inspect.isfunction(getattr(function, "py_func", function)):
-            raise self.source.refuse(node, f"{ast.unparse(node.func)} cannot be emitted")
-        called = source_of(function)
-        if called in self.calls:
-            raise self.source.refuse(node, f"{called.name} calls itself")
-        given = dict(zip(called.arguments, values, strict=False)) | named
-        if len(values) > len(called.arguments) or set(given) != set(called.arguments):
-            raise self.source.refuse(node, f"{called.name} takes {', '.join(called.arguments)}: give each")
-        return self.written_in_place(called, given, block)
+            raise self.outside(node, "arguments are given one by one")
+        values = [self.settled(a) for a in node.args]
+        if name:
+            return self.operator_call(node, function, name, values)
+        named = {k.arg: self.settled(k.value) for k in node.keywords if k.arg}
+        if isinstance(function.node, ast.ClassDef):
+            return record(function)(*values, **named)
+        if function in self.calls:
+            raise self.outside(node, f"{function.node.name} calls itself")
+        takes = [a.arg for a in function.takes()]
+        given = dict(zip(takes, values, strict=False)) | named
+        if len(values) > len(takes) or set(given) != set(takes):
+            raise self.outside(node, f"{function.node.name} takes {', '.join(takes)}: give each")
+        return self.written_in_place(function, given)
 
-    def operator_call(self, node: ast.Call, function: Any, values: list[Any], block: list[Statement]) -> Any:
+    def operator_call(self, node: ast.Call, function: Any, name: str, values: list[Any]) -> Any:
         """A call that is an operator."""
         if any(isinstance(v, tuple) or v is None or kind_of(v) == "truth" for v in values) or not values:
-            raise self.source.refuse(node, f"{ast.unparse(node.func)} is for numbers")
-        if function in (min, max):
-            result = values[0]
-            for further in values[1:]:
-                result = self.apply(node, function.__name__, (result, further), block)
-            return result
-        if len(values) > 1:
-            raise self.source.refuse(node, f"{ast.unparse(node.func)} is for one number")
+            raise self.outside(node, f"{ast.unparse(node.func)} is for numbers")
         value = values[0]
-        if function in (math.floor, math.ceil):
-            if kind_of(value) == "integer":
-                return value
-            whole = self.apply(node, "floor" if function is math.floor else "ceil", (value,), block)
-            return self.apply(node, "integer", (whole,), block)
-        if function in _OF_REALS or function is float:
-            value = converted(value, "real", block)
-        if function is float or (function is int and kind_of(value) == "integer"):
+        if name in ("min", "max"):
+            for further in values[1:]:
+                value = self.apply(node, name, value, further)
             return value
-        return self.apply(node, _FUNCTIONS[function], (value,), block)
+        if len(values) > 1:
+            raise self.outside(node, f"{ast.unparse(node.func)} is for one number")
+        if function in (int, math.floor, math.ceil) and kind_of(value) == "integer":
+            return value
+        if function in _OF_REALS:
+            value = converted(value, "real", self.block)
+        if function is float:
+            return value
+        found = self.apply(node, name, value)
+        return self.apply(node, "integer", found) if function in (math.floor, math.ceil) else found
 
 
 def _is_harmless(statement: Statement) -> bool:
     """Whether it may be computed also where its result is not asked for."""
     if isinstance(statement, Load):
         return not isinstance(statement.index, Variable)
-    return isinstance(statement, Operation) and statement.operator not in _MAY_FAIL
-
-
-def _copied(value: Any, held: set[int], block: list[Statement]) -> Any:
-    """A value, with those of the variables that a loop is changing read now."""
-    if isinstance(value, tuple):
-        return rebuilt(value, [_copied(v, held, block) for v in value])
-    if id(value) in held:
-        result = Variable(value.kind)
-        block.append(Operation(result, "copy", (value,)))
-        return result
-    return value
+    if not isinstance(statement, Operation) or statement.result.changes:
+        return False
+    return statement.operator not in _MAY_FAIL

@@ -17,12 +17,14 @@ from zwidth.firmware.program import (
     Operand,
     Operation,
     Program,
-    Set,
     Statement,
     Store,
     Variable,
+    factor,
+    rewritten,
 )
 from zwidth.firmware.units import SAME, Scale, Unit, Units, units_of
+from zwidth.native.reader import by_kind
 
 _ROOM = 1.01
 """What the error may add to a number, relative; `invariant` tells afterwards whether it did not add more."""
@@ -113,6 +115,9 @@ class _Lowering:
     most: dict[Variable, float] = field(default_factory=dict)
     count: dict[Variable, int] = field(default_factory=dict)
     to_zero: set[Statement] = field(default_factory=set)
+    now: Statement | None = None
+    """The real statement that is written in whole numbers, and what it has become so far."""
+    out: list[Statement] = field(default_factory=list)
 
     @property
     def scale(self) -> Scale:
@@ -122,53 +127,34 @@ class _Lowering:
         """The whole program."""
         for p in program.parameters:
             self.names[p] = p
-        body: list[Statement] = []
-        self.block(program.body, body)
+        body = rewritten(program.body, self.rule)
         (result,) = program.results
         if isinstance(result, Constant):
             raise NoBound("its force is the same everywhere")
         if self.largest(result) > _FORCE:
             raise TooLarge
-        out = self.read(result, self.unit(result), None, body)
-        made = Program(program.parameters, program.cells, body, (out,))
+        self.now, self.out = None, []
+        unit = self.unit(result)
+        given = self.read(result, unit)
+        made = Program(program.parameters, program.cells, [*body, *self.out], (given,))
         narrow = frozenset(self.names[v] for v, n in self.count.items() if n <= _NARROW and v in self.names)
-        return Fixed(
-            made,
-            self.units,
-            self.constants,
-            self.roundings,
-            self.most,
-            narrow,
-            self.unit(result),
-            frozenset(self.to_zero),
-        )
+        zero = frozenset(self.to_zero)
+        return Fixed(made, self.units, self.constants, self.roundings, self.most, narrow, unit, zero)
+
+    def rule(self, s: Statement) -> list[Statement]:
+        """A statement in whole numbers."""
+        lower = by_kind(self, s)
+        if lower is None:
+            raise NoBound("it runs through a loop whose passes depend on what is measured")
+        self.now, self.out = s, []
+        lower(s)
+        return self.out
+
+    # ---- numbers
 
     def unit(self, operand: Operand) -> Unit:
         """The unit of an operand; of a known number, and where nothing tells, that of a force."""
         return self.units.of(operand) or self.scale.force
-
-    def block(self, todo: list[Statement], out: list[Statement]) -> None:
-        for s in todo:
-            if isinstance(s, Operation):
-                self.operation(s, out)
-            elif isinstance(s, Load):
-                self.load(s, out)
-            elif isinstance(s, Store):
-                place = int(s.index.value) if isinstance(s.index, Constant) else 0
-                unit = self.units.cells.get(place, self.scale.force)
-                self.fits(self.cells[place], unit)
-                out.append(Store(s.target, s.index, self.read(s.value, unit, s, out)))
-            elif isinstance(s, Set):
-                self.set(s, out)
-            elif isinstance(s, Branch):
-                made = Branch(self.truth(s.test))
-                self.block(s.then, made.then)
-                self.block(s.other, made.other)
-                out.append(made)
-            else:
-                raise NoBound("it runs through a loop whose passes depend on what is measured")
-
-    # ---- numbers
 
     def named(self, variable: Variable, kind: Kind = "integer") -> Variable:
         """The whole number that stands for a real one."""
@@ -192,51 +178,45 @@ class _Lowering:
         self.count[variable] = n
         return n
 
-    def known(self, number: float, unit: Unit, statement: Statement | None) -> Constant:
-        """A known number in whole units; its error is noted."""
-        size = self.scale.size(unit)
-        n = round(number / size)
-        if abs(n) > self.scale.largest:
-            raise TooLarge
-        self.off(self.constants, statement, abs(number - n * size))
-        return Constant(n, "integer")
+    def off(self, held: dict[Statement, float], error: float) -> None:
+        """Note an error of the statement that is written."""
+        if self.now is not None and error > 0.0:
+            held[self.now] = held.get(self.now, 0.0) + error
 
-    def off(self, held: dict[Statement, float], statement: Statement | None, error: float) -> None:
-        if statement is not None and error > 0.0:
-            held[statement] = held.get(statement, 0.0) + error
-
-    def read(self, operand: Operand, unit: Unit, s: Statement | None, out: list[Statement]) -> Operand:
+    def read(self, operand: Operand, unit: Unit) -> Operand:
         """An operand in a unit."""
         if isinstance(operand, Constant):
-            if operand.kind == "truth":
-                return operand
-            return self.known(float(operand.value), unit, s)
+            return operand if operand.kind == "truth" else self.known(float(operand.value), unit)
         own, n = self.unit(operand), self.largest(operand)
         value: Operand = self.names[operand]
         if own == unit:
             return value
         if (own.counts, own.steps) == (unit.counts, unit.steps):
-            return self.shifted(value, n, own.fraction - unit.fraction, unit, s, out)
-        return self.product(value, n, self.scale.size(own), unit, s, out)
+            return self.shifted(value, n, own.fraction - unit.fraction, unit)
+        return self.product(value, n, self.scale.size(own), unit)
 
-    def shifted(
-        self, value: Operand, n: int, by: int, unit: Unit, s: Statement | None, out: list[Statement]
-    ) -> Operand:
+    def known(self, number: float, unit: Unit) -> Constant:
+        """A known number in whole units."""
+        size = self.scale.size(unit)
+        n = round(number / size)
+        if abs(n) > self.scale.largest:
+            raise TooLarge
+        self.off(self.constants, abs(number - n * size))
+        return Constant(n, "integer")
+
+    def shifted(self, value: Operand, n: int, by: int, unit: Unit) -> Operand:
         """To a finer unit, or to the nearest of a coarser one."""
         if by < 0:
             if n << -by > self.scale.largest:
                 raise TooLarge
-            return self.made("<<", (value, Constant(-by, "integer")), out)
+            return self.made("<<", value, -by)
         half = 1 << (by - 1)
         if n + half > self.scale.largest:
             raise TooLarge
-        self.off(self.roundings, s, 0.5 * self.scale.size(unit))
-        sum_ = self.made("+", (value, Constant(half, "integer")), out)
-        return self.made(">>", (sum_, Constant(by, "integer")), out)
+        self.off(self.roundings, 0.5 * self.scale.size(unit))
+        return self.made(">>", self.made("+", value, half), by)
 
-    def product(
-        self, value: Operand, n: int, factor: float, unit: Unit, s: Statement | None, out: list[Statement]
-    ) -> Operand:
+    def product(self, value: Operand, n: int, factor: float, unit: Unit) -> Operand:
         """A whole number times a real one, in a unit: by a whole number, or by a fraction and a shift."""
         size = self.scale.size(unit)
         ratio = factor / size
@@ -244,100 +224,99 @@ class _Lowering:
         if abs(ratio) >= _PRECISE or abs(ratio - m) <= 1e-12 * abs(ratio):
             if abs(m) * n > self.scale.largest:
                 raise TooLarge
-            self.off(self.roundings, s, abs(factor - m * size) * n)
-            return self.made("product", (value, Constant(m, "integer")), out)
+            self.off(self.roundings, abs(factor - m * size) * n)
+            return self.made("product", value, m)
         # the product is kept in 64 bits, with the half that rounds it
         shift = min(self.scale.word - 2, 62 - n.bit_length()) - ceil(abs(ratio)).bit_length()
         shift = next((k for k in _BYTES if k < shift and n <= 2**k), shift)
         m = round(ratio * 2.0**shift)
         if abs(ratio) * n + 1 > self.scale.largest or shift < 1:
             raise TooLarge
-        error = abs(factor - m * 2.0**-shift * size) * n + 0.5 * size
-        self.off(self.roundings, s, error)
-        if s is not None:
-            self.to_zero.add(s)
-        return self.made("scaled", (value, Constant(m, "integer"), Constant(shift, "integer")), out)
+        self.off(self.roundings, abs(factor - m * 2.0**-shift * size) * n + 0.5 * size)
+        if self.now is not None:
+            self.to_zero.add(self.now)
+        return self.made("scaled", value, m, shift)
 
-    def made(self, operator: str, operands: tuple[Operand, ...], out: list[Statement]) -> Variable:
+    def made(self, operator: str, *operands: Operand | int) -> Variable:
+        """The result of an operation; whole numbers are written out."""
         result = Variable("integer")
-        out.append(Operation(result, operator, operands))
+        of = tuple(Constant(o, "integer") if isinstance(o, int) else o for o in operands)
+        self.out.append(Operation(result, operator, of))
         return result
 
     # ---- statements
 
-    def load(self, s: Load, out: list[Statement]) -> None:
-        if not isinstance(s.source, Cells):
-            raise NoBound("it looks up a table, which is written in floating point only")
-        place = int(s.index.value) if isinstance(s.index, Constant) else 0
+    def cell(self, index: Operand) -> Unit:
+        """The unit of a place of the memory, which must hold what is remembered there."""
+        place = int(index.value) if isinstance(index, Constant) else 0
         unit = self.units.cells.get(place, self.scale.force)
         self.fits(self.cells[place], unit)
-        self.largest(s.result)
-        out.append(Load(self.named(s.result), s.source, s.index))
+        return unit
 
-    def set(self, s: Set, out: list[Statement]) -> None:
-        if s.variable.kind == "truth":
-            out.append(Set(self.named(s.variable, "truth"), self.truth(s.value)))
-            return
-        value = self.read(s.value, self.unit(s.variable), s, out)
-        out.append(Set(self.named(s.variable), value))
+    def _load(self, s: Load) -> None:
+        if not isinstance(s.source, Cells):
+            raise NoBound("it looks up a table, which is written in floating point only")
+        self.cell(s.index)
+        self.largest(s.result)
+        self.out.append(Load(self.named(s.result), s.source, s.index))
+
+    def _store(self, s: Store) -> None:
+        value = self.read(s.value, self.cell(s.index))
+        self.out.append(Store(s.target, s.index, value))
+
+    def _branch(self, s: Branch) -> None:
+        self.out.append(Branch(self.truth(s.test), s.then, s.other))
 
     def truth(self, operand: Operand) -> Operand:
         return operand if isinstance(operand, Constant) else self.named(operand, "truth")
 
-    def operation(self, s: Operation, out: list[Statement]) -> None:
+    def _operation(self, s: Operation) -> None:
         if s.result.kind == "truth":
-            self.test(s, out)
+            self.test(s)
             return
         self.largest(s.result)
         unit = self.unit(s.result)
-        a, b = s.operands[0], s.operands[-1]
         if s.operator in ("*", "/"):
-            value = self.times(s, unit, out)
+            value = self.times(s, unit)
         elif s.operator == "floor":
-            value = self.down(a, out)
+            value = self.down(s.operands[0])
         else:
-            one = self.read(a, unit, s, out)
-            if s.operator in ("real", "integer", "copy"):
-                value = one
-            else:
-                of = (one, self.read(b, unit, s, out)) if len(s.operands) == 2 else (one,)
-                value = self.made(s.operator, of, out)
-        if isinstance(value, Variable) and value.kind == "integer" and value not in self.names.values():
+            of = [self.read(o, unit) for o in s.operands]
+            value = of[0] if s.operator in ("real", "integer", "copy") else self.made(s.operator, *of)
+        new = isinstance(value, Variable) and value.kind == "integer" and value not in self.names.values()
+        if isinstance(value, Variable) and new and not s.result.changes:
             value.hint = s.result.hint
             self.names[s.result] = value
         else:
-            out.append(Operation(self.named(s.result), "copy", (value,)))
+            self.out.append(Operation(self.named(s.result), "copy", (value,)))
 
-    def times(self, s: Operation, unit: Unit, out: list[Statement]) -> Operand:
+    def times(self, s: Operation, unit: Unit) -> Operand:
         """A product with a known number."""
-        a, b = s.operands
-        x, c = (a, b) if isinstance(b, Constant) else (b, a)
-        assert isinstance(c, Constant), "units_of has refused the rest"
+        found = factor(s)
+        assert found is not None, "units_of has refused the rest"
+        x, by = found
         assert isinstance(x, Variable), "what is known twice is computed before"
-        by = 1.0 / float(c.value) if s.operator == "/" else float(c.value)
         own, n = self.unit(x), self.largest(x)
         named = self.names[x]
         if by == 0.0:
             return Constant(0, "integer")
         if abs(abs(by) * self.scale.size(own) / self.scale.size(unit) - 1.0) <= SAME:
-            return named if by > 0 else self.made("negate", (named,), out)
-        return self.product(named, n, by * self.scale.size(own), unit, s, out)
+            return named if by > 0 else self.made("negate", named)
+        return self.product(named, n, by * self.scale.size(own), unit)
 
-    def down(self, a: Operand, out: list[Statement]) -> Operand:
+    def down(self, a: Operand) -> Operand:
         """The floor of a number without a unit."""
         unit = self.unit(a)
         if (unit.counts, unit.steps) != (0, 0) or not isinstance(a, Variable):
             raise NoBound("it rounds a number that has a unit")
         self.largest(a)
-        if unit.fraction <= 0:
-            return self.names[a]
-        return self.made(">>", (self.names[a], Constant(unit.fraction, "integer")), out)
+        return self.names[a] if unit.fraction <= 0 else self.made(">>", self.names[a], unit.fraction)
 
-    def test(self, s: Operation, out: list[Statement]) -> None:
+    def test(self, s: Operation) -> None:
         """A comparison; with a known number the whole number that decides alike."""
         result = self.named(s.result, "truth")
         if s.operator in ("and", "or", "not", "copy"):
-            out.append(Operation(result, s.operator, tuple(self.truth(o) for o in s.operands)))
+            self.out.append(Operation(result, s.operator, tuple(self.truth(o) for o in s.operands)))
             return
         a, b = s.operands
         operator = s.operator
@@ -354,13 +333,12 @@ class _Lowering:
                     raise NoBound("it compares with a number that no reading can be")
                 operator, near = ("<=", floor(level)) if operator in ("<", "<=") else (">=", ceil(level))
             else:
-                self.off(self.constants, s, abs(level - near) * self.scale.size(unit))
+                self.off(self.constants, abs(level - near) * self.scale.size(unit))
             near = max(min(near, self.scale.largest), -self.scale.largest)
-            out.append(Operation(result, operator, (self.names[a], Constant(near, "integer"))))
+            self.out.append(Operation(result, operator, (self.names[a], Constant(near, "integer"))))
             return
         unit = self.units.together(a, b) or self.scale.force
-        of = (self.read(a, unit, s, out), self.read(b, unit, s, out))
-        out.append(Operation(result, operator, of))
+        self.out.append(Operation(result, operator, (self.read(a, unit), self.read(b, unit))))
 
 
 _MIRRORED = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 from zwidth.firmware.c99 import C99
-from zwidth.firmware.program import Constant, Operand, Operation, Statement, Variable
+from zwidth.firmware.program import Constant, Load, Operand, Operation, Variable
 
 NARROW = 2**15 - 1
 """The largest number of 16 bits."""
 
-_CHOSEN = {"min": "least", "max": "most", "abs": "size"}
-
 HELPERS = {
-    "min": "static inline {word} {prefix}_least({word} a, {word} b) {{ return b < a ? b : a; }}",
-    "max": "static inline {word} {prefix}_most({word} a, {word} b) {{ return b > a ? b : a; }}",
-    "abs": "static inline {word} {prefix}_size({word} a) {{ return a < 0 ? -a : a; }}",
+    "min integer": "static inline {word} {prefix}_least({word} a, {word} b) {{ return b < a ? b : a; }}",
+    "max integer": "static inline {word} {prefix}_most({word} a, {word} b) {{ return b > a ? b : a; }}",
+    "abs integer": "static inline {word} {prefix}_size({word} a) {{ return a < 0 ? -a : a; }}",
     "scaled_narrow": """\
 /* n (high 2^16 + low) / 2^16, to the nearest, without numbers of 64 bits: they are slow on small chips */
 static inline {word} {prefix}_scaled_narrow(int16_t n, int16_t high, int16_t low)
@@ -53,6 +53,18 @@ class FixedC99(C99):
     short: str = ""
     """Of what is given the name that has 16 bits; none where it has more."""
 
+    SAID: ClassVar[Mapping[str, str]] = {
+        **C99.SAID,
+        "min integer": C99.SAID["min"],
+        "max integer": C99.SAID["max"],
+        "scaled": "{prefix}_scaled({}, {}, {})",
+        "scaled_narrow": "{prefix}_scaled_narrow({}, {}, {})",
+    }
+    HELPERS: ClassVar[Mapping[str, str]] = HELPERS
+
+    def words(self) -> dict[str, str]:
+        return {**super().words(), "word": self.integer}
+
     @property
     def integer(self) -> str:
         """The type of a number."""
@@ -68,7 +80,7 @@ class FixedC99(C99):
         """A whole number of its word."""
         return str(value) if abs(value) <= NARROW else f"{value}L" if self.word == 32 else f"{value}LL"
 
-    def made(self, statement: Statement) -> str:
+    def made(self, statement: Operation | Load) -> str:
         if isinstance(statement, Operation) and statement.operator in ("<<", ">>", "product", "scaled"):
             a, b = statement.operands[:2]
             if statement.operator == "product":
@@ -77,9 +89,7 @@ class FixedC99(C99):
                 narrow = self.scaled_narrow(*statement.operands)
                 if narrow is not None:
                     return narrow
-                self.helpers.add("scaled")
-                of = ", ".join(self.read(o, alone=True) for o in statement.operands)
-                return f"{self.prefix}_scaled({of})"
+                return self.operation("scaled", "", [self.read(o, alone=True) for o in statement.operands])
             if statement.operator == "<<":  # of a negative number it is not defined
                 return f"{self.read(a)} * ({self.integer}){self.constant_text(1 << self._value(b))}"
             return f"{self.read(a)} >> {self.read(b)}"
@@ -90,16 +100,8 @@ class FixedC99(C99):
         m = self._value(by)
         if not self.is_narrow(n) or self._value(shift) != 16 or abs(m) >= NARROW << 16:
             return None
-        self.helpers.add("scaled_narrow")
         high = (m + NARROW + 1) >> 16  # so that both parts have 16 bits and a sign
-        of = f"{self.shortened(n)}, {high}, {m - (high << 16)}"
-        return f"{self.prefix}_scaled_narrow({of})"
-
-    def operation(self, operator: str, kind: str, read: list[str]) -> str:
-        if operator in ("min", "max", "abs"):
-            self.helpers.add(operator)
-            return f"{self.prefix}_{_CHOSEN[operator]}({', '.join(read)})"
-        return super().operation(operator, kind, read)
+        return self.operation("scaled_narrow", "", [self.shortened(n), str(high), str(m - (high << 16))])
 
     def _value(self, operand: Operand) -> int:
         assert isinstance(operand, Constant), "shifts are by known numbers"
@@ -120,7 +122,3 @@ class FixedC99(C99):
         """A factor in 16 bits where that holds it: two such are multiplied by one instruction or few."""
         text = self.shortened(operand) if self.is_narrow(operand) else self.read(operand)
         return text if second else f"({self.integer}){text}"
-
-    def helper_lines(self) -> list[str]:
-        values = {"word": self.integer, "prefix": self.prefix}
-        return [text.format(**values) for name, text in HELPERS.items() if name in self.helpers]

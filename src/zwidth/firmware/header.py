@@ -9,6 +9,7 @@ from zwidth.firmware.c99 import C99, KEYWORDS, Real, real_text
 from zwidth.firmware.fixed_text import NARROW, SHIFTS, FixedC99
 from zwidth.firmware.law import LawProgram
 from zwidth.firmware.machine import Machine, rest_numbers
+from zwidth.firmware.printer import comment
 from zwidth.firmware.program import Operation
 from zwidth.firmware.tidy import tidied
 
@@ -95,9 +96,7 @@ def header(
     upper, seen = name.upper(), body.given.split()[1]
     near = _nearest(machine, name, seen)
     lines = [
-        "/*",
-        *(f" * {line}".rstrip() for line in about),
-        " */",
+        *comment(about),
         f"#ifndef {upper}_H",
         f"#define {upper}_H",
         "",
@@ -173,7 +172,7 @@ def _binary(machine: Machine, name: str) -> _Body:
     law = machine.law
     real: Real = "float" if machine.number == "float" else "double"
     c = C99(law.program, KEYWORDS | {name}, real=real, prefix=name)
-    step = [*c.changing(), *c.block(law.program.body, 1)]
+    step = c.lines()
     result = c.read(law.program.results[0], alone=True)
     given = "int32_t counts" if law.resolution > 0 else f"{real} position"
     library = any(isinstance(s, Operation) and s.operator in _OF_MATH for s in law.program.statements())
@@ -211,7 +210,7 @@ def _whole(machine: Machine, name: str) -> _Body:
     c = FixedC99(
         program, KEYWORDS | {name, _READING}, prefix=name, word=word, narrow=fixed.narrow, short=short
     )
-    step = [*c.changing(), *c.block(program.body, 1)]
+    step = c.lines()
     result = c.read(program.results[0], alone=True)
 
     def line(place: int, inside: bool) -> str:

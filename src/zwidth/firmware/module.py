@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from zwidth.firmware.c99 import real_text
 from zwidth.firmware.javascript import KEYWORDS, JavaScript
 from zwidth.firmware.law import LawProgram
+from zwidth.firmware.printer import comment
 
 _NEAREST = "    {seen} = Math.min(Math.max({seen}, {upper}_MIN), {upper}_MAX);"
 
@@ -34,12 +35,10 @@ def module(
     js = JavaScript(law.program, KEYWORDS)
     seen = "counts" if law.resolution > 0 else "position"
     near = [_NEAREST.format(seen=seen, upper=seen.upper())] if cuts_readings else []
-    body = [*(f"    {line}" for line in js.changing()), *js.block(law.program.body, 1)]
+    body = js.lines()
     result = js.read(law.program.results[0], alone=True)
     lines = [
-        "/*",
-        *(f" * {line}".rstrip() for line in about),
-        " */",
+        *comment(about),
         *(f"export const {key} = {value}; // {meaning}" for key, value, meaning in numbers),
         "",
         *js.table_lines(),

@@ -21,11 +21,10 @@ from zwidth.firmware.program import (
     Operand,
     Operation,
     Program,
-    Set,
     Statement,
     Table,
     Variable,
-    blocks,
+    with_rule,
 )
 
 Bounds = tuple[float, float]
@@ -59,23 +58,19 @@ def cut_tables(program: Program) -> Program:
     """The same with tables of what is read from them alone."""
     found = bounds_of(program)
     made = {s.result: s for s in program.statements() if isinstance(s, Operation)}
-    _cut(program.body, found, made)
-    return program
 
+    def rule(s: Statement) -> list[Statement]:
+        if not (isinstance(s, Load) and isinstance(s.source, Table)):
+            return [s]
+        low, high = _of(s.index, found) or _ANY
+        last = len(s.source.values) - 1
+        first = int(max(low, 0.0))
+        kept = Table(s.source.name, s.source.values[first : int(min(high, last)) + 1])
+        before: list[Statement] = []
+        index = _less(s.index, first, made, before)
+        return [*before, Load(s.result, kept, index)]
 
-def _cut(block: list[Statement], found: dict[Variable, Bounds], made: dict[Variable, Operation]) -> None:
-    out: list[Statement] = []
-    for s in block:
-        for inner in blocks(s):
-            _cut(inner, found, made)
-        if isinstance(s, Load) and isinstance(s.source, Table):
-            low, high = _of(s.index, found) or _ANY
-            last = len(s.source.values) - 1
-            first = int(max(low, 0.0))
-            s.source = Table(s.source.name, s.source.values[first : int(min(high, last)) + 1])
-            s.index = _less(s.index, first, made, out)
-        out.append(s)
-    block[:] = out
+    return with_rule(program, rule, {})
 
 
 def _less(index: Operand, first: int, made: dict[Variable, Operation], block: list[Statement]) -> Operand:
@@ -106,8 +101,6 @@ def _split(index: Variable, made: dict[Variable, Operation]) -> tuple[Operand, i
 
 def _given(statement: Statement, found: dict[Variable, Bounds]) -> tuple[Variable | None, Bounds | None]:
     """What a statement gives to which variable; None for bounds where something in it has none yet."""
-    if isinstance(statement, Set):
-        return statement.variable, _of(statement.value, found)
     if isinstance(statement, Count):
         start, stop = _of(statement.start, found), _of(statement.stop, found)
         if start is None or stop is None:

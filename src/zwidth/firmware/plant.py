@@ -19,6 +19,7 @@ from zwidth.firmware.c99 import KEYWORDS as OF_C
 from zwidth.firmware.header import AS_BEFORE, DOUBLE, UNCONTRACTED, rounded
 from zwidth.firmware.javascript import KEYWORDS as OF_JAVASCRIPT
 from zwidth.firmware.javascript import JavaScript
+from zwidth.firmware.printer import comment
 from zwidth.firmware.program import Cells, Program, Variable
 from zwidth.firmware.specialise import specialised
 from zwidth.loop import series
@@ -127,14 +128,12 @@ def plant_header(program: Program, *, name: str = "plant", about: Sequence[str] 
     `plant_step(&s, …)` takes what the program's parameters are called, in that order.
     """
     c = C99(program, OF_C | {name}, prefix=name)
-    body = [*c.changing(), *c.block(program.body, 1)]
+    body = c.lines()
     functions = c.function_lines()
     given = "".join(f", double {v.hint}" for v in program.parameters)
     upper = name.upper()
     lines = [
-        "/*",
-        *(f" * {line}".rstrip() for line in about),
-        " */",
+        *comment(about),
         f"#ifndef {upper}_H",
         f"#define {upper}_H",
         "",
@@ -179,12 +178,10 @@ def plant_header(program: Program, *, name: str = "plant", about: Sequence[str] 
 def plant_module(program: Program, *, about: Sequence[str] = ()) -> str:
     """The ES module of such a program: `init`, `step`, and where in `state` everything is."""
     js = JavaScript(program, OF_JAVASCRIPT)
-    body = [*(f"    {line}" for line in js.changing()), *js.block(program.body, 1)]
+    body = js.lines()
     functions = js.function_lines()
     lines = [
-        "/*",
-        *(f" * {line}".rstrip() for line in about),
-        " */",
+        *comment(about),
         *(f"export const {place} = {k}; // {meaning}" for k, (place, meaning) in enumerate(_PLACES)),
         "",
         *js.table_lines(),

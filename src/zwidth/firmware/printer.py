@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 from zwidth.firmware.program import (
     Branch,
@@ -20,7 +22,6 @@ from zwidth.firmware.program import (
     Operand,
     Operation,
     Program,
-    Set,
     Statement,
     Store,
     Table,
@@ -30,10 +31,17 @@ from zwidth.firmware.program import (
     everything,
     operands,
 )
+from zwidth.native.reader import by_kind
 
-_INFIX = {"+", "-", "*", "/", "<", "<=", "==", "!=", ">", ">="}
-_LOOSE = {"and", "or", "not", "select"}
-"""Operators whose operands stand in parentheses."""
+AS_IN_C = {
+    **{o: f"{{}} {o} {{}}" for o in ("+", "-", "*", "/", "<", "<=", "==", "!=", ">", ">=")},
+    "negate": "-{}",
+    "and": "{} && {}",
+    "or": "{} || {}",
+    "not": "!{}",
+    "select": "{} ? {} : {}",
+}
+"""Operations that C and JavaScript write alike, with operands in parentheses."""
 
 LONGEST_LINE = 110
 """Beyond which a choice between two numbers is written as two blocks."""
@@ -56,7 +64,12 @@ class Printer(ABC):
     function: str = ""
     """The name of the function, where it stands apart."""
     helpers: set[str] = field(default_factory=set)
-    """Functions that the text calls besides those of the language."""
+    """What was said of `SAID`."""
+
+    SAID: ClassVar[Mapping[str, str]]
+    """How a language says an operation, or one of a kind of numbers, as "abs integer"."""
+    HELPERS: ClassVar[Mapping[str, str]]
+    """The function that it then calls, where that is none of its own; divisors are positive."""
 
     def __post_init__(self) -> None:
         self._names: dict[Variable, str] = {}
@@ -64,7 +77,7 @@ class Printer(ABC):
         for given in self.program.parameters:  # these keep their names
             self._names[given] = given.hint
             self._taken.add(given.hint)
-        self._inside: dict[Variable, Statement] = {}
+        self._inside: dict[Variable, Operation | Load] = {}
         reads = [o for s in self.program.statements() for o in operands(s)]
         self._reads = Counter(o for o in [*reads, *self.program.results] if isinstance(o, Variable))
         table = f"{self.function}_table" if self.function else "table"
@@ -79,9 +92,19 @@ class Printer(ABC):
     def constant(self, constant: Constant) -> str:
         """A number."""
 
-    @abstractmethod
     def operation(self, operator: str, kind: str, read: list[str]) -> str:
-        """What is no infix operator: "abs", "min", "%" …; `kind` of the first operand."""
+        """An expression of operands that are written; `kind` of the first."""
+        key = f"{operator} {kind}" if f"{operator} {kind}" in self.SAID else operator
+        self.helpers.add(key)
+        return self.SAID[key].format(*read, **self.words())
+
+    def words(self) -> dict[str, str]:
+        """What the texts of this language have in braces."""
+        return {}
+
+    def helper_lines(self) -> list[str]:
+        """The functions that the text calls, in the order in which they may stand."""
+        return [text.format(**self.words()) for key, text in self.HELPERS.items() if key in self.helpers]
 
     @abstractmethod
     def declared(self, variable: Variable, name: str) -> str:
@@ -135,12 +158,12 @@ class Printer(ABC):
         """The tables and their names."""
         return self._tables
 
-    def changing(self) -> list[str]:
-        """The declarations of the variables that change."""
+    def lines(self) -> list[str]:
+        """The program, in the body of a function: the variables that change, and the statements."""
         chosen = {v for v, once in self._chosen.values() if once}
-        sets = (s.variable for s in self.program.statements() if isinstance(s, Set))
-        found = [v for v in sets if v not in chosen]
-        return [self.declared(v, self.name(v)) for v in dict.fromkeys(found)]
+        found = [v for v in map(_set, self.program.statements()) if v and v not in chosen]
+        declared = [self.declared(v, self.name(v)) for v in dict.fromkeys(found)]
+        return [*(f"    {line}" for line in declared), *self.block(self.program.body, 1)]
 
     def read(self, operand: Operand, alone: bool = False) -> str:
         """An operand, in parentheses where it is more than a name and does not stand alone."""
@@ -156,28 +179,12 @@ class Printer(ABC):
         )
         return text if bare else f"({text})"
 
-    def made(self, statement: Statement) -> str:
+    def made(self, statement: Operation | Load) -> str:
         """The expression of an operation or a load."""
         if isinstance(statement, Load):
             return self.load(statement.source, statement.index)
-        assert isinstance(statement, Operation), "results come from operations and loads"
         o, of = statement.operator, statement.operands
-        kind = of[0].kind
-        if o in _INFIX:
-            return self.infix(o, kind, self.read(of[0]), self.read(of[1]))
-        if o == "copy":
-            return self.read(of[0], alone=True)
-        if o == "negate":
-            return self.negated(kind, self.read(of[0]))
-        return self.operation(o, kind, [self.read(x, alone=o not in _LOOSE) for x in of])
-
-    def infix(self, operator: str, kind: str, left: str, right: str) -> str:
-        """An infix operator."""
-        return f"{left} {operator} {right}"
-
-    def negated(self, kind: str, text: str) -> str:
-        """The negative."""
-        return f"-{text}"
+        return self.operation(o, of[0].kind, [self.read(x, alone=o not in AS_IN_C) for x in of])
 
     def load(self, source: Cells | Table, index: Operand) -> str:
         name = self._tables[source] if isinstance(source, Table) else source.name
@@ -185,44 +192,45 @@ class Printer(ABC):
 
     def block(self, body: list[Statement], depth: int) -> list[str]:
         """The lines of a block."""
-        pad = "    " * depth
-        lines: list[str] = []
-        for s in body:
-            if isinstance(s, Operation | Load):
-                if s.result not in self._inside:
-                    text = self.made(s)
-                    lines.append(pad + self.given(s.result, self.name(s.result), text))
-            elif isinstance(s, Store):
-                place = self.place(s.target, s.target.name, self.read(s.index, alone=True))
-                lines.append(f"{pad}{place} = {self.read(s.value, alone=True)};")
-            elif isinstance(s, Set):
-                lines.append(f"{pad}{self.name(s.variable)} = {self.read(s.value, alone=True)};")
-            elif isinstance(s, Call):
-                given = [self.read(a, alone=True) for a in s.arguments]
-                lines += [pad + line for line in self.called(s, [self.name(r) for r in s.results], given)]
-            elif isinstance(s, Leave):
-                lines.append(f"{pad}break;")
-            elif isinstance(s, Branch):
-                lines += self.branch(s, depth)
-            else:
-                lines += self.loop(s, depth)
-        return lines
+        return [line for s in body for line in by_kind(self, s)(s, depth, "    " * depth)]
 
-    def branch(self, s: Branch, depth: int) -> list[str]:
-        pad = "    " * depth
+    def _operation(self, s: Operation | Load, depth: int, pad: str) -> list[str]:
+        if s.result in self._inside:
+            return []
+        name, text = self.name(s.result), self.made(s)
+        return [pad + (f"{name} = {text};" if s.result.changes else self.given(s.result, name, text))]
+
+    _load = _operation
+
+    def _store(self, s: Store, depth: int, pad: str) -> list[str]:
+        place = self.place(s.target, s.target.name, self.read(s.index, alone=True))
+        return [f"{pad}{place} = {self.read(s.value, alone=True)};"]
+
+    def _call(self, s: Call, depth: int, pad: str) -> list[str]:
+        given = [self.read(a, alone=True) for a in s.arguments]
+        return [pad + line for line in self.called(s, [self.name(r) for r in s.results], given)]
+
+    def _leave(self, s: Leave, depth: int, pad: str) -> list[str]:
+        return [f"{pad}break;"]
+
+    def _branch(self, s: Branch, depth: int, pad: str) -> list[str]:
+        before: list[str] = []
         if s in self._chosen:
             line = pad + self.choice(s, *self._chosen[s])
             if len(line) <= LONGEST_LINE:
                 return [line]
             variable, once = self._chosen[s]
             if once:
-                lines = [pad + self.declared(variable, self.name(variable))]
-                return [*lines, *self.in_full(s, depth)]
-        return self.in_full(s, depth)
+                before = [pad + self.declared(variable, self.name(variable))]
+        then, other = self.block(s.then, depth + 1), self.block(s.other, depth + 1)
+        if not then and other:
+            return [*before, f"{pad}if (!({self.read(s.test, alone=True)})) {{", *other, f"{pad}}}"]
+        lines = [*before, f"{pad}if ({self.read(s.test, alone=True)}) {{", *then]
+        return [*lines, f"{pad}}} else {{", *other, f"{pad}}}"] if other else [*lines, f"{pad}}}"]
 
     def choice(self, s: Branch, variable: Variable, once: bool) -> str:
         """A branch that sets one variable, on one line."""
-        parts = [next(x for x in arm if isinstance(x, Set)).value for arm in (s.then, s.other)]
+        parts = [next(operands(x)[0] for x in arm if _set(x)) for arm in (s.then, s.other)]
         text = self.chosen(s.test, *parts)
         name = self.name(variable)
         return self.given(variable, name, text) if once else f"{name} = {text};"
@@ -235,24 +243,15 @@ class Printer(ABC):
             return self.operation("or", "truth", [self.read(test), self.read(b)])
         return self.operation("select", "truth", [self.read(test), self.read(a), self.read(b)])
 
-    def in_full(self, s: Branch, depth: int) -> list[str]:
-        """A branch as blocks."""
-        pad = "    " * depth
-        then, other = self.block(s.then, depth + 1), self.block(s.other, depth + 1)
-        if not then and other:
-            return [f"{pad}if (!({self.read(s.test, alone=True)})) {{", *other, f"{pad}}}"]
-        lines = [f"{pad}if ({self.read(s.test, alone=True)}) {{", *then]
-        return [*lines, f"{pad}}} else {{", *other, f"{pad}}}"] if other else [*lines, f"{pad}}}"]
+    def _while(self, s: While, depth: int, pad: str) -> list[str]:
+        before = self.block(s.before, depth + 1)
+        body = self.block(s.body, depth + 1)
+        if not before:
+            return [f"{pad}while ({self.read(s.test, alone=True)}) {{", *body, f"{pad}}}"]
+        leave = f"{pad}    if (!{self.read(s.test)}) {{ break; }}"
+        return [f"{pad}for (;;) {{", *before, leave, *body, f"{pad}}}"]
 
-    def loop(self, s: Count | While, depth: int) -> list[str]:
-        pad = "    " * depth
-        if isinstance(s, While):
-            before = self.block(s.before, depth + 1)
-            body = self.block(s.body, depth + 1)
-            if not before:
-                return [f"{pad}while ({self.read(s.test, alone=True)}) {{", *body, f"{pad}}}"]
-            leave = f"{pad}    if (!{self.read(s.test)}) {{ break; }}"
-            return [f"{pad}for (;;) {{", *before, leave, *body, f"{pad}}}"]
+    def _count(self, s: Count, depth: int, pad: str) -> list[str]:
         stop = self.read(s.stop)
         n = self.name(s.counter)
         start, compare = self.read(s.start, alone=True), "<" if s.step > 0 else ">"
@@ -263,6 +262,11 @@ class Printer(ABC):
     @abstractmethod
     def counter(self) -> str:
         """How the counter of a loop is declared."""
+
+
+def comment(lines: Sequence[str]) -> list[str]:
+    """Lines as a comment of C and of JavaScript."""
+    return ["/*", *(f" * {line}".rstrip() for line in lines), " */"]
 
 
 def _is_call(text: str) -> bool:
@@ -280,12 +284,12 @@ def _is_call(text: str) -> bool:
 def _find_inside(
     block: list[Statement],
     reads: Counter[Variable],
-    inside: dict[Variable, Statement],
+    inside: dict[Variable, Operation | Load],
     last: tuple[Operand, ...],
 ) -> None:
     """Results that are read once, in the same block or by `last`, by what may be written around them."""
-    open_loads: dict[Variable, Statement] = {}
-    pure: dict[Variable, Statement] = {}
+    open_loads: dict[Variable, Operation | Load] = {}
+    pure: dict[Variable, Operation | Load] = {}
 
     def take(operands: tuple[Operand, ...], also_open: bool = True) -> None:
         for o in operands:
@@ -305,7 +309,7 @@ def _find_inside(
             _find_inside(inner, reads, inside, operands(s) if test else ())
         if isinstance(s, Call) and not s.program.cells:
             continue
-        if not isinstance(s, Operation | Load):
+        if _set(s) or not isinstance(s, Operation | Load):
             open_loads.clear()  # what was read before may be changed behind
             continue
         changing = any(
@@ -319,11 +323,11 @@ def _find_inside(
 
 
 def _chosen(
-    block: list[Statement], reads: Counter[Variable], inside: dict[Variable, Statement]
+    block: list[Statement], reads: Counter[Variable], inside: dict[Variable, Operation | Load]
 ) -> dict[Branch, tuple[Variable, bool]]:
     """Branches that only set one variable; whether nothing else sets it, and it is read behind it alone."""
     found: dict[Branch, tuple[Variable, bool]] = {}
-    sets = Counter(s.variable for s in everything(block) if isinstance(s, Set))
+    sets = Counter(map(_set, everything(block)))
 
     def go(block: list[Statement]) -> None:
         for k, s in enumerate(block):
@@ -343,14 +347,19 @@ def _chosen(
     return found
 
 
-def _only_set(block: list[Statement], inside: dict[Variable, Statement]) -> Variable | None:
+def _only_set(block: list[Statement], inside: dict[Variable, Operation | Load]) -> Variable | None:
     """The variable that a block sets, if it does nothing else."""
     shown = [s for s in block if not (isinstance(s, Operation | Load) and s.result in inside)]
-    return shown[0].variable if len(shown) == 1 and isinstance(shown[0], Set) else None
+    return _set(shown[0]) if len(shown) == 1 else None
+
+
+def _set(s: Statement) -> Variable | None:
+    """The variable that changes and that a statement sets."""
+    return s.result if isinstance(s, Operation) and s.result.changes else None
 
 
 def _is_open(
-    operand: Variable, inside: dict[Variable, Statement], open_loads: dict[Variable, Statement]
+    operand: Variable, inside: dict[Variable, Operation | Load], open_loads: dict[Variable, Operation | Load]
 ) -> bool:
     """Whether what is written in this place is itself read from what may change."""
     made = inside.get(operand)

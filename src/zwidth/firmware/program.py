@@ -1,8 +1,8 @@
 """A law as a machine runs it: operations on numbers, one after the other.
 
     operation    v = a ∘ b            every result is given once and never changes
+                 w = v                but for the few that branches and loops change
     load, store  v = s[i],  s[i] = v  what is remembered from sample to sample
-    set          w = v                the few variables that branches and loops change
     branch, loop, leave, call         as in any language
 
 No operation hides another, so the order of rounding is the order of the text, in whatever language it
@@ -11,9 +11,9 @@ is printed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from typing import Literal
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
 
 Kind = Literal["real", "integer", "truth"]
 
@@ -92,14 +92,6 @@ class Store:
 
 
 @dataclass(eq=False)
-class Set:
-    """A variable that changes takes a value."""
-
-    variable: Variable
-    value: Operand
-
-
-@dataclass(eq=False)
 class Branch:
     """If the test holds, one block, else the other."""
 
@@ -143,7 +135,7 @@ class Call:
     arguments: tuple[Operand, ...]
 
 
-Statement = Operation | Load | Store | Set | Branch | Count | While | Leave | Call
+Statement = Operation | Load | Store | Branch | Count | While | Leave | Call
 
 
 @dataclass(eq=False)
@@ -184,15 +176,35 @@ class Program:
         return found
 
 
+_READS: dict[type, tuple[str, ...]] = {
+    Operation: ("operands",), Load: ("index",), Store: ("index", "value"), Branch: ("test",),
+    Count: ("start", "stop"), While: ("test",), Leave: (), Call: ("arguments",),
+}  # fmt: skip
+_HOLDS: dict[type, tuple[str, ...]] = {Branch: ("then", "other"), Count: ("body",), While: ("before", "body")}
+"""Where a kind of statement has what it reads, and other statements."""
+
+
+def set_to(variable: Variable, value: Operand) -> Operation:
+    """A variable that changes takes a value."""
+    return Operation(variable, "copy", (value,))
+
+
+def factor(s: Operation) -> tuple[Operand, float] | None:
+    """(x, c) of a product x c or c x, or of x/(1/c), with a known number; None of another operation."""
+    a, b = s.operands[0], s.operands[-1]
+    if s.operator == "*" and isinstance(a, Constant):
+        return b, float(a.value)
+    if s.operator == "*" and isinstance(b, Constant):
+        return a, float(b.value)
+    if s.operator == "/" and isinstance(b, Constant) and b.value:
+        return a, 1.0 / float(b.value)
+    return None
+
+
 def blocks(statement: Statement) -> tuple[list[Statement], ...]:
     """The blocks inside a statement."""
-    if isinstance(statement, Branch):
-        return statement.then, statement.other
-    if isinstance(statement, Count):
-        return (statement.body,)
-    if isinstance(statement, While):
-        return statement.before, statement.body
-    return ()
+    held = _HOLDS.get(type(statement))
+    return tuple(getattr(statement, key) for key in held) if held else ()
 
 
 def everything(block: list[Statement]) -> Iterator[Statement]:
@@ -205,19 +217,47 @@ def everything(block: list[Statement]) -> Iterator[Statement]:
 
 def operands(statement: Statement) -> tuple[Operand, ...]:
     """What a statement reads, but for the statements inside it."""
-    if isinstance(statement, Operation):
-        return statement.operands
-    if isinstance(statement, Load):
-        return (statement.index,)
-    if isinstance(statement, Store):
-        return statement.index, statement.value
-    if isinstance(statement, Set):
-        return (statement.value,)
-    if isinstance(statement, Count):
-        return statement.start, statement.stop
-    if isinstance(statement, Call):
-        return statement.arguments
-    return (statement.test,) if isinstance(statement, Branch | While) else ()
+    found = (getattr(statement, key) for key in _READS[type(statement)])
+    return tuple(o for one in found for o in (one if isinstance(one, tuple) else (one,)))
+
+
+def rewritten(
+    block: list[Statement],
+    rule: Callable[[Statement], list[Statement]],
+    now: Callable[[Operand], Operand] | None = None,
+) -> list[Statement]:
+    """What a rule puts in the place of each statement, from the inner ones to the outer ones.
+
+    Parameters
+    ----------
+    block
+        It stays as it is.
+    rule
+        Given a statement whose blocks are rewritten.
+    now
+        What is read in the place of an operand; by default that itself.
+    """
+    out: list[Statement] = []
+    for s in block:
+        new: dict[str, Any] = {key: rewritten(getattr(s, key), rule, now) for key in _HOLDS.get(type(s), ())}
+        if now is not None:
+            for key in _READS[type(s)]:
+                read = getattr(s, key)
+                new[key] = tuple(map(now, read)) if isinstance(read, tuple) else now(read)
+        out += rule(replace(s, **new) if new else s)
+    return out
+
+
+def with_rule(
+    program: Program, rule: Callable[[Statement], list[Statement]], same: Mapping[Variable, Operand]
+) -> Program:
+    """A program rewritten, without what nobody then reads; `same`, which grows, is what is read for what."""
+
+    def now(operand: Operand) -> Operand:
+        return same.get(operand, operand) if isinstance(operand, Variable) else operand
+
+    body = rewritten(program.body, rule, now)
+    return without_unused(replace(program, body=body, results=tuple(map(now, program.results))))
 
 
 def without_unused(program: Program) -> Program:
@@ -239,12 +279,8 @@ def _sweep(block: list[Statement], read: set[Variable]) -> None:
 
 
 def _is_unused(statement: Statement, read: set[Variable]) -> bool:
-    if isinstance(statement, Operation | Load):
-        return statement.result not in read
-    if isinstance(statement, Set):
-        return statement.variable not in read
-    if isinstance(statement, Branch):
-        return not (statement.then or statement.other)
     if isinstance(statement, Call):
         return not (statement.program.cells or read & set(statement.results))
-    return isinstance(statement, Count) and not statement.body
+    if isinstance(statement, Branch | Count):
+        return not any(blocks(statement))
+    return isinstance(statement, Operation | Load) and statement.result not in read

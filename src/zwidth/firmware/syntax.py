@@ -50,8 +50,8 @@ def returns(body: Sequence[ast.stmt]) -> bool:
 
 def assigned(body: Sequence[ast.stmt]) -> list[str]:
     """The names that a block gives values, other than as counters of loops; in their order."""
-    counting = _targets(body)
-    stored = (n for n in _names(body) if isinstance(n.ctx, ast.Store) and n not in counting)
+    counting, names = _targets(body), (n for s in body for n in ast.walk(s) if isinstance(n, ast.Name))
+    stored = (n for n in names if isinstance(n.ctx, ast.Store) and n not in counting)
     return list(dict.fromkeys(n.id for n in stored))
 
 
@@ -64,7 +64,3 @@ def counters(body: Sequence[ast.stmt]) -> list[str]:
 def _targets(body: Sequence[ast.stmt]) -> list[ast.Name]:
     loops = (n for s in body for n in ast.walk(s) if isinstance(n, ast.For))
     return [n.target for n in loops if isinstance(n.target, ast.Name)]
-
-
-def _names(body: Sequence[ast.stmt]) -> list[ast.Name]:
-    return [n for s in body for n in ast.walk(s) if isinstance(n, ast.Name)]

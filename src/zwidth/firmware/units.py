@@ -15,7 +15,17 @@ from math import log2
 from typing import Any
 
 from zwidth.firmware.evaluation import NoBound
-from zwidth.firmware.program import Constant, Load, Operand, Operation, Program, Set, Store, Table, Variable
+from zwidth.firmware.program import (
+    Constant,
+    Load,
+    Operand,
+    Operation,
+    Program,
+    Store,
+    Table,
+    Variable,
+    factor,
+)
 
 _FINE = 6
 """Parts of a count, as a power of two, in which a place between two counts is kept."""
@@ -162,8 +172,6 @@ def units_of(program: Program, scale: Scale) -> Units:
                 _keep(units, units.values, s.result, known)
             elif isinstance(s, Store):
                 _keep(units, units.cells, _index(s.index), units.of(s.value))
-            elif isinstance(s, Set) and s.variable.kind != "truth":
-                _keep(units, units.values, s.variable, units.of(s.value))
         if before != (units.values, units.cells):
             continue
         unknown = [
@@ -192,19 +200,13 @@ def _operation(s: Operation, units: Units) -> Unit | None:
     if s.operator in ("+", "-", "min", "max"):
         return units.together(a, b)
     if s.operator in ("*", "/"):
-        for x, c in ((a, b), (b, a)):
-            if isinstance(c, Constant) and not (s.operator == "/" and c is a):
-                unit = units.of(x)
-                by = float(c.value)
-                if s.operator == "/":
-                    if by == 0.0:
-                        raise NoBound("it divides by 0")
-                    by = 1.0 / by
-                return None if unit is None else units.scaled(unit, by)
-        raise NoBound(
-            "it multiplies or divides two numbers that are both measured or remembered, which is written in "
-            "floating point only"
-        )
+        found = factor(s)
+        if found is None:
+            both = "it multiplies or divides two numbers that are both measured or remembered"
+            what = "it divides by 0" if isinstance(b, Constant) else both
+            raise NoBound(f"{what}, which is written in floating point only")
+        unit = units.of(found[0])
+        return None if unit is None else units.scaled(unit, found[1])
     if s.operator == "floor":
         return Unit(0, 0, 0)
     raise NoBound(f"{s.operator!r} is written in floating point only")

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections import namedtuple
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from zwidth.firmware.arithmetic import as_operand, converted, kind_of
-from zwidth.firmware.program import Cells, Set, Statement, Variable
+from zwidth.firmware.program import Cells, Statement, Variable, set_to
+from zwidth.native.names import Defined
+from zwidth.native.types import fields
 
 
 @dataclass(eq=False)
@@ -22,9 +26,17 @@ class Unknown:
     """A name that only one branch has given: it cannot be read."""
 
 
-def is_sequence(value: Any) -> bool:
-    """A tuple, or a record of numbers."""
-    return isinstance(value, tuple)
+@cache
+def record(of: Defined) -> Any:
+    """The class of a named tuple."""
+    return namedtuple(of.node.name, fields(of).names)
+
+
+def flat(value: Any) -> list[Any]:
+    """The numbers of a tuple, and of those inside it; of one number that alone, of None none."""
+    if value is None:
+        return []
+    return [x for part in value for x in flat(part)] if isinstance(value, tuple) else [value]
 
 
 def rebuilt(like: Any, parts: list[Any]) -> Any:
@@ -32,11 +44,18 @@ def rebuilt(like: Any, parts: list[Any]) -> Any:
     return type(like)(*parts) if hasattr(like, "_fields") else tuple(parts)
 
 
+def each(value: Any, of: Callable[[Any], Any]) -> Any:
+    """What is made of a number, or of each of a tuple and of those inside it; of None nothing."""
+    if isinstance(value, tuple):
+        return rebuilt(value, [each(part, of) for part in value])
+    return None if value is None else of(value)
+
+
 def same(a: Any, b: Any) -> bool:
     """Whether two values are known to be one."""
     if a is b:
         return True
-    if is_sequence(a) and is_sequence(b) and len(a) == len(b):
+    if isinstance(a, tuple) and isinstance(b, tuple) and len(a) == len(b):
         return all(same(x, y) for x, y in zip(a, b, strict=True))
     plain = (bool, int, float)
     if isinstance(a, plain) and isinstance(b, plain) and type(a) is type(b):
@@ -57,7 +76,7 @@ def joined(
         return a
     if isinstance(a, Unknown) or isinstance(b, Unknown):
         return Unknown()
-    if is_sequence(a) and is_sequence(b) and len(a) == len(b):
+    if isinstance(a, tuple) and isinstance(b, tuple) and len(a) == len(b):
         parts = [joined(x, y, first, second, hint, refuse) for x, y in zip(a, b, strict=True)]
         return rebuilt(a, parts)
     if not all(isinstance(v, bool | int | float | Variable) for v in (a, b)):
@@ -67,16 +86,9 @@ def joined(
     if kinds and "truth" in kinds:
         raise refuse(f"{hint} is a truth on one way and a number on the other")
     variable = Variable(kind, hint, changes=True)
-    first.append(Set(variable, as_operand(converted(a, kind, first))))
-    second.append(Set(variable, as_operand(converted(b, kind, second))))
+    first.append(set_to(variable, as_operand(converted(a, kind, first))))
+    second.append(set_to(variable, as_operand(converted(b, kind, second))))
     return variable
-
-
-def variables_like(value: Any, hint: str) -> Any:
-    """Variables for a number, or for each of a tuple."""
-    if isinstance(value, tuple):
-        return rebuilt(value, [variables_like(v, hint) for v in value])
-    return None if value is None else Variable(kind_of(value), hint, changes=True)
 
 
 def set_all(variables: Any, value: Any, block: list[Statement], refuse: Callable[[str], Exception]) -> None:
@@ -88,6 +100,6 @@ def set_all(variables: Any, value: Any, block: list[Statement], refuse: Callable
         value = converted(value, variables.kind, block)
         if kind_of(value) != variables.kind:
             raise refuse("a function returns numbers of one kind: write 0.0 for a real 0")
-        block.append(Set(variables, as_operand(value)))
+        block.append(set_to(variables, as_operand(value)))
     elif variables is not None or value is not None:
         raise refuse("a function returns as many numbers on every way")

@@ -27,6 +27,20 @@ class Defined(NamedTuple):
     module: Module
     node: ast.FunctionDef | ast.ClassDef
 
+    def takes(self) -> list[ast.arg]:
+        """The arguments of a function.
+
+        Raises
+        ------
+        OutsideError
+            If it does not take them one by one.
+        """
+        assert isinstance(self.node, ast.FunctionDef)
+        given = self.node.args
+        if given.vararg or given.kwarg or given.kwonlyargs or given.posonlyargs:
+            raise self.module.outside(self.node, "a step function takes its arguments one by one")
+        return given.args
+
 
 class Expression(NamedTuple):
     """What a name is given at the top of a module; `part` of it where several names are given at once."""
@@ -40,6 +54,11 @@ class Octets(tuple[int, ...]):
     """A table of bytes."""
 
 
+def floor(x: float) -> float:
+    """That of numpy: it stays a real number."""
+    return x if x == 0 else float(math.floor(x))
+
+
 _DOUBLE = SimpleNamespace(eps=2.0**-52, tiny=2.0**-1022, max=(2.0 - 2.0**-52) * 2.0**1023)
 _NUMPY = SimpleNamespace(
     frombuffer=lambda octets, _: Octets(octets),
@@ -47,6 +66,8 @@ _NUMPY = SimpleNamespace(
     inf=math.inf,
     nan=math.nan,
     pi=math.pi,
+    sqrt=math.sqrt,
+    floor=floor,
     array=tuple,
     float64=float,
     int64=int,
@@ -54,20 +75,8 @@ _NUMPY = SimpleNamespace(
 )
 _LIBRARIES: dict[str, Any] = {"math": math, "numpy": _NUMPY}
 _HARMLESS = (
-    "range",
-    "tuple",
-    "len",
-    "sum",
-    "min",
-    "max",
-    "abs",
-    "float",
-    "int",
-    "zip",
-    "enumerate",
-    "sorted",
-    "ord",
-)
+    "range", "tuple", "len", "sum", "min", "max", "abs", "float", "int", "zip", "enumerate", "sorted", "ord",
+)  # fmt: skip
 
 
 class Package:
@@ -175,18 +184,31 @@ class Module:
         owner = self.package.module(module)
         return owner.meaning(inner) if owner else None
 
+    @cached_property
+    def _known(self) -> _Known:
+        return _Known(self)
+
+    def told(self, name: str) -> Any:
+        """A number, a tuple, `Attributes` of a module, a function of a library, a `Defined`, or None."""
+        try:
+            return self._known[name]
+        except NameError:
+            found = self.meaning(name)
+            return found if isinstance(found, Defined) else None
+
     def value(self, node: ast.expr, but: Any = ()) -> Any:
         """The number or tuple that an expression is, None if it is none; the names in `but` have no value."""
         if any(isinstance(n, ast.Name) and n.id in but for n in ast.walk(node)):
             return None
         try:
-            return eval(compile(ast.Expression(node), str(self.path), "eval"), _Known(self))
+            found = eval(compile(ast.Expression(node), str(self.path), "eval"), self._known)
         except (NameError, TypeError, AttributeError, ValueError, KeyError, IndexError, ArithmeticError):
             return None
+        return None if isinstance(found, Defined) else found
 
 
 class _Known(dict[str, Any]):
-    """The names of a module, each evaluated when it is asked for."""
+    """The names of a module that are no functions or classes, each evaluated when it is first asked for."""
 
     def __init__(self, module: Module) -> None:
         super().__init__(__builtins__={})
@@ -198,27 +220,28 @@ class _Known(dict[str, Any]):
             value = found.module.value(found.node)
             if value is None:
                 raise NameError(name)
-            return value if found.part is None else tuple(value)[found.part]
-        if isinstance(found, Module):
-            return _Attributes(found)
-        if found is None and name in _HARMLESS:
-            return getattr(builtins, name)
-        if found is None or isinstance(found, Defined):
+            found = value if found.part is None else tuple(value)[found.part]
+        elif isinstance(found, Module):
+            found = Attributes(found)
+        elif found is None and name in _HARMLESS:
+            found = getattr(builtins, name)
+        elif found is None or isinstance(found, Defined):
             raise NameError(name)
+        self[name] = found
         return found
 
 
-class _Attributes:
+class Attributes:
     """A module as `module.NAME` sees it."""
 
     def __init__(self, module: Module) -> None:
-        self._known = _Known(module)
+        self._module = module
 
     def __getattr__(self, name: str) -> Any:
-        try:
-            return self._known[name]
-        except NameError:
-            raise AttributeError(name) from None
+        found = self._module.told(name)
+        if found is None:
+            raise AttributeError(name)
+        return found
 
 
 def c_name(module: str, function: str) -> str:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import count
 from pathlib import Path
 from typing import Any
 
-from zwidth.native.function import Function, Read, Signature, head_of, literal, signature_of
+from zwidth.native.expressions import Read, literal
 from zwidth.native.names import Defined, Octets, OutsideError, Package, c_name
+from zwidth.native.signature import Signature, signature_of
+from zwidth.native.statements import Function
 from zwidth.native.types import ITEMS, REAL, Asked, Cells, Maybe, Nothing, Number, Several, Type, told
 
 PRELUDE = Path(__file__).with_name("prelude.c")
@@ -43,7 +47,7 @@ class Translation:
                 faults.append(str(fault))
         if faults:
             raise OutsideError("\n".join(faults))
-        heads = [f"{head_of(s)};" for s in self._signatures.values()]
+        heads = [f"{s.head()};" for s in self._signatures.values()]
         own_names = {self.signature(of).name for of in own}
         entries = [_entry(s) for s in self._signatures.values() if s.name in own_names]
         prelude = PRELUDE.read_text(encoding="utf-8")
@@ -116,17 +120,14 @@ def _item(values: tuple[Any, ...]) -> str:
 
 def _entry(signature: Signature) -> str:
     """How it is reached from outside: numbers and arrays in a row of words; what it returns, too."""
-    at, given = 0, []
-    for _, of in signature.takes:
-        text, at = _taken(of, at)
-        given.append(text)
-    call = f"{signature.name}({', '.join(given)})"
+    words, back = ((f"w[{k}]" for k in count()) for _ in range(2))
+    call = f"{signature.name}({', '.join(_taken(of, words) for _, of in signature.takes)})"
     lines = [f"ZW_SEEN void zwx_{signature.name}(zw_word *w) {{"]
     if isinstance(signature.returns, Nothing):
         lines.append(f"    (void)w; {call};")
     else:
         lines.append(f"    {signature.returns.c} r = {call};")
-        lines += [f"    {text}" for text in _told("r", signature.returns, 0)[0]]
+        lines += [f"    {text}" for text in _told("r", signature.returns, back)]
     lines.append("}")
     if isinstance(signature.returns, Number) and [of for _, of in signature.takes] == _EXCHANGED:
         lines.append(f"ZW_SEEN void *const zwp_{signature.name} = (void *){signature.name};")
@@ -137,30 +138,22 @@ _EXCHANGED = [Cells("float64"), Cells("uint8"), Cells("uint8")]
 """What a function takes that the loop is given: see `servo.connection`."""
 
 
-def _taken(of: Type, at: int) -> tuple[str, int]:
+def _taken(of: Type, words: Iterator[str]) -> str:
     if isinstance(of, Number):
-        return f"w[{at}].{'f' if of == REAL else 'i'}", at + 1
+        return f"{next(words)}.{'f' if of == REAL else 'i'}"
     if isinstance(of, Maybe):
-        return f"(zw_maybe){{w[{at}].f, w[{at + 1}].i}}", at + 2
+        return f"(zw_maybe){{{next(words)}.f, {next(words)}.i}}"
     if isinstance(of, Cells):
-        n = ", ".join(f"w[{at + k}].i" for k in range(1, 5))
-        return f"({of.c}){{w[{at}].p, {{{n}}}}}", at + 5
+        first, n = next(words), ", ".join(f"{next(words)}.i" for _ in range(4))
+        return f"({of.c}){{{first}.p, {{{n}}}}}"
     if isinstance(of, Asked):
-        return f"({of.c})w[{at}].p", at + 1
+        return f"({of.c}){next(words)}.p"
     assert isinstance(of, Several)
-    parts = []
-    for part in of.items:
-        text, at = _taken(part, at)
-        parts.append(text)
-    return f"({of.c}){{{', '.join(parts)}}}", at
+    return f"({of.c}){{{', '.join(_taken(part, words) for part in of.items)}}}"
 
 
-def _told(name: str, of: Type, at: int) -> tuple[list[str], int]:
+def _told(name: str, of: Type, words: Iterator[str]) -> list[str]:
     if isinstance(of, Number):
-        return [f"w[{at}].{'f' if of == REAL else 'i'} = {name};"], at + 1
-    lines = []
-    if isinstance(of, Several):
-        for n, part in enumerate(of.items):
-            more, at = _told(f"{name}.f{n}", part, at)
-            lines += more
-    return lines, at
+        return [f"{next(words)}.{'f' if of == REAL else 'i'} = {name};"]
+    parts = enumerate(of.items) if isinstance(of, Several) else ()
+    return [line for n, part in parts for line in _told(f"{name}.f{n}", part, words)]

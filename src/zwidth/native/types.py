@@ -98,10 +98,10 @@ def _spelled(of: Type) -> str:
     return "n" if isinstance(of, Nothing) else "m"
 
 
-def joined(a: Type | None, b: Type | None) -> Type | None:
+def joined(a: Type, b: Type) -> Type | None:
     """What can hold both; None if nothing can."""
-    if a is None or b is None or a == b:
-        return a if b is None else b
+    if a == b:
+        return b
     if isinstance(a, Number) and isinstance(b, Number):
         return REAL if REAL in (a, b) else WHOLE
     if isinstance(a, Several) and isinstance(b, Several) and len(a.items) == len(b.items):
