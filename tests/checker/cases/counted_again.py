@@ -1,4 +1,4 @@
-"""What the checker counts of contact, counted a second time: motions sample by sample, in fractions.
+"""What the checker counts, counted a second time: motions sample by sample, in fractions.
 
 Each case draws some at random, and compares what the checker finds.
 """
@@ -21,12 +21,12 @@ from .entries import refusal
 ROUNDS = 25
 
 
-def found(name: str, document: Any) -> Any:
+def found(name: str, kind: str, document: Any) -> Any:
     """What the checker finds: the energy, or with rounds the energy and that of one more."""
-    motion = import_module(f"zwidth.checker.contact.{name.removeprefix('contact_')}")
+    motion = import_module(f"zwidth.checker.{name}")
     fields = import_module("zwidth.checker.document.fields")
-    read, _ = fields.read_document(getattr(motion, name.upper()), plain(document))
-    return getattr(motion, f"{name}_energy")(read)
+    read, _ = fields.read_document(getattr(motion, kind.upper()), plain(document))
+    return getattr(motion, f"{kind}_energy")(read)
 
 
 def some(random: Random, low: int, high: int, *parts: int) -> Fraction:
@@ -113,7 +113,7 @@ def touching_motions() -> str:
         ]
         late = int(Fraction(device["delay_s"]) // device["sample_period_s"])
         gains = moved(x, switches, _of(held), late, part, _linear_loss(device))
-        if found("touching_motion", document) != sum(gains):
+        if found("contact.touching_motion", "touching_motion", document) != sum(gains):
             return f"{sum(gains)} of {document}"
     return ""
 
@@ -230,10 +230,99 @@ def contact_motions() -> str:
         q = [read(place, Fraction(device["resolution_m"])) for place in far]
         gains = moved(far, between, _of(_forces(law, q)), int(late // 1), part, _linear_loss(device))
         wanted = sum(gains), sum(gains[(times - 1) * last : times * last])
-        energies = found("contact_motion", document)
+        energies = found("contact.motion", "contact_motion", document)
         room = Fraction(1, 10**12) if "relaxing" in law else 0
         if not all(0 <= right - energy <= room for energy, right in zip(energies, wanted, strict=True)):
             return f"{wanted}, not {energies}, of {document}"
+    return ""
+
+
+def motions_with_rounds() -> str:
+    """From rest through a law without a surface, or a spring with one; every round may end farther on."""
+    random = Random(6)
+    for _ in range(4 * ROUNDS):
+        unilateral, device = random.random() < 0.3, _device(random)
+        step = Fraction(device["resolution_m"])
+        bottom = [Fraction(random.choice([1, 1, 2]))]
+        for _ in range(0 if unilateral else random.randrange(3)):
+            pole = random.choice([0, 0, Fraction(1, 2), Fraction(1, 3), Fraction(-1, 2)])
+            bottom = [a - pole * b for a, b in zip([*bottom, 0], [0, *bottom], strict=True)]
+        top = [some(random, -3, 3) for _ in bottom]
+        advance = random.choice([Fraction(0), step, 2 * step, some(random, -1, 1)])
+        before = [Fraction(0), *(some(random, 0, 2) for _ in range(random.randrange(4)))]
+        cycle = walk(random, random.randrange(1, 4), some(random, 0, 2))
+        cycle = [*cycle, *[cycle[0] + advance] * random.choice([1, 6])]
+        if random.random() < 0.2:  # nothing is read of the first round
+            before, cycle = [Fraction(0)], [Fraction(0), Fraction(0), advance]
+        after = [some(random, -1, 2) for _ in range(random.randrange(3))]
+        listed, times = [*before, *cycle, *after], random.randrange(1, 9)
+        switches = [some(random, -1, 2) for _ in listed[1:]]
+        first, last = len(before), len(before) + len(cycle) - 1
+        part = Fraction(device["delay_s"]) / device["sample_period_s"] % 1
+        document = {
+            "loop": {"numerator": top, "denominator": bottom, "unilateral": unilateral, **device},
+            "positions_m": listed,
+            "energy_J": 0,
+            "repeats": [{"first": first, "last": last, "times": times}],
+            **({"switch_positions_m": switches} if part else {}),
+        }
+        x, between = (
+            [*told[:first], *(v + k * advance for k in range(times) for v in told[first:last])]
+            for told in (listed, switches)
+        )
+        x += [v + (times - 1) * advance for v in listed[last:]]
+        between += [v + (times - 1) * advance for v in switches[last:]]
+        q = [max(read(v, step), Fraction(0)) if unilateral else read(v, step) for v in x]
+        late = int(Fraction(device["delay_s"]) // device["sample_period_s"])
+        forces = _of(_filtered(top, bottom, q, "position"))
+        energy = sum(moved(x, between, forces, late, part, _linear_loss(device)))
+        if found("loop.motion", "motion", document) != energy:
+            return f"{energy} of {document}"
+    return ""
+
+
+def stores_at_the_start() -> str:
+    """H(1) Δ²/8, and nothing for a spring with a surface, for what pushes away, or with a pole at 1."""
+    stored = import_module("zwidth.checker.loop.motion").stored_at_start
+    laws = {
+        ((3,), (2,), False): Fraction(3, 16) / 4,
+        ((3,), (2,), True): 0,
+        ((3, 0), (2, 0), True): 0,
+        ((3, 1), (2, 0), True): Fraction(2, 8) / 4,
+        ((3, 0), (2, 1), True): Fraction(1, 8) / 4,
+        ((3, 0, 0), (2, 1, 0), True): Fraction(1, 8) / 4,
+        ((3, 0, 1), (2, 0, 0), True): Fraction(2, 8) / 4,
+        ((-3,), (2,), False): 0,
+        ((3, 0), (2, -2), False): 0,
+    }
+    for (top, bottom, unilateral), wanted in laws.items():
+        loop = SimpleNamespace(
+            numerator=[Fraction(c) for c in top], denominator=[Fraction(c) for c in bottom],
+            damping=Fraction(0), coulomb_friction=Fraction(0), resolution=Fraction(1, 2),
+            sample_period=Fraction(1), delay=Fraction(0), unilateral=unilateral,
+        )  # fmt: skip
+        if stored(SimpleNamespace(loop=loop)) != wanted:
+            return f"not {wanted} of {top}/{bottom}, {unilateral}"
+    return ""
+
+
+def denominators_of_positive_real_loops() -> str:
+    """n + g d of b + T ζ^{d+1} N/((1 − ζ) D), and without 1 − ζ where N has it, too."""
+    loop = import_module("zwidth.checker.loop.criterion")
+    random = Random(7)
+    for _ in range(ROUNDS):
+        bottom = [some(random, 1, 3) for _ in range(random.randrange(1, 4))]
+        top = [some(random, -3, 3) for _ in bottom]
+        if cancels := random.random() < 0.5:
+            top[-1] -= sum(top)
+        late, b, g, period = random.randrange(3), some(random, 0, 2), some(random, 1, 2), some(random, 1, 2)
+        told = SimpleNamespace(numerator=top, denominator=bottom, damping=b, period=period, whole=late)
+        found = loop.positive_real_denominator(told, g)
+        for z in (0.3 + 0.4j, -1.2j):
+            n, d, whole = (sum(complex(c) * z**i for i, c in enumerate(c)) for c in (top, bottom, found))
+            wanted = float(b + g) * (1 - z) * d + float(period) * z ** (late + 1) * n
+            if abs(whole * (1 - z if cancels else 1) - wanted) > 1e-9:
+                return f"{found} of {told}, g = {g}"
     return ""
 
 
@@ -308,6 +397,6 @@ def criteria_of_multipliers() -> str:
 
 CHECKS = [
     touching_motions, contact_motions, moves_within_bounds, friction_models_below_a_curve,
-    criteria_of_multipliers,
+    criteria_of_multipliers, motions_with_rounds, stores_at_the_start, denominators_of_positive_real_loops,
 ]  # fmt: skip
 CASES = [Case(check.__name__.replace("_", " "), check, "") for check in CHECKS]

@@ -91,6 +91,11 @@ CASES = [
         "do not follow",
     ),
     refused("it begins before the delay of the loop", SHIFTED, "do not follow"),
+    refused(
+        "it begins whole samples before it",
+        put(WIDE, {"loop.delay_s": Fraction(WIDE["loop"]["delay_s"]) + 1}),
+        "do not follow",
+    ),
     refused("a gap between two pieces", put(WIDE, {"proof.pieces.1": piece(4, "5/8", 1)}), "do not follow"),
     refused("two pieces that overlap", put(WIDE, {"proof.pieces.1": piece(4, "3/8", 1)}), "do not follow"),
     refused("it ends before the last delay", put(WIDE, {"delay_high_s": "11/8"}), "do not cover"),

@@ -273,9 +273,21 @@ def effort_is_counted_in_a_document() -> str:
     return first_wrong(zip([*counts, effort.spent()], [0, 7, 0], strict=True))
 
 
+def parts_of_a_proof_are_not_shown() -> str:
+    """Where a motion is, how often a part of it is done, and a law for who has it."""
+    places = {"loop.motion": "MOTION", "contact.motion": "CONTACT_MOTION", "contact.row_motion": "ROW_MOTION"}
+    for name, kind in places.items():
+        record = getattr(import_module(f"zwidth.checker.{name}"), kind)
+        for inner in ("positions", "switch_positions", "repeats", "forces"):
+            if inner in record.fields and record.fields[inner].shown:
+                return f"{inner} of {name}"
+    law = import_module("zwidth.checker.contact.row_motion").TOLD_LAW
+    return "specification" if law.fields["specification"].shown else ""
+
+
 CHECKS = [
     rows_of_every_sort, sorts_take_what_they_declare, keys_that_are_unknown, every_key_has_its_motion,
     levels_are_counted_once, numbers_of_every_type, numbers_for_people,
-    effort_is_counted_in_a_document,
+    effort_is_counted_in_a_document, parts_of_a_proof_are_not_shown,
 ]  # fmt: skip
 CASES = [Case(check.__name__.replace("_", " "), check, "") for check in CHECKS]

@@ -155,6 +155,11 @@ CASES = [
         force_steps=False,
         fed_with="",
     ),
+    accepted(
+        "an endless pull beyond the last of three points",
+        pull([[-1, 0], [0, 1], [1, -2]], "1.999"),
+        "pulls away with 2 for ever",
+    ),
     refused(
         "friction holds it, beyond the upper end",
         put(RUNS_AWAY, {"loop.coulomb_friction_N": 2}),

@@ -136,4 +136,5 @@ CASES = [
         put(quantized(SPRING, norm(top=[3]), 2, 3), {"proof.norm.modes": [{"pole": 0, "residue": 0}] * 60}),
     ),
     refused("no norm", without(FILTERED, "proof.norm"), "norm is missing"),
+    accepted("no rest", put(FILTERED, {"proof.norm.rest_numerator": []})),
 ]

@@ -59,6 +59,16 @@ CASES = [
             "damping is below",
         )
     ),
+    *edge(
+        "3/8 of a sample of ½ s late",
+        spring("15/16", [2], sample_period_s="1/2", delay_s="3/16"),
+        spring(Fraction(15, 16) - TINY, [2], sample_period_s="1/2", delay_s="3/16"),
+        "damping is below",
+    ),
+    refused(
+        "a spring of two coefficients, the second 0", spring(4 - TINY, [8, 0], [1, 0]), "damping is below"
+    ),
+    refused("a soft spring that pushes away", spring(4, ["-1/2"]), "stiffness is negative"),
     refused("the smaller root is not enough", spring("-1/16", [1], delay_s="3/8"), "≥ 0"),
     refused("less than the smaller root", spring("1/100", [1], delay_s="3/8"), "damping is below"),
     *edge(

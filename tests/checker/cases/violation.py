@@ -125,4 +125,9 @@ CASES = [
     refused("no cosine", violation(0, [3], proof={"kind": "criterion"}), "proof.cosine is missing"),
     refused("an entry more", put(SPRING, {"proof.offset": 1}), "entries"),
     refused("no proof", without(SPRING, "proof"), "proof is missing"),
+    refused(
+        "negative static stiffness of a law without one",
+        violation(1, [-1, 0], [1, -1], proof=STATIC),
+        "is not negative",
+    ),
 ]
