@@ -84,9 +84,9 @@ class LinkComparison(Documented):
         """Along `port`: what is known of each, and what was measured.
 
         `outcome` of each, `taken` by the worst of the hands that were tried over this link, 0 where none
-        takes any; `tracking_error`, root mean square of x_l − x_f while the leader is led to and fro and nobody
-        holds the follower, and `apart`, |x_l − x_f| a second after; `felt_stiffness` of the leader when the
-        follower is clamped.  Units and meanings in the attributes.
+        takes any; `tracking_error`, root mean square of x_l − x_f while the leader is led to and fro and
+        nobody holds the follower, and `apart`, |x_l − x_f| a second after; `felt_stiffness` of the leader
+        when the follower is clamped.  Units and meanings in the attributes.
         """
         import xarray as xr
 
