@@ -337,6 +337,18 @@ def test_interrupt(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
             ("numpy", "scipy", "matplotlib", "rich"),
         ),
         (
+            "from zwidth.cli.main import main; "
+            "main(['simulate', 'haptic-paddle', '--stiffness', '9', '--operator', 'dowel', "
+            "'--duration', '0.1'])",
+            ("scipy", "matplotlib", "xarray", "pandas", "zwidth.passivity", "zwidth.checker"),
+        ),
+        (
+            "from zwidth.cli.main import main; "
+            "main(['simulate', 'haptic-paddle', '--stiffness', '9', '--virtual-damping', '0.01', "
+            "'--operator', 'finger', '--duration', '0.1', '--json'])",
+            ("scipy", "matplotlib", "xarray", "pandas", "zwidth.passivity", "zwidth.checker", "rich"),
+        ),
+        (
             "import zwidth; zwidth.simulate, zwidth.traces.load_trace",
             ("scipy.stats", "matplotlib", "zwidth.identification", "zwidth.bench.bench"),
         ),

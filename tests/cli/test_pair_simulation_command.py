@@ -56,14 +56,16 @@ def said(capsys, *argv: str) -> str:
 
 def test_a_hand_against_a_wall_through_two_arms(files, capsys, tmp_path):
     saved = str(tmp_path / "arms.nc")
-    plot = str(tmp_path / "arms.png")
-    assert main(["simulate", *files, "-o", saved, "--plot", plot]) == 0
+    plot, sound = str(tmp_path / "arms.png"), tmp_path / "leader.wav"
+    assert main(["simulate", *files, "-o", saved, "--plot", plot, "--sound", str(sound)]) == 0
     out = capsys.readouterr().out
     assert "stiffness felt at the leader" in out
     assert "a real wall, 500 N/m, 2 N·s/m" in out
     trace = load_trace(saved)
     assert trace["hand_force"].values[1, -1] == pytest.approx(-1, rel=0.1)
     assert Path(plot).stat().st_size > 10_000
+    trace.zwidth.sound(tmp_path / "again.wav")
+    assert sound.read_bytes() == (tmp_path / "again.wav").read_bytes()
 
 
 def test_json_has_both_arms_and_units(files, capsys):

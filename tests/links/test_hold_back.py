@@ -8,7 +8,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.links import held_back
-from zwidth.links.comparison import LinkComparison, _dataset
+from zwidth.links.comparison import LinkComparison
 from zwidth.quantity.spoken import answers_in
 
 WHEEL = zw.Device(
@@ -29,18 +29,18 @@ def test_the_force_acts_after_whole_samples() -> None:
 
 def test_the_answer_says_so() -> None:
     """In the report and in the document, and only where it is so."""
-    scores, link = _dataset({"waves": ROW}, "rotary"), zw.links.Schedule()
-    held = LinkComparison(scores, link, {}, (Fraction(6, 10000), Fraction(0)))
+    link = zw.links.Schedule()
+    held = LinkComparison({"waves": ROW}, "rotary", link, {}, (Fraction(6, 10000), Fraction(0)))
     assert held.to_dict()["held_back_s"] == [0.0006, 0.0]
     assert any("kept back by 600 µs and 0 s more" in str(part) for part in held.report())
-    plain = LinkComparison(scores, link, {})
+    plain = LinkComparison({"waves": ROW}, "rotary", link, {})
     assert "held_back_s" not in plain.to_dict()
     assert not any("kept back" in str(part) for part in plain.report())
 
 
 def test_scores_are_told_in_the_angle_that_was_asked_for() -> None:
     """0.02 rad are 1.15 deg, 2.1 N·m/rad are 0.0367 N·m/deg; the document stays SI."""
-    found = LinkComparison(_dataset({"waves": ROW}, "rotary"), zw.links.Schedule(), {})
+    found = LinkComparison({"waves": ROW}, "rotary", zw.links.Schedule(), {})
     with answers_in("deg"):
         text = str(found)
     for part in ("deg", "1.15", "0.0573", "N·m/deg", "0.0367"):

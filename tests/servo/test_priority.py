@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ctypes
+import mmap
 import os
+import pathlib
 import sys
 import threading
 
@@ -51,6 +53,41 @@ def test_all_is_as_it_was_afterwards():
     assert ("one core" in granted) == (inside[2] == {core})
     assert ("timers" in granted) == (inside[3] in (0, 1))  # 0 of a real-time thread, in newer kernels
     assert ("memory" in granted) == (inside[4] != before[4])
+
+
+@linux
+def test_what_is_only_reserved_takes_no_memory():
+    """Stacks and the buffers of linear algebra are; what is touched stays, and the code is there before."""
+
+    def there(belongs):
+        """How much of the one mapping that belongs is in memory, and of how much [KiB]; all of it locked."""
+        told = {}
+        for line in pathlib.Path("/proc/self/smaps").read_text(encoding="utf-8").splitlines():
+            name, *words = line.split()
+            if "-" in name:
+                of = belongs(*(int(end, 16) for end in name.split("-")), line)
+            elif of:
+                told[name] = words
+        assert "lo" in told["VmFlags:"]
+        return int(told["Rss:"][0]), int(told["Size:"][0])
+
+    def work():
+        reserved = mmap.mmap(-1, 64 * 2**20)
+        place = ctypes.addressof(ctypes.c_char.from_buffer(reserved))
+        with RealTime(priority=0) as granted:
+            if "memory" not in granted:
+                return None
+            before, _ = there(lambda start, end, line: start <= place < end)
+            reserved[: 2**20] = b"x" * 2**20
+            after, _ = there(lambda start, end, line: start <= place < end)
+            return before, after, there(lambda start, end, line: "r-xp" in line and "/libc." in line)
+
+    found = _in_a_thread(work)
+    if found is None:
+        pytest.skip("no memory is locked for this user")
+    before, after, (code, whole) = found
+    assert (before, after) == (0, 1024)
+    assert code == whole
 
 
 @linux

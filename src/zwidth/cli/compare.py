@@ -69,7 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
     loop, radius = _touched(tables, overrides(arguments))
     own = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
     from zwidth.bench.laws import standard_laws
-    from zwidth.traces import compare
+    from zwidth.traces.with_bar.compare import compare
 
     yours = {} if own is loop.environment else {YOURS: own}
     fastest = _speed(arguments.fastest)
@@ -105,7 +105,7 @@ def _of_a_rim(
     """The comparison at the rim, told about the axis."""
     from zwidth.bench.at_rim import at_rim
     from zwidth.bench.laws import standard_laws, wall_to_render
-    from zwidth.traces import compare
+    from zwidth.traces.with_bar.compare import compare
 
     if yours:
         raise InputError(
@@ -130,7 +130,7 @@ def _pairs(arguments: argparse.Namespace, tables: Mapping[str, Table], save: Pat
     """Two arms joined in each of the ways that there are, the stiffness in all the same."""
     from zwidth.bench.pairs import schemes
     from zwidth.cli.simulate_pair import pair_with_options
-    from zwidth.traces import compare
+    from zwidth.traces.with_bar.compare import compare
 
     given = {"--laws": arguments.laws, "--fastest": arguments.fastest, "--plot": arguments.plot}
     foreign = [name for name, value in given.items() if value]

@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
         _refuse_without_stiffness(loop)
     parameter = named(arguments.parameter or "stiffness")
     options = _options(arguments, loop.device.motion)
-    from zwidth.traces import passive_limit
+    from zwidth.traces.with_bar.passive_limit import passive_limit
 
     bracket = passive_limit(loop.device, loop.environment, parameter, **options)
     if save is not None:

@@ -10,6 +10,7 @@ import numpy as np
 from rich.padding import Padding
 from rich.text import Text
 
+from zwidth.bench.scores import static_stiffness, tracking_error
 from zwidth.cli.page import below, blocks, grid, headline, more_with_all, page
 from zwidth.cli.trace_report import how_long
 from zwidth.energy import PairLedger
@@ -19,14 +20,14 @@ from zwidth.quantity.text import quantity_unit, shown
 from zwidth.specification.table import plain
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from zwidth.loop.trace import AnyTrace
 
 
 _FEW = ("stiffness felt at the leader", "leader and follower apart, rms")
 """Of the measures: what a short report has."""
 
 
-def print_pair_trace(trace: xr.Dataset, in_full: bool = False) -> None:
+def print_pair_trace(trace: AnyTrace, in_full: bool = False) -> None:
     """Print the report of one trace of a pair."""
     book = PairLedger(trace)
     with page() as out:
@@ -58,7 +59,7 @@ def _energies(book: PairLedger) -> Iterator[tuple[str, str]]:
         yield text, f"{value:.6g}" if text.endswith("times") else shown(value, "J")
 
 
-def _about(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
+def _about(trace: AnyTrace) -> Iterator[tuple[str, str]]:
     about = trace.attrs
     yield "coupling", plain(str(about["coupling"]), 200)
     for arm in ("leader", "follower"):
@@ -67,13 +68,13 @@ def _about(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
     yield from how_long(trace)
 
 
-def _measures(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
+def _measures(trace: AnyTrace) -> Iterator[tuple[str, str]]:
     motion = str(trace.attrs["motion"])
     length, _, force = UNITS[motion]
-    felt = trace.zwidth.felt_stiffness
+    felt = static_stiffness(trace.sel(arm="leader"))
     if not isnan(felt):
         yield "stiffness felt at the leader", shown(felt, quantity_unit("stiffness", motion))
-    yield "leader and follower apart, rms", shown(trace.zwidth.tracking_error, length)
+    yield "leader and follower apart, rms", shown(tracking_error(trace), length)
     for arm in ("leader", "follower"):
         part = trace.sel(arm=arm)
         yield f"the {arm} moved over", shown(float(np.ptp(part["position"].values)), length)

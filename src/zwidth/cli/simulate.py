@@ -33,9 +33,8 @@ from zwidth.specification.read import PAIR_TABLES, TABLES, read_tables, specifie
 from zwidth.specification.table import Table
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from zwidth.device import Device
+    from zwidth.loop.trace import AnyTrace, Trace
     from zwidth.operator import Operator
 
 SAVED = (".nc", ".parquet", ".csv")
@@ -76,7 +75,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth simulate`: 0, or 130 after Ctrl-C."""
     from zwidth.cli.simulation_tables import FOLLOWER
-    from zwidth.traces import save_sound, save_trace
 
     plot, sound, save = _targets(arguments)
     tables = read_tables(arguments.sources, (*TABLES, *PAIR_TABLES, FOLLOWER))
@@ -84,12 +82,18 @@ def run(arguments: argparse.Namespace) -> int:
     trace, missed, hand = (
         (simulated_pair(arguments, tables), "", "") if pair else _simulated(arguments, tables)
     )
-    if save is not None:
-        save_trace(trace.assign_attrs(_angles()), save, force=True)
     if sound is not None:
-        save_sound(trace, sound, force=True)
-    if plot is not None:
-        trace.zwidth.plot(plot)
+        from zwidth.traces.sound import save_sound
+
+        save_sound(trace.sel(arm="leader") if pair else trace, sound, force=True)
+    if save is not None or plot is not None:
+        from zwidth.traces.accessor import TraceAccessor  # xarray takes its time
+
+        data = trace.dataset()
+        if save is not None:
+            TraceAccessor(data.assign_attrs(_angles())).save(save, force=True)
+        if plot is not None:
+            TraceAccessor(data).plot(plot)
     if arguments.json:
         print_json(json.dumps(summary(trace), indent=2, ensure_ascii=False))
     else:
@@ -104,7 +108,7 @@ def run(arguments: argparse.Namespace) -> int:
     return INTERRUPTED if "interrupted_at_s" in trace.attrs else 0
 
 
-def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tuple[xr.Dataset, str, str]:
+def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tuple[Trace, str, str]:
     """The touch, and what is to be said where it met nothing, and where the hand is one of another device."""
     from zwidth.cli.simulation_tables import (
         FOLLOWER,
@@ -113,7 +117,8 @@ def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tu
         operator_parameters,
         simulation_parameters,
     )
-    from zwidth.traces import simulate
+    from zwidth.loop.simulate import simulated
+    from zwidth.traces.with_bar import with_bar
 
     if FOLLOWER in tables or given(arguments, [p.key for p in follower_parameters()]):
         raise InputError(
@@ -128,7 +133,9 @@ def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tu
     duration = touch.duration
     if duration is None:
         duration = own_duration(touch.operator, float(loop.device.exact("sample_period")))
-    trace = simulate(loop.device, environment, touch.operator, duration, **touch.options)
+    trace = with_bar(simulated, "samples")(
+        loop.device, environment, touch.operator, duration, **touch.options
+    )
     return (
         trace,
         never_reached(trace, environment.met, loop.device.motion),
@@ -155,10 +162,10 @@ def made_for_a_handle(operator: Operator, device: Device) -> str:
     )
 
 
-def never_reached(trace: xr.Dataset, met: Environment, motion: str) -> str:
+def never_reached(trace: AnyTrace, met: Environment, motion: str) -> str:
     """That the hand stayed where the law gives no force, and how to start nearer; "" where it did not."""
     begins = _surface(met)
-    deepest = float(trace["position"].max())
+    deepest = float(trace["position"].values.max())
     if begins is None or deepest > begins:
         return ""
     unit = GLOSSARY["position"].unit_for(motion)
@@ -192,15 +199,16 @@ def own_duration(operator: Any, period: float) -> float:
     raise InputError("no duration is given: set --duration, for example --duration '2 s'")
 
 
-def summary(trace: xr.Dataset) -> dict[str, Any]:
+def summary(trace: AnyTrace) -> dict[str, Any]:
     """What the command prints as JSON: the trace's attributes, its measures and its energies."""
     about = {key: value for key, value in trace.attrs.items() if key != "format"}
     if "arm" in trace.dims:
         return {"format": "zwidth pair simulation 1", **about, **pair_measures(trace)}
-    from zwidth.traces import compare_traces
+    from zwidth.energy import ledger
+    from zwidth.traces.measures import keyed, measure
 
-    measures = compare_traces({"this": trace}).to_dict()["this"]
-    return {"format": "zwidth simulation 1", **about, **measures, "energy": trace.zwidth.energy.to_dict()}
+    measures = keyed(measure(trace), str(trace.attrs["motion"]))
+    return {"format": "zwidth simulation 1", **about, **measures, "energy": ledger(trace).to_dict()}
 
 
 def _targets(arguments: argparse.Namespace) -> tuple[Path | None, Path | None, Path | None]:

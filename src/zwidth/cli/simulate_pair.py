@@ -15,10 +15,10 @@ from zwidth.specification.read import PAIR_TABLES
 from zwidth.specification.table import Table
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from zwidth.loop.trace import AnyTrace, Trace
 
 
-def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> xr.Dataset:
+def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> Trace:
     """The trace of the pair, and of what holds it, that tables and command line describe.
 
     Raises
@@ -34,7 +34,8 @@ def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -
         operator_parameters,
         simulation_parameters,
     )
-    from zwidth.traces import simulate
+    from zwidth.loop.simulate import simulated
+    from zwidth.traces.with_bar import with_bar
 
     pair = pair_with_options(arguments, tables)
     typed = given(arguments, [p.key for p in (*operator_parameters(), *simulation_parameters())])
@@ -43,7 +44,7 @@ def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -
     follower = build_follower(tables.get(FOLLOWER), of_follower, pair.motion)
     if touch.duration is None:
         raise InputError("no duration is given: set --duration, for example --duration '2 s'")
-    return simulate(pair, touch.operator, follower, touch.duration, **touch.options)
+    return with_bar(simulated, "samples")(pair, touch.operator, follower, touch.duration, **touch.options)
 
 
 def pair_with_options(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> Pair:
@@ -70,12 +71,15 @@ def pair_with_options(arguments: argparse.Namespace, tables: Mapping[str, Table]
     return pair_of(arms, words)
 
 
-def pair_measures(trace: xr.Dataset) -> dict[str, Any]:
+def pair_measures(trace: AnyTrace) -> dict[str, Any]:
     """What a trace of a pair is measured by, a unit in every key."""
+    from zwidth.bench.scores import static_stiffness, tracking_error
+    from zwidth.energy import PairLedger
+
     motion = str(trace.attrs["motion"])
-    found = trace.zwidth
+    felt, apart = static_stiffness(trace.sel(arm="leader")), tracking_error(trace)
     return {
-        GLOSSARY["stiffness"].key_for(motion).replace("stiffness", "felt_stiffness"): found.felt_stiffness,
-        GLOSSARY["position"].key_for(motion).replace("position", "tracking_error"): found.tracking_error,
-        "energy": found.energy.to_dict(),
+        GLOSSARY["stiffness"].key_for(motion).replace("stiffness", "felt_stiffness"): felt,
+        GLOSSARY["position"].key_for(motion).replace("position", "tracking_error"): apart,
+        "energy": PairLedger(trace).to_dict(),
     }

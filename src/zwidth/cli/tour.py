@@ -89,10 +89,10 @@ def _active(out: Console) -> None:
 
 def _touched(out: Console) -> None:
     from zwidth.cli.trace_report import trace_headline
+    from zwidth.loop.simulate import simulated
     from zwidth.operator import Dowel
-    from zwidth.traces import simulate
 
-    out.print(trace_headline(simulate(catalogue.device("haptic-paddle"), Wall(_STIFF), Dowel(), 2.0)))
+    out.print(trace_headline(simulated(catalogue.device("haptic-paddle"), Wall(_STIFF), Dowel(), 2.0)))
 
 
 def _advice(out: Console) -> None:

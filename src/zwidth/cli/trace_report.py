@@ -10,14 +10,15 @@ from rich.table import Table
 from rich.text import Text
 
 from zwidth.cli.page import below, blocks, grid, headline, more_with_all, page
-from zwidth.energy.ledger import ROUNDING
+from zwidth.energy.ledger import ROUNDING, ledger
 from zwidth.loop.trace import UNITS
 from zwidth.quantity.text import shown
 from zwidth.specification.table import plain
-from zwidth.traces import Comparison, compare_traces
+from zwidth.traces.measures import measure, units_of
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from zwidth.loop.trace import AnyTrace
+    from zwidth.traces.comparison import Comparison
 
 _MOVING = 1e-9
 
@@ -26,7 +27,7 @@ _FEW = ("deepest position", "largest actuator force", "contacts made", "at the e
 """Of the measures: what a short report has."""
 
 
-def print_trace(trace: xr.Dataset, in_full: bool = False, missed: str = "", hand: str = "") -> None:
+def print_trace(trace: AnyTrace, in_full: bool = False, missed: str = "", hand: str = "") -> None:
     """Print the report of one trace; `missed` says that the hand met nothing, `hand` which would suit."""
     with page() as out:
         out.print(headline("missed", "yellow", missed) if missed else trace_headline(trace))
@@ -38,7 +39,7 @@ def print_trace(trace: xr.Dataset, in_full: bool = False, missed: str = "", hand
         out.print(below(grid(_about(trace, hand))))
         out.print(below(grid(_measures(trace))))
         out.print(Text("energy", style="bold"))
-        out.print(grid((text, shown(value, "J")) for text, value in trace.zwidth.energy.rows()))
+        out.print(grid((text, shown(value, "J")) for text, value in ledger(trace).rows()))
 
 
 def print_comparison(comparison: Comparison) -> None:
@@ -54,9 +55,9 @@ def print_comparison(comparison: Comparison) -> None:
         out.print(table)
 
 
-def trace_headline(trace: xr.Dataset) -> Padding:
+def trace_headline(trace: AnyTrace) -> Padding:
     """Whether this hand got energy out, and what that shows."""
-    book = trace.zwidth.energy
+    book = ledger(trace)
     got, held = shown(book.got_out, "J"), book.held_at_start
     significant = book.got_out > ROUNDING * book.moved
     if book.active:
@@ -76,7 +77,7 @@ def trace_headline(trace: xr.Dataset) -> Padding:
     return headline("touch", "blue", f"{words} That proves nothing of other hands: see zwidth check.")
 
 
-def _about(trace: xr.Dataset, hand: str) -> Iterator[tuple[str, str]]:
+def _about(trace: AnyTrace, hand: str) -> Iterator[tuple[str, str]]:
     about = trace.attrs
     yield "device", plain(str(about["device"]), 60)
     yield "environment", plain(str(about["environment"]), 200)
@@ -89,7 +90,7 @@ def _about(trace: xr.Dataset, hand: str) -> Iterator[tuple[str, str]]:
     yield from how_long(trace)
 
 
-def how_long(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
+def how_long(trace: AnyTrace) -> Iterator[tuple[str, str]]:
     """How long was simulated, and why no longer."""
     about = trace.attrs
     seconds = float(trace["time"].values[-1])
@@ -101,10 +102,10 @@ def how_long(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
         yield "diverged", f"at {shown(about['diverged_at_s'], 's')}: beyond that the numbers mean nothing"
 
 
-def _measures(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
-    comparison = compare_traces({"": trace})
-    units, values = comparison.units(), comparison.rows[""]
-    length, speed, _ = UNITS[comparison.motion]
+def _measures(trace: AnyTrace) -> Iterator[tuple[str, str]]:
+    motion = str(trace.attrs["motion"])
+    units, values = units_of(motion), measure(trace)
+    length, speed, _ = UNITS[motion]
     yield "deepest position", shown(values["deepest_position"], length)
     yield "largest actuator force", shown(values["peak_actuator_force"], units["peak_actuator_force"])
     yield "largest force of the hand", shown(values["peak_hand_force"], units["peak_hand_force"])

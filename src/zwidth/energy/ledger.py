@@ -31,8 +31,9 @@ from zwidth.errors import InputError
 from zwidth.showing import Part, Shown, Table
 
 if TYPE_CHECKING:
-    import xarray as xr
     from numpy.typing import NDArray
+
+    from zwidth.loop.trace import AnyTrace
 
     Array = NDArray[np.float64]
 
@@ -62,7 +63,7 @@ class Ledger(Shown):
         A trace as `zwidth.simulate` returns it.
     """
 
-    trace: xr.Dataset
+    trace: AnyTrace
 
     def _change(self, name: str) -> Array:
         values = self.trace[name].values
@@ -156,7 +157,7 @@ class Ledger(Shown):
         yield Table(heads=[(f"energy over {seconds:g} s", "J")], rows=rows, lefts=1)
 
 
-def ledger(trace: xr.Dataset) -> Ledger:
+def ledger(trace: AnyTrace) -> Ledger:
     """The ledger of a trace.
 
     Raises

@@ -21,8 +21,9 @@ from zwidth.energy.ledger import ROUNDING, Ledger
 from zwidth.showing import Part, Shown, Table
 
 if TYPE_CHECKING:
-    import xarray as xr
     from numpy.typing import NDArray
+
+    from zwidth.loop.trace import AnyTrace
 
     Array = NDArray[np.float64]
 
@@ -41,12 +42,12 @@ class PairLedger(Shown):
         A trace of a pair as `zwidth.simulate` returns it.
     """
 
-    trace: xr.Dataset
+    trace: AnyTrace
 
     @cached_property
     def arms(self) -> tuple[Ledger, Ledger]:
         """Of leader and follower, each for itself."""
-        leader, follower = (Ledger(arm_of(self.trace, name)) for name in ARMS)
+        leader, follower = (Ledger(of_one_arm(self.trace.sel(arm=name))) for name in ARMS)
         return leader, follower
 
     @property
@@ -140,9 +141,8 @@ class PairLedger(Shown):
         yield Table(heads=[(f"energy over {float(time[-1] - time[0]):g} s", "J")], rows=rows, lefts=1)
 
 
-def arm_of(trace: xr.Dataset, name: str) -> xr.Dataset:
-    """One arm of a pair's trace, as of a loop of which it is not known what it held at the start."""
-    one = trace.sel(arm=name) if "arm" in trace.dims else trace.copy(deep=False)
+def of_one_arm(one: AnyTrace) -> AnyTrace:
+    """One arm out of a pair's trace, as of a loop of which it is not known what it held at the start."""
     kept = {key: value for key, value in one.attrs.items() if key != "stored_at_start_J"}
     one.attrs = {**kept, "stored_at_start_unknown": _FROM_THE_OTHER}
     return one

@@ -104,13 +104,13 @@ def touched(state: State) -> Touch:
 
 
 def _touch(device: Any, environment: Environment, hand: ParametricOperator) -> Touch:
-    from zwidth.energy import ledger  # xarray takes its time
-    from zwidth.loop.simulate import simulate
+    from zwidth.energy import ledger
+    from zwidth.loop.simulate import simulated
     from zwidth.plots.trace import thinned
 
     period = float(device.exact("sample_period"))
     duration = min(DURATION, LONGEST_TOUCH, MOST_SAMPLES * period)
-    trace = simulate(device, environment, hand, duration)
+    trace = simulated(device, environment, hand, duration)
     times = trace["time"].values
 
     def curve(name: str) -> list[float]:

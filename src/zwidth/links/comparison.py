@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from math import ceil, isfinite
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -20,7 +21,7 @@ from zwidth.links.naive_waves import NaiveWaves
 from zwidth.links.port import Port
 from zwidth.links.position_hold import PositionHold
 from zwidth.links.schedule import Schedule
-from zwidth.links.simulation import check_ends, simulate
+from zwidth.links.simulation import check_ends, simulated
 from zwidth.links.time_domain import TimeDomain
 from zwidth.links.two_layer import TwoLayer
 from zwidth.links.verdict import check
@@ -36,6 +37,8 @@ from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from zwidth.loop.trace import Trace
 
 _FAR = {"linear": 0.02, "rotary": 0.2}
 """How far the leader is led [m; rad]."""
@@ -55,15 +58,14 @@ class LinkComparison(Documented):
 
     Attributes
     ----------
-    scores
-        Dimension `port`; `outcome` of each, `taken` by the worst of the hands that were tried over this link,
-        0 where none takes any; `tracking_error`, root mean square of x_l − x_f while the leader is led to and
-        fro and nobody holds the follower, and `apart`, |x_l − x_f| a second after; `felt_stiffness` of the
-        leader when the follower is clamped.  Units and meanings in the attributes.
+    rows
+        By port what `scores` labels.
+    motion
+        "linear" or "rotary".
     schedule
         The link.
-    traces
-        By port: `stroke` and `press`.
+    touches
+        What `traces` makes Datasets of.
     held_back
         For how long the loops of leader and follower are to keep each force back [s]; () where they need not.
     """
@@ -71,42 +73,76 @@ class LinkComparison(Documented):
     FORMAT: ClassVar[str] = "zwidth links 1"
     PICTURE: ClassVar[str] = "plot_links"
 
-    scores: xr.Dataset
+    rows: Mapping[str, Mapping[str, Any]]
+    motion: str
     schedule: Schedule
-    traces: Mapping[str, Mapping[str, xr.Dataset]]
+    touches: Mapping[str, Mapping[str, Trace]]
     held_back: tuple[Fraction, ...] = ()
+
+    @cached_property
+    def scores(self) -> xr.Dataset:
+        """Along `port`: what is known of each, and what was measured.
+
+        `outcome` of each, `taken` by the worst of the hands that were tried over this link, 0 where none
+        takes any; `tracking_error`, root mean square of x_l − x_f while the leader is led to and fro and
+        nobody holds the follower, and `apart`, |x_l − x_f| a second after; `felt_stiffness` of the leader
+        when the follower is clamped.  Units and meanings in the attributes.
+        """
+        import xarray as xr
+
+        variables = {
+            key: ("port", np.array([row[key] for row in self.rows.values()]), about)
+            for key, about in self._about().items()
+        }
+        outcomes = ("port", [row["outcome"] for row in self.rows.values()])
+        return xr.Dataset({"outcome": outcomes, **variables}, coords={"port": list(self.rows)})
+
+    @cached_property
+    def traces(self) -> Mapping[str, Mapping[str, xr.Dataset]]:
+        """By port: `stroke` and `press`."""
+        import zwidth.traces.accessor  # noqa: F401 - gives every trace its `.zwidth`
+
+        return {
+            name: {touch: trace.dataset() for touch, trace in own.items()}
+            for name, own in self.touches.items()
+        }
+
+    def _about(self) -> dict[str, dict[str, str]]:
+        """Unit and meaning of each number."""
+        return {
+            key: {"units": GLOSSARY[quantity].unit_for(self.motion), "long_name": meaning}
+            for key, (quantity, meaning) in _SCORES.items()
+        }
 
     def to_dict(self) -> dict[str, Any]:
         """The scores by port, a unit in every key of a physical quantity."""
+        keys = {key: f"{key}_{unit_suffix(about['units'])}" for key, about in self._about().items()}
         ports = {
-            str(name): {
-                "outcome": str(self.scores["outcome"].sel(port=name).item()),
-                **{
-                    f"{key}_{unit_suffix(self.scores[key].attrs['units'])}": self._number(key, name)
-                    for key in _SCORES
-                },
+            name: {
+                "outcome": row["outcome"],
+                **{keyed: _known(row[key]) for key, keyed in keys.items()},
             }
-            for name in self.scores["port"].values
+            for name, row in self.rows.items()
         }
         held = {"held_back_s": [float(time) for time in self.held_back]} if self.held_back else {}
         return {"format": self.FORMAT, "link": self.schedule.describe(), **held, "ports": ports}
 
     def report(self) -> Iterable[Part]:
         """Which ports are passive over every such link, the link, and a table with a row for each port."""
-        about = [self.scores[key].attrs for key in _SCORES]
+        about = self._about().values()
         told = [spoken(one["units"]) for one in about]
         heads = [
             ("", "any link", *(one["long_name"] for one in about)),
             ("", "", *(unit_text(unit) for _, unit in told)),
         ]
         rows = []
-        for name in self.scores["port"].values:
-            numbers = [self._number(key, name) for key in _SCORES]
+        for name, row in self.rows.items():
+            numbers = [_known(row[key]) for key in _SCORES]
             cells = [
                 "–" if number is None else f"{factor * number:.3g}"
                 for number, (factor, _) in zip(numbers, told, strict=True)
             ]
-            rows.append((str(name), str(self.scores["outcome"].sel(port=name).item()), *cells))
+            rows.append((name, row["outcome"], *cells))
         passive = [cells[0] for cells in rows if cells[1] == "passive"]
         yield f"passive over every link that makes up no packets: {', '.join(passive) or 'none'}"
         yield f"the link of these numbers: {self.schedule.describe()}"
@@ -119,9 +155,9 @@ class LinkComparison(Documented):
         yield ""
         yield Table(heads=heads, rows=rows, lefts=2)
 
-    def _number(self, key: str, name: object) -> float | None:
-        value = float(self.scores[key].sel(port=name))
-        return value if isfinite(value) else None
+
+def _known(value: float) -> float | None:
+    return float(value) if isfinite(value) else None
 
 
 _SCORES = {
@@ -230,14 +266,14 @@ def compare(
         held = (near_time, far_time) if near_time or far_time else ()
     kinds = standard_ports(leader, other, link, impedance, smoothing) if ports is None else ports
     rows: dict[str, dict[str, Any]] = {}
-    traces = {}
+    touches = {}
     for done, (name, (near, far)) in enumerate(kinds.items()):
         if progress is not None:
             progress(done, len(kinds))
         check_ends(near, far)
-        traces[name] = {"stroke": _stroke(near, far, link), "press": _press(near, far, link)}
-        rows[name] = {**_taken(near, far, link), **_measured(traces[name])}
-    return LinkComparison(_dataset(rows, leader.motion), link, traces, held)
+        touches[name] = {"stroke": _stroke(near, far, link), "press": _press(near, far, link)}
+        rows[name] = {**_taken(near, far, link), **_measured(touches[name])}
+    return LinkComparison(rows, leader.motion, link, touches, held)
 
 
 def held_back(device: Device) -> tuple[Device, Fraction]:
@@ -262,17 +298,17 @@ def _taken(near: Port, far: Port, link: Schedule) -> dict[str, Any]:
     return {"outcome": "active" if active else "undecided", "taken": taken}
 
 
-def _stroke(near: Port, far: Port, link: Schedule) -> xr.Dataset:
+def _stroke(near: Port, far: Port, link: Schedule) -> Trace:
     """The leader is led to and fro, smoothly, and held; nobody holds the follower."""
     most = _FAR[near.device.motion]
 
     def path(t: float) -> float:
         return most * float(np.sin(np.pi * t / _STROKE)) ** 2 if t < _STROKE else 0.0
 
-    return simulate(near, far, link, PrescribedMotion(path), None, _STROKE + _REST)
+    return simulated(near, far, link, PrescribedMotion(path), None, _STROKE + _REST)
 
 
-def _press(near: Port, far: Port, link: Schedule) -> xr.Dataset:
+def _press(near: Port, far: Port, link: Schedule) -> Trace:
     """The leader is pushed slowly harder, to about half the way of a stroke; the follower is clamped."""
     device = near.device
     period = float(device.exact("sample_period"))
@@ -280,10 +316,10 @@ def _press(near: Port, far: Port, link: Schedule) -> xr.Dataset:
     most = 2 * float(ends(device.coulomb_friction)[1]) + stiffness * _FAR[device.motion] / 2
     push = RecordedForce(most * np.minimum(np.arange(round(_PRESS / period)) * period / _RISE, 1.0))
     clamp = PrescribedMotion(lambda t: 0.0)
-    return simulate(near, far, link, push, clamp, _PRESS)
+    return simulated(near, far, link, push, clamp, _PRESS)
 
 
-def _measured(traces: Mapping[str, xr.Dataset]) -> dict[str, float]:
+def _measured(traces: Mapping[str, Trace]) -> dict[str, float]:
     apart = np.diff(traces["stroke"]["position"].values, axis=0)[0]
     diverged = "diverged_at_s" in traces["stroke"].attrs
     return {
@@ -293,23 +329,9 @@ def _measured(traces: Mapping[str, xr.Dataset]) -> dict[str, float]:
     }
 
 
-def _dataset(rows: Mapping[str, Mapping[str, Any]], motion: str) -> xr.Dataset:
-    import xarray as xr
-
-    variables = {
-        key: (
-            "port",
-            np.array([row[key] for row in rows.values()]),
-            {"units": GLOSSARY[quantity].unit_for(motion), "long_name": meaning},
-        )
-        for key, (quantity, meaning) in _SCORES.items()
-    }
-    outcomes = ("port", [row["outcome"] for row in rows.values()])
-    return xr.Dataset({"outcome": outcomes, **variables}, coords={"port": list(rows)})
-
-
-def _felt(leader: xr.Dataset) -> float:
+def _felt(leader: Trace) -> float:
     """nan where it does not come to rest."""
-    late = leader["position"].values[leader.sizes["time"] // 2 :]
+    late = leader["position"].values
+    late = late[late.size // 2 :]
     moves = late.std() > _STILL * abs(late.mean())
     return float("nan") if moves or "diverged_at_s" in leader.attrs else static_stiffness(leader)

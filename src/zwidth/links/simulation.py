@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-import zwidth.traces.accessor  # noqa: F401 - gives every trace its `.zwidth`
 from zwidth.errors import InputError
 from zwidth.links.kernel import End, run_link
 from zwidth.links.port import Port
@@ -17,6 +16,7 @@ from zwidth.loop.pair.setup import Holder, prepare_pair
 from zwidth.loop.pair.trace import build_pair_trace
 from zwidth.loop.plant import FAULT, FORCE, GOAL
 from zwidth.loop.series import WORK
+from zwidth.loop.trace import Trace
 from zwidth.pairs import Pair
 from zwidth.quantity.exact import RealLike
 
@@ -66,6 +66,34 @@ def simulate(
     InputError
         If the ports do not fit together, or something is missing or out of its bounds.
     """
+    import zwidth.traces.accessor  # noqa: F401 - gives every trace its `.zwidth`
+
+    return simulated(
+        leader,
+        follower,
+        schedule,
+        leader_hand,
+        follower_hand,
+        duration,
+        encoder_phase=encoder_phase,
+        points_per_sample=points_per_sample,
+        progress=progress,
+    ).dataset()
+
+
+def simulated(
+    leader: Port,
+    follower: Port,
+    schedule: Schedule,
+    leader_hand: Holder,
+    follower_hand: Holder,
+    duration: RealLike,
+    *,
+    encoder_phase: tuple[float, float] = (0.0, 0.0),
+    points_per_sample: int = 1,
+    progress: Callable[[int, int], None] | None = None,
+) -> Trace:
+    """What `simulate` returns, before it is a Dataset."""
     check_ends(leader, follower)
     # a pair lays out both arms; its spring is not used
     pair = Pair(leader.device, follower.device, stiffness=1)
@@ -92,12 +120,13 @@ def simulate(
         )
     trace = build_pair_trace(setup, total)
     late = float(schedule.delay)
-    return trace.assign_attrs(
-        coupling=f"{leader.describe()}; {schedule.describe()}",
-        link_delay_there_s=late,
-        link_delay_back_s=late,
-        stored_at_start_J=0.0,
-    )
+    trace.attrs |= {
+        "coupling": f"{leader.describe()}; {schedule.describe()}",
+        "link_delay_there_s": late,
+        "link_delay_back_s": late,
+        "stored_at_start_J": 0.0,
+    }
+    return trace
 
 
 def check_ends(leader: Port, follower: Port) -> None:

@@ -17,12 +17,12 @@ from zwidth.errors import InputError
 from zwidth.loop.kernel import run
 from zwidth.loop.law import PHASE, RESOLUTION, STEP
 from zwidth.loop.pair.setup import Holder
-from zwidth.loop.pair.simulate import Friction, simulate_pair
+from zwidth.loop.pair.simulate import Friction, simulated_pair
 from zwidth.loop.plain import run_plain
 from zwidth.loop.plant import FAULT, STOPS
 from zwidth.loop.setup import Setup, empty_record, prepare
 from zwidth.loop.timing import Timing
-from zwidth.loop.trace import build_trace
+from zwidth.loop.trace import Trace, build_trace
 from zwidth.operator.operator import Operator
 from zwidth.pairs import Pair
 from zwidth.quantity.exact import RealLike
@@ -134,13 +134,45 @@ def simulate(
     InputError
         If something is missing, not finite, of the wrong length, or out of its bounds.
     """
+    return simulated(
+        device,
+        environment,
+        operator,
+        duration,
+        initial_position=initial_position,
+        initial_velocity=initial_velocity,
+        encoder_phase=encoder_phase,
+        amplifier=amplifier,
+        timing=timing,
+        points_per_sample=points_per_sample,
+        friction=friction,
+        progress=progress,
+    ).dataset()
+
+
+def simulated(
+    device: Device | Pair,
+    environment: object,
+    operator: Operator | Holder,
+    duration: RealLike,
+    *,
+    initial_position: float | None = None,
+    initial_velocity: float = 0.0,
+    encoder_phase: float | tuple[float, float] = 0.0,
+    amplifier: Amplifier | None = None,
+    timing: Timing | None = None,
+    points_per_sample: int = 1,
+    friction: Friction | tuple[Friction, Friction] = None,
+    progress: Progress | None = None,
+) -> Trace:
+    """What `simulate` returns, before it is a Dataset."""
     if isinstance(device, Pair):
         if initial_position is not None or initial_velocity or timing is not None:
             raise InputError(
                 "a pair starts where its hands do, at rest, with a regular clock: leave out "
                 "initial_position, initial_velocity and timing"
             )
-        return simulate_pair(
+        return simulated_pair(
             device,
             environment,  # type: ignore[arg-type]  # what it is, is looked at there
             operator,

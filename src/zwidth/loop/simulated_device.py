@@ -205,7 +205,7 @@ class SimulatedDevice:
             trace.attrs["stored_at_start_unknown"] = _UNKNOWN
         else:
             trace.attrs["stored_at_start_J"] = self._stored
-        return trace
+        return trace.dataset()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""The record of a simulation as labelled data: an xarray.Dataset along `time`.
+"""The record of a simulation as labelled data along `time`, and as an xarray.Dataset where one is asked for.
 
 Values stand at instants.  At a jump (a force applied, an impulse of a
 kinematic hand) position, velocity and energies are those before it, forces
@@ -7,12 +7,12 @@ those just after it.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
-import xarray as xr
 
 from zwidth.loop import kernel
 from zwidth.loop.plant import POSITION
@@ -21,6 +21,7 @@ from zwidth.loop.start import Start, held_at_start
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
+    import xarray as xr
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
@@ -35,6 +36,9 @@ UNITS = {
     for motion in ("linear", "rotary")
 }
 """Of position, velocity and force."""
+
+
+SAMPLED = "a sample is taken at this instant"
 
 
 class Variable(NamedTuple):
@@ -66,30 +70,87 @@ VARIABLES = {
 """Every variable of a trace, in the order of its files."""
 
 
-def build_trace(setup: Setup, record: Array, done: int, *, stops: int) -> xr.Dataset:
-    """The Dataset of the first `done` samples of a record, up to where the numbers outgrow any meaning."""
+class Labelled(NamedTuple):
+    """Numbers along named dimensions, and what they are."""
+
+    dims: tuple[str, ...]
+    values: NDArray[Any]
+    attrs: dict[str, str]
+
+
+@dataclass(eq=False)
+class Trace:
+    """What a simulation found, read in the words of the xarray.Dataset that `dataset` makes of it.
+
+    xarray takes longer to load than most touches to simulate, and a report of a touch needs none of it.
+    """
+
+    variables: dict[str, Labelled]
+    coordinates: dict[str, Labelled]
+    attrs: dict[str, Any]
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """What its numbers lie along."""
+        return next(iter(self.variables.values())).dims
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.variables
+
+    def __getitem__(self, name: str) -> Labelled:
+        return self.variables.get(name) or self.coordinates[name]
+
+    def sel(self, *, arm: str) -> Trace:
+        """One arm of a pair's."""
+        row = self.coordinates["arm"].values.tolist().index(arm)
+        own = {
+            name: Labelled(part.dims[1:], part.values[row], part.attrs)
+            for name, part in self.variables.items()
+        }
+        rest = {name: part for name, part in self.coordinates.items() if name != "arm"}
+        return Trace(own, rest, dict(self.attrs))
+
+    def dataset(self) -> xr.Dataset:
+        """It as an xarray.Dataset."""
+        import xarray as xr
+
+        return xr.Dataset(self.variables, coords=self.coordinates, attrs=self.attrs)
+
+
+AnyTrace: TypeAlias = "xr.Dataset | Trace"
+"""What is read of a trace, both have."""
+
+
+def build_trace(setup: Setup, record: Array, done: int, *, stops: int) -> Trace:
+    """The trace of the first `done` samples of a record, up to where the numbers outgrow any meaning."""
     finished = min(setup.columns, done * setup.frame.points if done <= setup.frame.samples else setup.columns)
     columns = before_overflow(record, finished)
     values = values_of(setup.frame, record, columns)
     device = setup.device
     units = (*UNITS[device.motion], "J")
     variables = {
-        name: ("time", values[name], attributes_of(variable, units))
+        name: Labelled(("time",), values[name], attributes_of(variable, units))
         for name, variable in VARIABLES.items()
         if name in values
     }
     time = instants(setup.frame)[:columns]
     sampled = np.arange(columns) % setup.frame.points == 0
-    coordinates = {
-        "time": ("time", time, {"units": "s", "long_name": "time since sample 0", "symbol": "t"}),
-        "sampled": ("time", sampled, {"long_name": "a sample is taken at this instant"}),
-    }
+    coordinates = along_time(time, sampled, SAMPLED)
     attributes = {**_attrs(setup, stops), **_stored(setup, values)}
     if columns < finished:
         attributes["diverged_at_s"] = float(time[-1])
     elif finished < setup.columns:
         attributes["interrupted_at_s"] = float(time[-1])
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+    return Trace(variables, coordinates, attributes)
+
+
+def along_time(time: Array, sampled: NDArray[np.bool_], meaning: str) -> dict[str, Labelled]:
+    """The instants of a trace, and at which of them what happens."""
+    about = {"units": "s", "long_name": "time since sample 0", "symbol": "t"}
+    return {
+        "time": Labelled(("time",), time, about),
+        "sampled": Labelled(("time",), sampled, {"long_name": meaning}),
+    }
 
 
 def before_overflow(record: Array, columns: int) -> int:

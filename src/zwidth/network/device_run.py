@@ -114,4 +114,4 @@ class DeviceRun:
     def trace(self) -> xr.Dataset:
         """What happened so far, as `zwidth.simulate` tells it of one arm of a pair."""
         _move(self._arm, self._k, 0.0, self._setup.tick, True, self._work)
-        return build_pair_trace(self._setup, self._k + 1).sel(arm="leader")
+        return build_pair_trace(self._setup, self._k + 1).dataset().sel(arm="leader")

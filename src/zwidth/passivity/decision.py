@@ -85,21 +85,21 @@ class Decision:
     @property
     def contact_damping(self) -> Fraction | None:
         """Device damping that covers a wall touched and left [N·s/m; N·m·s/rad]; None where none is known."""
-        return None if self._least_contact is None else self._least_contact.required_damping(self.loop)
+        return None if self._least_contact is None else self._least_contact[0]
 
     @property
     def contact_friction(self) -> Fraction | None:
         """The same for Coulomb friction and the encoder [N; N·m]."""
         if self._least_contact is None:
             return None
-        return self._least_contact.required_friction(self.setting.resolution, self.loop.period)
+        return self._least_contact[1].required_friction(self.setting.resolution, self.loop.period)
 
     @cached_property
-    def _least_contact(self) -> ContactLaw | None:
-        """The conditions that ask for the least damping."""
+    def _least_contact(self) -> tuple[Fraction, ContactLaw] | None:
+        """The least damping that any conditions ask for, and which."""
         laws = [law for law in (self.wall, self.multiplier) if law is not None]
         needs = [(need, law) for law in laws if (need := law.required_damping(self.loop)) is not None]
-        return min(needs, key=lambda pair: pair[0], default=(None, None))[1]
+        return min(needs, key=lambda pair: pair[0], default=None)
 
     def _covered_by(self, law: ContactLaw | None) -> bool:
         if law is None:
@@ -115,7 +115,8 @@ class Decision:
         """True when both conditions for a wall touched and left hold."""
         if self._covered_by(self.wall):
             return True
-        return isinstance(self.viscous, LinearProof) and self._covered_by(self.multiplier)
+        is_told = self.multiplier is not None and isinstance(self.viscous, LinearProof)
+        return is_told and self._covered_by(self.multiplier)
 
     @cached_property
     def viscous(self) -> LinearProof | LinearRefutation:

@@ -32,9 +32,8 @@ from zwidth.quantity.text import told_quantity
 from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from zwidth.device.device import Device
+    from zwidth.loop.trace import Trace
     from zwidth.operator.operator import Operator
     from zwidth.passivity.storage.evidence.gain import Gain
 
@@ -264,9 +263,9 @@ def _got_out(verdict: Verdict, device: Device, motion: Motion, stiffness: float,
     return book.extracted if book.extracted > _ROUNDING * book.moved else 0.0
 
 
-def _simulated(verdict: Verdict, device: Device, hand: Operator, samples: int) -> xr.Dataset:
+def _simulated(verdict: Verdict, device: Device, hand: Operator, samples: int) -> Trace:
     from zwidth.device.amplifier import Ideal
-    from zwidth.loop.simulate import simulate
+    from zwidth.loop.simulate import simulated
 
     period = device.exact("sample_period")
-    return simulate(device, verdict.environment, hand, samples * period, amplifier=Ideal())
+    return simulated(device, verdict.environment, hand, samples * period, amplifier=Ideal())

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
+from functools import cache
 from math import inf, isfinite
 
 from zwidth.device import Device
@@ -71,6 +72,7 @@ def likely_value(change: Change, contact: bool, start: float, other: float, more
         True where more of it is safer: then its inverse asks for more.
     """
 
+    @cache  # asked of friction where it was asked of damping
     def at(value: float) -> Decision:
         return decide(*change(Exact(1 / value if more else value).fraction))
 

@@ -38,7 +38,7 @@ def provable(change: Change, value: Fraction, contact: bool = False) -> bool:
 
 
 def _is_provable(decision: Decision, contact: bool) -> bool:
-    return decision.is_provable and (not contact or decision.is_spring or decision.covers_contact)
+    return decision.covers_contact if contact and not decision.is_spring else decision.is_provable
 
 
 def required_damping(decision: Decision, contact: bool = False) -> float | None:

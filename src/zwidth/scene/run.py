@@ -8,7 +8,6 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from zwidth.compiled import compiled
 from zwidth.errors import InputError
@@ -20,6 +19,7 @@ from zwidth.scene.scene import Scene
 from zwidth.scene.step import across, scene_force
 
 if TYPE_CHECKING:
+    import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
     Array = NDArray[np.float64]
@@ -150,6 +150,8 @@ class SceneRun:
             Along `element` the work into it, what it has stored since the start and what it has lost [J]; in
             the attributes the work of the port, and what is left over, which is rounding.
         """
+        import xarray as xr
+
         packed, m = self._packed, self._memory
         count = len(packed.linear) + len(packed.others)
         own = dict(zip(map(id, self.scene.elements), self.scene.titles, strict=True))

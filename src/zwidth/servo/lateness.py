@@ -158,7 +158,7 @@ def _joined(turns: list[Lateness]) -> Lateness:
 
 def turn(wishes: RealTime, period: int, count: int, progress: Callable[[float], None]) -> Lateness:
     """One turn in a thread of its own; an interruption ends it."""
-    late, told = np.zeros(count, np.int64), np.zeros(4, np.int64)
+    late, told = np.full((count,), 0, np.int64), np.zeros(4, np.int64)  # np.zeros has no pages yet
     granted: list[Granted] = []
 
     def loop() -> None:

@@ -71,12 +71,12 @@ def shared(capacity: int, remembered: int, ring: Array, counts: int) -> Shared:
     control = np.zeros(CONTROL, np.int64)
     control[WANTED] = control[SERVED] = NONE
     return Shared(
-        laws=np.zeros((2, capacity)),
-        memories=np.zeros((2, remembered)),
-        rests=np.zeros((2, 2, 2, remembered)),
+        laws=np.full((2, capacity), 0.0),  # np.zeros has no pages yet
+        memories=np.full((2, remembered), 0.0),
+        rests=np.full((2, 2, 2, remembered), 0.0),
         control=control,
         numbers=np.zeros(NUMBERS),
-        counts=np.zeros(counts),
+        counts=np.full(counts, 0.0),
         ring=ring,
         spread=np.zeros(BINS, np.int64),
     )

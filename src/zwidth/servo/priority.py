@@ -1,11 +1,13 @@
 """What a loop asks of the system so that it is woken in time, and what it was granted.
 
 Real-time priority: the thread runs before every ordinary one, as soon as it is awake (SCHED_FIFO).  Locked
-memory: no page of the process is fetched while the loop waits for it (mlockall).  Exact timers: Linux lets
+memory: what the process has touched, and the code that a loop calls, stays in memory (mlockall, mlock); what
+is reserved alone, as the stacks of threads are and tens of MiB for each core by a library of linear algebra,
+takes none.  Exact timers: Linux lets
 the timer of an ordinary thread come up to 50 µs late, to wake several at once; the thread asks for 1 ns.
 Awake cores: a core that sleeps deeply takes up to some hundred µs to come back; whoever holds
 /dev/cpu_dma_latency open with a zero in it forbids that.  What is refused makes the loop later, never wrong:
-it runs all the same, and says so.  Sources: the manual pages sched(7), mlockall(2), prctl(2); the kernel's
+it runs all the same, and says so.  Sources: the manual pages sched(7), mlock(2), prctl(2); the kernel's
 pm_qos_interface.rst.
 """
 
@@ -15,7 +17,7 @@ import ctypes
 import os
 import struct
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,7 +32,10 @@ PRIORITY = 40
 awake for the answer of a USB port must not keep the port's own thread from running."""
 
 _LINUX = sys.platform.startswith("linux")
-_MCL_CURRENT, _MCL_FUTURE = 1, 2
+_MCL_CURRENT, _MCL_FUTURE, _MCL_ONFAULT = 1, 2, 4
+_CALLED = ("steps.", "python", "libpython", "libc.", "libm.", "ld-")
+"""How the files begin whose code a loop runs in: the step functions, Python, the C library."""
+
 _PR_SET_TIMERSLACK, _PR_GET_TIMERSLACK = 29, 30
 _CAP_IPC_LOCK = 14
 _NO_IDLE = Path("/dev/cpu_dma_latency")
@@ -151,10 +156,12 @@ class RealTime:
                 '"memlock unlimited" in /etc/security/limits.conf'
             )
         library = _library()
-        if library.mlockall(_MCL_CURRENT | _MCL_FUTURE):
+        if library.mlockall(_MCL_CURRENT | _MCL_FUTURE | _MCL_ONFAULT):
             return False, os.strerror(ctypes.get_errno())
         self._undo.append(lambda: library.munlockall())
-        return True, "all pages of the process are in memory, and stay there"
+        for start, end in _code():
+            library.mlock(ctypes.c_void_p(start), ctypes.c_size_t(end - start))
+        return True, "what the process touches, and the code of the loop, stay in memory"
 
     def _keep_to_core(self) -> tuple[bool, str]:
         before = os.sched_getaffinity(0)
@@ -188,6 +195,15 @@ def memory_limit() -> int | None:
 
     most, _ = resource.getrlimit(resource.RLIMIT_MEMLOCK)
     return None if most == resource.RLIM_INFINITY or _may(_CAP_IPC_LOCK) else most
+
+
+def _code() -> Iterator[tuple[int, int]]:
+    """From where to where the files of `_CALLED` are mapped."""
+    for line in Path("/proc/self/maps").read_text(encoding="utf-8", errors="replace").splitlines():
+        place, _, path = line.partition(" ")
+        if path.rpartition("/")[2].startswith(_CALLED):
+            start, end = place.split("-")
+            yield int(start, 16), int(end, 16)
 
 
 def _may(capability: int) -> bool:

@@ -162,7 +162,7 @@ def limited(loop: Loop, _: Line) -> Answer:
 
 def _simulated_columns(loop: Loop) -> Columns:
     from zwidth.loop.trace import UNITS
-    from zwidth.traces.comparison import COLUMNS
+    from zwidth.traces.measures import COLUMNS
 
     units = (*UNITS[loop.motion], "J", "1")
     return {name: Column(own.heading, units[own.kind]) for name, own in COLUMNS.items()}
@@ -170,13 +170,13 @@ def _simulated_columns(loop: Loop) -> Columns:
 
 def simulated(loop: Loop, _: Line) -> Answer:
     """The measures of a simulated touch."""
-    from zwidth.loop.simulate import simulate
-    from zwidth.traces.comparison import measure
+    from zwidth.loop.simulate import simulated as touched
+    from zwidth.traces.measures import measure
 
     options = dict(loop.options)
     duration = options.pop("duration")
     assert isinstance(loop.subject, Device), "see _touched"
-    return measure(simulate(loop.subject, loop.environment, loop.operator, duration, **options))
+    return measure(touched(loop.subject, loop.environment, loop.operator, duration, **options))
 
 
 def _paired_columns(loop: Loop) -> Columns:

@@ -1,6 +1,15 @@
 """What people do with a trace: look, listen, save, load, compare; and what they wait for, with a bar."""
 
-import zwidth.traces.accessor  # noqa: F401 - gives every trace its `.zwidth`
+from importlib import import_module
+from typing import Any
+
 from zwidth.lazy import attach
 
-__getattr__, __dir__, __all__ = attach(__name__)
+_found, __dir__, __all__ = attach(__name__)
+
+
+def __getattr__(name: str) -> Any:
+    """A public name; with the first of them every trace gets its `.zwidth`, and xarray is loaded."""
+    if name in __all__:
+        import_module("zwidth.traces.accessor")
+    return _found(name)

@@ -6,13 +6,12 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
 import xarray as xr
 
 from zwidth.bench.perceived import WEBER, noticeable_differences
-from zwidth.bench.scores import static_stiffness
+from zwidth.bench.scores import static_stiffness, tracking_error
 from zwidth.energy import Ledger, PairLedger, ledger
-from zwidth.energy.pair_ledger import arm_of
+from zwidth.energy.pair_ledger import of_one_arm
 from zwidth.errors import InputError
 from zwidth.loop.pair.trace import FORMAT as OF_A_PAIR
 from zwidth.loop.trace import FORMAT
@@ -46,7 +45,9 @@ class TraceAccessor:
         """The energy ledger; of a pair, that of both arms."""
         if self._both:
             return PairLedger(self._trace)
-        return ledger(arm_of(self._trace, "") if self._trace.attrs["format"] == OF_A_PAIR else self._trace)
+        if self._trace.attrs["format"] == OF_A_PAIR:
+            return ledger(of_one_arm(self._trace.copy(deep=False)))
+        return ledger(self._trace)
 
     @property
     def _both(self) -> bool:
@@ -76,8 +77,7 @@ class TraceAccessor:
         """
         if not self._both:
             raise InputError("one arm alone tracks nothing: this is of the trace of a pair, both arms")
-        leader, follower = self._trace["position"].values
-        return float(np.sqrt(np.mean((leader - follower) ** 2)))
+        return tracking_error(self._trace)
 
     def stiffness_jnds(self, wanted: float, weber: float = WEBER) -> float:
         """How many just-noticeable differences this is from a stiffness, see `noticeable_differences`."""

@@ -5,53 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import isnan
-from typing import TYPE_CHECKING, Any, NamedTuple
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from zwidth.energy import ledger
 from zwidth.errors import InputError
-from zwidth.loop.trace import UNITS
 from zwidth.passivity.result import Documented
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import unit_text
 from zwidth.showing import Part, Table
+from zwidth.traces.measures import COLUMNS, keyed, measure, units_of
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
-
-CHATTER_ABOVE_HZ = 30.0
-"""Below, a hand may move the force of its own will; above, it is the loop."""
-
-
-class Column(NamedTuple):
-    """One number of the comparison: its heading, its kind of unit (0 position, 2 force, 3 energy, 4 none)."""
-
-    heading: str
-    kind: int
-
-
-COLUMNS = {
-    "deepest_position": Column("deepest", 0),
-    "peak_actuator_force": Column("peak force", 2),
-    "peak_hand_force": Column("peak hand force", 2),
-    "chatter": Column("chatter", 2),
-    "energy_extracted": Column("energy got out", 3),
-    "contacts": Column("contacts", 4),
-    "stops": Column("stops", 4),
-    "last_swing": Column("swing at the end", 0),
-}
-"""What is compared.
-
-chatter: RMS of the actuator force above 30 Hz over the samples inside the wall;
-contacts: how often the encoder went from outside to inside; stops: how often
-the mass came to rest or turned round; last swing: range of the position over
-the last quarter of the time.
-"""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -78,8 +44,7 @@ class Comparison(Documented):
 
     def units(self) -> dict[str, str]:
         """The unit of each column."""
-        units = (*UNITS[self.motion], "J", "")
-        return {name: units[column.kind] for name, column in COLUMNS.items()}
+        return units_of(self.motion)
 
     def to_xarray(self) -> xr.Dataset:
         """The numbers as a Dataset along `trace`."""
@@ -100,12 +65,7 @@ class Comparison(Documented):
 
     def to_dict(self) -> dict[str, Any]:
         """The numbers by label, units in the keys."""
-        keys = {"N*m": "N_m"}
-        names = {n: f"{n}_{keys.get(u, u)}" if u else n for n, u in self.units().items()}
-        return {
-            label: {names[n]: None if isnan(v) else v for n, v in row.items()}
-            for label, row in self.rows.items()
-        }
+        return {label: keyed(row, self.motion) for label, row in self.rows.items()}
 
     def table(self) -> list[list[str]]:
         """Headings, then one line of text per trace."""
@@ -167,34 +127,5 @@ def compare_traces(*traces: xr.Dataset | Mapping[str, xr.Dataset]) -> Comparison
     return Comparison(named)
 
 
-def measure(trace: xr.Dataset) -> dict[str, float]:
-    """The numbers of one trace, SI; see `COLUMNS`."""
-    x, force = trace["position"].values, trace["actuator_force"].values
-    sampled = trace["sampled"].values
-    inside = trace["measured_position"].values[sampled] > 0
-    last = x[x.size - 1 - x.size // 4 :]
-    return {
-        "deepest_position": float(x.max()),
-        "peak_actuator_force": float(np.abs(force).max()),
-        "peak_hand_force": float(np.abs(trace["hand_force"].values).max()),
-        "chatter": _chatter(trace["time"].values[sampled], force[sampled], inside),
-        "energy_extracted": ledger(trace).extracted,
-        "contacts": float(np.count_nonzero(inside[1:] & ~inside[:-1]) + int(inside[0])),
-        "stops": float(trace.attrs["stops"]),
-        "last_swing": float(last.max() - last.min()),
-    }
-
-
 def _written(value: float) -> str:
     return "not known" if isnan(value) else f"{value:.4g}"
-
-
-def _chatter(time: Array, force: Array, inside: NDArray[np.bool_]) -> float:
-    """RMS, over the samples inside, of the force without its parts below 30 Hz."""
-    if not inside.any() or time.size < 4:
-        return 0.0
-    period = (time[-1] - time[0]) / (time.size - 1)
-    spectrum = np.fft.rfft(force)
-    spectrum[np.fft.rfftfreq(force.size, period) < CHATTER_ABOVE_HZ] = 0.0
-    quick = np.fft.irfft(spectrum, force.size)
-    return float(np.sqrt(np.mean(quick[inside] ** 2)))

@@ -17,17 +17,17 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from zwidth.errors import InputError
 from zwidth.loop.pair.trace import ARMS, labelled
 from zwidth.loop.pair.trace import FORMAT as OF_A_PAIR
-from zwidth.loop.trace import FORMAT, UNITS, VARIABLES
+from zwidth.loop.trace import FORMAT, SAMPLED, UNITS, VARIABLES, Labelled, Trace, along_time, attributes_of
 from zwidth.missing import did_you_mean
 from zwidth.reading import check_hdf5, check_parquet, shown_only
 from zwidth.writing import check_target, first_line, writing_whole
 
 if TYPE_CHECKING:
+    import xarray as xr
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
@@ -147,6 +147,8 @@ def _write_netcdf(data: xr.Dataset, file: IO[bytes]) -> None:
 
 
 def _read_netcdf(path: Path) -> xr.Dataset:
+    import xarray as xr
+
     check_hdf5(path)
     with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as file:
         trace: xr.Dataset = file.load()
@@ -173,6 +175,7 @@ def _from_columns(columns: dict[str, Any], attributes: dict[str, Any], source: P
     if kind not in (FORMAT, OF_A_PAIR) or motion not in UNITS:
         raise InputError(f"{source} holds no zwidth trace: its attributes are not there")
     units = (*UNITS[motion], "J")
+    time, sampled = np.asarray(columns["time_s"], dtype=np.float64), np.asarray(columns["sampled"]) != 0
     if kind == OF_A_PAIR:
         parts = [
             {
@@ -182,24 +185,15 @@ def _from_columns(columns: dict[str, Any], attributes: dict[str, Any], source: P
             }
             for arm in ARMS
         ]
-        time, sampled = np.asarray(columns["time_s"], dtype=np.float64), np.asarray(columns["sampled"]) != 0
-        return labelled(parts, time, sampled, attributes)
+        return labelled(parts, time, sampled, attributes).dataset()
     variables = {}
     for name, variable in VARIABLES.items():
         unit = units[variable.kind]
         key = column_name(name, unit)
         if key in columns:
-            labels = {"units": unit, "long_name": variable.long_name, "symbol": variable.symbol}
-            variables[name] = ("time", np.asarray(columns[key], dtype=np.float64), labels)
-    about = {"units": "s", "long_name": "time since sample 0", "symbol": "t"}
-    coordinates = {
-        "time": ("time", np.asarray(columns["time_s"], dtype=np.float64), about),
-        "sampled": ("time", np.asarray(columns["sampled"]) != 0, {"long_name": _SAMPLED}),
-    }
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
-
-
-_SAMPLED = "a sample is taken at this instant"
+            labels = attributes_of(variable, units)
+            variables[name] = Labelled(("time",), np.asarray(columns[key], dtype=np.float64), labels)
+    return Trace(variables, along_time(time, sampled, SAMPLED), attributes).dataset()
 
 
 def _write_parquet(trace: xr.Dataset, file: IO[bytes]) -> None:

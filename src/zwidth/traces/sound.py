@@ -19,8 +19,9 @@ from zwidth.errors import InputError
 from zwidth.writing import check_target, writing_whole
 
 if TYPE_CHECKING:
-    import xarray as xr
     from numpy.typing import NDArray
+
+    from zwidth.loop.trace import AnyTrace
 
     Array = NDArray[np.float64]
 
@@ -31,7 +32,7 @@ _MEAN = 0.05
 _QUIETEST = 1e-9
 
 
-def save_sound(trace: xr.Dataset, path: str | PathLike[str], *, force: bool = False) -> None:
+def save_sound(trace: AnyTrace, path: str | PathLike[str], *, force: bool = False) -> None:
     """Write the actuator force as a WAV file, 16 bits, one channel.
 
     Parameters
@@ -67,7 +68,7 @@ def _as_wav(samples: NDArray[np.int16]) -> bytes:
     return sound.getvalue()
 
 
-def waveform(trace: xr.Dataset) -> NDArray[np.int16]:
+def waveform(trace: AnyTrace) -> NDArray[np.int16]:
     """The sound, −32767 … 32767; all 0 for a force that never changes."""
     time, force = trace["time"].values, trace["actuator_force"].values
     count = int((time[-1] - time[0]) * RATE)

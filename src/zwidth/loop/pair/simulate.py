@@ -15,6 +15,7 @@ from zwidth.loop.pair.setup import Holder, PairSetup, prepare_pair
 from zwidth.loop.pair.trace import build_pair_trace
 from zwidth.loop.plant import FAULT
 from zwidth.loop.series import WORK
+from zwidth.loop.trace import Trace
 from zwidth.pairs import Pair
 from zwidth.quantity.exact import RealLike
 
@@ -76,6 +77,32 @@ def simulate_pair(
     InputError
         If something is missing, not finite, of the wrong length, or out of its bounds.
     """
+    return simulated_pair(
+        pair,
+        leader,
+        follower,
+        duration,
+        encoder_phase=encoder_phase,
+        amplifier=amplifier,
+        points_per_sample=points_per_sample,
+        friction=friction,
+        progress=progress,
+    ).dataset()
+
+
+def simulated_pair(
+    pair: Pair,
+    leader: Holder,
+    follower: Holder,
+    duration: RealLike,
+    *,
+    encoder_phase: tuple[float, float] | float = 0.0,
+    amplifier: Amplifier | None = None,
+    points_per_sample: int = 1,
+    friction: Friction | tuple[Friction, Friction] = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Trace:
+    """What `simulate_pair` returns, before it is a Dataset."""
     setup = prepare_pair(
         pair,
         leader,

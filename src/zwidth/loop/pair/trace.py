@@ -1,4 +1,4 @@
-"""The record of a simulated pair as labelled data: an xarray.Dataset along `arm` and `time`.
+"""The record of a simulated pair as labelled data along `arm` and `time`.
 
 Each arm's part, ``trace.sel(arm="leader")``, has the variables of the trace of one arm.
 """
@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from zwidth.environment.wording import with_unit
 from zwidth.loop.pair.setup import Holder, PairSetup
@@ -16,7 +15,10 @@ from zwidth.loop.plant import POSITION, STOPS
 from zwidth.loop.trace import (
     UNITS,
     VARIABLES,
+    Labelled,
+    Trace,
     Variable,
+    along_time,
     attributes_of,
     before_overflow,
     instants,
@@ -45,8 +47,8 @@ _WORDS = {
 """Of variables that have no wall of the loop to go by."""
 
 
-def build_pair_trace(setup: PairSetup, done: int) -> xr.Dataset:
-    """The Dataset of the first `done` ticks of the records, up to where the numbers outgrow any meaning."""
+def build_pair_trace(setup: PairSetup, done: int) -> Trace:
+    """The trace of the first `done` ticks of the records, up to where the numbers outgrow any meaning."""
     finished = min(setup.columns, done * setup.points if done <= setup.ticks else setup.columns)
     columns = min(before_overflow(arm.record, finished) for arm in setup.arms)
     values = [_values(setup, here, columns) for here in (0, 1)]
@@ -62,11 +64,11 @@ def build_pair_trace(setup: PairSetup, done: int) -> xr.Dataset:
 
 def labelled(
     values: list[dict[str, Array]], time: Array, sampled: NDArray[np.bool_], attributes: dict[str, Any]
-) -> xr.Dataset:
-    """The Dataset of the variables of leader and follower; nan where only the other has one."""
+) -> Trace:
+    """The trace of the variables of leader and follower; nan where only the other has one."""
     units = (*UNITS[attributes["motion"]], "J")
     variables = {
-        name: (
+        name: Labelled(
             ("arm", "time"),
             np.stack([part.get(name, np.full(time.size, np.nan)) for part in values]),
             attributes_of(Variable(about.symbol, _WORDS.get(name, about.long_name), about.kind), units),
@@ -74,12 +76,11 @@ def labelled(
         for name, about in VARIABLES.items()
         if any(name in part for part in values)
     }
-    coordinates: dict[str, Any] = {
-        "arm": ("arm", list(ARMS)),
-        "time": ("time", time, {"units": "s", "long_name": "time since sample 0", "symbol": "t"}),
-        "sampled": ("time", sampled, {"long_name": "both arms send at this instant"}),
+    coordinates = {
+        "arm": Labelled(("arm",), np.array(ARMS), {}),
+        **along_time(time, sampled, "both arms send at this instant"),
     }
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+    return Trace(variables, coordinates, attributes)
 
 
 def _values(setup: PairSetup, here: int, columns: int) -> dict[str, Array]:
