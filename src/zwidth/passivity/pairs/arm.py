@@ -50,7 +50,7 @@ class Arm:
         """With another line."""
         return replace(self, tangent=r)
 
-    @property
+    @cached_property
     def helped(self) -> tuple[Fraction, Fraction]:
         """s/2 and C + s/2, what compensation takes of damping and local damping; C + s and 0 of any mean."""
         slope, viscous = self.line.slope, self.side.compensation.viscous.fraction
@@ -69,17 +69,17 @@ class Arm:
         both = self.side.virtual_damping + self.side.local_damping
         return both - self.helped[1] if self.often == 1 else both
 
-    @property
+    @cached_property
     def whole(self) -> int:
         """d."""
         return int(self.side.delay // self.period)
 
-    @property
+    @cached_property
     def part(self) -> Fraction:
         """α."""
         return self.side.delay / self.period - self.whole
 
-    @property
+    @cached_property
     def age(self) -> int:
         """n."""
         return int(-(-self.side.link_delay // self.period))

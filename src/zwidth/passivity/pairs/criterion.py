@@ -10,7 +10,8 @@ M ⪰ 0 is three polynomials in c = cos θ that are not negative on [−1, 1].  
 
     (b_l − (2 d_l + 1) KT/2) (w b_f − (2 d_f + 1) KT/2) ≥ (N KT/2)²
 
-with no negative factor is necessary and sufficient.  Without delay: 1/b_l + 1/(w b_f) ≤ 2/(KT).
+with no negative factor is necessary and sufficient; with a delay of part of a sample, and with forces that
+are sent, M(0) ⪰ 0 is.  Without delay: 1/b_l + 1/(w b_f) ≤ 2/(KT).
 
 With a drive that reads its own arm m times in T, moves between samples are free: of all that lead from one
 sample to the next it loses least by
@@ -30,16 +31,19 @@ from functools import cached_property
 from math import isqrt, lcm
 
 import numpy as np
-from flint import fmpz_poly
+from flint import fmpq, fmpz_poly
 from numpy.typing import NDArray
 
 from zwidth.pairs import Pair
+from zwidth.passivity.linear.cosines import from_whole_cosines, whole_product
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
 from zwidth.passivity.pairs.arm import Arm
 from zwidth.passivity.tangents import best_tangent
+from zwidth.quantity.balls import as_fmpq
 
 Sums = dict[int, Fraction]
 Floats = NDArray[np.float64]
+_HALF = fmpq(1, 2)
 
 
 @dataclass(frozen=True)
@@ -108,28 +112,22 @@ class PairCriterion:
         leader, follower, crossed = self.forms
         echoes = [_echoed({}, arm) for arm in self.arms]
         scale = lcm(*(v.denominator for form in (*self.forms, *echoes) for v in form.values()))
-        lags: dict[int, int] = {}
-        whole = {k: int(v * scale) for k, v in crossed.items()}
-        for i, x in whole.items():
-            for j, y in whole.items():
-                lags[abs(i - j)] = lags.get(abs(i - j), 0) + x * y
-        square = _polynomial(lags.items())
+        powers = [int(crossed.get(k, 0) * scale) for k in range(min(crossed), max(crossed) + 1)]
+        square = whole_product(powers, powers)
         if self.pair.own_readings > 1:
             (top, bottom), (its_top, its_bottom) = (
                 _with_echo(*arm.driven, echo, scale) for arm, echo in zip(self.arms, echoes, strict=True)
             )
             return top, its_top, scale**2 * top * its_top - square * bottom * its_bottom
-        first, second = (
-            _polynomial((k, int(v * scale)) for k, v in form.items()) for form in (leader, follower)
-        )
+        first, second = (_polynomial(form, scale) for form in (leader, follower))
         return first, second, first * second - square
 
     @cached_property
     def signs(self) -> tuple[Positivity, Positivity, Positivity] | Fraction:
         """Why none of them is negative; or a c at which one is."""
-        found = []
+        found, known = [], self.of_springs and self._holds_at_rest
         for p in self.polynomials:
-            sign = prove_nonnegative(p)
+            sign = prove_nonnegative(p, known)
             if isinstance(sign, Fraction):
                 return sign
             found.append(sign)
@@ -139,7 +137,37 @@ class PairCriterion:
     @property
     def holds(self) -> bool:
         """True where none of them is negative: friction and encoders aside, no motion gains."""
-        return not self.undamped and not self.slips and not isinstance(self.signs, Fraction)
+        if self.undamped:
+            return False
+        if self.of_springs:
+            return self._holds_at_rest
+        return not self.slips and not isinstance(self.signs, Fraction)
+
+    @cached_property
+    def of_springs(self) -> bool:
+        """True of springs alone, without drives: M is least at θ → 0, where all its terms have one sign."""
+        return self.pair.own_readings == 1 and not any(
+            side.virtual_damping or side.local_damping or side.echo_damping or side.compensation
+            for side in self.pair.sides
+        )
+
+    @property
+    def _holds_at_rest(self) -> bool:
+        """M ⪰ 0 at θ → 0, of springs alone: all the terms of `forms` added up."""
+        arms, period = self.arms, as_fmpq(self.pair.sample_period)
+        felt = [as_fmpq(arm.side.felt_stiffness) for arm in arms]
+        weight = felt[0] / felt[1]
+        own, jumps, ages = [], [], []
+        for arm, k, w in zip(arms, felt, (1, weight), strict=True):
+            side, b, alpha = arm.side, as_fmpq(arm.side.damping), as_fmpq(arm.part)
+            late = arm.whole + alpha
+            stretch = k * (late + _HALF) + as_fmpq(side.echo_stiffness) * arm.echo_age
+            own.append(w * (b - period * stretch))
+            jumps.append(w * (period * k) ** 2 * alpha * (1 - alpha) / (4 * as_fmpq(arm.paying)))
+            ages.append(late + arm.age)
+        first, second = (loss - sum(jumps) for loss in own)
+        crossed = felt[0] * period / 2 * (sum(ages) + 1) + sum(jumps)
+        return first >= 0 and second >= 0 and first * second >= crossed**2
 
     @property
     def slips(self) -> bool:
@@ -256,17 +284,13 @@ def _with_echo(top: fmpz_poly, bottom: fmpz_poly, echo: Sums, scale: int) -> tup
     """Of a drive, with what comes back once a sample."""
     if not echo:
         return top, bottom
-    back = _polynomial((k, int(v * scale)) for k, v in echo.items())
+    back = _polynomial(echo, scale)
     return scale * top + back * bottom, scale * bottom
 
 
-def _polynomial(sums: Iterable[tuple[int, int]]) -> fmpz_poly:
-    """Σ of cosines in powers of c."""
-    total = fmpz_poly([])
-    for k, value in sums:
-        if value:
-            total += value * fmpz_poly.chebyshev_t(k)
-    return total
+def _polynomial(sums: Sums, scale: int) -> fmpz_poly:
+    """Σ of cosines, times a number that makes each whole, in powers of c."""
+    return from_whole_cosines([int(sums.get(k, 0) * scale) for k in range(max(sums) + 1)])
 
 
 def largest_spring(pair: Pair) -> Fraction | None:
