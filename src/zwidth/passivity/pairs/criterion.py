@@ -167,7 +167,7 @@ class PairCriterion:
             ages.append(late + arm.age)
         first, second = (loss - sum(jumps) for loss in own)
         crossed = felt[0] * period / 2 * (sum(ages) + 1) + sum(jumps)
-        return first >= 0 and second >= 0 and first * second >= crossed**2
+        return bool(first >= 0 and second >= 0 and first * second >= crossed**2)
 
     @property
     def slips(self) -> bool:
