@@ -15,13 +15,15 @@ from functools import cached_property
 from math import lcm
 
 import numpy as np
-from flint import fmpz_poly
+from flint import fmpq, fmpz_poly
 from numpy.typing import NDArray
 
 from zwidth.pairs import Side
 from zwidth.passivity.tangents import Line, line_of
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
 Floats = NDArray[np.float64]
+_NONE = fmpq(0)
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class Arm:
 
     def at_tangent(self, r: Fraction) -> Arm:
         """With another line."""
-        return replace(self, tangent=r)
+        return self if r == self.tangent else replace(self, tangent=r)
 
     @cached_property
     def helped(self) -> tuple[Fraction, Fraction]:
@@ -212,11 +214,26 @@ class Arm:
 
     def force_error(self, other: Arm) -> Fraction:
         """The largest error of its force by the steps of both encoders [N; N·m]."""
-        taps = self.own_row.values() if self.often == 1 else (*self.own, *self.echo)
-        mine, its = (sum(map(abs, row), Fraction(0)) for row in (taps, self.other))
+        mine, its = self._errors
+        steps = as_fmpq(self.side.resolution), as_fmpq(other.side.resolution)
+        return as_fraction(mine * steps[0] + its * steps[1])
+
+    @cached_property
+    def _errors(self) -> tuple[fmpq, fmpq]:
+        """The same of one step of its own encoder, and of the other's."""
+        side, period = self.side, as_fmpq(self.period)
+        past = self.often * as_fmpq(self.of_own_speed) / period
+        back = as_fmpq(side.echo_damping) / period
+        taps = as_fmpq(side.stiffness) + past, -past, as_fmpq(side.echo_stiffness) + back, -back
+        row: dict[int, fmpq] = {}
+        ages = (0, 1, self.echo_age, self.echo_age + 1) if self.often == 1 else range(4)
+        for age, tap in zip(ages, taps, strict=True):
+            row[age] = row.get(age, 0) + tap
         still, moving = self.helped
         unsure = still if self.often == 1 else still + moving
-        return (mine / 2 + unsure / self.period) * self.side.resolution + its * other.side.resolution / 2
+        heard = as_fmpq(side.virtual_damping) / period + back
+        mine = sum(map(abs, row.values()), _NONE) / 2 + as_fmpq(unsure) / period
+        return mine, (abs(as_fmpq(side.felt_stiffness) + heard) + abs(heard)) / 2
 
     def missing_friction(self, other: Arm) -> Fraction:
         """What it lacks of Coulomb friction for the steps of both encoders and for its compensation."""

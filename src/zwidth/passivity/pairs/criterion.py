@@ -24,11 +24,12 @@ which with springs alone is β.  The cross term stays.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property, partial
 from math import isqrt, lcm
+from typing import Any
 
 import numpy as np
 from flint import fmpq, fmpz_poly
@@ -39,9 +40,9 @@ from zwidth.passivity.linear.cosines import from_whole_cosines, whole_product
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
 from zwidth.passivity.pairs.arm import Arm
 from zwidth.passivity.tangents import best_tangent
-from zwidth.quantity.balls import as_fmpq
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
-Sums = dict[int, Fraction]
+Sums = dict[int, fmpq]
 Floats = NDArray[np.float64]
 _HALF = fmpq(1, 2)
 
@@ -95,8 +96,8 @@ class PairCriterion:
         for here, arm in enumerate(self.arms):
             if not arm.part:
                 continue
-            loss = arm.weight * arm.period**2 * arm.part * (1 - arm.part) / (4 * arm.paying)
-            mine, its = arm.own_row, arm.other_row
+            loss = as_fmpq(arm.weight * arm.period**2 * arm.part * (1 - arm.part) / (4 * arm.paying))
+            mine, its = ({k: as_fmpq(v) for k, v in row.items()} for row in (arm.own_row, arm.other_row))
             for k, row in ((here, mine), (1 - here, its)):
                 _add(own[k], ((abs(i - j), -loss * x * y) for i, x in row.items() for j, y in row.items()))
             sign = 1 if here else -1  # of the power of z that a reading of age n has beside one's own
@@ -111,8 +112,10 @@ class PairCriterion:
         """M_ll, M_ff and det M in c, times positive numbers."""
         leader, follower, crossed = self.forms
         echoes = [_echoed({}, arm) for arm in self.arms]
-        scale = lcm(*(v.denominator for form in (*self.forms, *echoes) for v in form.values()))
-        powers = [int(crossed.get(k, 0) * scale) for k in range(min(crossed), max(crossed) + 1)]
+        scale = lcm(*(int(v.q) for form in (*self.forms, *echoes) for v in form.values()))
+        powers = [
+            (crossed[k] * scale).p if k in crossed else 0 for k in range(min(crossed), max(crossed) + 1)
+        ]
         square = whole_product(powers, powers)
         if self.pair.own_readings > 1:
             (top, bottom), (its_top, its_bottom) = (
@@ -141,7 +144,9 @@ class PairCriterion:
             return False
         if self.of_springs:
             return self._holds_at_rest
-        return not self.slips and not isinstance(self.signs, Fraction)
+        if self.slips or any(p(1) < 0 or p(-1) < 0 for p in self.polynomials):
+            return False
+        return not isinstance(self.signs, Fraction)
 
     @cached_property
     def of_springs(self) -> bool:
@@ -204,38 +209,41 @@ class PairCriterion:
     def at(self, theta: float) -> np.ndarray[tuple[int, int], np.dtype[np.complex128]]:
         """M at a frequency θ = ωT, to rounding [N·s/m; N·m·s/rad]."""
         leader, follower, crossed = self.forms
-        diagonal = [sum(float(v) * np.cos(k * theta) for k, v in form.items()) for form in (leader, follower)]
+        diagonal = [_at(form, lambda k: np.cos(k * theta)) for form in (leader, follower)]
         if self.pair.own_readings > 1:
             diagonal = [
-                arm.driven_at(theta) + sum(float(v) * np.cos(k * theta) for k, v in _echoed({}, arm).items())
-                for arm in self.arms
+                arm.driven_at(theta) + _at(_echoed({}, arm), lambda k: np.cos(k * theta)) for arm in self.arms
             ]
-        off = sum(float(v) * np.exp(1j * k * theta) for k, v in crossed.items())
+        off = _at(crossed, lambda k: np.exp(1j * k * theta))
         return np.array([[diagonal[0], off], [np.conj(off), diagonal[1]]])
 
 
 def spending(pair: Pair, any_mean: bool = False) -> PairCriterion:
     """The criterion with the lines that leave most damping, of those that Coulomb friction pays for."""
     criterion = PairCriterion(pair, any_mean=any_mean)
-    if not any(pair.compensations):
-        return criterion
     leader, follower = criterion.arms
-    return replace(criterion, tangents=(_tangent(leader, follower), _tangent(follower, leader)))
+    tangents = _tangent(leader, follower), _tangent(follower, leader)
+    return criterion if tangents == criterion.tangents else replace(criterion, tangents=tangents)
 
 
 def _tangent(arm: Arm, other: Arm) -> Fraction:
     law = arm.side.compensation
     move = float(arm.side.resolution / arm.period / law.speed.fraction) if law.speed else 0.0
+    missing = cache(partial(arm.roughly_missing, other))  # most laws are paid for, or are none
     return best_tangent(
         law,
         move,
-        arm.roughly_missing(other),
+        lambda height, slope: missing()(height, slope),
         lambda r: arm.at_tangent(r).missing_friction(other) <= 0,
     )
 
 
+def _at(form: Sums, wave: Callable[[int], Any]) -> Any:
+    return sum(float(as_fraction(v)) * wave(k) for k, v in form.items())
+
+
 def _own(arm: Arm) -> Sums:
-    found = {0: arm.weight * arm.damping}
+    found = {0: as_fmpq(arm.weight) * as_fmpq(arm.damping)}
     _add_coupling(found, arm, 0, arm.side.stiffness, arm.of_own_speed)
     return _echoed(found, arm)
 
@@ -250,34 +258,36 @@ def _echoed(found: Sums, arm: Arm) -> Sums:
 
 def _add_coupling(found: Sums, arm: Arm, age: int, stiffness: Fraction, damping: Fraction) -> None:
     """Spring and damper of its own readings of an age."""
-    stretch, rubbed = arm.weight * stiffness * arm.period, arm.weight * damping
-    for late, share in arm.mixed:
-        power = late + age
+    weight = as_fmpq(arm.weight)
+    stretch, rubbed = weight * as_fmpq(stiffness) * as_fmpq(arm.period), weight * as_fmpq(damping)
+    for late, part in arm.mixed:
+        power, share = late + age, as_fmpq(part)
         parts = [(0, -stretch * share / 2), *((k, -stretch * share) for k in range(1, power))]
         _add(found, [*parts, (power, share * rubbed)])
 
 
 def _crossed(leader: Arm, follower: Arm) -> Sums:
     found: Sums = {}
-    stretch = leader.side.felt_stiffness * leader.period
-    mine = [(power + leader.age, share) for power, share in leader.mixed]
-    its = [(power + follower.age, share) for power, share in follower.mixed]
+    stretch = as_fmpq(leader.side.felt_stiffness) * as_fmpq(leader.period)
+    mine = [(power + leader.age, as_fmpq(share)) for power, share in leader.mixed]
+    its = [(power + follower.age, as_fmpq(share)) for power, share in follower.mixed]
     for p, share in mine:
         for q, part in its:
             _add(found, ((k, stretch * share * part / 2) for k in range(1 - p, q)))
         _add(found, ((-p, -share * _rubbed(leader) / 2),))
-    _add(found, ((q, -part * follower.weight * _rubbed(follower) / 2) for q, part in its))
+    rubbed = as_fmpq(follower.weight) * _rubbed(follower)
+    _add(found, ((q, -part * rubbed / 2) for q, part in its))
     return found
 
 
-def _rubbed(arm: Arm) -> Fraction:
+def _rubbed(arm: Arm) -> fmpq:
     """B of the other's readings."""
-    return arm.side.virtual_damping + arm.side.echo_damping
+    return as_fmpq(arm.side.virtual_damping) + as_fmpq(arm.side.echo_damping)
 
 
-def _add(form: Sums, parts: Iterable[tuple[int, Fraction]]) -> None:
+def _add(form: Sums, parts: Iterable[tuple[int, fmpq]]) -> None:
     for k, value in parts:
-        form[k] = form.get(k, Fraction(0)) + value
+        form[k] = form[k] + value if k in form else value
 
 
 def _with_echo(top: fmpz_poly, bottom: fmpz_poly, echo: Sums, scale: int) -> tuple[fmpz_poly, fmpz_poly]:
@@ -290,7 +300,7 @@ def _with_echo(top: fmpz_poly, bottom: fmpz_poly, echo: Sums, scale: int) -> tup
 
 def _polynomial(sums: Sums, scale: int) -> fmpz_poly:
     """Σ of cosines, times a number that makes each whole, in powers of c."""
-    return from_whole_cosines([int(sums.get(k, 0) * scale) for k in range(max(sums) + 1)])
+    return from_whole_cosines([(sums[k] * scale).p if k in sums else 0 for k in range(max(sums) + 1)])
 
 
 def largest_spring(pair: Pair) -> Fraction | None:
