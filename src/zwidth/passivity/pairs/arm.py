@@ -86,7 +86,7 @@ class Arm:
         """n."""
         return int(-(-self.side.link_delay // self.period))
 
-    @property
+    @cached_property
     def echo_age(self) -> int:
         """Samples after which its own reading comes back to it in the other's force."""
         return self.age + int(-(-self.side.return_delay // self.period))
@@ -108,7 +108,7 @@ class Arm:
         past = self.often * self.of_own_speed / self.period
         return self.side.stiffness + past, -past
 
-    @property
+    @cached_property
     def inside(self) -> tuple[Fraction, Fraction]:
         """β and γ of a drive: what a move between two of its own readings loses, and with the one before."""
         if self.least is not None:
