@@ -217,6 +217,8 @@ class Device(Parametric):
 
     def replace(self, **changes: Any) -> Device:
         """The same device with some arguments changed (`rate` counts as one)."""
+        if "rate" in changes and "sample_period" not in changes:
+            changes["sample_period"] = _period(None, changes.pop("rate"))
         if changes.keys() <= parameters_of(Device).keys() and None not in changes.values():
             read = {key: _read(key, value, self.motion) for key, value in changes.items()}
             assumed = tuple(key for key in self.assumed if key not in changes)
@@ -224,8 +226,6 @@ class Device(Parametric):
             _check_stiction(device)
             return device
         given = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in self.assumed}
-        if "rate" in changes and "sample_period" not in changes:
-            del given["sample_period"]
         return Device(**{**given, **changes})
 
     def exact(self, key: str) -> Fraction:

@@ -16,7 +16,7 @@ from zwidth.errors import InputError
 from zwidth.gains.coupled import CoupledJoint
 from zwidth.gains.joint import Gains
 from zwidth.gains.peak import peak
-from zwidth.passivity.linear.boundary import COARSER, Holds, largest_holding, smallest_holding
+from zwidth.passivity.linear.boundary import COARSER, asked_seldom, largest_holding, smallest_holding
 from zwidth.passivity.pairs import check_pair
 from zwidth.passivity.pairs.limits import is_passive
 from zwidth.quantity.exact import Exact
@@ -173,29 +173,8 @@ def _largest(joint: CoupledJoint, near: float | None = None) -> float | None:
     least = Exact(guess / 10**6).fraction
     if not holds(least):
         return None
-    return largest_holding(_asked_seldom(holds, least, near), guess, COARSER) or None
-
-
-def _asked_seldom(holds: Holds, good: Fraction, near: float | None) -> Holds:
-    """The same answers, of what holds at `good` and up to one place: what follows is not asked again.
-
-    First it is asked around where that place probably is.
-    """
-    bad: Fraction | None = None
-
-    def asked(value: Fraction) -> bool:
-        nonlocal good, bad
-        if value <= good or (bad is not None and value >= bad):
-            return value <= good
-        answer = holds(value)
-        good, bad = (value, bad) if answer else (good, value)
-        return answer
-
-    for beside in _BESIDE if near else ():
-        at = Fraction(near or 0)
-        if asked(at * (1 - beside)) and not asked(at * (1 + beside)):
-            break
-    return asked
+    seldom = asked_seldom(lambda k: k <= least or holds(k), near, _BESIDE)
+    return largest_holding(seldom, guess, COARSER) or None
 
 
 def _proved(joint: CoupledJoint, largest: float) -> CoupledJoint | None:

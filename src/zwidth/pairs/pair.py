@@ -101,7 +101,7 @@ class Side:
     echo_damping: Fraction
     return_delay: Fraction
 
-    @property
+    @cached_property
     def felt_stiffness(self) -> Fraction:
         """Of the spring to the other arm in all, at rest [N/m; N·m/rad]."""
         return self.stiffness + self.echo_stiffness

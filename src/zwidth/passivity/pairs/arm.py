@@ -214,12 +214,12 @@ class Arm:
 
     def force_error(self, other: Arm) -> Fraction:
         """The largest error of its force by the steps of both encoders [N; N·m]."""
-        mine, its = self._errors
+        mine, its = self.error_of_steps
         steps = as_fmpq(self.side.resolution), as_fmpq(other.side.resolution)
         return as_fraction(mine * steps[0] + its * steps[1])
 
     @cached_property
-    def _errors(self) -> tuple[fmpq, fmpq]:
+    def error_of_steps(self) -> tuple[fmpq, fmpq]:
         """The same of one step of its own encoder, and of the other's."""
         side, period = self.side, as_fmpq(self.period)
         past = self.often * as_fmpq(self.of_own_speed) / period

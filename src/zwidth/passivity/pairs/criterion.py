@@ -158,7 +158,13 @@ class PairCriterion:
 
     @property
     def _holds_at_rest(self) -> bool:
-        """M ⪰ 0 at θ → 0, of springs alone: all the terms of `forms` added up."""
+        """M ⪰ 0 at θ → 0, of springs alone."""
+        first, second, crossed = self.at_rest
+        return bool(first >= 0 and second >= 0 and first * second >= crossed**2)
+
+    @cached_property
+    def at_rest(self) -> tuple[fmpq, fmpq, fmpq]:
+        """M_ll, M_ff and M_lf at θ → 0, of springs alone: all the terms of `forms` added up."""
         arms, period = self.arms, as_fmpq(self.pair.sample_period)
         felt = [as_fmpq(arm.side.felt_stiffness) for arm in arms]
         weight = felt[0] / felt[1]
@@ -171,8 +177,7 @@ class PairCriterion:
             jumps.append(w * (period * k) ** 2 * alpha * (1 - alpha) / (4 * as_fmpq(arm.paying)))
             ages.append(late + arm.age)
         first, second = (loss - sum(jumps) for loss in own)
-        crossed = felt[0] * period / 2 * (sum(ages) + 1) + sum(jumps)
-        return bool(first >= 0 and second >= 0 and first * second >= crossed**2)
+        return first, second, felt[0] * period / 2 * (sum(ages) + 1) + sum(jumps)
 
     @property
     def slips(self) -> bool:
