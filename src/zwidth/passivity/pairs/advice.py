@@ -198,10 +198,10 @@ def _where_it_turns(pair: Pair, here: int, key: str) -> float | None:
     arm, other = criterion.arms[here], criterion.arms[1 - here]
     missing = arm.missing_friction(other), other.missing_friction(arm)
     if key == "coulomb_friction":
-        return float(max(arm.side.coulomb_friction + missing[0], 0))
+        return float(max(arm.side.coulomb_friction + missing[0], Fraction(0)))
     slopes = map(as_fraction, (arm.error_of_steps[0], other.error_of_steps[1]))
     room = [-lacks / slope for lacks, slope in zip(missing, slopes, strict=True) if slope]
-    return float(max(arm.side.resolution + min(room), 0)) if room else None
+    return float(max(arm.side.resolution + min(room), Fraction(0))) if room else None
 
 
 def _damping_at_rest(criterion: PairCriterion, here: int) -> float | None:
@@ -212,7 +212,8 @@ def _damping_at_rest(criterion: PairCriterion, here: int) -> float | None:
     if other <= 0:
         return None
     arm = criterion.arms[here]
-    return float(max(arm.damping + as_fraction(criterion.at_rest[2] ** 2 / other - own) / arm.weight, 0))
+    more = as_fraction(criterion.at_rest[2] ** 2 / other - own) / arm.weight
+    return float(max(arm.damping + more, Fraction(0)))
 
 
 def _stiffness_that_turns(pair: Pair) -> float | None:
