@@ -13,6 +13,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.cli.main import main
+from zwidth.passivity.bracket.bounded import BoundedSearch
 
 WALL = ("limit", "haptic-paddle", "--stiffness", "100", "--virtual-damping", "0.05")
 BOUNDED = (*WALL, "--penetration", "0.5 mm", "--speed", "0.3 m/s")
@@ -44,6 +45,28 @@ def run(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.
 def words(result: Result) -> str:
     """The report on one line."""
     return " ".join(result.out.split())
+
+
+@pytest.mark.parametrize(
+    ("more", "is_told"),
+    [
+        (("--velocity-filter", "window 2"), True),
+        (("--velocity-filter", "window 2", "--effort", "5"), False),
+        (("--velocity-filter", "window 2", "--speed", "0.05 m/s"), False),
+        ((), False),
+    ],
+)
+def test_what_may_take_long_is_told_before_it_begins(run: Run, monkeypatch, more, is_told) -> None:
+    """With what to type instead; nothing where it is a matter of seconds."""
+
+    def begun(_: BoundedSearch) -> None:
+        raise zw.InputError("it has begun")
+
+    monkeypatch.setattr(BoundedSearch, "bracket", begun)
+    said = " ".join(run(*WALL, "--penetration", "0.224 mm", *more).err.split())
+    assert said.endswith("it has begun")
+    assert said.startswith("zwidth: this may take up to about 60 s") == is_told
+    assert ("--effort 5" in said) == is_told
 
 
 def test_the_closed_limit_of_every_hand(run: Run) -> None:

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import Once, add_in_full, add_law_option, add_output, add_parameters, overrides
-from zwidth.cli.output import print_json, say_written, targets
+from zwidth.cli.output import print_json, print_message, say_written, targets
 from zwidth.device.catalogue import PROPERTIES
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
@@ -81,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
     options = _options(arguments, loop.device.motion)
     from zwidth.traces.with_bar.passive_limit import passive_limit
 
-    bracket = passive_limit(loop.device, loop.environment, parameter, **options)
+    bracket = passive_limit(loop.device, loop.environment, parameter, told=_announce, **options)
     if save is not None:
         bracket.save(save)
     if plot is not None:
@@ -94,6 +94,14 @@ def run(arguments: argparse.Namespace) -> int:
         print_bracket(bracket, loop, arguments.in_full)
         say_written(save, plot)
     return BOTH if bracket.proved_passive is not None and bracket.proved_active is not None else ONE_OR_NONE
+
+
+def _announce(seconds: float) -> None:
+    print_message(
+        f"this may take up to about {seconds:.0f} s: what the law remembers, how far the hand goes in a "
+        'sample and how deep make a large grid. "--effort 5" ends it after about 5 s with what was found by '
+        "then; a slower hand, --speed, makes the grid smaller"
+    )
 
 
 def _refuse_without_stiffness(loop: Specification) -> None:

@@ -217,9 +217,15 @@ class Device(Parametric):
 
     def replace(self, **changes: Any) -> Device:
         """The same device with some arguments changed (`rate` counts as one)."""
-        given = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in self.assumed}
         if "rate" in changes and "sample_period" not in changes:
-            del given["sample_period"]
+            changes["sample_period"] = _period(None, changes.pop("rate"))
+        if changes.keys() <= parameters_of(Device).keys() and None not in changes.values():
+            read = {key: _read(key, value, self.motion) for key, value in changes.items()}
+            assumed = tuple(key for key in self.assumed if key not in changes)
+            device: Device = self._changed(**read, _assumed=assumed)
+            _check_stiction(device)
+            return device
+        given = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in self.assumed}
         return Device(**{**given, **changes})
 
     def exact(self, key: str) -> Fraction:

@@ -16,7 +16,7 @@ from zwidth.errors import InputError
 from zwidth.gains.coupled import CoupledJoint
 from zwidth.gains.joint import Gains
 from zwidth.gains.peak import peak
-from zwidth.passivity.linear.boundary import COARSER, largest_holding, smallest_holding
+from zwidth.passivity.linear.boundary import COARSER, asked_seldom, largest_holding, smallest_holding
 from zwidth.passivity.pairs import check_pair
 from zwidth.passivity.pairs.limits import is_passive
 from zwidth.quantity.exact import Exact
@@ -27,6 +27,9 @@ DIGITS = 3
 _TRIES = 6
 _WORTH = 1.02
 """With less than 2 % more stiffness the damping is left out."""
+
+_BESIDE = Fraction(1, 512), Fraction(1, 32), Fraction(1, 2)
+"""How far beside the place where it probably is the largest stiffness is looked at first."""
 
 _GRID = 8
 """Places at which gains that are passive are looked for; without compensation the first of all is one."""
@@ -55,22 +58,27 @@ def best(joint: CoupledJoint) -> CoupledJoint | None:
         room = min(room, joint.largest_damping)
     high = float(room / top)
 
+    found: dict[float, float] = {}
+
     def value(times: float) -> float:
-        return _largest(_damped(joint, one, times)) or 0.0
+        if times not in found:
+            near = found[min(found, key=lambda x: abs(x - times))] if found else None
+            found[times] = _largest(_damped(joint, one, times), near) or 0.0
+        return found[times]
 
     start = next((x for x in (0.0, *(high * n / _GRID for n in range(1, _GRID + 1))) if value(x)), None)
     if start is None:
         return None
     times = peak(value, high, start)
     candidates = [_damped(joint, one, x) for x in (times, start)]
-    stiffness = [_largest(candidate) or 0.0 for candidate in candidates]
+    stiffness = [value(x) for x in (times, start)]
     if stiffness[0] < _WORTH * stiffness[1]:
         candidates.reverse()
         stiffness.reverse()
     for candidate, largest in zip(candidates, stiffness, strict=True):
-        found = _proved(candidate, largest) if largest else None
-        if found is not None:
-            return found
+        stiff = _proved(candidate, largest) if largest else None
+        if stiff is not None:
+            return stiff
     return None
 
 
@@ -142,18 +150,31 @@ def _ratio(joint: CoupledJoint) -> Fraction:
     return follower.stiffness / leader.stiffness
 
 
-def _largest(joint: CoupledJoint) -> float | None:
-    """The largest K of the leader, both sides in proportion, to a thousandth."""
+def _largest(joint: CoupledJoint, near: float | None = None) -> float | None:
+    """The largest K of the leader, both sides in proportion, to a thousandth.
+
+    Where it is probably, `near`, is looked at first; it is the same without.
+    """
     ratio = _ratio(joint)
+    try:
+        base = joint.pair()
+    except (InputError, ZeroDivisionError):
+        return None
 
     def holds(k: Fraction) -> bool:
-        return k > 0 and _holds(_stiff(joint, k, k * ratio))
+        alike = {} if ratio == 1 else {"follower_stiffness": Exact(k * ratio)}
+        try:
+            return is_passive(base.replace(stiffness=Exact(k), **alike))
+        except (InputError, ZeroDivisionError):
+            return False
 
     period = joint.devices[0].exact("sample_period")
     guess = float(min(joint.damping) / period) or float(joint.gains[0].stiffness)
-    if not holds(Exact(guess / 10**6).fraction):
+    least = Exact(guess / 10**6).fraction
+    if not holds(least):
         return None
-    return largest_holding(lambda k: not k or holds(k), guess, COARSER) or None
+    seldom = asked_seldom(lambda k: k <= least or holds(k), near, _BESIDE)
+    return largest_holding(seldom, guess, COARSER) or None
 
 
 def _proved(joint: CoupledJoint, largest: float) -> CoupledJoint | None:

@@ -37,7 +37,7 @@ from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact
 from zwidth.stability.known_hand.characteristic import Family, as_floats, bilinear, family
 from zwidth.stability.known_hand.coupled import motion_of
-from zwidth.stability.known_hand.crossing import last_stable, plain
+from zwidth.stability.known_hand.crossing import last_stable_of_each, plain
 
 _NOT_COVERED = "walls with this velocity filter, whose response does not end"
 
@@ -159,7 +159,7 @@ def stable_limits(hand: HandPlan, damping: Array) -> Array:
     """For each B the largest stiffness that is stable with a hand, NaN where none is; floats, for curves."""
     with precision(_BITS):
         polynomials = plain(family(hand.motion, hand.velocity))
-    found = [last_stable(polynomials, float(b)) for b in damping]
+    found = last_stable_of_each(polynomials, damping)
     return np.array([np.nan if end is None else end.stiffness for end in found])
 
 

@@ -24,6 +24,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 from zwidth.device import Device
@@ -48,6 +49,18 @@ MOST_READINGS = 1000
 
 _EARLY = "a reading cannot arrive before it is sent"
 _ATTRACTS = "the other's force felt with its sign turned round pushes the arms apart"
+_NO_COMPENSATION = FrictionCompensation()
+_GAINS = (
+    "stiffness",
+    "damping",
+    "local_damping",
+    "follower_stiffness",
+    "follower_damping",
+    "follower_local_damping",
+    "reflection",
+    "follower_reflection",
+    "drive_rate",
+)
 _CERTAIN = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
 
 
@@ -88,7 +101,7 @@ class Side:
     echo_damping: Fraction
     return_delay: Fraction
 
-    @property
+    @cached_property
     def felt_stiffness(self) -> Fraction:
         """Of the spring to the other arm in all, at rest [N/m; N·m/rad]."""
         return self.stiffness + self.echo_stiffness
@@ -243,10 +256,14 @@ class Pair(Parametric):
         self._keep(leader=leader, follower=follower, **laws, **given)
         read = {name: self._number(name, value) for name, value in given.items()}
         self._keep(**read)
-        for name, device in (("leader", leader), ("follower", follower)):
+        self._check("leader", "follower")
+
+    def _check(self, *changed: str) -> None:
+        """What ties its numbers together, and that those of devices that changed are certain."""
+        for name in changed:
             for key in _CERTAIN:
                 try:
-                    device.exact(key)
+                    getattr(self, name).exact(key)
                 except InputError as error:
                     raise InputError(f"{name}: {error}") from None
         self._check_springs()
@@ -305,7 +322,7 @@ class Pair(Parametric):
                 "of the drive and the bus are taken in step"
             )
 
-    @property
+    @cached_property
     def readings(self) -> tuple[int, int]:
         """Readings of its own that leader and follower take in T."""
         if self.drive_rate is not None:
@@ -326,7 +343,7 @@ class Pair(Parametric):
         """ "linear" or "rotary"."""
         return self.leader.motion
 
-    @property
+    @cached_property
     def sample_period(self) -> Fraction:
         """T, from one reading that is sent to the next [s]."""
         return max(device.exact("sample_period") for device in (self.leader, self.follower))
@@ -344,7 +361,7 @@ class Pair(Parametric):
         """
         return self.sides[0].felt_stiffness / self.sides[1].felt_stiffness
 
-    @property
+    @cached_property
     def sides(self) -> tuple[Side, Side]:
         """Leader and follower, with what each computes from."""
         gains = [value.fraction for value in (self.stiffness, self.damping, self.local_damping)]
@@ -361,7 +378,7 @@ class Pair(Parametric):
     @property
     def compensations(self) -> tuple[FrictionCompensation, FrictionCompensation]:
         """Of leader and follower; of zeros where there is none."""
-        law = self.compensation or FrictionCompensation()
+        law = self.compensation or _NO_COMPENSATION
         return law, law if self.follower_compensation is None else self.follower_compensation
 
     @property
@@ -376,6 +393,8 @@ class Pair(Parametric):
 
     def replace(self, **changes: Any) -> Pair:
         """The same pair with some arguments changed."""
+        if all(self._is_alike(name, value) for name, value in changes.items()):
+            return self._with(**changes)
         given: dict[str, Any] = {
             "leader": self.leader,
             "follower": self.follower,
@@ -393,6 +412,24 @@ class Pair(Parametric):
             "follower_compensation": self.follower_compensation,
         }
         return Pair(**{**given, **changes})
+
+    def _is_alike(self, name: str, value: Any) -> bool:
+        """True of what may be changed while all else stays as it was read."""
+        if isinstance(value, Device):
+            return name in ("leader", "follower") and value.motion == self.motion
+        if name == "delay":
+            return type(value) is tuple and len(value) == 2
+        return type(value) is Exact and name in _GAINS
+
+    def _with(self, **changes: Any) -> Pair:
+        """The same with such changes."""
+        if "delay" in changes:
+            changes["there"], changes["back"] = changes.pop("delay")
+        devices = [name for name, value in changes.items() if isinstance(value, Device)]
+        numbers = {name: self._number(name, value) for name, value in changes.items() if name not in devices}
+        pair: Pair = self._changed(**{**changes, **numbers})
+        pair._check(*devices)
+        return pair
 
     def describe(self) -> str:
         """The coupling in a line."""

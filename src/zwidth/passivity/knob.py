@@ -8,11 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cache
 from math import inf, isinf
 
 from zwidth.passivity.advice import Advice, Kind
-from zwidth.passivity.linear.boundary import COARSE, SMALLEST, Holds, largest_holding, smallest_holding
+from zwidth.passivity.linear.boundary import (
+    COARSE,
+    SMALLEST,
+    Holds,
+    asked_seldom,
+    largest_holding,
+    smallest_holding,
+)
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
@@ -32,15 +40,19 @@ _PHASES = (0, 0.2, 0.4, 0.5, 0.6, 0.8)
 
 _MOST_SAMPLES = 3
 
+_BESIDE = (Fraction(1, 2**30),)
+"""How far beside a limit that is known but for rounding it is asked."""
+
 
 @dataclass(frozen=True)
 class Knob:
     """A number that one can turn: `holds` of a value that is proved; with `more`, more of it is safer.
 
     `parameter` is a name of the glossary, behind "leader." or "follower." where it is of one arm.  Where
-    its limit may be looked for first says `likely`; `in_samples`, that it is proved for delays of whole
-    samples alone.  Where it may fail on the way to a limit that holds, `between` names values on that way.
-    Of a number below 0 it is the size, and `sign` is −1.  `hands` is said of whom it holds.
+    its limit may be looked for first says `likely`; where it is, but for rounding, `near`; `in_samples`,
+    that it is proved for delays of whole samples alone.  Where it may fail on the way to a limit that holds,
+    `between` names values on that way.  Of a number below 0 it is the size, and `sign` is −1.  `hands` is
+    said of whom it holds.
     """
 
     parameter: str
@@ -53,6 +65,7 @@ class Knob:
     between: Between | None = None
     sign: int = 1
     hands: str = ""
+    near: Guess = lambda: None
 
     def proves(self, value: float) -> bool:
         """Whether a value is proved, as the decimal that it is written as."""
@@ -100,7 +113,8 @@ def turn_all(knobs: Iterable[Knob], motion: str, kind: Kind, grain: int = COARSE
 
 def turn(knob: Knob, motion: str, kind: Kind, grain: int = COARSE) -> Advice:
     """How far a knob must be turned, or may be; `grain` as for `largest_holding`."""
-    knob = replace(knob, holds=cache(knob.holds))  # at its limit, and for a shorter one, it is asked again
+    seldom = asked_seldom(knob.holds, near, _BESIDE, not knob.more) if (near := knob.near()) else knob.holds
+    knob = replace(knob, holds=cache(seldom))  # at its limit, and for a shorter one, it is asked again
     to = None
     if knob.more or knob.current or kind == "slack":  # nothing is less than 0
         to = _last_proved(knob, grain)

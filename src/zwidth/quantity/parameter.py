@@ -128,8 +128,15 @@ class Parametric:
 
     def _keep(self, **values: Any) -> None:
         """Put what was read in the place of what was given."""
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
+        self.__dict__.update(values)
+
+    def _changed(self, **read: Any) -> Any:
+        """A copy with some numbers that were read in the place of its own; the others are not read again."""
+        kind = type(self)
+        copy = object.__new__(kind)
+        own = self.__dict__
+        copy.__dict__.update({name: own[name] for name in kind.__dataclass_fields__} | read)  # type: ignore[attr-defined]
+        return copy
 
 
 def parameters_of(kind: type[Any]) -> Mapping[str, Parameter]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bz2
 import gzip
+import sys
 from pathlib import Path
 
 import h5py
@@ -15,6 +16,7 @@ import scipy.io
 
 import zwidth as zw
 from zwidth.identification.logs.names import name_and_unit
+from zwidth.identification.logs.text import text_table
 
 HEADER = ("time_s", "position_mm", "force_N")
 
@@ -93,6 +95,29 @@ def test_compressed_text(recording, tmp_path: Path) -> None:
         path = tmp_path / f"log.csv.{suffix}"
         path.write_bytes(pack(text_of(recording).encode()))
         assert_same(zw.read_log(path), recording)
+
+
+def test_the_first_rows_are_looked_at_once(tmp_path: Path) -> None:
+    """However many delimiters a line may have, and however often the file is opened."""
+    path = tmp_path / "log.csv"
+    lines = ["time_s,position_m,hand_force_N,motor_force_N"]
+    lines += [f"{k / 1000:.3f},{k % 7 / 1000:.4f},-1.25,0.5" for k in range(1000)]
+    path.write_text("\n".join(lines), encoding="utf-8")
+    calls = 0
+
+    def count(frame, event, _) -> None:
+        nonlocal calls
+        calls += event == "call" and "zwidth" in frame.f_code.co_filename
+
+    text_table(path)  # what is imported at first
+    path.write_text("\n".join([*lines, "1.0,0.0001,0.25,0.5"]), encoding="utf-8")
+    sys.setprofile(count)
+    try:
+        tables = [text_table(path) for _ in range(3)]
+    finally:
+        sys.setprofile(None)
+    assert list(tables[0].units) == list(tables[2].units) == lines[0].split(",")
+    assert calls < 10 * 1000
 
 
 def test_texts_with_scars(recording, tmp_path: Path) -> None:

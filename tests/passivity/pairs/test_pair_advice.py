@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from fractions import Fraction
 from math import isinf
 from typing import Any
@@ -13,6 +14,8 @@ from strategies import seeds
 
 import zwidth as zw
 from zwidth.passivity.advice import Advice
+from zwidth.passivity.knob import turn_all
+from zwidth.passivity.pairs.advice import _of_the_arms, _of_the_coupling
 from zwidth.passivity.pairs.limits import with_share
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.units import parse_number
@@ -55,6 +58,16 @@ def drawn(rng: random.Random) -> zw.Pair:
         sizes = {"coulomb": 10 ** rng.uniform(-2, -0.5), "viscous": b * rng.uniform(0, 0.5), "speed": 0.3}
         numbers["compensation"] = zw.FrictionCompensation(**{k: rounded(v) for k, v in sizes.items()})
     return zw.Pair(leader, follower, **numbers)
+
+
+@seeds(12)
+def test_where_a_limit_is_looked_for_first_changes_nothing(seed: int) -> None:
+    """The advice is the same, to the bit, as without any closed form."""
+    pair = drawn(random.Random(seed))
+    knobs = [*_of_the_coupling(pair), *_of_the_arms(pair)]
+    for kind in ("slack", "change"):
+        plain = [replace(knob, near=lambda: None) for knob in knobs]
+        assert turn_all(knobs, pair.motion, kind) == turn_all(plain, pair.motion, kind)
 
 
 def turned(pair: zw.Pair, parameter: str, value: float | Fraction) -> zw.Pair:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from fractions import Fraction
 
 import numpy as np
@@ -13,6 +14,7 @@ import zwidth as zw
 from zwidth.checker.pair.coupling import sides_of
 from zwidth.checker.pair.passive import PAIR_PROOF, criterion
 from zwidth.passivity.linear.boundary import largest_holding
+from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
 from zwidth.passivity.pairs import PairCriterion, largest_spring
 from zwidth.passivity.pairs.evidence import energy_of, pair_document
 from zwidth.passivity.witness.motion import Motion, Repeat
@@ -334,6 +336,53 @@ def test_springs_have_a_closed_form():
     for seed in range(40):
         pair = random_pair(seed, parts=False).replace(damping=0, local_damping=0)
         assert float(largest_spring(pair)) == pytest.approx(float(limit_of(pair)), rel=1e-14)
+
+
+@pytest.mark.parametrize("reflected", [False, True])
+@seeds(20)
+def test_springs_are_decided_at_rest_as_by_every_frequency(reflected, seed):
+    """Also a hair to either side of the limit, and with delays of part of a sample."""
+    pair = random_pair(seed, reflected=reflected)
+    pair = pair.replace(damping=zw.Exact(0), local_damping=zw.Exact(0))
+    limit = limit_of(pair)
+    near = [] if limit is None else [stiffer(pair, limit * (1 + n * BILLIONTH)) for n in (-1, 0, 1)]
+    for one in (pair, *near):
+        criterion = PairCriterion(one)
+        assert criterion.of_springs
+        assert criterion.holds == (not isinstance(criterion.signs, Fraction))
+        assert criterion.holds == all(
+            isinstance(prove_nonnegative(p), Positivity) for p in criterion.polynomials
+        )
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"stiffness": zw.Exact(2)},
+        {"follower_damping": zw.Exact("-0.02")},
+        {"delay": (zw.Exact("0.001"), zw.Exact("0.4"))},
+        {"delay": (zw.Exact("0.001"), zw.Exact("-0.4"))},
+        {"delay": (0, "401 ms")},
+        {"stiffness": zw.Exact(-2)},
+        {"stiffness": zw.Exact(0)},
+        {"drive_rate": zw.Exact(1500)},
+        {"leader": PADDLE.replace(damping=(1, 2))},
+        {"follower": PADDLE.replace(rate="3.5 kHz")},
+        {"follower": PADDLE.replace(coulomb_friction="0.2")},
+    ],
+)
+def test_what_is_changed_alone_is_read_as_if_all_were_given(change):
+    pair = zw.Pair(PADDLE, PADDLE, stiffness=1, delay="1 ms")
+    given = {"leader": PADDLE, "follower": PADDLE, "stiffness": 1, "delay": "1 ms", **change}
+    try:
+        wanted = zw.Pair(**given)
+    except zw.InputError as refused:
+        with pytest.raises(zw.InputError, match=f"^{re.escape(str(refused))}$"):
+            pair.replace(**change)
+        return
+    changed = pair.replace(**change)
+    assert changed == wanted
+    assert (changed.sides, changed.readings) == (wanted.sides, wanted.readings)
 
 
 @pytest.mark.parametrize("ages", [(0, 0), (1, 0), (2, 3)])

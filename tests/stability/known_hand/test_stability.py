@@ -15,7 +15,8 @@ from zwidth.operator.hand_impedance import as_hand
 from zwidth.passivity.linear.schur import is_schur
 from zwidth.quantity.balls import precision
 from zwidth.stability.known_hand.characteristic import PRECISIONS, decays, family
-from zwidth.stability.known_hand.coupled import motion_of
+from zwidth.stability.known_hand.coupled import motion_of, plain_of
+from zwidth.stability.known_hand.crossing import _roots, last_stable, last_stable_of_each
 
 MASS, PERIOD = Fraction("0.036"), Fraction("0.001")
 BARE = zw.Device(mass=MASS, damping=0, sample_period=PERIOD)
@@ -302,3 +303,24 @@ def test_a_hand_that_turns_says_its_numbers_in_rotary_units() -> None:
     said = zw.stability.coupled_stability(knob, zw.Wall(1), hand).scope.hands.impedance
     assert said == "m_h = 2e-05 kg·m², k = 0 … 3 N·m/rad, c = 0.02 N·m·s/rad"
     assert "c = 0.02 N·s/m" in hand.describe()
+
+
+def test_roots_of_many_polynomials_are_those_of_each() -> None:
+    """To the bit, with zeros at either end, and of none."""
+    rows = np.random.default_rng(3).normal(size=(40, 6))
+    rows[10:20, 0] = rows[15:30, -1] = rows[28:33, :3] = rows[35] = 0.0
+    rows[36, 1:] = 0.0
+    for row, found in zip(rows, _roots(rows), strict=True):
+        assert found.tolist() == np.roots(row).tolist()
+
+
+@pytest.mark.parametrize("delay", [0, "0.4 ms", "3 ms"])
+def test_last_stable_stiffnesses_at_many_dampings_are_those_of_each(delay) -> None:
+    """To the bit."""
+    device = zw.catalogue.device("haptic-paddle").replace(delay=delay)
+    velocity = zw.rendering.BackwardDifference().transfer(PERIOD)
+    polynomials = plain_of(motion_of(device, as_hand(Finger())), velocity)
+    dampings = np.linspace(-1, 90, 600)
+    found = last_stable_of_each(polynomials, dampings)
+    assert any(each is not None for each in found[::37])
+    assert found[::37] == [last_stable(polynomials, b) for b in dampings[::37].tolist()]

@@ -45,6 +45,11 @@ def is_number(field: str) -> bool:
     return bool(_PLAIN.match(field) or _GROUPED.match(field)) or field.lower() in _INFINITE | _TRUTH
 
 
+def are_plain(fields: Iterable[str]) -> bool:
+    """True where every cell is a number that no reader takes for anything else."""
+    return all(map(_PLAIN.match, fields))
+
+
 def is_clock(field: str) -> bool:
     """True where a cell is a time of day, or of a stop watch."""
     return clock(field) is not None

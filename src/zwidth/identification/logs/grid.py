@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from zwidth.identification.logs.cells import is_nothing
-from zwidth.identification.logs.layout import Layout, is_value, laid_out
+from zwidth.identification.logs.layout import Layout, is_value, laid_out, sample_of
 
 FEWEST_ROWS = 3
 """Of a table; a setting or a mean is none."""
@@ -50,7 +50,8 @@ def grid_of(rows: list[list[str]], source: str) -> Grid | None:
     width = max(map(len, rows[max(main[0] - 2, 0) : main[1]]))
     lines = [_line(row, width) for row in rows]
     lines[main[0] : first] = [""] * (first - main[0])
-    layout = laid_out(lines[: main[1]], "\t", width, first, source)
+    upper = lines[: main[1]]
+    layout = laid_out(upper, "\t", width, first, sample_of(upper, "\t", width, first), source)
     own = [main] + [b for b in blocks if b[0] > main[0] and _again(b[0], heads, lines, layout.header)]
     inside = {k for start, end in own for k in range(start, _end(kinds, start, end))}
     inside |= set(range(*own[-1]))  # with the notes below it

@@ -11,10 +11,12 @@ import re
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from functools import cached_property, lru_cache
+from typing import Literal, NamedTuple
 
 from zwidth.errors import InputError
 from zwidth.identification.logs.cells import (
+    are_plain,
     decimal_of,
     is_clock,
     is_date,
@@ -31,6 +33,9 @@ MOST_SAMPLED = 2000
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
 _NUMBER_AND_UNIT = re.compile(r"[+-]?\d[\d.,]*\s*[^\W\d_]+\Z")
 
+
+Sample = tuple[tuple[str, ...], ...]
+"""The first rows of numbers, split."""
 
 Kind = Literal["float", "int", "date", "calendar", "clock", "text"]
 
@@ -65,44 +70,68 @@ class Layout:
     units: Mapping[str, str]
     skipped: int
     header: str
-    sample: tuple[tuple[str, ...], ...]
+    sample: Sample
     comments: tuple[str, ...]
 
     def kind(self, column: str) -> Kind:
         """What the first rows of a column hold; "int" is too long for a float, a "date" in ISO 8601."""
-        values = [field for field in self.fields(column) if not is_nothing(field)]
-        if not values:
-            return "float"
-        if all(_DATE.match(value) for value in values):
-            return "date"
-        if all(re.fullmatch(r"\d{16,19}", value) for value in values):
-            return "int"
-        shares: dict[Kind, int] = {
-            "float": sum(map(is_number, values)),
-            "clock": sum(map(is_clock, values)),
-            "calendar": sum(map(is_date, values)),
-        }
-        kind = max(shares, key=lambda each: shares[each])
-        return kind if 2 * shares[kind] > len(values) else "text"
+        return self._kinds[self.names.index(column)]
+
+    @cached_property
+    def _kinds(self) -> list[Kind]:
+        return [_kind(self.fields(name)) for name in self.names]
 
     def fields(self, column: str) -> list[str]:
         """The first rows of a column."""
         return [row[self.names.index(column)] for row in self.sample]
 
 
+def _kind(fields: list[str]) -> Kind:
+    values = fields if are_plain(fields) else [field for field in fields if not is_nothing(field)]
+    if not values:
+        return "float"
+    if all(_DATE.match(value) for value in values):
+        return "date"
+    if all(re.fullmatch(r"\d{16,19}", value) for value in values):
+        return "int"
+    if values is fields:
+        return "float"
+    shares: dict[Kind, int] = {
+        "float": sum(map(is_number, values)),
+        "clock": sum(map(is_clock, values)),
+        "calendar": sum(map(is_date, values)),
+    }
+    kind = max(shares, key=lambda each: shares[each])
+    return kind if 2 * shares[kind] > len(values) else "text"
+
+
+@lru_cache(maxsize=2)
 def layout_of(text: str, source: str, whole: bool) -> Layout:
-    """The layout of a text that starts so; `whole` says that this is all of it."""
+    """The layout of a text that starts so; `whole` says that this is all of it.
+
+    A file that is opened again, as to see first whether it holds two arms, is not looked at again.
+    """
     lines = text.splitlines()
     if not whole and len(lines) > 1:
         lines = lines[:-1]  # the last is cut in the middle
     if not text.strip():
         raise InputError(f"{source} is empty: {len(text)} characters, none of them a number")
-    ranked = sorted((_ranked(lines, d) for d in _DELIMITERS), key=lambda found: found[:2], reverse=True)
-    columns, _, delimiter, first = ranked[0]
-    if first < 0:
+    rows = [(k, line) for k, line in enumerate(lines) if line.strip() and not is_comment(line)]
+    found = _most_columns(lines, rows)
+    if found.first < 0:
         raise InputError(f"{source} holds no table of numbers: {_why_none(lines)}")
-    _refuse_rows_for_columns(lines, delimiter, columns, source)
-    return laid_out(lines, delimiter, columns, first, source)
+    _refuse_rows_for_columns(found, len(rows), source)
+    return laid_out(lines, found.delimiter, found.columns, found.first, found.sample, source)
+
+
+def _most_columns(lines: list[str], rows: list[tuple[int, str]]) -> _Split:
+    """The table by the delimiter that makes most columns of the rows."""
+    bare = "\n".join(line for _, line in rows)
+    dividing = [d for d in _DELIMITERS if (len(bare.split()) > len(rows) if d == " " else d in bare)]
+    found = [_split_at(lines, rows, d) for d in dividing]
+    if not any(table.columns > 1 for table in found):  # of the others every line is one field
+        found += [_split_at(lines, rows, d) for d in _DELIMITERS if d not in dividing]
+    return max(found, key=lambda table: (table.columns, -_DELIMITERS.index(table.delimiter)))
 
 
 def split(line: str, delimiter: str) -> list[str]:
@@ -130,13 +159,13 @@ def _why_none(lines: list[str]) -> str:
     return "no line splits into numbers at , ; tab | or space"
 
 
-def _refuse_rows_for_columns(lines: list[str], delimiter: str, columns: int, source: str) -> None:
+def _refuse_rows_for_columns(table: _Split, count: int, source: str) -> None:
     """A sheet in which each quantity is a row."""
-    rows = [split(line, delimiter) for line in lines if line.strip() and not is_comment(line)]
-    named = sum(_is_text(row[0]) for row in rows if len(row) == columns)
-    if columns > 3 * len(rows) and len(rows) <= 8 and named == len(rows):
+    if table.columns <= 3 * count or count > 8:
+        return
+    if sum(_is_text(row[0]) for row in table.rows if len(row) == table.columns) == count:
         raise InputError(
-            f"{source} has {len(rows)} rows of {columns} fields, each with a name: the quantities are its "
+            f"{source} has {count} rows of {table.columns} fields, each with a name: the quantities are its "
             "rows; transpose the sheet, so that each is a column with its name above it"
         )
 
@@ -152,42 +181,64 @@ def is_value(field: str) -> bool:
 
 def _numeric(fields: list[str]) -> bool:
     """A row of a table: numbers stand in it, and text is rare."""
+    if are_plain(fields):
+        return bool(fields)
     values = sum(map(is_value, fields))
     return values > 0 and 2 * (values + sum(map(is_nothing, fields))) > len(fields)
 
 
-def _ranked(lines: list[str], delimiter: str) -> tuple[int, int, str, int]:
-    """Columns, preference, delimiter and first line of numbers (−1: none) if the lines are split so."""
-    rows = [
-        (k, split(line, delimiter)) for k, line in enumerate(lines) if line.strip() and not is_comment(line)
-    ]
-    numeric = [(k, fields) for k, fields in rows if _numeric(fields)]
-    preference = -_DELIMITERS.index(delimiter)
-    if not numeric:
-        return 0, preference, delimiter, -1
-    sizes = [len(fields) for _, fields in numeric]
+class _Split(NamedTuple):
+    """A text whose lines are split: how many columns of numbers that makes (0: none), from which line on
+    (−1: none), all its rows, and the first ones of numbers."""
+
+    delimiter: str
+    columns: int
+    first: int
+    rows: list[list[str]]
+    sample: Sample = ()
+
+
+def _split_at(lines: list[str], rows: list[tuple[int, str]], delimiter: str) -> _Split:
+    """Of the lines those that are rows, each with its number, split at a delimiter."""
+    found = [split(line, delimiter) for _, line in rows]
+    none = _Split(delimiter, 0, -1, found)
+    numeric = [_numeric(fields) for fields in found]
+    sizes = [len(fields) for fields, good in zip(found, numeric, strict=True) if good]
+    if not sizes:
+        return none
     common = max(set(sizes), key=sizes.count)
-    first = next(k for k, fields in numeric if len(fields) == common)
-    following = [fields for k, fields in rows if k >= first]
-    good = sum(len(fields) == common and _numeric(fields) for fields in following)
-    if good < 0.8 * len(following):
-        return 0, preference, delimiter, -1
+    fits = [good and len(fields) == common for fields, good in zip(found, numeric, strict=True)]
+    start = fits.index(True)
+    if sum(fits[start:]) < 0.8 * len(fits[start:]):
+        return none
+    first = rows[start][0]
     if delimiter == "," and any(sign in line for line in lines[first : first + 9] for sign in ";\t"):
-        return 0, preference, delimiter, -1  # the comma is the decimal sign
-    return common, preference, delimiter, first
+        return none  # the comma is the decimal sign
+    sample = (
+        tuple(fields)
+        for (k, _), fields, good in zip(rows[start:], found[start:], fits[start:], strict=True)
+        if good and k < first + MOST_SAMPLED
+    )
+    return _Split(delimiter, common, first, found, tuple(sample))
 
 
-def laid_out(lines: list[str], delimiter: str, columns: int, first: int, source: str) -> Layout:
-    """The layout of lines of which it is known how they split, and where the numbers begin."""
-    above = [line for line in lines[:first] if line.strip()]
-    comments = tuple(line.strip() for line in above if is_comment(line))
-    plain = [line for line in above if not is_comment(line)]
+def sample_of(lines: list[str], delimiter: str, columns: int, first: int) -> Sample:
+    """The first rows of numbers, of lines of which it is known how they split and where the numbers begin."""
     body = [
         split(line, delimiter)
         for line in lines[first : first + MOST_SAMPLED]
         if line.strip() and not is_comment(line)
     ]
-    sample = tuple(tuple(fields) for fields in body if len(fields) == columns and _numeric(fields))
+    return tuple(tuple(fields) for fields in body if len(fields) == columns and _numeric(fields))
+
+
+def laid_out(
+    lines: list[str], delimiter: str, columns: int, first: int, sample: Sample, source: str
+) -> Layout:
+    """The layout of lines of which it is known how they split, where numbers begin, and the first rows."""
+    above = [line for line in lines[:first] if line.strip()]
+    comments = tuple(line.strip() for line in above if is_comment(line))
+    plain = [line for line in above if not is_comment(line)]
     header, names, units_line = _header(plain, comments, delimiter, columns, _empty_at_end(sample, columns))
     if not header and delimiter == ",":
         _refuse_two_commas(plain, columns, source)
@@ -206,11 +257,11 @@ def laid_out(lines: list[str], delimiter: str, columns: int, first: int, source:
     )
 
 
-def _commas(sample: tuple[tuple[str, ...], ...]) -> bool:
+def _commas(sample: Sample) -> bool:
     return any("," in field for fields in sample for field in fields)
 
 
-def _empty_at_end(sample: tuple[tuple[str, ...], ...], columns: int) -> int:
+def _empty_at_end(sample: Sample, columns: int) -> int:
     """Columns at the end in which nothing stands: of delimiters that end each row."""
     filled = [k for row in sample for k, field in enumerate(row) if field]
     return columns - 1 - max(filled, default=columns - 1)

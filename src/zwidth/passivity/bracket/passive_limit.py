@@ -23,6 +23,9 @@ from zwidth.passivity.storage.solve.effort import EFFORT, Effort, checked_effort
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.rendering.rendered import laws_of
 
+_SOME_SECONDS = 10.0
+"""What needs no announcement."""
+
 
 def passive_limit(
     device: Device,
@@ -39,6 +42,7 @@ def passive_limit(
     seconds: float | None = None,
     iterate: bool = True,
     progress: Callable[[int, int], None] | None = None,
+    told: Callable[[float], None] | None = None,
 ) -> Bracket:
     """How far a parameter may go: proved passive on one side, refuted by a motion on the other.
 
@@ -73,6 +77,8 @@ def passive_limit(
         False for closed conditions alone, however long they take.
     progress
         Told (loops decided, about how many there will be).
+    told
+        Told up to how many seconds it may take, about, before values are iterated on a large grid.
 
     Raises
     ------
@@ -128,7 +134,11 @@ def passive_limit(
             return None
         return slow_hands(*asked.change(value), program(value).bounds.speed)
 
-    return BoundedSearch(search, program, slow, every).bracket()
+    bounded_search = BoundedSearch(search, program, slow, every)
+    left = min(most, time_limit(seconds)) - search.effort.spent
+    if told is not None and bounded_search.at_first.takes_long and left > _SOME_SECONDS:
+        told(left)
+    return bounded_search.bracket()
 
 
 def _by_closed_forms(search: Search, counted: tuple[Any, ...]) -> Bracket:

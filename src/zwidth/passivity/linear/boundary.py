@@ -8,7 +8,7 @@ which the claim was decided, next to one at which it fails.
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 
 from zwidth.quantity.exact import Exact
@@ -48,6 +48,32 @@ def smallest_holding(holds: Holds, guess: float, grain: int = 1, likely: float |
     if holds(Fraction(0)):
         return 0.0
     return _search(holds, guess, False, grain, likely)
+
+
+def asked_seldom(holds: Holds, near: float | None, beside: Iterable[Fraction], upward: bool = True) -> Holds:
+    """The same answers, of what turns once: `upward` it holds below a place and not above, else above.
+
+    What follows from an answer is not asked again.  First it is asked at these parts beside the place where
+    it probably turns, `near`, until it turns between them.
+    """
+    low: Fraction | None = None
+    high: Fraction | None = None
+
+    def asked(value: Fraction) -> bool:
+        nonlocal low, high
+        if low is not None and value <= low:
+            return upward
+        if high is not None and value >= high:
+            return not upward
+        answer = holds(value)
+        low, high = (value, high) if answer == upward else (low, value)
+        return answer
+
+    for part in beside if near else ():
+        place = Fraction(near or 0)
+        if asked(place * (1 - part)) != asked(place * (1 + part)):
+            break
+    return asked
 
 
 def _search(holds: Holds, guess: float, upward: bool, grain: int, likely: float | None) -> float | None:

@@ -54,8 +54,16 @@ class Positivity:
     factor: tuple[int, ...]
 
 
-def prove_nonnegative(p: fmpz_poly) -> Positivity | Fraction:
+def prove_nonnegative(p: fmpz_poly, known: bool = False) -> Positivity | Fraction:
     """A proof that p ≥ 0 on [−1, 1], or a rational point of (−1, 1) where p < 0.
+
+    Parameters
+    ----------
+    p
+        The polynomial.
+    known
+        True where p ≥ 0 is known and only its factors are asked for: a squarefree g crosses each of its
+        zeros, and has none.
 
     Raises
     ------
@@ -69,7 +77,7 @@ def prove_nonnegative(p: fmpz_poly) -> Positivity | Fraction:
     if at_one % 2:
         g = -g  # (c − 1) was divided out, (1 − c) is meant
     square, g = _split_square(g)
-    point = _negative_point(g)
+    point = None if known else _negative_point(g)
     if point is None:
         return Positivity(at_one, at_minus_one, _ints(square), _ints(g))
     return where_negative(p, point)

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
+from math import floor
 from typing import Any, Literal
 
 from zwidth.device import Device
@@ -17,7 +18,9 @@ from zwidth.pairs import Pair
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.knob import Knob, between_delays, between_rates, between_sizes, outward, turn, turn_all
 from zwidth.passivity.linear.boundary import Holds
+from zwidth.passivity.pairs.criterion import PairCriterion, largest_spring
 from zwidth.passivity.pairs.limits import grain_of, is_passive, largest_stiffness, samples_around, with_share
+from zwidth.quantity.balls import as_fraction
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.spoken import spoken
@@ -130,7 +133,14 @@ def _at_rate(pair: Pair, rate: Fraction) -> Pair:
 
 
 def _of_the_coupling(pair: Pair) -> Iterator[Knob]:
-    yield Knob("stiffness", float(pair.felt_stiffness), _holds(pair.stiffened), False, "stiffness")
+    yield Knob(
+        "stiffness",
+        float(pair.felt_stiffness),
+        _holds(pair.stiffened),
+        False,
+        "stiffness",
+        near=partial(_stiffness_that_turns, pair),
+    )
     for key, quantity in (("damping", "virtual_damping"), ("local_damping", "local_damping")):
         gain: Exact = getattr(pair, key)
         if gain and getattr(pair, f"follower_{key}") is None:
@@ -154,13 +164,21 @@ def _of_the_coupling(pair: Pair) -> Iterator[Knob]:
 
     name = "link delay" if pair.there == pair.back else "longer link delay, the other in proportion,"
     far, period = float(longer), float(pair.sample_period)
-    yield Knob("link_delay", far, _holds(link), False, name, between=partial(between_delays, far, period))
+    yield Knob(
+        "link_delay",
+        far,
+        _holds(link),
+        False,
+        name,
+        between=partial(between_delays, far, period),
+        near=partial(_delay_that_turns, pair),
+    )
     holds = _holds(lambda rate: _at_rate(pair, rate))
     yield Knob("rate", 1 / period, holds, True, "rate", between=partial(between_rates, 1 / period, far))
 
 
 def _of_the_arms(pair: Pair) -> Iterator[Knob]:
-    for arm in ("leader", "follower"):
+    for here, arm in enumerate(("leader", "follower")):
         device: Device = getattr(pair, arm)
 
         def change(key: str, arm: str = arm, device: Device = device) -> Change:
@@ -168,7 +186,58 @@ def _of_the_arms(pair: Pair) -> Iterator[Knob]:
 
         for key, more in (("damping", True), ("coulomb_friction", True), ("resolution", False)):
             name = f"{'encoder resolution' if key == 'resolution' else in_words(key)} of the {arm}"
-            yield Knob(f"{arm}.{key}", float(device.exact(key)), _holds(change(key)), more, name)
+            near = partial(_where_it_turns, pair, here, key)
+            yield Knob(f"{arm}.{key}", float(device.exact(key)), _holds(change(key)), more, name, near=near)
+
+
+def _where_it_turns(pair: Pair, here: int, key: str) -> float | None:
+    """The limit of a number of an arm but for rounding, where that has a closed form."""
+    criterion = PairCriterion(pair)
+    if key == "damping":
+        return _damping_at_rest(criterion, here)
+    arm, other = criterion.arms[here], criterion.arms[1 - here]
+    missing = arm.missing_friction(other), other.missing_friction(arm)
+    if key == "coulomb_friction":
+        return float(max(arm.side.coulomb_friction + missing[0], Fraction(0)))
+    slopes = map(as_fraction, (arm.error_of_steps[0], other.error_of_steps[1]))
+    room = [-lacks / slope for lacks, slope in zip(missing, slopes, strict=True) if slope]
+    return float(max(arm.side.resolution + min(room), Fraction(0))) if room else None
+
+
+def _damping_at_rest(criterion: PairCriterion, here: int) -> float | None:
+    """The b of an arm at which M(0) of springs alone is singular."""
+    if not criterion.of_springs or any(arm.part for arm in criterion.arms):
+        return None
+    own, other = criterion.at_rest[here], criterion.at_rest[1 - here]
+    if other <= 0:
+        return None
+    arm = criterion.arms[here]
+    more = as_fraction(criterion.at_rest[2] ** 2 / other - own) / arm.weight
+    return float(max(arm.damping + more, Fraction(0)))
+
+
+def _stiffness_that_turns(pair: Pair) -> float | None:
+    """The largest stiffness of springs alone, whose steps friction pays for, too."""
+    closed, arms = largest_spring(pair), PairCriterion(pair).arms
+    if closed is None:
+        return None
+    for arm, other in (arms, arms[::-1]):
+        if error := arm.force_error(other):
+            closed = min(closed, pair.felt_stiffness * arm.side.coulomb_friction / error)
+    return float(closed)
+
+
+def _delay_that_turns(pair: Pair) -> float | None:
+    """The longest link delay of springs alone, the same each way: whole samples, by M(0)."""
+    criterion = PairCriterion(pair)
+    if pair.there != pair.back or not criterion.of_springs or pair.there == 0:
+        return None
+    first, second, crossed = criterion.at_rest
+    age = pair.felt_stiffness * pair.sample_period  # that both readings are a sample older adds this
+    if min(first, second) < 0:
+        return None
+    more = floor((float(first * second) ** 0.5 - float(crossed)) / float(age))
+    return float(max(criterion.arms[0].age + more, 0) * pair.sample_period)
 
 
 def _both_arms(pair: Pair, grain: int) -> Iterator[Advice]:

@@ -15,13 +15,15 @@ from functools import cached_property
 from math import lcm
 
 import numpy as np
-from flint import fmpz_poly
+from flint import fmpq, fmpz_poly
 from numpy.typing import NDArray
 
 from zwidth.pairs import Side
 from zwidth.passivity.tangents import Line, line_of
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
 Floats = NDArray[np.float64]
+_NONE = fmpq(0)
 
 
 @dataclass(frozen=True)
@@ -48,9 +50,9 @@ class Arm:
 
     def at_tangent(self, r: Fraction) -> Arm:
         """With another line."""
-        return replace(self, tangent=r)
+        return self if r == self.tangent else replace(self, tangent=r)
 
-    @property
+    @cached_property
     def helped(self) -> tuple[Fraction, Fraction]:
         """s/2 and C + s/2, what compensation takes of damping and local damping; C + s and 0 of any mean."""
         slope, viscous = self.line.slope, self.side.compensation.viscous.fraction
@@ -69,22 +71,22 @@ class Arm:
         both = self.side.virtual_damping + self.side.local_damping
         return both - self.helped[1] if self.often == 1 else both
 
-    @property
+    @cached_property
     def whole(self) -> int:
         """d."""
         return int(self.side.delay // self.period)
 
-    @property
+    @cached_property
     def part(self) -> Fraction:
         """α."""
         return self.side.delay / self.period - self.whole
 
-    @property
+    @cached_property
     def age(self) -> int:
         """n."""
         return int(-(-self.side.link_delay // self.period))
 
-    @property
+    @cached_property
     def echo_age(self) -> int:
         """Samples after which its own reading comes back to it in the other's force."""
         return self.age + int(-(-self.side.return_delay // self.period))
@@ -106,7 +108,7 @@ class Arm:
         past = self.often * self.of_own_speed / self.period
         return self.side.stiffness + past, -past
 
-    @property
+    @cached_property
     def inside(self) -> tuple[Fraction, Fraction]:
         """β and γ of a drive: what a move between two of its own readings loses, and with the one before."""
         if self.least is not None:
@@ -212,11 +214,26 @@ class Arm:
 
     def force_error(self, other: Arm) -> Fraction:
         """The largest error of its force by the steps of both encoders [N; N·m]."""
-        taps = self.own_row.values() if self.often == 1 else (*self.own, *self.echo)
-        mine, its = (sum(map(abs, row), Fraction(0)) for row in (taps, self.other))
+        mine, its = self.error_of_steps
+        steps = as_fmpq(self.side.resolution), as_fmpq(other.side.resolution)
+        return as_fraction(mine * steps[0] + its * steps[1])
+
+    @cached_property
+    def error_of_steps(self) -> tuple[fmpq, fmpq]:
+        """The same of one step of its own encoder, and of the other's."""
+        side, period = self.side, as_fmpq(self.period)
+        past = self.often * as_fmpq(self.of_own_speed) / period
+        back = as_fmpq(side.echo_damping) / period
+        taps = as_fmpq(side.stiffness) + past, -past, as_fmpq(side.echo_stiffness) + back, -back
+        row: dict[int, fmpq] = {}
+        ages = (0, 1, self.echo_age, self.echo_age + 1) if self.often == 1 else range(4)
+        for age, tap in zip(ages, taps, strict=True):
+            row[age] = row.get(age, 0) + tap
         still, moving = self.helped
         unsure = still if self.often == 1 else still + moving
-        return (mine / 2 + unsure / self.period) * self.side.resolution + its * other.side.resolution / 2
+        heard = as_fmpq(side.virtual_damping) / period + back
+        mine = sum(map(abs, row.values()), _NONE) / 2 + as_fmpq(unsure) / period
+        return mine, (abs(as_fmpq(side.felt_stiffness) + heard) + abs(heard)) / 2
 
     def missing_friction(self, other: Arm) -> Fraction:
         """What it lacks of Coulomb friction for the steps of both encoders and for its compensation."""

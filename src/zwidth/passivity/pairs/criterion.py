@@ -10,7 +10,8 @@ M ⪰ 0 is three polynomials in c = cos θ that are not negative on [−1, 1].  
 
     (b_l − (2 d_l + 1) KT/2) (w b_f − (2 d_f + 1) KT/2) ≥ (N KT/2)²
 
-with no negative factor is necessary and sufficient.  Without delay: 1/b_l + 1/(w b_f) ≤ 2/(KT).
+with no negative factor is necessary and sufficient; with a delay of part of a sample, and with forces that
+are sent, M(0) ⪰ 0 is.  Without delay: 1/b_l + 1/(w b_f) ≤ 2/(KT).
 
 With a drive that reads its own arm m times in T, moves between samples are free: of all that lead from one
 sample to the next it loses least by
@@ -23,23 +24,27 @@ which with springs alone is β.  The cross term stays.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property, partial
 from math import isqrt, lcm
+from typing import Any
 
 import numpy as np
-from flint import fmpz_poly
+from flint import fmpq, fmpz_poly
 from numpy.typing import NDArray
 
 from zwidth.pairs import Pair
+from zwidth.passivity.linear.cosines import from_whole_cosines, whole_product
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
 from zwidth.passivity.pairs.arm import Arm
 from zwidth.passivity.tangents import best_tangent
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
-Sums = dict[int, Fraction]
+Sums = dict[int, fmpq]
 Floats = NDArray[np.float64]
+_HALF = fmpq(1, 2)
 
 
 @dataclass(frozen=True)
@@ -91,8 +96,8 @@ class PairCriterion:
         for here, arm in enumerate(self.arms):
             if not arm.part:
                 continue
-            loss = arm.weight * arm.period**2 * arm.part * (1 - arm.part) / (4 * arm.paying)
-            mine, its = arm.own_row, arm.other_row
+            loss = as_fmpq(arm.weight * arm.period**2 * arm.part * (1 - arm.part) / (4 * arm.paying))
+            mine, its = ({k: as_fmpq(v) for k, v in row.items()} for row in (arm.own_row, arm.other_row))
             for k, row in ((here, mine), (1 - here, its)):
                 _add(own[k], ((abs(i - j), -loss * x * y) for i, x in row.items() for j, y in row.items()))
             sign = 1 if here else -1  # of the power of z that a reading of age n has beside one's own
@@ -107,29 +112,25 @@ class PairCriterion:
         """M_ll, M_ff and det M in c, times positive numbers."""
         leader, follower, crossed = self.forms
         echoes = [_echoed({}, arm) for arm in self.arms]
-        scale = lcm(*(v.denominator for form in (*self.forms, *echoes) for v in form.values()))
-        lags: dict[int, int] = {}
-        whole = {k: int(v * scale) for k, v in crossed.items()}
-        for i, x in whole.items():
-            for j, y in whole.items():
-                lags[abs(i - j)] = lags.get(abs(i - j), 0) + x * y
-        square = _polynomial(lags.items())
+        scale = lcm(*(int(v.q) for form in (*self.forms, *echoes) for v in form.values()))
+        powers = [
+            (crossed[k] * scale).p if k in crossed else 0 for k in range(min(crossed), max(crossed) + 1)
+        ]
+        square = whole_product(powers, powers)
         if self.pair.own_readings > 1:
             (top, bottom), (its_top, its_bottom) = (
                 _with_echo(*arm.driven, echo, scale) for arm, echo in zip(self.arms, echoes, strict=True)
             )
             return top, its_top, scale**2 * top * its_top - square * bottom * its_bottom
-        first, second = (
-            _polynomial((k, int(v * scale)) for k, v in form.items()) for form in (leader, follower)
-        )
+        first, second = (_polynomial(form, scale) for form in (leader, follower))
         return first, second, first * second - square
 
     @cached_property
     def signs(self) -> tuple[Positivity, Positivity, Positivity] | Fraction:
         """Why none of them is negative; or a c at which one is."""
-        found = []
+        found, known = [], self.of_springs and self._holds_at_rest
         for p in self.polynomials:
-            sign = prove_nonnegative(p)
+            sign = prove_nonnegative(p, known)
             if isinstance(sign, Fraction):
                 return sign
             found.append(sign)
@@ -139,7 +140,44 @@ class PairCriterion:
     @property
     def holds(self) -> bool:
         """True where none of them is negative: friction and encoders aside, no motion gains."""
-        return not self.undamped and not self.slips and not isinstance(self.signs, Fraction)
+        if self.undamped:
+            return False
+        if self.of_springs:
+            return self._holds_at_rest
+        if self.slips or any(p(1) < 0 or p(-1) < 0 for p in self.polynomials):
+            return False
+        return not isinstance(self.signs, Fraction)
+
+    @cached_property
+    def of_springs(self) -> bool:
+        """True of springs alone, without drives: M is least at θ → 0, where all its terms have one sign."""
+        return self.pair.own_readings == 1 and not any(
+            side.virtual_damping or side.local_damping or side.echo_damping or side.compensation
+            for side in self.pair.sides
+        )
+
+    @property
+    def _holds_at_rest(self) -> bool:
+        """M ⪰ 0 at θ → 0, of springs alone."""
+        first, second, crossed = self.at_rest
+        return bool(first >= 0 and second >= 0 and first * second >= crossed**2)
+
+    @cached_property
+    def at_rest(self) -> tuple[fmpq, fmpq, fmpq]:
+        """M_ll, M_ff and M_lf at θ → 0, of springs alone: all the terms of `forms` added up."""
+        arms, period = self.arms, as_fmpq(self.pair.sample_period)
+        felt = [as_fmpq(arm.side.felt_stiffness) for arm in arms]
+        weight = felt[0] / felt[1]
+        own, jumps, ages = [], [], []
+        for arm, k, w in zip(arms, felt, (1, weight), strict=True):
+            side, b, alpha = arm.side, as_fmpq(arm.side.damping), as_fmpq(arm.part)
+            late = arm.whole + alpha
+            stretch = k * (late + _HALF) + as_fmpq(side.echo_stiffness) * arm.echo_age
+            own.append(w * (b - period * stretch))
+            jumps.append(w * (period * k) ** 2 * alpha * (1 - alpha) / (4 * as_fmpq(arm.paying)))
+            ages.append(late + arm.age)
+        first, second = (loss - sum(jumps) for loss in own)
+        return first, second, felt[0] * period / 2 * (sum(ages) + 1) + sum(jumps)
 
     @property
     def slips(self) -> bool:
@@ -176,38 +214,41 @@ class PairCriterion:
     def at(self, theta: float) -> np.ndarray[tuple[int, int], np.dtype[np.complex128]]:
         """M at a frequency θ = ωT, to rounding [N·s/m; N·m·s/rad]."""
         leader, follower, crossed = self.forms
-        diagonal = [sum(float(v) * np.cos(k * theta) for k, v in form.items()) for form in (leader, follower)]
+        diagonal = [_at(form, lambda k: np.cos(k * theta)) for form in (leader, follower)]
         if self.pair.own_readings > 1:
             diagonal = [
-                arm.driven_at(theta) + sum(float(v) * np.cos(k * theta) for k, v in _echoed({}, arm).items())
-                for arm in self.arms
+                arm.driven_at(theta) + _at(_echoed({}, arm), lambda k: np.cos(k * theta)) for arm in self.arms
             ]
-        off = sum(float(v) * np.exp(1j * k * theta) for k, v in crossed.items())
+        off = _at(crossed, lambda k: np.exp(1j * k * theta))
         return np.array([[diagonal[0], off], [np.conj(off), diagonal[1]]])
 
 
 def spending(pair: Pair, any_mean: bool = False) -> PairCriterion:
     """The criterion with the lines that leave most damping, of those that Coulomb friction pays for."""
     criterion = PairCriterion(pair, any_mean=any_mean)
-    if not any(pair.compensations):
-        return criterion
     leader, follower = criterion.arms
-    return replace(criterion, tangents=(_tangent(leader, follower), _tangent(follower, leader)))
+    tangents = _tangent(leader, follower), _tangent(follower, leader)
+    return criterion if tangents == criterion.tangents else replace(criterion, tangents=tangents)
 
 
 def _tangent(arm: Arm, other: Arm) -> Fraction:
     law = arm.side.compensation
     move = float(arm.side.resolution / arm.period / law.speed.fraction) if law.speed else 0.0
+    missing = cache(partial(arm.roughly_missing, other))  # most laws are paid for, or are none
     return best_tangent(
         law,
         move,
-        arm.roughly_missing(other),
+        lambda height, slope: missing()(height, slope),
         lambda r: arm.at_tangent(r).missing_friction(other) <= 0,
     )
 
 
+def _at(form: Sums, wave: Callable[[int], Any]) -> Any:
+    return sum(float(as_fraction(v)) * wave(k) for k, v in form.items())
+
+
 def _own(arm: Arm) -> Sums:
-    found = {0: arm.weight * arm.damping}
+    found = {0: as_fmpq(arm.weight) * as_fmpq(arm.damping)}
     _add_coupling(found, arm, 0, arm.side.stiffness, arm.of_own_speed)
     return _echoed(found, arm)
 
@@ -222,51 +263,49 @@ def _echoed(found: Sums, arm: Arm) -> Sums:
 
 def _add_coupling(found: Sums, arm: Arm, age: int, stiffness: Fraction, damping: Fraction) -> None:
     """Spring and damper of its own readings of an age."""
-    stretch, rubbed = arm.weight * stiffness * arm.period, arm.weight * damping
-    for late, share in arm.mixed:
-        power = late + age
+    weight = as_fmpq(arm.weight)
+    stretch, rubbed = weight * as_fmpq(stiffness) * as_fmpq(arm.period), weight * as_fmpq(damping)
+    for late, part in arm.mixed:
+        power, share = late + age, as_fmpq(part)
         parts = [(0, -stretch * share / 2), *((k, -stretch * share) for k in range(1, power))]
         _add(found, [*parts, (power, share * rubbed)])
 
 
 def _crossed(leader: Arm, follower: Arm) -> Sums:
     found: Sums = {}
-    stretch = leader.side.felt_stiffness * leader.period
-    mine = [(power + leader.age, share) for power, share in leader.mixed]
-    its = [(power + follower.age, share) for power, share in follower.mixed]
+    stretch = as_fmpq(leader.side.felt_stiffness) * as_fmpq(leader.period)
+    mine = [(power + leader.age, as_fmpq(share)) for power, share in leader.mixed]
+    its = [(power + follower.age, as_fmpq(share)) for power, share in follower.mixed]
     for p, share in mine:
         for q, part in its:
             _add(found, ((k, stretch * share * part / 2) for k in range(1 - p, q)))
         _add(found, ((-p, -share * _rubbed(leader) / 2),))
-    _add(found, ((q, -part * follower.weight * _rubbed(follower) / 2) for q, part in its))
+    rubbed = as_fmpq(follower.weight) * _rubbed(follower)
+    _add(found, ((q, -part * rubbed / 2) for q, part in its))
     return found
 
 
-def _rubbed(arm: Arm) -> Fraction:
+def _rubbed(arm: Arm) -> fmpq:
     """B of the other's readings."""
-    return arm.side.virtual_damping + arm.side.echo_damping
+    return as_fmpq(arm.side.virtual_damping) + as_fmpq(arm.side.echo_damping)
 
 
-def _add(form: Sums, parts: Iterable[tuple[int, Fraction]]) -> None:
+def _add(form: Sums, parts: Iterable[tuple[int, fmpq]]) -> None:
     for k, value in parts:
-        form[k] = form.get(k, Fraction(0)) + value
+        form[k] = form[k] + value if k in form else value
 
 
 def _with_echo(top: fmpz_poly, bottom: fmpz_poly, echo: Sums, scale: int) -> tuple[fmpz_poly, fmpz_poly]:
     """Of a drive, with what comes back once a sample."""
     if not echo:
         return top, bottom
-    back = _polynomial((k, int(v * scale)) for k, v in echo.items())
+    back = _polynomial(echo, scale)
     return scale * top + back * bottom, scale * bottom
 
 
-def _polynomial(sums: Iterable[tuple[int, int]]) -> fmpz_poly:
-    """Σ of cosines in powers of c."""
-    total = fmpz_poly([])
-    for k, value in sums:
-        if value:
-            total += value * fmpz_poly.chebyshev_t(k)
-    return total
+def _polynomial(sums: Sums, scale: int) -> fmpz_poly:
+    """Σ of cosines, times a number that makes each whole, in powers of c."""
+    return from_whole_cosines([(sums[k] * scale).p if k in sums else 0 for k in range(max(sums) + 1)])
 
 
 def largest_spring(pair: Pair) -> Fraction | None:

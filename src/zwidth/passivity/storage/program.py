@@ -45,6 +45,9 @@ _QUICK = 100_000_000
 _CHECKED, _SLOWER = 300_000_000, 10
 """Of such pairs, in a unit of `effort`; and by how much laws that relax take longer."""
 
+_LONG = 0.2
+"""In that unit, what the checker has to do on the coarsest steps where a search takes twenty times that."""
+
 _MOST_CHECKED = 1_500_000_000
 """The same: what the checker takes on."""
 
@@ -85,6 +88,11 @@ class DynamicProgram:
     def is_large(self) -> bool:
         """True where a storage function takes its time."""
         return self._moves(STEPS[0]) > _QUICK or self.too_large is not None
+
+    @property
+    def takes_long(self) -> bool:
+        """True where a search for a limit goes on for more than some seconds: it decides many loops."""
+        return self.checking(STEPS[0]) > _LONG or self.too_large is not None
 
     def checking(self, steps: int) -> float:
         """What the checker may have to do over a storage function, in the unit of `effort`."""

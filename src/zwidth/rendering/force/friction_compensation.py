@@ -70,6 +70,8 @@ class FrictionCompensation(RenderingLaw):
 
     def scaled(self, share: Fraction) -> FrictionCompensation:
         """So many times the force at every speed."""
+        if share == 1:
+            return self
         return self.replace(coulomb=share * self.coulomb.fraction, viscous=share * self.viscous.fraction)
 
     def numbers(self, at: LoopContext) -> list[float]:

@@ -27,6 +27,9 @@ _ANGLES = np.geomspace(1e-5, np.pi, 600)[:-1]
 _HALVINGS = 50
 """Where signs are compared, and how often a place is halved: to the last bits of a double."""
 
+_TOGETHER = 256
+"""Virtual dampings at a time: a few megabytes."""
+
 _OUTSIDE = 1e-7
 """Beyond the circle by more than this a root counts as outside."""
 
@@ -54,13 +57,13 @@ class Plain(NamedTuple):
     stiff: Array
     damped: Array
 
-    def at(self, stiffness: float, damping: float) -> Array:
-        """P of one wall."""
-        return self.free + stiffness * self.stiff + damping * self.damped
+    def at(self, stiffness: Array, damping: Array) -> Array:
+        """P of each wall, a row each."""
+        return self.free + stiffness[:, None] * self.stiff + damping[:, None] * self.damped
 
-    def radius(self, stiffness: float, damping: float) -> float:
-        """The largest modulus of a root."""
-        return float(np.abs(1 + np.roots(self.at(stiffness, damping))).max())
+    def radii(self, stiffness: Array, damping: Array) -> Array:
+        """The largest modulus of a root, of each wall."""
+        return np.array([np.abs(1 + roots).max() for roots in _roots(self.at(stiffness, damping))])
 
 
 def plain(polynomials: Family) -> Plain:
@@ -71,46 +74,72 @@ def plain(polynomials: Family) -> Plain:
 
 def last_stable(polynomials: Plain, damping: float) -> Crossing | None:
     """The upper end of the last band of stable stiffnesses ≥ 0 at one virtual damping; None without one."""
-    found = sorted(c for c in crossings(polynomials, damping) if c.stiffness > 0)
-    edges = [0.0, *(c.stiffness for c in found)]
-    for k in range(len(found) - 1, -1, -1):
-        if polynomials.radius((edges[k] + edges[k + 1]) / 2, damping) < 1:
-            return found[k]
-    return None
+    return last_stable_of_each(polynomials, np.array([damping]))[0]
 
 
-def crossings(polynomials: Plain, damping: float) -> list[Crossing]:
-    """All stiffnesses with a root on the circle at one virtual damping."""
-    rest, spring = polynomials.at(0.0, damping), polynomials.stiff
+def last_stable_of_each(polynomials: Plain, dampings: Array) -> list[Crossing | None]:
+    """The same at many."""
+    crossings: list[list[Crossing]] = []
+    for start in range(0, len(dampings), _TOGETHER):
+        crossings += _crossings(polynomials, dampings[start : start + _TOGETHER])
+    found = [sorted(c for c in row if c.stiffness > 0) for row in crossings]
+    last: list[Crossing | None] = [None] * len(found)
+    left = {row: len(each) - 1 for row, each in enumerate(found) if each}  # the band that is looked at
+    while left:
+        rows = list(left)
+        edges = [([0.0, *(c.stiffness for c in found[row])], left[row]) for row in rows]
+        middles = np.array([(each[k] + each[k + 1]) / 2 for each, k in edges])
+        for row, radius in zip(rows, polynomials.radii(middles, dampings[rows]), strict=True):
+            if radius < 1:
+                last[row] = found[row][left[row]]
+            left[row] -= 1
+            if radius < 1 or left[row] < 0:
+                del left[row]
+    return last
+
+
+def _crossings(polynomials: Plain, dampings: Array) -> list[list[Crossing]]:
+    """All stiffnesses with a root on the circle, at each virtual damping."""
+    rest, spring = polynomials.at(np.zeros(len(dampings)), dampings), polynomials.stiff
     # −rest/spring is real on the circle where rest(z) spring(1/z) = rest(1/z) spring(z)
-    a, b = _in_z(rest), _in_z(spring)
-    roots = np.roots(np.convolve(a, b[::-1]) - np.convolve(a[::-1], b))
-    near = roots[(np.abs(np.abs(roots) - 1) < _NEAR) & (roots.imag >= 0)]
-    angles = {0.0, np.pi, *(float(angle) for angle in np.abs(np.angle(near))), *_slow(rest, spring)}
-    found = []
-    for angle in sorted(angles):
-        zeta = _zeta(np.array(angle))
-        weight = np.polyval(spring, zeta)
-        if abs(weight) > 1e-9 * np.abs(spring).max():
-            found.append(Crossing(float((-np.polyval(rest, zeta) / weight).real), angle))
+    b = _in_z(spring[None])[0]
+    differences = [np.convolve(a, b[::-1]) - np.convolve(a[::-1], b) for a in _in_z(rest)]
+    angles: list[list[float]] = []
+    for roots, slow in zip(_roots(np.array(differences)), _slow(rest, spring), strict=True):
+        near = roots[(np.abs(np.abs(roots) - 1) < _NEAR) & (roots.imag >= 0)]
+        angles.append(sorted({0.0, np.pi, *np.abs(np.angle(near)).tolist(), *slow}))
+    row = np.repeat(np.arange(len(angles)), [len(each) for each in angles])
+    angle = np.array([one for each in angles for one in each])
+    zeta = _zeta(angle)
+    weight = _values(spring, zeta)
+    there = np.abs(weight) > 1e-9 * np.abs(spring).max()
+    row, angle, weight = row[there], angle[there], weight[there]
+    stiffness = (-_values(rest[row].T, zeta[there]) / weight).real
+    found: list[list[Crossing]] = [[] for _ in angles]
+    for k, one in zip(row.tolist(), zip(stiffness.tolist(), angle.tolist(), strict=True), strict=True):
+        found[k].append(Crossing(*one))
     return found
 
 
-def _slow(rest: Array, spring: Array) -> list[float]:
-    """The angles at which rest/spring becomes real, by its sign: near z = 1 no root is found for sure."""
+def _slow(rest: Array, spring: Array) -> list[list[float]]:
+    """The angles at which a row of rest/spring becomes real, by its sign: near z = 1 no root is found for
+    sure."""
 
-    def twisted(angles: Array) -> Array:
+    def twisted(coefficients: Array, angles: Array) -> Array:
         zeta = _zeta(angles)
-        return np.asarray((np.polyval(rest, zeta) * np.conj(np.polyval(spring, zeta))).imag)
+        return np.asarray((_values(coefficients, zeta) * np.conj(_values(spring, zeta))).imag)
 
-    low = _ANGLES[:-1][np.diff(np.sign(twisted(_ANGLES))) != 0]
-    high = _ANGLES[1:][np.isin(_ANGLES[:-1], low)]
-    sign = np.sign(twisted(low))
+    signs = np.sign(twisted(rest.T[:, :, None], _ANGLES))
+    row, place = np.nonzero(np.diff(signs) != 0)
+    low, high, sign, turned = _ANGLES[place], _ANGLES[place + 1], signs[row, place], rest[row].T
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
-        same = np.sign(twisted(middle)) == sign
+        same = np.sign(twisted(turned, middle)) == sign
         low, high = np.where(same, middle, low), np.where(same, high, middle)
-    return [float(angle) for angle in (low + high) / 2]
+    found: list[list[float]] = [[] for _ in rest]
+    for k, angle in zip(row.tolist(), ((low + high) / 2).tolist(), strict=True):
+        found[k].append(angle)
+    return found
 
 
 def curve(polynomials: Plain, angles: Array) -> Curve:
@@ -137,20 +166,44 @@ def _zeta(angles: Array) -> NDArray[np.complex128]:
     return np.asarray(2j * np.sin(angles / 2) * np.exp(0.5j * angles), dtype=np.complex128)
 
 
-def _in_z(polynomial: Array) -> Array:
-    """A polynomial in ζ, written in z."""
-    shifted = np.zeros(0)
-    for coefficient in polynomial:
-        shifted = np.append(shifted, 0.0) - np.append(0.0, shifted)
-        shifted[-1] += coefficient
+def _in_z(polynomials: Array) -> Array:
+    """Polynomials in ζ, a row each, written in z."""
+    nothing = np.zeros((len(polynomials), 1))
+    shifted = nothing[:, :0]
+    for coefficient in polynomials.T:
+        shifted = np.hstack([shifted, nothing]) - np.hstack([nothing, shifted])
+        shifted[:, -1] += coefficient
     return shifted
 
 
 def _bounding(polynomials: Plain, stiffness: Array, damping: Array) -> NDArray[np.bool_]:
     """True where no root lies outside: the region of stable walls ends at such a point."""
-    return np.array(
-        [
-            bool(np.isfinite(k) and np.isfinite(b) and polynomials.radius(k, b) < 1 + _OUTSIDE)
-            for k, b in zip(stiffness, damping, strict=True)
-        ]
-    )
+    bounds = np.isfinite(stiffness) & np.isfinite(damping)
+    bounds[bounds] = polynomials.radii(stiffness[bounds], damping[bounds]) < 1 + _OUTSIDE
+    return bounds
+
+
+def _values(coefficients: Array, places: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Of polynomials at places, by Horner's rule; the coefficients along the first axis, descending."""
+    total = np.zeros_like(places)
+    for coefficient in coefficients:
+        total = total * places + coefficient
+    return total
+
+
+def _roots(rows: Array) -> list[Array]:
+    """`np.roots` of each row; of all those together that have as many zeros at both ends."""
+    found: list[Array] = [np.zeros(0)] * len(rows)
+    there = rows != 0
+    first, last = there.argmax(axis=1), rows.shape[1] - there[:, ::-1].argmax(axis=1)
+    for start, end in {*zip(first.tolist(), last.tolist(), strict=True)}:
+        which = np.flatnonzero((first == start) & (last == end) & there.any(axis=1))
+        size = end - start - 1
+        companions = np.tile(np.eye(size, k=-1), (len(which), 1, 1))
+        if size:
+            companions[:, 0] = -rows[which, start + 1 : end] / rows[which, start, None]
+        roots = np.linalg.eigvals(companions)
+        roots = np.hstack([roots, np.zeros((len(which), rows.shape[1] - end))])
+        for row, each in zip(which.tolist(), roots, strict=True):
+            found[row] = each
+    return found

@@ -64,6 +64,11 @@ class RowProgram:
         """True where a storage function takes its time: no closed form stands in for it."""
         return False
 
+    @property
+    def takes_long(self) -> bool:
+        """False: how large its table is shows only as it is made."""
+        return False
+
     def checking(self, steps: int) -> float:
         """What the checker may have to do over a storage function, in the unit of `effort`."""
         moves = self.table.successors.size * (steps + 1) ** 2
