@@ -86,16 +86,15 @@ def every_motion_of_a_box_is_enclosed() -> str:
 
 
 def what_is_near_1_is_enclosed() -> str:
-    """With its inverse, and no wider than it need be."""
+    """With its inverse, which is off its tangent by ρ²/(1 − ρ) at most: half of it is what is open."""
     for part in (Fraction(1, 3), Fraction(1, 100), Fraction(3, 4)):
-        for found, function in zip(
-            module("held_motion")._near_1(1 - part, 1 + part, 20), (lambda v: v, lambda v: 1 / v), strict=True
-        ):
-            if len(found.slopes) != 3 or any(found.slopes[1:]):
+        found = module("held_motion")._near_1(1 - part, 1 + part, 20)
+        for x, sign, room in zip(found, (1, -1), (0, part**2 / (1 - part) / 2), strict=True):
+            if len(x.slopes) != 3 or any(x.slopes[1:]):
                 return f"{part}: what it shares"
-            most = max(abs(function(1 + part * e) - at(found, (e, 0, 0), 0)) for e in (-1, 0, 1)) * (1 << 20)
-            if not most <= found.radius <= most + 3:
-                return f"1 ± {part}: {float(most)} off, {found.radius} said"
+            away = max(abs((1 + part * e) ** sign - at(x, (e, 0, 0), 0)) for e in (-1, 0, 1)) * (1 << 20)
+            if not away <= x.radius <= room * (1 << 20) + 3:
+                return f"1 ± {part} to the power {sign}: {float(away)} off, {x.radius} said"
     return ""
 
 
