@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
+from functools import cache
 from importlib import import_module
-from itertools import product
+from itertools import combinations_with_replacement, cycle, product
 from math import comb, floor, isqrt
 from random import Random
 from typing import Any
@@ -61,6 +62,7 @@ def square_root(x: Fraction) -> Fraction:
     return Fraction(isqrt((x.numerator << 2 * FINE) // x.denominator), 1 << FINE)
 
 
+@cache
 def sine(x: Fraction, first: int = 1) -> Fraction:
     """sin x, or with 0 cos x, to some 300 bits."""
     angle = (x.numerator << FINE) // x.denominator
@@ -225,6 +227,11 @@ LEFT = ([1, 1], [1, 1000], [1, 2, 2], [1, 1, 100], [1000, 1])
 NOT_LEFT = ([1, 0], [1, -1], [1, 0, 1], [1, -1, 100], [1, 0, -1])
 
 
+def _threes(two: Sequence[list[int]], third: Sequence[list[int]]) -> Iterator[tuple[list[int], ...]]:
+    """Two of one sort, in any order, and one of another."""
+    return ((a, b, c) for (a, b), c in product(combinations_with_replacement(two, 2), third))
+
+
 def roots_are_told_inside_from_outside() -> str:
     """Products of three polynomials whose roots are known; a root on the edge is not inside."""
     roots = module("roots")
@@ -232,11 +239,10 @@ def roots_are_told_inside_from_outside() -> str:
         (roots.inside_unit_circle, INSIDE, NOT_INSIDE),
         (roots.in_left_half_plane, LEFT, NOT_LEFT),
     ):
-        for chosen in product(good, good, (*good, *bad)):
-            for sign in (1, -3):
-                told = [Fraction(sign * c, 7) for c in expanded(*chosen)]
-                if test(told) is not (chosen[2] in good):
-                    return f"{test.__name__} of {chosen}"
+        for (*two, third), sign in zip(_threes(good, (*good, *bad)), cycle((1, -3)), strict=False):
+            told = [Fraction(sign * c, 7) for c in expanded(*two, third)]
+            if test(told) is not (third in good):
+                return f"{test.__name__} of {two}, {third}"
         if test([Fraction(0), *told]) or not test([Fraction(3)]):
             return f"{test.__name__} of one that begins with 0, or is constant"
     return ""
@@ -266,9 +272,9 @@ def what_is_0_somewhere_is_not_positive() -> str:
 def whole_numbers_decide_every_root() -> str:
     """The same without rounding, where no number of bits is enough."""
     decays, enclosed = module("schur_cohn").decays, module("enclosed").Enclosed
-    for chosen in product(INSIDE, (*INSIDE, *NOT_INSIDE), INSIDE):
+    for chosen in _threes(INSIDE, (*INSIDE, *NOT_INSIDE)):
         whole = in_zeta(expanded(*chosen))
-        if decays([enclosed(0, c) for c in whole]) is not (chosen[1] in INSIDE):
+        if decays([enclosed(0, c) for c in whole]) is not (chosen[2] in INSIDE):
             return f"of {chosen}"
     return ""
 

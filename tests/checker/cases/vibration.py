@@ -74,6 +74,16 @@ CASES = [
             refused(f"just below the limit, {name}", six(LIMIT - HAIR, *pattern), NOT),
         )
     ),
+    accepted(
+        "above the limit by less than 256 bits tell",
+        six(LIMIT + Fraction(1, 10**100), True, False, False),
+        "vibrates for ever",
+    ),
+    refused(
+        "a plant of too high an order",
+        put(ONE, {"plant.denominator": [1, *[0] * 61]}),
+        "order of G(z) is too high",
+    ),
     accepted("one pole", put(POLE, {"slope": Fraction(3, 2) + HAIR}), "rounds of 2 samples, 1 inside"),
     refused("one pole, at the limit", put(POLE, {"slope": "3/2"}), NOT),
     refused("one pole, below the limit", put(POLE, {"slope": Fraction(3, 2) - HAIR}), NOT),
