@@ -70,6 +70,19 @@ JOINT = "arm.joints.0."
 # of a damper alone: d_n (1 + η), and what the wall asks for
 DAMPER_AFAR = put(ARMS["a point, far from the rest"]["document"],
                   {"spring.stiffness_N_m_per_rad": 0, "spring.damping_N_m_s_per_rad": 1})  # fmt: skip
+# one joint before a wall along x: nothing is left to the spring, and R (0.4 sin q + 0.3 cos q)² to the wall,
+# R = 10; 1.59094 at q = 0.28 and 1.14536 at the rest
+ONE = put(POINT, {
+    "arm.joints": POINT["arm"]["joints"][:1], "arm.end_m": ["0.4", "0.3", "0"],
+    "wall.stiffness_N_per_m": [["20000"]],
+    **{f"wall.{key}_N_s_per_m": [["0"]] for key in ("virtual_damping", "damping_bound")},
+    "spring.rest_rad": ["0.1"], "spring.distance_rad": "0.18",
+})  # fmt: skip
+IN_SPACE = ARMS["in pose in space"]["document"]
+GIVEN = put(IN_SPACE, {
+    "arm.joints": [{**IN_SPACE["arm"]["joints"][0], "rest_rad": "0.2"}], "spring.rest_rad": ["0.1"],
+    "wall.rest": "given",
+})  # fmt: skip
 TILTED = POINT["arm"]["joints"][2]["rotation"]
 SLIDE = {
     "kind": "prismatic", "rotation": POINT["arm"]["joints"][0]["rotation"], "translation_m": ["0", "0", "0"],
@@ -107,6 +120,14 @@ CASES = [
             "in the range of joint 2"),
     refused("a rest below the range", put(POINT, {"spring.rest_rad": ["0.1", "0.1", "-1.01"]}),
             "in the range of joint 3"),
+    accepted("one joint in a region", alike(ONE, "1.5912")),
+    refused("one joint in a region, with less", alike(ONE, "1.5907"), LESS),
+    accepted("an orientation of rest that is given", GIVEN, "from the orientation of rest that is given"),
+    refused("an orientation of rest where it may be any", put(GIVEN, {"wall.rest": "every orientation"}),
+            "rest_rad is of no use"),
+    refused("a rest of too many joints", put(POINT, {"spring.rest_rad": ["0.1", "0.3", "-0.4", 0]}),
+            "for each joint"),
+    refused("friction told to six digits", rubbing("a point in space", HAIR, [0]), "at least 0.00328"),
     refused("a rest of too few joints", put(POINT, {"spring.rest_rad": ["0.1", "0.3"]}), "for each joint"),
     refused("a joint that slides", put(POINT, {"arm.joints.0": SLIDE}), "of joints that turn"),
     refused("no friction told", without(POINT, f"{JOINT}coulomb_friction_N_m"), "friction is missing"),
