@@ -109,7 +109,7 @@ MIXED, PLANE, EVERY, GIVEN = (
     damped(name, 1 + TINY) for name in ("mixed", "plane pose", "every rest", "given rest")
 )
 TWO, THREE = damped("two legs", 1 + TINY), damped("three legs", 1 + TINY)
-# beside each other: 0.006622 at the left end, less to its right
+# a region along x: the first leg needs 0.006627 at its left end, and less to the right
 REGION = put(TWO, {
     "arm.low_m": ["0.02", "0.13"], "arm.high_m": ["0.04", "0.13"],
     "arm.legs.1.damping_N_m_s_per_rad": "0.05",
@@ -203,6 +203,7 @@ IN_PLANE = put(PLANE, {
 })  # fmt: skip
 # a limit of 0 is one that is told
 NO_MOMENT = put(ARMS["held in pose"]["document"], {"loop.largest_moment_N_m": 0})
+NO_FORCE = put(HELD, {"loop.largest_force_N": 0})
 
 
 def turned_in_space(document: Any) -> Any:
@@ -425,6 +426,7 @@ CASES = [
         )
     ),
     # held
+    accepted("held, no forces", NO_FORCE, "for forces up to 0 N;"),
     accepted("held in pose, no moments", NO_MOMENT, "for forces up to 1 N and moments up to 0 N·m"),
     refused("a held torque and a delay", put(HELD, {"loop.delay_samples": 1}), "without a delay"),
     refused(
@@ -634,6 +636,14 @@ CASES = [
         "an axis that is turned, in the plane",
         put(PLANE, {"arm.joints.0.rotation": [["1", "0", "0"], ["0", "0", "-1"], ["0", "1", "0"]]}),
         "about the same axis",
+    ),
+    *(
+        refused(
+            f"an axis that leans by {lean}, in the plane",
+            put(PLANE, {"arm.joints.0.rotation": [["1", "0", "0"], ["0", "1", "0"], [lean, "0", "1"]]}),
+            "about the same axis",
+        )
+        for lean in ("1e-10", "-1e-10")
     ),
     refused("no rest", without(GIVEN, f"{JOINT}rest_rad"), "rest_rad is missing"),
     # legs

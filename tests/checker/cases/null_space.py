@@ -8,10 +8,12 @@ matrices, in doubles.  The checker's own norms are up to a part in 2000 larger, 
 from __future__ import annotations
 
 import json
+from importlib import import_module
+from math import cos, sin
 from pathlib import Path
 from typing import Any
 
-from . import Case, Fraction, accepted, put, refused, without
+from . import Case, Fraction, accepted, plain, put, refused, without
 
 ARMS = json.loads(Path(__file__).with_name("null_space.json").read_text(encoding="utf-8"))
 LARGER, HAIR = Fraction("1.002"), Fraction("0.999999")
@@ -89,6 +91,14 @@ SLIDE = {
     "low_m": "0", "high_m": "1", "damping_N_s_per_m": "9", "coulomb_friction_N": "9",
 }  # fmt: skip
 
+
+def the_surplus_is_that_of_the_middle() -> str:
+    """Of one joint: its damping less what the wall asks for at the rest."""
+    found = import_module("zwidth.checker").verify(plain(alike(ONE, 2))).surplus
+    right = 2 - 10 * (0.4 * sin(0.1) + 0.3 * cos(0.1)) ** 2
+    return "" if len(found) == 1 and abs(found[0][0] - right) < 1e-12 else f"{found}, not {right}"
+
+
 CASES = [
     *(case for name in ARMS for case in of(name)),
     accepted(
@@ -120,6 +130,7 @@ CASES = [
             "in the range of joint 2"),
     refused("a rest below the range", put(POINT, {"spring.rest_rad": ["0.1", "0.1", "-1.01"]}),
             "in the range of joint 3"),
+    Case("the surplus is that of the middle", the_surplus_is_that_of_the_middle, ""),
     accepted("one joint in a region", alike(ONE, "1.5912")),
     refused("one joint in a region, with less", alike(ONE, "1.5907"), LESS),
     accepted("an orientation of rest that is given", GIVEN, "from the orientation of rest that is given"),
