@@ -109,6 +109,11 @@ MIXED, PLANE, EVERY, GIVEN = (
     damped(name, 1 + TINY) for name in ("mixed", "plane pose", "every rest", "given rest")
 )
 TWO, THREE = damped("two legs", 1 + TINY), damped("three legs", 1 + TINY)
+# a region along x: the first leg needs 0.006627 at its left end, and less to the right
+REGION = put(TWO, {
+    "arm.low_m": ["0.02", "0.13"], "arm.high_m": ["0.04", "0.13"],
+    "arm.legs.1.damping_N_m_s_per_rad": "0.05",
+})  # fmt: skip
 JOINT, LEG = "arm.joints.0.", "arm.legs.0."
 ROTATION = [["0.6", "-0.8", "0"], ["0.8", "0.6", "0"], ["0", "0", "1"]]
 
@@ -198,6 +203,27 @@ IN_PLANE = put(PLANE, {
 })  # fmt: skip
 # a limit of 0 is one that is told
 NO_MOMENT = put(ARMS["held in pose"]["document"], {"loop.largest_moment_N_m": 0})
+NO_FORCE = put(HELD, {"loop.largest_force_N": 0})
+
+
+def turned_in_space(document: Any) -> Any:
+    """The same arm of legs, seen by one who stands askew."""
+    turn = [[Fraction(x, 3) for x in row] for row in ((2, -1, 2), (2, 2, -1), (-1, 2, 2))]
+
+    def seen(v: Any) -> list[Fraction]:
+        return [sum((r * Fraction(x) for r, x in zip(row, v, strict=True)), Fraction(0)) for row in turn]
+
+    arm = document["arm"]
+    legs = [{**leg, **{key: seen(leg[key]) for key in ("base_m", "out", "up")}} for leg in arm["legs"]]
+    wall = {
+        key: [seen(row) for row in zip(*map(seen, rows), strict=True)]
+        for key, rows in document["wall"].items()
+    }  # R (R A)ᵀ = R A Rᵀ of a symmetric A
+    return {
+        **document,
+        "arm": {**arm, "legs": legs, **{key: seen(arm[key]) for key in ("low_m", "high_m")}},
+        "wall": wall,
+    }
 
 
 def the_surplus_is_that_of_the_middle() -> str:
@@ -211,7 +237,11 @@ def the_surplus_is_that_of_the_middle() -> str:
 CASES = [
     *(case for name in ARMS for case in of(name)),
     # a region
-    accepted("a sweep", SWEEP, "in its range"),
+    accepted(
+        "a sweep",
+        SWEEP,
+        "with every joint in its range takes energy out, read without encoder steps; the torque follows the ",
+    ),
     refused("a sweep with less", put(SWEEP, {f"{JOINT}damping_N_m_s_per_rad": "0.0061355"}), LESS),
     accepted("a sweep to the other side", put(SWEEP, {f"{JOINT}low_rad": "-0.9", f"{JOINT}high_rad": "0.2"})),
     refused(
@@ -246,6 +276,11 @@ CASES = [
             TURNS,
             {f"{JOINT}low_rad": "63.9", f"{JOINT}high_rad": "63.9", f"{JOINT}damping_N_m_s_per_rad": "1"},
         ),
+    ),
+    refused(
+        "a slide farther than 2⁶⁴",
+        put(TURNS, {"arm.joints": [{**MIXED["arm"]["joints"][1], "low_m": -1 - 2**64, "high_m": 0}]}),
+        "a number is too large",
     ),
     # encoders
     accepted(
@@ -302,7 +337,7 @@ CASES = [
         )
     ),
     accepted("moments are told", POSED, "moments up to 3 N·m"),
-    accepted("no moments are told of a point", COUNTED, "for forces up to 2 N; "),
+    accepted("no moments are told of a point", COUNTED, "for forces up to 2 N; 2 cells"),
     accepted("a slide far from its axis", SLIDE),
     refused(
         "a slide far from its axis, less friction",
@@ -391,6 +426,7 @@ CASES = [
         )
     ),
     # held
+    accepted("held, no forces", NO_FORCE, "for forces up to 0 N;"),
     accepted("held in pose, no moments", NO_MOMENT, "for forces up to 1 N and moments up to 0 N·m"),
     refused("a held torque and a delay", put(HELD, {"loop.delay_samples": 1}), "without a delay"),
     refused(
@@ -601,6 +637,14 @@ CASES = [
         put(PLANE, {"arm.joints.0.rotation": [["1", "0", "0"], ["0", "0", "-1"], ["0", "1", "0"]]}),
         "about the same axis",
     ),
+    *(
+        refused(
+            f"an axis that leans by {lean}, in the plane",
+            put(PLANE, {"arm.joints.0.rotation": [["1", "0", "0"], ["0", "1", "0"], [lean, "0", "1"]]}),
+            "about the same axis",
+        )
+        for lean in ("1e-10", "-1e-10")
+    ),
     refused("no rest", without(GIVEN, f"{JOINT}rest_rad"), "rest_rad is missing"),
     # legs
     refused("legs in pose", {**TWO, "wall": PLANE["wall"]}, "not of pose"),
@@ -615,6 +659,31 @@ CASES = [
         "as many legs as its places have coordinates",
     ),
     refused("a wall of three coordinates, two legs", {**TWO, "wall": MIXED["wall"]}, "as many coordinates"),
+    refused("a wall of two coordinates, three legs", {**THREE, "wall": TWO["wall"]}, "as many coordinates"),
+    refused(
+        "legs with encoders",
+        put(
+            TWO,
+            {"loop.encoder": "counted", "loop.torque": "follows the readings", "loop.largest_force_N": 1},
+        ),
+        "are not bounded",
+    ),
+    *(
+        refused(
+            f"a leg, {key} of too many coordinates",
+            put(TWO, {f"{LEG}{key}": ["1", "0", "0"]}),
+            "as many legs",
+        )
+        for key in ("base_m", "out", "up")
+    ),
+    accepted("three legs askew", turned_in_space(THREE)),
+    refused("three legs askew, but for a hair", turned_in_space(damped("three legs", 1 - TINY)), LESS),
+    accepted("where the left end needs most", put(REGION, {f"{LEG}damping_N_m_s_per_rad": "0.00665"})),
+    refused(
+        "where the left end needs most, with less",
+        put(REGION, {f"{LEG}damping_N_m_s_per_rad": "0.0065"}),
+        LESS,
+    ),
     refused(
         "legs, held",
         put(

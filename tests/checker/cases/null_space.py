@@ -8,10 +8,12 @@ matrices, in doubles.  The checker's own norms are up to a part in 2000 larger, 
 from __future__ import annotations
 
 import json
+from importlib import import_module
+from math import cos, sin
 from pathlib import Path
 from typing import Any
 
-from . import Case, Fraction, accepted, put, refused, without
+from . import Case, Fraction, accepted, plain, put, refused, without
 
 ARMS = json.loads(Path(__file__).with_name("null_space.json").read_text(encoding="utf-8"))
 LARGER, HAIR = Fraction("1.002"), Fraction("0.999999")
@@ -70,11 +72,32 @@ JOINT = "arm.joints.0."
 # of a damper alone: d_n (1 + η), and what the wall asks for
 DAMPER_AFAR = put(ARMS["a point, far from the rest"]["document"],
                   {"spring.stiffness_N_m_per_rad": 0, "spring.damping_N_m_s_per_rad": 1})  # fmt: skip
+# one joint before a wall along x: nothing is left to the spring, and R (0.4 sin q + 0.3 cos q)² to the wall,
+# R = 10; 1.59094 at q = 0.28 and 1.14536 at the rest
+ONE = put(POINT, {
+    "arm.joints": POINT["arm"]["joints"][:1], "arm.end_m": ["0.4", "0.3", "0"],
+    "wall.stiffness_N_per_m": [["20000"]],
+    **{f"wall.{key}_N_s_per_m": [["0"]] for key in ("virtual_damping", "damping_bound")},
+    "spring.rest_rad": ["0.1"], "spring.distance_rad": "0.18",
+})  # fmt: skip
+IN_SPACE = ARMS["in pose in space"]["document"]
+GIVEN = put(IN_SPACE, {
+    "arm.joints": [{**IN_SPACE["arm"]["joints"][0], "rest_rad": "0.2"}], "spring.rest_rad": ["0.1"],
+    "wall.rest": "given",
+})  # fmt: skip
 TILTED = POINT["arm"]["joints"][2]["rotation"]
 SLIDE = {
     "kind": "prismatic", "rotation": POINT["arm"]["joints"][0]["rotation"], "translation_m": ["0", "0", "0"],
     "low_m": "0", "high_m": "1", "damping_N_s_per_m": "9", "coulomb_friction_N": "9",
 }  # fmt: skip
+
+
+def the_surplus_is_that_of_the_middle() -> str:
+    """Of one joint: its damping less what the wall asks for at the rest."""
+    found = import_module("zwidth.checker").verify(plain(alike(ONE, 2))).surplus
+    right = 2 - 10 * (0.4 * sin(0.1) + 0.3 * cos(0.1)) ** 2
+    return "" if len(found) == 1 and abs(found[0][0] - right) < 1e-12 else f"{found}, not {right}"
+
 
 CASES = [
     *(case for name in ARMS for case in of(name)),
@@ -107,6 +130,15 @@ CASES = [
             "in the range of joint 2"),
     refused("a rest below the range", put(POINT, {"spring.rest_rad": ["0.1", "0.1", "-1.01"]}),
             "in the range of joint 3"),
+    Case("the surplus is that of the middle", the_surplus_is_that_of_the_middle, ""),
+    accepted("one joint in a region", alike(ONE, "1.5912")),
+    refused("one joint in a region, with less", alike(ONE, "1.5907"), LESS),
+    accepted("an orientation of rest that is given", GIVEN, "from the orientation of rest that is given"),
+    refused("an orientation of rest where it may be any", put(GIVEN, {"wall.rest": "every orientation"}),
+            "rest_rad is of no use"),
+    refused("a rest of too many joints", put(POINT, {"spring.rest_rad": ["0.1", "0.3", "-0.4", 0]}),
+            "for each joint"),
+    refused("friction told to six digits", rubbing("a point in space", HAIR, [0]), "at least 0.00328"),
     refused("a rest of too few joints", put(POINT, {"spring.rest_rad": ["0.1", "0.3"]}), "for each joint"),
     refused("a joint that slides", put(POINT, {"arm.joints.0": SLIDE}), "of joints that turn"),
     refused("no friction told", without(POINT, f"{JOINT}coulomb_friction_N_m"), "friction is missing"),

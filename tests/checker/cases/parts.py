@@ -276,7 +276,15 @@ def lines_of_a_burst_are_those_of_the_port() -> str:
 def rotations_are_those_of_their_quaternions() -> str:
     """Whichever of its four numbers is the largest; there and back, and as a product."""
     pose, cells = part("arm.pose"), part("arm.cells")
-    for told in ((9, 1, -2, 3), (1, 9, 2, -3), (-2, 1, 9, 3), (3, -1, 2, 9), (1, 0, 0, 0), (0, 0, 3, 4)):
+    for told in (
+        (9, 1, -2, 3),
+        (1, 9, 2, -3),
+        (-2, 1, 9, 3),
+        (3, -1, 2, 9),
+        (1, 0, 0, 0),
+        (0, 0, 3, 4),
+        (0, 0, 0, 1),
+    ):
         w, x, y, z = told
         size = sum(v * v for v in told)
         doubled = [
