@@ -49,7 +49,7 @@ COMMANDS = (
     "play haptic-paddle --stiffness 770 --force -o play.html",
     "explore haptic-paddle --no-browser",
     "devices",
-    "new device my-device.toml --no-questions --rate '1 kHz' --damping '0.1 N*s/m' --force",
+    "new device my-device.toml --no-questions --motion linear --rate '1 kHz' --damping '0.1 N*s/m' --force",
     "tour --no-pause",
     "examples . --force",
     "completion bash",
@@ -68,12 +68,11 @@ def used(words: list[str], caches: Path, folder: Path) -> tuple[float, float]:
         [sys.executable, *words],
         cwd=folder,
         env=environment,
-        stdout=subprocess.PIPE if endless else subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE if endless else subprocess.DEVNULL,
     )
-    if process.stdout is not None:
-        while b"http" not in process.stdout.readline():  # the page is there
-            pass
+    if process.stderr is not None:
+        next(line for line in process.stderr if b"http" in line)  # the page is there
         process.send_signal(signal.SIGINT)
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
