@@ -11,6 +11,7 @@ from fractions import Fraction
 from importlib import import_module
 from itertools import product
 from math import ceil
+from types import SimpleNamespace
 from typing import Any
 
 from . import Case, plain, put
@@ -59,6 +60,7 @@ def laws() -> Iterator[Any]:
         yield law(surface, taps=[], points=points)
         yield law(surface, taps=[], points=points, rate=Fraction(-8, 3))
         yield law(surface, taps=[], points=points, rate=Fraction(9, 5), clamped=True, step=Fraction(1, 8))
+        yield law(surface, taps=[], points=points, step=Fraction(1, 8))
 
 
 def forces_on_a_grid_are_those_of_the_law() -> str:
@@ -137,6 +139,61 @@ def costs_are_below_what_is_lost() -> str:
         best = [max(each, key=lambda c: c[d] + c[d + 1]) for d in range(len(one) - 1)]
         if list(one) != [min(c[d] for c in best[max(d - 1, 0) : d + 1]) for d in range(len(one))]:
             return f"of {len(several)} models, {steps} steps"
+    return ""
+
+
+def forces_that_do_not_fit_are_refused() -> str:
+    """Whatever they come from, and however large all but one of their causes are."""
+    grid, huge, low = storage("grid"), Fraction(1 << 53), [(Fraction(0), Fraction(1))]
+    steep, none = [(Fraction(0), huge / 2)], {"taps": [Fraction(1)]}
+    told = [
+        (law(**none, limit=huge), 1, 1), (law(**none, step=huge), 1, 1),
+        (law(taps=[], points=low, rate=huge), 1, 10), (law(taps=[], points=low, rate=-huge), 1, 10),
+        (law(taps=[], points=steep, limit=huge / 2), 1, 1), (law(taps=[], points=steep, step=huge / 2), 1, 1),
+        (law(taps=[], points=steep, limit=huge / 4, step=huge / 4), 1, 1),
+        (law(taps=[], points=steep, rate=Fraction(5)), 1, 2),
+        (law(taps=[-huge], clamped=True), 10, 1),
+    ]  # fmt: skip
+    refused = import_module("zwidth.checker.document.refusal").Invalid
+    for one, farthest, reach in told:
+        for unit, fits in ((Fraction(1), False), (Fraction(3), True)):
+            try:
+                grid._require_small(one, losses(), unit, farthest, reach)
+            except refused:
+                if fits:
+                    return f"{one} fits in units of {unit}"
+            else:
+                if not fits:
+                    return f"{one} does not fit"
+    return ""
+
+
+def cells_reach_as_far_on_both_sides() -> str:
+    """Of a law without a surface, but for a count."""
+    coarse = storage("coarse")
+    told = SimpleNamespace(counts_per_cell=1, largest_move_cells=Fraction(1), remembered=0, highest_cell=2)
+    refused = import_module("zwidth.checker.document.refusal").Invalid
+    for low, holds in ((-4, True), (-3, True), (-2, False), (-1, False)):
+        told.lowest_cell = low
+        try:
+            coarse._line(told, losses(), law("none"))
+        except refused:
+            if holds:
+                return f"refused from {low}"
+        else:
+            if not holds:
+                return f"accepted from {low}"
+    return ""
+
+
+def words_of_cells() -> str:
+    """How far and how fast, in the units of the device."""
+    coarse = storage("coarse")
+    cells = SimpleNamespace(counts_per_cell=Fraction(3), highest_cell=7, largest_move_cells=Fraction(5))
+    for units, length in (("linear", "m"), ("rotary", "rad")):
+        said = coarse.proved(SimpleNamespace(domain=cells, units=units), losses())
+        if f"up to 2.1 {length} and" not in said or f"up to 6 {length}/s over" not in said:
+            return said
     return ""
 
 
@@ -258,6 +315,9 @@ CHECKS = (
     many_forces_are_computed_in_parts,
     states_are_those_with_all_readings_on_the_grid,
     costs_are_below_what_is_lost,
+    forces_that_do_not_fit_are_refused,
+    cells_reach_as_far_on_both_sides,
+    words_of_cells,
     averages_go_where_the_law_sends_them,
     forces_at_corners_are_those_of_the_law,
     costs_of_cells_are_below_what_is_lost,

@@ -317,6 +317,30 @@ def relaxing() -> str:
     return "" if min(told) >= ROUNDS else "nothing was told apart"
 
 
+def numbers_up_to_the_largest_that_are_exact() -> str:
+    """A unit of energy counts where the largest value and force together are nearly 2⁵³."""
+    violated, random = storage("moves").violated, Random(11)
+    costs, exists = [0, 3, 7], np.ones((2, 1), dtype=np.bool_)
+    outcomes = set()
+    for _ in range(40):
+        force = random.choice([1, -1]) * ((1 << 53) // 9 - random.randrange(1, 99, 2))
+        value = [5 * abs(force) * (force < 0) + force * x + random.choice([0, 1, 2, 3, 4]) for x in range(6)]
+        places = [0, 1, 2, 2, 3, 4]
+        value = [value[x] for x in places]
+        value[3] = value[2]
+        wrong = any(
+            value[a] < value[b] - force * (places[b] - places[a]) - costs[abs(places[b] - places[a])]
+            for a, b in product(range(6), repeat=2)
+            if abs(places[b] - places[a]) < len(costs)
+        )
+        outcomes.add(wrong)
+        told = np.array(value, dtype=np.int64).reshape(2, 1, 3)
+        moves = [(np.full((2, 1), force), np.array(costs, dtype=object))]
+        if violated(told, exists, moves, 0, 1) != wrong:
+            return f"force {force}, values {value}: {wrong}"
+    return "" if len(outcomes) == 2 else "all alike"
+
+
 def a_level_that_is_passed_counts() -> str:
     """Between two levels whose images lie to either side of a third one, where V is largest."""
     poles, starts, sizes = (
@@ -401,6 +425,7 @@ CHECKS = (
     in_a_table,
     on_a_line,
     relaxing,
+    numbers_up_to_the_largest_that_are_exact,
     a_level_that_is_passed_counts,
     an_image_between_two_parts_of_a_level_counts_at_both,
     a_level_that_is_passed_at_once_counts,

@@ -175,6 +175,63 @@ CASES = [
         put(STORAGES["solid"]["document"], {"storage": packed([(i // 9 % 2) << 47 for i in range(36)])}),
         "too large to be compared",
     ),
+    *(
+        refused(
+            f"{name}, levels of no use",
+            put(told, {"domain.levels_per_count": 2}),
+            "levels_per_count is of no use",
+        )
+        for name, told in (("spring", SPRING), ("points", STORAGES["points"]["document"]))
+    ),
+    refused(
+        "a law that relaxes, without levels",
+        without(STORAGES["solid"]["document"], "domain.levels_per_count"),
+        "levels_per_count is missing",
+    ),
+    refused(
+        "a law that relaxes, a friction curve",
+        put(
+            without(STORAGES["solid"]["document"], "loop.damping_N_s_per_m", "loop.coulomb_friction_N"),
+            {
+                "loop.friction_curve_m_per_s_N": [[0, 1], [1, 1]],
+                "loop.friction_models_N_N_s_per_m": [[0, 0]],
+            },
+        ),
+        "one friction model",
+    ),
+    refused("no cell", small("storage", {"taps_N_per_m": [1]}, counts(1, 0), [], 9), EMPTY),
+    *(
+        refused(
+            f"{kind}, one value just too large",
+            small(kind, {"taps_N_per_m": [0]}, domain, values, 1),
+            TOO_LARGE,
+        )
+        for kind, domain, values in (
+            ("storage", counts(0, 1), [0, 0, 1 << 53, 0]),
+            ("coarse storage", cells(-2, 1), [0, 1 << 53, 0, 0]),
+        )
+    ),
+    *(
+        refused(
+            f"{kind}, forces outwards just too large",
+            small(kind, law, domain, [0] * size, 1),
+            TOO_LARGE,
+        )
+        for kind, law, domain, size in (
+            ("storage", {"taps_N_per_m": [], "points_m_N": [[0, -(1 << 52)]]}, counts(0, 1), 4),
+            ("coarse storage", {**SPRING_OF_1, "taps_N_per_m": [-(1 << 51)]}, cells(-2, 2), 6),
+        )
+    ),
+    refused(
+        "forces at the far end too large",
+        small("storage", {"taps_N_per_m": [1 << 52]}, counts(0, 2), [0] * 6, 1),
+        FORCES_TOO_LARGE,
+    ),
+    refused(
+        "cells, forces outwards above any whole number that is kept",
+        small("coarse storage", {**SPRING_OF_1, "taps_N_per_m": [-(1 << 90)]}, cells(-2, 2), [0] * 6, 1),
+        FORCES_TOO_LARGE,
+    ),
     accepted("a grid inside a surface", SPRING, "at any position up to 3 counts inside"),
     accepted("a grid of both sides", STORAGES["points"]["document"], "at any position from -3 to 3 counts"),
     refused(
