@@ -8,6 +8,7 @@ number, `a[i, :]` a row and `a[i:j]` a part, both views.  Everything else is out
 from __future__ import annotations
 
 import ast
+import re
 from typing import Any, NamedTuple, Protocol
 
 from zwidth.native.names import Defined, Module, is_step_function
@@ -95,7 +96,16 @@ class Function:
         for name, of in self.types.items():
             if name not in given:
                 head.append(f"  {of.c} {name}_ = {'{0}' if isinstance(of, Several | Cells) else '0'};")
-        return "\n".join([head_of(self.own) + " {", *head, *self.lines, "}"])
+        lines = "\n".join([*head, *self.lines])
+        for name, of in self.own.takes:
+            if is_large(
+                of
+            ):  # read where it lies; a copy only where the function gives the name another value
+                if re.search(rf"\b{name}_ = ", lines):
+                    lines = f"  {of.c} {name}_ = *{name}_at;\n{lines}"
+                else:
+                    lines = re.sub(rf"\b{name}_\b", f"(*{name}_at)", lines)
+        return f"{head_of(self.own)} {{\n{lines}\n}}"
 
     is_last = False
     """False while types are looked for: a type that is not known is then no fault."""
@@ -489,7 +499,9 @@ class Function:
             if isinstance(found.node, ast.ClassDef):
                 of = self.around.several(fields(found))
                 takes = tuple(zip(of.names, of.items, strict=True))
-                return Read(f"(({of.c}){{{', '.join(self._given(node, takes, {}, found.module))}}})", of)
+                return Read(
+                    f"(({of.c}){{{', '.join(self._given(node, takes, {}, found.module, False))}}})", of
+                )
             if is_step_function(found.node):
                 to = self.around.signature(found)
                 given = self._given(node, to.takes, to.defaults, to.module)
@@ -523,6 +535,7 @@ class Function:
         takes: tuple[tuple[str, Type], ...],
         defaults: dict[str, ast.expr],
         owner: Module,
+        by_address: bool = True,
     ) -> list[str]:
         told: dict[str, tuple[Read, ast.expr]] = {}
         flat: list[tuple[Read, ast.expr]] = []
@@ -542,11 +555,12 @@ class Function:
             raise self.module.outside(
                 node, f"{ast.unparse(node.func)} takes {', '.join(n for n, _ in takes)}"
             )
-        return [self._argument(*told[name], of) for name, of in takes]
+        return [self._argument(*told[name], of, by_address) for name, of in takes]
 
-    def _argument(self, value: Read, node: ast.expr, of: Type) -> str:
+    def _argument(self, value: Read, node: ast.expr, of: Type, by_address: bool) -> str:
         known = self.module.value(node, self.types) if isinstance(of, Cells) else None
-        return self.around.constants(known).c if isinstance(known, tuple) else self.cast(value, of, node)
+        text = self.around.constants(known).c if isinstance(known, tuple) else self.cast(value, of, node)
+        return address(text, of) if by_address else text
 
     def _builtin(self, name: str, node: ast.Call) -> Read:
         given = [self.read(a) for a in node.args]
@@ -631,8 +645,25 @@ class Function:
 
 def head_of(signature: Signature) -> str:
     """The first line of a function in C."""
-    takes = ", ".join(f"{of.c} {name}_" for name, of in signature.takes) or "void"
+    takes = ", ".join(f"{taken(of)}{name}_{'at' * is_large(of)}" for name, of in signature.takes) or "void"
     return f"static {signature.returns.c} {signature.name}({takes})"
+
+
+def is_large(of: Type) -> bool:
+    """True of what is handed over by its address: by value it would go through memory, word by word."""
+    return isinstance(of, Cells) or (isinstance(of, Several) and len(of.items) > 2)
+
+
+def taken(of: Type) -> str:
+    """A parameter's type in C."""
+    return f"const {of.c} *" if is_large(of) else f"{of.c} "
+
+
+def address(text: str, of: Type) -> str:
+    """An argument as it is handed over."""
+    if not is_large(of):
+        return text
+    return f"&{text}" if text.replace(".", "").isidentifier() else f"({of.c}[1]){{{text}}}"
 
 
 def signature_of(of: Defined, name: str) -> Signature:

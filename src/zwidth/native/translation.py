@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from zwidth.native.function import Function, Read, Signature, head_of, literal, signature_of
+from zwidth.native.function import Function, Read, Signature, address, head_of, literal, signature_of, taken
 from zwidth.native.names import Defined, Octets, OutsideError, Package, c_name
 from zwidth.native.types import ITEMS, REAL, Asked, Cells, Maybe, Nothing, Number, Several, Type, told
 
@@ -95,7 +95,7 @@ class Translation:
             for name, of in self._several.items()
         ]
         asked = [
-            f"typedef {of.returns.c} (*{name})({', '.join(part.c for part in of.takes)});"
+            f"typedef {of.returns.c} (*{name})({', '.join(map(taken, of.takes))});"
             for name, of in self._asked.items()
         ]
         return several + asked
@@ -119,7 +119,7 @@ def _entry(signature: Signature) -> str:
     at, given = 0, []
     for _, of in signature.takes:
         text, at = _taken(of, at)
-        given.append(text)
+        given.append(address(text, of))
     call = f"{signature.name}({', '.join(given)})"
     lines = [f"ZW_SEEN void zwx_{signature.name}(zw_word *w) {{"]
     if isinstance(signature.returns, Nothing):
