@@ -98,9 +98,7 @@ class Function:
                 head.append(f"  {of.c} {name}_ = {'{0}' if isinstance(of, Several | Cells) else '0'};")
         lines = "\n".join([*head, *self.lines])
         for name, of in self.own.takes:
-            if is_large(
-                of
-            ):  # read where it lies; a copy only where the function gives the name another value
+            if is_large(of):  # read where it lies; copied only where the name is given another value
                 if re.search(rf"\b{name}_ = ", lines):
                     lines = f"  {of.c} {name}_ = *{name}_at;\n{lines}"
                 else:
