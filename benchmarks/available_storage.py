@@ -7,7 +7,7 @@ counts deep and 100 counts per sample where nothing else is said.
 
 * A bracket of stiffness by `zw.limit`, the whole call.
 * One sweep over the grid from V = 0, on one thread: the hull, a plain loop over all moves
-  compiled by numba, and NumPy over all readings and targets at once.  V and the best
+  in C, and NumPy over all readings and targets at once.  V and the best
   moves must be the same to the last bit.
 * The same loads without the hull, and the same sums, products and comparisons without the
   loads: what memory and arithmetic alone would take.
@@ -26,7 +26,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from numba import njit
+from in_c import WHOLE, WHOLES, library
 
 import zwidth as zw
 from zwidth.passivity.storage.grid.grid import Grid
@@ -85,37 +85,32 @@ def bracket() -> dict:
     }
 
 
-@njit
+IN_C = library(Path(__file__).with_name("storage.c"))
+IN_C.plain_sweep.argtypes = [
+    WHOLES,
+    WHOLES,
+    WHOLE,
+    WHOLE,
+    WHOLES,
+    WHOLES,
+    WHOLE,
+    WHOLES,
+    *[WHOLE] * 3,
+    WHOLES,
+    WHOLES,
+]
+IN_C.loads_alone.argtypes = [WHOLES, WHOLES, WHOLES, WHOLES, WHOLE, WHOLE, WHOLES, WHOLES, WHOLES]
+IN_C.arithmetic_alone.argtypes = [WHOLE] * 4
+for function in (IN_C.plain_sweep, IN_C.loads_alone, IN_C.arithmetic_alone):
+    function.restype = WHOLE
+
+
 def plain_sweep(value, choice, first, last, forces, costs, nodes, places, reach, steps):
     """The update by its definition, move by move."""
-    cells, histories, edges = value.shape
-    width = 2 * reach + 1
-    per_cell = histories // width
-    bests, goals = np.empty(width, np.int64), np.empty(width, np.int64)
-    improved = 0
-    for group in range(first, last):
-        n, newer = group // per_cell, group % per_cell
-        for j in range(edges):
-            for oldest in range(width):
-                f = forces[n, newer * width + oldest]
-                best, goal = value[n, newer * width + oldest, j], -1
-                for n2 in range(max(0, n - reach), min(cells - 1, n + reach) + 1):
-                    if f == NOWHERE:
-                        break
-                    h2 = (n - n2 + reach) * per_cell + newer
-                    for j2 in range(edges):
-                        d = (n2 - n) * steps + nodes[j2] - nodes[j]
-                        if abs(d) < costs.size:
-                            energy = value[n2, h2, j2] - costs[abs(d)] - f * d
-                            if energy > best:
-                                best, goal = energy, (n2 * histories + h2) * edges + j2
-                bests[oldest], goals[oldest] = best, goal
-            for oldest in range(width):  # all of them at once, as the hull does
-                if goals[oldest] >= 0:
-                    value[n, newer * width + oldest, j] = bests[oldest]
-                    choice[n, newer * width + oldest, j] = goals[oldest]
-                    improved += 1
-    return improved
+    best, shape = np.empty(2 * (2 * reach + 1), np.int64), np.array(value.shape)
+    return IN_C.plain_sweep(
+        value, choice, first, last, forces, costs, costs.size, nodes, reach, steps, NOWHERE, shape, best
+    )
 
 
 def numpy_sweep(value, choice, first, last, forces, costs, nodes, places, reach, steps):
@@ -152,7 +147,7 @@ def side_by_side(grid: Grid) -> dict:
     ends, rows = {}, {}
     for name, one, runs in (
         ("zwidth, the hull", sweep, 20),
-        ("numba, every move", plain_sweep, 3),
+        ("C, every move", plain_sweep, 3),
         ("NumPy, every move", numpy_sweep, 2),
     ):
         times = []
@@ -198,57 +193,29 @@ def _counts(values, forces, costs, nodes, steps, reach):
     return pairs, targets, points, states
 
 
-@njit
-def loads_alone(values, forces, costs, nodes, steps, reach, points):
-    """What the hull reads, as a plain stream: every target, every hull point, every state."""
-    cells, histories = forces.shape
-    edges, seen = nodes.size, 0
-    place, there = np.arange(points), np.arange(points)
-    for n in range(cells):
-        for n2 in range(max(0, n - reach), min(cells - 1, n + reach) + 1):
-            start = (n2 * histories + n - n2 + reach) * edges
-            for j2 in range(edges):
-                seen += values[start + j2]
-        for j in range(edges):
-            for p in range(points):
-                seen += values[n * histories * edges + there[p]] - costs[abs(place[p] - nodes[j])]
-            for h in range(histories):
-                seen += max(values[(n * histories + h) * edges + j], forces[n, h])
-    return seen
-
-
-@njit
-def arithmetic_alone(targets, points, states, slope):
-    """What the hull computes, in registers: the height of each, a comparison, the best of two corners."""
-    top, at, kept = 0, 0, 0
-    for y in range(targets):
-        z = (y & 1023) - 3 * y * y
-        if z - top > slope * (y - at):
-            top, at, kept = z, y, kept + 1
-    for y in range(points):
-        z = (y & 1023) - (y >> 3)
-        if z - top > slope * (y - at):
-            top, at, kept = z, y, kept + 1
-    for f in range(states):
-        here, there = top - f * at, kept - f * (at + 1)
-        if there > here:
-            kept += 1
-    return kept
-
-
 def limits(grid: Grid) -> dict:
     """One sweep that improves nothing, beside its loads alone and its arithmetic alone."""
     found = counted(grid)
     targets, points, states = found["targets"], found["hull_points"], found["states"]
     value = solve.value_iteration(grid).value
     choice = np.full(value.shape, -1, np.int64)
-    tables = grid.forces, grid.costs, grid.nodes, grid.steps
     per_node = points // (len(grid.forces) * grid.nodes.size)
-    reach = grid.domain.reach
+    shape, place = np.array(value.shape), np.arange(per_node)
+    tables = (
+        value,
+        grid.forces,
+        grid.costs,
+        grid.nodes,
+        grid.domain.reach,
+        per_node,
+        shape,
+        place,
+        place.copy(),
+    )
     actions = {
         "sweep": lambda: sweep(value, choice, 0, len(grid.forces), *_tables(grid)),
-        "loads": lambda: loads_alone(value.reshape(-1), *tables, reach, per_node),
-        "arithmetic": lambda: arithmetic_alone(targets, points, states, -7),
+        "loads": lambda: IN_C.loads_alone(*tables),
+        "arithmetic": lambda: IN_C.arithmetic_alone(targets, points, states, -7),
     }
     for action in actions.values():
         action()

@@ -27,7 +27,6 @@ import zwidth as zw
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup
 from zwidth.native import build
-from zwidth.native.translation import Translation
 
 SAMPLES = 50_000
 REPEATS = 5
@@ -54,7 +53,7 @@ ZW_SEEN double added_{name}(const double *x, int64_t count, double n) {{
 
 def built(which: str, folder: Path) -> Path:
     """A library of all step functions with our functions, or the C library's, and loops that add up."""
-    text = Translation(build.PACKAGE).text()
+    text = build.translated()
     for name, module in WHERE.items():
         own = f"elementary_{module}_{name}"
         called = own if which == "ours" else name.replace("power", "pow")

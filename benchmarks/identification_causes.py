@@ -18,10 +18,11 @@ from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from math import pi
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
-import numba as nb
 import numpy as np
+from in_c import REALS, WHOLE, library
 from scipy.signal import lfilter
 
 import zwidth as zw
@@ -71,12 +72,11 @@ class Friction:
         """The largest f_c for which f_c + b |v| is below friction up to a speed, in the mean of both ways."""
         v = np.linspace(0.0, speed, 400)
         rest = self.coulomb + self.bump * np.exp(-((v / self.bump_speed) ** 2)) - damping * v
-        above = [np.array([viscous(law, b, self.bend, u) for u in v]) + rest for law, b in self.ways()]
+        above = [viscous(law, b, self.bend, v) + rest for law, b in self.ways()]
         return float(sum(way.min() for way in above) / 2)
 
 
-@nb.njit(cache=True)
-def viscous(law, b, bend, v):
+def viscous(law: int, b: float, bend: float, v: Any) -> Any:
     """g(v) of a law."""
     if law == BENT:
         return b * v / (1.0 + v / bend)
@@ -95,25 +95,17 @@ def slope(law: int, b: float, bend: float, v: float) -> float:
     return b * (1.0, 1 / (1 + u) ** 2, 1 / (1 + u * u), 1 / (1 + u), 1 / np.sqrt(1 + 2 * u))[law]
 
 
-@nb.njit(cache=True)
-def moved(wanted, every, mass, coulomb, inward, outward, laws, bend, bump, bump_speed, cogging, pitch):
-    """Position, velocity and force of the hand at the samples; friction is taken at the end of each step."""
-    count = wanted.size // every
-    position, velocity, force = np.empty(count), np.empty(count), np.empty(count)
-    x, v = wanted[0], 0.0
-    for i in range(count * every):
-        hand = HAND_STIFFNESS * (wanted[i] - x) - HAND_DAMPING * v
-        if i % every == 0:
-            position[i // every], velocity[i // every], force[i // every] = x, v, hand
-        free = v + STEP / mass * (hand - cogging * np.sin(2.0 * np.pi * x / pitch))
-        speed, side = abs(free), 1.0 if free > 0.0 else -1.0
-        law, b = (laws[0], inward) if side > 0.0 else (laws[1], outward)
-        friction = coulomb + viscous(law, b, bend, speed)
-        if bump > 0.0:
-            friction += bump * np.exp(-((speed / bump_speed) ** 2))
-        v = side * max(speed - STEP / mass * friction, 0.0)
-        x += STEP * v
-    return position, velocity, force
+def moved(wanted: Array, every: int, laws: tuple[int, int], *numbers: float) -> Array:
+    """Position, velocity and force of the hand at the samples; friction is taken at the end of each step.
+
+    The numbers: mass, f_c, b inward and outward, bend, bump and its speed, cogging and its pitch.
+    """
+    out = np.empty((3, wanted.size // every))
+    run = library(Path(__file__).with_name("shaken.c")).moved
+    run.argtypes = [REALS, WHOLE, WHOLE, REALS, WHOLE, WHOLE, REALS]
+    p = np.array([STEP, HAND_STIFFNESS, HAND_DAMPING, *numbers])
+    run(wanted, out.shape[1], every, p, *laws, out)
+    return out
 
 
 class Recording(NamedTuple):
@@ -137,11 +129,11 @@ def record(cause: str, seed: int) -> Recording:
     position, _, force = moved(
         wanted,
         every,
+        (friction.law_inward, friction.law_outward),
         mass,
         friction.coulomb,
         friction.inward,
         friction.outward,
-        (friction.law_inward, friction.law_outward),
         friction.bend,
         friction.bump,
         friction.bump_speed,

@@ -12,11 +12,10 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 
 import numpy as np
-from numba import njit
 
 from zwidth.compiled import Array
 from zwidth.links.held_waves import HELD_WAVES
@@ -58,13 +57,11 @@ KINDS = {
 }
 
 
-@njit(nogil=True)
 def between(random: np.random.Generator, low: float, high: float) -> float:
     """Evenly in the logarithm."""
     return low * (high / low) ** random.random()
 
 
-@njit(nogil=True)
 def draw_device(random: np.random.Generator, p: Array) -> None:
     """Any device, at 1 kHz or another rate."""
     p[:] = 0.0
@@ -75,7 +72,6 @@ def draw_device(random: np.random.Generator, p: Array) -> None:
     p[LATE] = float(random.integers(0, 4)) if random.random() < 0.3 else 0.0
 
 
-@njit(nogil=True)
 def draw_wire(random: np.random.Generator, wire: Wire) -> None:
     """One way of a link."""
     count = wire.when.size
@@ -85,16 +81,19 @@ def draw_wire(random: np.random.Generator, wire: Wire) -> None:
         delay = random.integers(0, 4)
     loss, burst, twice = 0.5 * random.random(), between(random, 1.0, 30.0), 0.3 * random.random()
     kept_back = random.random() < 0.1
+    chances, lost = random.random(count), np.zeros(count, dtype=bool)
     bad = False
-    for j in range(count):
-        bad = random.random() >= 1.0 / burst if bad else random.random() < loss / burst
-        wire.when[j] = -1 if bad else j + 1 + delay + random.integers(0, jitter + 1)
-        if kept_back:
-            wire.when[j] = (j // 40 + 1) * 40
-        wire.again[j] = j + 1 + random.integers(0, 120) if random.random() < twice and not bad else -1
+    for j, chance in enumerate(chances):
+        bad = chance >= 1.0 / burst if bad else chance < loss / burst
+        lost[j] = bad
+    at = np.arange(count)
+    wire.when[:] = np.where(lost, -1, at + 1 + delay + random.integers(0, jitter + 1, count))
+    if kept_back:
+        wire.when[:] = (at // 40 + 1) * 40
+    once_more = (random.random(count) < twice) & ~lost
+    wire.again[:] = np.where(once_more, at + 1 + random.integers(0, 120, count), -1)
 
 
-@njit(nogil=True)
 def draw_hand(random: np.random.Generator, p: Array, draws: Array, none: Array) -> Hand:
     """What one hand does."""
     step = p[RESOLUTION] if p[RESOLUTION] > 0.0 else 1e-6
@@ -109,8 +108,7 @@ def draw_hand(random: np.random.Generator, p: Array, draws: Array, none: Array) 
     half, until = random.integers(1, 60), random.integers(0, SAMPLES + 1)
     if random.random() < 0.3:
         half = 1
-    for k in range(draws.size):
-        draws[k] = random.normal()
+    draws[:] = random.standard_normal(draws.size)
     return Hand(size, half, until, 30.0 * p[PERIOD], draws if random.random() < 0.3 else none)
 
 
@@ -169,12 +167,6 @@ def run(code: float, seed: int, count: int) -> Array:
     return found
 
 
-def side_by_side(work: Callable[[int], Array]) -> list[Array]:
-    """The lock of Python is not held while links are drawn and run."""
-    with ThreadPoolExecutor(_WORKERS) as pool:
-        return list(pool.map(work, range(_WORKERS)))
-
-
 def main() -> None:
     """A row for each kind of port."""
     schedules = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
@@ -184,7 +176,9 @@ def main() -> None:
     for name, code in KINDS.items():
         count = schedules if code == WAVE_PORT else min(schedules, 20_000)
         start = time.perf_counter()
-        parts = side_by_side(lambda k, c=code, n=count: run(c, first + 1000 * k, n // _WORKERS))
+        with ProcessPoolExecutor(_WORKERS) as pool:
+            seeds = range(first, first + 1000 * _WORKERS, 1000)
+            parts = list(pool.map(partial(run, code, count=count // _WORKERS), seeds))
         gained = sum(int(part[0]) for part in parts)
         most, share = (max(float(part[i]) for part in parts) for i in (1, 2))
         took = time.perf_counter() - start

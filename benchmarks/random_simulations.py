@@ -17,7 +17,6 @@ import sys
 import time
 
 import numpy as np
-from numba import njit
 
 from zwidth.loop import kernel as k
 from zwidth.loop import law as laws
@@ -29,12 +28,10 @@ BOUND = 1e-12
 _KINDS = 6
 
 
-@njit
 def _spread(rng, low, high):
     return low * (high / low) ** rng.random()
 
 
-@njit
 def _draw(rng, numbers, law, force, anchor):
     """One random loop; returns (late, offset, period, position, velocity)."""
     kind = int(rng.random() * _KINDS)  # free, damped hand, tied, tied with lag, tied with slew, free with lag
@@ -65,12 +62,8 @@ def _draw(rng, numbers, law, force, anchor):
     law[laws.PHASE] = rng.random()
     law[laws.LIMIT] = 20.0 * size
     law[laws.HEADER + 1] = total / period**2 * _spread(rng, 1e-3, 2.0)
-    for i in range(SAMPLES):
-        force[i] = size * rng.standard_normal()
-    here = 0.0
-    for i in range(SAMPLES + 1):
-        anchor[i] = here
-        here += 0.1 * reach * rng.standard_normal()
+    force[:] = size * rng.standard_normal(SAMPLES)
+    anchor[0], anchor[1:] = 0.0, np.cumsum(0.1 * reach * rng.standard_normal(SAMPLES))
     late = int(rng.random() * 3)
     offset = 0.0 if rng.random() < 0.4 else period * rng.random()
     return late, offset, period, reach * rng.standard_normal(), reach / period * 0.1 * rng.standard_normal()
@@ -106,26 +99,16 @@ def _residuals(loops, rng, worst):
     return device, hand, over, faults, stops
 
 
-@njit
 def _closing(record, numbers, anchor):
     m, mh, stiffness = numbers[0], numbers[1], numbers[5]
-    a = b = 0.0
-    most = np.zeros(6)
-    v0, e0 = record[k.R_VELOCITY, 0], anchor[0] - record[k.R_POSITION, 0]
-    for i in range(SAMPLES + 1):
-        v, e = record[k.R_VELOCITY, i], anchor[i] - record[k.R_POSITION, i]
-        kinetic, spring = 0.5 * m * v * v, 0.5 * stiffness * e * e
-        own = 0.5 * mh * v * v
-        w, f = record[k.R_HAND_WORK, i], record[k.R_ACTUATOR_WORK, i]
-        lost = record[k.R_VISCOUS, i] + record[k.R_COULOMB, i]
-        source, damped = record[k.R_SOURCE_WORK, i], record[k.R_HAND_LOSS, i]
-        a = max(a, abs(kinetic - 0.5 * m * v0 * v0 - w - f + lost))
-        gained = spring - 0.5 * stiffness * e0 * e0 + own - 0.5 * mh * v0 * v0
-        b = max(b, abs(source - w - gained - damped))
-        most[0], most[1] = max(most[0], kinetic + own), max(most[1], spring)
-        most[2], most[3] = max(most[2], abs(w)), max(most[3], abs(f))
-        most[4], most[5] = max(most[4], abs(source)), lost + damped
-    moved = most.sum()
+    v, slack = record[k.R_VELOCITY], anchor - record[k.R_POSITION]
+    kinetic, own, spring = 0.5 * m * v * v, 0.5 * mh * v * v, 0.5 * stiffness * slack * slack
+    w, f, source = record[k.R_HAND_WORK], record[k.R_ACTUATOR_WORK], record[k.R_SOURCE_WORK]
+    lost, damped = record[k.R_VISCOUS] + record[k.R_COULOMB], record[k.R_HAND_LOSS]
+    a = np.abs(kinetic - kinetic[0] - w - f + lost).max()
+    b = np.abs(source - w - (spring - spring[0] + own - own[0]) - damped).max()
+    most = (kinetic + own).max() + spring.max() + np.abs(w).max() + np.abs(f).max() + np.abs(source).max()
+    moved = most + lost[-1] + damped[-1]
     return (a / moved, b / moved) if moved > 0.0 else (a, b)
 
 

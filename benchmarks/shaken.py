@@ -10,10 +10,11 @@ falls with speed, and a handle on a springy shaft.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
-import numba as nb
 import numpy as np
+from in_c import REALS, WHOLE, library
 from numpy.typing import NDArray
 
 import zwidth as zw
@@ -190,68 +191,11 @@ def _run_here(thing: Thing) -> Run:
     return Run(np.arange(steps) * thing.period, *out)
 
 
-@nb.njit(cache=True)
 def _integrate(p: Array, window: int, late: int, steps: int) -> Array:
-    (mass, b, fc, res, T, K, B, both, limit, mh, kh, ch, press, drag, kick, Bd, lag, fs, vs, shaft, cs, m2,
-     on_handle, phase) = p  # fmt: skip
-    out = np.zeros((4, steps))
-    readings = np.zeros(steps + window)
-    x, v, x2, v2 = 0.0, kick, 0.0, kick
-    stiff = shaft > 0.0
-    total = mass + (0.0 if stiff else mh)
-    handle = m2 + mh
-    drive_speed = 0.0
-    behind = max(1, round(lag / T * FINE))
-    past = np.zeros(behind)
-    tick = 0
-    dt = T / FINE
-    command = np.zeros(steps)
-    for k in range(steps):
-        sensed = x2 if on_handle > 0 else x
-        r = np.floor(sensed / res + phase) * res
-        if k == 0:
-            readings[: window + 1] = r
-        readings[k + window] = r
-        u = K * r + B * (r - readings[k]) / (window * T)
-        if both == 0 and r <= 0.0:
-            u = 0.0
-        if limit > 0.0:
-            u = min(max(u, -limit), limit)
-        command[k] = u
-        held = command[k - late] if k >= late else 0.0
-        out[0, k], out[1, k] = r, u
-        out[2, k] = held + Bd * drive_speed
-        if limit > 0.0:
-            out[2, k] = min(max(out[2, k], -limit), limit)
-        out[3, k] = v2 if on_handle > 0 else v
-        for i in range(FINE):
-            t = k * T + i * dt
-            if Bd != 0.0:
-                drive_speed = past[tick % behind]
-                past[tick % behind] = v
-                tick += 1
-            force = held + Bd * drive_speed
-            if limit > 0.0:
-                force = min(max(force, -limit), limit)
-            anchor = drag * t + (press / kh if kh > 0 else 0.0)
-            seat, move = (x2, v2) if stiff else (x, v)
-            hand = kh * (anchor - seat) - ch * (move - drag) if kh > 0 else press
-            push = -force
-            if stiff:
-                twist = shaft * (x - x2) + cs * (v - v2)
-                push -= twist
-                v2 += dt * (hand + twist) / handle
-                x2 += dt * v2
-            else:
-                push += hand
-            rub = fc + (fs - fc) * np.exp(-((v / vs) ** 2))
-            free = v + dt * (push - b * v) / total
-            drop = dt * rub / total
-            v = 0.0 if abs(free) <= drop else free - drop * np.sign(free)
-            x += dt * v
-        if abs(x) > 1e3:
-            out[:, k:] = np.nan
-            break
+    out, behind = np.zeros((4, steps)), max(1, round(p[16] / p[4] * FINE))  # lag and sample period
+    thing = library(Path(__file__).with_name("shaken.c")).thing
+    thing.argtypes = [REALS, *[WHOLE] * 5, *[REALS] * 3]
+    thing(p, window, late, steps, FINE, behind, np.zeros(steps + window), np.zeros(behind), out)
     return out
 
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-import numba as nb
 import numpy as np
+from in_c import REALS, WHOLE, library
 from numpy.typing import NDArray
 
 import zwidth as zw
@@ -85,38 +85,11 @@ def run(arms: Arms) -> Moved:
     return Moved(*_integrate(numbers, arms.delay, arms.link, steps))
 
 
-@nb.njit(cache=True)
 def _integrate(p: Array, late: int, link: int, steps: int) -> Array:
-    m0, m1, b0, b1, c0, c1, res, T, K, B, D, F, limit, kh, ch, kick, slew = p
-    mass, viscous, coulomb = (m0, m1), (b0, b1), (c0, c1)
     out = np.zeros((4, 2, steps))
-    x, v, wished, given = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
-    v[0] = kick
-    dt = T / FINE
-    for k in range(steps):
-        for a in range(2):
-            out[0, a, k] = np.floor(x[a] / res + 0.4) * res
-        for a in range(2):
-            o = 1 - a
-            own, before = out[0, a, k], out[0, a, max(k - 1, 0)]
-            there, earlier = out[0, o, max(k - link, 0)], out[0, o, max(k - link - 1, 0)]
-            speed, its = (own - before) / T, (there - earlier) / T
-            out[1, a, k] = K * (own - there) + B * (speed - its) + D * speed - F * np.sign(own - before)
-            out[3, a, k] = v[a]
-        for a in range(2):
-            wished[a] = min(max(out[1, a, max(k - late, 0)], -limit), limit)
-            if slew == 0.0:
-                given[a] = wished[a]
-            out[2, a, k] = given[a]
-        for _ in range(FINE):
-            for a in range(2):
-                hand = -kh * x[a] - ch * v[a] if a == 0 else 0.0
-                if slew > 0.0:
-                    given[a] += min(max(wished[a] - given[a], -slew * dt), slew * dt)
-                free = v[a] + dt * (hand - given[a] - viscous[a] * v[a]) / mass[a]
-                drop = dt * coulomb[a] / mass[a]
-                v[a] = 0.0 if abs(free) <= drop else free - drop * np.sign(free)
-                x[a] += dt * v[a]
+    arms = library(Path(__file__).with_name("shaken.c")).arms
+    arms.argtypes = [REALS, *[WHOLE] * 4, REALS]
+    arms(p, late, link, steps, FINE, out)
     return out
 
 

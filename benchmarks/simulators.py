@@ -58,8 +58,6 @@ ROWS = (
         ("by_zwidth", "batch", "2"),
         ours=True,
     ),
-    Rival("zwidth: its compiled loops side by side, 1 thread", ("by_zwidth", "lanes", "1"), ours=True),
-    Rival("zwidth: its compiled loops side by side, 2 threads", ("by_zwidth", "lanes", "2"), ours=True),
     Rival("exact step in C, positions and four energies", ("exact_c", "simulate")),
     Rival(
         "chain x → floor → force → x in C: the limit of one simulation",

@@ -7,12 +7,12 @@ come before them, and the converter's steps after.
 
 from __future__ import annotations
 
+from ctypes import byref, c_int
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 import zwidth as zw
 from zwidth.passivity.bounding import check_bounding, is_bounded
@@ -21,7 +21,7 @@ from zwidth.rendering.rendering_law import LoopContext
 
 from .judge import HEAVY, HEAVY_SHARE, LIGHT, Judged
 from .loops import decades, near, period_of, typed
-from .motions import ANGLE, COUNTED, DRAG, FAMILIES, FRICTION, GATE, POSITION, _change, _draw, _inside
+from .motions import ANGLE, COUNTED, DRAG, FRICTION, GATE, POSITION, Array, searches, seed
 
 ROUNDING = 1e-9
 """Of what friction and damping took: the laws reckon with doubles."""
@@ -139,102 +139,13 @@ def attack(row: Row, rng: np.random.Generator, motions: int, climbs: int) -> tup
     law[DRAG] = float(device.exact("damping") / device.exact("sample_period"))
     late = int(device.exact("delay") / device.exact("sample_period"))
     length = int(rng.integers(6, 100))
-    score, x = _search(rng, law, np.array(row.numbers), late, length, motions, climbs)
-    return score, x * row.unit
+    best, last, room = np.zeros(length), c_int(), np.zeros(2 * length)
+    score = searches().search_row(
+        seed(rng), law, np.array(row.numbers), late, length, motions, climbs, best, byref(last), room
+    )
+    return score, best[: last.value] * row.unit
 
 
-@njit(cache=True)
-def _search(rng, law, row, late, length, motions, climbs):
-    best, trial, force = np.zeros(length), np.zeros(length), np.zeros(length)
-    score, last = -1e300, 0
-    for k in range(motions + climbs):
-        if k < motions:
-            _draw(rng, law, k % FAMILIES, trial)
-        else:
-            trial[:] = best
-            _change(rng, law, trial, 0)
-        _inside(law, trial)
-        forces(law, row, trial, force)
-        found, end = _taken(law, trial, force, late)
-        if found > score:
-            score, last = found, end
-            best[:] = trial
-    return score, best[: last + 1].copy()
-
-
-@njit(cache=True)
-def _taken(law, x, force, late):
-    """The most that was taken out over what was lost until then, and when."""
-    out, lost, best, at = 0.0, 0.0, -1e300, x.shape[0] - 1
-    for k in range(x.shape[0] - 1):
-        moved = x[k + 1] - x[k]
-        held = force[k - late] if k >= late else 0.0
-        took = law[FRICTION] * abs(moved) + law[DRAG] * moved * moved
-        out -= held * moved + took
-        lost += took + 1e-12 * abs(held * moved)
-        if k > 1 and lost > 0.0 and out / lost > best:
-            best, at = out / lost, k + 1
-    return best, at
-
-
-@njit(cache=True)
-def forces(law, row, x, force):
+def forces(law: Array, row: Array, x: Array, force: Array) -> None:
     """The force of each sample, as the row of laws gives it."""
-    counted, p = row[COUNT] > 0.0, law[DRAG]
-    energy, slope, left, reference, base, off, spare, held = 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0
-    before = 0.0
-    for k in range(x.shape[0]):
-        q = np.floor(x[k]) if counted else x[k]
-        if k == 0:
-            before, reference = q, q
-        moved = q - before
-        seen = q + row[AHEAD] * moved
-        wish = row[WALL] * seen if seen > 0.0 else 0.0
-        if row[SATURATED] > 0.0:
-            wish = min(max(wish, -row[SATURATED]), row[SATURATED])
-        half = row[STEP] / 2.0
-        if row[LAW] == BOUNDING:
-            size = 1.0 if counted and row[SAMPLES] > 0.0 else 0.0
-            if row[RESETS] > 0.0 and held == 0.0:
-                energy, slope = 0.0, 0.0
-            energy, slope, room = _bounded(energy, slope, held, moved, p, row[CREDITED], size)
-            f = min(max(wish, -max(room - half, 0.0)), max(room - half, 0.0))
-        elif row[LAW] == ENERGY:
-            room = max(abs(held + 2.0 * p * moved) - half, 0.0)
-            f = min(max(wish, -room), room)
-        elif row[LAW] == LEAP:
-            if row[RESETS] > 0.0 and held == 0.0:
-                energy = min(energy, 0.0)
-            energy += held * moved + p * moved * moved + row[CREDITED] * abs(moved)
-            room = np.sqrt(2.0 * row[SLOPE] * max(energy, 0.0))
-            f = min(max(wish, -room), room)
-        else:
-            f = 0.0 if off > 0.0 else max(base + row[SLOPE] * (q - reference), 0.0)
-            if left <= 0.0:
-                room = np.sqrt(f * f + 2.0 * row[SLOPE] * spare)
-                new = min(max(wish, 0.0), room)
-                spare = max(spare + (f * f - new * new) / (2.0 * row[SLOPE]), 0.0)
-                left, reference, base = row[SAMPLES], q, new
-                off = 1.0 if wish <= 0.0 else 0.0
-                f = new
-            left -= 1.0
-        if row[STEP] > 0.0:
-            f = row[STEP] * np.floor(f / row[STEP] + 0.5)
-        before, held = q, f
-        force[k] = f
-
-
-@njit(cache=True)
-def _bounded(energy, slope, held, moved, p, friction, size):
-    """(E, g, the largest force) of force bounding after a move, as its docstring has it."""
-    low, high = held - friction, held + friction
-    if moved != 0.0:
-        middle = held + 2.0 * p * moved + (friction if moved > 0.0 else -friction)
-        low, high = middle - p * size, middle + p * size
-    new = min(max(slope, low), high)
-    beyond = max(abs(new - held) - friction, 0.0)
-    energy += new * moved - beyond * beyond / (4.0 * p) - abs(new - slope) * size / 2.0
-    spare = energy - abs(new) * size / 2.0
-    if spare < 0.0:
-        energy, new, spare = 0.0, 0.0, 0.0
-    return energy, new, friction + 2.0 * np.sqrt(p * spare)
+    searches().forces(law, row, x, x.size, force)

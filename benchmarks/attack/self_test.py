@@ -40,7 +40,7 @@ def _linear(rng: np.random.Generator) -> float:
         return 0.0
     lost = _lost(loop, x)
     score = (out - (float(loop.stored) if loop.fed == "both" else 0.0)) / lost if lost else 0.0
-    gap = 0.0 if found.round or not lost else abs(score - found.score)
+    gap = 0.0 if found.round or not lost else abs(score - found.score) / max(1.0, abs(score))
     return max(gap, _simulated(case, x, float(found.phase), out, lost))
 
 

@@ -1,15 +1,13 @@
-"""zwidth: `by_zwidth.py call`, `kernel`, `batch THREADS` or `lanes THREADS`.
+"""zwidth: `by_zwidth.py call`, `kernel` or `batch THREADS`.
 
 `call` is `zw.simulate` with its checks, trajectory, energies and dataset; `kernel` the
-compiled loop inside it, which records the same.  `batch` is `zw.simulation.simulate_batch`, `lanes`
-the compiled loops inside it; the loops start at different places, the first where
-the task does, and keep their end and their energies, no trajectory.
+compiled loop inside it, which records the same.  `batch` is `zw.simulation.simulate_batch`; the loops start
+at different places, the first where the task does, and keep their end and their energies, no trajectory.
 """
 
 from __future__ import annotations
 
 import sys
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from task import (
@@ -26,16 +24,13 @@ from task import (
 )
 
 import zwidth as zw
-from zwidth.loop.batch import aligned
+from zwidth.loop.batch import BLOCK
 from zwidth.loop.kernel import R_POSITION
-from zwidth.loop.plant import POSITION
 from zwidth.loop.setup import Setup, empty_record, prepare
-from zwidth.loop.side_by_side import BUFFER, LANES, run_side_by_side
 from zwidth.loop.simulate import run_setup
-from zwidth.loop.summary import SUMMARY
 
 SAMPLES = 100_000
-BATCH_LOOPS = 2 * LANES
+BATCH_LOOPS = 2 * BLOCK
 DEVICE = zw.Device(
     mass=MASS, damping=DAMPING, coulomb_friction=COULOMB, resolution=RESOLUTION, sample_period=PERIOD
 )
@@ -90,26 +85,5 @@ def batch(threads: int) -> None:
     report(lambda samples: ends(samples, STARTS), SAMPLES, BATCH_LOOPS, positions)
 
 
-def lanes(threads: int) -> None:
-    """The compiled loops side by side, one block of them on each thread."""
-    first = [laid_out(SAMPLES, start) for start in STARTS[:LANES]]
-    numbers, laws = np.array([s.plant_numbers for s in first]), np.array([s.law for s in first])
-    states, periods = np.array([s.state for s in first]), np.full(LANES, PERIOD)
-    force = np.repeat(HAND[:, None], LANES, axis=1)
-
-    def block(samples: int) -> float:
-        state, kept = states.copy(), np.zeros((LANES, SUMMARY))
-        buffer, queue = aligned(BUFFER), aligned(LANES)
-        run_side_by_side(state, numbers, laws, periods, 0, force[:samples], samples, buffer, queue, kept)
-        return float(state[0, POSITION])
-
-    def simulate(samples: int) -> list[float]:
-        return list(pool.map(block, [samples] * threads))
-
-    with ThreadPoolExecutor(threads) as pool:
-        positions = [START, *(block(k) for k in range(1, COMPARED + 1))]
-        report(simulate, SAMPLES, LANES * threads, positions)
-
-
 if __name__ == "__main__":
-    {"call": call, "kernel": kernel, "batch": batch, "lanes": lanes}[sys.argv[1]](*map(int, sys.argv[2:]))
+    {"call": call, "kernel": kernel, "batch": batch}[sys.argv[1]](*map(int, sys.argv[2:]))

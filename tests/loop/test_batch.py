@@ -1,4 +1,4 @@
-"""Loops side by side: the same bits as alone, on any number of threads."""
+"""Many loops: the same bits as alone, on any number of threads."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.loop.side_by_side import LANES
+from zwidth.loop.batch import BLOCK
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 PAIRS = {
@@ -29,9 +29,9 @@ def _same(batch, trace) -> None:
 
 
 @pytest.mark.parametrize("delay", [0.0, 2e-3])
-def test_plain_loops_side_by_side_have_the_bits_of_each_alone(delay: float) -> None:
-    """More loops than lanes, every parameter of the plain loop varied."""
-    count = LANES + 9
+def test_free_loops_have_the_bits_of_each_alone(delay: float) -> None:
+    """More loops than a block, every parameter varied."""
+    count = BLOCK + 9
     rng = np.random.default_rng(5)
     vary = {
         "environment.stiffness": rng.uniform(0, 2000, count),
@@ -70,7 +70,7 @@ def test_loops_of_every_other_kind_have_the_bits_of_each_alone() -> None:
 
 def test_threads_do_not_change_a_bit() -> None:
     """One thread or three."""
-    vary = {"stiffness": np.linspace(50.0, 1500.0, 3 * LANES + 1)}
+    vary = {"stiffness": np.linspace(50.0, 1500.0, 3 * BLOCK + 1)}
     one, three = (
         zw.simulation.simulate_batch(PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 0.3, vary=vary, workers=n)
         for n in (1, 3)
@@ -113,9 +113,9 @@ def test_a_parameter_that_is_a_list_is_not_varied(environment, vary: dict) -> No
         zw.simulation.simulate_batch(PADDLE, environment, zw.operators.Finger(), 0.1, vary=vary)
 
 
-def test_plain_loops_at_the_edge_of_friction_have_the_bits_of_each_alone() -> None:
+def test_free_loops_at_the_edge_of_friction_have_the_bits_of_each_alone() -> None:
     """Hands that push with the stiction, give or take the last digits: they rest, or creep onwards."""
-    count = 3 * LANES
+    count = 3 * BLOCK
     rng = np.random.default_rng(3)
     friction, stiffness = rng.uniform(0.001, 0.5, count), rng.uniform(100, 2000, count)
     edge = stiffness * 22.4e-6 * 7 + friction  # the wall pushes from the seventh count
@@ -148,10 +148,10 @@ def test_ctrl_c_keeps_the_loops_that_are_finished() -> None:
     def stop(done: int, total: int) -> None:
         raise KeyboardInterrupt
 
-    vary = {"stiffness": np.linspace(50.0, 1500.0, 60 * LANES)}
+    vary = {"stiffness": np.linspace(50.0, 1500.0, 60 * BLOCK)}
     batch = zw.simulation.simulate_batch(
         PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 1.0, vary=vary, workers=1, progress=stop
     )
     finished = np.isfinite(batch.position.values)
-    assert LANES <= finished.sum() < finished.size
+    assert BLOCK <= finished.sum() < finished.size
     assert batch.attrs["interrupted"].startswith(f"{finished.sum()} of ")

@@ -14,6 +14,8 @@ of two here.  Where Δ = 0 one period is the best window.
 
 from __future__ import annotations
 
+import numpy as np
+
 from zwidth.compiled import Array, compiled
 from zwidth.links.memory import COULOMB, DAMPING, LOSSES, PERIOD, RESOLUTION
 
@@ -40,7 +42,7 @@ def newly_lost(p: Array, s: Array, moved: float) -> float:
         base = s[_LOST + before]
         for k in range(WINDOW):
             s[_LOST + k] -= base
-    counts = s[_COUNTS + before] + (moved / step + 0.5) // 1.0
+    counts = s[_COUNTS + before] + np.floor(moved / step + 0.5)
     lost, n = s[_LOST + before], 1
     while n < WINDOW and n <= s[_SINCE] + 1.0:
         then = (now + WINDOW - n) % WINDOW

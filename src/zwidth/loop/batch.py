@@ -1,8 +1,7 @@
 """Thousands of loops side by side, over any parameter.
 
-Plain loops go LANES at a time through vector instructions, all others one by
-one; either way on as many threads as asked for, and each with the same bits as
-when it is simulated alone.
+They go in blocks through the kernel, on as many threads as asked for, each with the same bits as when it is
+simulated alone.
 """
 
 from __future__ import annotations
@@ -37,9 +36,8 @@ from zwidth.loop.plant import (
     VISCOUS,
 )
 from zwidth.loop.setup import Frame, Setup, empty_record, prepare
-from zwidth.loop.side_by_side import BUFFER, LANES, run_side_by_side
-from zwidth.loop.simulate import Progress, run_setup
-from zwidth.loop.summary import DEEPEST, EXTRACTED, HIGHEST, LOWEST, PEAK, SUMMARY, summarize
+from zwidth.loop.simulate import Progress
+from zwidth.loop.summary import DEEPEST, EXTRACTED, HIGHEST, LOWEST, PEAK, SUMMARY, run_each
 from zwidth.loop.trace import UNITS, VARIABLES
 from zwidth.operator.operator import Operator
 from zwidth.quantity.exact import RealLike
@@ -51,6 +49,9 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 T = TypeVar("T")
+
+BLOCK = 32
+"""Loops that one thread runs before it says that they are finished."""
 
 OPTIONS = ("initial_position", "initial_velocity", "encoder_phase")
 """Arguments of `simulate` that can be varied besides the parameters of device, environment and hand."""
@@ -244,19 +245,13 @@ def _run_all(
     finished = np.zeros(len(setups), dtype=bool)
     stop: list[bool] = []
 
-    def job(run: Callable[[list[Setup], Array, Array], None], rows: list[int]) -> list[int]:
+    def job(rows: list[int]) -> None:
         if not stop:
-            some, kept = states[rows], summaries[rows]
-            run([setups[row] for row in rows], some, kept)
-            states[rows], summaries[rows] = some, kept
+            states[rows], summaries[rows] = _run_block([setups[row] for row in rows])
             finished[rows] = True
-        return rows
 
-    jobs = [(_run_block, rows) for rows in _blocks(setups)]
-    alone = [row for row, setup in enumerate(setups) if not setup.plain]
-    jobs += [(_run_alone, [row]) for row in alone]
     pool = ThreadPoolExecutor(threads)
-    futures: list[Future[list[int]]] = [pool.submit(job, run, rows) for run, rows in jobs]
+    futures: list[Future[None]] = [pool.submit(job, rows) for rows in _blocks(setups)]
     try:
         for future in as_completed(futures):
             future.result()
@@ -272,51 +267,27 @@ def _run_all(
 
 
 def _blocks(setups: list[Setup]) -> list[list[int]]:
-    """The plain loops in groups of LANES that have delay and number of samples in common."""
-    groups: dict[tuple[int, int], list[int]] = {}
+    """BLOCK loops each that have clock and hand in common, and a law of the same length."""
+    groups: dict[tuple[Any, ...], list[int]] = {}
     for row, setup in enumerate(setups):
-        if setup.plain:
-            groups.setdefault((setup.frame.late, setup.frame.samples), []).append(row)
-    return [rows[at : at + LANES] for rows in groups.values() for at in range(0, len(rows), LANES)]
+        f = setup.frame
+        key = id(f.signals), f.late, f.offset, f.points, setup.law.size, setup.memory.size
+        groups.setdefault(key, []).append(row)
+    return [rows[at : at + BLOCK] for rows in groups.values() for at in range(0, len(rows), BLOCK)]
 
 
-def _run_block(setups: list[Setup], states: Array, summaries: Array) -> None:
-    """Side by side; lanes that are left over repeat the last loop."""
-    first, spare = setups[0], LANES - len(setups)
-    lanes = [*setups, *[setups[-1]] * spare]
-    state, summary = np.concatenate([states, np.repeat(states[-1:], spare, 0)]), np.zeros((LANES, SUMMARY))
-    pushes = [setup.frame.signals.force for setup in lanes]
-    force = np.zeros((first.frame.samples, LANES))
-    for lane, push in enumerate(pushes):
-        if push is not None:
-            force[:, lane] = push
-    run_side_by_side(
-        state,
-        np.array([setup.frame.plant for setup in lanes]),
-        np.array([setup.law for setup in lanes]),
-        np.array([setup.frame.lengths[0] for setup in lanes]),
-        first.frame.late,
-        force,
-        first.frame.samples,
-        aligned(BUFFER),
-        aligned(max(1, first.frame.late) * LANES),
-        summary,
-    )
-    states[:], summaries[:] = state[: len(setups)], summary[: len(setups)]
-
-
-def _run_alone(setups: list[Setup], states: Array, summaries: Array) -> None:
-    setup = setups[0]
-    commands, record, work = empty_record(setup)
-    run_setup(setup, states[0], setup.memory.copy(), work, commands, record, None)
-    summarize(record, setup.frame.samples, setup.frame.points, summaries[0])
-
-
-def aligned(length: int) -> Array:
-    """Zeros that begin at a cache line: a vector across two of them takes twice as long."""
-    room = np.zeros(length + 8)
-    start = (-room.ctypes.data % 64) // 8
-    return room[start : start + length]
+def _run_block(setups: list[Setup]) -> tuple[Array, Array]:
+    """(states, summaries), a row for each loop."""
+    first = setups[0]
+    states, summaries = np.array([setup.state for setup in setups]), np.empty((len(setups), SUMMARY))
+    commands, record, work = empty_record(first)
+    run_each(
+        first.frame.points, states, np.array([setup.frame.plant for setup in setups]),
+        np.array([setup.law for setup in setups]), np.array([setup.memory for setup in setups]), work,
+        first.frame.late, first.frame.offset, first.frame.lengths, first.frame.arrivals, first.frame.missed,
+        *first.optional(), commands, record, summaries,
+    )  # fmt: skip
+    return states, summaries
 
 
 def _dataset(

@@ -38,7 +38,7 @@ from zwidth.loop.plant import (
     VISCOUS,
     Plant,
 )
-from zwidth.loop.step import advance
+from zwidth.loop.step import advance, glide, is_free, response_of
 
 # The record: one row per quantity, one column per instant.
 R_POSITION, R_VELOCITY, R_READING, R_COMMAND, R_ACTUATOR = range(5)
@@ -103,10 +103,23 @@ def run(
     plant = packed_plant(numbers)
     samples = commands.shape[0] - 1
     due = first_due(first, late, arrivals)
+    whole = offset == 0.0 and points == 1 and lengths.shape[0] == 1 and arrivals.shape[1] == 0
+    free = whole and is_free(plant) and target.shape[0] == 0
+    response = response_of(plant, lengths[0] if free else 0.0)
     for k in range(first, last):
         final = k == samples
         h = 0.0 if final else (lengths[0] if lengths.shape[0] == 1 else lengths[k])
-        sample(k, points, state, law, memory, missed, commands, record)
+        reading, command = sample(k, points, state, law, memory, missed, commands, record)
+        if free:
+            record[R_READING, k], record[R_COMMAND, k] = reading, command
+            f = command if late == 0 else (commands[k - late] if k >= late else state[FORCE])
+            state[FORCE] = state[GOAL] = f
+            note(state, k, record)
+            if not final:
+                glide(state, plant, response, f, force[k] if force.shape[0] > 0 else 0.0, h, work)
+            continue
+        for column in range(k * points, min((k + 1) * points, record.shape[1])):
+            record[R_READING, column], record[R_COMMAND, column] = reading, command
         hand = in_interval(k, h, final, state[POSITION], force, anchor, target, switch)
         now = 0.0
         for point in range(points):
@@ -216,17 +229,16 @@ def sample(
     missed: Array,
     commands: Array,
     record: Array,
-) -> None:
-    """Measure and compute; a missed sample leaves the law and its command as they were."""
+) -> tuple[float, float]:
+    """Measure and compute: (reading, command).  A missed sample leaves law and command as they were."""
     if missed.shape[0] > 0 and missed[k] > 0.0:
         reading = record[R_READING, (k - 1) * points] if k > 0 else 0.0
-        commands[k] = commands[k - 1] if k > 0 else 0.0
+        command = commands[k - 1] if k > 0 else 0.0
     else:
         reading = measured(state[POSITION], law[RESOLUTION], law[PHASE])
-        commands[k] = commanded(state, law, memory, reading)
-    for column in range(k * points, min((k + 1) * points, record.shape[1])):
-        record[R_READING, column] = reading
-        record[R_COMMAND, column] = commands[k]
+        command = commanded(state, law, memory, reading)
+    commands[k] = command
+    return reading, command
 
 
 @compiled

@@ -17,6 +17,8 @@ x_m ≤ 0.
 
 from __future__ import annotations
 
+import numpy as np
+
 from zwidth.compiled import Array, compiled
 from zwidth.elementary.power import power
 from zwidth.rendering.chain import after, before
@@ -40,14 +42,14 @@ POWER_LAW, SCENE = 1.0, 2.0
 @compiled
 def measured(x: float, resolution: float, phase: float) -> float:
     """What an encoder reads: Δ floor(x/Δ + φ); x itself if Δ = 0."""
-    # a quotient, not a product with 1/Δ: they differ by a count at an edge; // 1.0 is the floor of a float
-    return resolution * ((x / resolution + phase) // 1.0) if resolution > 0.0 else x
+    # a quotient, not a product with 1/Δ: they differ by a count at an edge
+    return resolution * np.floor(x / resolution + phase) if resolution > 0.0 else x
 
 
 @compiled
 def rounded(f: float, step: float) -> float:
     """The converter's step nearest to a command; the command itself if ΔF = 0."""
-    return step * ((f / step + 0.5) // 1.0) if step > 0.0 else f
+    return step * np.floor(f / step + 0.5) if step > 0.0 else f
 
 
 @compiled
@@ -107,11 +109,13 @@ def law_force(law: Array, memory: Array, reading: float) -> float:
 @compiled
 def rendered_force(law: Array, memory: Array, reading: float) -> float:
     """The same through the laws that render it, if there are any."""
-    chain, row, slot = int(law[CHAIN]), int(law[ROW]), int(law[REMEMBERED])
-    seen = before(law, row, chain, memory, slot, reading) if chain > 0 else reading
-    # one call of each: what is called is compiled into its caller every time
+    chained, seen = law[CHAIN] > 0.0, reading
+    if chained:
+        seen = before(law, int(law[ROW]), int(law[CHAIN]), memory, int(law[REMEMBERED]), reading)
     f = scene_force(law, HEADER, memory, 0, seen) if law[CONTACT] == SCENE else law_force(law, memory, seen)
-    return after(law, row, chain, memory, slot, reading, f) if chain > 0 else f
+    if chained:
+        f = after(law, int(law[ROW]), int(law[CHAIN]), memory, int(law[REMEMBERED]), reading, f)
+    return f
 
 
 @compiled

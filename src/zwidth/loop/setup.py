@@ -63,17 +63,6 @@ class Setup:
         return self.frame.samples * self.frame.points + 1
 
     @property
-    def plain(self) -> bool:
-        """True where `plain.run_plain` runs it: free mass, spring, regular clock, one force an interval."""
-        f, p = self.frame, self.frame.plant
-        free = p.stiffness == 0.0 and p.hand_damping == 0.0 and p.lag == 0.0 and p.slew == 0.0
-        memoryless = self.law[laws.SECTIONS] == 1 and self.law[laws.HEADER] == 0
-        linear = self.law[laws.CLAMPED] == 0
-        clock = f.offset == 0.0 and f.points == 1 and not f.arrivals.size and not f.missed.size
-        memoryless &= self.law[laws.CHAIN] == 0
-        return bool(free and memoryless and linear and clock and f.signals.position is None)
-
-    @property
     def plant_numbers(self) -> Array:
         """The plant as the kernel reads it."""
         return np.array(self.frame.plant)
@@ -123,31 +112,58 @@ def prepare(
         assert frame.signals.position is not None
         _refuse_start(initial_position, initial_velocity)
         start = float(frame.signals.position[0])
+    position, velocity = _number(start, "initial_position"), _number(initial_velocity, "initial_velocity")
     state = np.zeros(STATE_SIZE)
-    state[POSITION] = _number(start, "initial_position")
-    state[VELOCITY] = _number(initial_velocity, "initial_velocity")
-    state[DIRECTION] = np.sign(state[VELOCITY])
-    actuation = frame.actuation
-    met, row = law.met, laws_of(law)
-    clamped = float(met.clamped and not met.spring)  # a spring pushes wherever it acts
-    header = [GATES[met.surface], frame.resolution, phase, actuation.step, actuation.limit, clamped]
-    kinds, body = _body(met, frame.period)
-    reading = laws.measured(state[POSITION], frame.resolution, phase)
-    memory = at_rest(np.array([*header, *kinds, 0.0, 0.0, 0.0, *body]), reading)
-    numbers, remembered = _row(row, LoopContext(device, met, single), reading)
-    begins = [float(len(row)), float(laws.HEADER + len(body)), float(len(memory))]
-    packed = np.array([*header, *kinds, *begins, *body, *numbers])
+    state[POSITION], state[VELOCITY] = position, velocity
+    state[DIRECTION] = (velocity > 0.0) - (velocity < 0.0)
+    reading = laws.measured(position, frame.resolution, phase)
+    packed = _packed(law, device, frame, single, known)
+    numbers = packed.numbers.copy()
+    numbers[laws.PHASE] = phase
     return Setup(
         device=device,
         environment=law,
         operator=operator,
         timing=timing,
         encoder_phase=phase,
-        law=packed,
-        memory=np.array([*memory, *remembered]) + 0.0,  # no line gives −0
+        law=numbers,
+        memory=_remembered(numbers, packed.row, packed.unit, reading),
         state=state,
         frame=frame,
     )
+
+
+class _Packed(NamedTuple):
+    """An environment and the laws that render it, as the kernel reads them, the encoder's phase left out."""
+
+    numbers: Array
+    row: tuple[RenderingLaw, ...]
+    unit: Array
+
+
+def _packed(
+    law: Environment, device: Device, frame: Frame, single: bool, known: dict[Any, Any] | None
+) -> _Packed:
+    actuation, period = frame.actuation, frame.period
+    key = ("law", id(law), id(device) if (row := laws_of(law)) else None, frame.resolution, period, actuation)
+    if known is not None and key in known:
+        found: _Packed = known[key]
+        return found
+    met = law.met
+    clamped = float(met.clamped and not met.spring)  # a spring pushes wherever it acts
+    header = [GATES[met.surface], frame.resolution, 0.0, actuation.step, actuation.limit, clamped]
+    kinds, body = _body(met, period)
+    alone = np.array([*header, *kinds, 0.0, 0.0, 0.0, *body])
+    unit = _at_one(alone)
+    links, context = list[float](), LoopContext(device, met, single)
+    for link in row:
+        own = link.numbers(context)
+        links += [link.code, float(len(own)), float(link.state_size), *own]
+    begins = [float(len(row)), float(len(alone)), float(len(_resting(alone, unit, 0.0)))]
+    packed = _Packed(np.array([*header, *kinds, *begins, *body, *links]), row, unit)
+    if known is not None:
+        known[key] = packed
+    return packed
 
 
 def _at_rest(
@@ -219,20 +235,24 @@ def frame_of(
     actuation = drive.actuation(device)
     plant = _plant(device, operator, actuation)
     _check_pieces(plant, float(period), operator.kinematic)
-    times, lengths, arrivals, missed = _clock(timing, samples, period, device.exact("delay"))
-    signals = operator.signals(times)
-    check_signals(signals, samples)
+    delay, own = device.exact("delay"), {} if known is None else known.setdefault("clock", {})
+    if (clock := (id(operator), samples, period, delay)) not in own:
+        times, *others = _clock(timing, samples, period, delay)
+        signals = operator.signals(times)
+        check_signals(signals, samples)
+        own[clock] = times, *others, signals
+    times, lengths, arrivals, missed, signals = own[clock]
     if signals.switch_position is not None and timing is not None:
         raise InputError("a motion with switch positions needs a regular clock: leave timing out")
-    delay = device.exact("delay") / period
-    if signals.switch_position is not None and delay.denominator == 1:
+    ratio = delay / period
+    if signals.switch_position is not None and ratio.denominator == 1:
         raise InputError(
             "a motion with switch positions says where the handle is when the force changes within a sample "
             f"interval, but with a delay of {float(device.exact('delay')):g} s it changes at the samples: "
             "take the device that the motion was found for"
         )
-    offset = float(delay % 1 * period)
-    late = min(delay.numerator // delay.denominator, samples + 1)  # later than all is late enough
+    offset = float(ratio % 1 * period)
+    late = min(ratio.numerator // ratio.denominator, samples + 1)  # later than all is late enough
     frame = Frame(
         samples=samples,
         points=points,
@@ -284,19 +304,6 @@ def _body(law: Environment, period: Fraction) -> tuple[list[float], list[float]]
     return [float(len(sections)), 0.0, 0.0], [c for s in sections for c in s]
 
 
-def _row(
-    chain: tuple[RenderingLaw, ...], context: LoopContext, reading: float
-) -> tuple[list[float], list[float]]:
-    """The laws that render, packed as `rendering.chain` reads them, and what they remember at rest."""
-    packed: list[float] = []
-    remembered = [0.0] if chain else []  # the force that was applied last
-    for link in chain:
-        numbers = link.numbers(context)
-        packed += [link.code, float(len(numbers)), float(link.state_size), *numbers]
-        remembered += link.initial_state(reading)
-    return packed, remembered
-
-
 def sections_of(environment: Environment, period: Fraction) -> list[list[float]]:
     """The law as a sum of direct forms, each n, b_0 … b_n, a_1 … a_n."""
     return [_section(part, period) for part in environment.side_by_side()]
@@ -313,9 +320,15 @@ def _section(environment: Environment, period: Fraction) -> list[float]:
 
 def resting_memory(setup: Setup, reading: float) -> Array:
     """What the law of a setup remembers after the hand has been at a reading for ever."""
-    row = laws_of(setup.environment)
-    remembered = [number for link in row for number in link.initial_state(reading)]
-    return np.array([*at_rest(setup.law, reading), *([0.0] if row else []), *remembered]) + 0.0
+    return _remembered(setup.law, laws_of(setup.environment), _at_one(setup.law), reading)
+
+
+def _remembered(law: Array, row: tuple[RenderingLaw, ...], unit: Array, reading: float) -> Array:
+    """Environment, and behind it the force that was applied last and the laws that render it."""
+    resting = _resting(law, unit, reading) + 0.0  # no line gives −0
+    if not row:
+        return resting
+    return np.array([*resting, 0.0, *(n for link in row for n in link.initial_state(reading))]) + 0.0
 
 
 def resting_lines(setup: Setup) -> Array:
@@ -329,18 +342,18 @@ def resting_lines(setup: Setup) -> Array:
     return np.array([[surface, surface - lower], [one - (two - one), two - one]])
 
 
-def at_rest(law: Array, reading: float) -> Array:
-    """The law's memory after it has read this position for ever; 0 where it would not settle.
-
-    What sections remember at 1, times the reading: so that one line tells it for all of them.
-    """
-    gate, at = law[laws.GATE], laws.HEADER
+def _resting(law: Array, unit: Array, reading: float) -> Array:
+    """The law's memory after it has read this position for ever; 0 where it would not settle."""
     if law[laws.CONTACT] == laws.POWER_LAW:
         return np.array([reading])
     if law[laws.CONTACT] == laws.SCENE:
         return scene_at_rest(law, laws.HEADER, reading)
-    x = max(reading, 0.0) if gate == laws.PENETRATION else reading
-    remembered: list[float] = []
+    return unit * (max(reading, 0.0) if law[laws.GATE] == laws.PENETRATION else reading)
+
+
+def _at_one(law: Array) -> Array:
+    """What sections remember at a reading of 1: times a reading, one line tells it for all of them."""
+    at, remembered = laws.HEADER, list[float]()
     for _ in range(int(law[laws.SECTIONS])):
         order = int(law[at])
         b, a = law[at + 1 : at + 2 + order], np.concatenate(([1.0], law[at + 2 + order : at + 2 + 2 * order]))
@@ -350,7 +363,7 @@ def at_rest(law: Array, reading: float) -> Array:
         own: list[float] = []
         for i in range(order, 0, -1):
             later += float(b[i]) - float(a[i]) * y
-            own.append(later * x if gain != 0.0 else 0.0)
+            own.append(later if gain != 0.0 else 0.0)
         remembered += reversed(own)
         at += 2 * order + 2
     return np.array(remembered or [0.0])

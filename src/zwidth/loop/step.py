@@ -8,19 +8,26 @@ between two of them the motion has a closed form.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from zwidth.compiled import Array, compiled
 from zwidth.elementary.exponential import exp, expm1
 from zwidth.elementary.logarithm import log
 from zwidth.loop.free import free_response, free_stop
 from zwidth.loop.ledger import book, book_rest
 from zwidth.loop.plant import (
+    ACTUATOR_WORK,
+    COULOMB,
     DIRECTION,
     FAULT,
     FORCE,
     GOAL,
+    HAND_WORK,
     POSITION,
+    SOURCE_WORK,
     STOPS,
     VELOCITY,
+    VISCOUS,
     Drive,
     Plant,
 )
@@ -79,6 +86,58 @@ def advance(
             state[FORCE] = state[GOAL] if ending and used == left else state[FORCE] + ramp * used
         elapsed = h if used == left and not ending else elapsed + used
     state[FAULT] = 1.0
+
+
+@compiled
+def is_free(plant: Plant) -> bool:
+    """True where nothing but a force moves the mass, and the amplifier gives its force at once."""
+    return plant.stiffness == 0.0 and plant.hand_damping == 0.0 and plant.lag == 0.0 and plant.slew == 0.0
+
+
+class Response(NamedTuple):
+    """Of a free mass over a whole interval: 1/M, h1, h2, h3 of `free`, h1/M, h2/M."""
+
+    inverse: float
+    h1: float
+    h2: float
+    h3: float
+    g1: float
+    g2: float
+
+
+@compiled
+def response_of(plant: Plant, h: float) -> Response:
+    """The response over h seconds; all 0 of an interval of none."""
+    if h == 0.0:
+        return Response(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    inverse = 1.0 / (plant.mass + plant.hand_mass)
+    h1, h2, h3 = free_response(plant.damping * inverse, h)
+    return Response(inverse, h1, h2, h3, inverse * h1, inverse * h2)
+
+
+@compiled
+def glide(
+    state: Array, plant: Plant, response: Response, f: float, force: float, h: float, work: Array
+) -> None:
+    """`advance` of a mass that is free."""
+    v0, side = state[VELOCITY], state[DIRECTION]
+    if side == 0.0 and abs(force - f) <= plant.stiction:
+        return
+    inverse, h1, h2, h3, g1, g2 = response
+    base = (force - side * plant.coulomb - plant.damping * v0) * inverse
+    v1 = (v0 + base * h1) - f * g1
+    if v1 * side > 0.0:
+        ahead, back = v0 * h + base * h2, f * g2
+        a0, moved = base - f * inverse, ahead - back
+        state[POSITION] = (state[POSITION] + ahead) - back
+        state[VELOCITY] = v1
+        state[VISCOUS] += plant.damping * (v0 * v0 * h + 2.0 * v0 * a0 * h2 + a0 * a0 * h3)
+        state[COULOMB] += plant.coulomb * abs(moved)
+        state[ACTUATOR_WORK] -= f * moved
+        state[HAND_WORK] += force * moved - 0.5 * plant.hand_mass * (v1 - v0) * (v1 + v0)
+        state[SOURCE_WORK] += force * moved
+    else:
+        advance(state, plant, force, 0.0, 0.0, h, work)
 
 
 @compiled

@@ -8,7 +8,7 @@ highest, lowest   of x over the last quarter of the samples: does it still move?
 from __future__ import annotations
 
 from zwidth.compiled import Array, compiled
-from zwidth.loop.kernel import R_ACTUATOR, R_HAND_WORK, R_POSITION
+from zwidth.loop.kernel import R_ACTUATOR, R_HAND_WORK, R_POSITION, run
 
 DEEPEST, PEAK, EXTRACTED, HIGHEST, LOWEST = range(5)
 SUMMARY = 5
@@ -29,3 +29,34 @@ def summarize(record: Array, samples: int, points: int, summary: Array) -> None:
         if k >= quarter:
             summary[HIGHEST] = max(summary[HIGHEST], x)
             summary[LOWEST] = min(summary[LOWEST], x)
+
+
+@compiled
+def run_each(
+    points: int,
+    states: Array,
+    numbers: Array,
+    laws: Array,
+    memories: Array,
+    work: Array,
+    late: int,
+    offset: float,
+    lengths: Array,
+    arrivals: Array,
+    missed: Array,
+    force: Array,
+    anchor: Array,
+    target: Array,
+    switch: Array,
+    commands: Array,
+    record: Array,
+    summaries: Array,
+) -> None:
+    """`kernel.run` of loops with the same clock and the same hand, a row of each array for each loop."""
+    samples = commands.shape[0] - 1
+    for i in range(states.shape[0]):
+        run(
+            0, samples + 1, points, states[i, :], numbers[i, :], laws[i, :], memories[i, :], work,
+            late, offset, lengths, arrivals, missed, force, anchor, target, switch, commands, record,
+        )  # fmt: skip
+        summarize(record, samples, points, summaries[i, :])

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Protocol
 
 from zwidth.native.names import Defined, Module, is_step_function
 from zwidth.native.reader import SPELLED, Reader
-from zwidth.native.signature import Signature
+from zwidth.native.signature import Signature, address
 from zwidth.native.types import (
     ITEMS,
     REAL,
@@ -290,7 +290,8 @@ class Expressions(Reader):
             if isinstance(found.node, ast.ClassDef):
                 of = self.around.several(fields(found))
                 takes = tuple(zip(of.names, of.items, strict=True))
-                return Read(f"(({of.c}){{{', '.join(self._given(node, takes, {}, found.module))}}})", of)
+                given = self._given(node, takes, {}, found.module, by_address=False)
+                return Read(f"(({of.c}){{{', '.join(given)}}})", of)
             if is_step_function(found.node):
                 to = self.around.signature(found)
                 given = self._given(node, to.takes, to.defaults, to.module)
@@ -320,6 +321,7 @@ class Expressions(Reader):
         takes: tuple[tuple[str, Type], ...],
         defaults: dict[str, ast.expr],
         owner: Module,
+        by_address: bool = True,
     ) -> list[str]:
         told: dict[str, tuple[Read, ast.expr]] = {}
         flat: list[tuple[Read, ast.expr]] = []
@@ -337,11 +339,12 @@ class Expressions(Reader):
                 told[name] = (literal(owner.value(default)), node)
         if len(flat) > len(takes) or set(told) != {name for name, _ in takes}:
             raise self.outside(node, f"{ast.unparse(node.func)} takes {', '.join(n for n, _ in takes)}")
-        return [self._argument(*told[name], of) for name, of in takes]
+        return [self._argument(*told[name], of, by_address) for name, of in takes]
 
-    def _argument(self, value: Read, node: ast.expr, of: Type) -> str:
+    def _argument(self, value: Read, node: ast.expr, of: Type, by_address: bool) -> str:
         known = self.module.value(node, self.types) if isinstance(of, Cells) else None
-        return self.around.constants(known).c if isinstance(known, tuple) else self.cast(value, of, node)
+        text = self.around.constants(known).c if isinstance(known, tuple) else self.cast(value, of, node)
+        return address(text, of) if by_address else text
 
     def _builtin(self, name: str, node: ast.Call) -> Read:
         given = [self.read(a) for a in node.args]

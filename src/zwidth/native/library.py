@@ -129,7 +129,7 @@ class _Numbers(ctypes.Structure):
     _fields_ = (("p", ctypes.c_void_p), ("n", ctypes.c_int64 * 4))
 
 
-_EXCHANGED = ctypes.CFUNCTYPE(ctypes.c_int64, _Numbers, _Numbers, _Numbers)
+_EXCHANGED = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.POINTER(_Numbers)] * 3)
 
 
 @cache
@@ -140,8 +140,8 @@ def _address(function: Any) -> int:
     if found is not None and name in found.table:
         return int(ctypes.c_void_p.in_dll(found.opened, f"zwp_{name}").value or 0)
 
-    def called(*given: _Numbers) -> int:
-        return int(plain(*(_seen(g, np.uint8 if n else np.float64) for n, g in enumerate(given))))
+    def called(*given: Any) -> int:
+        return int(plain(*(_seen(g.contents, np.uint8 if n else np.float64) for n, g in enumerate(given))))
 
     _KEPT.append(_EXCHANGED(called))
     return int(ctypes.cast(_KEPT[-1], ctypes.c_void_p).value or 0)

@@ -20,8 +20,25 @@ class Signature(NamedTuple):
 
     def head(self) -> str:
         """The first line of the function in C."""
-        takes = ", ".join(f"{of.c} {name}_" for name, of in self.takes) or "void"
+        takes = ", ".join(f"{taken(of)}{name}_{'at' * is_large(of)}" for name, of in self.takes) or "void"
         return f"static {self.returns.c} {self.name}({takes})"
+
+
+def is_large(of: Type) -> bool:
+    """True of what is handed over by its address: by value it would go through memory, word by word."""
+    return isinstance(of, Cells) or (isinstance(of, Several) and len(of.items) > 2)
+
+
+def taken(of: Type) -> str:
+    """A parameter's type in C."""
+    return f"const {of.c} *" if is_large(of) else f"{of.c} "
+
+
+def address(text: str, of: Type) -> str:
+    """An argument as it is handed over."""
+    if not is_large(of):
+        return text
+    return f"&{text}" if text.replace(".", "").isidentifier() else f"({of.c}[1]){{{text}}}"
 
 
 def signature_of(of: Defined, name: str) -> Signature:

@@ -9,10 +9,12 @@ is outside, with file and line.
 from __future__ import annotations
 
 import ast
+import re
 
 from zwidth.native.expressions import Expressions, NotYet, Read
 from zwidth.native.names import Defined
 from zwidth.native.reader import counted
+from zwidth.native.signature import is_large
 from zwidth.native.types import ITEMS, WHOLE, Cells, Nothing, Number, Several, Type, joined
 
 
@@ -35,7 +37,14 @@ class Function(Expressions):
         for name, of in self.types.items():
             if name not in given:
                 head.append(f"  {of.c} {name}_ = {'{0}' if isinstance(of, Several | Cells) else '0'};")
-        return "\n".join([self.own.head() + " {", *head, *self.lines, "}"])
+        lines = "\n".join([*head, *self.lines])
+        for name, of in self.own.takes:
+            if is_large(of):  # read where it lies; copied only where the name is given another value
+                if re.search(rf"\b{name}_ = ", lines):
+                    lines = f"  {of.c} {name}_ = *{name}_at;\n{lines}"
+                else:
+                    lines = re.sub(rf"\b{name}_\b", f"(*{name}_at)", lines)
+        return f"{self.own.head()} {{\n{lines}\n}}"
 
     def _block(self, body: list[ast.stmt]) -> None:
         self.depth += 1

@@ -17,23 +17,23 @@ static void servo_posix_pause(int64_t nanoseconds) {
         nanosleep(&t, 0);
     }
 }
-static int64_t servo_posix_read_some(int64_t descriptor, zw_bytes into, int64_t start) {
-    int64_t room = into.n[0] - start;
+static int64_t servo_posix_read_some(int64_t descriptor, const zw_bytes *into, int64_t start) {
+    int64_t room = into->n[0] - start;
     if (room <= 0) return 0;
-    int64_t count = read((int)descriptor, into.p + start, (size_t)room);
+    int64_t count = read((int)descriptor, into->p + start, (size_t)room);
     return count > 0 ? count : count == 0 ? -2 : -1;
 }
-static int64_t servo_posix_write_all(int64_t descriptor, zw_bytes what, int64_t count) {
-    return write((int)descriptor, what.p, (size_t)count) == count;
+static int64_t servo_posix_write_all(int64_t descriptor, const zw_bytes *what, int64_t count) {
+    return write((int)descriptor, what->p, (size_t)count) == count;
 }
 #else /* nothing is served there: see check_supported */
 static int64_t servo_posix_now(void) { return 0; }
 static void servo_posix_pause(int64_t nanoseconds) { (void)nanoseconds; }
-static int64_t servo_posix_read_some(int64_t descriptor, zw_bytes into, int64_t start) {
+static int64_t servo_posix_read_some(int64_t descriptor, const zw_bytes *into, int64_t start) {
     (void)descriptor; (void)into; (void)start;
     return -2;
 }
-static int64_t servo_posix_write_all(int64_t descriptor, zw_bytes what, int64_t count) {
+static int64_t servo_posix_write_all(int64_t descriptor, const zw_bytes *what, int64_t count) {
     (void)descriptor; (void)what; (void)count;
     return 0;
 }

@@ -9,7 +9,7 @@ from typing import Any
 
 from zwidth.native.expressions import Read, literal
 from zwidth.native.names import Defined, Octets, OutsideError, Package, c_name
-from zwidth.native.signature import Signature, signature_of
+from zwidth.native.signature import Signature, address, signature_of, taken
 from zwidth.native.statements import Function
 from zwidth.native.types import ITEMS, REAL, Asked, Cells, Maybe, Nothing, Number, Several, Type, told
 
@@ -99,7 +99,7 @@ class Translation:
             for name, of in self._several.items()
         ]
         asked = [
-            f"typedef {of.returns.c} (*{name})({', '.join(part.c for part in of.takes)});"
+            f"typedef {of.returns.c} (*{name})({', '.join(map(taken, of.takes))});"
             for name, of in self._asked.items()
         ]
         return several + asked
@@ -121,7 +121,8 @@ def _item(values: tuple[Any, ...]) -> str:
 def _entry(signature: Signature) -> str:
     """How it is reached from outside: numbers and arrays in a row of words; what it returns, too."""
     words, back = ((f"w[{k}]" for k in count()) for _ in range(2))
-    call = f"{signature.name}({', '.join(_taken(of, words) for _, of in signature.takes)})"
+    given = ", ".join(address(_taken(of, words), of) for _, of in signature.takes)
+    call = f"{signature.name}({given})"
     lines = [f"ZW_SEEN void zwx_{signature.name}(zw_word *w) {{"]
     if isinstance(signature.returns, Nothing):
         lines.append(f"    (void)w; {call};")
