@@ -111,7 +111,7 @@ _OF_A_ROW = {f"law.{name}" for name in ("counts_force_limit", "counts_force_reso
 
 
 def what_is_shown() -> str:
-    """All but kind, format and proof, and what else is a part of one; arms, hand and spring by their names."""
+    """All but kind, format and proof, and other parts of one; arms, hand and spring by their names."""
     kinds = import_module("zwidth.checker.kinds")
     for kind in kinds.KINDS:
         record = kinds.fields_of(kind)

@@ -6,7 +6,7 @@ Each case draws some at random, and compares what the checker finds.
 from __future__ import annotations
 
 import cmath
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from importlib import import_module
@@ -187,7 +187,7 @@ _NO_LAW = dict.fromkeys(
 
 
 def _compensated(random: Random) -> Iterator[tuple[Any, list[Any]]]:
-    """Pairs and what compensation takes; drives first whose form has parts of a whole number at one place alone."""
+    """Pairs and what compensation takes; drives first that have fractions at one place of the form alone."""
     line = part("compensation").Line
     springs = (
         one_arm(Fraction(35, 8), Fraction(3, 4), reflection=1),
