@@ -13,10 +13,12 @@ from importlib import import_module
 from itertools import pairwise
 from math import acos, ceil, floor
 from random import Random
+from types import SimpleNamespace
 from typing import Any
 
 from . import Case, plain
 from .counted_again import read, some
+from .pair import DAMPED, ONE_DAMPED, SPRING
 from .pair import arm as one_arm
 
 ROUNDS = 12
@@ -313,5 +315,25 @@ def _least(beta: float, gamma: float, back: complex, often: int) -> float:
     return 1 / sum(row[-1].real for row in rows)
 
 
-CHECKS = [pair_motions, forms_of_pairs]
+def younger_readings_beside_springs() -> str:
+    """That they change nothing is said of springs alone: of no damper, delay or compensation."""
+    passive = part("passive")
+    line = part("compensation").Line
+    one = {"own": (4, 0), "other": (-4, 0), "echo": (0, 0), "part": 0}
+    beside = [
+        ({"own": (5, -1)}, 0), ({"other": (-5, 1)}, 0), ({"echo": (1, -1)}, 0), ({"part": 1}, 0), ({}, 1),
+    ]  # fmt: skip
+    if passive._beyond_springs(SimpleNamespace(**one), line(1, 1, 0)):
+        return "springs alone"
+    for more, moving in beside:
+        if not passive._beyond_springs(SimpleNamespace(**{**one, **more}), line(0, 0, moving)):
+            return f"{more}, {moving}"
+    for told, springs in ((SPRING, True), (DAMPED, False), (ONE_DAMPED, False)):
+        said = import_module("zwidth.checker").verify(plain(told)).reason
+        if ("; younger readings, another in each sample, change nothing" in said) is not springs:
+            return said
+    return ""
+
+
+CHECKS = [pair_motions, forms_of_pairs, younger_readings_beside_springs]
 CASES = [Case(check.__name__.replace("_", " "), check, "") for check in CHECKS]
