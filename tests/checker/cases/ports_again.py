@@ -11,7 +11,7 @@ from importlib import import_module
 from random import Random
 from typing import Any
 
-from . import Case, accepted, put, refused
+from . import Case, put, refused
 from .linear import signs
 from .positive_real_matrix import CONSTANT, ONE, proved
 
@@ -118,11 +118,6 @@ OUTSIDE = {
     "system": {"time": "discrete", "numerator": [-1, -2], "denominator": [1, -2]},
     "proof": {"offset": 1, "positivity": signs()},
 }
-ALIKE = {  # F = 1/2, and with g = 1/2 what is left of z⁰ is 1, or −1
-    **OUTSIDE,
-    "system": {"time": "discrete", "numerator": ["1/2"], "denominator": [1]},
-    "proof": {"offset": "1/2", "positivity": signs()},
-}
 NOTHING = proved([(0, ONE)], ([[[]]], [0]), 1, [[[1]]], [1], 0)
 FACTORS, PROPER = "do not multiply to the sum", "must be a proper matrix of the port's size"
 LARGER = [[[2], [-1], []], [[-1], [2], []], [[], [], [1]]]
@@ -134,8 +129,6 @@ CASES = [
     refused("a power at two points", AT_TWO_POINTS, FACTORS),
     refused("a half of less than nothing", NEGATIVE, FACTORS),
     refused("a root that is infinitely far out", OUTSIDE, "a root lies outside"),
-    accepted("what is left is 1", ALIKE),
-    accepted("what is left is −1", put(ALIKE, {"system.numerator": ["-1/2"], "system.denominator": [-1]})),
     refused("a resolvent of nothing", NOTHING, PROPER),
     refused("a resolvent of more axes", put(CONSTANT, {"proof.resolvent.numerators": LARGER}), PROPER),
     refused(
