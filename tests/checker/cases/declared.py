@@ -9,11 +9,13 @@ write all anew.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from importlib import import_module
 from itertools import zip_longest
 from pathlib import Path
 from pkgutil import iter_modules
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import zwidth
 
@@ -86,7 +88,56 @@ def formats_are_those_that_were_told() -> str:
     return first_other("formats.txt", formats())
 
 
+_MOTION = {"energy", "sample_period", "positions"}
+_ARMS = ("leader", "follower")
+_PARTS_OF_A_PROOF = {
+    "slow hands": {"enough"},
+    "storage": {"force_unit", "storage"},
+    "coarse storage": {"force_unit", "storage"},
+    "row storage": {"force_unit", "storage", "table"},
+    "motion": {*_MOTION, "repeats", "switch_positions"},
+    "contact motion": {*_MOTION, "repeats", "switch_positions"},
+    "touching motion": {*_MOTION, "switch_positions"},
+    "row motion": {*_MOTION, "repeats", "forces"},
+    "held pair motion": _MOTION,
+    "pair motion": {
+        "energy", "sample_period", "repeats",
+        *(f"{arm}_{what}" for arm in _ARMS for what in ("positions", "switch_positions")),
+    },
+    "absolute stability": {"center", "convexity", "smoothness", "taps"},
+    "vibration": {"inside"},
+}  # fmt: skip
+_OF_A_ROW = {f"law.{name}" for name in ("counts_force_limit", "counts_force_resolution", "specification")}
+
+
+def what_is_shown() -> str:
+    """All but kind, format and proof, and other parts of one; arms, hand and spring by their names."""
+    kinds = import_module("zwidth.checker.kinds")
+    for kind in kinds.KINDS:
+        record = kinds.fields_of(kind)
+        hidden = {name for name, field in _within(record) if not field.shown} - {"proof"}
+        right = {"kind", "format", *_PARTS_OF_A_PROOF.get(kind, ())} | (
+            _OF_A_ROW if kind.startswith("row ") else set()
+        )
+        named = {name for name, field in _within(record) if getattr(field, "named", False)}
+        arms = {f"loop.{arm}" for arm in _ARMS} if "pair" in kind else set()
+        others = {"held"} if "held" in kind else {"spring"} if kind == "null space" else set()
+        proof = record.fields.get("proof")
+        if hidden != right or named != arms | others or (proof and proof.shown):
+            return f"{kind}: {hidden} are not shown, {named} by their names"
+    return ""
+
+
+def _within(record: Any, before: str = "") -> Iterator[tuple[str, Any]]:
+    """Every entry of what is shown, as in "loop.delay"."""
+    for name, field in getattr(record, "fields", {}).items():
+        yield before + name, field
+        if field.shown:
+            yield from _within(field, f"{before}{name}.")
+
+
 CASES = [
+    Case("what is shown", what_is_shown, ""),
     Case("schemas are those that are shipped", schemas_are_those_that_are_shipped, ""),
     Case("schemas are written", schemas_are_written, ""),
     Case("rows", rows_are_those_that_were_shown, ""),

@@ -349,6 +349,8 @@ CASES = [
         ),
     ),
     accepted("a box", BOX, "every such hand"),
+    accepted("a small box", put(with_damping(NOBODY, 1), {"held.mass_kg": [3, "3.001"]}), "in 1 box, the"),
+    accepted("no damping at all, and said so", gains(NOBODY, "0.8434555597"), "takes energy out"),
     refused("a box, less than a corner needs", with_damping(BOX, "0.39662"), POSITIVE),
     refused("a gain of a box", gains(put(BOX, {"loop.leader.damping_N_s_per_m": 0}), -1), "single values"),
     refused(

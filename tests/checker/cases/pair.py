@@ -400,6 +400,11 @@ CASES = [
     refused(
         "a spring on one side", put(SPRING, {"loop.leader.stiffness_N_per_m": 0}), "no spring to the other"
     ),
+    refused(
+        "a spring on the other side",
+        put(SPRING, {"loop.follower.stiffness_N_per_m": 0}),
+        "no spring to the other",
+    ),
     refused("a spring that pushes", put(SPRING, {"loop.leader.stiffness_N_per_m": -1}), "must be ≥ 0"),
     refused(
         "a force that changes inside a sample, undamped",

@@ -144,7 +144,14 @@ def tanh_is_enclosed() -> str:
     """Between both numbers, which lie closely."""
     between, bits = _module().tanh_between, _module().BITS
     random = Random(1)
-    for x in [0, *(Fraction(random.random()) * 10 ** random.randint(-9, 2) for _ in range(60)), 63, 64, 65]:
+    for x in [
+        0,
+        *(Fraction(random.random()) * 10 ** random.randint(-9, 2) for _ in range(60)),
+        43,
+        63,
+        64,
+        65,
+    ]:
         low, high = between(Fraction(x))
         with localcontext() as context:
             context.prec = 120

@@ -111,6 +111,10 @@ CASES = [
     *pair("a derivative", proved(signs(square=()), [1, 0], [1])),
     *pair("nothing", proved(signs(square=()), [0], [1])),
     # (z + ¼)/(z − ¼): Re(N D̄) = 15/16, and N + D = 2z
+    *(  # with an offset of 1/2 what is left is 1, or −1
+        accepted(f"a half, over {d}", proved(CONSTANT, [f"{d}/2"], [d], offset="1/2", **DISCRETE))
+        for d in (1, -1)
+    ),
     accepted("a root at 0", proved(CONSTANT, [1, "1/4"], [1, "-1/4"], **DISCRETE)),
     # N = D = (s + 1)⁴: half of |D|² = (1 + x)⁴, which is 16/(1 + c)⁴
     accepted("of order 4", proved(CONSTANT, FOURTH, FOURTH, "1/2")),
