@@ -372,10 +372,14 @@ def a_level_that_is_passed_counts() -> str:
 def _from_one_cell(
     value: Any, images: Sequence[Fraction], pushed: Sequence[int], inwards: bool, stays: int, moves: int
 ) -> bool:
-    """On a grid of one cell of one step: forces one way, and what it costs to stay and to move."""
-    rows, none = np.zeros((1, 1), np.int64), np.zeros((1, len(pushed)), np.int64)
-    forces = [np.array([pushed]), none] if inwards else [none, np.array([pushed])]
-    ends = [np.array([[f(x * PART) for x in images]]) for f in (int, ceil)]
+    """On a grid of one cell of one step: forces one way, and what it costs to stay and to move.
+
+    The second row of the tables is that of the cell; of the first nothing counts.
+    """
+    rows, none, other = np.ones((1, 1), np.int64), np.zeros((2, len(pushed)), np.int64), [0] * len(pushed)
+    own = np.array([other, pushed])
+    forces = [own, none] if inwards else [none, own]
+    ends = [np.array([other, [f(x * PART) for x in images]]) for f in (int, ceil)]
     costs = np.array([stays, moves])
     return bool(kernel("violated_relaxing")(value, rows, np.stack(forces), np.stack(ends), costs, 1))
 
@@ -419,7 +423,20 @@ def _at(values: Any, level: Fraction) -> Fraction:
     return int(values[below]) + (level - below) * int(values[above] - values[below])
 
 
+def two_cells_are_crossed_in_one_move() -> str:
+    """From the first node to the last of three cells of one step, of a law that relaxes."""
+    rows, both = np.zeros((3, 1), np.int64), np.zeros((2, 1, 1), np.int64)
+    for most in (3, 4):
+        value = np.zeros((3, 1, 1, 2), dtype=np.int64)
+        value[2, 0, 0, 1] = value[2, 0, 0, 0] = value[1, 0, 0, 1] = value[1, 0, 0, 0] = value[0, 0, 0, 1] = 10
+        costs = np.array([0, 10, 10, 10 if most == 4 else 9])
+        if kernel("violated_relaxing")(value, rows, both, both, costs, 2) is not (most == 3):
+            return f"{costs}"
+    return ""
+
+
 CHECKS = (
+    two_cells_are_crossed_in_one_move,
     on_a_grid,
     in_two_parts_on_a_grid,
     in_a_table,

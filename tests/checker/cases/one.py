@@ -70,5 +70,22 @@ def a_motion_says_its_own_numbers() -> str:
     return ""
 
 
-CHECKS = [what_a_check_stops_at_is_told, rows_of_what_holds, a_motion_says_its_own_numbers]
+def steps_of_either_arm_are_covered() -> str:
+    """An encoder on one of two arms is one of the pair."""
+    scope = part("scope")
+    for leader, follower in ((0, 0), (1, 0), (0, 1)):
+        arms = {n: SimpleNamespace(resolution=x) for n, x in (("leader", leader), ("follower", follower))}
+        found = scope.of_a_pair("passive")(SimpleNamespace(loop=SimpleNamespace(**arms))).encoder
+        if found != ("counted" if leader or follower else "ideal"):
+            return f"{leader}, {follower}: {found}"
+    hands = ("known", "beside a known one", "bounded", "every", "activity")
+    return "" if hands == scope._FEWEST_FIRST else "the hands in another order"
+
+
+CHECKS = [
+    steps_of_either_arm_are_covered,
+    what_a_check_stops_at_is_told,
+    rows_of_what_holds,
+    a_motion_says_its_own_numbers,
+]
 CASES = [Case(check.__name__.replace("_", " "), check, "") for check in CHECKS]
