@@ -324,7 +324,9 @@ def numbers_up_to_the_largest_that_are_exact() -> str:
     outcomes = set()
     for _ in range(400):
         force = random.choice([1, -1]) * ((1 << 53) // 9 - random.randrange(1, 99, 2))
-        value = [5 * abs(force) * (force < 0) + force * x + random.choice([0, 1, 1, 2, 3, 3, 4]) for x in range(6)]
+        value = [
+            5 * abs(force) * (force < 0) + force * x + random.choice([0, 1, 1, 2, 3, 3, 4]) for x in range(6)
+        ]
         places = [0, 1, 2, 2, 3, 4]
         value = [value[x] for x in places]
         value[3] = value[2]
@@ -339,6 +341,24 @@ def numbers_up_to_the_largest_that_are_exact() -> str:
         if violated(told, exists, moves, 0, 1) != wrong:
             return f"force {force}, values {value}: {wrong}"
     return "" if len(outcomes) == 2 else "all alike"
+
+
+def moves_that_are_longer_than_the_grid() -> str:
+    """They lead nowhere."""
+    violated, exists = storage("moves").violated, np.ones((2, 1), dtype=np.bool_)
+    for nodes, reach, highest in product((1, 2, 3), (1, 2, 3, 6), (0, 1, 2)):
+        costs = np.arange(reach * max(1, nodes - 1) + 1).astype(object)
+        value = np.zeros((2, 1, nodes), dtype=np.int64)
+        value[1, 0, -1] = highest
+        if violated(value, exists, [(np.zeros((2, 1), dtype=np.int64), costs)], 0, reach) != (highest > 1):
+            return f"{nodes} nodes, moves of {reach} cells, {highest}"
+    still, far = np.zeros((8, 1), dtype=np.int64), np.ones((8, 1), dtype=np.bool_)
+    for place, last in product(((0, 0), (7, 1)), (1, 9)):  # from one end to the other, and no shorter one
+        value = np.zeros((8, 1, 2), dtype=np.int64)
+        value[place[0], 0, place[1]] = 5
+        if violated(value, far, [(still, np.array([0, *[9] * 6, last], dtype=object))], 0, 7) != (last < 5):
+            return f"the longest move, to {place}, at {last}"
+    return ""
 
 
 def a_level_that_is_passed_counts() -> str:
@@ -443,6 +463,7 @@ CHECKS = (
     on_a_line,
     relaxing,
     numbers_up_to_the_largest_that_are_exact,
+    moves_that_are_longer_than_the_grid,
     a_level_that_is_passed_counts,
     an_image_between_two_parts_of_a_level_counts_at_both,
     a_level_that_is_passed_at_once_counts,
