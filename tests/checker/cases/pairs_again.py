@@ -335,5 +335,30 @@ def younger_readings_beside_springs() -> str:
     return ""
 
 
-CHECKS = [pair_motions, forms_of_pairs, younger_readings_beside_springs]
+def a_pair_of_thrice_the_forces_has_the_same_form() -> str:
+    """To the last digit: of drives that read nine times in a sample, with fractions in the bottoms alone."""
+    passive, forms = part("passive"), []
+    for factor in (1, 3):
+        told: dict[str, Any] = {"sample_period_s": Fraction(1), "own_readings": 9}
+        for name in _ARMS:
+            one = one_arm(65 + Fraction(9, 18), 9, local_damping_N_s_per_m=Fraction(25, 3))
+            told[name] = {
+                key: Fraction(value) * (factor if "_N_" in key else 1)
+                for key, value in {"reflection": 0, **one}.items()
+            }
+            told[name]["own_readings"] = 9
+        read = document(part("coupling").PAIR, told)
+        forms.append(passive.criterion(read, part("coupling").sides_of(read)))
+    for one, other in zip(*forms, strict=True):
+        if any(a * other[0] != b * one[0] for a, b in zip(one, other, strict=True)) or not one[0]:
+            return f"{one} and {other}"
+    return ""
+
+
+CHECKS = [
+    pair_motions,
+    forms_of_pairs,
+    a_pair_of_thrice_the_forces_has_the_same_form,
+    younger_readings_beside_springs,
+]
 CASES = [Case(check.__name__.replace("_", " "), check, "") for check in CHECKS]
