@@ -80,13 +80,24 @@ def test_too_few_arguments_are_an_error_of_python() -> None:
 
 def test_without_compiler_and_library_it_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(build, "BUILT", tmp_path / "steps.so")
+    monkeypatch.setattr(build, "_is_checkout", lambda: True)
     monkeypatch.setattr(build, "compiler", lambda: None)
     with pytest.warns(RuntimeWarning, match=r"as plain Python.*there is no C compiler"):
         assert build._library.__wrapped__() is None
 
 
+def test_an_installed_package_without_its_library_says_how_to_have_it(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(build, "BUILT", tmp_path / "steps.so")
+    monkeypatch.setattr(build, "_is_checkout", lambda: False)
+    with pytest.warns(RuntimeWarning, match="with a C compiler"):
+        assert build._library.__wrapped__() is None
+
+
 def test_a_compiler_that_fails_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(build, "BUILT", tmp_path / "steps.so")
+    monkeypatch.setattr(build, "_is_checkout", lambda: True)
     monkeypatch.setattr(
         build, "compiler", lambda: [sys.executable, "-c", "raise SystemExit('no such thing')"]
     )
