@@ -63,6 +63,17 @@ class Setup:
         return self.frame.samples * self.frame.points + 1
 
     @property
+    def plain(self) -> bool:
+        """True where `plain.run_plain` runs it: free mass, spring, regular clock, one force an interval."""
+        f, p = self.frame, self.frame.plant
+        free = p.stiffness == 0.0 and p.hand_damping == 0.0 and p.lag == 0.0 and p.slew == 0.0
+        memoryless = self.law[laws.SECTIONS] == 1 and self.law[laws.HEADER] == 0
+        linear = self.law[laws.CLAMPED] == 0
+        clock = f.offset == 0.0 and f.points == 1 and not f.arrivals.size and not f.missed.size
+        memoryless &= self.law[laws.CHAIN] == 0
+        return bool(free and memoryless and linear and clock and f.signals.position is None)
+
+    @property
     def plant_numbers(self) -> Array:
         """The plant as the kernel reads it."""
         return np.array(self.frame.plant)

@@ -15,8 +15,10 @@ from zwidth.device.amplifier import Amplifier
 from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.loop.kernel import run
+from zwidth.loop.law import PHASE, RESOLUTION, STEP
 from zwidth.loop.pair.setup import Holder
 from zwidth.loop.pair.simulate import Friction, simulated_pair
+from zwidth.loop.plain import run_plain
 from zwidth.loop.plant import FAULT, STOPS
 from zwidth.loop.setup import Setup, empty_record, prepare
 from zwidth.loop.timing import Timing
@@ -241,6 +243,12 @@ def run_samples(
     """Take the samples `first` … `last` − 1, each with the interval behind it; can be called again."""
     numbers, law, late = setup.plant_numbers, setup.law, setup.frame.late
     force, anchor, target, switch = setup.optional()
+    if setup.plain:
+        push = force if force.size else np.zeros(setup.frame.samples)
+        period = float(setup.frame.lengths[0])
+        count, phase, step = (law[key] or None for key in (RESOLUTION, PHASE, STEP))
+        run_plain(first, last, state, numbers, law, late, period, push, commands, record, count, phase, step)
+        return
     run(
         first, last, setup.frame.points, state, numbers, law, memory, work,
         late, setup.frame.offset, setup.frame.lengths, setup.frame.arrivals, setup.frame.missed,
