@@ -88,9 +88,13 @@ def _weights(loop: Any) -> list[Fraction]:
 def pair_motions() -> str:
     """Step by step, in fractions, every round of it."""
     random = Random(1)
-    for _ in range(ROUNDS):
+    for turn in range(ROUNDS):
         period = some(random, 1, 3)
         loop = _loop(random, period)
+        if turn % 5 == 0:  # of all that is multiplied, what comes back alone is no whole number
+            whole = {"stiffness_N_per_m": 2, "local_damping_N_s_per_m": 0, "reflection": 1, "delay_s": 0}
+            halves = {"virtual_damping_N_s_per_m": period / 2, "own_readings": 2}
+            loop = {**loop, "own_readings": 2, **{n: {**loop[n], **whole, **halves} for n in _ARMS}}
         for name in _ARMS:
             if random.random() < 0.5:
                 loop[name]["compensation"] = {
