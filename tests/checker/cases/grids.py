@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from importlib import import_module
 from itertools import product
-from math import ceil
+from math import ceil, floor
 from types import SimpleNamespace
 from typing import Any
 
@@ -139,6 +139,29 @@ def costs_are_below_what_is_lost() -> str:
         best = [max(each, key=lambda c: c[d] + c[d + 1]) for d in range(len(one) - 1)]
         if list(one) != [min(c[d] for c in best[max(d - 1, 0) : d + 1]) for d in range(len(one))]:
             return f"of {len(several)} models, {steps} steps"
+    return ""
+
+
+def a_law_that_relaxes_on_levels() -> str:
+    """Its force inwards and outwards, and where each level of its average goes, down and up."""
+    relaxing, low, high, per, unit = storage("relaxing"), -2, 2, 2, Fraction(1, 100)
+    for surface, clamped, resets in product(SURFACES, (False, True), (False, True)):
+        told = law(surface, taps=[Fraction(3)], relaxing=(Fraction(2, 3), Fraction(5)), resets=resets)
+        least = 0 if surface == "penetration" else low
+        averages = [(least + Fraction(i, per)) * STEP for i in range((high - least) * per + 1)]
+        args = low, high, least, per, len(averages)
+        forces = relaxing._forces(told._replace(clamped=clamped), 30, 25, *args)
+        images = relaxing._images(told, *args)
+        for n in range(low, high + 1):
+            line = [told.force([n * STEP], average) / unit for average in averages]
+            for i, average in enumerate(averages):
+                outwards = max(line[i], Fraction(0)) if clamped else line[i]
+                inwards = Fraction(0) if clamped and min(line[max(i - 1, 0) : i + 2]) <= 0 else line[i]
+                if [*forces[:, n - low, i]] != [inwards, outwards]:
+                    return f"forces {forces[:, n - low, i]}, not {inwards}, {outwards}, at {n}, {i} of {told}"
+                place = (told.averaged(average, n * STEP) / STEP - least) * per * PART
+                if [*images[:, n - low, i]] != [floor(place), ceil(place)]:
+                    return f"images {images[:, n - low, i]}, not {float(place)}, at {n}, {i} of {told}"
     return ""
 
 
@@ -315,6 +338,7 @@ CHECKS = (
     many_forces_are_computed_in_parts,
     states_are_those_with_all_readings_on_the_grid,
     costs_are_below_what_is_lost,
+    a_law_that_relaxes_on_levels,
     forces_that_do_not_fit_are_refused,
     cells_reach_as_far_on_both_sides,
     words_of_cells,

@@ -12,10 +12,11 @@ import base64
 import json
 import zlib
 from fractions import Fraction
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from . import Case, accepted, edge, put, refused, without
+from . import Case, accepted, edge, plain, put, refused, without
 
 STORAGES = json.loads(Path(__file__).with_name("storages.json").read_text(encoding="utf-8"))
 TAKES = "takes out more"
@@ -143,6 +144,31 @@ SPRING_OF_1, TOO_LARGE = {"surface": "position", "taps_N_per_m": [1]}, "numbers 
 FORCES_TOO_LARGE = "forces are too large to be compared"
 TOO_MUCH, TOO_LONG = "too many numbers", "more effort than"
 
+
+def forces_and_costs_of_levels() -> str:
+    """A level is a part of a count; costs are those of the longest move, in steps."""
+    relaxing_grid = import_module("zwidth.checker.storage.relaxing")
+    asked: dict[str, Any] = {}
+    kept = relaxing_grid._forces, relaxing_grid.costs_of
+
+    def told(name: str, real: Any) -> Any:
+        def call(*given: Any) -> Any:
+            asked[name] = given
+            return real(*given)
+
+        return call
+
+    relaxing_grid._forces, relaxing_grid.costs_of = told("forces", kept[0]), told("costs", kept[1])
+    try:
+        grid = relaxing(-1, 1, [0] * 45, {}, largest_move_counts=3, steps_per_count=2)
+        grid = put(grid, {"domain.levels_per_count": 2})
+        import_module("zwidth.checker").verify(plain(grid))
+    finally:
+        relaxing_grid._forces, relaxing_grid.costs_of = kept
+    found = [*asked["forces"][1:3], *asked["costs"][4:]]
+    return "" if found == [10, 2, 3, 2] else f"{found}"
+
+
 CASES = [
     *(
         refused(
@@ -199,6 +225,39 @@ CASES = [
         ),
         "one friction model",
     ),
+    accepted(
+        "a law that relaxes, moves of two counts, a sample late",
+        put(relaxing(-1, 1, [0] * 90, {}, largest_move_counts=2), {"loop.delay_s": 1}),
+    ),
+    accepted("a law that relaxes, outside", relaxing(-5, -3, [0] * 18, {"taps_N_per_m": [1]})),
+    *(
+        refused(f"a law that relaxes, {name}", relaxing(-3, 1, [0] * 50, law), FORCES_TOO_LARGE)
+        for name, law in (
+            ("a spring too stiff at the far end", {"taps_N_per_m": [1 << 60]}),
+            ("a spring too stiff outwards", {"taps_N_per_m": [-(1 << 60)]}),
+            ("a branch too stiff", {"relaxing": {"pole": "1/2", "stiffness_N_per_m": 1 << 59}}),
+            ("a branch too stiff outwards", {"relaxing": {"pole": "1/2", "stiffness_N_per_m": -(1 << 59)}}),
+        )
+    ),
+    refused(
+        "a law that relaxes, forces outwards too large together",
+        relaxing(-1, 1, [0] * 18, {"taps_N_per_m": [-(1 << 46)], "surface": "position"}),
+        TOO_LARGE,
+    ),
+    *(
+        refused(
+            f"a law that relaxes, one value of {1 << bits} at {place}",
+            relaxing(-1, 1, [(1 << bits) * (k == place) for k in range(18)], {}),
+            TOO_LARGE,
+        )
+        for bits, place in ((47, 0), (47, 4), (61, 2))
+    ),
+    refused(
+        "a law that relaxes, what is stored at one reading too large",
+        relaxing(-1, 1, [1 << 61] * 6 + [0] * 12, {}),
+        TOO_LARGE,
+    ),
+    Case("forces and costs of levels", forces_and_costs_of_levels, ""),
     refused("no cell", small("storage", {"taps_N_per_m": [1]}, counts(1, 0), [], 9), EMPTY),
     *(
         refused(
