@@ -13,7 +13,9 @@ import json
 import zlib
 from fractions import Fraction
 from importlib import import_module
+from math import inf, nan
 from pathlib import Path
+from struct import pack
 from typing import Any
 
 from . import Case, accepted, edge, plain, put, refused, without
@@ -137,6 +139,31 @@ def leading(place: tuple[int, int], to: int) -> Any:
     return put(ROW, {"table.successors": packed(successors)})
 
 
+def doubles(*values: float) -> str:
+    return base64.b64encode(zlib.compress(pack(f"<{len(values)}d", *values))).decode()
+
+
+def one_state(values: list[int], moves: int = 1) -> Any:
+    """A table of one reading, without force."""
+    nowhere = [-1] * moves
+    table = {"states": 1, "starts": [0], "counts": packed([0]), "forces": doubles(0.0)}
+    entries = {"table": {**ROW["table"], **table, "successors": packed([*nowhere, 0, *nowhere])}}
+    domain = {"lowest_count": 0, "highest_count": 0, "largest_move_counts": moves, "steps_per_count": 1}
+    return put(ROW, {**entries, "domain": domain, "storage": packed(values)})
+
+
+def costs_of_a_table() -> str:
+    """Of the whole interval and the longest move."""
+    row, asked = import_module("zwidth.checker.storage.row"), list[Any]()
+    kept = row.costs_of
+    row.costs_of = lambda *given: asked.extend(given[3:]) or kept(*given)
+    try:
+        import_module("zwidth.checker").verify(plain(one_state([0, 0], 2)))
+    finally:
+        row.costs_of = kept
+    return "" if asked == [1, 2, 1] else f"{asked}"
+
+
 HUGE = 1 << 61
 STEEP = 1 << 46
 """Where numbers are too large to be compared."""
@@ -200,96 +227,6 @@ CASES = [
         "a law that relaxes, that stores far more at one level than at the next",
         put(STORAGES["solid"]["document"], {"storage": packed([(i // 9 % 2) << 47 for i in range(36)])}),
         "too large to be compared",
-    ),
-    *(
-        refused(
-            f"{name}, levels of no use",
-            put(told, {"domain.levels_per_count": 2}),
-            "levels_per_count is of no use",
-        )
-        for name, told in (("spring", SPRING), ("points", STORAGES["points"]["document"]))
-    ),
-    refused(
-        "a law that relaxes, without levels",
-        without(STORAGES["solid"]["document"], "domain.levels_per_count"),
-        "levels_per_count is missing",
-    ),
-    refused(
-        "a law that relaxes, a friction curve",
-        put(
-            without(STORAGES["solid"]["document"], "loop.damping_N_s_per_m", "loop.coulomb_friction_N"),
-            {
-                "loop.friction_curve_m_per_s_N": [[0, 1], [1, 1]],
-                "loop.friction_models_N_N_s_per_m": [[0, 0]],
-            },
-        ),
-        "one friction model",
-    ),
-    accepted(
-        "a law that relaxes, moves of two counts, a sample late",
-        put(relaxing(-1, 1, [0] * 90, {}, largest_move_counts=2), {"loop.delay_s": 1}),
-    ),
-    accepted("a law that relaxes, outside", relaxing(-5, -3, [0] * 18, {"taps_N_per_m": [1]})),
-    *(
-        refused(f"a law that relaxes, {name}", relaxing(-3, 1, [0] * 50, law), FORCES_TOO_LARGE)
-        for name, law in (
-            ("a spring too stiff at the far end", {"taps_N_per_m": [1 << 60]}),
-            ("a spring too stiff outwards", {"taps_N_per_m": [-(1 << 60)]}),
-            ("a branch too stiff", {"relaxing": {"pole": "1/2", "stiffness_N_per_m": 1 << 59}}),
-            ("a branch too stiff outwards", {"relaxing": {"pole": "1/2", "stiffness_N_per_m": -(1 << 59)}}),
-        )
-    ),
-    refused(
-        "a law that relaxes, forces outwards too large together",
-        relaxing(-1, 1, [0] * 18, {"taps_N_per_m": [-(1 << 46)], "surface": "position"}),
-        TOO_LARGE,
-    ),
-    *(
-        refused(
-            f"a law that relaxes, one value of {1 << bits} at {place}",
-            relaxing(-1, 1, [(1 << bits) * (k == place) for k in range(18)], {}),
-            TOO_LARGE,
-        )
-        for bits, place in ((47, 0), (47, 4), (61, 2))
-    ),
-    refused(
-        "a law that relaxes, what is stored at one reading too large",
-        relaxing(-1, 1, [1 << 61] * 6 + [0] * 12, {}),
-        TOO_LARGE,
-    ),
-    Case("forces and costs of levels", forces_and_costs_of_levels, ""),
-    refused("no cell", small("storage", {"taps_N_per_m": [1]}, counts(1, 0), [], 9), EMPTY),
-    *(
-        refused(
-            f"{kind}, one value just too large",
-            small(kind, {"taps_N_per_m": [0]}, domain, values, 1),
-            TOO_LARGE,
-        )
-        for kind, domain, values in (
-            ("storage", counts(0, 1), [0, 0, 1 << 53, 0]),
-            ("coarse storage", cells(-2, 1), [0, 1 << 53, 0, 0]),
-        )
-    ),
-    *(
-        refused(
-            f"{kind}, forces outwards just too large",
-            small(kind, law, domain, [0] * size, 1),
-            TOO_LARGE,
-        )
-        for kind, law, domain, size in (
-            ("storage", {"taps_N_per_m": [], "points_m_N": [[0, -(1 << 52)]]}, counts(0, 1), 4),
-            ("coarse storage", {**SPRING_OF_1, "taps_N_per_m": [-(1 << 51)]}, cells(-2, 2), 6),
-        )
-    ),
-    refused(
-        "forces at the far end too large",
-        small("storage", {"taps_N_per_m": [1 << 52]}, counts(0, 2), [0] * 6, 1),
-        FORCES_TOO_LARGE,
-    ),
-    refused(
-        "cells, forces outwards above any whole number that is kept",
-        small("coarse storage", {**SPRING_OF_1, "taps_N_per_m": [-(1 << 90)]}, cells(-2, 2), [0] * 6, 1),
-        FORCES_TOO_LARGE,
     ),
     accepted("a grid inside a surface", SPRING, "at any position up to 3 counts inside"),
     accepted("a grid of both sides", STORAGES["points"]["document"], "at any position from -3 to 3 counts"),
@@ -596,5 +533,115 @@ CASES = [
             {"storage": packed([0] * 6 + [10**13] * (len(STORED["solid"]) - 6))},
         ),
         "a move takes out more energy",
+    ),
+    *(
+        refused(
+            f"{name}, levels of no use",
+            put(told, {"domain.levels_per_count": 2}),
+            "levels_per_count is of no use",
+        )
+        for name, told in (("spring", SPRING), ("points", STORAGES["points"]["document"]))
+    ),
+    refused(
+        "a law that relaxes, without levels",
+        without(STORAGES["solid"]["document"], "domain.levels_per_count"),
+        "levels_per_count is missing",
+    ),
+    refused(
+        "a law that relaxes, a friction curve",
+        put(
+            without(STORAGES["solid"]["document"], "loop.damping_N_s_per_m", "loop.coulomb_friction_N"),
+            {
+                "loop.friction_curve_m_per_s_N": [[0, 1], [1, 1]],
+                "loop.friction_models_N_N_s_per_m": [[0, 0]],
+            },
+        ),
+        "one friction model",
+    ),
+    accepted(
+        "a law that relaxes, moves of two counts, a sample late",
+        put(relaxing(-1, 1, [0] * 90, {}, largest_move_counts=2), {"loop.delay_s": 1}),
+    ),
+    accepted("a law that relaxes, outside", relaxing(-5, -3, [0] * 18, {"taps_N_per_m": [1]})),
+    *(
+        refused(f"a law that relaxes, {name}", relaxing(-3, 1, [0] * 50, law), FORCES_TOO_LARGE)
+        for name, law in (
+            ("a spring too stiff at the far end", {"taps_N_per_m": [1 << 60]}),
+            ("a spring too stiff outwards", {"taps_N_per_m": [-(1 << 60)]}),
+            ("a branch too stiff", {"relaxing": {"pole": "1/2", "stiffness_N_per_m": 1 << 59}}),
+            ("a branch too stiff outwards", {"relaxing": {"pole": "1/2", "stiffness_N_per_m": -(1 << 59)}}),
+        )
+    ),
+    refused(
+        "a law that relaxes, forces outwards too large together",
+        relaxing(-1, 1, [0] * 18, {"taps_N_per_m": [-(1 << 46)], "surface": "position"}),
+        TOO_LARGE,
+    ),
+    *(
+        refused(
+            f"a law that relaxes, one value of {1 << bits} at {place}",
+            relaxing(-1, 1, [(1 << bits) * (k == place) for k in range(18)], {}),
+            TOO_LARGE,
+        )
+        for bits, place in ((47, 0), (47, 4), (61, 2))
+    ),
+    refused(
+        "a law that relaxes, what is stored at one reading too large",
+        relaxing(-1, 1, [1 << 61] * 6 + [0] * 12, {}),
+        TOO_LARGE,
+    ),
+    accepted("laws in a chain, all states told", ROW, "in any of 4 states that"),
+    accepted("laws in a chain, one reading", one_state([0, 0])),
+    refused("laws in a chain, one value just too large", one_state([1 << 53, 0]), TOO_LARGE),
+    refused(
+        "laws in a chain, a state above the grid", put(ROW, {"domain.highest_count": 0}), "is not on the grid"
+    ),
+    accepted("laws in a chain, the hand begins anywhere", put(ROW, {"table.starts": [0, 1, 2, 3]})),
+    refused(
+        "laws in a chain, it begins outside, too", put(ROW, {"table.starts": [0, 4]}), "not in the table"
+    ),
+    refused("laws in a chain, a reading off the grid that leads to −2", leading((0, 0), -2), "is not closed"),
+    *(
+        refused(
+            f"laws in a chain, forces of {forces}",
+            put(ROW, {"table.forces": doubles(*forces)}),
+            "is no number",
+        )
+        for forces in ((0.0, nan, 0.0, 1.0), (nan,) * 4, (0.0, 0.0, inf, 0.0))
+    ),
+    Case("costs of a table", costs_of_a_table, ""),
+    Case("forces and costs of levels", forces_and_costs_of_levels, ""),
+    refused("no cell", small("storage", {"taps_N_per_m": [1]}, counts(1, 0), [], 9), EMPTY),
+    *(
+        refused(
+            f"{kind}, one value just too large",
+            small(kind, {"taps_N_per_m": [0]}, domain, values, 1),
+            TOO_LARGE,
+        )
+        for kind, domain, values in (
+            ("storage", counts(0, 1), [0, 0, 1 << 53, 0]),
+            ("coarse storage", cells(-2, 1), [0, 1 << 53, 0, 0]),
+        )
+    ),
+    *(
+        refused(
+            f"{kind}, forces outwards just too large",
+            small(kind, law, domain, [0] * size, 1),
+            TOO_LARGE,
+        )
+        for kind, law, domain, size in (
+            ("storage", {"taps_N_per_m": [], "points_m_N": [[0, -(1 << 52)]]}, counts(0, 1), 4),
+            ("coarse storage", {**SPRING_OF_1, "taps_N_per_m": [-(1 << 51)]}, cells(-2, 2), 6),
+        )
+    ),
+    refused(
+        "forces at the far end too large",
+        small("storage", {"taps_N_per_m": [1 << 52]}, counts(0, 2), [0] * 6, 1),
+        FORCES_TOO_LARGE,
+    ),
+    refused(
+        "cells, forces outwards above any whole number that is kept",
+        small("coarse storage", {**SPRING_OF_1, "taps_N_per_m": [-(1 << 90)]}, cells(-2, 2), [0] * 6, 1),
+        FORCES_TOO_LARGE,
     ),
 ]
