@@ -15,7 +15,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from . import Case, plain, put
-from .storage import STORAGES, STORED, TAKES, packed
+from .storage import STORAGES, STORED, TAKES, one_state, packed, relaxing
 
 STEP, PERIOD = Fraction(1, 10), Fraction(1, 4)
 UNIT = Fraction(1, 10**7)
@@ -220,6 +220,42 @@ def words_of_cells() -> str:
     return ""
 
 
+def forces_and_costs_of_levels() -> str:
+    """A level is a part of a count; costs are those of the longest move, in steps."""
+    relaxing_grid = import_module("zwidth.checker.storage.relaxing")
+    asked: dict[str, Any] = {}
+    kept = relaxing_grid._forces, relaxing_grid.costs_of
+
+    def told(name: str, real: Any) -> Any:
+        def call(*given: Any) -> Any:
+            asked[name] = given
+            return real(*given)
+
+        return call
+
+    relaxing_grid._forces, relaxing_grid.costs_of = told("forces", kept[0]), told("costs", kept[1])
+    try:
+        grid = relaxing(-1, 1, [0] * 45, {}, largest_move_counts=3, steps_per_count=2)
+        grid = put(grid, {"domain.levels_per_count": 2})
+        import_module("zwidth.checker").verify(plain(grid))
+    finally:
+        relaxing_grid._forces, relaxing_grid.costs_of = kept
+    found = [*asked["forces"][1:3], *asked["costs"][4:]]
+    return "" if found == [10, 2, 3, 2] else f"{found}"
+
+
+def costs_of_a_table() -> str:
+    """Of the whole interval and the longest move."""
+    row, asked = import_module("zwidth.checker.storage.row"), list[Any]()
+    kept = row.costs_of
+    row.costs_of = lambda *given: asked.extend(given[3:]) or kept(*given)
+    try:
+        import_module("zwidth.checker").verify(plain(one_state([0, 0], 2)))
+    finally:
+        row.costs_of = kept
+    return "" if asked == [1, 2, 1] else f"{asked}"
+
+
 def averages_go_where_the_law_sends_them() -> str:
     """Forces by reading and level, inwards and outwards, and the images of all levels."""
     relaxing = storage("relaxing")
@@ -342,6 +378,8 @@ CHECKS = (
     forces_that_do_not_fit_are_refused,
     cells_reach_as_far_on_both_sides,
     words_of_cells,
+    forces_and_costs_of_levels,
+    costs_of_a_table,
     averages_go_where_the_law_sends_them,
     forces_at_corners_are_those_of_the_law,
     costs_of_cells_are_below_what_is_lost,

@@ -12,13 +12,12 @@ import base64
 import json
 import zlib
 from fractions import Fraction
-from importlib import import_module
 from math import inf, nan
 from pathlib import Path
 from struct import pack
 from typing import Any
 
-from . import Case, accepted, edge, plain, put, refused, without
+from . import Case, accepted, edge, put, refused, without
 
 STORAGES = json.loads(Path(__file__).with_name("storages.json").read_text(encoding="utf-8"))
 TAKES = "takes out more"
@@ -152,48 +151,12 @@ def one_state(values: list[int], moves: int = 1) -> Any:
     return put(ROW, {**entries, "domain": domain, "storage": packed(values)})
 
 
-def costs_of_a_table() -> str:
-    """Of the whole interval and the longest move."""
-    row, asked = import_module("zwidth.checker.storage.row"), list[Any]()
-    kept = row.costs_of
-    row.costs_of = lambda *given: asked.extend(given[3:]) or kept(*given)
-    try:
-        import_module("zwidth.checker").verify(plain(one_state([0, 0], 2)))
-    finally:
-        row.costs_of = kept
-    return "" if asked == [1, 2, 1] else f"{asked}"
-
-
 HUGE = 1 << 61
 STEEP = 1 << 46
 """Where numbers are too large to be compared."""
 SPRING_OF_1, TOO_LARGE = {"surface": "position", "taps_N_per_m": [1]}, "numbers are too large to be compared"
 FORCES_TOO_LARGE = "forces are too large to be compared"
 TOO_MUCH, TOO_LONG = "too many numbers", "more effort than"
-
-
-def forces_and_costs_of_levels() -> str:
-    """A level is a part of a count; costs are those of the longest move, in steps."""
-    relaxing_grid = import_module("zwidth.checker.storage.relaxing")
-    asked: dict[str, Any] = {}
-    kept = relaxing_grid._forces, relaxing_grid.costs_of
-
-    def told(name: str, real: Any) -> Any:
-        def call(*given: Any) -> Any:
-            asked[name] = given
-            return real(*given)
-
-        return call
-
-    relaxing_grid._forces, relaxing_grid.costs_of = told("forces", kept[0]), told("costs", kept[1])
-    try:
-        grid = relaxing(-1, 1, [0] * 45, {}, largest_move_counts=3, steps_per_count=2)
-        grid = put(grid, {"domain.levels_per_count": 2})
-        import_module("zwidth.checker").verify(plain(grid))
-    finally:
-        relaxing_grid._forces, relaxing_grid.costs_of = kept
-    found = [*asked["forces"][1:3], *asked["costs"][4:]]
-    return "" if found == [10, 2, 3, 2] else f"{found}"
 
 
 CASES = [
@@ -609,8 +572,6 @@ CASES = [
         )
         for forces in ((0.0, nan, 0.0, 1.0), (nan,) * 4, (0.0, 0.0, inf, 0.0))
     ),
-    Case("costs of a table", costs_of_a_table, ""),
-    Case("forces and costs of levels", forces_and_costs_of_levels, ""),
     refused("no cell", small("storage", {"taps_N_per_m": [1]}, counts(1, 0), [], 9), EMPTY),
     *(
         refused(
