@@ -11,7 +11,7 @@ from fractions import Fraction
 from functools import partial
 from importlib import import_module
 from itertools import product
-from math import ceil
+from math import ceil, floor
 from random import Random
 from typing import Any
 
@@ -361,6 +361,30 @@ def moves_that_are_longer_than_the_grid() -> str:
     return ""
 
 
+def where_a_level_is_passed() -> str:
+    """Between the images of two levels, each known to a unit: no sooner and no later than it is said, and not
+    much sooner or later; of every state its own.
+    """
+    random, part = Random(12), 1 << 16
+    images, wanted = [], []
+    for state in range(300):
+        at = random.randrange(1, 3) * part
+        low, high = (at + sign * Fraction(random.randrange(300), 7) for sign in (-1, 1))
+        images.append(((floor(low), floor(high)), (ceil(low), ceil(high))))
+        if ceil(low) <= at < ceil(high) and floor(low) < at:
+            wanted.append((state, at // part, (at - low) / (high - low), ceil(high) - floor(low)))
+    found = storage("moves")._passing(np.array(images).transpose(1, 0, 2))
+    if len(found[0]) != len(wanted):
+        return f"{len(found[0])}, not {len(wanted)}"
+    for below, passed, early, late, (state, level, way, width) in zip(*found, wanted, strict=True):
+        if (below, passed) != (2 * state, 2 * state + level):
+            return f"{below} and {passed} of state {state}"
+        room = Fraction(4 * part, max(width - 2, 1)) + 2
+        if not way * part - room <= early <= way * part <= late <= min(way * part + room, part):
+            return f"from {early} to {late}, {float(way * part)}"
+    return ""
+
+
 def a_level_that_is_passed_counts() -> str:
     """Between two levels whose images lie to either side of a third one, where V is largest."""
     poles, starts, sizes = (
@@ -464,6 +488,7 @@ CHECKS = (
     relaxing,
     numbers_up_to_the_largest_that_are_exact,
     moves_that_are_longer_than_the_grid,
+    where_a_level_is_passed,
     a_level_that_is_passed_counts,
     an_image_between_two_parts_of_a_level_counts_at_both,
     a_level_that_is_passed_at_once_counts,
