@@ -29,8 +29,8 @@ from servo.emulators.inverse import InverseEmulator
 from servo.emulators.moteus import MoteusEmulator
 from servo.emulators.odrive import ODriveEmulator
 
-from zwidth.servo.connection import GOOD, STATUS
-from zwidth.servo.devices import Dynamixel, Feetech, Hapkit, HaplyPantograph, Inverse, Moteus, ODrive
+from zwidth.machine.servo.connection import GOOD, STATUS
+from zwidth.machine.servo.devices import Dynamixel, Feetech, Hapkit, HaplyPantograph, Inverse, Moteus, ODrive
 
 AT = 60
 """Exchange from which the other side is wrong."""

@@ -23,7 +23,7 @@ from scipy.optimize import minimize
 from shaken import CAUSES
 from shaken_logs import Logged
 
-from zwidth.diagnosis import evidence, features, recording, vibration
+from zwidth.data.diagnosis import evidence, features, recording, vibration
 
 PENALTY = 0.3
 FOLDS = 5

@@ -15,7 +15,7 @@ import sys
 
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from zwidth.explorer.serving import serve_explorer
+from zwidth.show.explorer.serving import serve_explorer
 
 MOVE = """async (moves) => {
   const within = (root, selector) => {

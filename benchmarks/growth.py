@@ -19,10 +19,10 @@ from identification import record
 from scenes import T, links
 
 import zwidth as zw
-from zwidth.identification.device.identify import identify
+from zwidth.data.identification.device.identify import identify
+from zwidth.model.scene import SceneRun
 from zwidth.passivity.check import check
 from zwidth.passivity.pairs import check_pair
-from zwidth.scene import SceneRun
 
 TIMES = 3
 LONG = 1.0

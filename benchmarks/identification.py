@@ -26,9 +26,9 @@ import pyarrow.parquet
 from scipy import stats
 
 import zwidth as zw
-from zwidth.identification.device.identify import identify
-from zwidth.identification.device.published import identify_published
-from zwidth.identification.logs import Log, read_log
+from zwidth.data.identification.device.identify import identify
+from zwidth.data.identification.device.published import identify_published
+from zwidth.data.logs import Log, read_log
 
 TRUE = {"mass": 0.036, "damping": 0.15, "coulomb_friction": 0.12}
 NOISE, DRIFT = 0.1, 0.05

@@ -26,7 +26,7 @@ import numpy as np
 from scipy.signal import butter, lfilter
 
 import zwidth as zw
-from zwidth.operator.operator import LinearHand, Operator, Signals
+from zwidth.model.operator.operator import LinearHand, Operator, Signals
 
 Array = np.ndarray
 Recording = dict[str, Array]

@@ -34,11 +34,11 @@ from PIL.PngImagePlugin import PngInfo
 from playwright.sync_api import Page, sync_playwright
 from websockets.sync.client import connect
 
-from zwidth.servo.live import open_page, serve_foxglove
-from zwidth.servo.live.document import SPANS, Shown, make_document
-from zwidth.servo.live.envelope import Envelope
-from zwidth.servo.live.rows import CURVES, Watched
-from zwidth.servo.live.tally import Tally
+from zwidth.machine.servo.live import open_page, serve_foxglove
+from zwidth.machine.servo.live.document import SPANS, Shown, make_document
+from zwidth.machine.servo.live.envelope import Envelope
+from zwidth.machine.servo.live.rows import CURVES, Watched
+from zwidth.machine.servo.live.tally import Tally
 
 RATE = 1000.0
 FRAME = 0.05

@@ -25,8 +25,8 @@ from pathlib import Path
 
 import numpy as np
 
-from zwidth.servo.lateness import TURN, turn
-from zwidth.servo.priority import PRIORITY, RealTime
+from zwidth.machine.servo.lateness import TURN, turn
+from zwidth.machine.servo.priority import PRIORITY, RealTime
 
 RATES = (1000, 5000)
 SHARES = (0.5, 0.99, 0.999, 1.0)

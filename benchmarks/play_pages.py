@@ -22,8 +22,8 @@ import numpy as np
 from playwright.sync_api import Page, sync_playwright
 
 import zwidth as zw
-from zwidth.explorer.play import Played, play_page, presets
-from zwidth.operator import LinearHand, Tracking
+from zwidth.model.operator import LinearHand, Tracking
+from zwidth.show.explorer.play import Played, play_page, presets
 
 SIZES = ({"width": 1280, "height": 800}, {"width": 390, "height": 844})
 

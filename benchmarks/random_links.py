@@ -17,7 +17,6 @@ from functools import partial
 
 import numpy as np
 
-from zwidth.compiled import Array
 from zwidth.links.held_waves import HELD_WAVES
 from zwidth.links.kernel import End
 from zwidth.links.memory import (
@@ -40,6 +39,7 @@ from zwidth.links.two_hands import Hand, try_hands
 from zwidth.links.two_layer import TWO_LAYER
 from zwidth.links.wave_port import WAVE_PORT
 from zwidth.links.wire import Wire
+from zwidth.native.compiled import Array
 
 SAMPLES = 200
 _WORKERS = 2

@@ -20,11 +20,11 @@ import numpy as np
 
 import zwidth as zw
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.sweeps.compute import compute
-from zwidth.sweeps.loops import Loop
-from zwidth.sweeps.questions import Line, checked
-from zwidth.sweeps.request import Request, request
-from zwidth.sweeps.walls import FEWEST
+from zwidth.study.sweeps.compute import compute
+from zwidth.study.sweeps.loops import Loop
+from zwidth.study.sweeps.questions import Line, checked
+from zwidth.study.sweeps.request import Request, request
+from zwidth.study.sweeps.walls import FEWEST
 
 
 def main() -> None:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import zwidth as zw
-from zwidth.servo.recording import Recorded, Recorder, read_recording
+from zwidth.machine.servo.recording import Recorded, Recorder, read_recording
 
 Array = NDArray[np.float64]
 

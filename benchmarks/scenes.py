@@ -18,7 +18,7 @@ import numpy as np
 from scipy.linalg import eigh, expm
 
 import zwidth as zw
-from zwidth.scene import Damper, Mass, SceneRun, Spring
+from zwidth.model.scene import Damper, Mass, SceneRun, Spring
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from random_scenes import random_scene

@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 
 import zwidth as zw
-from zwidth.servo import Servo
-from zwidth.servo.devices import Simulated
+from zwidth.machine.servo import Servo
+from zwidth.machine.servo.devices import Simulated
 
 STIFFNESS = np.geomspace(500, 12_000, 33)
 """Tried by halving [N/m]."""

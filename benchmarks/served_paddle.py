@@ -22,8 +22,8 @@ import numpy as np
 from pace import busy, quantiles, theirs
 
 import zwidth as zw
-from zwidth.servo import RealTime, Safety, Servo
-from zwidth.servo.devices import Simulated
+from zwidth.machine.servo import RealTime, Safety, Servo
+from zwidth.machine.servo.devices import Simulated
 
 TURN = 60.0
 """[s]"""

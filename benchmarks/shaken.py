@@ -18,7 +18,7 @@ from in_c import REALS, WHOLE, library
 from numpy.typing import NDArray
 
 import zwidth as zw
-from zwidth.device.amplifier import VoltageLimited
+from zwidth.model.device.amplifier import VoltageLimited
 
 Array = NDArray[np.float64]
 

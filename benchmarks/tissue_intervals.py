@@ -41,8 +41,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import zwidth as zw
-from zwidth.identification.tissue.experiment.choice import label
-from zwidth.identification.tissue.model import Model, Record, as_model
+from zwidth.data.tissue.experiment.choice import label
+from zwidth.data.tissue.model import Model, Record, as_model
 
 Array = np.ndarray
 Rng = np.random.Generator

@@ -16,7 +16,7 @@ from time import process_time
 from documents.seeds import MAKERS
 
 import zwidth as zw
-from zwidth.arms import BUILT_IN, built_in
+from zwidth.model.arms import BUILT_IN, built_in
 from zwidth.passivity.document import to_json
 
 TIMES = 5

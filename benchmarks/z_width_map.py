@@ -23,7 +23,7 @@ import control
 import numpy as np
 
 import zwidth as zw
-from zwidth.operator import Finger
+from zwidth.model.operator import Finger
 
 CELLS, FEW = 1000, 20
 STIFFNESS, DAMPING = (0, 30000), (0, 90)

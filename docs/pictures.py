@@ -25,10 +25,10 @@ from matplotlib.text import Text
 from PIL import Image
 
 import zwidth as zw
-from zwidth import plots
-from zwidth.identification.device.picture import identification_figure
-from zwidth.plots.laws import laws_figure
-from zwidth.servo.live.rows import CURVES
+from zwidth.machine.servo.live.rows import CURVES
+from zwidth.show import plots
+from zwidth.show.plots.identified import identification_figure
+from zwidth.show.plots.laws import laws_figure
 
 STATIC = Path(__file__).parent / "_static"
 sys.path.insert(0, str(STATIC.parents[1] / "examples"))
@@ -72,7 +72,7 @@ def _limit_numbers(found: Any) -> Numbers:
 
 
 def _laws(names: tuple[str, ...] | None = None) -> Any:
-    from zwidth.bench import standard_laws
+    from zwidth.study.bench import standard_laws
 
     wall = zw.Wall(2000)
     laws = standard_laws(_paddle(), wall)

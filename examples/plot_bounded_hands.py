@@ -18,8 +18,8 @@ from fractions import Fraction
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth import plots
 from zwidth.passivity.formulas.closed_forms import abbott_okamura_stiffness
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 paddle = zw.catalogue.device("haptic-paddle")

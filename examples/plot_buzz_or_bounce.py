@@ -12,7 +12,7 @@ something alive under it, "active tactile" in the words of Abbott & Okamura.
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth import plots
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 paddle = zw.catalogue.device("haptic-paddle")

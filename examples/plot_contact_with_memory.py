@@ -29,7 +29,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
-from zwidth import plots
 from zwidth.cli.main import main as command_line
 from zwidth.passivity.decision import decide
 from zwidth.passivity.parameter_limits import required_damping
@@ -39,6 +38,7 @@ from zwidth.passivity.storage.grid.grid import Grid
 from zwidth.passivity.storage.law import finite_law
 from zwidth.passivity.storage.program import DynamicProgram
 from zwidth.passivity.storage.solve.value_iteration import ValueIteration
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 RED, GREEN, BLUE, GREY = "#D55E00", "#009E73", "#0072B2", "#777777"

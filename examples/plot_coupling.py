@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
-from zwidth import plots
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 paddle = zw.catalogue.device("haptic-paddle")

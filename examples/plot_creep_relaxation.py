@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
-from zwidth import plots
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 MU0, MU1, ETA1 = 300, 200, 40  # N/m, N/m, N·s/m

@@ -23,8 +23,8 @@ from fractions import Fraction
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth import plots
 from zwidth.passivity.formulas.closed_forms import window_damping
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 BLUE, RED, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#777777"

@@ -14,8 +14,8 @@ from math import ceil
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth import plots
 from zwidth.passivity.formulas.closed_forms import spring_stiffness
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 b, period = 0.15, 0.001

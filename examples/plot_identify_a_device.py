@@ -16,8 +16,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
-from zwidth import plots
-from zwidth.identification.device.published import identify_published
+from zwidth.data.identification.device.published import identify_published
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 

@@ -11,7 +11,7 @@ contact is kept, and what one sample of delay costs.
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth import plots
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 

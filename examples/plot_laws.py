@@ -12,8 +12,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
-from zwidth import plots
-from zwidth.bench import standard_laws
+from zwidth.show import plots
+from zwidth.study.bench import standard_laws
 
 plt.rcParams.update(plots.LOOK)
 chosen = {

@@ -10,8 +10,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
-from zwidth import plots
-from zwidth.plots import draw_links
+from zwidth.show import plots
+from zwidth.show.plots import draw_links
 
 plt.rcParams.update(plots.LOOK)
 

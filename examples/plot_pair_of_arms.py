@@ -10,8 +10,8 @@ then with a real wall at the follower, shows what becomes of it.
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth import plots
-from zwidth.plots.pair_trace import draw_both, draw_pair_energies
+from zwidth.show import plots
+from zwidth.show.plots.pair_trace import draw_both, draw_pair_energies
 
 plt.rcParams.update(plots.LOOK)
 joint = zw.Device(

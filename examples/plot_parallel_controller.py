@@ -11,8 +11,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
-from zwidth import plots
-from zwidth.rendering import ParallelController
+from zwidth.model.rendering import ParallelController
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 hand = zw.operators.Tracking(np.minimum(np.arange(4000) * 2e-5, 0.02), stiffness=2000, damping=0.2)

@@ -13,8 +13,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
-from zwidth import plots
-from zwidth.rendering import PassivityController
+from zwidth.model.rendering import PassivityController
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 display = zw.Device(mass=1, damping=1, coulomb_friction=0, resolution=0, rate="1 kHz")

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.signal import TransferFunction
 
 import zwidth as zw
-from zwidth import plots
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 

@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
-from zwidth import plots
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 ball = zw.Device(mass=0.35, damping=0, sample_period=0.010, name="manipulandum")

@@ -10,8 +10,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
-from zwidth import plots
-from zwidth.scene import Contact, CoulombFriction, Damper, Lever, Mass, SceneRun, Spring
+from zwidth.model.scene import Contact, CoulombFriction, Damper, Lever, Mass, SceneRun, Spring
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 drawer = zw.Scene(

@@ -17,7 +17,7 @@ paper measured lies ten times higher: :doc:`plot_motorized_guide`.
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth import plots
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 b, branch = 0.27, 10

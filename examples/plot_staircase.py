@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
-from zwidth import plots
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 stiffness, period, step, count = 1000.0, 0.001, 0.5e-3, 6  # N/m, s, m per sample, samples in

@@ -17,7 +17,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
-from zwidth import plots
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 T = 1e-3

@@ -11,7 +11,7 @@ into a shake at 35 Hz, which a hand feels all the more.
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth import plots
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 device = zw.Device(damping=2, coulomb_friction=0, resolution=0, rate=1000, delay=0)

@@ -14,7 +14,7 @@ The Haply 2diy with one joint that turns more easily than the other, read as if 
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth import plots
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 wall, rate = zw.Wall(500), 1000

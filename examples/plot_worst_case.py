@@ -13,8 +13,8 @@ hand that is fast enough.
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth import plots
 from zwidth.passivity.formulas.quantization import admissible_speed
+from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 paddle = zw.catalogue.device("haptic-paddle")

@@ -6,7 +6,7 @@ import random
 from fractions import Fraction
 
 from zwidth import Scene
-from zwidth.scene import Contact, CoulombFriction, Damper, Element, Lever, Mass, NonlinearSpring, Spring
+from zwidth.model.scene import Contact, CoulombFriction, Damper, Element, Lever, Mass, NonlinearSpring, Spring
 
 LINEAR = ("spring", "damper", "mass", "lever")
 ALL = (*LINEAR, "contact", "friction", "points")

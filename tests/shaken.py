@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.signal import butter, lfilter
 
 import zwidth as zw
-from zwidth.operator.operator import LinearHand, Operator, Signals
+from zwidth.model.operator.operator import LinearHand, Operator, Signals
 
 Array = NDArray[np.float64]
 

@@ -276,8 +276,8 @@ def test_the_quickstart_example_says_what_comes_out(tmp_path: Path, monkeypatch:
 def test_the_specifications_of_a_page_can_be_read(page: str, tmp_path: Path) -> None:
     """Every TOML block with tables in the docs is a valid specification; one without is a velocity filter."""
     from zwidth.cli.simulation_tables import build_touch
-    from zwidth.specification.laws import with_laws
-    from zwidth.specification.read import TABLES, read_tables, specified
+    from zwidth.model.specification.laws import with_laws
+    from zwidth.model.specification.read import TABLES, read_tables, specified
 
     blocks = _blocks(page, "toml")
     assert blocks
@@ -326,9 +326,9 @@ def _help(*command: str) -> str:
 
 def test_every_parameter_is_on_the_command_line_page() -> None:
     """Every parameter that `zwidth check` takes stands on its page, and every type of environment."""
-    from zwidth.rendering import LAWS
-    from zwidth.specification.environments import TYPES, option_keys
-    from zwidth.specification.read import DEVICE_KEYS
+    from zwidth.model.rendering import LAWS
+    from zwidth.model.specification.environments import TYPES, option_keys
+    from zwidth.model.specification.read import DEVICE_KEYS
 
     page = _command_line_page()
     keys = {*DEVICE_KEYS, *option_keys(), "type"}

@@ -16,8 +16,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import zwidth as zw
-from zwidth.arms.kinematics.builtin import built_in
 from zwidth.cli.main import main
+from zwidth.model.arms.kinematics.builtin import built_in
 from zwidth.showing import (
     OBEYED,
     Headline,

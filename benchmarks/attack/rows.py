@@ -15,9 +15,16 @@ from typing import Any
 import numpy as np
 
 import zwidth as zw
+from zwidth.model.rendering import (
+    DualRate,
+    EnergyBounding,
+    Extrapolation,
+    ForceBounding,
+    PassiveLeap,
+    Saturation,
+)
+from zwidth.model.rendering.rendering_law import LoopContext
 from zwidth.passivity.bounding import check_bounding, is_bounded
-from zwidth.rendering import DualRate, EnergyBounding, Extrapolation, ForceBounding, PassiveLeap, Saturation
-from zwidth.rendering.rendering_law import LoopContext
 
 from .judge import HEAVY, HEAVY_SHARE, LIGHT, Judged
 from .loops import decades, near, period_of, typed

@@ -15,8 +15,8 @@ from typing import Any
 import control
 
 import zwidth as zw
-from zwidth import rendering
 from zwidth.checker.kinds import KINDS
+from zwidth.model import rendering
 from zwidth.passivity.document import to_json
 from zwidth.passivity.storage.evidence.coarse import prove_on_cells
 from zwidth.passivity.storage.program import program_of

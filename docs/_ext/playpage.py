@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from zwidth.explorer.play import play_page, presets
+from zwidth.show.explorer.play import play_page, presets
 
 
 def setup(app: Any) -> dict[str, bool]:

@@ -17,12 +17,12 @@ from zwidth.cli.options import (
     device_parameters,
     environment_parameters,
 )
-from zwidth.gains import published
+from zwidth.data.gains import published
+from zwidth.model.kind import Kind
+from zwidth.model.rendering import ESTIMATORS, LAWS
+from zwidth.model.specification import pairs
+from zwidth.model.specification.environments import TYPES, all_keys
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.kind import Kind
-from zwidth.rendering import ESTIMATORS, LAWS
-from zwidth.specification import pairs
-from zwidth.specification.environments import TYPES, all_keys
 
 GENERATED = Path(__file__).parent.parent / "_generated"
 
@@ -77,7 +77,7 @@ def connection_options() -> str:
 
 def connection_keys() -> str:
     """Every connection, with the keys of its table."""
-    from zwidth.servo.devices.registry import CONNECTIONS
+    from zwidth.machine.servo.devices.registry import CONNECTIONS
 
     rows = []
     for name, way in CONNECTIONS.items():
@@ -88,7 +88,7 @@ def connection_keys() -> str:
 
 def settings(name: str) -> str:
     """What can change sign, size or end of a connection's force, and what is done about it."""
-    from zwidth.servo.devices.registry import CONNECTIONS
+    from zwidth.machine.servo.devices.registry import CONNECTIONS
 
     made = CONNECTIONS[name].made
     rows = [
@@ -293,7 +293,7 @@ TABLES: dict[str, Callable[[], str]] = {
 
 def write() -> None:
     """Write every table where the pages include it; leave an unchanged one alone."""
-    from zwidth.servo.devices.registry import CONNECTIONS
+    from zwidth.machine.servo.devices.registry import CONNECTIONS
 
     GENERATED.mkdir(exist_ok=True)
     for name, table in (

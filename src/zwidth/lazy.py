@@ -13,6 +13,14 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+ABOVE: dict[str, str] = {}
+"""Rooms that those below ask for and never name, such as "plots": the package says here where they are."""
+
+
+def above(name: str) -> Any:
+    """The room of that name above."""
+    return import_module(ABOVE[name])
+
 
 def attach(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
     """`__getattr__`, `__dir__` and `__all__` of a package, from its `__init__.pyi`.

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import zwidth as zw
-from zwidth.arms import (
+from zwidth.model.arms import (
     damping_at,
     end_effector_damping,
     end_effector_friction,
@@ -19,7 +19,7 @@ from zwidth.arms import (
     sampled_jacobian_damping,
     wall_need,
 )
-from zwidth.arms.joints import largest_scale, single_additions
+from zwidth.model.arms.joints import largest_scale, single_additions
 
 Array = npt.NDArray[np.float64]
 seeds = st.integers(0, 2**32 - 1)

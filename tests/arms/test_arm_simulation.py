@@ -14,7 +14,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import zwidth as zw
-from zwidth.arms import PlanarChain, joint_margin, wall_need
+from zwidth.model.arms import PlanarChain, joint_margin, wall_need
 
 Array = npt.NDArray[np.float64]
 Reference = Callable[[float], tuple[Array, Array]]

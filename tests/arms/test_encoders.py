@@ -11,9 +11,9 @@ import pytest
 from described_arms import random_arm
 
 import zwidth as zw
-from zwidth.arms import PlanarChain, read_arm
-from zwidth.arms.encoders import columns_in_cells, encoder_steps, friction_for, size_bound
-from zwidth.arms.replay import replay_cycle
+from zwidth.model.arms import PlanarChain, read_arm
+from zwidth.model.arms.encoders import columns_in_cells, encoder_steps, friction_for, size_bound
+from zwidth.model.arms.replay import replay_cycle
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.outcome import TOLD
 

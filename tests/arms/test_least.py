@@ -8,8 +8,8 @@ import numpy.typing as npt
 import pytest
 
 import zwidth as zw
-from zwidth.arms import built_in, least_additions
-from zwidth.arms.joints import single_additions
+from zwidth.model.arms import built_in, least_additions
+from zwidth.model.arms.joints import single_additions
 from zwidth.passivity.workspace.additions import Additions
 
 Array = npt.NDArray[np.float64]

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.bench import standard_laws
-from zwidth.bench.adversary import attack
-from zwidth.bench.motions import fixed_motions, found_motions, speed_of
-from zwidth.rendering import EnergyBounding, ForceBounding, PassiveLeap, PassivityController
+from zwidth.model.rendering import EnergyBounding, ForceBounding, PassiveLeap, PassivityController
+from zwidth.study.bench import standard_laws
+from zwidth.study.bench.adversary import attack
+from zwidth.study.bench.motions import fixed_motions, found_motions, speed_of
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 COARSE = zw.Device(

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.bench.adversary import _player, _taken, attack
-from zwidth.bench.motions import fixed_motions
-from zwidth.bench.standing import standing
-from zwidth.rendering import DualRate, EnergyBounding, ForceBounding, PassiveLeap, PassivityController
+from zwidth.model.rendering import DualRate, EnergyBounding, ForceBounding, PassiveLeap, PassivityController
+from zwidth.study.bench.adversary import _player, _taken, attack
+from zwidth.study.bench.motions import fixed_motions
+from zwidth.study.bench.standing import standing
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 PROMISES = ("passive", "theorem")

@@ -10,10 +10,11 @@ import pytest
 import xarray as xr
 
 import zwidth as zw
-from zwidth import rendering
-from zwidth.bench import scores, standard_laws
-from zwidth.bench.adversary import attack
 from zwidth.cli.main import main
+from zwidth.loop.traces import scores
+from zwidth.model import rendering
+from zwidth.study.bench import standard_laws
+from zwidth.study.bench.adversary import attack
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 

@@ -7,7 +7,7 @@ import json
 import pytest
 
 import zwidth as zw
-from zwidth.bench.pairs import HARD, missing_damping, schemes
+from zwidth.study.bench.pairs import HARD, missing_damping, schemes
 
 ARM = zw.Device(damping=0.4, coulomb_friction="0.02", resolution="1 um", rate="1 kHz", delay=0, mass=0.05)
 PAIR = zw.Pair(ARM, ARM, stiffness=100, delay="1 ms")

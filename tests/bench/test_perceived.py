@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.bench.perceived import WEBER, noticeable_differences
 from zwidth.errors import InputError
+from zwidth.loop.traces.perceived import WEBER, noticeable_differences
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 

@@ -11,9 +11,9 @@ import pytest
 import zwidth as zw
 from zwidth.cli.doctor import configure, run
 from zwidth.errors import InputError
-from zwidth.servo import checkup
-from zwidth.servo.lateness import Lateness, Measured
-from zwidth.servo.priority import Answer, Granted
+from zwidth.machine.servo import checkup
+from zwidth.machine.servo.lateness import Lateness, Measured
+from zwidth.machine.servo.priority import Answer, Granted
 
 NO = Granted((Answer("priority", False, "not permitted"), Answer("memory", False, "8 MiB")))
 

@@ -12,7 +12,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.samples import EXAMPLES
+from zwidth.model.samples import EXAMPLES
 
 SAYS = {
     "wheel.toml": (0, "PASSIVE"),

@@ -18,7 +18,7 @@ from strategies import texts
 
 from zwidth.cli.main import main
 from zwidth.cli.options import coupling_parameters, device_parameters, environment_parameters
-from zwidth.specification.environments import TYPES
+from zwidth.model.specification.environments import TYPES
 
 quick = settings(
     max_examples=20, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]

@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 from strategies import toml_values
 
 import zwidth as zw
-from zwidth import rendering
 from zwidth.cli.main import main
-from zwidth.environment import Environment
-from zwidth.rendering import ESTIMATORS, LAWS
-from zwidth.specification.laws import build_law, with_laws
-from zwidth.specification.read import TABLES, read_tables
-from zwidth.specification.table import Table
+from zwidth.model import rendering
+from zwidth.model.environment import Environment
+from zwidth.model.rendering import ESTIMATORS, LAWS
+from zwidth.model.specification.laws import build_law, with_laws
+from zwidth.model.specification.read import TABLES, read_tables
+from zwidth.model.specification.table import Table
 
 LOOP = '[device]\ncatalogue = "haptic-paddle"\n\n[environment]\ntype = "wall"\nstiffness = 400\n'
 WALL = zw.Wall(400)

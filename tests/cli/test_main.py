@@ -18,10 +18,10 @@ from zwidth.cli.decision import decided
 from zwidth.cli.main import main
 from zwidth.cli.options import device_parameters, environment_parameters
 from zwidth.cli.typed import joined
-from zwidth.device import catalogue
+from zwidth.model.device import catalogue
+from zwidth.model.specification.read import Specification
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.verdict import Verdict
-from zwidth.specification.read import Specification
 
 PASSIVE = ("check", "haptic-paddle", "--stiffness", "300")
 ACTIVE = ("check", "haptic-paddle", "--stiffness", "770")
@@ -241,7 +241,7 @@ def test_what_cannot_be_read_is_bad_input(run: Run, content: str, tmp_path: Path
 
 def test_plot_gets_the_verdict(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[Verdict] = []
-    monkeypatch.setattr("zwidth.plots.check_figure", lambda verdict: calls.append(verdict) or Figure())
+    monkeypatch.setattr("zwidth.show.plots.check_figure", lambda verdict: calls.append(verdict) or Figure())
     path = tmp_path / "loop.SVG"
     assert run(*PASSIVE, "--plot", str(path)).status == 0
     assert [verdict.outcome for verdict in calls] == ["passive"]
@@ -320,7 +320,7 @@ def test_interrupt(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("zwidth.specification.read.read_tables", interrupted)
+    monkeypatch.setattr("zwidth.model.specification.read.read_tables", interrupted)
     assert run(*PASSIVE).status == 130
 
 
@@ -349,8 +349,8 @@ def test_interrupt(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
             ("scipy", "matplotlib", "xarray", "pandas", "zwidth.passivity", "zwidth.checker", "rich"),
         ),
         (
-            "import zwidth; zwidth.simulate, zwidth.traces.load_trace",
-            ("scipy.stats", "matplotlib", "zwidth.identification", "zwidth.bench.bench"),
+            "import zwidth; zwidth.simulate, zwidth.loop.traces.load_trace",
+            ("scipy.stats", "matplotlib", "zwidth.identification", "zwidth.study.bench.bench"),
         ),
     ],
 )

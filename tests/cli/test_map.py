@@ -85,7 +85,7 @@ def test_ctrl_c_says_what_is_kept(
             Path(str(path)).mkdir()
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("zwidth.maps.z_width", stop)
+    monkeypatch.setattr("zwidth.study.maps.z_width", stop)
     assert main(MAP) == 130
     assert capsys.readouterr().err == "zwidth: interrupted\n"
     assert main((*MAP, "-o", str(tmp_path / "map.zarr"))) == 130

@@ -17,8 +17,8 @@ from zwidth.cli.main import main
 from zwidth.cli.network import _Watch
 from zwidth.cli.network_plan import load_plan
 from zwidth.errors import InputError
-from zwidth.network import Peer, SharedMemory
-from zwidth.network.channel import Channel
+from zwidth.machine.network import Peer, SharedMemory
+from zwidth.machine.network.channel import Channel
 from zwidth.quantity.exact import Exact
 
 SCENE = """

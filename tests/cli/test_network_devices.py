@@ -16,8 +16,8 @@ from servo.emulators.hapkit import HapkitEmulator
 
 from zwidth.cli.main import main
 from zwidth.cli.network_plan import load_plan
+from zwidth.machine.servo.port_run import PortRun
 from zwidth.quantity.exact import Exact
-from zwidth.servo.port_run import PortRun
 
 SCENE = """
 [environment]

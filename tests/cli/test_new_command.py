@@ -15,7 +15,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.specification.read import load_device
+from zwidth.model.specification.read import load_device
 
 Answered = Callable[..., str]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from zwidth.cli.main import main
-from zwidth.traces import load_trace
+from zwidth.loop.traces import load_trace
 
 ARMS = """
 [leader]

@@ -15,9 +15,9 @@ from written_rows import COLUMNS, WrittenRows, drawn
 import zwidth as zw
 from zwidth import InputError
 from zwidth.cli import replay
-from zwidth.plots.recording import recording_figure
-from zwidth.servo.recording import Recorder, read_recording
-from zwidth.specification.write import written
+from zwidth.machine.servo.recording import Recorder, read_recording
+from zwidth.model.specification.write import written
+from zwidth.show.plots.recording import recording_figure
 
 WALL = zw.Wall(stiffness=300)
 

@@ -18,7 +18,7 @@ PADDLE = ["haptic-paddle", "--damping", "0.16"]
 def undrawn() -> object:
     """Pictures take their time, and are looked at in tests/report."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("zwidth.report.html_page.pictures", lambda verdict: [])
+        patch.setattr("zwidth.show.report.html_page.pictures", lambda verdict: [])
         yield patch
 
 

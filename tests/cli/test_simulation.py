@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth import operator as operators
 from zwidth.cli.main import main
 from zwidth.cli.simulation_tables import KEYS, follower_parameters, operator_parameters, simulation_parameters
+from zwidth.model import operator as operators
 
 DOWEL = ("simulate", "haptic-paddle", "--stiffness", "770", "--operator", "dowel", "--duration", "0.2")
 

@@ -135,6 +135,6 @@ def test_what_was_finished_is_kept(
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("zwidth.sweeps.run.sweep", stop)
+    monkeypatch.setattr("zwidth.study.sweeps.run.sweep", stop)
     assert main((*SWEEP, "-o", str(tmp_path / "s.zarr"))) == 130
     assert "the same command goes on" in " ".join(capsys.readouterr().err.split())

@@ -14,8 +14,8 @@ import pytest
 from tampered import tampered
 
 import zwidth as zw
-from zwidth import rendering
 from zwidth.cli.main import main
+from zwidth.model import rendering
 from zwidth.passivity.document import to_json
 from zwidth.passivity.storage import law_of
 from zwidth.passivity.storage.row import document as documents

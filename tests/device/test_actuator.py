@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 
 import zwidth as zw
-from zwidth.device import actuator_checks
+from zwidth.model.device import actuator_checks
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 

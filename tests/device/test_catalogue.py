@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import zwidth as zw
-from zwidth.device.catalogue import PROPERTIES, RECOMMENDATION, UNKNOWN, DeviceInRange
+from zwidth.model.device.catalogue import PROPERTIES, RECOMMENDATION, UNKNOWN, DeviceInRange
 
 NAMES = [
     "haptic-paddle",

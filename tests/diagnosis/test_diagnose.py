@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.diagnosis import CAUSES
-from zwidth.diagnosis.recording import read_of_table
-from zwidth.identification.logs.table import Table, in_pieces
+from zwidth.data.diagnosis import CAUSES
+from zwidth.data.diagnosis.recording import read_of_table
+from zwidth.data.logs.table import Table, in_pieces
 
 PERIOD = 0.001
 RNG = np.random.default_rng(3)

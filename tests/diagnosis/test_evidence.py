@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from zwidth.device import Device
-from zwidth.diagnosis import drive, law, vibration
-from zwidth.diagnosis.doubts import doubt
-from zwidth.diagnosis.evidence import Evidence, gather
-from zwidth.diagnosis.recording import Recording, read_of_table
-from zwidth.identification.logs.table import Table, in_pieces
+from zwidth.data.diagnosis import drive, law, vibration
+from zwidth.data.diagnosis.doubts import doubt
+from zwidth.data.diagnosis.evidence import Evidence, gather
+from zwidth.data.diagnosis.recording import Recording, read_of_table
+from zwidth.data.logs.table import Table, in_pieces
+from zwidth.model.device import Device
 
 PERIOD = 1 / 800
 FREQUENCY = 23.7

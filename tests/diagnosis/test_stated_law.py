@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.diagnosis.stated import compare
+from zwidth.data.diagnosis.stated import compare
 
 PERIOD = 0.001
 RNG = np.random.default_rng(8)

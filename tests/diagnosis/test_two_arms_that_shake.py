@@ -12,11 +12,11 @@ import pytest
 from two_arms import PERIOD, arms, moved, written
 
 import zwidth as zw
-from zwidth.diagnosis import PAIR_CAUSES
-from zwidth.diagnosis.pairs import law
-from zwidth.diagnosis.pairs.recording import holds_two_arms, read_pair
-from zwidth.specification.pairs import load_pair
-from zwidth.specification.write_pair import written_pair
+from zwidth.data.diagnosis import PAIR_CAUSES
+from zwidth.data.diagnosis.pairs import law
+from zwidth.data.diagnosis.pairs.recording import holds_two_arms, read_pair
+from zwidth.model.specification.pairs import load_pair
+from zwidth.model.specification.write_pair import written_pair
 
 LATE_LINK = {"link": 4, "viscous": 0.05, "limit": 3.0}
 RNG = np.random.default_rng(5)

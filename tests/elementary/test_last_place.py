@@ -9,11 +9,11 @@ import mpmath
 import pytest
 from points import both, error_of, even, wide
 
-from zwidth.elementary.double_double import two_product, two_sum
-from zwidth.elementary.exponential import exp, expm1
-from zwidth.elementary.hyperbolic import tanh
-from zwidth.elementary.logarithm import log, log1p
-from zwidth.elementary.power import power
+from zwidth.quantity.elementary.double_double import two_product, two_sum
+from zwidth.quantity.elementary.exponential import exp, expm1
+from zwidth.quantity.elementary.hyperbolic import tanh
+from zwidth.quantity.elementary.logarithm import log, log1p
+from zwidth.quantity.elementary.power import power
 
 POINTS = 3000
 

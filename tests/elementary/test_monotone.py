@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from points import both, even, wide
 
-from zwidth.compiled import Array
-from zwidth.elementary.exponential import exp, expm1
-from zwidth.elementary.hyperbolic import tanh
-from zwidth.elementary.logarithm import log, log1p
-from zwidth.elementary.power import power
+from zwidth.native.compiled import Array
+from zwidth.quantity.elementary.exponential import exp, expm1
+from zwidth.quantity.elementary.hyperbolic import tanh
+from zwidth.quantity.elementary.logarithm import log, log1p
+from zwidth.quantity.elementary.power import power
 
 LONG = 300
 """Doubles in a neighbourhood."""

@@ -13,10 +13,10 @@ import pytest
 from points import both, even, wide
 
 import zwidth
-from zwidth.elementary.exponential import exp, expm1
-from zwidth.elementary.hyperbolic import tanh
-from zwidth.elementary.logarithm import log, log1p
-from zwidth.elementary.power import power
+from zwidth.quantity.elementary.exponential import exp, expm1
+from zwidth.quantity.elementary.hyperbolic import tanh
+from zwidth.quantity.elementary.logarithm import log, log1p
+from zwidth.quantity.elementary.power import power
 
 PACKAGE = Path(zwidth.__file__).parent
 SIMULATED = ("elementary", "scene", "rendering", "loop", "links")

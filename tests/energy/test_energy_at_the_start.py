@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.rendering import PassivityController
+from zwidth.model.rendering import PassivityController
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 SPRING = zw.PulseTransferFunction(["100", 0], [1, 0])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.energy import ledger
+from zwidth.loop.energy import ledger
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 

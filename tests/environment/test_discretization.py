@@ -12,8 +12,8 @@ import scipy.signal
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from zwidth.environment.discretization import CHOICES, ROUNDED, as_discretization, discretize
 from zwidth.errors import InputError
+from zwidth.model.environment.discretization import CHOICES, ROUNDED, as_discretization, discretize
 
 T = Fraction(1, 800)
 SCIPY = {

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.environment import as_environment
+from zwidth.model.environment import as_environment
 
 
 def transfer(num, den, period=None):

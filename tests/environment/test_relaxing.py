@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 import zwidth as zw
-from zwidth.environment.creeping import compliance
-from zwidth.environment.relaxing import elements
-from zwidth.identification.tissue import creep, force_response, position_response, relaxation
+from zwidth.data.tissue import creep, force_response, position_response, relaxation
+from zwidth.model.environment.creeping import compliance
+from zwidth.model.environment.relaxing import elements
 
 SOLIDS = [
     zw.Wall(120, 3.5),
@@ -69,7 +69,7 @@ def test_before_the_step_there_is_nothing():
 )
 def test_partial_fractions_add_up(spring, dashpot, branches):
     """1/H(s) at points of the right half plane, with its modes between poles that rounding tells apart."""
-    from zwidth.environment.relaxing import Elements
+    from zwidth.model.environment.relaxing import Elements
 
     parts = Elements(spring, dashpot, tuple(branches))
     at_once, flow, modes = compliance(parts)

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import zwidth as zw
-from zwidth.environment import as_environment
+from zwidth.model.environment import as_environment
 
 T = Fraction(1, 1000)
 NUM, DEN = [0.0, 310.0, -250.0], [0.7, -0.5, 0.01]

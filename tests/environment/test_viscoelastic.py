@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import zwidth as zw
-from zwidth.environment.discretization import CHOICES
+from zwidth.model.environment.discretization import CHOICES
 
 T = Fraction(1, 1000)
 positive = st.fractions(Fraction(1, 50), 900, max_denominator=997)

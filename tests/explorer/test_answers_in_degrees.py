@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from zwidth.explorer.computing import answered
-from zwidth.explorer.session import Session
-from zwidth.explorer.starts import from_sources
-from zwidth.explorer.state import State
-from zwidth.explorer.working import Workers
 from zwidth.quantity.spoken import answers_as_typed
+from zwidth.show.explorer.computing import answered
+from zwidth.show.explorer.session import Session
+from zwidth.show.explorer.starts import from_sources
+from zwidth.show.explorer.state import State
+from zwidth.show.explorer.working import Workers
 
 WHEEL = """[device]
 inertia = "0.03 kg*m^2"
@@ -83,6 +83,6 @@ def test_what_takes_longer_speaks_it_too(tmp_path: Path) -> None:
 
 
 def _advised(state: State) -> str:
-    from zwidth.explorer.judging import judged_in_full
+    from zwidth.show.explorer.judging import judged_in_full
 
     return " ".join(advice.text for advice in judged_in_full(state).advice)

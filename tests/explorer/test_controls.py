@@ -10,13 +10,19 @@ from hypothesis import strategies as st
 
 import zwidth as zw
 from zwidth.errors import InputError
-from zwidth.explorer import starts
-from zwidth.explorer.controls import Control, device_controls, environment_controls, law_controls, read_entry
-from zwidth.explorer.scale import scale_of
-from zwidth.explorer.state import State, catalogued
+from zwidth.model.rendering import LAWS
+from zwidth.model.specification.environments import TYPES
 from zwidth.quantity.parameter import parameters_of
-from zwidth.rendering import LAWS
-from zwidth.specification.environments import TYPES
+from zwidth.show.explorer import starts
+from zwidth.show.explorer.controls import (
+    Control,
+    device_controls,
+    environment_controls,
+    law_controls,
+    read_entry,
+)
+from zwidth.show.explorer.scale import scale_of
+from zwidth.show.explorer.state import State, catalogued
 
 
 def answers(state: State, control: Control) -> None:

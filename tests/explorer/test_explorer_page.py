@@ -13,8 +13,8 @@ from browser import PATIENCE, WIDE
 from playwright.sync_api import Browser, Locator, Page, expect
 
 import zwidth as zw
-from zwidth.explorer.serving import serve_explorer
-from zwidth.specification.write import parsed
+from zwidth.model.specification.write import parsed
+from zwidth.show.explorer.serving import serve_explorer
 
 SCHEMES = {"Criterion": ("light", "dark"), "Touch": ("light",), "Motion": ("dark",), "Two arms": ("light",)}
 """Under which tabs axe looks: a picture, a choice of hands, a player, a form of its own."""

@@ -11,10 +11,10 @@ import pytest
 
 import zwidth as zw
 from zwidth.errors import InputError
-from zwidth.explorer.session import Session
-from zwidth.explorer.shown import Explorer
-from zwidth.explorer.starts import first, from_sources
-from zwidth.explorer.working import Workers
+from zwidth.show.explorer.session import Session
+from zwidth.show.explorer.shown import Explorer
+from zwidth.show.explorer.starts import first, from_sources
+from zwidth.show.explorer.working import Workers
 
 
 def test_it_shows_the_loop_that_it_was_given() -> None:

@@ -15,8 +15,8 @@ from bokeh.models import ImportedStyleSheet
 from bokeh.util.token import generate_session_id
 
 from zwidth.errors import InputError
-from zwidth.explorer import access
-from zwidth.explorer.serving import serve_explorer
+from zwidth.show.explorer import access
+from zwidth.show.explorer.serving import serve_explorer
 
 TOKEN = "a-token-of-a-test-0123456789"
 

@@ -11,13 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import zwidth as zw
-from zwidth import rendering
 from zwidth.errors import InputError
-from zwidth.explorer import starts
-from zwidth.explorer.controls import read_entry
-from zwidth.explorer.form_of_loop import controls_of
-from zwidth.explorer.state import LARGEST_FILE, LONGEST_QUERY, State, from_file, from_query
-from zwidth.specification.environments import TYPES
+from zwidth.model import rendering
+from zwidth.model.specification.environments import TYPES
+from zwidth.show.explorer import starts
+from zwidth.show.explorer.controls import read_entry
+from zwidth.show.explorer.form_of_loop import controls_of
+from zwidth.show.explorer.state import LARGEST_FILE, LONGEST_QUERY, State, from_file, from_query
 
 THIRD = zw.Exact(Fraction(1, 3))
 

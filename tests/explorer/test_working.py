@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from zwidth.errors import InputError
-from zwidth.explorer.working import Answer, Workers
+from zwidth.show.explorer.working import Answer, Workers
 
 LOOK = 0.02
 """For an answer, at most [s]."""
@@ -51,7 +51,7 @@ def test_a_process_that_does_not_start_is_said(monkeypatch: pytest.MonkeyPatch) 
     def fails(_: object) -> None:
         raise EOFError
 
-    monkeypatch.setattr("zwidth.explorer.working._Process", fails)
+    monkeypatch.setattr("zwidth.show.explorer.working._Process", fails)
     answers: Queue[Answer] = Queue()
     started = Workers(1)
     for number in (1, 2):
@@ -69,8 +69,8 @@ def _looks(monkeypatch: pytest.MonkeyPatch) -> None:
             self.so_far = count()
 
     looks = Looks()
-    monkeypatch.setattr("zwidth.explorer.working.monotonic", lambda: float(next(looks.so_far)))
-    monkeypatch.setattr("zwidth.explorer.working._STEP", LOOK)
+    monkeypatch.setattr("zwidth.show.explorer.working.monotonic", lambda: float(next(looks.so_far)))
+    monkeypatch.setattr("zwidth.show.explorer.working._STEP", LOOK)
 
 
 @pytest.fixture
@@ -90,7 +90,7 @@ def asked(workers: Workers, compute: Any, value: object) -> Answer:
 
 def test_nobody_waits_for_a_process_that_is_still_starting(monkeypatch: pytest.MonkeyPatch) -> None:
     """All of it ends, also while a process imports what it needs: this one is never done with that."""
-    monkeypatch.setattr("zwidth.explorer.working._serve", endless)
+    monkeypatch.setattr("zwidth.show.explorer.working._serve", endless)
     workers = Workers(count=1)
     workers.submit(1, "any", doubled, (1,), lambda _: None)
     ending = Thread(target=workers.close, daemon=True)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import zwidth as zw
-from zwidth.environment.environment import Environment
-from zwidth.firmware.emit import Emitted, emit
-from zwidth.rendering import Hysteresis, OnePole, Window
+from zwidth.machine.firmware.emit import Emitted, emit
+from zwidth.model.environment.environment import Environment
+from zwidth.model.rendering import Hysteresis, OnePole, Window
 
 DEVICE = zw.catalogue.device("haptic-paddle")
 TRAVEL = "-60 .. 60 mm"

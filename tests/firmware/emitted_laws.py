@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 from random_scenes import random_scene
 
 import zwidth as zw
-from zwidth.bench.laws import standard_laws
-from zwidth.environment import Environment
-from zwidth.firmware.law import LawProgram
-from zwidth.rendering import (
+from zwidth.machine.firmware.law import LawProgram
+from zwidth.model.environment import Environment
+from zwidth.model.rendering import (
     AdaptiveWindow,
     CrossingCorrection,
     Damper,
@@ -36,6 +35,7 @@ from zwidth.rendering import (
     WindowedController,
     render,
 )
+from zwidth.study.bench.laws import standard_laws
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 """A converter with steps, an encoder, a force limit."""

@@ -8,9 +8,9 @@ from math import floor, isqrt
 from typing import Any
 
 import zwidth as zw
-from zwidth.environment.environment import Environment
-from zwidth.firmware.law import LawProgram
-from zwidth.firmware.program import Branch, Constant, Load, Operand, Operation, Statement, Store
+from zwidth.machine.firmware.law import LawProgram
+from zwidth.machine.firmware.program import Branch, Constant, Load, Operand, Operation, Statement, Store
+from zwidth.model.environment.environment import Environment
 
 BITS = 400
 """Of what is remembered: it is rounded to 2⁻⁴⁰⁰, since an endless response has endless digits."""

@@ -19,14 +19,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from zwidth.firmware.c99 import C99
-from zwidth.firmware.c99 import KEYWORDS as OF_C
-from zwidth.firmware.header import header
-from zwidth.firmware.javascript import KEYWORDS as OF_JAVASCRIPT
-from zwidth.firmware.javascript import JavaScript
-from zwidth.firmware.law import LawProgram
-from zwidth.firmware.machine import Machine
-from zwidth.firmware.program import Program
+from zwidth.machine.firmware.c99 import C99
+from zwidth.machine.firmware.c99 import KEYWORDS as OF_C
+from zwidth.machine.firmware.header import header
+from zwidth.machine.firmware.javascript import KEYWORDS as OF_JAVASCRIPT
+from zwidth.machine.firmware.javascript import JavaScript
+from zwidth.machine.firmware.law import LawProgram
+from zwidth.machine.firmware.machine import Machine
+from zwidth.machine.firmware.program import Program
 
 Array = NDArray[np.float64]
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.firmware.plant import Hand, plant_header
-from zwidth.firmware.program import Program
 from zwidth.loop.plant import STATE_SIZE, Plant
 from zwidth.loop.series import WORK
+from zwidth.machine.firmware.plant import Hand, plant_header
+from zwidth.machine.firmware.program import Program
 
 PERIOD = 0.001
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import zwidth as zw
-from zwidth import rendering
-from zwidth.environment.environment import Environment
+from zwidth.model import rendering
+from zwidth.model.environment.environment import Environment
 
 Counts = NDArray[np.int64]
 

@@ -15,13 +15,13 @@ from firmware.random_laws import laws as bounded
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.firmware.law import law_program
-from zwidth.firmware.machine import machine
 from zwidth.loop.law import sampled_force
 from zwidth.loop.setup import Setup, prepare, resting_memory
-from zwidth.operator import PrescribedMotion
-from zwidth.servo.cycle import put_at_rest
-from zwidth.servo.packing import pack
+from zwidth.machine.firmware.law import law_program
+from zwidth.machine.firmware.machine import machine
+from zwidth.machine.servo.cycle import put_at_rest
+from zwidth.machine.servo.packing import pack
+from zwidth.model.operator import PrescribedMotion
 
 
 def laid_out(law: Law, counts: int) -> Setup:

@@ -28,15 +28,15 @@ from numpy.typing import NDArray
 from tools import tool
 
 import zwidth as zw
-from zwidth.environment.environment import Environment
-from zwidth.firmware.header import header
-from zwidth.firmware.law import LawProgram, law_program
-from zwidth.firmware.machine import Machine, Number, machine
-from zwidth.firmware.module import module
-from zwidth.firmware.plant import plant_program
 from zwidth.loop.law import sampled_force, sampled_force_at
 from zwidth.loop.setup import prepare
-from zwidth.operator import PrescribedMotion
+from zwidth.machine.firmware.header import header
+from zwidth.machine.firmware.law import LawProgram, law_program
+from zwidth.machine.firmware.machine import Machine, Number, machine
+from zwidth.machine.firmware.module import module
+from zwidth.machine.firmware.plant import plant_program
+from zwidth.model.environment.environment import Environment
+from zwidth.model.operator import PrescribedMotion
 
 STEPS = 3000
 

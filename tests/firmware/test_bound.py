@@ -11,8 +11,8 @@ from random import Random
 import pytest
 from strategies import seeds
 
-from zwidth.firmware.binary import FLOAT
-from zwidth.firmware.bound import (
+from zwidth.machine.firmware.binary import FLOAT
+from zwidth.machine.firmware.bound import (
     Bound,
     absolute,
     added,
@@ -27,8 +27,18 @@ from zwidth.firmware.bound import (
     rooted,
     scaled,
 )
-from zwidth.firmware.evaluation import Evaluation, Exact
-from zwidth.firmware.program import Branch, Cells, Constant, Load, Operation, Program, Store, Variable, set_to
+from zwidth.machine.firmware.evaluation import Evaluation, Exact
+from zwidth.machine.firmware.program import (
+    Branch,
+    Cells,
+    Constant,
+    Load,
+    Operation,
+    Program,
+    Store,
+    Variable,
+    set_to,
+)
 
 
 @dataclass

@@ -15,7 +15,7 @@ from firmware.emulated.loop import Motion, closed
 from firmware.emulated.required import require
 
 import zwidth as zw
-from zwidth.firmware.emit import emit
+from zwidth.machine.firmware.emit import emit
 
 COUNTS = touch(1200, 2600)
 HAND = zw.operators.Dowel()

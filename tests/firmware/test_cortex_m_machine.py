@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from firmware.tools import DATA, run, tool, written
 
-from zwidth.firmware.mains import files
-from zwidth.firmware.telemetry import read_telemetry
+from zwidth.machine.firmware.mains import files
+from zwidth.machine.firmware.telemetry import read_telemetry
 
 NEWTONS = {1: 0.00672, 2: 0.00672, 3: 28 / 4096, 4: 0.01}
 DAMPED = {1: 0.0448, 2: 0.0448, 3: 184 / 4096, 4: 0.04}

@@ -11,10 +11,10 @@ from moved_plants import CELLS, PERIOD, PLANTS, hand_and_law, plant_in_c, plant_
 from numpy.typing import NDArray
 
 import zwidth as zw
-from zwidth.firmware.plant import one_period, plant_module, plant_program
-from zwidth.firmware.program import Program
 from zwidth.loop.plant import COULOMB, POSITION, STATE_SIZE, STOPS, VELOCITY
 from zwidth.loop.series import WORK
+from zwidth.machine.firmware.plant import one_period, plant_module, plant_program
+from zwidth.machine.firmware.program import Program
 
 GIVEN = ("undamped", "slewing", "held_lagging")
 """Those whose numbers are given at every call as well."""

@@ -18,8 +18,8 @@ from firmware.tools import DATA, STUBS, needed_header, run, tool
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.firmware.emit import Emitted, emit
-from zwidth.firmware.telemetry import read_telemetry
+from zwidth.machine.firmware.emit import Emitted, emit
+from zwidth.machine.firmware.telemetry import read_telemetry
 
 WARNED = ("-Wall", "-Wextra", "-Werror", "-ffp-contract=off")
 
@@ -204,7 +204,7 @@ def test_a_module_takes_a_reading_beyond_as_the_nearest() -> None:
 def test_what_is_emitted_is_the_same_everywhere(tmp_path: Path) -> None:
     """Two processes, with other seeds of Python's hashes, write the same bytes."""
     code = (
-        "import zwidth as zw; from zwidth.firmware.emit import emit; import sys;"
+        "import zwidth as zw; from zwidth.machine.firmware.emit import emit; import sys;"
         "d=zw.catalogue.device('haptic-paddle');"
         "[emit(d, zw.Wall(stiffness=150, damping=0.05), target=t).write(f'{sys.argv[1]}/{t}')"
         " for t in ('arduino', 'cortex-m', 'javascript')]"

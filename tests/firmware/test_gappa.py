@@ -14,12 +14,12 @@ from firmware.emulated.built import called
 from firmware.emulated.required import require
 from firmware.random_laws import PADDLE, laws
 
-from zwidth.firmware.binary import DOUBLE, FLOAT
-from zwidth.firmware.bound import plain
-from zwidth.firmware.invariant import Rest, invariant
-from zwidth.firmware.law import LawProgram, law_program
-from zwidth.firmware.machine import rest_ends
-from zwidth.firmware.program import Constant, Load, Operand, Operation, Store, Variable
+from zwidth.machine.firmware.binary import DOUBLE, FLOAT
+from zwidth.machine.firmware.bound import plain
+from zwidth.machine.firmware.invariant import Rest, invariant
+from zwidth.machine.firmware.law import LawProgram, law_program
+from zwidth.machine.firmware.machine import rest_ends
+from zwidth.machine.firmware.program import Constant, Load, Operand, Operation, Store, Variable
 
 MOST = 3000
 _FORMATS = {"float": (FLOAT, "ieee_32", 2.0**-24), "double": (DOUBLE, "ieee_64", 2.0**-53)}

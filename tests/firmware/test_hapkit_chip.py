@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from firmware.tools import DATA, STUBS, WARNINGS, needed_header, run, tool, written
 
-from zwidth.firmware.mains import files
-from zwidth.firmware.telemetry import read_telemetry
+from zwidth.machine.firmware.mains import files
+from zwidth.machine.firmware.telemetry import read_telemetry
 
 NEWTONS = {2: 0.00672, 3: 28 / 4096, 4: 0.01}
 DAMPED = {2: 0.0448, 3: 184 / 4096, 4: 0.04}

@@ -10,7 +10,7 @@ import pytest
 from firmware.tools import DATA, STUBS, WARNINGS, run, tool, written
 
 from zwidth.errors import InputError
-from zwidth.firmware.mains import TARGETS, files
+from zwidth.machine.firmware.mains import TARGETS, files
 
 C99 = ("-std=c99", *WARNINGS, "-O2", "-ffp-contract=off")
 KINDS = [1, 2, 3, 4]

@@ -13,8 +13,8 @@ import pytest
 from firmware.tools import run, tool, written
 from servo.emulators.moteus import MoteusEmulator
 
-from zwidth.firmware.mains import files
-from zwidth.firmware.telemetry import read_telemetry
+from zwidth.machine.firmware.mains import files
+from zwidth.machine.firmware.telemetry import read_telemetry
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="clock_nanosleep and mlockall are asked of Linux here"

@@ -16,14 +16,14 @@ from firmware.exact_law import ExactProgram, linear_forces
 from firmware.random_laws import LIMITED, PADDLE, STEPPED, hardest, laws, motions
 
 import zwidth as zw
-from zwidth.firmware.bound import plain
-from zwidth.firmware.evaluation import Exact, NoBound
-from zwidth.firmware.invariant import Rest, invariant
-from zwidth.firmware.law import law_program
-from zwidth.firmware.machine import Machine, machine, rest_ends
 from zwidth.loop.law import sampled_force
 from zwidth.loop.setup import prepare
-from zwidth.operator import PrescribedMotion
+from zwidth.machine.firmware.bound import plain
+from zwidth.machine.firmware.evaluation import Exact, NoBound
+from zwidth.machine.firmware.invariant import Rest, invariant
+from zwidth.machine.firmware.law import law_program
+from zwidth.machine.firmware.machine import Machine, machine, rest_ends
+from zwidth.model.operator import PrescribedMotion
 
 MOST = 3000
 DEVICES = {"bare": PADDLE, "stepped": STEPPED, "limited": LIMITED}

@@ -35,8 +35,8 @@ from small_functions import FUNCTIONS, NUMPY
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.firmware.program import Cells, Load, Operation, Program, Table, Variable
-from zwidth.firmware.specialise import specialised
+from zwidth.machine.firmware.program import Cells, Load, Operation, Program, Table, Variable
+from zwidth.machine.firmware.specialise import specialised
 
 Array = NDArray[np.float64]
 
@@ -219,10 +219,10 @@ def test_a_table_has_what_can_be_read_alone() -> None:
 
 _EMITTED = """
 import zwidth as zw
-from zwidth.firmware.header import header
-from zwidth.firmware.law import law_program
-from zwidth.firmware.machine import Machine
-from zwidth.firmware.module import module
+from zwidth.machine.firmware.header import header
+from zwidth.machine.firmware.law import law_program
+from zwidth.machine.firmware.machine import Machine
+from zwidth.machine.firmware.module import module
 law = law_program(
     zw.catalogue.device("haptic-paddle"),
     zw.render(zw.Wall(300, "0.2"), zw.rendering.PassivityController(), zw.rendering.EventTransient()),

@@ -10,9 +10,9 @@ from firmware.written_packets import FIRST, SERVING, TEXT, packet, samples, text
 from strategies import seeds
 
 import zwidth as zw
+from zwidth.data.logs.telemetry.decoder import Decoder
 from zwidth.errors import InputError
-from zwidth.firmware.telemetry import REASONS, read_telemetry
-from zwidth.identification.logs.telemetry.decoder import Decoder
+from zwidth.machine.firmware.telemetry import REASONS, read_telemetry
 
 ENDED_BY_A_JUMP = 2 | 2 << 2
 

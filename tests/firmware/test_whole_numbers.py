@@ -14,14 +14,24 @@ from firmware.emulated.host import HostLaw
 from firmware.emulated.required import require
 
 import zwidth as zw
-from zwidth.firmware.bound import plain
-from zwidth.firmware.emit import emit
-from zwidth.firmware.evaluation import Evaluation, Exact
-from zwidth.firmware.fixed import lowered
-from zwidth.firmware.fixed_text import HELPERS, NARROW
-from zwidth.firmware.program import Branch, Cells, Constant, Load, Operation, Program, Store, Variable, set_to
-from zwidth.firmware.tidy import tidied
-from zwidth.firmware.units import Scale, Unit
+from zwidth.machine.firmware.bound import plain
+from zwidth.machine.firmware.emit import emit
+from zwidth.machine.firmware.evaluation import Evaluation, Exact
+from zwidth.machine.firmware.fixed import lowered
+from zwidth.machine.firmware.fixed_text import HELPERS, NARROW
+from zwidth.machine.firmware.program import (
+    Branch,
+    Cells,
+    Constant,
+    Load,
+    Operation,
+    Program,
+    Store,
+    Variable,
+    set_to,
+)
+from zwidth.machine.firmware.tidy import tidied
+from zwidth.machine.firmware.units import Scale, Unit
 
 
 def test_a_narrow_product_is_the_wide_one(tmp_path: Path) -> None:

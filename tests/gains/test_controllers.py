@@ -12,7 +12,7 @@ from described_arms import panda_like
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.gains import check_controllers, read_controllers
+from zwidth.data.gains import check_controllers, read_controllers
 
 FRANKA = """
 /**:

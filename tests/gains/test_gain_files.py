@@ -27,8 +27,8 @@ from hypothesis import strategies as st
 from strategies import texts
 
 import zwidth as zw
-from zwidth.gains.published import family, plants
-from zwidth.gains.read import FAMILIES
+from zwidth.data.gains.published import family, plants
+from zwidth.data.gains.read import FAMILIES
 
 
 def test_openarm_has_relative_damping_on_both_sides(tmp_path):

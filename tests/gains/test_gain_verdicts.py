@@ -11,8 +11,8 @@ import pytest
 from gain_files import DAMIAO, PIPER, SERVOS, YAM, openarm, written
 
 import zwidth as zw
-from zwidth.gains import ArmGains
-from zwidth.gains.coupled import CoupledJoint
+from zwidth.data.gains import ArmGains
+from zwidth.data.gains.coupled import CoupledJoint
 from zwidth.passivity.pairs.limits import is_passive
 
 

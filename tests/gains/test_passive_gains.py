@@ -12,8 +12,8 @@ from described_arms import panda_like
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.gains import passive_gains, read_controllers
-from zwidth.gains.passive import PassiveGains
+from zwidth.data.gains import passive_gains, read_controllers
+from zwidth.data.gains.passive import PassiveGains
 
 ARM = """
 controller_manager: {ros__parameters: {update_rate: 1000}}

@@ -13,11 +13,11 @@ import pytest
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.compiled import Array
 from zwidth.errors import InputError
 from zwidth.links import Packet, WavePort
 from zwidth.links.memory import ACTING, COUNTED, ENERGY, HEARD_ENERGY, NUMBER
 from zwidth.links.wave_port import RESERVE
+from zwidth.native.compiled import Array
 
 PERIODS = 150
 SCHEDULES = 2000

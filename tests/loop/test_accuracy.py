@@ -12,7 +12,7 @@ from mpmath import mpf
 from reference import Loop, simulate
 
 import zwidth as zw
-from zwidth.operator import LinearHand, Operator, Signals
+from zwidth.model.operator import LinearHand, Operator, Signals
 
 POSITION = 1e-14
 """Largest error of a position [m]."""

@@ -12,7 +12,7 @@ from mpmath import mp, mpf
 from strategies import zero_or
 
 import zwidth as zw
-from zwidth.rendering import ParallelController
+from zwidth.model.rendering import ParallelController
 
 MASS = mpf("0.03")
 

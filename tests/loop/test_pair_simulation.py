@@ -8,7 +8,7 @@ from scipy.linalg import expm
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.operator import ConstantForce, Finger, Operator, RecordedForce, WitnessMotion
+from zwidth.model.operator import ConstantForce, Finger, Operator, RecordedForce, WitnessMotion
 
 ARM = zw.Device(
     damping="0.1 N*m*s/rad",

@@ -11,7 +11,7 @@ from strategies import seeds
 
 import zwidth as zw
 from zwidth import InputError
-from zwidth.scene import Contact, CoulombFriction, Damper, Mass, SceneRun, Spring
+from zwidth.model.scene import Contact, CoulombFriction, Damper, Mass, SceneRun, Spring
 
 DEVICE = zw.Device(mass="0.1", damping="0.5", rate=1000, resolution=0)
 HAND = zw.operators.Finger()

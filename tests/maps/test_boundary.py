@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.operator import Finger
+from zwidth.model.operator import Finger
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 BARE = zw.Device(mass=0.036, damping=0, rate=1000)

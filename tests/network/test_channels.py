@@ -12,8 +12,8 @@ import pytest
 
 from zwidth.errors import InputError
 from zwidth.links import Schedule
-from zwidth.network import UDP, Lossy, SharedMemory, Zenoh, open_channel
-from zwidth.network.channel import LARGEST, Channel
+from zwidth.machine.network import UDP, Lossy, SharedMemory, Zenoh, open_channel
+from zwidth.machine.network.channel import LARGEST, Channel
 
 
 def free_ports(n):
@@ -106,7 +106,7 @@ def test_memory_of_one_that_was_killed_is_taken_over_and_one_in_use_is_not():
     name = uuid.uuid4().hex
     code = f"""
 import os
-from zwidth.network import SharedMemory
+from zwidth.machine.network import SharedMemory
 memory = SharedMemory({name!r}, True)
 memory.send(b"last words")
 os._exit(9)
@@ -123,7 +123,7 @@ os._exit(9)
 @pytest.mark.skipif(os.name != "posix", reason="there are no such modes")
 def test_memory_that_others_may_have_laid_there_is_not_used(tmp_path, monkeypatch):
     """By either side: open to others, of two names, a link, a folder, of another user; it stays as it was."""
-    monkeypatch.setattr("zwidth.network.shared_memory._place", tmp_path.joinpath)
+    monkeypatch.setattr("zwidth.machine.network.shared_memory._place", tmp_path.joinpath)
 
     def left(name, mode=0o600):
         (tmp_path / name).touch()
@@ -165,7 +165,7 @@ def test_what_memory_tears_is_dropped():
     name = uuid.uuid4().hex
     code = f"""
 import sys
-from zwidth.network import SharedMemory
+from zwidth.machine.network import SharedMemory
 with SharedMemory({name!r}, False) as memory:
     for k in range(20000):
         memory.send(str(k).encode() * 100)

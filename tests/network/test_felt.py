@@ -8,9 +8,9 @@ import pytest
 
 import zwidth as zw
 from zwidth.links import WavePort
-from zwidth.network.part_run import PartRun
-from zwidth.scene import Damper, LineEnd, Mass, Scene, Spring
-from zwidth.scene.parts import Part
+from zwidth.machine.network.part_run import PartRun
+from zwidth.model.scene import Damper, LineEnd, Mass, Scene, Spring
+from zwidth.model.scene.parts import Part
 
 T, W = 1e-3, 0.15
 DEVICE = zw.Device(mass=0.036, damping=W, coulomb_friction=0, resolution=0, sample_period=T)

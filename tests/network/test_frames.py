@@ -8,8 +8,8 @@ import zlib
 import pytest
 
 from zwidth.links import Packet
-from zwidth.network import Frame, Link
-from zwidth.network.monitor import WINDOW
+from zwidth.machine.network import Frame, Link
+from zwidth.machine.network.monitor import WINDOW
 
 
 class Wire:

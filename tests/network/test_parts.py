@@ -5,10 +5,10 @@ import random
 import numpy as np
 import pytest
 
-from zwidth.network import PartRun, run_parts
-from zwidth.scene import Contact, Damper, Mass, Scene, Spring
-from zwidth.scene.parts import best_parts, cut_scene
-from zwidth.scene.run import SceneRun
+from zwidth.machine.network import PartRun, run_parts
+from zwidth.model.scene import Contact, Damper, Mass, Scene, Spring
+from zwidth.model.scene.parts import best_parts, cut_scene
+from zwidth.model.scene.run import SceneRun
 
 T = 1e-3
 

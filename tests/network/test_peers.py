@@ -8,12 +8,12 @@ import pytest
 import zwidth as zw
 from zwidth.errors import InputError
 from zwidth.links import Schedule, WavePort
-from zwidth.network import Channel, Lossy
-from zwidth.network.device_run import DeviceRun
-from zwidth.network.part_run import PartRun
-from zwidth.network.peer import Peer
-from zwidth.scene import Contact, Damper, LineEnd, Mass, Scene, Spring
-from zwidth.scene.parts import Part
+from zwidth.machine.network import Channel, Lossy
+from zwidth.machine.network.device_run import DeviceRun
+from zwidth.machine.network.part_run import PartRun
+from zwidth.machine.network.peer import Peer
+from zwidth.model.scene import Contact, Damper, LineEnd, Mass, Scene, Spring
+from zwidth.model.scene.parts import Part
 
 PADDLE = zw.Device(mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, sample_period=1e-3)
 

@@ -9,7 +9,7 @@ import pytest
 
 from zwidth import catalogue
 from zwidth.errors import InputError
-from zwidth.operator import (
+from zwidth.model.operator import (
     ConstantForce,
     Cycle,
     Dowel,

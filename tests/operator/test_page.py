@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from zwidth import operator as operators
-from zwidth.operator import OPERATORS, Operator
+from zwidth.model import operator as operators
+from zwidth.model.operator import OPERATORS, Operator
 
 PAGE = (Path(__file__).parents[2] / "docs" / "operators.md").read_text(encoding="utf-8")
 

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from zwidth import operator as operators
 from zwidth.errors import InputError
-from zwidth.operator import OPERATORS, ParametricOperator
+from zwidth.model import operator as operators
+from zwidth.model.operator import OPERATORS, ParametricOperator
 from zwidth.quantity.parameter import parameters_of
 from zwidth.quantity.text import unit_text
 from zwidth.quantity.units import parse_number

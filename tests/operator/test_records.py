@@ -13,7 +13,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.errors import InputError
-from zwidth.operator import PrescribedMotion, RecordedForce, Tracking, WitnessMotion
+from zwidth.model.operator import PrescribedMotion, RecordedForce, Tracking, WitnessMotion
 
 TIMES = np.arange(5) * 0.001
 

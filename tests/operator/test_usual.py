@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 import zwidth as zw
-from zwidth.explorer.computing import hand_kind_of, operator_of
-from zwidth.explorer.play import played
-from zwidth.explorer.state import State
-from zwidth.operator import OPERATORS, Finger, FingersOn, HandsOn, usual_hand
-from zwidth.operator.usual import usual_kind
+from zwidth.model.operator import OPERATORS, Finger, FingersOn, HandsOn, usual_hand
+from zwidth.model.operator.usual import usual_kind
+from zwidth.show.explorer.computing import hand_kind_of, operator_of
+from zwidth.show.explorer.play import played
+from zwidth.show.explorer.state import State
 
 
 def turning(inertia: object) -> zw.Device:

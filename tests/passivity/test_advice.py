@@ -11,12 +11,12 @@ from typing import Any
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.environment.environment import Environment
+from zwidth.model.environment.environment import Environment
+from zwidth.model.rendering import OnePole, Window
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.units import parse_number
-from zwidth.rendering import OnePole, Window
 
 Loop = tuple[zw.Device, Any]
 

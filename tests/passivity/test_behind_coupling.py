@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import zwidth as zw
+from zwidth.model.scene import Contact, CoulombFriction, Mass, Spring
 from zwidth.passivity.verdict import Verdict
-from zwidth.scene import Contact, CoulombFriction, Mass, Spring
 
 SCENE = zw.Scene(
     [

@@ -11,9 +11,9 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
+from zwidth.model.rendering import Damper, ForceBounding, Saturation
 from zwidth.passivity.bounding import check_bounding
 from zwidth.passivity.certificate import read_document, verify_document
-from zwidth.rendering import Damper, ForceBounding, Saturation
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 TINY = Fraction(1, 10**9)

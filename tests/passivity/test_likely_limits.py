@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import zwidth as zw
-from zwidth.environment import OnePole, Window
+from zwidth.model.environment import OnePole, Window
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.decision import decide
 from zwidth.passivity.likely_limits import (

@@ -10,9 +10,9 @@ import pytest
 import zwidth as zw
 from zwidth import checker
 from zwidth.checker import judge
+from zwidth.model.rendering import ForceBounding, PassivityController, SlewLimit
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.formulas.nonlinear_spring import spring_need
-from zwidth.rendering import ForceBounding, PassivityController, SlewLimit
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 TINY = Fraction(1, 10**9)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.device.catalogue import DeviceInRange, Range
+from zwidth.model.device.catalogue import DeviceInRange, Range
 from zwidth.passivity.over_ranges import OverRanges, over_ranges
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.spoken import answers_in

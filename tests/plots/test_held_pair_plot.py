@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth import plots
+from zwidth.show import plots
 
 ARM = zw.Device(damping="0.3", mass="0.02", coulomb_friction=0, resolution=0, delay=0, rate="1 kHz")
 HAND = zw.stability.HandImpedance(mass=0.05, stiffness=100, damping=(2, "2.1"))

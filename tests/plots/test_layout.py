@@ -11,8 +11,8 @@ from matplotlib import rc_context, style
 from matplotlib.figure import Figure
 
 import zwidth as zw
-from zwidth import plots
-from zwidth.plots.style import LOOK, broken, heading
+from zwidth.show import plots
+from zwidth.show.plots.style import LOOK, broken, heading
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 WHEEL = zw.Device(

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth import plots
 from zwidth.passivity.pairs import PairCriterion, largest_spring
-from zwidth.plots.pair import damping_boundary, link_limits
+from zwidth.show import plots
+from zwidth.show.plots.pair import damping_boundary, link_limits
 
 ARM = zw.Device(damping="0.5", coulomb_friction="0.1", resolution=0, delay=0, rate="1 kHz")
 PAIR = zw.Pair(ARM, ARM.replace(damping=1), stiffness=100, damping="0.02", delay="2 ms")

@@ -12,10 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import zwidth as zw
-import zwidth.plots as plots
-from zwidth.plots.criterion import refined_curve
-from zwidth.plots.files import save_figure
-from zwidth.plots.replay import ROUNDS, replay
+import zwidth.show.plots as plots
+from zwidth.show.plots.criterion import refined_curve
+from zwidth.show.plots.files import save_figure
+from zwidth.show.plots.replay import ROUNDS, replay
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 IDEAL = PADDLE.replace(resolution=0)
@@ -153,7 +153,7 @@ def test_long_replay_agrees_with_exact_arithmetic(monkeypatch):
     law = zw.StandardLinearSolid(stiffness=100, branch_stiffness=100, branch_damping=0.2)
     witness = zw.check(PADDLE.replace(delay=0.0023), law).witness
     exact = replay(witness)
-    monkeypatch.setattr("zwidth.plots.replay._EXACT", 0)
+    monkeypatch.setattr("zwidth.show.plots.replay._EXACT", 0)
     fast = replay(witness)
     assert fast.energies == pytest.approx(exact.energies, rel=1e-9, abs=1e-9)
     assert fast.forces == pytest.approx(exact.forces, rel=1e-9)
@@ -241,7 +241,7 @@ def test_names_are_drawn_as_they_are():
 
 def test_importing_zwidth_does_not_import_matplotlib():
     """A verdict never waits for a plotting library."""
-    code = "import sys, zwidth; sys.exit('matplotlib' in sys.modules or 'zwidth.plots' in sys.modules)"
+    code = "import sys, zwidth; sys.exit('matplotlib' in sys.modules or 'zwidth.show.plots' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 

@@ -8,8 +8,8 @@ import pytest
 from random_scenes import random_scene
 
 import zwidth as zw
-from zwidth.plots.scene import placed
-from zwidth.scene import Contact, CoulombFriction, Damper, Lever, LineEnd, Mass, NonlinearSpring, Spring
+from zwidth.model.scene import Contact, CoulombFriction, Damper, Lever, LineEnd, Mass, NonlinearSpring, Spring
+from zwidth.show.plots.scene import placed
 
 SCENE = zw.Scene(
     [

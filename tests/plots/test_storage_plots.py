@@ -7,7 +7,7 @@ import pytest
 from matplotlib.axes import Axes
 
 import zwidth as zw
-import zwidth.plots as plots
+import zwidth.show.plots as plots
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 BOUNDS = {"penetration": "0.0005", "speed": "0.3"}

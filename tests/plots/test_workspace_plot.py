@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth import plots
-from zwidth.arms import PlanarChain, built_in
+from zwidth.model.arms import PlanarChain, built_in
 from zwidth.passivity.workspace import Workspace
+from zwidth.show import plots
 
 
 def _space(name: str, stiffness: float) -> Workspace:

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import zwidth as zw
-from zwidth import plots
+from zwidth.show import plots
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 WITHOUT_END = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])

@@ -7,7 +7,7 @@ import pytest
 from tempting import LENGTH, device, energy_in, follow, same_in_other_units, tempt, wall
 
 import zwidth as zw
-from zwidth.rendering import EnergyBounding
+from zwidth.model.rendering import EnergyBounding
 
 
 def bounded(wish, damping=0.15):

@@ -7,7 +7,7 @@ import pytest
 from tempting import FORCE, LENGTH, TIME, device, energy_in, follow, same_in_other_units, tempt, wall
 
 import zwidth as zw
-from zwidth.rendering import EnergyTank
+from zwidth.model.rendering import EnergyTank
 
 
 def tank(wish, level, refill, most):

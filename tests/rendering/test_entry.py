@@ -7,7 +7,7 @@ import pytest
 from prescribed import DEVICE, PERIOD, commands, touched, wandering
 
 import zwidth as zw
-from zwidth.rendering import AdaptiveWindow, BrakingPulse, EventTransient, Kalman
+from zwidth.model.rendering import AdaptiveWindow, BrakingPulse, EventTransient, Kalman
 
 ONE = AdaptiveWindow(longest=1)
 FREE = zw.Device(mass=0.07, damping=0, sample_period=PERIOD)

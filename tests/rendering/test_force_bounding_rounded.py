@@ -10,9 +10,9 @@ from tempting import device, follow, tempt, wall
 from test_force_bounding import DEVICES, bounded
 
 import zwidth as zw
-from zwidth.rendering import ForceBounding
-from zwidth.rendering.energy.force_bounding import step
-from zwidth.rendering.rendering_law import LoopContext
+from zwidth.model.rendering import ForceBounding
+from zwidth.model.rendering.energy.force_bounding import step
+from zwidth.model.rendering.rendering_law import LoopContext
 
 
 def exact_energy_in(paddle, positions, forces):

@@ -7,7 +7,7 @@ import pytest
 from prescribed import DEVICE, PERIOD, commands, touched, wandering
 
 import zwidth as zw
-from zwidth.rendering import Hysteresis, Saturation
+from zwidth.model.rendering import Hysteresis, Saturation
 
 IDEAL = DEVICE.replace(resolution=0)
 

@@ -7,7 +7,7 @@ import pytest
 from prescribed import DEVICE, commands, touched, wandering
 
 import zwidth as zw
-from zwidth.rendering import Dither, Saturation, SlewLimit
+from zwidth.model.rendering import Dither, Saturation, SlewLimit
 
 WALL = zw.Wall(3000)
 BARE = zw.Device(damping=1, rate=1000)

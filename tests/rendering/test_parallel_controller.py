@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from strategies import zero_or
 
 import zwidth as zw
-from zwidth.rendering import ParallelController
+from zwidth.model.rendering import ParallelController
 
 T = 0.001
 

@@ -7,7 +7,7 @@ import pytest
 from tempting import FORCE, LENGTH, device, energy_in, follow, same_in_other_units, tempt, wall
 
 import zwidth as zw
-from zwidth.rendering import PassiveLeap
+from zwidth.model.rendering import PassiveLeap
 
 
 def leapt(wish, stiffness, friction=0.0, resets=False):

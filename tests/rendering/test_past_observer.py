@@ -10,7 +10,7 @@ from prescribed import wandering
 from tempting import follow
 
 import zwidth as zw
-from zwidth.rendering import PassivityController
+from zwidth.model.rendering import PassivityController
 
 B, T, K = 0.2, 1e-3, 1700.0
 DEVICE = zw.Device(mass="0.05", damping=B, coulomb_friction=0, resolution=0, sample_period="0.001")

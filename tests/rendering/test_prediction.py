@@ -8,9 +8,9 @@ from scipy.integrate import solve_ivp
 from scipy.signal import cont2discrete
 
 import zwidth as zw
-from zwidth.rendering import CrossingCorrection, Extrapolation, HalfSamplePrediction, PoleMatched
-from zwidth.rendering.prediction import half_sample
-from zwidth.rendering.rendering_law import LoopContext
+from zwidth.model.rendering import CrossingCorrection, Extrapolation, HalfSamplePrediction, PoleMatched
+from zwidth.model.rendering.prediction import half_sample
+from zwidth.model.rendering.rendering_law import LoopContext
 
 T = 0.009
 DEVICE = zw.Device(mass=0.31, damping=0.7, sample_period=T)

@@ -12,7 +12,7 @@ from prescribed import wandering
 from tempting import FORCE, LENGTH, TIME, device, follow, same_in_other_units
 
 import zwidth as zw
-from zwidth.rendering import PassivityController, RateTerm
+from zwidth.model.rendering import PassivityController, RateTerm
 
 K, T = 800.0, 1e-3
 PADDLE = zw.catalogue.device("haptic-paddle")

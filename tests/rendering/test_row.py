@@ -7,8 +7,8 @@ import pytest
 from prescribed import DEVICE, commands, wandering
 
 import zwidth as zw
-from zwidth import rendering
-from zwidth.rendering import Damper, Kalman, TickTime
+from zwidth.model import rendering
+from zwidth.model.rendering import Damper, Kalman, TickTime
 
 ROW = (
     rendering.Damper(1.1),

@@ -9,7 +9,7 @@ import pytest
 from tempting import FORCE, LENGTH, T, device, energy_in, follow, same_in_other_units, tempt, wall
 
 import zwidth as zw
-from zwidth.rendering import DualRate, EnergyBounding, ForceBounding, Held
+from zwidth.model.rendering import DualRate, EnergyBounding, ForceBounding, Held
 
 
 def held(wish, samples):

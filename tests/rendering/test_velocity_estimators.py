@@ -10,8 +10,8 @@ from prescribed import COUNT, DEVICE, PERIOD, commands, wandering
 from scipy.linalg import solve_discrete_are
 
 import zwidth as zw
-from zwidth.rendering import AdaptiveWindow, Damper, Kalman, TickTime
-from zwidth.rendering.velocity.kalman import gains
+from zwidth.model.rendering import AdaptiveWindow, Damper, Kalman, TickTime
+from zwidth.model.rendering.velocity.kalman import gains
 
 FREE = zw.PulseTransferFunction([0], [1])
 """No force and no surface: a damper of 1 N·s/m on it commands its velocity."""

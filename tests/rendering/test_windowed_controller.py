@@ -10,8 +10,8 @@ from prescribed import wandering
 from tempting import FORCE, LENGTH, TIME, device, follow, same_in_other_units
 
 import zwidth as zw
-from zwidth.rendering import Hysteresis, PassivityController, WindowedController
-from zwidth.rendering.rendering_law import LoopContext
+from zwidth.model.rendering import Hysteresis, PassivityController, WindowedController
+from zwidth.model.rendering.rendering_law import LoopContext
 
 DEVICE = device()
 OPTIONS = {

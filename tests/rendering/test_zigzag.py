@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tempting import follow
 
 import zwidth as zw
-from zwidth.rendering import PassivityController, WindowedController
+from zwidth.model.rendering import PassivityController, WindowedController
 
 B, T = 0.15, 1e-3
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 import zwidth as zw
-from zwidth.report.pair_provenance import of_pair
-from zwidth.report.provenance import of_device, of_environment, of_verdict
-from zwidth.specification.laws import with_laws
-from zwidth.specification.pairs import pair_of
-from zwidth.specification.read import PAIR_TABLES, WITH_LAWS, built, merged, tables_of
+from zwidth.model.specification.laws import with_laws
+from zwidth.model.specification.pairs import pair_of
+from zwidth.model.specification.read import PAIR_TABLES, WITH_LAWS, built, merged, tables_of
+from zwidth.show.report.pair_provenance import of_pair
+from zwidth.show.report.provenance import of_device, of_environment, of_verdict
 
 WHEEL = """
 [device]

@@ -56,7 +56,7 @@ def test_without_reportlab_one_sentence_says_what_to_do(
     active: Verdict, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """And a page can be written."""
-    monkeypatch.delitem(sys.modules, "zwidth.report.pdf_file", raising=False)
+    monkeypatch.delitem(sys.modules, "zwidth.show.report.pdf_file", raising=False)
     for name in [name for name in sys.modules if name.split(".")[0] == "reportlab"]:
         monkeypatch.setitem(sys.modules, name, None)
     with pytest.raises(zw.InputError, match=r"needs ReportLab: pip install 'zwidth\[report\]'.*\.html"):

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from zwidth.errors import InputError
-from zwidth.scene import Contact, CoulombFriction, Damper, Lever, Mass, Scene, SceneRun, Spring
-from zwidth.scene.parts import best_parts, cut_scene
+from zwidth.model.scene import Contact, CoulombFriction, Damper, Lever, Mass, Scene, SceneRun, Spring
+from zwidth.model.scene.parts import best_parts, cut_scene
 
 
 def chain(stiffnesses, handle=300):

@@ -8,7 +8,7 @@ from random_scenes import random_scene
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.scene import (
+from zwidth.model.scene import (
     Contact,
     CoulombFriction,
     Damper,

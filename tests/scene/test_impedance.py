@@ -12,8 +12,8 @@ from strategies import seeds
 
 import zwidth as zw
 from zwidth import InputError
-from zwidth.environment import RationalFunction
-from zwidth.scene import Contact, Damper, Lever, Mass, SceneRun, Spring
+from zwidth.model.environment import RationalFunction
+from zwidth.model.scene import Contact, Damper, Lever, Mass, SceneRun, Spring
 
 T = Fraction(1, 1000)
 

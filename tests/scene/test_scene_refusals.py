@@ -8,7 +8,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.errors import InputError
-from zwidth.scene import Lever, LineEnd, Mass, SceneRun, Spring, best_parts, cut_scene
+from zwidth.model.scene import Lever, LineEnd, Mass, SceneRun, Spring, best_parts, cut_scene
 
 TOOL = zw.Scene([Mass("tool", 1)], port="tool")
 BODIES = [Mass("a", 1), Mass("b", 1)]

@@ -7,7 +7,7 @@ from itertools import count
 
 from servo.emulators.faults import Fault
 
-from zwidth.servo.connection import CLOSED, GARBLED, SILENT, STALE
+from zwidth.machine.servo.connection import CLOSED, GARBLED, SILENT, STALE
 
 ANSWERS: dict[Fault, list[int]] = {
     Fault.CLOSED: [CLOSED],

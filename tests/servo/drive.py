@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from zwidth.servo.connection import (
+from zwidth.machine.servo.connection import (
     CLOSED,
     FORCE,
     GOOD,
@@ -18,7 +18,7 @@ from zwidth.servo.connection import (
     CompiledConnection,
     LibraryConnection,
 )
-from zwidth.servo.posix import now
+from zwidth.machine.servo.posix import now
 
 PATIENCE = 60.0
 """For an answer that comes [s]: a busy machine, or one that stands still for some seconds, is no fault."""

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from zwidth.servo.connection import (
+from zwidth.machine.servo.connection import (
     FORCE,
     GOOD,
     INDEX,
@@ -18,7 +18,7 @@ from zwidth.servo.connection import (
     blank,
     exchanged,
 )
-from zwidth.servo.posix import pause
+from zwidth.machine.servo.posix import pause
 
 LENGTH, PAUSED, PAUSE = OWN, OWN + 1, OWN + 2
 SCRIPT = OWN + 3

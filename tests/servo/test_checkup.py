@@ -9,10 +9,10 @@ import pytest
 
 import zwidth as zw
 from zwidth.errors import InputError
-from zwidth.servo import checkup as module
-from zwidth.servo.checkup import doctor
-from zwidth.servo.lateness import Lateness, Measured
-from zwidth.servo.priority import Answer, Granted
+from zwidth.machine.servo import checkup as module
+from zwidth.machine.servo.checkup import doctor
+from zwidth.machine.servo.lateness import Lateness, Measured
+from zwidth.machine.servo.priority import Answer, Granted
 
 YES = Granted((Answer("priority", True, "SCHED_FIFO 40"), Answer("memory", True, "all")))
 NO = Granted((Answer("priority", False, "SCHED_FIFO 40: not permitted"), Answer("memory", False, "8 MiB")))

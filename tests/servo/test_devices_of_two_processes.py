@@ -13,9 +13,9 @@ CHILD = """
 import json, os, signal, sys
 import zwidth as zw
 from zwidth.links import WavePort
-from zwidth.network import Peer, open_channel
-from zwidth.servo import PortRun
-from zwidth.servo.devices import Simulated
+from zwidth.machine.network import Peer, open_channel
+from zwidth.machine.servo import PortRun
+from zwidth.machine.servo.devices import Simulated
 
 channel, first, seconds, start = sys.argv[1], sys.argv[2] == "first", float(sys.argv[3]), float(sys.argv[4])
 device = zw.Device(mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, sample_period=2e-3)

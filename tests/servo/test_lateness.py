@@ -7,10 +7,10 @@ import threading
 import numpy as np
 import pytest
 
-from zwidth.servo import lateness as measured
-from zwidth.servo.lateness import Lateness, measure_lateness, run_turn
-from zwidth.servo.posix import now
-from zwidth.servo.priority import Answer, Granted, RealTime
+from zwidth.machine.servo import lateness as measured
+from zwidth.machine.servo.lateness import Lateness, measure_lateness, run_turn
+from zwidth.machine.servo.posix import now
+from zwidth.machine.servo.priority import Answer, Granted, RealTime
 
 NOTHING = Granted(())
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from zwidth.servo import machine
-from zwidth.servo.machine import Moment, findings
-from zwidth.servo.priority import Answer, Granted
+from zwidth.machine.servo import machine
+from zwidth.machine.servo.machine import Moment, findings
+from zwidth.machine.servo.priority import Answer, Granted
 
 ALL = Granted(
     tuple(Answer(wish, True, "yes") for wish in ("timers", "awake cores", "memory", "one core", "priority"))

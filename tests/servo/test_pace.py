@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from zwidth.servo.pace import MARGIN, margin, most_awake, until
-from zwidth.servo.posix import now
+from zwidth.machine.servo.pace import MARGIN, margin, most_awake, until
+from zwidth.machine.servo.posix import now
 
 SHARE = 1 / 256
 

@@ -9,13 +9,13 @@ from servo.played import Library, Played
 import zwidth as zw
 from zwidth.errors import InputError
 from zwidth.links import Packet, WavePort
-from zwidth.network import Channel, Peer
-from zwidth.network.device_run import DeviceRun
-from zwidth.servo import port_run
-from zwidth.servo.connection import CLOSED, GARBLED, REFUSED, SILENT, Placement
-from zwidth.servo.devices.simulated import Simulated
-from zwidth.servo.port_run import PortRun
-from zwidth.servo.safety import Safety
+from zwidth.machine.network import Channel, Peer
+from zwidth.machine.network.device_run import DeviceRun
+from zwidth.machine.servo import port_run
+from zwidth.machine.servo.connection import CLOSED, GARBLED, REFUSED, SILENT, Placement
+from zwidth.machine.servo.devices.simulated import Simulated
+from zwidth.machine.servo.port_run import PortRun
+from zwidth.machine.servo.safety import Safety
 
 STEP = 22.4e-6
 PADDLE = zw.Device(mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=STEP, sample_period=1e-3)

@@ -12,8 +12,8 @@ import threading
 import pytest
 
 from zwidth.errors import InputError
-from zwidth.servo import priority
-from zwidth.servo.priority import RealTime
+from zwidth.machine.servo import priority
+from zwidth.machine.servo.priority import RealTime
 
 linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="asked for on Linux only")
 

@@ -8,13 +8,13 @@ from servo.played import Library, Played
 
 import zwidth as zw
 from zwidth.errors import InputError
-from zwidth.servo import pair as module
-from zwidth.servo.connection import CLOSED, SILENT, Placement
-from zwidth.servo.devices.simulated import Simulated
-from zwidth.servo.pair import PairNotProved, PairServo
-from zwidth.servo.pair_law import PairLaw
-from zwidth.servo.priority import RealTime
-from zwidth.servo.safety import Safety
+from zwidth.machine.servo import pair as module
+from zwidth.machine.servo.connection import CLOSED, SILENT, Placement
+from zwidth.machine.servo.devices.simulated import Simulated
+from zwidth.machine.servo.pair import PairNotProved, PairServo
+from zwidth.machine.servo.pair_law import PairLaw
+from zwidth.machine.servo.priority import RealTime
+from zwidth.machine.servo.safety import Safety
 
 STEP = 22.4e-6
 ARM = zw.Device(
@@ -99,7 +99,7 @@ def test_the_energies_are_those_of_readings_and_forces():
 
 
 def test_a_law_that_is_served_for_long_is_that_of_all_its_readings():
-    """By the formula of `zwidth.pairs`, over arrays that were filled many times."""
+    """By the formula of `zwidth.model.pairs`, over arrays that were filled many times."""
     law = PairLaw(PAIR)
     random = np.random.default_rng(4)
     x, y = (np.cumsum(random.integers(-3, 4, 20_000)) * STEP for _ in range(2))

@@ -12,9 +12,9 @@ import scipy.signal
 from played import Library, Played
 
 import zwidth as zw
-from zwidth.servo import Placement, Safety, Servo, proving, running
-from zwidth.servo.connection import CLOSED, GARBLED, REFUSED, SILENT, STALE
-from zwidth.servo.devices import Simulated
+from zwidth.machine.servo import Placement, Safety, Servo, proving, running
+from zwidth.machine.servo.connection import CLOSED, GARBLED, REFUSED, SILENT, STALE
+from zwidth.machine.servo.devices import Simulated
 
 pytestmark = pytest.mark.real_time
 

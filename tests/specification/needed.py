@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from zwidth.quantity.kind import Kind
+from zwidth.model.kind import Kind
 
 
 def needed(kind: Kind) -> dict[str, str]:

@@ -16,9 +16,9 @@ from needed import needed
 from strategies import texts, toml_values
 
 import zwidth as zw
-from zwidth.specification.environments import TYPES, build_environment, option_keys
-from zwidth.specification.read import DEVICE_KEYS, LARGEST_FILE, Specification, build_device, load
-from zwidth.specification.table import Table
+from zwidth.model.specification.environments import TYPES, build_environment, option_keys
+from zwidth.model.specification.read import DEVICE_KEYS, LARGEST_FILE, Specification, build_device, load
+from zwidth.model.specification.table import Table
 
 DEVICE = '[device]\ndamping = "0.15 N*s/m"\nrate = "3 kHz"\n'
 WALL = '[environment]\ntype = "wall"\nstiffness = 300\n'

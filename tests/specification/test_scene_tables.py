@@ -8,9 +8,9 @@ import pytest
 
 import zwidth as zw
 from zwidth import InputError
-from zwidth.specification.environments import build_environment
-from zwidth.specification.scenes import ELEMENTS
-from zwidth.specification.table import Table
+from zwidth.model.specification.environments import build_environment
+from zwidth.model.specification.scenes import ELEMENTS
+from zwidth.model.specification.table import Table
 
 SPRING = {"type": "spring", "first": "handle", "second": "ground", "stiffness": "1 N/m"}
 
@@ -44,7 +44,7 @@ def test_a_rotary_device_has_rotary_scenes() -> None:
 
 def test_every_element_of_the_package_has_a_name() -> None:
     """Whatever can be built can be written down."""
-    from zwidth import scene
+    from zwidth.model import scene
 
     made = {kind.made for kind in ELEMENTS.values()}
     assert made == {

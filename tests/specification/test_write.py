@@ -8,11 +8,11 @@ import pytest
 from needed import needed
 
 import zwidth as zw
-from zwidth import rendering, scene
-from zwidth.rendering import LAWS
-from zwidth.specification.environments import TYPES
-from zwidth.specification.read import load
-from zwidth.specification.write import parsed, written
+from zwidth.model import rendering, scene
+from zwidth.model.rendering import LAWS
+from zwidth.model.specification.environments import TYPES
+from zwidth.model.specification.read import load
+from zwidth.model.specification.write import parsed, written
 
 THIRD = Fraction(1, 3)
 DEVICE = zw.Device(

@@ -15,15 +15,15 @@ import xarray as xr
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.chunks.worker import Worker
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.sweeps import request as requests
-from zwidth.sweeps.axes import axis
-from zwidth.sweeps.compute import compute
-from zwidth.sweeps.loops import Loop, changed, parameter
-from zwidth.sweeps.questions import Line, checked
-from zwidth.sweeps.request import request
-from zwidth.sweeps.springs import largest_spring
+from zwidth.study.chunks.worker import Worker
+from zwidth.study.sweeps import request as requests
+from zwidth.study.sweeps.axes import axis
+from zwidth.study.sweeps.compute import compute
+from zwidth.study.sweeps.loops import Loop, changed, parameter
+from zwidth.study.sweeps.questions import Line, checked
+from zwidth.study.sweeps.request import request
+from zwidth.study.sweeps.springs import largest_spring
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 WALL = zw.Wall(100)
@@ -144,7 +144,7 @@ def test_walls_are_decided_as_by_check(delay: str, velocity: Any) -> None:
 
 def test_of_a_line_of_walls_few_are_asked(monkeypatch: pytest.MonkeyPatch) -> None:
     """All but the first of each part, and those about which doubles are in doubt."""
-    module = sys.modules["zwidth.sweeps.questions"]
+    module = sys.modules["zwidth.study.sweeps.questions"]
     asked = request("check", Loop(PADDLE, zw.Wall(1, "0.05")), {"stiffness": "10:400:200"})
     told: list[Loop] = []
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-import zwidth.traces.progress as module
+import zwidth.progress as module
 
 
 class _Terminal:

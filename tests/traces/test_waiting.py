@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zwidth as zw
-from zwidth.traces.progress import falling
+from zwidth.progress import falling
 
 
 def test_a_number_that_falls_is_shown_as_progress() -> None:

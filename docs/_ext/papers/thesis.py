@@ -6,7 +6,7 @@ import numpy as np
 
 import zwidth as zw
 from papers.row import Row, close, drawn, row
-from zwidth.rendering import BrakingPulse
+from zwidth.model.rendering import BrakingPulse
 
 TITLE = "Guaranteed stability in haptic display (thesis, Northwestern University, chapters 1 and 2)"
 

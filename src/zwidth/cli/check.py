@@ -21,12 +21,12 @@ from zwidth.cli.output import print_json, say_written, targets
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
+    from zwidth.model.specification.read import Specification
     from zwidth.passivity.finite_stiffness import FiniteStiffnessReplay
     from zwidth.passivity.over_ranges import OverRanges
+    from zwidth.passivity.stability import Stability
+    from zwidth.passivity.stability.active_hand import ToleratedActivity
     from zwidth.passivity.verdict import Verdict
-    from zwidth.specification.read import Specification
-    from zwidth.stability import Stability
-    from zwidth.stability.active_hand import ToleratedActivity
 
     Report: TypeAlias = FiniteStiffnessReplay | ToleratedActivity | OverRanges
 
@@ -98,8 +98,8 @@ def _replayed(verdict: Verdict) -> FiniteStiffnessReplay:
 def _tolerated(loop: Specification, below: str | None) -> ToleratedActivity | None:
     if below is None:
         return None
+    from zwidth.passivity.stability.active_hand import tolerated_activity
     from zwidth.quantity.units import parse_number
-    from zwidth.stability.active_hand import tolerated_activity
 
     return tolerated_activity(loop.device, loop.environment, parse_number(below, "Hz", "active_below"))
 
@@ -121,7 +121,7 @@ def _ranges(loop: Specification, verdict: Verdict) -> OverRanges | None:
     """What holds over the ranges of a device of the catalogue, where it has some."""
     if not loop.ranges:
         return None
-    from zwidth.device.catalogue import DeviceInRange
+    from zwidth.model.device.catalogue import DeviceInRange
     from zwidth.passivity.over_ranges import over_ranges
 
     return over_ranges(DeviceInRange(loop.device, loop.ranges), loop.environment, verdict)

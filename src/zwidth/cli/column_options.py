@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from zwidth.errors import InputError
-from zwidth.specification.table import quoted, suggestion
+from zwidth.model.specification.table import quoted, suggestion
 
 SHEET = "of a workbook, where several hold a recording"
 """Help of --sheet."""

@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 from zwidth.cli.options import Once, add_in_full, add_law_option, add_output, add_parameters, overrides
 from zwidth.cli.output import give_out, targets
 from zwidth.errors import InputError
+from zwidth.model.specification.laws import with_laws
+from zwidth.model.specification.table import Table, quoted, suggestion
 from zwidth.quantity.units import parse_number
 from zwidth.showing import Part
-from zwidth.specification.laws import with_laws
-from zwidth.specification.table import Table, quoted, suggestion
 
 if TYPE_CHECKING:
-    from zwidth.bench.bench import LawComparison
-    from zwidth.environment import Environment
+    from zwidth.model.environment import Environment
+    from zwidth.model.specification.read import Specification
     from zwidth.quantity.exact import Exact
-    from zwidth.specification.read import Specification
+    from zwidth.study.bench.bench import LawComparison
 
 YOURS = "yours"
 """What the row of laws of a specification is called on the bench."""
@@ -60,7 +60,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth compare`: 0."""
-    from zwidth.specification.read import PAIR_TABLES, WITH_LAWS, read_tables
+    from zwidth.model.specification.read import PAIR_TABLES, WITH_LAWS, read_tables
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     tables = read_tables(arguments.sources, (*WITH_LAWS, *PAIR_TABLES))
@@ -68,8 +68,8 @@ def run(arguments: argparse.Namespace) -> int:
         return _pairs(arguments, tables, save)
     loop, radius = _touched(tables, overrides(arguments))
     own = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
-    from zwidth.bench.laws import standard_laws
-    from zwidth.traces.with_bar.compare import compare
+    from zwidth.show.with_bar.compare import compare
+    from zwidth.study.bench.laws import standard_laws
 
     yours = {} if own is loop.environment else {YOURS: own}
     fastest = _speed(arguments.fastest)
@@ -84,8 +84,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _touched(tables: Mapping[str, Table], typed: Mapping[str, str]) -> tuple[Specification, Exact | None]:
     """The loop, and of a device that turns the radius at which it is touched."""
-    from zwidth.bench.at_rim import radius_of
-    from zwidth.specification.read import specified
+    from zwidth.model.specification.read import specified
+    from zwidth.study.bench.at_rim import radius_of
 
     table = tables.get("device")
     beside = {key: value for key, value in typed.items() if key != "handle_radius"}
@@ -103,9 +103,9 @@ def _of_a_rim(
     loop: Specification, radius: Exact, typed: str | None, yours: Mapping[str, Environment], fastest: float
 ) -> LawComparison:
     """The comparison at the rim, told about the axis."""
-    from zwidth.bench.at_rim import at_rim
-    from zwidth.bench.laws import standard_laws, wall_to_render
-    from zwidth.traces.with_bar.compare import compare
+    from zwidth.show.with_bar.compare import compare
+    from zwidth.study.bench.at_rim import at_rim
+    from zwidth.study.bench.laws import standard_laws, wall_to_render
 
     if yours:
         raise InputError(
@@ -128,9 +128,9 @@ def _few(found: LawComparison) -> Iterator[Part]:
 
 def _pairs(arguments: argparse.Namespace, tables: Mapping[str, Table], save: Path | None) -> int:
     """Two arms joined in each of the ways that there are, the stiffness in all the same."""
-    from zwidth.bench.pairs import schemes
     from zwidth.cli.simulate_pair import pair_with_options
-    from zwidth.traces.with_bar.compare import compare
+    from zwidth.show.with_bar.compare import compare
+    from zwidth.study.bench.pairs import schemes
 
     given = {"--laws": arguments.laws, "--fastest": arguments.fastest, "--plot": arguments.plot}
     foreign = [name for name, value in given.items() if value]
@@ -143,7 +143,7 @@ def _pairs(arguments: argparse.Namespace, tables: Mapping[str, Table], save: Pat
 
 
 def _speed(typed: str | None) -> float:
-    from zwidth.bench.adversary import FASTEST
+    from zwidth.study.bench.adversary import FASTEST
 
     return FASTEST if typed is None else float(parse_number(typed, "m/s", "fastest"))
 

@@ -14,7 +14,7 @@ from types import MappingProxyType
 
 from zwidth.cli.output import quiet_pipe
 from zwidth.errors import InputError
-from zwidth.specification.table import quoted, suggestion
+from zwidth.model.specification.table import quoted, suggestion
 
 SHELLS = ("bash", "zsh", "fish")
 
@@ -111,43 +111,43 @@ def _files(prefix: str, ends: tuple[str, ...]) -> list[str]:
 
 
 def _devices() -> Collection[str]:
-    from zwidth.device import catalogue
+    from zwidth.model.device import catalogue
 
     return catalogue.names()
 
 
 def _arms() -> Collection[str]:
-    from zwidth.arms import BUILT_IN
+    from zwidth.model.arms import BUILT_IN
 
     return BUILT_IN
 
 
 def _environments() -> Collection[str]:
-    from zwidth.specification.environments import TYPES
+    from zwidth.model.specification.environments import TYPES
 
     return TYPES
 
 
 def _laws() -> Collection[str]:
-    from zwidth.rendering import LAWS
+    from zwidth.model.rendering import LAWS
 
     return LAWS
 
 
 def _hands() -> Collection[str]:
-    from zwidth.operator import OPERATORS
+    from zwidth.model.operator import OPERATORS
 
     return OPERATORS
 
 
 def _targets() -> Collection[str]:
-    from zwidth.firmware.targets import TARGETS
+    from zwidth.machine.firmware.targets import TARGETS
 
     return TARGETS
 
 
 def _connections() -> Collection[str]:
-    from zwidth.servo.devices.registry import CONNECTIONS
+    from zwidth.machine.servo.devices.registry import CONNECTIONS
 
     return CONNECTIONS
 

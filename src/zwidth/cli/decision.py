@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from zwidth.cli.options import overrides
 
 if TYPE_CHECKING:
+    from zwidth.model.specification.read import Specification
+    from zwidth.model.specification.table import Table
     from zwidth.passivity.verdict import Verdict
-    from zwidth.specification.read import Specification
-    from zwidth.specification.table import Table
 
 
 class Asked(NamedTuple):
@@ -47,8 +47,8 @@ def asked(arguments: argparse.Namespace, in_range: bool = False) -> Asked:
     InputError
         If anything cannot be used: it says where it stands and what is allowed.
     """
-    from zwidth.specification.laws import with_laws
-    from zwidth.specification.read import WITH_LAWS, Specification, built, merged, read_tables
+    from zwidth.model.specification.laws import with_laws
+    from zwidth.model.specification.read import WITH_LAWS, Specification, built, merged, read_tables
 
     tables = read_tables(arguments.sources, WITH_LAWS)
     device_table, environment_table = merged(tables, overrides(arguments))
@@ -75,7 +75,7 @@ def decided(loop: Specification, contact: str = "made and broken") -> Verdict:
         closed = check_by_closed_forms(device, law, contact=contact)
         if contact == "kept" or not has_gap(device, law, closed):
             return closed
-    from zwidth.traces.progress import falling, progress_bar
+    from zwidth.progress import falling, progress_bar
 
     with progress_bar("states") as progress:
         if closed is not None:

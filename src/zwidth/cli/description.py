@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from zwidth.cli.width import GLUE as GLUE
-from zwidth.device import Device
-from zwidth.environment import Wall
-from zwidth.environment.environment import Environment
+from zwidth.model.device import Device
+from zwidth.model.environment import Wall
+from zwidth.model.environment.environment import Environment
+from zwidth.model.kind import name_of
+from zwidth.model.specification.environments import TYPES
+from zwidth.model.specification.table import plain
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.kind import name_of
 from zwidth.quantity.parameter import Parameter
 from zwidth.quantity.text import shown
-from zwidth.specification.environments import TYPES
-from zwidth.specification.table import plain
 
 _OF_A_DEVICE = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
 """What a verdict depends on."""

@@ -12,8 +12,8 @@ from rich.text import Text
 
 from zwidth.cli.output import print_json
 from zwidth.cli.page import page
-from zwidth.device import catalogue
-from zwidth.device.catalogue import Datum, Entry, Range
+from zwidth.model.device import catalogue
+from zwidth.model.device.catalogue import Datum, Entry, Range
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import in_words, shown
 

@@ -20,13 +20,13 @@ from zwidth.cli.options import (
 )
 from zwidth.cli.output import print_json, say_written, targets
 from zwidth.errors import InputError
-from zwidth.specification.table import quoted
+from zwidth.model.specification.table import quoted
 
 if TYPE_CHECKING:
-    from zwidth.device import Device
-    from zwidth.diagnosis import Diagnosis, PairDiagnosis
-    from zwidth.environment import Environment
-    from zwidth.pairs import Pair
+    from zwidth.data.diagnosis import Diagnosis, PairDiagnosis
+    from zwidth.model.device import Device
+    from zwidth.model.environment import Environment
+    from zwidth.model.pairs import Pair
 
 _READING = (
     ("--column", "columns", "QUANTITY=NAME", "column of time, position, commanded_force, actuator_force"),
@@ -107,8 +107,8 @@ def _json(found: Diagnosis | PairDiagnosis, command: str | None) -> str:
 
 
 def _diagnosed(arguments: argparse.Namespace) -> Diagnosis | PairDiagnosis:
-    from zwidth.diagnosis import diagnose, diagnose_pair
-    from zwidth.diagnosis.pairs.recording import holds_two_arms
+    from zwidth.data.diagnosis import diagnose, diagnose_pair
+    from zwidth.data.diagnosis.pairs.recording import holds_two_arms
 
     reading: dict[str, Any] = {}
     for option, name, _, _ in _READING:
@@ -141,7 +141,7 @@ def _pair_of_arms(arguments: argparse.Namespace) -> Pair | None:
         )
     if not arguments.sources:
         return None
-    from zwidth.specification.pairs import load_pair
+    from zwidth.model.specification.pairs import load_pair
 
     return load_pair(arguments.sources, {"stiffness": "1"})
 
@@ -162,7 +162,7 @@ def _loop(arguments: argparse.Namespace) -> tuple[Device | None, Environment | N
     if not words and not arguments.sources:
         return None, None
     from zwidth.cli.decision import asked
-    from zwidth.specification.read import WITH_LAWS, read_tables, specified_device
+    from zwidth.model.specification.read import WITH_LAWS, read_tables, specified_device
 
     tables = read_tables(arguments.sources, WITH_LAWS)
     if "environment" in tables or arguments.law or len(given(arguments, _DEVICE)) < len(words):

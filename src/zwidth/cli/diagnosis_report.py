@@ -18,10 +18,10 @@ from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
-    from zwidth.diagnosis import Diagnosis, PairDiagnosis
-    from zwidth.diagnosis.change import Change
-    from zwidth.diagnosis.law import Law
-    from zwidth.diagnosis.pairs.change import PairChange
+    from zwidth.data.diagnosis import Diagnosis, PairDiagnosis
+    from zwidth.data.diagnosis.change import Change
+    from zwidth.data.diagnosis.law import Law
+    from zwidth.data.diagnosis.pairs.change import PairChange
 
 _OPTIONS = {"stiffness": "--stiffness", "damping": "--virtual-damping", "delay": "--delay"}
 """Changes that one command line can ask `check` about."""
@@ -73,8 +73,8 @@ def _change(
 
 def command(found: Diagnosis | PairDiagnosis, arguments: argparse.Namespace) -> str | None:
     """The line that asks `check` about the loop with the number changed."""
-    from zwidth.diagnosis.change import Change
-    from zwidth.diagnosis.result import Diagnosis
+    from zwidth.data.diagnosis.change import Change
+    from zwidth.data.diagnosis.result import Diagnosis
 
     change = found.change
     if change is None:
@@ -139,7 +139,7 @@ def _read_with(arguments: argparse.Namespace) -> Iterator[tuple[str, str]]:
 
 
 def _supposed(found: Diagnosis | PairDiagnosis) -> Iterator[str]:
-    from zwidth.diagnosis.result import Diagnosis
+    from zwidth.data.diagnosis.result import Diagnosis
 
     two = not isinstance(found, Diagnosis)
     yield (

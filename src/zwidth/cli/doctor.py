@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 from zwidth.cli.options import Once, add_in_full, add_law_option, add_output, add_parameters, overrides
 from zwidth.cli.output import give_out, targets
 from zwidth.errors import InputError
+from zwidth.model.specification.table import quoted
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import read_number
-from zwidth.specification.table import quoted
 
 if TYPE_CHECKING:
-    from zwidth.device import Device
-    from zwidth.environment.environment import Environment
+    from zwidth.model.device import Device
+    from zwidth.model.environment.environment import Environment
 
 _DURATION = "60 s"
 _TIMING = ("rate", "sample_period")
@@ -51,8 +51,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth doctor`: 0."""
+    from zwidth.machine.servo.checkup import doctor
     from zwidth.quantity.units import parse_number
-    from zwidth.servo.checkup import doctor
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     core = _core(arguments.core)
@@ -74,8 +74,14 @@ def _core(typed: str | None) -> int | None:
 
 def _loop(arguments: argparse.Namespace) -> tuple[Device | None, Environment | None, Exact | None]:
     """Device, environment and period; None for what was not given, and for a period that the device has."""
-    from zwidth.specification.laws import with_laws
-    from zwidth.specification.read import DEVICE_KEYS, WITH_LAWS, read_tables, specified, specified_device
+    from zwidth.model.specification.laws import with_laws
+    from zwidth.model.specification.read import (
+        DEVICE_KEYS,
+        WITH_LAWS,
+        read_tables,
+        specified,
+        specified_device,
+    )
 
     tables, typed = read_tables(arguments.sources, WITH_LAWS), overrides(arguments)
     laws = tables.get("law") or arguments.law

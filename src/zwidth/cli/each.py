@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 from zwidth.cli.options import Once, add_parameters, overrides
 from zwidth.cli.output import print_json, print_report, say_written, targets
 from zwidth.errors import InputError
+from zwidth.model.specification.table import plain, quoted
 from zwidth.quantity.spoken import angles_in
-from zwidth.specification.table import plain, quoted
 from zwidth.writing import writing_whole
 
 if TYPE_CHECKING:
     from zwidth.cli.each_table import EachDevice
-    from zwidth.specification.read import Specification
-    from zwidth.specification.table import Table
+    from zwidth.model.specification.read import Specification
+    from zwidth.model.specification.table import Table
 
 _STATUS = ("active", "undecided", "passive in contact", "passive")
 """The outcome of the worst device says the status."""
@@ -96,7 +96,7 @@ def _save(found: EachDevice, save: Path | None) -> None:
 
 def _loops(sources: list[str], typed: Mapping[str, str]) -> Iterator[Specification]:
     """A loop for each source with a device; an environment alone is that of all."""
-    from zwidth.specification.read import built, keep_axis, merged, read_tables
+    from zwidth.model.specification.read import built, keep_axis, merged, read_tables
 
     found = [read_tables([source]) for source in sources]
     shared = [tables["environment"] for tables in found if "device" not in tables]
@@ -121,7 +121,7 @@ def _loops(sources: list[str], typed: Mapping[str, str]) -> Iterator[Specificati
 
 
 def _copy(table: Table) -> Table:
-    from zwidth.specification.table import Table
+    from zwidth.model.specification.table import Table
 
     return Table(table.label, table.values)
 

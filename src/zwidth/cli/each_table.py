@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from zwidth.errors import InputError
+from zwidth.model.specification.table import plain, quoted
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.result import Documented
 from zwidth.passivity.verdict import Verdict
@@ -21,7 +22,6 @@ from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import at_most, in_words, outward_decimal, shown_at_most, unit_text
 from zwidth.quantity.units import parse_number
 from zwidth.showing import Part, Table
-from zwidth.specification.table import plain, quoted
 from zwidth.writing import csv_cell, csv_text
 
 LARGEST_FILE = 1 << 20

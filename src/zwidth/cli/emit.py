@@ -21,15 +21,15 @@ from zwidth.errors import InputError
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from zwidth.device import Device
-    from zwidth.environment.environment import Environment
-    from zwidth.firmware.emit import Emitted
+    from zwidth.machine.firmware.emit import Emitted
+    from zwidth.model.device import Device
+    from zwidth.model.environment.environment import Environment
     from zwidth.passivity.verdict import Verdict
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth emit`."""
-    from zwidth.firmware.targets import TARGETS
+    from zwidth.machine.firmware.targets import TARGETS
 
     parser.usage = (
         "%(prog)s [SOURCE ...] [--law NAMES] [--PARAMETER VALUE ...] [--target NAME] [--number TYPE] "
@@ -79,9 +79,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth emit`: 0 where the files are written, else as `check`."""
-    from zwidth.firmware.emit import NotEmitted, emit
-    from zwidth.specification.laws import with_laws
-    from zwidth.specification.read import WITH_LAWS, read_tables, specified
+    from zwidth.machine.firmware.emit import NotEmitted, emit
+    from zwidth.model.specification.laws import with_laws
+    from zwidth.model.specification.read import WITH_LAWS, read_tables, specified
 
     if arguments.save is None:
         raise InputError("say where the files go: -o DIRECTORY")
@@ -108,7 +108,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _decided(asked: str, device: Device, environment: Environment) -> Verdict:
-    from zwidth.specification.read import Specification
+    from zwidth.model.specification.read import Specification
 
     return decided(Specification(device, environment), asked)
 

@@ -11,7 +11,7 @@ from zwidth.cli.page import Row, below, grid, headline, items, page, section
 from zwidth.passivity.outcome import TOLD
 
 if TYPE_CHECKING:
-    from zwidth.firmware.emit import Emitted
+    from zwidth.machine.firmware.emit import Emitted
 
 
 def print_emitted(found: Emitted, written: Sequence[Path]) -> None:

@@ -6,10 +6,10 @@ import argparse
 import shlex
 from pathlib import Path
 
-from zwidth import samples
 from zwidth.cli.output import check_new, quiet_pipe
 from zwidth.errors import InputError
-from zwidth.specification.table import plain
+from zwidth.model import samples
+from zwidth.model.specification.table import plain
 from zwidth.writing import writing_whole
 
 

@@ -10,7 +10,7 @@ from threading import Event
 from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
 from zwidth.cli.output import quiet_pipe
 from zwidth.errors import InputError
-from zwidth.specification.table import quoted
+from zwidth.model.specification.table import quoted
 
 HOST = "127.0.0.1"
 USUAL_PORT = 5007
@@ -52,12 +52,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth explore`: until Ctrl-C."""
-    from zwidth.explorer.library import need_libraries
+    from zwidth.show.explorer.library import need_libraries
 
     port = _port(arguments.port)
     need_libraries()
-    from zwidth.explorer.serving import serve_explorer
-    from zwidth.explorer.starts import from_sources
+    from zwidth.show.explorer.serving import serve_explorer
+    from zwidth.show.explorer.starts import from_sources
 
     state = from_sources(arguments.sources, overrides(arguments), arguments.law)
     given = {"address": arguments.address or HOST, "token": arguments.token}

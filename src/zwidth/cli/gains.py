@@ -10,11 +10,11 @@ from zwidth.cli.decision import exit_status
 from zwidth.cli.options import Once, add_in_full
 from zwidth.cli.output import print_json, say_written, targets
 from zwidth.errors import InputError
+from zwidth.model.specification.read import question_time
 from zwidth.quantity.units import parse_number
-from zwidth.specification.read import question_time
 
 if TYPE_CHECKING:
-    from zwidth.gains import ArmGains, Controllers, GainsVerdict
+    from zwidth.data.gains import ArmGains, Controllers, GainsVerdict
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -99,7 +99,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth gains`: the status says the outcome; 3 where no law of both arms is known."""
-    from zwidth.gains import check_gains, read_gains
+    from zwidth.data.gains import check_gains, read_gains
 
     if arguments.family is None and _of_controllers(arguments.files):
         return _held(arguments)
@@ -145,15 +145,15 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _of_controllers(files: list[str]) -> bool:
     """One file, with gains of ros2_control."""
-    from zwidth.gains.controllers import is_of_controllers
-    from zwidth.gains.file import read_table
+    from zwidth.data.gains.controllers import is_of_controllers
+    from zwidth.data.gains.file import read_table
 
     return len(files) == 1 and is_of_controllers(read_table(files[0]))
 
 
 def _held(arguments: argparse.Namespace) -> int:
     """The joints of one arm, each held at a target by the spring of its controller."""
-    from zwidth.gains import check_controllers, passive_gains, read_controllers
+    from zwidth.data.gains import check_controllers, passive_gains, read_controllers
     from zwidth.passivity.document import to_json
 
     for option in (

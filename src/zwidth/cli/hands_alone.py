@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from zwidth.errors import InputError
-from zwidth.specification.table import quoted, suggestion
+from zwidth.model.specification.table import quoted, suggestion
 
 if TYPE_CHECKING:
-    from zwidth.specification.read import Specification
-    from zwidth.stability import Stability
+    from zwidth.model.specification.read import Specification
+    from zwidth.passivity.stability import Stability
 
 NAMES = "none, finger, dowel; of a rotary device none, hands-on"
 """Of the hands, for a help."""
@@ -26,7 +26,7 @@ def named_hands(typed: str, motion: str) -> dict[str, Any]:
     InputError
         If one is not known.
     """
-    from zwidth.maps.request import standard_hands
+    from zwidth.study.maps.request import standard_hands
 
     known, names = standard_hands(motion), [name.strip() for name in typed.split(",")]
     for name in names:
@@ -45,7 +45,7 @@ def with_hands(loop: Specification, typed: str | None) -> dict[str, Stability]:
     """
     if typed is None:
         return {}
-    from zwidth.stability import coupled_stability
+    from zwidth.passivity.stability import coupled_stability
 
     hands = named_hands(typed, loop.device.motion)
     return {name: coupled_stability(loop.device, loop.environment, hand) for name, hand in hands.items()}

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
-    from zwidth.environment import Environment
-    from zwidth.identification.device.identified import Identified
-    from zwidth.identification.logs import Log
+    from zwidth.data.identification.device.identified import Identified
+    from zwidth.data.logs import Log
+    from zwidth.model.environment import Environment
     from zwidth.passivity.verdict import Verdict
 
 

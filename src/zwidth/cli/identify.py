@@ -12,7 +12,7 @@ from zwidth.cli.identification_result import Result
 from zwidth.cli.options import BEHIND, Once, add_all, add_in_full, add_output, environment_parameters, given
 from zwidth.cli.output import print_json, say_written, targets
 from zwidth.errors import InputError
-from zwidth.specification.table import quoted
+from zwidth.model.specification.table import quoted
 
 QUANTITIES = ("time", "position", "hand_force", "actuator_force")
 """What a column may hold."""
@@ -105,9 +105,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _found(arguments: argparse.Namespace, confidence: float) -> Result:
-    from zwidth.identification.logs import Log
-    from zwidth.identification.recording import identify, log_from
-    from zwidth.traces.progress import progress_bar
+    from zwidth.data.identification.recording import identify, log_from
+    from zwidth.data.logs import Log
+    from zwidth.progress import progress_bar
 
     options = _options(arguments)
     environment_of = _environment(arguments)
@@ -123,7 +123,7 @@ def _found(arguments: argparse.Namespace, confidence: float) -> Result:
         return Result(log, identified, confidence, others, None, None, None)
     if identified.shows("wrong model"):
         return Result(log, identified, confidence, others, environment, None, None)
-    from zwidth.specification.read import Specification
+    from zwidth.model.specification.read import Specification
 
     verdict = decided(Specification(identified.device(confidence, **others), environment))
     passive_for = identified.confidence(environment, **others)
@@ -168,7 +168,7 @@ def _options(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def _confidence(typed: str | None) -> float:
     """0.99 from "99%", "99 %" or "0.99"."""
-    from zwidth.identification.device.estimate import MOST_CONFIDENCE
+    from zwidth.data.identification.device.estimate import MOST_CONFIDENCE
     from zwidth.quantity.units import parse_number
 
     if typed is None:
@@ -185,8 +185,8 @@ def _confidence(typed: str | None) -> float:
 
 def _environment(arguments: argparse.Namespace) -> Any:
     """What makes the environment to check, once the motion is known; None of it where none was given."""
-    from zwidth.specification.environments import build_environment
-    from zwidth.specification.read import environment_table, read_tables
+    from zwidth.model.specification.environments import build_environment
+    from zwidth.model.specification.read import environment_table, read_tables
 
     keys = [p.key for p in environment_parameters()]
     words = given(arguments, (*keys, *(BEHIND + key for key in keys)))

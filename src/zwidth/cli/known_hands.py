@@ -8,10 +8,10 @@ from collections.abc import Iterator, Mapping
 from zwidth.cli.options import Parameter, given
 from zwidth.cli.simulation_tables import FOLLOWER, OPERATOR
 from zwidth.errors import InputError
-from zwidth.operator.hand_impedance import HandImpedance
+from zwidth.model.operator.hand_impedance import HandImpedance
+from zwidth.model.specification.table import located, quoted
+from zwidth.model.specification.values import read
 from zwidth.quantity.parameter import parameters_of
-from zwidth.specification.table import located, quoted
-from zwidth.specification.values import read
 
 NOBODY, IMPEDANCE = "nobody", "impedance"
 

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import Once, add_in_full, add_law_option, add_output, add_parameters, overrides
 from zwidth.cli.output import print_json, print_message, say_written, targets
-from zwidth.device.catalogue import PROPERTIES
 from zwidth.errors import InputError
+from zwidth.model.device.catalogue import PROPERTIES
+from zwidth.model.specification.environments import option_keys
+from zwidth.model.specification.laws import with_laws
+from zwidth.model.specification.table import quoted, suggestion
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
-from zwidth.specification.environments import option_keys
-from zwidth.specification.laws import with_laws
-from zwidth.specification.table import quoted, suggestion
 
 if TYPE_CHECKING:
+    from zwidth.model.specification.read import Specification
     from zwidth.passivity.bracket import Bracket
-    from zwidth.specification.read import Specification
 
 _ON_DEVICE = ("damping", "coulomb_friction", "resolution", "delay", "rate")
 """Parameters of a device on which an outcome depends."""
@@ -68,7 +68,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth limit`: 0 if both sides of the limit were found, else 3."""
-    from zwidth.specification.read import WITH_LAWS, Specification, read_tables, specified
+    from zwidth.model.specification.read import WITH_LAWS, Specification, read_tables, specified
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     tables = read_tables(arguments.sources, WITH_LAWS)
@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
         _refuse_without_stiffness(loop)
     parameter = named(arguments.parameter or "stiffness")
     options = _options(arguments, loop.device.motion)
-    from zwidth.traces.with_bar.passive_limit import passive_limit
+    from zwidth.show.with_bar.passive_limit import passive_limit
 
     bracket = passive_limit(loop.device, loop.environment, parameter, told=_announce, **options)
     if save is not None:

@@ -23,10 +23,10 @@ from zwidth.cli.page import (
     section,
     small_print,
 )
+from zwidth.model.specification.read import Specification
 from zwidth.passivity.bracket import Bracket
 from zwidth.passivity.in_short import in_short
 from zwidth.quantity.text import in_words, shown
-from zwidth.specification.read import Specification
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from zwidth.cli.options import Once, Parameter, add_all, add_angles, add_output, given, heed_angles
 from zwidth.cli.output import give_out, targets
 from zwidth.errors import InputError
-from zwidth.specification.read import load_device
+from zwidth.model.specification.read import load_device
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
             f"got {len(arguments.sources)}"
         )
     from zwidth.links import Schedule, compare
-    from zwidth.traces.progress import progress_bar
+    from zwidth.progress import progress_bar
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     heed_angles(arguments)

@@ -19,8 +19,8 @@ from zwidth.cli.output import print_message, quiet_pipe, tolerate_encoding
 from zwidth.cli.typed import as_typed, joined
 from zwidth.cli.welcome import WELCOME
 from zwidth.errors import InputError
+from zwidth.model.specification.table import plain, quoted, suggestion
 from zwidth.quantity.spoken import answers_as_typed
-from zwidth.specification.table import plain, quoted, suggestion
 
 BAD_INPUT = 2
 INTERRUPTED = 130

@@ -12,20 +12,20 @@ from zwidth.cli.hands_alone import NAMES, named_hands
 from zwidth.cli.options import Once, add_all, device_parameters, given
 from zwidth.cli.output import print_json, print_message, print_report, say_written, targets
 from zwidth.errors import InputError
+from zwidth.model.specification.read import LOOP_TABLES, keep_axis, read_tables, specified_device
+from zwidth.model.specification.table import Table, plain, quoted
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken_data
 from zwidth.quantity.text import outward_decimal, shown, told_quantity, unit_text
 from zwidth.quantity.units import parse_number
 from zwidth.showing import Part
 from zwidth.showing import Table as ShownTable
-from zwidth.specification.read import LOOP_TABLES, keep_axis, read_tables, specified_device
-from zwidth.specification.table import Table, plain, quoted
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from zwidth.device import Device
-    from zwidth.environment.velocity import VelocityEstimator
+    from zwidth.model.device import Device
+    from zwidth.model.environment.velocity import VelocityEstimator
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -80,7 +80,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth map`: 0."""
-    from zwidth.maps import z_width
+    from zwidth.study.maps import z_width
 
     plot, proof = targets(arguments.plot, arguments.certify, arguments.force, "--certify")
     tables = read_tables(arguments.sources, LOOP_TABLES)
@@ -95,7 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
             print_message(f"{plain(arguments.save, 200)} keeps what is finished; the same command goes on")
         raise
     if plot is not None:
-        from zwidth.plots import save_z_width  # matplotlib takes its time
+        from zwidth.show.plots import save_z_width  # matplotlib takes its time
 
         save_z_width(found, plot, overwrite=True)
     if proof is not None:
@@ -110,7 +110,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _certify(device: Device, found: xr.Dataset, velocity: VelocityEstimator | None, path: Path) -> None:
-    from zwidth.maps import z_width_certificate
+    from zwidth.study.maps import z_width_certificate
 
     certificate = z_width_certificate(device, found, velocity_filter=velocity)
     if certificate is None:
@@ -132,8 +132,8 @@ def _filter_of(table: Table | None, motion: str) -> VelocityEstimator | None:
     """The velocity filter of a wall in a file, of which the rest is what the map goes through."""
     if table is None:
         return None
-    from zwidth.environment import Wall
-    from zwidth.specification.environments import build_environment
+    from zwidth.model.environment import Wall
+    from zwidth.model.specification.environments import build_environment
 
     wall = build_environment(table, motion)
     if not isinstance(wall, Wall):
@@ -143,7 +143,7 @@ def _filter_of(table: Table | None, motion: str) -> VelocityEstimator | None:
 
 def _options(arguments: argparse.Namespace, motion: str, environment: Table | None) -> dict[str, Any]:
     """The map as `z_width` takes it."""
-    from zwidth.specification.values import velocity_filter
+    from zwidth.model.specification.values import velocity_filter
 
     options: dict[str, Any] = {
         "stiffness": _range(arguments.stiffness, "stiffness", "stiffness", motion),

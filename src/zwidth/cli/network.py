@@ -23,8 +23,8 @@ from zwidth.showing import Part
 
 if TYPE_CHECKING:
     from zwidth.cli.network_plan import Plan
-    from zwidth.network.peer import Peer
-    from zwidth.servo.port_run import PortRun
+    from zwidth.machine.network.peer import Peer
+    from zwidth.machine.servo.port_run import PortRun
 
 FORMAT = "zwidth network 1"
 
@@ -76,9 +76,9 @@ def _described(plan: Plan) -> list[Part]:
 
 
 def _one(plan: Plan, name: str, duration: Exact, as_json: bool) -> int:
-    from zwidth.servo.port_run import PortRun
-    from zwidth.servo.priority import RealTime
-    from zwidth.servo.safety import ASKED, DONE
+    from zwidth.machine.servo.port_run import PortRun
+    from zwidth.machine.servo.priority import RealTime
+    from zwidth.machine.servo.safety import ASKED, DONE
 
     signal.signal(signal.SIGTERM, _interrupted)
     peer = plan.peer(name, duration)

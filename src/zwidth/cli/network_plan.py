@@ -25,32 +25,32 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.simulation_tables import build_hand
-from zwidth.device import Device
 from zwidth.errors import InputError
 from zwidth.links import Schedule, WavePort, held_back
-from zwidth.network.channel import Channel
-from zwidth.network.device_run import DeviceRun
-from zwidth.network.lossy import Lossy
-from zwidth.network.open import open_channel
-from zwidth.network.part_run import PartRun
-from zwidth.network.peer import Peer
-from zwidth.operator.operator import Operator
-from zwidth.operator.usual import usual_kind
+from zwidth.machine.network.channel import Channel
+from zwidth.machine.network.device_run import DeviceRun
+from zwidth.machine.network.lossy import Lossy
+from zwidth.machine.network.open import open_channel
+from zwidth.machine.network.part_run import PartRun
+from zwidth.machine.network.peer import Peer
+from zwidth.model.device import Device
+from zwidth.model.operator.operator import Operator
+from zwidth.model.operator.usual import usual_kind
+from zwidth.model.scene.parts import Cut, best_parts, cut_scene
+from zwidth.model.scene.scene import Scene
+from zwidth.model.specification.environments import build_environment
+from zwidth.model.specification.read import load_device, read_tables
+from zwidth.model.specification.table import Table, located
+from zwidth.model.specification.values import read
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import parameters_of, read_number
 from zwidth.quantity.text import shown
-from zwidth.scene.parts import Cut, best_parts, cut_scene
-from zwidth.scene.scene import Scene
-from zwidth.specification.environments import build_environment
-from zwidth.specification.read import load_device, read_tables
-from zwidth.specification.table import Table, located
-from zwidth.specification.values import read
 
 if TYPE_CHECKING:
-    from zwidth.servo.connection import Placement
-    from zwidth.servo.port_run import PortRun
-    from zwidth.servo.safety import Safety
+    from zwidth.machine.servo.connection import Placement
+    from zwidth.machine.servo.port_run import PortRun
+    from zwidth.machine.servo.safety import Safety
 
 _LONGEST_WAIT = 20.0
 """How long a process waits for the one that makes their shared memory [s]."""
@@ -109,7 +109,7 @@ class Held:
         if self.reached is None:
             assert self.hand is not None
             return DeviceRun(port, self.hand, duration, line)
-        from zwidth.servo.port_run import PortRun
+        from zwidth.machine.servo.port_run import PortRun
 
         return PortRun(port, line=line, **vars(self.reached))
 
@@ -321,9 +321,9 @@ def _device(row: Table) -> tuple[str, Held]:
 
 def _real(row: Table, device: Device, wait: Fraction) -> Held:
     """A device with a connection."""
-    from zwidth.servo.connection import Placement
-    from zwidth.servo.devices.registry import build_connection
-    from zwidth.servo.safety import read_safety
+    from zwidth.machine.servo.connection import Placement
+    from zwidth.machine.servo.devices.registry import build_connection
+    from zwidth.machine.servo.safety import read_safety
 
     if "operator" in row.values:
         raise InputError(

@@ -11,8 +11,8 @@ from zwidth.cli.asking.written import Written
 from zwidth.cli.options import Once
 from zwidth.cli.output import check_new, print_text, quiet_pipe, say_written
 from zwidth.errors import InputError
+from zwidth.model.specification.table import quoted, suggestion
 from zwidth.showing import printable
-from zwidth.specification.table import quoted, suggestion
 from zwidth.writing import writing_whole
 
 _KINDS = {"device": device, "environment": environment}

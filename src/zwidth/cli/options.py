@@ -12,14 +12,14 @@ from typing import Any, NamedTuple
 
 from zwidth.cli.typed import Once as Once
 from zwidth.cli.typed import heed_angles as heed_angles
-from zwidth.device.rotary import ROTARY
 from zwidth.errors import InputError
+from zwidth.model.device.rotary import ROTARY
+from zwidth.model.rendering import LAWS
+from zwidth.model.specification import pairs
+from zwidth.model.specification.environments import TYPES, option_keys
+from zwidth.model.specification.read import DEVICE_KEYS
+from zwidth.model.specification.table import quoted
 from zwidth.quantity.glossary import GLOSSARY, Quantity
-from zwidth.rendering import LAWS
-from zwidth.specification import pairs
-from zwidth.specification.environments import TYPES, option_keys
-from zwidth.specification.read import DEVICE_KEYS
-from zwidth.specification.table import quoted
 
 BEHIND = "environment."
 """What stands before a key of the environment behind a coupling."""

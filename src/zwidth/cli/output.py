@@ -13,8 +13,8 @@ from typing import Any, TextIO
 
 from zwidth.cli.width import columns, fitted, wrapped
 from zwidth.errors import InputError
+from zwidth.model.specification.table import plain
 from zwidth.showing import OBEYED, Part, printable
-from zwidth.specification.table import plain
 from zwidth.writing import check_target
 
 PICTURES = (".png", ".svg", ".pdf")

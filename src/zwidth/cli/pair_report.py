@@ -23,8 +23,8 @@ from zwidth.cli.page import (
     section,
     small_print,
 )
-from zwidth.device import Device
-from zwidth.pairs import Pair
+from zwidth.model.device import Device
+from zwidth.model.pairs import Pair
 from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.pairs import PairVerdict, PairWitness
 from zwidth.passivity.pairs.held import HeldVerdict, HeldWitness

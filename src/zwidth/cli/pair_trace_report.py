@@ -10,14 +10,14 @@ import numpy as np
 from rich.padding import Padding
 from rich.text import Text
 
-from zwidth.bench.scores import static_stiffness, tracking_error
 from zwidth.cli.page import below, blocks, grid, headline, more_with_all, page
 from zwidth.cli.trace_report import how_long
-from zwidth.energy import PairLedger
-from zwidth.energy.ledger import ROUNDING
+from zwidth.loop.energy import PairLedger
+from zwidth.loop.energy.ledger import ROUNDING
 from zwidth.loop.trace import UNITS
+from zwidth.loop.traces.scores import static_stiffness, tracking_error
+from zwidth.model.specification.table import plain
 from zwidth.quantity.text import quantity_unit, shown
-from zwidth.specification.table import plain
 
 if TYPE_CHECKING:
     from zwidth.loop.trace import AnyTrace

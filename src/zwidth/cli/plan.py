@@ -8,9 +8,9 @@ from typing import Any
 from zwidth.cli.options import Once, add_all, device_parameters, given
 from zwidth.cli.output import print_text
 from zwidth.errors import InputError
+from zwidth.model.specification.read import load_device
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
-from zwidth.specification.read import load_device
 
 _OPTIONS = (
     ("--force-noise", "σ", "standard deviation of the load cell per sample [N; rotary N*m]"),
@@ -43,7 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth plan`: 0."""
-    from zwidth.identification.device.plan import plan_identification
+    from zwidth.data.identification.device.plan import plan_identification
 
     device = load_device(arguments.sources, given(arguments, [p.key for p in device_parameters()]))
     plan = plan_identification(device, **_numbers(arguments, device.motion))

@@ -16,7 +16,7 @@ from zwidth.cli.output import print_text, say_written, target
 from zwidth.writing import writing_whole
 
 if TYPE_CHECKING:
-    from zwidth.explorer.play import Played
+    from zwidth.show.explorer.play import Played
 
 SUFFIXES = (".html", ".htm")
 
@@ -51,7 +51,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth play`: 0."""
-    from zwidth.explorer.play import play_page
+    from zwidth.show.explorer.play import play_page
 
     save = target("--save", arguments.save, SUFFIXES, arguments.force)
     loops = _loops(arguments)
@@ -83,8 +83,8 @@ def _temporary() -> Path:
 def _loops(arguments: argparse.Namespace) -> list[Played]:
     """The loop that was asked for; those to begin with where none was."""
     from zwidth.cli.decision import asked, decided
-    from zwidth.explorer.play import played, presets
-    from zwidth.specification.read import Specification
+    from zwidth.model.specification.read import Specification
+    from zwidth.show.explorer.play import played, presets
 
     if not (arguments.sources or overrides(arguments) or arguments.law):
         return presets()

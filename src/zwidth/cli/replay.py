@@ -13,7 +13,7 @@ from zwidth.cli.output import print_json, print_report, print_text, say_written,
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
-    from zwidth.servo.recording import Recording
+    from zwidth.machine.servo.recording import Recording
 
 _SAVED = ".nc"
 
@@ -33,7 +33,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth replay`: 0, or 1 where a law gives other forces than were given."""
-    from zwidth.servo.recording import read_recording
+    from zwidth.machine.servo.recording import read_recording
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if save is not None and save.suffix.lower() != _SAVED:
@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _replayed(recording: Recording) -> Iterator[dict[str, Any]]:
     """What came of each law that was served; why not, where it cannot be replayed."""
-    from zwidth.servo.recording import replay
+    from zwidth.machine.servo.recording import replay
 
     for law in recording.laws:
         try:
@@ -77,7 +77,7 @@ def _write(recording: Recording, plot: Path | None, save: Path | None) -> None:
     if recording.samples < 2:
         raise InputError(f"{recording.path} holds {recording.samples} rows: there is nothing to draw or save")
     if save is not None:
-        from zwidth.traces.files import save_netcdf
+        from zwidth.loop.traces.files import save_netcdf
 
         save_netcdf(recording.dataset(), save)
     if plot is not None:

@@ -42,8 +42,8 @@ if TYPE_CHECKING:
 
     from zwidth.passivity.finite_stiffness import FiniteStiffnessReplay
     from zwidth.passivity.over_ranges import OverRanges
-    from zwidth.stability import Stability
-    from zwidth.stability.active_hand import ToleratedActivity
+    from zwidth.passivity.stability import Stability
+    from zwidth.passivity.stability.active_hand import ToleratedActivity
 
 _FIRST = ("limit", "largest passive gain", "damping, contact broken too")
 """Of the numbers: what a short report has; how stiff it may be stands in what to change."""

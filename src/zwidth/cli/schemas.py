@@ -6,7 +6,7 @@ import json
 from importlib.resources import files
 
 from zwidth.errors import InputError
-from zwidth.specification.table import quoted, suggestion
+from zwidth.model.specification.table import quoted, suggestion
 
 
 def schema(kind: str) -> str:

@@ -31,12 +31,12 @@ from zwidth.cli.serve_tables import (
     safety_parameters,
 )
 from zwidth.errors import InputError
-from zwidth.specification.laws import with_laws
-from zwidth.specification.read import PAIR_TABLES, WITH_LAWS, read_tables, specified
-from zwidth.specification.table import Table
+from zwidth.model.specification.laws import with_laws
+from zwidth.model.specification.read import PAIR_TABLES, WITH_LAWS, read_tables, specified
+from zwidth.model.specification.table import Table
 
 if TYPE_CHECKING:
-    from zwidth.servo import Connection, Placement, Safety, Servo
+    from zwidth.machine.servo import Connection, Placement, Safety, Servo
 
 SERVED_TABLES = (*WITH_LAWS, OPERATOR, CONNECTION, SAFETY)
 OF_A_PAIR = (*PAIR_TABLES, "follower_connection", "follower_operator")
@@ -100,9 +100,9 @@ def run(arguments: argparse.Namespace) -> int:
     """`zwidth serve`: 0 where it ran to its end, 5 where the force ended by a fault, else as `check`."""
     from zwidth.cli.decision import decided, exit_status
     from zwidth.cli.serve_commands import listen
-    from zwidth.servo.proving import NotProved
-    from zwidth.servo.serving import serve
-    from zwidth.specification.read import Specification
+    from zwidth.machine.servo.proving import NotProved
+    from zwidth.machine.servo.serving import serve
+    from zwidth.model.specification.read import Specification
 
     save = _target(arguments)
     faces = _faces(arguments)
@@ -138,7 +138,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _serve_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> int:
     from zwidth.cli.decision import exit_status
     from zwidth.cli.serve_pair import served_pair
-    from zwidth.servo.pair import PairNotProved
+    from zwidth.machine.servo.pair import PairNotProved
 
     try:
         report = served_pair(arguments, tables)
@@ -197,7 +197,7 @@ def _port(typed: str | None, wanted: list[str]) -> dict[str, Any]:
 def _origin(typed: str | None, wanted: list[str]) -> dict[str, Any]:
     if typed is None:
         return {}
-    from zwidth.servo.live.page import checked_origin
+    from zwidth.machine.servo.live.page import checked_origin
 
     if "foxglove" not in wanted:
         raise InputError("--watch-origin goes with --watch foxglove")
@@ -208,7 +208,7 @@ def begin_watching(
     face: str, port: dict[str, Any], origin: dict[str, Any], servo: Servo
 ) -> Callable[[], Any]:
     """Open a face on what is served; returns what closes it."""
-    from zwidth.servo import live
+    from zwidth.machine.servo import live
 
     if face == "terminal":
         return _in_terminal(servo)
@@ -221,7 +221,7 @@ def begin_watching(
 def _in_terminal(servo: Servo) -> Callable[[], Any]:
     from threading import Event, Thread
 
-    from zwidth.servo.live import watch_in_terminal
+    from zwidth.machine.servo.live import watch_in_terminal
 
     stop = Event()
     drawing = Thread(target=watch_in_terminal, args=(servo.rows, stop), daemon=True)
@@ -243,7 +243,7 @@ def _connection(
 
 
 def _safety(arguments: argparse.Namespace, tables: Mapping[str, Table], motion: str) -> Safety:
-    from zwidth.servo.safety import read_safety
+    from zwidth.machine.servo.safety import read_safety
 
     typed = given(arguments, [p.key for p in safety_parameters()])
     return read_safety(merged(tables.get(SAFETY), typed, SAFETY), motion)
@@ -253,7 +253,7 @@ def _hand(
     arguments: argparse.Namespace, tables: Mapping[str, Table], motion: str, connection: Connection | None
 ) -> Any:
     from zwidth.cli.simulation_tables import build_hand, operator_parameters
-    from zwidth.operator import HandsOff
+    from zwidth.model.operator import HandsOff
 
     typed = given(arguments, [p.key for p in operator_parameters()])
     if OPERATOR not in tables and not typed:
@@ -272,7 +272,7 @@ def _hand(
 def _target(arguments: argparse.Namespace) -> Path | None:
     if arguments.save is None:
         return None
-    from zwidth.servo.recording.recorder import check_recording
+    from zwidth.machine.servo.recording.recorder import check_recording
 
     path = Path(arguments.save)
     check_recording(path, arguments.force)

@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Any, TextIO
 from zwidth.cli.options import environment_parameters, overrides
 from zwidth.cli.output import quiet_pipe
 from zwidth.errors import InputError
-from zwidth.specification.laws import with_laws
-from zwidth.specification.read import WITH_LAWS, read_tables, specified
-from zwidth.specification.table import plain, quoted, suggestion
+from zwidth.model.specification.laws import with_laws
+from zwidth.model.specification.read import WITH_LAWS, read_tables, specified
+from zwidth.model.specification.table import plain, quoted, suggestion
 
 if TYPE_CHECKING:
-    from zwidth.environment.environment import Environment
-    from zwidth.servo import Servo
+    from zwidth.machine.servo import Servo
+    from zwidth.model.environment.environment import Environment
 
 
 def listen(arguments: argparse.Namespace, servo: Servo) -> Callable[[], Any]:

@@ -26,11 +26,11 @@ from zwidth.cli.serve_tables import (
 )
 from zwidth.cli.simulate_pair import pair_with_options
 from zwidth.errors import InputError
-from zwidth.specification.table import Table
+from zwidth.model.specification.table import Table
 
 if TYPE_CHECKING:
-    from zwidth.pairs import Pair
-    from zwidth.servo import PairServoReport
+    from zwidth.machine.servo import PairServoReport
+    from zwidth.model.pairs import Pair
 
 FOLLOWER_CONNECTION, FOLLOWER_OPERATOR = "follower_connection", "follower_operator"
 
@@ -47,8 +47,8 @@ def served_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> P
     InputError
         If anything cannot be used.
     """
-    from zwidth.servo import PairServo, Placement
-    from zwidth.servo.safety import read_safety
+    from zwidth.machine.servo import PairServo, Placement
+    from zwidth.machine.servo.safety import read_safety
 
     if arguments.watch or arguments.save or arguments.commands:
         raise InputError(
@@ -71,7 +71,7 @@ def _side(
     pair: Pair, leads: bool, arguments: argparse.Namespace, tables: Mapping[str, Table], duration: str
 ) -> tuple[Any, Any]:
     """The connection of one arm, and where it is placed; None where it is simulated."""
-    from zwidth.servo.devices import Simulated
+    from zwidth.machine.servo.devices import Simulated
 
     name = CONNECTION if leads else FOLLOWER_CONNECTION
     typed = given(arguments, [p.key for p in connection_parameters()]) if leads else {}
@@ -88,7 +88,7 @@ def _hand(
 ) -> Any:
     """What holds a simulated arm."""
     from zwidth.cli.simulation_tables import build_hand, operator_parameters
-    from zwidth.operator import HandsOff, usual_hand
+    from zwidth.model.operator import HandsOff, usual_hand
 
     name = OPERATOR if leads else FOLLOWER_OPERATOR
     typed = given(arguments, [p.key for p in operator_parameters()]) if leads else {}

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 from zwidth.cli.options import Parameter
 from zwidth.errors import InputError
-from zwidth.specification.table import COMMAND_LINE, Table
+from zwidth.model.specification.table import COMMAND_LINE, Table
 
 if TYPE_CHECKING:
-    from zwidth.servo import Connection, Placement
+    from zwidth.machine.servo import Connection, Placement
 
 CONNECTION, SAFETY, OPERATOR = "connection", "safety", "operator"
 
 
 def connection_parameters() -> list[Parameter]:
     """The options of a connection."""
-    from zwidth.servo.devices.registry import CONNECTIONS, SIMULATED, keys
+    from zwidth.machine.servo.devices.registry import CONNECTIONS, SIMULATED, keys
 
     kinds = ", ".join((SIMULATED, *CONNECTIONS))
     found = [
@@ -34,8 +34,8 @@ def connection_parameters() -> list[Parameter]:
 
 def safety_parameters() -> list[Parameter]:
     """The options of the safety."""
+    from zwidth.machine.servo.safety import MEANINGS, Safety
     from zwidth.quantity.parameter import parameters_of
-    from zwidth.servo.safety import MEANINGS, Safety
 
     found = []
     for name, own in parameters_of(Safety).items():
@@ -55,8 +55,8 @@ def reached(table: Table, motion: str) -> tuple[Connection | None, Placement | N
     InputError
         If a key is unknown or has a value it cannot have.
     """
-    from zwidth.servo import Placement
-    from zwidth.servo.devices.registry import SIMULATED, build_connection
+    from zwidth.machine.servo import Placement
+    from zwidth.machine.servo.devices.registry import SIMULATED, build_connection
 
     place = Table(table.label, {k: table.values.pop(k) for k in ("origin", "sense") if k in table.values})
     kind = table.values.get("type", SIMULATED)

@@ -21,21 +21,21 @@ from zwidth.cli.options import (
 )
 from zwidth.cli.output import PICTURES, print_json, say_written, target
 from zwidth.cli.simulate_pair import pair_measures, simulated_pair
-from zwidth.environment import Environment, NonlinearSpring
 from zwidth.errors import InputError
-from zwidth.operator.parameter import ParametricOperator
-from zwidth.operator.usual import usual_kind
+from zwidth.model.environment import Environment, NonlinearSpring
+from zwidth.model.operator.parameter import ParametricOperator
+from zwidth.model.operator.usual import usual_kind
+from zwidth.model.specification.laws import with_laws
+from zwidth.model.specification.read import PAIR_TABLES, TABLES, read_tables, specified
+from zwidth.model.specification.table import Table
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import shown
-from zwidth.specification.laws import with_laws
-from zwidth.specification.read import PAIR_TABLES, TABLES, read_tables, specified
-from zwidth.specification.table import Table
 
 if TYPE_CHECKING:
-    from zwidth.device import Device
     from zwidth.loop.trace import AnyTrace, Trace
-    from zwidth.operator import Operator
+    from zwidth.model.device import Device
+    from zwidth.model.operator import Operator
 
 SAVED = (".nc", ".parquet", ".csv")
 SOUNDS = (".wav",)
@@ -83,11 +83,11 @@ def run(arguments: argparse.Namespace) -> int:
         (simulated_pair(arguments, tables), "", "") if pair else _simulated(arguments, tables)
     )
     if sound is not None:
-        from zwidth.traces.sound import save_sound
+        from zwidth.loop.traces.sound import save_sound
 
         save_sound(trace.sel(arm="leader") if pair else trace, sound, force=True)
     if save is not None or plot is not None:
-        from zwidth.traces.accessor import TraceAccessor  # xarray takes its time
+        from zwidth.loop.traces.accessor import TraceAccessor  # xarray takes its time
 
         data = trace.dataset()
         if save is not None:
@@ -118,7 +118,7 @@ def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tu
         simulation_parameters,
     )
     from zwidth.loop.simulate import simulated
-    from zwidth.traces.with_bar import with_bar
+    from zwidth.show.with_bar import with_bar
 
     if FOLLOWER in tables or given(arguments, [p.key for p in follower_parameters()]):
         raise InputError(
@@ -204,8 +204,8 @@ def summary(trace: AnyTrace) -> dict[str, Any]:
     about = {key: value for key, value in trace.attrs.items() if key != "format"}
     if "arm" in trace.dims:
         return {"format": "zwidth pair simulation 1", **about, **pair_measures(trace)}
-    from zwidth.energy import ledger
-    from zwidth.traces.measures import keyed, measure
+    from zwidth.loop.energy import ledger
+    from zwidth.loop.traces.measures import keyed, measure
 
     measures = keyed(measure(trace), str(trace.attrs["motion"]))
     return {"format": "zwidth simulation 1", **about, **measures, "energy": ledger(trace).to_dict()}

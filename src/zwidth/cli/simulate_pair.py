@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import given, overrides
 from zwidth.errors import InputError
-from zwidth.pairs import Pair
+from zwidth.model.pairs import Pair
+from zwidth.model.specification.pairs import option_keys, pair_of
+from zwidth.model.specification.read import PAIR_TABLES
+from zwidth.model.specification.table import Table
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.specification.pairs import option_keys, pair_of
-from zwidth.specification.read import PAIR_TABLES
-from zwidth.specification.table import Table
 
 if TYPE_CHECKING:
     from zwidth.loop.trace import AnyTrace, Trace
@@ -35,7 +35,7 @@ def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -
         simulation_parameters,
     )
     from zwidth.loop.simulate import simulated
-    from zwidth.traces.with_bar import with_bar
+    from zwidth.show.with_bar import with_bar
 
     pair = pair_with_options(arguments, tables)
     typed = given(arguments, [p.key for p in (*operator_parameters(), *simulation_parameters())])
@@ -73,8 +73,8 @@ def pair_with_options(arguments: argparse.Namespace, tables: Mapping[str, Table]
 
 def pair_measures(trace: AnyTrace) -> dict[str, Any]:
     """What a trace of a pair is measured by, a unit in every key."""
-    from zwidth.bench.scores import static_stiffness, tracking_error
-    from zwidth.energy import PairLedger
+    from zwidth.loop.energy import PairLedger
+    from zwidth.loop.traces.scores import static_stiffness, tracking_error
 
     motion = str(trace.attrs["motion"])
     felt, apart = static_stiffness(trace.sel(arm="leader")), tracking_error(trace)

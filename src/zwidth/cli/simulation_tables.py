@@ -15,11 +15,11 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from zwidth.cli.options import Parameter
-from zwidth.device import amplifier as amplifiers
-from zwidth.device.amplifier import Amplifier
-from zwidth.environment import Wall
 from zwidth.errors import InputError
-from zwidth.operator import (
+from zwidth.model.device import amplifier as amplifiers
+from zwidth.model.device.amplifier import Amplifier
+from zwidth.model.environment import Wall
+from zwidth.model.operator import (
     OPERATORS,
     HandsOff,
     Operator,
@@ -27,9 +27,9 @@ from zwidth.operator import (
     RecordedForce,
     WitnessMotion,
 )
+from zwidth.model.specification.table import COMMAND_LINE, Table, located, plain, quoted, suggestion
 from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.units import parse_number
-from zwidth.specification.table import COMMAND_LINE, Table, located, plain, quoted, suggestion
 
 OPERATOR, FOLLOWER = "operator", "follower_operator"
 """The hand, and that on the follower of a pair; on the command line with a dot before its keys."""

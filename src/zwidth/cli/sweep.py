@@ -24,7 +24,7 @@ from zwidth.cli.output import (
     target,
 )
 from zwidth.errors import InputError
-from zwidth.specification.table import plain, quoted
+from zwidth.model.specification.table import plain, quoted
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -97,7 +97,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth sweep`: 0."""
     from zwidth.cli.sweep_loop import asked
-    from zwidth.sweeps.run import sweep
+    from zwidth.study.sweeps.run import sweep
 
     plot = target("--plot", arguments.plot, PICTURES, arguments.force)
     of = arguments.of or "check"
@@ -137,7 +137,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _draw(found: xr.Dataset, plot: Path) -> None:
-    from zwidth.plots import save_sweep  # matplotlib takes its time
+    from zwidth.show.plots import save_sweep  # matplotlib takes its time
 
     save_sweep(found, plot, overwrite=True)
 

@@ -17,14 +17,14 @@ from zwidth.cli.options import (
     overrides,
 )
 from zwidth.errors import InputError
+from zwidth.model.specification.environments import option_keys
+from zwidth.model.specification.table import COMMAND_LINE, quoted, suggestion
 from zwidth.quantity.units import parse_number
-from zwidth.specification.environments import option_keys
-from zwidth.specification.table import COMMAND_LINE, quoted, suggestion
 
 if TYPE_CHECKING:
-    from zwidth.device import Device
-    from zwidth.environment import Environment
-    from zwidth.specification.table import Table
+    from zwidth.model.device import Device
+    from zwidth.model.environment import Environment
+    from zwidth.model.specification.table import Table
 
 
 class Asked(NamedTuple):
@@ -134,7 +134,7 @@ def _parameters(of: str) -> Iterable[Parameter]:
 
 
 def _wall(arguments: argparse.Namespace, of: str, begun: Mapping[str, str]) -> Asked:
-    from zwidth.specification.read import WITH_LAWS, read_tables
+    from zwidth.model.specification.read import WITH_LAWS, read_tables
 
     device, law = _loop(arguments, read_tables(arguments.sources, WITH_LAWS), begun)
     options: dict[str, Any] = {}
@@ -158,8 +158,8 @@ def _loop(
     arguments: argparse.Namespace, tables: Mapping[str, Table], begun: Mapping[str, str]
 ) -> tuple[Device, Environment]:
     """Device and environment behind its laws; a number of a law that is varied need not be given either."""
-    from zwidth.specification.laws import behind_laws, law_tables
-    from zwidth.specification.read import specified
+    from zwidth.model.specification.laws import behind_laws, law_tables
+    from zwidth.model.specification.read import specified
 
     loop = specified(tables, overrides(arguments))
     laws = law_tables(tables.get("law"), arguments.law)
@@ -173,14 +173,14 @@ def _loop(
 
 
 def _pair(arguments: argparse.Namespace) -> Asked:
-    from zwidth.specification.pairs import load_pair
+    from zwidth.model.specification.pairs import load_pair
 
     return Asked(load_pair(arguments.sources, given(arguments, [p.key for p in coupling_parameters()])))
 
 
 def _touch(arguments: argparse.Namespace, begun: Mapping[str, str]) -> Asked:
     from zwidth.cli.simulation_tables import build_touch, operator_parameters, simulation_parameters
-    from zwidth.specification.read import TABLES, read_tables
+    from zwidth.model.specification.read import TABLES, read_tables
 
     tables = read_tables(arguments.sources, TABLES)
     words = given(arguments, [p.key for p in (*operator_parameters(), *simulation_parameters())])

@@ -10,10 +10,10 @@ import numpy as np
 import xarray as xr
 
 from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.stability.known_hand.decide import Outcome as Rests
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import in_words, shown
 from zwidth.showing import Lines, Part, Table
-from zwidth.stability.known_hand.decide import Outcome as Rests
 
 
 def report(found: xr.Dataset) -> Iterator[Part]:

@@ -10,14 +10,14 @@ from zwidth.cli.decision import decided, exit_status
 from zwidth.cli.options import Once, add_all, add_in_full, add_output, device_parameters, given
 from zwidth.cli.output import print_json, say_written, targets
 from zwidth.errors import InputError
-from zwidth.specification.table import quoted, suggestion
+from zwidth.model.specification.table import quoted, suggestion
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from zwidth.cli.tissue_result import Result, Wall
-    from zwidth.device import Device
-    from zwidth.identification.tissue import TissueTest
+    from zwidth.data.tissue import TissueTest
+    from zwidth.model.device import Device
 
 QUANTITIES = ("time", "indentation", "force")
 KINDS = ("relaxation", "creep", "loading")
@@ -120,7 +120,7 @@ def _check(arguments: argparse.Namespace, save: Path | None) -> None:
 
 def _found(arguments: argparse.Namespace) -> Result:
     from zwidth.cli.tissue_result import Result
-    from zwidth.identification.tissue import read_test
+    from zwidth.data.tissue import read_test
 
     device = _device(arguments) if _names_device(arguments) else None
     options: dict[str, Any] = {
@@ -151,7 +151,7 @@ def _words(arguments: argparse.Namespace) -> dict[str, str]:
 
 
 def _device(arguments: argparse.Namespace) -> Device:
-    from zwidth.specification.read import load_device
+    from zwidth.model.specification.read import load_device
 
     sources = [] if arguments.device is None else [arguments.device]
     device = load_device(sources, _words(arguments))
@@ -173,7 +173,7 @@ def _number(typed: str | None) -> int | None:
 def _wall(test: TissueTest, device: Device, rule: Any) -> Wall:
     """The tissue on the device, its largest passive scale, and all that the intervals allow."""
     from zwidth.cli.tissue_result import Wall
-    from zwidth.specification.read import Specification
+    from zwidth.model.specification.read import Specification
 
     verdict = decided(Specification(device, test.environment(rule)))
     try:
@@ -189,7 +189,7 @@ def _wall(test: TissueTest, device: Device, rule: Any) -> Wall:
 
 def _save(found: Result, path: Path, scaled: bool) -> None:
     """The environment with its intervals above it, as comments."""
-    from zwidth.specification.write import written_environment
+    from zwidth.model.specification.write import written_environment
     from zwidth.writing import writing_whole
 
     law, remark = found.test.environment(found.rule), ""

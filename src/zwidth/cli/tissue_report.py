@@ -10,8 +10,8 @@ from rich.text import Text
 
 from zwidth.cli.page import Row, blocks, headline, items, more_with_all, page, section
 from zwidth.cli.tissue_result import Result, Wall
-from zwidth.identification.logs import Finding
-from zwidth.identification.tissue import TissueTest
+from zwidth.data.logs import Finding
+from zwidth.data.tissue import TissueTest
 from zwidth.passivity.bracket import Bracket
 from zwidth.passivity.outcome import TOLD
 from zwidth.quantity.text import shown

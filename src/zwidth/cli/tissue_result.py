@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from zwidth.device import Device
-    from zwidth.environment.discretization import Discretization
-    from zwidth.identification.tissue import TissueTest
+    from zwidth.data.tissue import TissueTest
+    from zwidth.model.device import Device
+    from zwidth.model.environment.discretization import Discretization
     from zwidth.passivity.bracket import Bracket
     from zwidth.passivity.verdict import Verdict
 

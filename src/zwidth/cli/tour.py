@@ -14,8 +14,8 @@ from zwidth.cli.bars import PICTURE
 from zwidth.cli.motion import motion_lines
 from zwidth.cli.output import encodes, print_text, quiet_pipe
 from zwidth.cli.page import headline, items, page, section
-from zwidth.device import catalogue
-from zwidth.environment import Wall
+from zwidth.model.device import catalogue
+from zwidth.model.environment import Wall
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.outcome import TOLD
 
@@ -90,7 +90,7 @@ def _active(out: Console) -> None:
 def _touched(out: Console) -> None:
     from zwidth.cli.trace_report import trace_headline
     from zwidth.loop.simulate import simulated
-    from zwidth.operator import Dowel
+    from zwidth.model.operator import Dowel
 
     out.print(trace_headline(simulated(catalogue.device("haptic-paddle"), Wall(_STIFF), Dowel(), 2.0)))
 

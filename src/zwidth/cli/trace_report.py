@@ -10,15 +10,15 @@ from rich.table import Table
 from rich.text import Text
 
 from zwidth.cli.page import below, blocks, grid, headline, more_with_all, page
-from zwidth.energy.ledger import ROUNDING, ledger
+from zwidth.loop.energy.ledger import ROUNDING, ledger
 from zwidth.loop.trace import UNITS
+from zwidth.loop.traces.measures import measure, units_of
+from zwidth.model.specification.table import plain
 from zwidth.quantity.text import shown
-from zwidth.specification.table import plain
-from zwidth.traces.measures import measure, units_of
 
 if TYPE_CHECKING:
     from zwidth.loop.trace import AnyTrace
-    from zwidth.traces.comparison import Comparison
+    from zwidth.loop.traces.comparison import Comparison
 
 _MOVING = 1e-9
 

@@ -28,7 +28,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth traces`: the numbers of saved traces beside each other."""
     plot = target("--plot", arguments.plot, PICTURES, arguments.force)
-    from zwidth.traces import compare_traces, load_trace
+    from zwidth.loop.traces import compare_traces, load_trace
 
     comparison = compare_traces(dict(_labelled(arguments.files, load_trace)))
     if plot is not None:

@@ -26,9 +26,9 @@ from zwidth.cli.page import headline as badge
 from zwidth.cli.typed import Once, heed_angles
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean
+from zwidth.model.specification.table import plain
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import shown
-from zwidth.specification.table import plain
 
 _LAWS_IN_A_ROW = ("row storage", "row motion")
 """Documents of a table or of forces: the checker knows no law, and the law is stepped again here."""

@@ -18,8 +18,8 @@ from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
-    from zwidth.arms import Arm
-    from zwidth.gains import BorneImpedance
+    from zwidth.data.gains import BorneImpedance
+    from zwidth.model.arms import Arm
     from zwidth.passivity.workspace import PostureMap, Workspace
 
 _RATE = "1 kHz"
@@ -193,7 +193,7 @@ def _check_gains(arguments: argparse.Namespace, save: Path | None) -> None:
 
 def _borne(arguments: argparse.Namespace, arm: Arm) -> BorneImpedance:
     """The impedance that is written."""
-    from zwidth.gains import borne_impedance
+    from zwidth.data.gains import borne_impedance
 
     return borne_impedance(
         cartesian_of(Path(arguments.wall)),
@@ -231,7 +231,7 @@ def _save(space: Workspace | PostureMap, path: Path) -> None:
     if path.suffix.lower() == ".json":
         space.save(path)
     else:
-        from zwidth.traces.files import save_netcdf  # xarray takes its time
+        from zwidth.loop.traces.files import save_netcdf  # xarray takes its time
 
         save_netcdf(space.data, path)
 

@@ -13,12 +13,12 @@ from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
-    from zwidth.arms import Arm
+    from zwidth.model.arms import Arm
 
 
 def arm_of(arguments: argparse.Namespace) -> Arm:
     """The arm, with what is given of its joints."""
-    from zwidth.arms import BUILT_IN
+    from zwidth.model.arms import BUILT_IN
 
     joints = joints_of(arguments)
     if arguments.rest is not None and not arguments.pose:
@@ -34,7 +34,7 @@ def arm_in_words(arm: Arm, rate: float) -> str:
 
 
 def _built_in(arguments: argparse.Namespace, joints: Mapping[str, Any]) -> Arm:
-    from zwidth.arms import built_in
+    from zwidth.model.arms import built_in
 
     if any(option is not None for option in (arguments.frame, arguments.hold, arguments.rest)):
         raise InputError("--frame, --hold and --rest are for descriptions; the built-in arms have none")
@@ -48,7 +48,7 @@ def _built_in(arguments: argparse.Namespace, joints: Mapping[str, Any]) -> Arm:
 
 
 def _described(arguments: argparse.Namespace, joints: Mapping[str, Any]) -> Arm:
-    from zwidth.arms import BUILT_IN, read_arm
+    from zwidth.model.arms import BUILT_IN, read_arm
 
     path = Path(arguments.arm)
     if not path.suffix:

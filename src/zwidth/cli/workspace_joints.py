@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any
 from zwidth.cli.options import Once
 from zwidth.cli.workspace_wall import rows_in_words
 from zwidth.errors import InputError
+from zwidth.model.specification.table import located
 from zwidth.quantity.units import parse_number
-from zwidth.specification.table import located
 
 if TYPE_CHECKING:
-    from zwidth.arms.kinematics.arm import Arm
+    from zwidth.model.arms.kinematics.arm import Arm
 
 _JOINT_OPTIONS = (
     ("--joint-damping", "damping", "N*m*s/rad", "viscous friction of the joints"),
@@ -68,7 +68,7 @@ def read_joints(path: Path) -> dict[str, Any]:
     InputError
         If the file cannot be read, or an entry is no list of numbers.
     """
-    from zwidth.specification.read import read_tables
+    from zwidth.model.specification.read import read_tables
 
     table = read_tables([path], ("joints",))["joints"]
     table.check_keys(_UNITS, "joints")

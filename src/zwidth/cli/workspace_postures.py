@@ -10,7 +10,7 @@ from zwidth.cli.workspace_joints import damping_in_words
 from zwidth.cli.workspace_wall import wall_in_words
 
 if TYPE_CHECKING:
-    from zwidth.gains import BorneImpedance
+    from zwidth.data.gains import BorneImpedance
     from zwidth.passivity.workspace import PostureMap
 
 

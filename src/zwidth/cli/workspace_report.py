@@ -13,7 +13,7 @@ from zwidth.cli.workspace_wall import wall_in_words
 from zwidth.quantity.text import outward_decimal, shown, shown_at_least, shown_at_most
 
 if TYPE_CHECKING:
-    from zwidth.arms import ArmMotion, EncoderSteps
+    from zwidth.model.arms import ArmMotion, EncoderSteps
     from zwidth.passivity.workspace import Workspace
 
 _FIRST = ("motion", "largest stiffness", "stiffness", "encoder steps")
@@ -108,7 +108,7 @@ def _friction(space: Workspace, steps: EncoderSteps) -> Iterator[tuple[str, str]
     has = f"it has {', '.join(shown(f, 'N*m') for f in own)}" if own else "it has none that is known"
     more = f"{more} more for each newton of the wall"
     yield "Coulomb friction", f"{enough} in joint {_joints(space)}, and {more}, cover the steps; {has}"
-    from zwidth.arms.held import in_words
+    from zwidth.model.arms.held import in_words
 
     covered = f"covered up to {in_words(steps.covered)}" if steps.covered else "covered at no force"
     known = (

@@ -15,13 +15,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.errors import InputError
+from zwidth.model.specification.table import located
 from zwidth.quantity.units import parse_number
-from zwidth.specification.table import located
 
 if TYPE_CHECKING:
-    from zwidth.arms.matrix_wall import MatrixWall
-    from zwidth.environment.wall import Wall
-    from zwidth.gains.controllers import CartesianGains
+    from zwidth.data.gains.controllers import CartesianGains
+    from zwidth.model.arms.matrix_wall import MatrixWall
+    from zwidth.model.environment.wall import Wall
     from zwidth.quantity.exact import Exact
 
 WALL_OPTIONS = (
@@ -48,8 +48,8 @@ _UNITS = {
 
 def wall_of(arguments: argparse.Namespace, turns: int) -> Wall | MatrixWall:
     """The wall for a hand with so many rotations, 0: a point."""
-    from zwidth.arms.matrix_wall import MatrixWall
-    from zwidth.environment.wall import Wall
+    from zwidth.model.arms.matrix_wall import MatrixWall
+    from zwidth.model.environment.wall import Wall
 
     given = {
         key: getattr(arguments, key)
@@ -93,7 +93,7 @@ def cartesian_of(path: Path) -> CartesianGains:
     InputError
         If there is not one.
     """
-    from zwidth.gains import read_controllers
+    from zwidth.data.gains import read_controllers
 
     found, name = read_controllers(path), f"--wall {path.name}"
     if len(found.cartesian) != 1:
@@ -130,8 +130,8 @@ def read_wall(path: Path, turns: int) -> MatrixWall:
     InputError
         If the file cannot be read, or a matrix in it cannot be used.
     """
-    from zwidth.arms.matrix_wall import MatrixWall
-    from zwidth.specification.read import read_tables
+    from zwidth.model.arms.matrix_wall import MatrixWall
+    from zwidth.model.specification.read import read_tables
 
     table = read_tables([path], ("wall",))["wall"]
     table.check_keys(_UNITS, "a wall given by matrices")
@@ -157,7 +157,7 @@ def _matrix(rows: object, key: str, turns: int) -> list[list[float]]:
 
 def wall_in_words(wall: Wall | MatrixWall) -> str:
     """Stiffness and virtual damping, of one direction or as matrices."""
-    from zwidth.environment.wall import Wall
+    from zwidth.model.environment.wall import Wall
 
     if isinstance(wall, Wall):
         damper = float(wall.damping)  # type: ignore[arg-type]  # no interval: an arm refuses them

@@ -22,9 +22,9 @@ from zwidth.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from zwidth.model.specification.table import Table
     from zwidth.passivity.result import Answer
-    from zwidth.report.provenance import Provenance
-    from zwidth.specification.table import Table
+    from zwidth.show.report.provenance import Provenance
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -51,7 +51,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth report`: the status says the outcome."""
-    from zwidth import report
+    from zwidth.show import report
 
     target = Path(arguments.save)
     report.check_ending(target)
@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _loop(arguments: argparse.Namespace) -> tuple[Answer, Provenance]:
     """The verdict on a device and a law, and where their numbers come from."""
-    from zwidth.report.provenance import Provenance, file_of, of_device, of_environment
+    from zwidth.show.report.provenance import Provenance, file_of, of_device, of_environment
 
     given = asked(arguments, in_range=True)
     device, environment, typed = given.loop.device, given.loop.environment, arguments.law or ()
@@ -82,7 +82,7 @@ def _loop(arguments: argparse.Namespace) -> tuple[Answer, Provenance]:
 
 def _of_a_pair(sources: Sequence[str]) -> Mapping[str, Table] | None:
     """The tables of the one source, where it is a file of two arms."""
-    from zwidth.specification.read import PAIR_TABLES, WITH_LAWS, read_tables
+    from zwidth.model.specification.read import PAIR_TABLES, WITH_LAWS, read_tables
 
     if len(sources) != 1:
         return None
@@ -92,10 +92,10 @@ def _of_a_pair(sources: Sequence[str]) -> Mapping[str, Table] | None:
 
 def _pair(tables: Mapping[str, Table], arguments: argparse.Namespace) -> tuple[Answer, Provenance]:
     """The verdict on two arms, and where their numbers come from."""
+    from zwidth.model.specification.pairs import pair_of
     from zwidth.passivity.check import check
-    from zwidth.report.pair_provenance import of_pair
-    from zwidth.report.provenance import Provenance
-    from zwidth.specification.pairs import pair_of
+    from zwidth.show.report.pair_provenance import of_pair
+    from zwidth.show.report.provenance import Provenance
 
     if overrides(arguments) or arguments.law or arguments.contact:
         raise InputError(

@@ -25,7 +25,7 @@ from zwidth.quantity.text import shown
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from zwidth.compiled import Array
+    from zwidth.native.compiled import Array
 
 SPEEDS = (1e-3, 1e-2, 0.1, 1.0, 10.0)
 """Of the hands that are tried [m/s; rad/s]."""

@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from zwidth.bench.scores import static_stiffness
-from zwidth.device import Device
 from zwidth.errors import InputError
 from zwidth.links.attack import most_taken
 from zwidth.links.feel import felt_stiffness
@@ -26,7 +24,9 @@ from zwidth.links.time_domain import TimeDomain
 from zwidth.links.two_layer import TwoLayer
 from zwidth.links.verdict import check
 from zwidth.links.wave_port import WavePort
-from zwidth.operator import PrescribedMotion, RecordedForce
+from zwidth.loop.traces.scores import static_stiffness
+from zwidth.model.device import Device
+from zwidth.model.operator import PrescribedMotion, RecordedForce
 from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
@@ -100,7 +100,7 @@ class LinkComparison(Documented):
     @cached_property
     def traces(self) -> Mapping[str, Mapping[str, xr.Dataset]]:
         """By port: `stroke` and `press`."""
-        import zwidth.traces.accessor  # noqa: F401 - gives every trace its `.zwidth`
+        import zwidth.loop.traces.accessor  # noqa: F401 - gives every trace its `.zwidth`
 
         return {
             name: {touch: trace.dataset() for touch, trace in own.items()}

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import ClassVar
 
-from zwidth.compiled import Array, compiled
 from zwidth.links.memory import (
     ACTING,
     ENERGY,
@@ -27,6 +26,7 @@ from zwidth.links.memory import (
     apply,
 )
 from zwidth.links.waves import Waves
+from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import Exact, ends
 
 HELD_WAVES = 2.0

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from zwidth.compiled import Array, compiled
 from zwidth.links import laws
 from zwidth.links.wire import Wire, deliver, post
 from zwidth.loop.kernel import R_COMMAND, R_READING, first_due
 from zwidth.loop.pair.kernel import Arm, read, through
+from zwidth.native.compiled import Array, compiled
 
 
 class End(NamedTuple):

@@ -5,8 +5,8 @@ Step functions are translated to C, and call each other by their names.
 
 from __future__ import annotations
 
-from zwidth.compiled import Array, compiled
 from zwidth.links import held_waves, naive_waves, position_hold, time_domain, two_layer, wave_port
+from zwidth.native.compiled import Array, compiled
 
 
 @compiled

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zwidth.compiled import Array, compiled
+from zwidth.native.compiled import Array, compiled
 
 PERIOD, DAMPING, COULOMB, RESOLUTION, FORCE_LIMIT, FORCE_STEP, LATE = range(7)
 """LATE: in how many periods the force that is computed now begins to act."""

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import ClassVar
 
-from zwidth.compiled import Array, compiled
 from zwidth.links.memory import (
     ENERGY,
     FRESH,
@@ -26,6 +25,7 @@ from zwidth.links.memory import (
     apply,
 )
 from zwidth.links.waves import Waves
+from zwidth.native.compiled import Array, compiled
 
 NAIVE_WAVES = 3.0
 

@@ -11,11 +11,11 @@ from typing import ClassVar, TypeVar
 
 import numpy as np
 
-from zwidth.compiled import Array
-from zwidth.device import Device
 from zwidth.errors import InputError
 from zwidth.links import memory
 from zwidth.links.packet import Packet
+from zwidth.model.device import Device
+from zwidth.native.compiled import Array
 from zwidth.quantity.exact import ends
 from zwidth.quantity.parameter import Parametric, parameters_of
 

@@ -11,9 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from zwidth.compiled import Array, compiled
 from zwidth.links.memory import apply
 from zwidth.links.springs import Springs, move_on, pull
+from zwidth.native.compiled import Array, compiled
 
 POSITION_HOLD = 4.0
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from zwidth.device.actuator import current_rise
 from zwidth.links import memory
 from zwidth.links.port import Port
 from zwidth.links.sure_losses import ROUNDING
 from zwidth.links.wave_port import MARGIN
+from zwidth.model.device.actuator import current_rise
 from zwidth.passivity.bounding import ROUNDOFF
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import unit_key

@@ -17,7 +17,7 @@ from zwidth.loop.pair.trace import build_pair_trace
 from zwidth.loop.plant import FAULT, FORCE, GOAL
 from zwidth.loop.series import WORK
 from zwidth.loop.trace import Trace
-from zwidth.pairs import Pair
+from zwidth.model.pairs import Pair
 from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def simulate(
     InputError
         If the ports do not fit together, or something is missing or out of its bounds.
     """
-    import zwidth.traces.accessor  # noqa: F401 - gives every trace its `.zwidth`
+    import zwidth.loop.traces.accessor  # noqa: F401 - gives every trace its `.zwidth`
 
     return simulated(
         leader,

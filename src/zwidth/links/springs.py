@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from zwidth.compiled import Array, compiled
 from zwidth.links.memory import HEARD_NUMBER, HEARD_POSITION, NUMBER, OWN_NUMBERS, OWN_STATE, POSITION
 from zwidth.links.port import Port
+from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import Certain, parameter
 

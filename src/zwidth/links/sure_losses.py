@@ -16,8 +16,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from zwidth.compiled import Array, compiled
 from zwidth.links.memory import COULOMB, DAMPING, LOSSES, PERIOD, RESOLUTION
+from zwidth.native.compiled import Array, compiled
 
 ROUNDING = 2.0**-48
 """Of sums of a few terms, and of the device's numbers: all is rounded to the side of less energy."""

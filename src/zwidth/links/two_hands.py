@@ -12,12 +12,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from zwidth.compiled import Array, compiled
 from zwidth.links import laws
 from zwidth.links.kernel import End
 from zwidth.links.memory import ACTING, COULOMB, DAMPING, PERIOD, RESOLUTION
 from zwidth.links.wire import deliver, post
 from zwidth.loop.law import measured
+from zwidth.native.compiled import Array, compiled
 
 
 class Hand(NamedTuple):

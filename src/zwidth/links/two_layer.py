@@ -12,7 +12,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from zwidth.compiled import Array, compiled
 from zwidth.links.memory import (
     ACTING,
     COUNTED,
@@ -22,6 +21,7 @@ from zwidth.links.memory import (
     apply,
 )
 from zwidth.links.springs import MOVED, OWN, STIFFNESS, Springs, move_on, pull
+from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import Certain, parameter
 

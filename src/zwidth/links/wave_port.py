@@ -26,7 +26,6 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import ClassVar
 
-from zwidth.compiled import Array, compiled
 from zwidth.links.memory import (
     ACTING,
     COULOMB,
@@ -50,6 +49,7 @@ from zwidth.links.memory import (
 )
 from zwidth.links.sure_losses import ROUNDING, newly_lost
 from zwidth.links.waves import Waves
+from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import Quantity
 from zwidth.quantity.parameter import Certain, parameter

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from zwidth.compiled import Array, compiled
 from zwidth.links.memory import ENERGY, NUMBER, POSITION, WAVE, hear
+from zwidth.native.compiled import Array, compiled
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -19,22 +19,22 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from zwidth.compiled import Array, compiled
-from zwidth.environment.virtual_body import VirtualBody
 from zwidth.errors import InputError
 from zwidth.loop.setup import check_signals, whole_samples
 from zwidth.loop.trace import LARGEST, UNITS, VARIABLES
-from zwidth.operator.operator import LinearHand, Operator
-from zwidth.quantity.exact import RealLike
-from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import one_of, read_number
-from zwidth.rendering.energy.parallel_controller import (
+from zwidth.model.environment.virtual_body import VirtualBody
+from zwidth.model.operator.operator import LinearHand, Operator
+from zwidth.model.rendering.energy.parallel_controller import (
     ENERGY,
     STATE_SIZE,
     ParallelController,
     observer_only,
     step,
 )
+from zwidth.native.compiled import Array, compiled
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import one_of, read_number
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -17,9 +17,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import numpy as np
 import xarray as xr
 
-from zwidth.device.device import Device
-from zwidth.environment.environment import Environment
-from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
@@ -39,7 +36,10 @@ from zwidth.loop.setup import Frame, Setup, empty_record, prepare
 from zwidth.loop.simulate import Progress
 from zwidth.loop.summary import DEEPEST, EXTRACTED, HIGHEST, LOWEST, PEAK, SUMMARY, run_each
 from zwidth.loop.trace import UNITS, VARIABLES
-from zwidth.operator.operator import Operator
+from zwidth.model.device.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.transfer_function import as_environment
+from zwidth.model.operator.operator import Operator
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY
 

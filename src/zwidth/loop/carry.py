@@ -6,8 +6,6 @@ the hand works against the actuator, f_c sgn v and b v.
 
 from __future__ import annotations
 
-from zwidth.compiled import Array, compiled
-from zwidth.elementary.exponential import expm1
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
     COULOMB,
@@ -21,6 +19,8 @@ from zwidth.loop.plant import (
     VISCOUS,
     Plant,
 )
+from zwidth.native.compiled import Array, compiled
+from zwidth.quantity.elementary.exponential import expm1
 
 
 @compiled

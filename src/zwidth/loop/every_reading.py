@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from zwidth.compiled import Array, compiled
 from zwidth.loop.kernel import commanded
 from zwidth.loop.law import RESOLUTION
 from zwidth.loop.plant import STATE_SIZE
+from zwidth.native.compiled import Array, compiled
 
 
 @compiled

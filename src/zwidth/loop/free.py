@@ -13,9 +13,9 @@ and v is monotone, so that it has one zero at most, where h1 = −v0/a0.  For sm
 
 from __future__ import annotations
 
-from zwidth.compiled import compiled
-from zwidth.elementary.exponential import expm1
-from zwidth.elementary.logarithm import log1p
+from zwidth.native.compiled import compiled
+from zwidth.quantity.elementary.exponential import expm1
+from zwidth.quantity.elementary.logarithm import log1p
 
 _SERIES_UP_TO = 1.0
 _TERMS = 40

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from zwidth.compiled import Array, compiled
 from zwidth.loop.carry import carry
 from zwidth.loop.law import (
     BILATERAL,
@@ -39,6 +38,7 @@ from zwidth.loop.plant import (
     Plant,
 )
 from zwidth.loop.step import advance, glide, is_free, response_of
+from zwidth.native.compiled import Array, compiled
 
 # The record: one row per quantity, one column per instant.
 R_POSITION, R_VELOCITY, R_READING, R_COMMAND, R_ACTUATOR = range(5)

@@ -13,7 +13,6 @@ stretch), e0 the slack x_a − x at the start and u the speed of the anchor,
 
 from __future__ import annotations
 
-from zwidth.compiled import Array, compiled
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
     COULOMB,
@@ -24,6 +23,7 @@ from zwidth.loop.plant import (
     Drive,
     Plant,
 )
+from zwidth.native.compiled import Array, compiled
 
 
 @compiled

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from zwidth.compiled import Array, compiled
 from zwidth.loop.free import free_response
 from zwidth.loop.kernel import (
     R_ACTUATOR,
@@ -45,6 +44,7 @@ from zwidth.loop.plant import (
     VISCOUS,
 )
 from zwidth.loop.turn import Free, turn
+from zwidth.native.compiled import Array, compiled
 
 
 @compiled

@@ -12,9 +12,9 @@ adds to its account what the hand loses.
 
 from __future__ import annotations
 
-from zwidth.compiled import Array, compiled
 from zwidth.loop.kernel import commanded
 from zwidth.loop.law import PHASE, RESOLUTION, measured
+from zwidth.native.compiled import Array, compiled
 
 LOSING = 40
 """Rounds with the same loss after which a hand goes on losing."""

@@ -13,8 +13,8 @@ from __future__ import annotations
 
 from math import ceil, sqrt
 
-from zwidth.compiled import Array, compiled
 from zwidth.loop.plant import Plant
+from zwidth.native.compiled import Array, compiled
 
 TERMS = 28
 """Room for the coefficients of one series; 24 of them are below 1e-23."""

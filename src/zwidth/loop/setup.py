@@ -9,10 +9,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from zwidth.device.amplifier import Actuation, Amplifier, CurrentAmplifier
-from zwidth.device.device import Device
-from zwidth.environment.environment import Environment
-from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.loop import law as laws
 from zwidth.loop.kernel import RECORDED
@@ -20,11 +16,15 @@ from zwidth.loop.plant import DIRECTION, POSITION, STATE_SIZE, VELOCITY, Plant
 from zwidth.loop.series import WORK
 from zwidth.loop.start import rest_position
 from zwidth.loop.timing import Timing
-from zwidth.operator.operator import Operator, Signals
+from zwidth.model.device.amplifier import Actuation, Amplifier, CurrentAmplifier
+from zwidth.model.device.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.transfer_function import as_environment
+from zwidth.model.operator.operator import Operator, Signals
+from zwidth.model.rendering.rendered import laws_of
+from zwidth.model.rendering.rendering_law import LoopContext, RenderingLaw
+from zwidth.model.scene.layout import scene_at_rest
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.rendered import laws_of
-from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
-from zwidth.scene.layout import scene_at_rest
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
-from zwidth.device.amplifier import Amplifier
-from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.loop.kernel import run
 from zwidth.loop.law import PHASE, RESOLUTION, STEP
@@ -23,8 +21,10 @@ from zwidth.loop.plant import FAULT, STOPS
 from zwidth.loop.setup import Setup, empty_record, prepare
 from zwidth.loop.timing import Timing
 from zwidth.loop.trace import Trace, build_trace
-from zwidth.operator.operator import Operator
-from zwidth.pairs import Pair
+from zwidth.model.device.amplifier import Amplifier
+from zwidth.model.device.device import Device
+from zwidth.model.operator.operator import Operator
+from zwidth.model.pairs import Pair
 from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:

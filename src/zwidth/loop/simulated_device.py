@@ -13,9 +13,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from zwidth.device.amplifier import Amplifier
-from zwidth.device.device import Device
-from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.errors import InputError
 from zwidth.loop.law import PHASE, RESOLUTION, measured
 from zwidth.loop.plant import FAULT, POSITION, STOPS, VELOCITY
@@ -23,10 +20,13 @@ from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import TOO_MANY_STOPS, run_samples
 from zwidth.loop.timing import Timing
 from zwidth.loop.trace import build_trace
-from zwidth.operator.operator import Operator
+from zwidth.model.device.amplifier import Amplifier
+from zwidth.model.device.device import Device
+from zwidth.model.environment.environment import Environment, RationalFunction
+from zwidth.model.operator.operator import Operator
+from zwidth.model.rendering.energy.force_bounding import ForceBounding
+from zwidth.model.rendering.rendered import Rendered
 from zwidth.quantity.exact import RealLike
-from zwidth.rendering.energy.force_bounding import ForceBounding
-from zwidth.rendering.rendered import Rendered
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -22,16 +22,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from zwidth.environment.environment import Environment, PowerLaw
 from zwidth.loop.law import measured
+from zwidth.model.environment.environment import Environment, PowerLaw
+from zwidth.model.rendering.rendered import laws_of
 from zwidth.quantity.exact import Exact
-from zwidth.rendering.rendered import laws_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from zwidth.device.amplifier import Actuation
     from zwidth.loop.plant import Plant
+    from zwidth.model.device.amplifier import Actuation
 
     Array = NDArray[np.float64]
 

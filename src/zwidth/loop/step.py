@@ -10,9 +10,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from zwidth.compiled import Array, compiled
-from zwidth.elementary.exponential import exp, expm1
-from zwidth.elementary.logarithm import log
 from zwidth.loop.free import free_response, free_stop
 from zwidth.loop.ledger import book, book_rest
 from zwidth.loop.plant import (
@@ -41,6 +38,9 @@ from zwidth.loop.series import (
     product_integral,
     value,
 )
+from zwidth.native.compiled import Array, compiled
+from zwidth.quantity.elementary.exponential import exp, expm1
+from zwidth.quantity.elementary.logarithm import log
 
 _MOST_EVENTS = 100_000
 _BISECTIONS = 200

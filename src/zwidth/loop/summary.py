@@ -7,8 +7,8 @@ highest, lowest   of x over the last quarter of the samples: does it still move?
 
 from __future__ import annotations
 
-from zwidth.compiled import Array, compiled
 from zwidth.loop.kernel import R_ACTUATOR, R_HAND_WORK, R_POSITION, run
+from zwidth.native.compiled import Array, compiled
 
 DEEPEST, PEAK, EXTRACTED, HIGHEST, LOWEST = range(5)
 SUMMARY = 5

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from zwidth.compiled import compiled
 from zwidth.loop.free import free_response, free_stop
+from zwidth.native.compiled import compiled
 
 
 class Free(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from zwidth.device import Device
+from zwidth.model.device import Device
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.text import told_quantity

@@ -13,9 +13,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from zwidth.device import Device
-from zwidth.environment import PulseTransferFunction
-from zwidth.environment.environment import Environment
+from zwidth.model.device import Device
+from zwidth.model.environment import PulseTransferFunction
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.formulas.coupling_need import ideal_device, law_of, needed_damping
 from zwidth.passivity.found import Need
 from zwidth.passivity.linear_verdict import LinearVerdict

@@ -13,11 +13,13 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from zwidth.checker import verify
-from zwidth.device import Device
-from zwidth.device.actuator import current_rise
-from zwidth.environment.environment import Environment
-from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.device.actuator import current_rise
+from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.transfer_function import as_environment
+from zwidth.model.rendering.rendered import laws_of
+from zwidth.model.rendering.rendering_law import LoopContext
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.result import PassivityAnswer
@@ -25,8 +27,6 @@ from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.wording import if_friction_goes_on
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text
-from zwidth.rendering.rendered import laws_of
-from zwidth.rendering.rendering_law import LoopContext
 
 ROUNDOFF, SINGLE_ROUNDOFF = Fraction(1, 2**53), Fraction(1, 2**24)
 """u: relative error of one operation on doubles, on floats, at most."""

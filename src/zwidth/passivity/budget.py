@@ -11,8 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from zwidth.environment.environment import Environment
-from zwidth.environment.wall import wall_of
+from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.wall import wall_of
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.linear.linear import LinearRefutation
 from zwidth.passivity.linear.supremum import frequency, tightest

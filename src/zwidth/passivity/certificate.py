@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from zwidth.checker import Scope, Unreadable, Verified, judge, read_file, verify
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.corners import Loop, corners_decide
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.document import loop_document, unit_key

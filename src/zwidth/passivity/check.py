@@ -13,12 +13,12 @@ from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING, Any, overload
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
-from zwidth.environment.system import is_system
-from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
-from zwidth.pairs import Pair
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.system import is_system
+from zwidth.model.environment.transfer_function import as_environment
+from zwidth.model.pairs import Pair
 from zwidth.passivity.certificate import Certificate, certify_box
 from zwidth.passivity.corners import Loop, best_corner, worst_corners
 from zwidth.passivity.decision import Decision, decide
@@ -36,9 +36,9 @@ from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
 
 if TYPE_CHECKING:
-    from zwidth.arms import Arm
-    from zwidth.arms.matrix_wall import MatrixWall
-    from zwidth.environment import Wall
+    from zwidth.model.arms import Arm
+    from zwidth.model.arms.matrix_wall import MatrixWall
+    from zwidth.model.environment import Wall
     from zwidth.passivity.pairs import PairVerdict
     from zwidth.passivity.pairs.held import HeldVerdict
     from zwidth.passivity.workspace import Workspace
@@ -164,7 +164,7 @@ def _check_pair(pair: Pair, environment: Any, further: Mapping[str, Any]) -> Pai
 
 def _check_arm(arm: Any, wall: Any, further: Mapping[str, Any]) -> Workspace:
     """The verdict on a device of several joints."""
-    from zwidth.arms import Arm  # numpy takes its time
+    from zwidth.model.arms import Arm  # numpy takes its time
 
     if not isinstance(arm, Arm):
         raise InputError(f"the first argument is a Device or an arm, {_instead_of_one(arm)}")

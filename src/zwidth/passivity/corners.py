@@ -21,9 +21,9 @@ from dataclasses import fields, is_dataclass
 from itertools import product
 from typing import Any
 
-from zwidth.device import Device
-from zwidth.environment.environment import Box, Environment
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Box, Environment
 from zwidth.quantity.exact import Exact, Interval, ends
 
 Loop = tuple[Device, Environment]

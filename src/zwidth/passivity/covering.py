@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
-from zwidth.environment.wall import Wall, wall_of
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.wall import Wall, wall_of
+from zwidth.model.rendering.force.friction_compensation import FrictionCompensation
+from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.tangents import best_tangent, line_of
 from zwidth.quantity.exact import Exact, ends
-from zwidth.rendering.force.friction_compensation import FrictionCompensation
-from zwidth.rendering.rendered import laws_of
 
 
 def covering(device: Device, law: Environment) -> tuple[Device, Wall] | None:

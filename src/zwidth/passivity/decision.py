@@ -24,8 +24,8 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Literal
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.linear.contact import DampedWall, damped_wall
 from zwidth.passivity.linear.linear import LinearProof, LinearRefutation, decide_linear
 from zwidth.passivity.linear.loop import LinearLoop, linear_loop

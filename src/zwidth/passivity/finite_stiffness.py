@@ -32,9 +32,9 @@ from zwidth.quantity.text import told_quantity
 from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
-    from zwidth.device.device import Device
     from zwidth.loop.trace import Trace
-    from zwidth.operator.operator import Operator
+    from zwidth.model.device.device import Device
+    from zwidth.model.operator.operator import Operator
     from zwidth.passivity.storage.evidence.gain import Gain
 
 SLOWEST = 1.0
@@ -246,7 +246,7 @@ def _threshold(reached: Callable[[float], Reached], tried: list[float], mass: fl
 
 def _ideal(verdict: Verdict, motion: Motion) -> float:
     """−W_h of the prescribed motion, at rest at its end [J]."""
-    from zwidth.operator import WitnessMotion
+    from zwidth.model.operator import WitnessMotion
 
     hand = WitnessMotion(motion)
     trace = _simulated(verdict, verdict.device, hand, hand.intervals + 1)
@@ -255,8 +255,8 @@ def _ideal(verdict: Verdict, motion: Motion) -> float:
 
 def _got_out(verdict: Verdict, device: Device, motion: Motion, stiffness: float, damping: float) -> float:
     """max(−W_h) of a hand that follows the motion [J]; 0 where it is no more than rounding."""
-    from zwidth.energy import ledger
-    from zwidth.operator import Tracking
+    from zwidth.loop.energy import ledger
+    from zwidth.model.operator import Tracking
 
     hand = Tracking(motion, stiffness=stiffness, damping=damping)
     book = ledger(_simulated(verdict, device, hand, motion.samples + _AFTER))
@@ -264,8 +264,8 @@ def _got_out(verdict: Verdict, device: Device, motion: Motion, stiffness: float,
 
 
 def _simulated(verdict: Verdict, device: Device, hand: Operator, samples: int) -> Trace:
-    from zwidth.device.amplifier import Ideal
     from zwidth.loop.simulate import simulated
+    from zwidth.model.device.amplifier import Ideal
 
     period = device.exact("sample_period")
     return simulated(device, verdict.environment, hand, samples * period, amplifier=Ideal())

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer

@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.verdict import Verdict
 
 EFFORT = 5.0

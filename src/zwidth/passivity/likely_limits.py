@@ -12,9 +12,9 @@ from fractions import Fraction
 from functools import cache
 from math import inf, isfinite
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.linear.supremum import tightest
 from zwidth.quantity.exact import Exact

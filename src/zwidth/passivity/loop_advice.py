@@ -18,8 +18,8 @@ from functools import cached_property, partial
 from math import inf
 from typing import Any
 
-from zwidth.environment import OnePole, Wall, Window
-from zwidth.environment.wall import wall_of
+from zwidth.model.environment import OnePole, Wall, Window
+from zwidth.model.environment.wall import wall_of
 from zwidth.passivity.advice import Advice, Kind
 from zwidth.passivity.certificate import Certificate, certify_box
 from zwidth.passivity.corners import Loop, worst_corners

@@ -15,9 +15,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.model.rendering.rendered import laws_of
+from zwidth.model.rendering.rendering_law import LoopContext
 from zwidth.passivity import gap
 from zwidth.passivity.behind_coupling import Closed, decide_behind_coupling
 from zwidth.passivity.certificate import Certificate
@@ -26,8 +28,6 @@ from zwidth.passivity.found import Need
 from zwidth.passivity.scope import Law, Scope, scope_of
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
-from zwidth.rendering.rendered import laws_of
-from zwidth.rendering.rendering_law import LoopContext
 
 _ACTUATOR = ("force_limit", "force_resolution", "motor_inductance", "supply_voltage", "current_limit")
 """What a device states of its actuator."""

@@ -16,10 +16,10 @@ from functools import partial
 from math import ceil, floor, inf, isfinite, log10
 from typing import Any, NamedTuple
 
-from zwidth.device import Device
-from zwidth.device.catalogue import DeviceInRange, Range
-from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.device.catalogue import DeviceInRange, Range
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.corners import Loop, worst_corners
 from zwidth.passivity.document import unit_key

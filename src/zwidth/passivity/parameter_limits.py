@@ -10,9 +10,9 @@ from dataclasses import fields
 from fractions import Fraction
 from math import inf
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.corners import worst_corners
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.likely_limits import Change, likely_value

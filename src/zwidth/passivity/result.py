@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from zwidth.checker import EVIDENCE, verify
 from zwidth.errors import InputError
+from zwidth.lazy import above
 from zwidth.passivity.document import save_json, to_json
 from zwidth.passivity.flat import to_dataset, to_series
 from zwidth.passivity.outcome import COLOUR
@@ -30,7 +30,7 @@ class Documented(Shown):
     """Under which its document is known."""
 
     PICTURE: ClassVar[str] = ""
-    """What draws it, in `zwidth.plots`: that lies above, so it is known by its name alone."""
+    """What draws it, among the plots above."""
 
     def to_dict(self) -> dict[str, Any]:
         """It as plain data, a unit in every key of a physical quantity."""
@@ -69,7 +69,7 @@ class Documented(Shown):
         """
         figure = self.figure()
         if path is not None:
-            import_module("zwidth.plots.files").save_figure(lambda: figure, path, overwrite=True)
+            above("plots").save_figure(lambda: figure, path, overwrite=True)
         return figure
 
     def pictures(self) -> Iterable[Picture]:
@@ -80,7 +80,7 @@ class Documented(Shown):
             figure = self.figure()
         except InputError:
             return ()
-        data = import_module("zwidth.plots.files").encoded(figure, "png", dpi=_SMALL)
+        data = above("plots").encoded(figure, "png", dpi=_SMALL)
         return (Picture(data, "png", self.says()),)
 
     def says(self) -> str:
@@ -91,7 +91,7 @@ class Documented(Shown):
         """What `plot` returns."""
         if not self.PICTURE:
             raise InputError(f"there is no picture of this {type(self).__name__}")
-        return getattr(import_module("zwidth.plots"), self.PICTURE)(self)
+        return getattr(above("plots"), self.PICTURE)(self)
 
 
 _SMALL = 80

@@ -17,8 +17,8 @@ from zwidth.quantity.exact import Interval, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 
 if TYPE_CHECKING:
-    from zwidth.device import Device, FrictionCurve
-    from zwidth.environment.environment import Environment
+    from zwidth.model.device import Device, FrictionCurve
+    from zwidth.model.environment.environment import Environment
 
 Contact = Literal["made and broken", "kept", "both sides"]
 """The hand touches and leaves at will; it stays inside; the law has no surface at all."""

@@ -15,10 +15,10 @@ from fractions import Fraction
 from functools import partial
 from math import inf
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
-from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.nonlinear_spring import NonlinearSpring
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.budget import DELAY, QUANTIZATION, SAMPLING
 from zwidth.passivity.formulas.nonlinear_spring import certify_spring, spring_need

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.arms import PlanarChain, read_arm
+from zwidth.model.arms import PlanarChain, read_arm
 
 LINK = '<link name="{}"/>'
 

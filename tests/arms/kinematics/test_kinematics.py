@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.arms import BUILT_IN, Arm, Leg, LeggedArm, PlanarChain, Sites, built_in
+from zwidth.model.arms import BUILT_IN, Arm, Leg, LeggedArm, PlanarChain, Sites, built_in
 
 THREE_LINKS = PlanarChain(links=(0.12, 0.1, 0.05), damping=(0.01, 0.02, 0.03), joint_range=((-1, 1),) * 3)
 ARMS = [*(built_in(name, damping=0.003) for name in BUILT_IN), THREE_LINKS]

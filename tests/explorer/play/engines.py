@@ -15,13 +15,13 @@ import pytest
 from numpy.typing import NDArray
 
 import zwidth as zw
-from zwidth.explorer.play import Played
-from zwidth.explorer.play.page import plant_text
-from zwidth.operator import LinearHand, Tracking
+from zwidth.model.operator import LinearHand, Tracking
+from zwidth.show.explorer.play import Played
+from zwidth.show.explorer.play.page import plant_text
 
 Array = NDArray[np.float64]
 
-OURS = files("zwidth.explorer.play")
+OURS = files("zwidth.show.explorer.play")
 
 QUANTITIES = ("position", "velocity", "actuator_force", "hand_work", "actuator_work")
 """Of the simulator, in the order of the recording's columns; what friction took is the sum of two."""

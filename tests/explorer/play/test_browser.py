@@ -15,10 +15,10 @@ from explorer.play.engines import Array, simulated
 from playwright.sync_api import Browser, Page
 
 import zwidth as zw
-from zwidth.explorer.play import Played, play_page
-from zwidth.explorer.play import played as play
-from zwidth.explorer.play import played_pair as play_pair
-from zwidth.explorer.play.presets import LIGHT
+from zwidth.show.explorer.play import Played, play_page
+from zwidth.show.explorer.play import played as play
+from zwidth.show.explorer.play import played_pair as play_pair
+from zwidth.show.explorer.play.presets import LIGHT
 
 _LISTEN = """
 window.heard = [];

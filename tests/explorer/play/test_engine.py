@@ -9,13 +9,13 @@ import pytest
 from explorer.play.engines import Array, Job, moved, played, simulated
 
 import zwidth as zw
-from zwidth.explorer.play import Played, presets
-from zwidth.explorer.play import played as play
-from zwidth.explorer.play import played_pair as play_pair
 from zwidth.loop.kernel import run
 from zwidth.loop.plant import ACTUATOR_WORK, HAND_WORK, POSITION, VELOCITY
 from zwidth.loop.setup import empty_record, prepare
-from zwidth.operator import LinearHand, Tracking
+from zwidth.model.operator import LinearHand, Tracking
+from zwidth.show.explorer.play import Played, presets
+from zwidth.show.explorer.play import played as play
+from zwidth.show.explorer.play import played_pair as play_pair
 
 HAND = LinearHand(mass=0.005, stiffness=300.0, damping=0.7)
 

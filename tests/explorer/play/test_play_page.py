@@ -8,8 +8,8 @@ import re
 import pytest
 
 import zwidth as zw
-from zwidth.explorer.play import Played, play_page, presets
-from zwidth.explorer.play import played as play
+from zwidth.show.explorer.play import Played, play_page, presets
+from zwidth.show.explorer.play import played as play
 
 MOST_BYTES = 300_000
 

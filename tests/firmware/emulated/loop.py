@@ -12,8 +12,6 @@ from math import floor
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.device.device import Device
-from zwidth.environment.wall import Wall
 from zwidth.loop.kernel import (
     R_ACTUATOR,
     R_COMMAND,
@@ -28,7 +26,9 @@ from zwidth.loop.kernel import (
 from zwidth.loop.law import LIMIT, STEP, rounded
 from zwidth.loop.plant import FAULT, POSITION
 from zwidth.loop.setup import empty_record, prepare
-from zwidth.operator.operator import Operator
+from zwidth.model.device.device import Device
+from zwidth.model.environment.wall import Wall
+from zwidth.model.operator.operator import Operator
 
 Array = NDArray[np.float64]
 

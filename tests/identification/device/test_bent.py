@@ -14,9 +14,9 @@ from recorded_strokes import recorded as recorded_strokes
 from recordings import paddle
 
 import zwidth as zw
-from zwidth.identification.logs.block import Finding
+from zwidth.data.logs.block import Finding
+from zwidth.model.specification.read import load_device
 from zwidth.quantity.exact import ends
-from zwidth.specification.read import load_device
 
 Array = NDArray[np.float64]
 PERIOD, COUNT, MASS = 1e-3, 22.4e-6, 0.036

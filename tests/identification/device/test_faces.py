@@ -15,11 +15,11 @@ from known_motion import COULOMB, DAMPING, MASS, PERIOD, STEP, Recording, paddle
 from scipy import stats
 
 import zwidth as zw
-from zwidth.identification.device.curve import friction_bins, lower_bounds
-from zwidth.identification.device.estimate import Estimate
-from zwidth.identification.device.limits import advice, limits, percent
-from zwidth.identification.device.table import rows
-from zwidth.specification.read import load
+from zwidth.data.identification.device.curve import friction_bins, lower_bounds
+from zwidth.data.identification.device.estimate import Estimate
+from zwidth.data.identification.device.limits import advice, limits, percent
+from zwidth.data.identification.device.table import rows
+from zwidth.model.specification.read import load
 
 
 def log_of(recording: Recording) -> zw.Log:

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from recordings import best_possible, hand_moves, paddle
 
 import zwidth as zw
+from zwidth.data.identification.device.identify import identify
+from zwidth.data.logs import Log
 from zwidth.errors import InputError
-from zwidth.identification.device.identify import identify
-from zwidth.identification.logs import Log
 from zwidth.quantity.exact import ends
 
 TRUE = {"mass": 0.036, "damping": 0.15, "coulomb_friction": 0.12}

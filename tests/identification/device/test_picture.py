@@ -9,7 +9,7 @@ import pytest
 from known_motion import NOISE, PERIOD, STEP, paddle
 
 import zwidth as zw
-from zwidth.identification.device.picture import expected_scatter, identification_figure
+from zwidth.show.plots.identified import expected_scatter, identification_figure
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +68,7 @@ def test_the_expected_scatter_is_that_of_what_is_left(found: zw.identification.I
 
 def test_the_force_of_counts_by_another_road(found: zw.identification.Identified) -> None:
     """A resting device whose encoder reads counts at random: m times the second difference of its means."""
-    from zwidth.identification.device.pulses import PIECES, pulse
+    from zwidth.data.identification.device.pulses import PIECES, pulse
 
     piece = round(found.pulse_length / PERIOD / PIECES)
     random = np.random.default_rng(2)

@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import quad
 from scipy.interpolate import BSpline
 
-from zwidth.identification.device import pulses
-from zwidth.identification.device.pulses import pulse, weighed
-from zwidth.identification.device.strokes import Strokes
+from zwidth.data.identification.device import pulses
+from zwidth.data.identification.device.pulses import pulse, weighed
+from zwidth.data.identification.device.strokes import Strokes
 
 PERIOD = 1e-3
 

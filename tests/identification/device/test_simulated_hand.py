@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 import zwidth as zw
-from zwidth.traces.files import save_netcdf
+from zwidth.loop.traces.files import save_netcdf
 
 MASS, DAMPING, COULOMB, HAND = 0.036, 0.15, 0.12, 3.0
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from zwidth.identification.finger.weights import weights
+from zwidth.data.identification.finger.weights import weights
 
 
 def _motion(rng, samples, fine):

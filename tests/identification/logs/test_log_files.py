@@ -15,8 +15,8 @@ import pytest
 import scipy.io
 
 import zwidth as zw
-from zwidth.identification.logs.names import name_and_unit
-from zwidth.identification.logs.text import text_table
+from zwidth.data.logs.names import name_and_unit
+from zwidth.data.logs.text import text_table
 
 HEADER = ("time_s", "position_mm", "force_N")
 

@@ -12,7 +12,7 @@ import pytest
 from openpyxl import Workbook
 
 import zwidth as zw
-from zwidth.identification.tissue.experiment.reading import read_tests
+from zwidth.data.tissue.experiment.reading import read_tests
 
 TIME = 0.25 * np.arange(40)
 DEPTH = 0.004 * np.clip(TIME, 0, 1)
@@ -203,7 +203,7 @@ def test_a_workbook_made_to_do_harm_is_refused(
     part: str, content: bytes, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """One message, before the memory is full; nothing comes from another file."""
-    monkeypatch.setattr("zwidth.identification.logs.workbook.MOST_ROWS", 1000)
+    monkeypatch.setattr("zwidth.data.logs.workbook.MOST_ROWS", 1000)
     path = book(tmp_path / "a.xlsx", a=[*HEAD, *ROWS])
     changed(path, {part: lambda _: content})
     with pytest.raises(zw.InputError, match=message) as caught:
@@ -213,7 +213,7 @@ def test_a_workbook_made_to_do_harm_is_refused(
 
 def test_two_cells_far_apart_fill_no_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What lies between them counts."""
-    monkeypatch.setattr("zwidth.identification.logs.workbook.MOST_CELLS", 10_000)
+    monkeypatch.setattr("zwidth.data.logs.workbook.MOST_CELLS", 10_000)
     path = book(tmp_path / "a.xlsx", a=[*HEAD, *ROWS])
     row = b'<row r="1"><c r="XFD1"><v>1</v></c></row>'
     changed(path, {"xl/worksheets/sheet1.xml": lambda _: SHEET + row + END})

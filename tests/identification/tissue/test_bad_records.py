@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import lfilter
 
 import zwidth as zw
-from zwidth.identification.tissue import RecursiveSolid, fit_tissue, force_response
+from zwidth.data.tissue import RecursiveSolid, fit_tissue, force_response
 
 SOLID = zw.StandardLinearSolid(420, 230, 17)
 TRUE = {"stiffness": 420, "branch_stiffness": 230, "branch_damping": 17}

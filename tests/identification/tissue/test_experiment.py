@@ -9,15 +9,15 @@ from scipy.optimize import least_squares
 from scipy.stats import binom
 
 import zwidth as zw
-from zwidth.identification.tissue.experiment.choice import Tried, not_told_apart, taken
-from zwidth.identification.tissue.experiment.estimate import covariance, solved
-from zwidth.identification.tissue.experiment.history import history_of
-from zwidth.identification.tissue.experiment.kind import kind_of
-from zwidth.identification.tissue.experiment.noise import likelihood, noise_of, with_memory
-from zwidth.identification.tissue.experiment.prediction import Task, derivatives, fines_of, predicted
-from zwidth.identification.tissue.experiment.profile import bends
-from zwidth.identification.tissue.experiment.tidy import Trial
-from zwidth.identification.tissue.model import as_model
+from zwidth.data.tissue.experiment.choice import Tried, not_told_apart, taken
+from zwidth.data.tissue.experiment.estimate import covariance, solved
+from zwidth.data.tissue.experiment.history import history_of
+from zwidth.data.tissue.experiment.kind import kind_of
+from zwidth.data.tissue.experiment.noise import likelihood, noise_of, with_memory
+from zwidth.data.tissue.experiment.prediction import Task, derivatives, fines_of, predicted
+from zwidth.data.tissue.experiment.profile import bends
+from zwidth.data.tissue.experiment.tidy import Trial
+from zwidth.data.tissue.model import as_model
 
 SOLID = zw.StandardLinearSolid(420, 260, 90)
 TRUE = (420, 260, 90)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import zwidth as zw
-from zwidth.identification.tissue import (
+from zwidth.data.tissue import (
     coefficients,
     five_parameters,
     force_response,

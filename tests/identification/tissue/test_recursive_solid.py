@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import lfilter
 
 import zwidth as zw
-from zwidth.identification.tissue import (
+from zwidth.data.tissue import (
     RecursiveSolid,
     Solid,
     coefficients,

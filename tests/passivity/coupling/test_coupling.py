@@ -12,7 +12,7 @@ from flint import fmpq, fmpq_poly
 from scipy.linalg import expm
 
 import zwidth as zw
-from zwidth.environment.environment import add, multiply
+from zwidth.model.environment.environment import add, multiply
 from zwidth.passivity.decision import decide
 from zwidth.passivity.linear.linear import LinearProof
 from zwidth.passivity.witness.motion import Motion

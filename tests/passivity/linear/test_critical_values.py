@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 
 import zwidth as zw
-from zwidth.environment import RationalFunction
+from zwidth.model.environment import RationalFunction
 from zwidth.passivity.linear.critical_values import critical_values
 from zwidth.passivity.linear.loop import linear_loop
 

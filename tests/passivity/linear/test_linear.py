@@ -12,7 +12,7 @@ from polynomials import product
 from strategies import seeds
 
 from zwidth import checker
-from zwidth.environment.environment import RationalFunction
+from zwidth.model.environment.environment import RationalFunction
 from zwidth.passivity.certificate import certify
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.linear.boundary import smallest_holding

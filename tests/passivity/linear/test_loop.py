@@ -10,7 +10,7 @@ import pytest
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.environment.environment import RationalFunction
+from zwidth.model.environment.environment import RationalFunction
 from zwidth.passivity.linear.loop import LARGEST_DEGREE, linear_loop, loop_from
 
 mpmath.mp.dps = 40

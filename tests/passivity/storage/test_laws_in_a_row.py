@@ -14,14 +14,15 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth import checker, rendering
+from zwidth import checker
 from zwidth.loop.every_reading import after_every_reading, scratch
+from zwidth.model import rendering
 from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.passivity.storage import same_law
 from zwidth.passivity.storage.program import program_of
 from zwidth.passivity.storage.row.document import packed
 from zwidth.passivity.witness.saved import saved_motion
-from zwidth.plots import storage as storage_figure
+from zwidth.show.plots import storage as storage_figure
 
 BOUNDS = {"penetration": "0.0008", "speed": "0.4"}
 FREE = rendering.SlewLimit(10**9)

@@ -14,8 +14,8 @@ from checked import matrix_at
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.arms import Arm, PlanarChain, Sites, built_in
 from zwidth.checker.arm import cells as arm_cells
+from zwidth.model.arms import Arm, PlanarChain, Sites, built_in
 from zwidth.passivity.certificate import read_document, verify_document
 
 ARM = built_in("two-link", damping=(0.02, 0.012))

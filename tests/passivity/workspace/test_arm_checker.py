@@ -12,11 +12,11 @@ import pytest
 from checked import claim, matrix_at
 
 from zwidth import checker
-from zwidth.arms import Leg, LeggedArm
 from zwidth.checker.arm import cells as arm_cells
 from zwidth.checker.arm.cells import BITS
 from zwidth.checker.arm.damping import constant
 from zwidth.checker.exact.enclosed import Enclosed
+from zwidth.model.arms import Leg, LeggedArm
 
 IDENTITY = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
 

@@ -11,9 +11,9 @@ import pytest
 from described_arms import random_arm
 
 import zwidth as zw
-from zwidth.arms import Arm, PlanarChain, built_in, read_arm, wall_need
-from zwidth.arms.pose import loss_in_pose
-from zwidth.arms.replay import replay_cycle
+from zwidth.model.arms import Arm, PlanarChain, built_in, read_arm, wall_need
+from zwidth.model.arms.pose import loss_in_pose
+from zwidth.model.arms.replay import replay_cycle
 from zwidth.passivity.workspace import Workspace
 
 Array = npt.NDArray[np.float64]

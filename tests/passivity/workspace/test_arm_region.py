@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.arms import BUILT_IN, PlanarChain, built_in, joint_margin, wall_need
-from zwidth.arms.replay import replay_cycle
+from zwidth.model.arms import BUILT_IN, PlanarChain, built_in, joint_margin, wall_need
+from zwidth.model.arms.replay import replay_cycle
 from zwidth.passivity.workspace import Workspace
 
 DAMPING = {"hapkit": 0.001, "two-link": (0.02, 0.012), "haply-2diy": (0.003, 0.002), "falcon": 0.003}

@@ -11,9 +11,9 @@ import pytest
 from described_arms import panda_like
 
 import zwidth as zw
-from zwidth import plots
-from zwidth.arms.encoders import covered_factors
 from zwidth.cli.main import main
+from zwidth.model.arms.encoders import covered_factors
+from zwidth.show import plots
 
 READY = (0, -np.pi / 4, 0, -3 * np.pi / 4, 0, np.pi / 2, np.pi / 4)
 

@@ -9,8 +9,8 @@ from typing import Any
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.arms import PlanarChain
 from zwidth.cli.workspace_report import _changes, _numbers
+from zwidth.model.arms import PlanarChain
 from zwidth.quantity.units import parse_number
 
 _STIFFNESS = re.compile(r"([\d.]+(?:e[+-]\d+)?) N/m")

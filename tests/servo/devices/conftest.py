@@ -17,6 +17,6 @@ NANOSECONDS = (
 def _patience(monkeypatch: pytest.MonkeyPatch) -> None:
     """So long may a device take to answer when it is opened; where none answers, a test gives less."""
     for name in SECONDS:
-        monkeypatch.setattr(f"zwidth.servo.devices.{name}", PATIENCE)
+        monkeypatch.setattr(f"zwidth.machine.servo.devices.{name}", PATIENCE)
     for name in NANOSECONDS:
-        monkeypatch.setattr(f"zwidth.servo.devices.{name}", int(1e9 * PATIENCE))
+        monkeypatch.setattr(f"zwidth.machine.servo.devices.{name}", int(1e9 * PATIENCE))

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from zwidth.servo.connection import GARBLED, SILENT, STALE
-from zwidth.servo.devices.arrivals import dropped, more_bytes, unanswered, unwrapped
-from zwidth.servo.posix import now
+from zwidth.machine.servo.connection import GARBLED, SILENT, STALE
+from zwidth.machine.servo.devices.arrivals import dropped, more_bytes, unanswered, unwrapped
+from zwidth.machine.servo.posix import now
 
 
 @given(start=st.integers(0, 4095), steps=st.lists(st.integers(-2047, 2047), max_size=30))

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from zwidth.servo.devices.frames import (
+from zwidth.machine.servo.devices.frames import (
     CCITT,
     crc16,
     get_float32,

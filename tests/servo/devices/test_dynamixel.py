@@ -9,8 +9,8 @@ from servo.emulators.dynamixel import DynamixelEmulator
 from servo.emulators.faults import Fault
 
 from zwidth.errors import InputError
-from zwidth.servo.connection import GOOD, READING, REFUSED, UNTIL
-from zwidth.servo.devices.dynamixel import Dynamixel
+from zwidth.machine.servo.connection import GOOD, READING, REFUSED, UNTIL
+from zwidth.machine.servo.devices.dynamixel import Dynamixel
 
 OPENING = 1
 """Exchanges that opening makes."""
@@ -234,7 +234,7 @@ def test_a_dynamixel_that_is_not_to_be_served_is_left_alone():
 
 def test_nobody_on_a_dynamixel_bus(monkeypatch):
     """Said when it is opened."""
-    monkeypatch.setattr("zwidth.servo.devices.bus_servo._WAIT", 100_000_000)
+    monkeypatch.setattr("zwidth.machine.servo.devices.bus_servo._WAIT", 100_000_000)
     nobody = pytest.raises(InputError, match=r"Dynamixel servo 1 .* does not answer")
     with DynamixelEmulator(COUNTS, identifier=7) as other, nobody:
         servo(other).open(1e-3)

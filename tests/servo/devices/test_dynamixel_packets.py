@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from servo.emulators.dynamixel import DynamixelEmulator, packet
 
-from zwidth.servo.connection import CLOSED, GARBLED, GOOD, REFUSED, SILENT, STALE
-from zwidth.servo.devices.dynamixel_packets import put_read, put_write, receive
-from zwidth.servo.posix import now
+from zwidth.machine.servo.connection import CLOSED, GARBLED, GOOD, REFUSED, SILENT, STALE
+from zwidth.machine.servo.devices.dynamixel_packets import put_read, put_write, receive
+from zwidth.machine.servo.posix import now
 
 OUT = np.zeros(512, np.uint8)
 

@@ -8,9 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from servo.emulators.feetech import FeetechEmulator, packet
 
-from zwidth.servo.connection import CLOSED, GARBLED, GOOD, SILENT, STALE
-from zwidth.servo.devices.feetech_packets import magnitude, put_read, put_write, receive, with_sign_bit
-from zwidth.servo.posix import now
+from zwidth.machine.servo.connection import CLOSED, GARBLED, GOOD, SILENT, STALE
+from zwidth.machine.servo.devices.feetech_packets import (
+    magnitude,
+    put_read,
+    put_write,
+    receive,
+    with_sign_bit,
+)
+from zwidth.machine.servo.posix import now
 
 OUT = np.zeros(512, np.uint8)
 

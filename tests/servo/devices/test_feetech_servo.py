@@ -9,8 +9,8 @@ from servo.emulators.faults import Fault
 from servo.emulators.feetech import FeetechEmulator
 
 from zwidth.errors import InputError
-from zwidth.servo.connection import GOOD, REFUSED
-from zwidth.servo.devices.feetech import Feetech
+from zwidth.machine.servo.connection import GOOD, REFUSED
+from zwidth.machine.servo.devices.feetech import Feetech
 
 BEFORE = 1
 """Commands that opening gives, all 0."""
@@ -144,7 +144,7 @@ def test_counts_that_are_no_4096th_of_a_turn_are_refused():
 
 def test_nobody_on_a_feetech_bus(monkeypatch):
     """Said when it is opened."""
-    monkeypatch.setattr("zwidth.servo.devices.bus_servo._WAIT", 100_000_000)
+    monkeypatch.setattr("zwidth.machine.servo.devices.bus_servo._WAIT", 100_000_000)
     nobody = pytest.raises(InputError, match=r"Feetech servo 1 .* does not answer")
     with FeetechEmulator(COUNTS, identifier=7) as other, nobody:
         servo(other).open(1e-3)

@@ -12,8 +12,8 @@ from servo.drive import drive
 from servo.emulators.force_dimension import COMPILER, PACKAGE, Device, Failure, built, forget, installed
 
 from zwidth.errors import InputError
-from zwidth.servo.connection import GARBLED, GOOD, REFUSED, SILENT, STALE
-from zwidth.servo.devices.force_dimension import ForceDimension
+from zwidth.machine.servo.connection import GARBLED, GOOD, REFUSED, SILENT, STALE
+from zwidth.machine.servo.devices.force_dimension import ForceDimension
 
 needs_library = pytest.mark.skipif(
     PACKAGE is None or COMPILER is None or sys.platform != "linux",
@@ -33,7 +33,7 @@ def sdk(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     """Stands still, or a busy machine would be a device that is late."""
     found = Clock()
-    monkeypatch.setattr("zwidth.servo.devices.force_dimension.now", found)
+    monkeypatch.setattr("zwidth.machine.servo.devices.force_dimension.now", found)
     return found
 
 

@@ -10,8 +10,8 @@ from servo.emulators.faults import Fault
 from servo.emulators.hapkit import HapkitEmulator
 
 from zwidth.errors import InputError
-from zwidth.servo.connection import CLOSED, GARBLED, GOOD, REFUSED, SILENT, STALE
-from zwidth.servo.devices.hapkit import Hapkit
+from zwidth.machine.servo.connection import CLOSED, GARBLED, GOOD, REFUSED, SILENT, STALE
+from zwidth.machine.servo.devices.hapkit import Hapkit
 
 COUNT = 13e-6
 
@@ -97,7 +97,7 @@ def test_a_board_that_has_cut_its_force_ends_the_run() -> None:
 
 def test_a_board_that_starts_slowly_is_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """Opening the port resets most boards: the first questions are lost."""
-    monkeypatch.setattr("zwidth.servo.devices.hapkit._ONE_TRY", 0.2e9)
+    monkeypatch.setattr("zwidth.machine.servo.devices.hapkit._ONE_TRY", 0.2e9)
 
     class Booting(HapkitEmulator):
         deaf = 1

@@ -12,8 +12,8 @@ import pytest
 from servo.drive import drive
 from servo.emulators.sketch import COMPILER, Sketch, SketchEmulator, compiled
 
-from zwidth.servo.connection import GOOD, REFUSED
-from zwidth.servo.devices.hapkit import Hapkit
+from zwidth.machine.servo.connection import GOOD, REFUSED
+from zwidth.machine.servo.devices.hapkit import Hapkit
 
 pytestmark = pytest.mark.skipif(
     COMPILER is None and not os.environ.get("ZWIDTH_EVERY_TARGET"), reason="c++ is not on this machine"

@@ -15,9 +15,9 @@ from servo.emulators.faults import Fault
 from servo.emulators.haply import BASE, INNER, OUTER, HaplyEmulator, angles_of
 
 from zwidth.errors import InputError
-from zwidth.servo.connection import CLOSED, GARBLED, GOOD, SILENT
-from zwidth.servo.devices.haply import HaplyJoint, HaplyMotor, HaplyPantograph
-from zwidth.servo.devices.pantograph import locate
+from zwidth.machine.servo.connection import CLOSED, GARBLED, GOOD, SILENT
+from zwidth.machine.servo.devices.haply import HaplyJoint, HaplyMotor, HaplyPantograph
+from zwidth.machine.servo.devices.pantograph import locate
 
 ARMS = np.array([INNER, OUTER, BASE])
 
@@ -194,7 +194,7 @@ def test_one_motor_has_its_angle_and_its_torque() -> None:
 
 def test_nobody_at_the_port(monkeypatch: pytest.MonkeyPatch) -> None:
     """A board that does not answer is refused when it is opened, with what to look at."""
-    monkeypatch.setattr("zwidth.servo.devices.haply._FIRST_ANSWER", 0.1e9)
+    monkeypatch.setattr("zwidth.machine.servo.devices.haply._FIRST_ANSWER", 0.1e9)
     with (
         HaplyEmulator(fault=Fault.SILENCE) as board,
         pytest.raises(InputError, match=r"no answer in time.*firmware"),

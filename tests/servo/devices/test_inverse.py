@@ -9,7 +9,7 @@ from servo.emulators.faults import Fault
 from servo.emulators.inverse import InverseEmulator
 
 from zwidth.errors import InputError
-from zwidth.servo.connection import (
+from zwidth.machine.servo.connection import (
     CLOSED,
     FORCE,
     GARBLED,
@@ -21,8 +21,8 @@ from zwidth.servo.connection import (
     STALE,
     UNTIL,
 )
-from zwidth.servo.devices import websocket
-from zwidth.servo.devices.inverse import Inverse
+from zwidth.machine.servo.devices import websocket
+from zwidth.machine.servo.devices.inverse import Inverse
 
 OPENING = 1
 """Exchanges that opening makes: measurement k reads the answer of exchange k + 1."""
@@ -192,7 +192,7 @@ def test_an_answer_that_never_comes_ends_the_run():
 @pytest.mark.parametrize("number", [1, 3])
 def test_a_device_that_the_service_finds_late_is_served(monkeypatch, number):
     """An empty list is asked for again, as the public clients of the service do."""
-    monkeypatch.setattr("zwidth.servo.devices.inverse._BETWEEN", 0.0)
+    monkeypatch.setattr("zwidth.machine.servo.devices.inverse._BETWEEN", 0.0)
     with InverseEmulator(devices=()) as service:
         service.found_when_asked = number
         run = served(service, 20)
@@ -216,7 +216,7 @@ def test_a_device_that_the_service_finds_late_is_served(monkeypatch, number):
 )
 def test_what_cannot_be_served_is_refused_at_once(monkeypatch, options, asked, said):
     """With what was found, in one message, and the line is closed."""
-    monkeypatch.setattr("zwidth.servo.devices.inverse._BETWEEN", 0.0)
+    monkeypatch.setattr("zwidth.machine.servo.devices.inverse._BETWEEN", 0.0)
     with InverseEmulator(**options) as service, pytest.raises(InputError, match=said):
         Inverse(address=service.address, **asked).open(1e-3)
 
@@ -227,7 +227,7 @@ def test_a_service_that_answers_no_force_is_refused(monkeypatch):
 
     def connected(*place):
         found = connect(*place)
-        monkeypatch.setattr("zwidth.servo.devices.inverse._ANSWER_TIME", 0.1)
+        monkeypatch.setattr("zwidth.machine.servo.devices.inverse._ANSWER_TIME", 0.1)
         return found
 
     monkeypatch.setattr(websocket, "connect", connected)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from zwidth.servo.devices.json_text import (
+from zwidth.machine.servo.devices.json_text import (
     ABSENT,
     first_element,
     is_string,

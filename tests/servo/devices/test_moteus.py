@@ -11,9 +11,9 @@ from servo.emulators.faults import Fault
 from servo.emulators.moteus import MoteusEmulator
 
 from zwidth.errors import InputError
-from zwidth.servo.connection import GOOD, REFUSED, TOLD, UNTIL
-from zwidth.servo.devices import moteus
-from zwidth.servo.devices.moteus import Moteus
+from zwidth.machine.servo.connection import GOOD, REFUSED, TOLD, UNTIL
+from zwidth.machine.servo.devices import moteus
+from zwidth.machine.servo.devices.moteus import Moteus
 
 OPENING = 2
 """Exchanges that opening makes: the controller operates at the second."""
@@ -108,13 +108,13 @@ def test_every_sample_of_a_moteus_is_of_its_own_question(fault):
 @pytest.fixture
 def _soon(monkeypatch):
     """A controller that does not come to operate is given up at its first answer, or without one, soon."""
-    monkeypatch.setattr("zwidth.servo.devices.moteus._START_TIME", 0.0)
+    monkeypatch.setattr("zwidth.machine.servo.devices.moteus._START_TIME", 0.0)
 
 
 @pytest.fixture
 def _at_once(_soon, monkeypatch):
     """And no answer is waited for."""
-    monkeypatch.setattr("zwidth.servo.devices.moteus._ONE_TRY", 0.1e9)
+    monkeypatch.setattr("zwidth.machine.servo.devices.moteus._ONE_TRY", 0.1e9)
 
 
 @pytest.mark.usefixtures("_at_once")

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from servo.emulators.moteus import checksum
 
-from zwidth.servo.devices.moteus_frames import (
+from zwidth.machine.servo.devices.moteus_frames import (
     ANY,
     BROKEN,
     EARLIER,

@@ -11,8 +11,8 @@ from servo.emulators.handle import Handle
 from servo.emulators.odrive import ODriveEmulator
 
 from zwidth.errors import InputError
-from zwidth.servo.connection import CLOSED, GARBLED, GOOD, REFUSED, SILENT, STALE
-from zwidth.servo.devices.odrive import ODrive
+from zwidth.machine.servo.connection import CLOSED, GARBLED, GOOD, REFUSED, SILENT, STALE
+from zwidth.machine.servo.devices.odrive import ODrive
 
 AT = 21
 
@@ -220,7 +220,7 @@ def test_it_can_be_served_again_behind_a_pause():
 
 def test_what_has_not_answered_is_told_to_do_nothing(monkeypatch):
     """Another device may be at the port: it is asked, and not commanded."""
-    monkeypatch.setattr("zwidth.servo.devices.odrive._ANSWER_TIME", 0.1)
+    monkeypatch.setattr("zwidth.machine.servo.devices.odrive._ANSWER_TIME", 0.1)
     with ODriveEmulator(Fault.SILENCE) as motor, pytest.raises(InputError, match="no ODrive answers"):
         ODrive(motor.port).open(1e-3)
     assert motor.lines == ["", "r axis0.current_state"]
@@ -228,7 +228,7 @@ def test_what_has_not_answered_is_told_to_do_nothing(monkeypatch):
 
 def test_an_axis_that_does_not_start_is_told_with_its_errors(monkeypatch):
     """As the firmware names them."""
-    monkeypatch.setattr("zwidth.servo.devices.odrive._START_TIME", 0.1)
+    monkeypatch.setattr("zwidth.machine.servo.devices.odrive._START_TIME", 0.1)
     with ODriveEmulator(starts=False) as motor:
         motor.properties["axis0.error"] = "2048"
         with pytest.raises(InputError, match="its state is 1; error 2048"):
@@ -245,14 +245,14 @@ def test_a_setting_that_does_not_stay_is_told():
 
 def test_a_port_where_no_odrive_answers(monkeypatch):
     """Nothing, or something without that axis."""
-    monkeypatch.setattr("zwidth.servo.devices.odrive._ANSWER_TIME", 0.1)
+    monkeypatch.setattr("zwidth.machine.servo.devices.odrive._ANSWER_TIME", 0.1)
     near, far = os.openpty()
     tty.setraw(far)
     with pytest.raises(InputError, match="no ODrive answers"):
         ODrive(port=os.ttyname(far)).open(1e-3)
     os.close(near)
     os.close(far)
-    monkeypatch.setattr("zwidth.servo.devices.odrive._ANSWER_TIME", PATIENCE)
+    monkeypatch.setattr("zwidth.machine.servo.devices.odrive._ANSWER_TIME", PATIENCE)
     with ODriveEmulator() as motor, pytest.raises(InputError, match=r"has no axis1\.current_state"):
         ODrive(port=motor.port, axis=1).open(1e-3)
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from zwidth.errors import InputError
-from zwidth.servo.devices.serial_port import open_port
-from zwidth.servo.posix import read_some
+from zwidth.machine.servo.devices.serial_port import open_port
+from zwidth.machine.servo.posix import read_some
 
 
 @pytest.fixture

@@ -9,12 +9,12 @@ from servo.emulators.feetech import FeetechEmulator
 from servo.emulators.moteus import MoteusEmulator
 from servo.emulators.odrive import ODriveEmulator
 
-from zwidth.servo.connection import DONE, LEAVES, RESTORES, SETS
-from zwidth.servo.devices.dynamixel import Dynamixel
-from zwidth.servo.devices.feetech import Feetech
-from zwidth.servo.devices.moteus import Moteus
-from zwidth.servo.devices.odrive import ODrive
-from zwidth.servo.devices.registry import CONNECTIONS
+from zwidth.machine.servo.connection import DONE, LEAVES, RESTORES, SETS
+from zwidth.machine.servo.devices.dynamixel import Dynamixel
+from zwidth.machine.servo.devices.feetech import Feetech
+from zwidth.machine.servo.devices.moteus import Moteus
+from zwidth.machine.servo.devices.odrive import ODrive
+from zwidth.machine.servo.devices.registry import CONNECTIONS
 
 POSITIONS = {132, 224, 65} | {56}
 """Registers of a Dynamixel and of a Feetech servo: their positions, and what only makes questions differ."""

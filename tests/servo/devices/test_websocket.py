@@ -5,7 +5,7 @@ import os
 import numpy as np
 import pytest
 
-from zwidth.servo.devices.websocket import (
+from zwidth.machine.servo.devices.websocket import (
     BINARY,
     CLOSE,
     CONTINUATION,

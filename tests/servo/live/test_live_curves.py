@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from live_rows import WrittenRows
 
-from zwidth.servo.live.rows import CURVES, LATENESS, MARGIN, Watched
-from zwidth.servo.live.tally import Tally
-from zwidth.servo.ring import AT, LATE, SAMPLE, WIDTH, Rows
+from zwidth.machine.servo.live.rows import CURVES, LATENESS, MARGIN, Watched
+from zwidth.machine.servo.live.tally import Tally
+from zwidth.machine.servo.ring import AT, LATE, SAMPLE, WIDTH, Rows
 
 
 def test_each_row_is_news_once() -> None:

@@ -20,9 +20,9 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from zwidth.errors import InputError
-from zwidth.servo.live.foxglove import serve_foxglove
-from zwidth.servo.live.messages import ros2_schema
-from zwidth.servo.live.stream import JSON_TOPIC, ROS2_TOPIC
+from zwidth.machine.servo.live.foxglove import serve_foxglove
+from zwidth.machine.servo.live.messages import ros2_schema
+from zwidth.machine.servo.live.stream import JSON_TOPIC, ROS2_TOPIC
 
 HANGS = 60.0
 """Nothing comes any more [s]."""
@@ -228,7 +228,7 @@ def test_nothing_is_made_for_a_topic_that_nobody_reads(monkeypatch: pytest.Monke
     def unwanted(*_: Any) -> Any:
         raise AssertionError("nobody reads this")
 
-    monkeypatch.setattr("zwidth.servo.live.stream.json_messages", unwanted)
+    monkeypatch.setattr("zwidth.machine.servo.live.stream.json_messages", unwanted)
     rows = growing()
     with serve_foxglove(rows, 0) as page, connect(page.address) as idle:
         assert json.loads(idle.recv(timeout=HANGS))["op"] == "serverInfo"

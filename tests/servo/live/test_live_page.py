@@ -21,12 +21,12 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from zwidth.errors import InputError
-from zwidth.servo.live.browser import open_page
-from zwidth.servo.live.document import SPANS, Shown, make_document
-from zwidth.servo.live.envelope import Envelope
-from zwidth.servo.live.page import HOST, Page
-from zwidth.servo.live.rows import CURVES, Watched
-from zwidth.servo.live.tally import Tally
+from zwidth.machine.servo.live.browser import open_page
+from zwidth.machine.servo.live.document import SPANS, Shown, make_document
+from zwidth.machine.servo.live.envelope import Envelope
+from zwidth.machine.servo.live.page import HOST, Page
+from zwidth.machine.servo.live.rows import CURVES, Watched
+from zwidth.machine.servo.live.tally import Tally
 
 HANGS = 6000
 """So many looks without what was waited for: it does not come any more."""

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from written_rows import drawn
 
-from zwidth.servo.recording.recording import read_recording
+from zwidth.machine.servo.recording.recording import read_recording
 
 TESTS = Path(__file__).parents[2]
 
@@ -20,7 +20,7 @@ WRITER = """
 import sys, time
 sys.path.insert(0, sys.argv[1])
 from written_rows import WrittenRows, drawn
-from zwidth.servo.recording.recorder import Recorder
+from zwidth.machine.servo.recording.recorder import Recorder
 rows = WrittenRows(drawn(200_000), kept=200_000)
 recorder = Recorder(rows, sys.argv[2])
 while True:

@@ -10,8 +10,8 @@ from known_motion import COULOMB, DAMPING, MASS, PERIOD, STEP, paddle
 from written_rows import COLUMNS, WrittenRows, drawn
 
 import zwidth as zw
-from zwidth.servo.recording.recorder import Recorder
-from zwidth.servo.recording.recording import read_recording
+from zwidth.machine.servo.recording.recorder import Recorder
+from zwidth.machine.servo.recording.recording import read_recording
 
 
 def moved(kept: int = 1 << 20) -> WrittenRows:

@@ -11,9 +11,9 @@ from full_disk import full_disk
 from written_rows import COLUMNS, WrittenRows, drawn
 
 from zwidth import InputError
-from zwidth.servo.recording.mcap import field_name
-from zwidth.servo.recording.recorder import Recorder
-from zwidth.servo.recording.recording import Recording, read_recording
+from zwidth.machine.servo.recording.mcap import field_name
+from zwidth.machine.servo.recording.recorder import Recorder
+from zwidth.machine.servo.recording.recording import Recording, read_recording
 
 
 def stacked(recording: Recording) -> np.ndarray:
@@ -163,7 +163,7 @@ def test_the_index_leads_to_every_chunk(tmp_path: Path) -> None:
         summary = opened.get_summary()
         assert summary.statistics.message_count == 300
         assert [m.name for m in opened.iter_metadata()] == ["zwidth recording", "zwidth end"]
-        assert [m.sequence for _, _, m in opened.iter_messages(topics=["/zwidth/samples"])] == list(
+        assert [m.sequence for _, _, m in opened.iter_messages(topics=["/zwidth/model/samples"])] == list(
             range(300)
         )
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import zwidth as zw
-from zwidth.servo.devices import Simulated
-from zwidth.servo.ring import PHASES, column_names
+from zwidth.machine.servo.devices import Simulated
+from zwidth.machine.servo.ring import PHASES, column_names
 
 PAGE = (Path(__file__).parents[3] / "docs" / "recording.md").read_text(encoding="utf-8")
 

@@ -14,12 +14,12 @@ from written_rows import COLUMNS, WrittenRows, drawn
 import zwidth as zw
 from zwidth import InputError
 from zwidth.loop import Timing
-from zwidth.rendering import Damper, ForceBounding, PassivityController, TickTime, Window, render
-from zwidth.servo import Placement, Safety
-from zwidth.servo.devices import Simulated
-from zwidth.servo.recording import Recorder, Recording, read_recording, replay, touch_of
-from zwidth.servo.session import Servo
-from zwidth.specification.write import written
+from zwidth.machine.servo import Placement, Safety
+from zwidth.machine.servo.devices import Simulated
+from zwidth.machine.servo.recording import Recorder, Recording, read_recording, replay, touch_of
+from zwidth.machine.servo.session import Servo
+from zwidth.model.rendering import Damper, ForceBounding, PassivityController, TickTime, Window, render
+from zwidth.model.specification.write import written
 
 SAMPLES = 1500
 WALL = zw.Wall(stiffness=300, damping="0.2 N*s/m")

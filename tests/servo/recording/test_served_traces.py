@@ -11,12 +11,12 @@ from written_rows import WrittenRows, drawn
 
 import zwidth as zw
 from zwidth import InputError
-from zwidth.energy import ledger
-from zwidth.operator import Operator
-from zwidth.servo import Safety
-from zwidth.servo.devices import Simulated
-from zwidth.servo.recording import Recorder, Recording, read_recording, trace_of
-from zwidth.servo.session import Servo
+from zwidth.loop.energy import ledger
+from zwidth.machine.servo import Safety
+from zwidth.machine.servo.devices import Simulated
+from zwidth.machine.servo.recording import Recorder, Recording, read_recording, trace_of
+from zwidth.machine.servo.session import Servo
+from zwidth.model.operator import Operator
 
 SLOW = Safety(longest_gap="60 s", host_timeout="60 s")
 """A machine that stands still makes a loop miss samples, and does not end it."""

@@ -9,9 +9,9 @@ import pytest
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.operator.operator import LinearHand
+from zwidth.model.operator.operator import LinearHand
 from zwidth.passivity.certificate import read_document, verify_document
-from zwidth.stability.absolute import (
+from zwidth.passivity.stability.absolute import (
     describing_guess,
     periodic_motion,
     replay_motion,

@@ -11,9 +11,9 @@ import pytest
 import zwidth as zw
 from zwidth import checker
 from zwidth.cli.main import main
-from zwidth.operator.operator import LinearHand
+from zwidth.model.operator.operator import LinearHand
 from zwidth.passivity.certificate import read_document, verify_document
-from zwidth.stability.absolute import given_plant, periodic_motion, touched_plant
+from zwidth.passivity.stability.absolute import given_plant, periodic_motion, touched_plant
 
 SIX = {"numerator": ["2", "0.92"], "denominator": ["1", "-0.5", "0"]}
 LIMIT = Fraction(175, 192)

@@ -10,13 +10,13 @@ import pytest
 from scipy.linalg import expm
 
 import zwidth as zw
-from zwidth.operator import Dowel, Finger, PrescribedMotion
-from zwidth.operator.hand_impedance import as_hand
+from zwidth.model.operator import Dowel, Finger, PrescribedMotion
+from zwidth.model.operator.hand_impedance import as_hand
 from zwidth.passivity.linear.schur import is_schur
+from zwidth.passivity.stability.known_hand.characteristic import PRECISIONS, decays, family
+from zwidth.passivity.stability.known_hand.coupled import motion_of, plain_of
+from zwidth.passivity.stability.known_hand.crossing import _roots, last_stable, last_stable_of_each
 from zwidth.quantity.balls import precision
-from zwidth.stability.known_hand.characteristic import PRECISIONS, decays, family
-from zwidth.stability.known_hand.coupled import motion_of, plain_of
-from zwidth.stability.known_hand.crossing import _roots, last_stable, last_stable_of_each
 
 MASS, PERIOD = Fraction("0.036"), Fraction("0.001")
 BARE = zw.Device(mass=MASS, damping=0, sample_period=PERIOD)

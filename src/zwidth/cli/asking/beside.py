@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from zwidth.cli.asking.device_questions import NEEDED
-from zwidth.device import Device
 from zwidth.errors import InputError
-from zwidth.specification.read import load_device, read_tables
-from zwidth.specification.table import Table
+from zwidth.model.device import Device
+from zwidth.model.specification.read import load_device, read_tables
+from zwidth.model.specification.table import Table
 
 _ANY = {"rate": "1 kHz", "damping": "0"}
 """In the place of what the file lacks: motion and largest force do not depend on it."""

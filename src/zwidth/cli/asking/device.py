@@ -24,11 +24,11 @@ from zwidth.cli.asking.encoder import read_encoder
 from zwidth.cli.asking.numbers import with_unit
 from zwidth.cli.asking.questions import Asker, Question
 from zwidth.cli.asking.written import Row, Written, table
-from zwidth.device import Device
-from zwidth.environment import Wall
+from zwidth.model.device import Device
+from zwidth.model.environment import Wall
+from zwidth.model.specification.read import build_device, tables_of
 from zwidth.passivity.check import check
 from zwidth.quantity.spoken import spoken
-from zwidth.specification.read import build_device, tables_of
 
 __all__ = ["QUESTIONS", "described"]
 

@@ -8,13 +8,13 @@ from zwidth.cli.asking import motor
 from zwidth.cli.asking.encoder import encoder_understood
 from zwidth.cli.asking.numbers import need_unit, understood
 from zwidth.cli.asking.questions import Question
-from zwidth.device import Device
-from zwidth.device.rotary import ROTARY
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.device.rotary import ROTARY
+from zwidth.model.specification.read import question_time
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.parameter import parameters_of, read_number
 from zwidth.quantity.units import parse
-from zwidth.specification.read import question_time
 
 NEEDED = ("rate", "damping")
 """Without them nothing is proved: who leaves them out must say so."""

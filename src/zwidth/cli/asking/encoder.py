@@ -6,9 +6,9 @@ import re
 
 from zwidth.cli.asking.numbers import need_unit, understood
 from zwidth.cli.asking.written import Row
-from zwidth.device import Device
-from zwidth.device.rotary import rotary
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.device.rotary import rotary
 from zwidth.quantity.units import parse_number
 
 LINES = 4

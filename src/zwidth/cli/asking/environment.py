@@ -15,9 +15,9 @@ from zwidth.cli.asking.numbers import with_unit
 from zwidth.cli.asking.questions import Asker
 from zwidth.cli.asking.written import Row, Written, table
 from zwidth.cli.output import print_text
-from zwidth.device import Device
-from zwidth.environment import NonlinearSpring, Wall
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment import NonlinearSpring, Wall
 from zwidth.quantity.exact import ends
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import readable

@@ -8,8 +8,8 @@ from zwidth.cli.asking.device_questions import MOTION
 from zwidth.cli.asking.numbers import need_unit, understood
 from zwidth.cli.asking.questions import Question
 from zwidth.errors import InputError
+from zwidth.model.specification.table import quoted, suggestion
 from zwidth.quantity.units import parse_number
-from zwidth.specification.table import quoted, suggestion
 
 _KINDS = ("wall", "detents", "bump-stop")
 

@@ -12,7 +12,7 @@ from typing import NamedTuple, TypeVar
 
 from zwidth.cli.output import print_text, quiet_pipe
 from zwidth.errors import InputError
-from zwidth.specification.table import COMMAND_LINE, located
+from zwidth.model.specification.table import COMMAND_LINE, located
 
 T = TypeVar("T")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from zwidth.specification.write import toml
+from zwidth.model.specification.write import toml
 
 
 class Row(NamedTuple):

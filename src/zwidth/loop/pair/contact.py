@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import ceil, sqrt
 
-from zwidth.compiled import Array, compiled
 from zwidth.loop.pair.curve import advance_on
 from zwidth.loop.plant import POSITION, VELOCITY, Plant
+from zwidth.native.compiled import Array, compiled
 
 _LOOKS = 8
 """How often in a stretch it is looked whether the arm has met or left the wall, at least."""

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from math import ceil, sqrt
 
-from zwidth.compiled import Array, compiled
 from zwidth.loop.plant import FAULT, VELOCITY, Plant
 from zwidth.loop.step import advance
+from zwidth.native.compiled import Array, compiled
 
 FROM, COULOMB_PART, VISCOUS_PART = range(3)
 """Of a line: v_i, f_i, b_i."""

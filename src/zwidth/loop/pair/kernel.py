@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from zwidth.compiled import Array, compiled
-from zwidth.elementary.hyperbolic import tanh
 from zwidth.loop.carry import carry
 from zwidth.loop.kernel import (
     R_COMMAND,
@@ -28,6 +26,8 @@ from zwidth.loop.law import measured, rounded
 from zwidth.loop.pair.contact import advance_against
 from zwidth.loop.pair.curve import advance_on, line_of, on_line
 from zwidth.loop.plant import POSITION, SATURATED, Plant
+from zwidth.native.compiled import Array, compiled
+from zwidth.quantity.elementary.hyperbolic import tanh
 
 
 class Law(NamedTuple):

@@ -9,11 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from zwidth.device import FrictionCurve
-from zwidth.device.amplifier import Amplifier
-from zwidth.environment import Wall
-from zwidth.environment.environment import certain
-from zwidth.environment.velocity import BackwardDifference
 from zwidth.errors import InputError
 from zwidth.loop.kernel import RECORDED
 from zwidth.loop.law import measured, rounded
@@ -21,8 +16,13 @@ from zwidth.loop.pair.curve import COULOMB_PART
 from zwidth.loop.pair.kernel import Arm, Law
 from zwidth.loop.plant import FORCE, GOAL, POSITION, STATE_SIZE, Plant
 from zwidth.loop.setup import Frame, frame_of
-from zwidth.operator.operator import Operator, Signals
-from zwidth.pairs import Pair
+from zwidth.model.device import FrictionCurve
+from zwidth.model.device.amplifier import Amplifier
+from zwidth.model.environment import Wall
+from zwidth.model.environment.environment import certain
+from zwidth.model.environment.velocity import BackwardDifference
+from zwidth.model.operator.operator import Operator, Signals
+from zwidth.model.pairs import Pair
 from zwidth.quantity.exact import Exact, Interval, RealLike
 
 if TYPE_CHECKING:

@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from zwidth.device import FrictionCurve
-from zwidth.device.amplifier import Amplifier
 from zwidth.errors import InputError
 from zwidth.loop.pair.kernel import run_pair
 from zwidth.loop.pair.setup import Holder, PairSetup, prepare_pair
@@ -16,7 +14,9 @@ from zwidth.loop.pair.trace import build_pair_trace
 from zwidth.loop.plant import FAULT
 from zwidth.loop.series import WORK
 from zwidth.loop.trace import Trace
-from zwidth.pairs import Pair
+from zwidth.model.device import FrictionCurve
+from zwidth.model.device.amplifier import Amplifier
+from zwidth.model.pairs import Pair
 from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from zwidth.environment.wording import with_unit
 from zwidth.loop.pair.setup import Holder, PairSetup
 from zwidth.loop.plant import POSITION, STOPS
 from zwidth.loop.trace import (
@@ -25,7 +24,8 @@ from zwidth.loop.trace import (
     own_version,
     values_of,
 )
-from zwidth.operator.operator import Operator, Signals
+from zwidth.model.environment.wording import with_unit
+from zwidth.model.operator.operator import Operator, Signals
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -7,9 +7,9 @@ from dataclasses import fields
 from fractions import Fraction
 from typing import NamedTuple
 
-from zwidth.device.device import Device
-from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
+from zwidth.model.device.device import Device
+from zwidth.model.environment.environment import Environment
 from zwidth.quantity.exact import Exact
 
 Loop = tuple[Device, Environment]

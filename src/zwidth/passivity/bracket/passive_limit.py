@@ -6,11 +6,12 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
-from zwidth.device.device import Device
-from zwidth.device.friction import FrictionCurve
-from zwidth.environment.environment import Environment
-from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
+from zwidth.model.device.device import Device
+from zwidth.model.device.friction import FrictionCurve
+from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.transfer_function import as_environment
+from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.bracket.bounded import BoundedSearch
 from zwidth.passivity.bracket.bracket import Bracket
 from zwidth.passivity.bracket.parameter import parameter_of, refuse_without_part
@@ -21,7 +22,6 @@ from zwidth.passivity.storage.row.program import RowProgram, row_program
 from zwidth.passivity.storage.slow_hands import slow_hands
 from zwidth.passivity.storage.solve.effort import EFFORT, Effort, checked_effort, time_limit
 from zwidth.quantity.exact import Exact, RealLike, ends
-from zwidth.rendering.rendered import laws_of
 
 _SOME_SECONDS = 10.0
 """What needs no announcement."""

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from math import inf
 from typing import Any, NamedTuple
 
-from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.bracket.bracket import Bracket
 from zwidth.passivity.bracket.parameter import Parameter
 from zwidth.passivity.certificate import Certificate

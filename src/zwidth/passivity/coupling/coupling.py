@@ -27,10 +27,11 @@ from functools import cached_property
 from math import sqrt
 from typing import Any
 
-from zwidth.device import Device
-from zwidth.environment import PulseTransferFunction, Wall
-from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment import PulseTransferFunction, Wall
+from zwidth.model.environment.environment import Environment
+from zwidth.model.rendering import VirtualCoupling
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.document import unit_key
@@ -45,7 +46,6 @@ from zwidth.passivity.storage.evidence.gain import Gain
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import told_quantity
-from zwidth.rendering import VirtualCoupling
 
 
 @dataclass(frozen=True, repr=False)

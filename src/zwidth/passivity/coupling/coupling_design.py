@@ -28,11 +28,12 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.optimize import minimize_scalar
 
-from zwidth.device import Device
-from zwidth.environment import BackwardDifference, Wall
-from zwidth.environment.environment import Environment, certain
-from zwidth.environment.wall import wall_of
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment import BackwardDifference, Wall
+from zwidth.model.environment.environment import Environment, certain
+from zwidth.model.environment.wall import wall_of
+from zwidth.model.rendering import VirtualCoupling
 from zwidth.passivity.check import check
 from zwidth.passivity.coupling.coupling import CouplingCondition, coupling_condition
 from zwidth.passivity.document import unit_key
@@ -43,7 +44,6 @@ from zwidth.passivity.scope import Scope
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import told_quantity
-from zwidth.rendering import VirtualCoupling
 from zwidth.showing import Part, Table
 
 Goal = Literal["stiffest"] | Wall

@@ -13,9 +13,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import get_args
 
-from zwidth.device import Device
-from zwidth.environment.integrators import Body, Integrator, stepped
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment.integrators import Body, Integrator, stepped
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, nonnegative
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import one_of

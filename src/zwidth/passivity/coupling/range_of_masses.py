@@ -15,11 +15,11 @@ from itertools import pairwise
 from math import inf, nextafter
 from typing import Any
 
-from zwidth.device import Device
-from zwidth.environment.coupled_body import CoupledBody
-from zwidth.environment.environment import RationalFunction
-from zwidth.environment.integrators import POWER_OF_MASS, times
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment.coupled_body import CoupledBody
+from zwidth.model.environment.environment import RationalFunction
+from zwidth.model.environment.integrators import POWER_OF_MASS, times
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.critical_values import critical_values

@@ -29,8 +29,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from zwidth.device import Device
 from zwidth.errors import InputError
+from zwidth.model.device import Device
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, NO_CLOCK, nonnegative, positive
 from zwidth.passivity.linear.frequencies import sampled_frequencies
 from zwidth.quantity.exact import RealLike

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from zwidth.device import Device
+from zwidth.model.device import Device
 
 
 def needed_damping(

@@ -16,8 +16,8 @@ from itertools import pairwise
 from math import sqrt
 from typing import Any
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.result import Evidence

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
-from zwidth.device import Device
 from zwidth.errors import InputError
+from zwidth.model.device import Device
 from zwidth.passivity.formulas.stability_plane import (
     PlanePoint,
     QuantizedWall,

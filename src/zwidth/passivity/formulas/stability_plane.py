@@ -20,8 +20,8 @@ from fractions import Fraction
 from math import inf
 from typing import Literal, NamedTuple
 
-from zwidth.device import Device, catalogue
 from zwidth.errors import InputError
+from zwidth.model.device import Device, catalogue
 from zwidth.quantity.exact import Exact, RealLike
 
 Region = Literal["globally stable", "limit cycles", "globally unstable", "locally stable"]

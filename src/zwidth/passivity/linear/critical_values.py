@@ -19,8 +19,8 @@ from math import lcm
 
 from flint import Ordering, fmpq_poly, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
-from zwidth.environment.environment import RationalFunction
 from zwidth.errors import InputError
+from zwidth.model.environment.environment import RationalFunction
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.roots import roots_inside
 from zwidth.quantity.balls import as_fmpq

@@ -24,9 +24,9 @@ from math import floor, gcd, inf, isfinite, lcm, log10
 
 from flint import arb, arb_poly, fmpq, fmpq_poly, fmpz_poly
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment, RationalFunction
 from zwidth.passivity.linear.cosines import from_cosines, real_product
 from zwidth.passivity.linear.schur import is_schur
 from zwidth.quantity.balls import as_fmpq, as_fraction, precision

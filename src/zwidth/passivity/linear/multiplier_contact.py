@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from zwidth.environment.environment import Environment
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.linear.cosines import real_product
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.one_norm import NormBound, bound_one_norm

@@ -21,7 +21,7 @@ from fractions import Fraction
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from zwidth.environment.environment import Environment
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.roots import rational_roots_inside
 from zwidth.quantity.balls import as_fmpq, as_fraction

@@ -12,9 +12,9 @@ from functools import partial
 from math import floor
 from typing import Any, Literal
 
-from zwidth.device import Device
 from zwidth.errors import InputError
-from zwidth.pairs import Pair
+from zwidth.model.device import Device
+from zwidth.model.pairs import Pair
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.knob import Knob, between_delays, between_rates, between_sizes, outward, turn, turn_all
 from zwidth.passivity.linear.boundary import Holds

@@ -18,7 +18,7 @@ import numpy as np
 from flint import fmpq, fmpz_poly
 from numpy.typing import NDArray
 
-from zwidth.pairs import Side
+from zwidth.model.pairs import Side
 from zwidth.passivity.tangents import Line, line_of
 from zwidth.quantity.balls import as_fmpq, as_fraction
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from zwidth.pairs import Pair
+from zwidth.model.pairs import Pair
 from zwidth.passivity.pairs.compensation import assumed_of_forces
 from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.passivity.wording import TRANSMISSION

@@ -35,7 +35,7 @@ import numpy as np
 from flint import fmpq, fmpz_poly
 from numpy.typing import NDArray
 
-from zwidth.pairs import Pair
+from zwidth.model.pairs import Pair
 from zwidth.passivity.linear.cosines import from_whole_cosines, whole_product
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
 from zwidth.passivity.pairs.arm import Arm

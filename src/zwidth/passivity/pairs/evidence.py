@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zwidth.checker import verify
-from zwidth.pairs import Pair, Side
+from zwidth.model.pairs import Pair, Side
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.positivity import Positivity
 from zwidth.passivity.linear.supremum import frequency

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from zwidth.pairs import Pair
+from zwidth.model.pairs import Pair
 from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.passivity.pairs.held.verdict import HeldVerdict
 from zwidth.passivity.pairs.verdict import PairVerdict

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from zwidth.device import Device
 from zwidth.errors import InputError
-from zwidth.pairs import Pair
+from zwidth.model.device import Device
+from zwidth.model.pairs import Pair
 from zwidth.passivity.linear.boundary import COARSE, COARSER, largest_holding, smallest_holding
 from zwidth.passivity.linear.loop import HIGH_DEGREE
 from zwidth.passivity.pairs.criterion import PairCriterion, largest_spring, spending

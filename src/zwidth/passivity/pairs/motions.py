@@ -18,8 +18,8 @@ from math import ceil, pi
 import numpy as np
 from flint import arb
 
-from zwidth.device import Device
-from zwidth.pairs import Pair
+from zwidth.model.device import Device
+from zwidth.model.pairs import Pair
 from zwidth.passivity.linear.positivity import prove_nonnegative
 from zwidth.passivity.linear.roots import roots_inside
 from zwidth.passivity.pairs.arm import Arm

@@ -15,7 +15,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.pairs import Pair
+from zwidth.model.pairs import Pair
 from zwidth.passivity.pairs.arm import Arm
 from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.passivity.pairs.evidence import PairWitness, energy_of

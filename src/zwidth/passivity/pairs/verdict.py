@@ -8,8 +8,8 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, ClassVar
 
-from zwidth.device import Device
-from zwidth.pairs import Pair
+from zwidth.model.device import Device
+from zwidth.model.pairs import Pair
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.advice import StiffnessAt, advise, stiffness_elsewhere

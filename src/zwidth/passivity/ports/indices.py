@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from zwidth.device import Device
-from zwidth.environment.discretization import Discretization
-from zwidth.environment.environment import Environment
+from zwidth.model.device import Device
+from zwidth.model.environment.discretization import Discretization
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.outcome import Outcome

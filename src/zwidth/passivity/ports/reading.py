@@ -9,10 +9,10 @@ from typing import Any, Literal
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from zwidth.environment.environment import Environment
-from zwidth.environment.matrix_system import MatrixSystem, hidden_modes, read_matrix_system, size_of
-from zwidth.environment.system import LinearSystem, Polynomial, is_system, read_system, time_of
 from zwidth.errors import InputError
+from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.matrix_system import MatrixSystem, hidden_modes, read_matrix_system, size_of
+from zwidth.model.environment.system import LinearSystem, Polynomial, is_system, read_system, time_of
 from zwidth.passivity.linear.loop import LARGEST_DEGREE
 from zwidth.passivity.ports.circle import Time
 from zwidth.passivity.ports.poles import decays

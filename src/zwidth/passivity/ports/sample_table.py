@@ -16,8 +16,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from flint import fmpq
 
-from zwidth.environment.system import number_of
 from zwidth.errors import InputError
+from zwidth.model.environment.system import number_of
 from zwidth.passivity.linear.elimination import negative_direction
 from zwidth.passivity.result import Result
 from zwidth.quantity.balls import as_fmpq

@@ -15,12 +15,12 @@ from typing import Any
 
 from flint import fmpq_poly
 
-from zwidth.device import Device
-from zwidth.environment.discretization import Discretization
-from zwidth.environment.environment import Environment
-from zwidth.environment.system import is_system, time_of
-from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment.discretization import Discretization
+from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.system import is_system, time_of
+from zwidth.model.environment.transfer_function import as_environment
 from zwidth.passivity import parameter_limits
 from zwidth.passivity.decision import decide
 from zwidth.passivity.linear.supremum import frequency, tightest

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor
 
-from zwidth.device.device import Device
-from zwidth.device.friction import FrictionCurve
 from zwidth.errors import InputError
+from zwidth.model.device.device import Device
+from zwidth.model.device.friction import FrictionCurve
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.passivity.storage.losses import Losses
 from zwidth.quantity.exact import Exact, RealLike

@@ -21,10 +21,10 @@ from fractions import Fraction
 from math import floor
 from typing import Any, Literal
 
-from zwidth.device.device import Device
-from zwidth.environment.environment import Environment
-from zwidth.environment.hunt_crossley import resting_force
 from zwidth.errors import InputError
+from zwidth.model.device.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.hunt_crossley import resting_force
 from zwidth.passivity.document import unit_key
 from zwidth.quantity.text import exact_text
 

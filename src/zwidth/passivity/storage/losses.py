@@ -19,7 +19,7 @@ from math import ceil, floor
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.device.friction import FrictionCurve
+from zwidth.model.device.friction import FrictionCurve
 
 Integers = NDArray[np.int64]
 

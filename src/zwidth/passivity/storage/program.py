@@ -10,11 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from zwidth.device.device import Device
-from zwidth.device.friction import FrictionCurve
-from zwidth.environment.environment import Environment
-from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
+from zwidth.model.device.device import Device
+from zwidth.model.device.friction import FrictionCurve
+from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.transfer_function import as_environment
+from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.scope import Contact, Hands, Law, Scope, scope_of
 from zwidth.passivity.storage.domain import Domain, domain_for, losses_of, states_of, too_large
@@ -31,7 +32,6 @@ from zwidth.passivity.storage.row.program import RowProgram, row_program
 from zwidth.passivity.storage.solve.effort import Until, freely
 from zwidth.passivity.storage.solve.value_iteration import Progress, value_iteration
 from zwidth.quantity.exact import RealLike
-from zwidth.rendering.rendered import laws_of
 
 STEPS = (8, 16, 32, 64)
 """Steps in which a count is cut, coarse to fine, when a proof is sought."""

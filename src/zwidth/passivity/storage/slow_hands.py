@@ -11,9 +11,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.certificate import FORMAT, Certificate, wall_document
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.document import loop_document, unit_key

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from zwidth.device.device import Device
-from zwidth.device.friction import FrictionCurve
-from zwidth.environment.environment import Environment
-from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
+from zwidth.model.device.device import Device
+from zwidth.model.device.friction import FrictionCurve
+from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.transfer_function import as_environment
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer

@@ -17,7 +17,7 @@ from itertools import chain, pairwise
 from math import ceil
 from typing import Any
 
-from zwidth.environment.environment import Environment
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.document import loop_document, unit_key
 from zwidth.passivity.linear.rhythm import Surface, rhythms
 from zwidth.passivity.linear.schur import is_schur

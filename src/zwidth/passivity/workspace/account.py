@@ -16,9 +16,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.arms import Sites
-from zwidth.arms.joints import surplus
-from zwidth.arms.pose import loss_in_pose
+from zwidth.model.arms import Sites
+from zwidth.model.arms.joints import surplus
+from zwidth.model.arms.pose import loss_in_pose
 
 Array = npt.NDArray[np.float64]
 Truth = npt.NDArray[np.bool_]

@@ -19,11 +19,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.arms.joints import as_matrix, single_addition
-from zwidth.arms.least import least_additions
-from zwidth.arms.matrix_wall import MatrixWall
-from zwidth.environment.environment import certain
-from zwidth.environment.wall import Wall
+from zwidth.model.arms.joints import as_matrix, single_addition
+from zwidth.model.arms.least import least_additions
+from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.environment.environment import certain
+from zwidth.model.environment.wall import Wall
 from zwidth.passivity.workspace.certificate import arm_certificate
 from zwidth.passivity.workspace.question import Question
 

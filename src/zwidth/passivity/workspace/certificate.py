@@ -17,14 +17,14 @@ import flint
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.arms import Arm, DescribedArm, LeggedArm, PlanarChain, PosedArm
-from zwidth.arms.encoders import Chain, EncoderSteps, moving_steps
-from zwidth.arms.joints import as_matrix, surplus
-from zwidth.arms.matrix_wall import MatrixWall
-from zwidth.arms.need import wall_matrices, wall_need
 from zwidth.checker import verify
-from zwidth.environment.environment import certain
-from zwidth.environment.wall import Wall
+from zwidth.model.arms import Arm, DescribedArm, LeggedArm, PlanarChain, PosedArm
+from zwidth.model.arms.encoders import Chain, EncoderSteps, moving_steps
+from zwidth.model.arms.joints import as_matrix, surplus
+from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.need import wall_matrices, wall_need
+from zwidth.model.environment.environment import certain
+from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.workspace.counting import Counting
 from zwidth.quantity.text import exact_text

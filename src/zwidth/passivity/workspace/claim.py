@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from zwidth.arms.encoders import EncoderSteps
-from zwidth.arms.held import in_words
+from zwidth.model.arms.encoders import EncoderSteps
+from zwidth.model.arms.held import in_words
 from zwidth.passivity.workspace.account import Account
 
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.arms import Arm, Sites
-from zwidth.arms.edges import first_motion
-from zwidth.arms.encoders import EncoderSteps, encoder_steps, with_encoders
-from zwidth.arms.held import in_words
-from zwidth.arms.matrix_wall import MatrixWall
-from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
+from zwidth.model.arms import Arm, Sites
+from zwidth.model.arms.edges import first_motion
+from zwidth.model.arms.encoders import EncoderSteps, encoder_steps, with_encoders
+from zwidth.model.arms.held import in_words
+from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.environment.wall import Wall
 
 Array = npt.NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.arms import ArmMotion, EncoderSteps, Sites
-from zwidth.arms.replay import refuting_motion
+from zwidth.model.arms import ArmMotion, EncoderSteps, Sites
+from zwidth.model.arms.replay import refuting_motion
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.workspace.account import Account
 from zwidth.passivity.workspace.certificate import arm_certificate

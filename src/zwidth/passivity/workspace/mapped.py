@@ -7,19 +7,19 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.arms import Arm, Sites
-from zwidth.arms.encoders import columns_in_cells, friction_for, with_encoders
-from zwidth.arms.joints import (
+from zwidth.model.arms import Arm, Sites
+from zwidth.model.arms.encoders import columns_in_cells, friction_for, with_encoders
+from zwidth.model.arms.joints import (
     end_effector_friction,
     end_effector_resolution,
     largest_scale,
     single_additions,
     surplus,
 )
-from zwidth.arms.matrix_wall import MatrixWall
-from zwidth.arms.need import WallNeed, wall_matrices
-from zwidth.arms.pose import motion_at_hand
-from zwidth.environment.wall import Wall
+from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.need import WallNeed, wall_matrices
+from zwidth.model.arms.pose import motion_at_hand
+from zwidth.model.environment.wall import Wall
 
 Array = npt.NDArray[np.float64]
 Truth = npt.NDArray[np.bool_]

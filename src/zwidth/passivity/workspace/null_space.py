@@ -20,14 +20,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.arms import Arm, ArmMotion, DescribedArm, PlanarChain
-from zwidth.arms.joints import as_matrix, largest_scale
-from zwidth.arms.matrix_wall import MatrixWall
-from zwidth.arms.need import wall_need
-from zwidth.arms.null_space import NullSpaceSpring, fast_motion, moving, projector, task_jacobian
-from zwidth.arms.null_space_loop import Loop, slow_loop
-from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
+from zwidth.model.arms import Arm, ArmMotion, DescribedArm, PlanarChain
+from zwidth.model.arms.joints import as_matrix, largest_scale
+from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.need import wall_need
+from zwidth.model.arms.null_space import NullSpaceSpring, fast_motion, moving, projector, task_jacobian
+from zwidth.model.arms.null_space_loop import Loop, slow_loop
+from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer

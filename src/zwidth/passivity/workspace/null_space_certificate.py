@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.arms import DescribedArm, PlanarChain
-from zwidth.arms.joints import as_matrix
-from zwidth.arms.need import wall_need
-from zwidth.arms.null_space import NullSpaceSpring, moving, projector, task_jacobian
 from zwidth.checker import verify
+from zwidth.model.arms import DescribedArm, PlanarChain
+from zwidth.model.arms.joints import as_matrix
+from zwidth.model.arms.need import wall_need
+from zwidth.model.arms.null_space import NullSpaceSpring, moving, projector, task_jacobian
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.workspace.certificate import (
     chain_document,

@@ -19,14 +19,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.arms import Arm, ArmMotion, DescribedArm
-from zwidth.arms.encoders import covered_factors
-from zwidth.arms.joints import largest_scale, surplus
-from zwidth.arms.matrix_wall import MatrixWall
-from zwidth.arms.need import wall_matrices, wall_need
-from zwidth.arms.replay import refuting_motion
-from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
+from zwidth.model.arms import Arm, ArmMotion, DescribedArm
+from zwidth.model.arms.encoders import covered_factors
+from zwidth.model.arms.joints import largest_scale, surplus
+from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.need import wall_matrices, wall_need
+from zwidth.model.arms.replay import refuting_motion
+from zwidth.model.environment.wall import Wall
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope

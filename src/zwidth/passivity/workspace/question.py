@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.arms import Arm
-from zwidth.arms.held import forces_of, held_torque_damping
-from zwidth.arms.joints import as_matrix
-from zwidth.arms.matrix_wall import MatrixWall
-from zwidth.arms.need import require_wall
-from zwidth.arms.pose import fits
-from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
+from zwidth.model.arms import Arm
+from zwidth.model.arms.held import forces_of, held_torque_damping
+from zwidth.model.arms.joints import as_matrix
+from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.need import require_wall
+from zwidth.model.arms.pose import fits
+from zwidth.model.environment.wall import Wall
 from zwidth.passivity.workspace.counting import needs_encoders
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.units import parse_number

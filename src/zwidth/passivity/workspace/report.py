@@ -5,12 +5,12 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
-from zwidth.arms import Arm, DescribedArm
-from zwidth.arms.encoders import EncoderSteps
-from zwidth.arms.matrix_wall import MatrixWall
-from zwidth.arms.motion import ArmMotion
-from zwidth.arms.need import wall_matrices
-from zwidth.environment.wall import Wall
+from zwidth.model.arms import Arm, DescribedArm
+from zwidth.model.arms.encoders import EncoderSteps
+from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.motion import ArmMotion
+from zwidth.model.arms.need import wall_matrices
+from zwidth.model.environment.wall import Wall
 from zwidth.passivity.workspace.additions import Additions
 
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from zwidth.arms import Arm
-from zwidth.arms.encoders import EncoderSteps
-from zwidth.arms.matrix_wall import MatrixWall
-from zwidth.arms.motion import ArmMotion
-from zwidth.environment.wall import Wall
+from zwidth.model.arms import Arm
+from zwidth.model.arms.encoders import EncoderSteps
+from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.motion import ArmMotion
+from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer

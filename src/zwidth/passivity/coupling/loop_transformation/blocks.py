@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from zwidth.device import Device
-from zwidth.environment import as_environment
+from zwidth.model.device import Device
+from zwidth.model.environment import as_environment
 from zwidth.passivity.coupling.loop_transformation.slopes import whole_delay
 from zwidth.passivity.formulas.hypotheses import NO_CLOCK, positive
 from zwidth.passivity.linear.frequencies import sampled_frequencies

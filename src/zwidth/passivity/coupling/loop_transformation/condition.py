@@ -22,8 +22,8 @@ from fractions import Fraction
 from math import inf, isfinite, sqrt
 from typing import Any, Literal
 
-from zwidth.device import Device
 from zwidth.errors import InputError
+from zwidth.model.device import Device
 from zwidth.passivity.coupling.loop_transformation.environment_class import PassivityExcess, SlopeBounds
 from zwidth.passivity.coupling.loop_transformation.forms import DIRECT, Connection, coupled, excess_form
 from zwidth.passivity.coupling.loop_transformation.least_damping import best_form, largest_need

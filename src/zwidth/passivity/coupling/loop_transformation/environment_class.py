@@ -22,8 +22,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
-from zwidth.environment import NonlinearSpring
 from zwidth.errors import InputError
+from zwidth.model.environment import NonlinearSpring
 from zwidth.passivity.formulas.hypotheses import number
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY

@@ -15,12 +15,12 @@ from typing import Any, Literal
 
 import flint
 
-from zwidth.environment.environment import RationalFunction
-from zwidth.environment.transfer_function import PulseTransferFunction
 from zwidth.errors import InputError
 from zwidth.loop.sampled_plant import Motion, sampled, times
-from zwidth.operator.hand_impedance import HandImpedance, as_hand
-from zwidth.pairs import Pair
+from zwidth.model.environment.environment import RationalFunction
+from zwidth.model.environment.transfer_function import PulseTransferFunction
+from zwidth.model.operator.hand_impedance import HandImpedance, as_hand
+from zwidth.model.pairs import Pair
 from zwidth.passivity.linear.loop import LinearLoop, loop_from
 from zwidth.passivity.pairs.arm import Arm
 from zwidth.passivity.pairs.criterion import PairCriterion

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
-from zwidth.pairs import Pair
+from zwidth.model.pairs import Pair
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.advice import StiffnessAt

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zwidth.checker import verify
-from zwidth.pairs import Pair
+from zwidth.model.pairs import Pair
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.supremum import tightest
 from zwidth.passivity.pairs.evidence import WITNESS

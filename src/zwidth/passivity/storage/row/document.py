@@ -14,19 +14,19 @@ from fractions import Fraction
 from math import ceil, isfinite
 from typing import TYPE_CHECKING, Any
 
-from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.loop.every_reading import after_reading, scratch
+from zwidth.model.environment.transfer_function import as_environment
+from zwidth.model.specification.write import parsed
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.storage.domain import Domain, losses_of
 from zwidth.passivity.storage.evidence.storage_function import loop_document, packed
 from zwidth.passivity.storage.row.law import RowLaw, row_law
 from zwidth.passivity.storage.row.table import DoesNotClose, Table, tabulate
-from zwidth.specification.write import parsed
 
 if TYPE_CHECKING:
-    from zwidth.device.device import Device
-    from zwidth.environment.environment import Environment
+    from zwidth.model.device.device import Device
+    from zwidth.model.environment.environment import Environment
 
 STORAGE, MOTION = "row storage", "row motion"
 

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 
 from zwidth.checker import verify
-from zwidth.device.device import Device
-from zwidth.environment.environment import Environment
 from zwidth.loop.kernel import R_HAND_WORK
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup
-from zwidth.operator import PrescribedMotion
+from zwidth.model.device.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.model.operator import PrescribedMotion
 from zwidth.passivity.storage.evidence.gain import Gain, motion_document
 from zwidth.passivity.storage.hand_bounds import hand_bounds
 from zwidth.passivity.storage.row.document import MOTION, Run, columns, law_document, same_law

@@ -8,13 +8,13 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.device.device import Device
-from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.loop.law import LIMIT, STEP
 from zwidth.loop.setup import prepare
-from zwidth.operator import PrescribedMotion
-from zwidth.specification.write import written
+from zwidth.model.device.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.model.operator import PrescribedMotion
+from zwidth.model.specification.write import written
 
 Floats = NDArray[np.float64]
 

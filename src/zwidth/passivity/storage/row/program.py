@@ -8,9 +8,9 @@ from fractions import Fraction
 from functools import cached_property
 from math import ceil
 
-from zwidth.device.device import Device
-from zwidth.device.friction import FrictionCurve
-from zwidth.environment.environment import Environment
+from zwidth.model.device.device import Device
+from zwidth.model.device.friction import FrictionCurve
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.scope import Contact, Hands, Law
 from zwidth.passivity.storage.domain import Domain, counts_of, losses_of
 from zwidth.passivity.storage.evidence.gain import Gain

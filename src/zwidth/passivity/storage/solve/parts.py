@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zwidth.compiled import compiled
+from zwidth.native.compiled import compiled
 from zwidth.passivity.storage.losses import Integers
 from zwidth.passivity.storage.solve.hull import NOWHERE, extremes, improve, targets
 

@@ -7,7 +7,7 @@ s' is where the reading of x' leads from s.
 
 from __future__ import annotations
 
-from zwidth.compiled import compiled
+from zwidth.native.compiled import compiled
 from zwidth.passivity.storage.losses import Integers
 
 

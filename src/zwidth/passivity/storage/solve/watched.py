@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.compiled import compiled
+from zwidth.native.compiled import compiled
 from zwidth.passivity.storage.losses import Integers
 
 Floats = NDArray[np.float64]

@@ -1,0 +1,172 @@
+"""From a recording of a thing that shakes to the reason.
+
+    recording → the stretch that vibrates → law, drive, energy of a cycle → how likely each cause → one change
+
+Nothing is named that the file cannot show; then it says what to record.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+from zwidth.data.diagnosis.causes import CAUSES, follows, is_named, likelihoods
+from zwidth.data.diagnosis.change import Change, change_for
+from zwidth.data.diagnosis.doubts import doubt
+from zwidth.data.diagnosis.evidence import Evidence, gather
+from zwidth.data.diagnosis.lowered import PASSIVE
+from zwidth.data.diagnosis.pairs.recording import holds_two_arms
+from zwidth.data.diagnosis.recording import Recording, read
+from zwidth.data.diagnosis.result import Diagnosis
+from zwidth.data.diagnosis.vibration import find
+from zwidth.data.logs import Log
+from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.passivity.check import check
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_REGULAR = "a stretch of ten cycles or more in which it shakes, the hand as it was"
+_LAW = "the law that was programmed beside the file (stiffness, virtual damping): its force does not show it"
+_DEVICE = "the device's numbers (mass, damping, Coulomb friction, rate) beside the file: DEVICE"
+
+
+def diagnose(
+    recording: Log | str | PathLike[str] | xr.Dataset,
+    device: Device | None = None,
+    *,
+    law: Environment | None = None,
+    columns: Mapping[str, str | None] | None = None,
+    units: Mapping[str, str] | None = None,
+    scale: Mapping[str, object] | None = None,
+    **reading: Any,
+) -> Diagnosis:
+    """Why did it shake?  One recording of a vibrating wall, wheel or joint.
+
+    Parameters
+    ----------
+    recording
+        A log, a file as `read_log` reads it, or a Dataset such as a trace: time, position, and the actuator's
+        force: what the law asked for, what the motor gave, best both.
+    device
+        What is known of the device: without it no number can be checked, and fewer causes be told apart.
+    law
+        The law that was programmed, such as a `Wall`; it is held beside the force in the recording, and its
+        numbers are those that are changed.  Without it the law is looked for in the recording.
+    columns, units, scale
+        As for `read_log`; `commanded_force` is the force that the law asked for, `actuator_force` the one
+        that the motor gave.
+    reading
+        Further arguments of `read_log`.
+
+    Returns
+    -------
+    Diagnosis
+        The cause, how sure, the frequency, the energy of a cycle, the number to change with its verdict; or
+        what to record.
+
+    Raises
+    ------
+    InputError
+        If the recording cannot be read, holds no force of the actuator, or moves otherwise than the device;
+        or if the law has no H(z).
+    """
+    if (
+        not isinstance(recording, Log)
+        and "position" not in (columns or {})
+        and holds_two_arms(recording, sheet=reading.get("sheet"))
+    ):
+        raise InputError(
+            "there are two arms in this recording: ask zwidth.diagnose_pair, or say whose columns are meant "
+            'with columns={"position": …}'
+        )
+    taken = read(recording, columns=columns, units=units, scale=scale, **reading)
+    if device is not None and device.motion != taken.motion:
+        raise InputError(
+            f"{taken.source} holds a {taken.motion} motion and the device is {device.motion}: "
+            "which one is meant?"
+        )
+    vibration = find(taken.time, taken.position, taken.period)
+    if vibration is None:
+        return _still(taken)
+    found = _named(taken, gather(taken, vibration, device, law), device)
+    return found if law is None else replace(found, stated=_as_stated(found, device, law))
+
+
+def _as_stated(found: Diagnosis, device: Device | None, law: Environment) -> tuple[str, ...]:
+    """The law as stated beside the force, and what `check` says to the loop as stated."""
+    told = None if found.seen is None else found.seen.stated
+    said = [] if told is None else [*told.sentences()]
+    if device is None:
+        return tuple(said)
+    outcome = check(device, law).outcome
+    if outcome in PASSIVE:
+        said.append(f"as stated the loop is {outcome.upper()}: what feeds it is not in what was stated")
+    else:
+        said.append(f"as stated the loop is {outcome.upper()} by itself")
+    return tuple(said)
+
+
+def _still(taken: Recording) -> Diagnosis:
+    return Diagnosis(
+        cause=None, confidence=0.0, likely={}, frequency=None, frequency_spread=None, energy_per_cycle=None,
+        evidence=(), change=None, record=(_REGULAR,), seen=None, findings=taken.findings, recording=taken,
+    )  # fmt: skip
+
+
+def _named(taken: Recording, seen: Evidence, device: Device | None) -> Diagnosis:
+    likely = dict(sorted(likelihoods(seen).items(), key=lambda item: -item[1]))
+    first, p = next(iter(likely.items()))
+    against = doubt(first, seen)
+    cause = first if against is None and is_named(first, p, seen) else None
+    change = change_for(cause, seen, device) if cause is not None and device is not None else None
+    return Diagnosis(
+        cause=cause,
+        confidence=p if cause is not None else 0.0,
+        likely=likely,
+        frequency=seen.vibration.frequency,
+        frequency_spread=seen.vibration.frequency_spread,
+        energy_per_cycle=seen.energy,
+        evidence=tuple(CAUSES[cause].evidence(seen)) if cause is not None else (),
+        change=change,
+        record=_record(cause, likely, seen, device, change, against),
+        seen=seen,
+        findings=taken.findings,
+        recording=taken,
+    )
+
+
+def _record(
+    cause: str | None,
+    likely: Mapping[str, float],
+    seen: Evidence,
+    device: Device | None,
+    change: Change | None,
+    against: str | None,
+) -> tuple[str, ...]:
+    """What would say more: what speaks against any cause, or for the likeliest what would show it."""
+    if against is not None:
+        return (against,)
+    return () if change is not None else tuple(_wanted(cause, likely, seen, device))
+
+
+def _wanted(
+    cause: str | None, likely: Mapping[str, float], seen: Evidence, device: Device | None
+) -> list[str]:
+    """For the two likeliest, and what every diagnosis is better with."""
+    if cause is not None:
+        inside = cause in ("delay", "drive damping", "actuator limit")
+        unseen = seen.recorded == "command" or (seen.recorded == "motor" and cause == "drive damping")
+        behind = [CAUSES[cause].record] if inside and unseen else []
+        return behind if device is not None else [*behind, _DEVICE]
+    wanted = [CAUSES["delay"].record] if len(seen.roles) < 2 else []
+    if seen.stated is None and not follows(seen):
+        wanted.append(_LAW)
+    if device is None:
+        wanted.append(_DEVICE)
+    wanted += [CAUSES[name].record for name in list(likely)[:2]]
+    return list(dict.fromkeys(w for w in wanted if not w.startswith("nothing more")))[:3]

@@ -1,0 +1,427 @@
+"""What a vibration lives on: the energy of a cycle, and who puts it in.
+
+In a motion x = Re Σ X_n exp(jnωt) a force f = Re Σ F_n exp(jnωt), positive against x, gives in each cycle
+
+    W = −∮ f dx = −π Σ n Im(F_n X_n*)                            [J]
+
+A law answers with F_n = Z(nω) X_n, and what is applied of it is F h exp(−jωτ), with the hold
+h = sinc(ωT/2) exp(−jωT/2) and the delay τ.  So what goes in comes apart, term by term:
+
+    sampling               the spring, through the hold
+    delay                  what exp(−jωτ) adds to spring and damper
+    differenced velocity   the damper through its estimate and the hold, where that is positive
+    friction compensation  the force along the motion
+    drive damping          what the drive adds by itself
+    actuator limit         what a limited rate adds
+
+and what goes out: b of the device takes π ω b |X|² and its Coulomb friction 4 f_c |X|.  What goes out must
+come in: where the known terms fall short, something that was not recorded feeds the motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.data.diagnosis import drive, law
+from zwidth.data.diagnosis.drive import Drive
+from zwidth.data.diagnosis.law import Law
+from zwidth.data.diagnosis.recording import Recording
+from zwidth.data.diagnosis.stated import Stated, compare
+from zwidth.data.diagnosis.vibration import Vibration, phasors
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.quantity.exact import ends
+from zwidth.quantity.glossary import GLOSSARY
+
+Array = NDArray[np.float64]
+
+TERMS = (
+    "sampling",
+    "delay",
+    "differenced velocity",
+    "friction compensation",
+    "drive damping",
+    "actuator limit",
+)
+"""The terms of the energy that goes in."""
+
+_ALIKE = 2e-3
+"""Share of the applied force's variance by which it may differ from the command and be the same."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Known:
+    """What is known of the device, in plain numbers; None where nobody said it."""
+
+    mass: float | None = None
+    damping: float | None = None
+    coulomb: float | None = None
+    resolution: float | None = None
+    period: float | None = None
+    delay: float = 0.0
+
+    @classmethod
+    def of(cls, device: Device | None) -> Known:
+        """The middle of each number of a device."""
+        if device is None:
+            return cls()
+        return cls(
+            mass=_middle(device.mass),
+            damping=_middle(device.damping),
+            coulomb=_middle(device.coulomb_friction),
+            resolution=_middle(device.resolution) or None,
+            period=_middle(device.sample_period),
+            delay=_middle(device.delay) or 0.0,
+        )
+
+
+def _middle(number: object) -> float | None:
+    if number is None:
+        return None
+    low, high = ends(number)  # type: ignore[arg-type]
+    return float(low + high) / 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Evidence:
+    """Everything that was measured in a recording of a vibration.
+
+    Parameters
+    ----------
+    vibration
+        Where, how fast, how far.
+    loop_period
+        [s] T of the loop.
+    resolution
+        [m; rad] Δ; 0 where none is seen.
+    law
+        What the force was computed from; None where it does not follow the motion.
+    drive
+        What lies between the two forces; None where one was recorded.
+    amplitude
+        [m; rad] |X|.
+    delay
+        [s] from a sample to its force, as far as it is seen or stated.
+    supplied
+        [J] that each term gives in a cycle, negative where it takes.
+    total
+        [J] that the actuator gives in a cycle in all, by the phasors.
+    energy
+        [J] the same by the held force along each move, where every sample of the loop is in the file; else
+        the total.
+    lost
+        [J] that the device's friction takes in a cycle; None without a device.
+    apparent_mass
+        [kg; kg·m²] Re(F/X)/ω²: the mass that would move so under the force.
+    standing
+        Share of the time in which it stands, where a sine does so for a sixteenth.
+    distortion
+        Harmonics of the motion against its frequency.
+    roles
+        Which forces the file holds: "commanded", "applied", or both.
+    known
+        The device's numbers.
+    rotary
+        Of a wheel, a knob, a joint.
+    moves_as
+        The force that a rigid device of these numbers would take to move so, over the force in the file, as
+        amplitude and phase at ω: 1 where nothing else acts.  None where nobody said the mass.
+    bend, force_bend
+        Third harmonic of the force that the motion takes, and of the one in the file, F₃ (F₁*)³/|F₁|⁴: 1/9 of
+        a triangle, −1/3 of a square.
+    by_inside
+        Share of the motor's force that a spring and a damper inside the drive leave over, where the command
+        is not in the file.
+    ramps
+        Share of the time in which the motor's force changes about as fast as it ever does; None without it.
+    stated
+        The law as somebody stated it, beside the force; None where nobody did.
+    """
+
+    vibration: Vibration
+    loop_period: float
+    resolution: float
+    law: Law | None
+    drive: Drive | None
+    amplitude: float
+    delay: float
+    supplied: Mapping[str, float]
+    total: float
+    energy: float
+    lost: float | None
+    apparent_mass: float
+    standing: float
+    distortion: float
+    roles: tuple[str, ...]
+    known: Known
+    rotary: bool
+    moves_as: complex | None
+    bend: complex
+    force_bend: complex
+    by_inside: float | None
+    ramps: float | None
+    stated: Stated | None = None
+
+    @property
+    def recorded(self) -> str:
+        """Which forces there are: "both", "command" or "motor"."""
+        return "both" if len(self.roles) == 2 else "command" if "commanded" in self.roles else "motor"
+
+    @property
+    def sees_delay(self) -> bool:
+        """True where the file shows what comes between a sample and its force."""
+        return "applied" in self.roles
+
+    def unit(self, name: str) -> str:
+        """Of a quantity of the glossary, for this motion."""
+        return GLOSSARY[name].unit_for("rotary" if self.rotary else "linear")
+
+    @property
+    def counts(self) -> float:
+        """Swing from end to end in counts of the encoder; infinite where none is seen."""
+        return self.vibration.swing / self.resolution if self.resolution else np.inf
+
+
+def gather(
+    recording: Recording, vibration: Vibration, device: Device | None, stated: Environment | None = None
+) -> Evidence:
+    """Measure everything; where the law is stated and the force follows it, by its own numbers."""
+    known = Known.of(device)
+    around, period = vibration.around, recording.period
+    steady = slice(vibration.rows.start - around.start, vibration.rows.stop - around.start)
+    x = recording.position[around]
+    commanded = None if recording.commanded is None else recording.commanded[around]
+    applied = None if recording.applied is None else recording.applied[around]
+    loop_period = known.period or _loop_period(commanded, period)
+    seen = commanded if commanded is not None else applied
+    assert seen is not None
+    sign = _sign(x[steady], seen[steady])
+    commanded, applied = (None if f is None else sign * f for f in (commanded, applied))
+    cycle = 1 / vibration.frequency
+    found = None
+    told = None
+    if np.ptp(seen):
+        lags = _lags(commanded is not None, cycle, loop_period)
+        found = law.fit(x, sign * seen, period, loop_period, lags)
+        if stated is not None:
+            told = compare(stated, x, sign * seen, period, loop_period, lags, commanded is not None)
+            if commanded is None and applied is not None:
+                told = replace(told, accounted=_accounted(told.asked, applied, x, period, loop_period, cycle))
+    if told is not None and told.holds:
+        commanded = told.asked if commanded is None else commanded
+        found = told.as_law(commanded, loop_period)
+    if found is not None:
+        found = replace(found, compensated=found.compensated[steady])
+    between = None
+    if commanded is not None and applied is not None:
+        between = drive.account(commanded, applied, x, period, loop_period, cycle)
+        between = replace(between, applied=between.applied[steady])
+    alone = commanded is None and applied is not None
+    by_inside = drive.inside(applied, x, period, cycle) if alone and applied is not None else None
+    x = x[steady]
+    commanded, applied = (None if f is None else f[steady] for f in (commanded, applied))
+    omega = vibration.angular
+    xs = phasors(x, vibration.frequency, period)
+    xs[0] = xs[0] or np.finfo(float).tiny
+    X = complex(xs[0])
+    delay = _delay(known, found, between, commanded is not None)
+    force = applied if applied is not None else commanded
+    assert force is not None
+    motion = _Motion(xs, omega, loop_period, vibration.frequency, period)
+    F = motion.phasors(force) * (1 if applied is not None else motion.late(delay))
+    asked = commanded if commanded is not None else force
+    supplied = _terms(found, between, motion, delay, asked)
+    needed = motion.needed(known)
+    lost = None
+    if known.damping is not None:
+        viscous = np.pi * omega * known.damping * float((np.abs(motion.orders * xs) ** 2).sum())
+        lost = viscous + 4 * (known.coulomb or 0.0) * abs(X)
+    return Evidence(
+        vibration=vibration,
+        loop_period=loop_period,
+        resolution=known.resolution or recording.resolution,
+        law=found,
+        drive=between,
+        amplitude=float(abs(X)),
+        delay=delay,
+        supplied=supplied,
+        total=motion.work(F),
+        energy=_along(x, force, 0 if applied is not None else round(delay / period))
+        if abs(period - loop_period) < 0.01 * period
+        else motion.work(F),
+        lost=lost,
+        apparent_mass=float(np.real(F[0] / X)) / omega**2,
+        standing=_standing(x, period, cycle),
+        distortion=float(np.sqrt((np.abs(xs[1:]) ** 2).sum()) / abs(X)),
+        roles=tuple(
+            name for name, values in (("commanded", commanded), ("applied", applied)) if values is not None
+        ),
+        known=known,
+        rotary=recording.motion == "rotary",
+        moves_as=_moves_as(needed, motion.phasors(force), known),
+        bend=_bend(needed),
+        force_bend=_bend(motion.phasors(force)),
+        by_inside=by_inside,
+        ramps=None if applied is None else drive.ramps(applied),
+        stated=told,
+    )
+
+
+def _accounted(
+    asked: Array, applied: Array, x: Array, period: float, loop_period: float, cycle: float
+) -> float:
+    """Share of a motor's force that its command leaves over, delayed, damped or limited as suits it best."""
+    between = drive.account(asked, applied, x, period, loop_period, cycle)
+    return min(between.by_delay, between.by_damper, between.by_rate)
+
+
+class _Motion(NamedTuple):
+    """The motion as phasors of the frequency and its harmonics, and what a held force does along it."""
+
+    xs: NDArray[np.complex128]
+    omega: float
+    loop_period: float
+    frequency: float
+    period: float
+
+    @property
+    def orders(self) -> Array:
+        """n = 1, 2, …"""
+        return np.arange(1.0, self.xs.size + 1)
+
+    def late(self, delay: float) -> NDArray[np.complex128]:
+        """exp(−jnωτ)."""
+        return np.asarray(np.exp(-1j * self.orders * self.omega * delay))
+
+    def phasors(self, force: Array) -> NDArray[np.complex128]:
+        """Of a sampled force that is held."""
+        half = 0.5 * self.orders * self.omega * self.loop_period
+        held = phasors(force, self.frequency, self.period) * np.sinc(half / np.pi) * np.exp(-1j * half)
+        return np.asarray(held)
+
+    def needed(self, known: Known) -> NDArray[np.complex128]:
+        """The force under which a rigid device alone would move so, −m ẍ − b ẋ − f_c sgn ẋ; of any mass,
+        where nobody said which.
+        """
+        n = self.orders * self.omega
+        ahead = 1j * self.xs[0] / abs(self.xs[0])
+        square = np.zeros_like(self.xs)
+        square[0], square[2] = 4 / np.pi * ahead, -4 / (3 * np.pi) * ahead**3
+        mass = known.mass or 1.0
+        rubs = (known.damping or 0.0, known.coulomb or 0.0) if known.mass else (0.0, 0.0)
+        return np.asarray((mass * n**2 - 1j * n * rubs[0]) * self.xs - rubs[1] * square)
+
+    def work(self, force: NDArray[np.complex128]) -> float:
+        """[J] in a cycle, −π Σ n Im(F_n X_n*)."""
+        return float(-np.pi * (self.orders * np.imag(force * np.conj(self.xs))).sum())
+
+    def held(self, asked: NDArray[np.complex128]) -> NDArray[np.complex128]:
+        """The same through the hold."""
+        half = 0.5 * self.orders * self.omega * self.loop_period
+        return np.asarray(asked * np.sinc(half / np.pi) * np.exp(-1j * half))
+
+
+def _moves_as(needed: NDArray[np.complex128], given: NDArray[np.complex128], known: Known) -> complex | None:
+    """Force that the motion takes, over the force in the file; None where the mass is not known."""
+    if known.mass is None or not abs(given[0]):
+        return None
+    return complex(needed[0] / given[0])
+
+
+def _bend(force: NDArray[np.complex128]) -> complex:
+    """Third harmonic against the first, F₃ (F₁*)³/|F₁|⁴: 1/9 of a triangle, −1/3 of a square."""
+    size = abs(force[0])
+    return complex(force[2] / size * (np.conj(force[0]) / size) ** 3) if size else 0j
+
+
+def _along(x: Array, force: Array, late: int) -> float:
+    """[J] −Σ f_k (x_k+1 − x_k) in a cycle, from the first to the last rise through the middle."""
+    middle = 0.5 * (np.percentile(x, 5) + np.percentile(x, 95))
+    reach = 0.25 * (np.percentile(x, 95) - np.percentile(x, 5))
+    crossings, below = [], False
+    for k, value in enumerate(x):
+        if below and value > middle:
+            crossings.append(k)
+        below = value < middle - reach or (below and value <= middle)
+    if len(crossings) < 2:
+        return 0.0
+    first, last = crossings[0], crossings[-1]
+    moves = np.diff(x)[first:last]
+    held = force[max(0, first - late) : max(0, first - late) + moves.size]
+    return -float(held @ moves) / (len(crossings) - 1)
+
+
+def _loop_period(commanded: Array | None, period: float) -> float:
+    """T: rows, or as many rows as a command usually stays the same for."""
+    if commanded is None:
+        return period
+    changes = np.flatnonzero(np.diff(commanded))
+    if changes.size < 20:
+        return period
+    usual = int(np.median(np.diff(changes)))
+    return period * max(1, usual) if usual >= 2 and (np.diff(changes) % usual == 0).mean() > 0.9 else period
+
+
+def _sign(x: Array, force: Array) -> float:
+    """+1 where the force pushes back, as a spring does that comes less than a quarter of a cycle late."""
+    slope = float(np.cov(x - x.mean(), force)[0, 1])
+    return 1.0 if slope >= 0 else -1.0
+
+
+def _lags(commanded: bool, cycle: float, loop_period: float) -> list[float]:
+    """Lags to try: some samples of bookkeeping for a command, most of half a cycle for what was applied."""
+    if commanded:
+        return [k * loop_period for k in range(3)]
+    most = max(2, int(0.45 * cycle / loop_period))
+    return [float(k) * loop_period for k in np.unique(np.linspace(0, most, min(most + 1, 25)).round())]
+
+
+def _delay(known: Known, found: Law | None, between: Drive | None, commanded: bool) -> float:
+    if between is not None:
+        return between.delay_to_a_sample
+    if not commanded and found is not None:
+        return found.lag
+    return known.delay
+
+
+def _terms(
+    found: Law | None, between: Drive | None, motion: _Motion, delay: float, seen: Array
+) -> dict[str, float]:
+    """[J] in a cycle by each term."""
+    supplied = dict.fromkeys(TERMS, 0.0)
+    if found is None:
+        return supplied
+    helping = motion.phasors(found.compensated)
+    spring = motion.held(found.stiffness * motion.xs)
+    damper = motion.held(found.damper(motion.orders * motion.omega, motion.loop_period) * motion.xs)
+    asked = abs(motion.phasors(seen)[0] - helping[0])
+    share = min(1.0, asked / (abs(spring[0] + damper[0]) or np.inf))  # less where it is cut off or away
+    supplied["sampling"] = share * motion.work(spring)
+    supplied["differenced velocity"] = share * motion.work(damper)
+    supplied["friction compensation"] = motion.work(helping)
+    supplied["delay"] = share * motion.work((spring + damper) * (motion.late(delay) - 1))
+    if between is not None:
+        accounts = {
+            "delay": between.by_delay,
+            "drive damping": between.by_damper,
+            "actuator limit": between.by_rate,
+        }
+        least = min(accounts, key=lambda name: accounts[name])
+        added = motion.work(motion.phasors(between.applied - seen))
+        supplied |= dict.fromkeys(accounts, 0.0)
+        if between.by_nothing > _ALIKE:
+            supplied[least] = added
+    return supplied
+
+
+def _standing(x: Array, period: float, cycle: float) -> float:
+    """Share of time below a tenth of the largest speed, speeds being means over a sixteenth of a cycle."""
+    step = max(1, round(cycle / 16 / period))
+    speed = np.abs(x[step:] - x[:-step])
+    top = float(np.percentile(speed, 98)) if speed.size else 0.0
+    return float((speed < 0.1 * top).mean()) if top else 1.0

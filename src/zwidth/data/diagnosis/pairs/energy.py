@@ -1,0 +1,272 @@
+"""What a vibration of two arms lives on: the energy of a cycle, and which part of the coupling puts it in.
+
+With X and X' the complex amplitudes of both arms, h the hold, s and d the lags of the arm's own reading and
+of the other's, the coupling answers in each arm, at ω and its harmonics,
+
+    F = h e^(−jωs) [ K (X − X' e^(−jωd)) + B (V − V' e^(−jωd)) + D V ] + compensation
+
+and gives W = −π Im(F X*) in a cycle.  A spring between two arms that were read at this instant and pushed
+without a hold would give nothing in all: K (X − X') gives the one arm what it takes from the other.  So
+
+    link delay             K h (X' − X' e^(−jωd))
+    sampling               K (h − 1)(X − X')
+    delay                  K h (e^(−jωs) − 1)(X − X' e^(−jωd))
+    damping                the whole term of B, where it drives
+    local damping          the whole term of D, where it drives
+    friction compensation  the force along the motion
+    actuator limit         what a motor adds whose force changes no faster than some rate, in place of a delay
+
+summed over both arms; where the springs differ, the follower's joules count K_l/K_f times.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.data.diagnosis import drive
+from zwidth.data.diagnosis.drive import STRAIGHT
+from zwidth.data.diagnosis.evidence import Known
+from zwidth.data.diagnosis.pairs import law
+from zwidth.data.diagnosis.pairs.law import ArmLaw
+from zwidth.data.diagnosis.pairs.recording import PairRecording
+from zwidth.data.diagnosis.recording import Recording
+from zwidth.data.diagnosis.vibration import HARMONICS, Vibration, find, phasors
+from zwidth.model.device import Device
+
+Array = NDArray[np.float64]
+Phasors = NDArray[np.complex128]
+
+TERMS = (
+    "link delay",
+    "sampling",
+    "delay",
+    "damping",
+    "local damping",
+    "friction compensation",
+    "actuator limit",
+)
+"""The terms of the energy that goes in."""
+
+_MOST_ROWS = 20_000
+"""Up to the end of the vibration, for the law."""
+
+_EXPLAINED = 0.01
+"""Share of a force's variance that may be left over in the whole run."""
+
+_ALIKE = 2e-3
+"""Share of a motor's force by which it may differ from the command and be the same."""
+
+_LIMITED = 0.7
+"""Of what the best delay leaves over, what a limit of rate leaves at most to be seen."""
+
+_LONGEST_LINK = 0.6
+"""Of a cycle, by how much a reading of the other may be older."""
+
+_FEWEST_LINKS, _MOST_LINKS = 16, 60
+_MOST_LAGS = 16
+"""Samples."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairEvidence:
+    """Everything that was measured in a vibration of two arms.
+
+    Parameters
+    ----------
+    vibration
+        Of the arm that swings further.
+    leading
+        Which arm that is, 0 the leader, 1 the follower.
+    loop_period
+        [s] T.
+    laws
+        Of leader and follower; None where a force does not follow the arms.
+    amplitudes
+        [m; rad] |X| of both.
+    counts
+        End to end, of both, in counts of their encoders; infinite where none is seen.
+    delays
+        [s] from an arm's reading to its force, where the file shows the motor's force; else None.
+    rates
+        [N/s; N·m/s] no faster than which the motor's force of each arm changes; None where it follows.
+    behind
+        Share of the motors' forces that neither a delay nor a limit of rate accounts for, the larger of both;
+        1 where a force changes at one rate and its command is not in the file.
+    supplied
+        [J] that each term gives in a cycle, negative where it takes.
+    energy
+        [J] that the forces of the file give in a cycle in both arms.
+    rubs
+        [J] that viscous and Coulomb friction take in a cycle in both arms; None without their devices.
+    rotary
+        Of joints.
+    """
+
+    vibration: Vibration
+    leading: int
+    loop_period: float
+    laws: tuple[ArmLaw | None, ArmLaw | None]
+    amplitudes: tuple[float, float]
+    counts: tuple[float, float]
+    delays: tuple[float | None, float | None]
+    rates: tuple[float | None, float | None]
+    behind: float
+    supplied: Mapping[str, float]
+    energy: float
+    rubs: tuple[float, float] | None
+    rotary: bool
+
+    @property
+    def lost(self) -> float | None:
+        """[J] that friction takes in a cycle."""
+        return None if self.rubs is None else sum(self.rubs)
+
+
+def vibrates(recording: PairRecording) -> tuple[Vibration, int] | None:
+    """The vibration of the arm that swings further, and which arm; None where neither vibrates."""
+    found = [find(arm.time, arm.position, arm.period) for arm in recording.arms]
+    swings = [0.0 if one is None else one.swing for one in found]
+    arm = int(np.argmax(swings))
+    seen = found[arm]
+    return None if seen is None else (seen, arm)
+
+
+def gather(
+    recording: PairRecording, vibration: Vibration, leading: int, devices: tuple[Device, Device] | None
+) -> PairEvidence:
+    """Measure everything."""
+    known = [Known.of(device) for device in devices] if devices is not None else [Known(), Known()]
+    rows, period = vibration.rows, recording.leader.period
+    loop_period = max((k.period for k in known if k.period), default=period)
+    omega = vibration.angular
+    orders = np.arange(1.0, HARMONICS + 1)
+    positions = [arm.position[rows] for arm in recording.arms]
+    xs = [phasors(x, vibration.frequency, period) for x in positions]
+    seen = [
+        _arm(arm, recording.arms[1 - k], rows, loop_period, vibration) for k, arm in enumerate(recording.arms)
+    ]
+    forces, laws, delays, rates, added, behind = zip(*seen, strict=True)
+    half = 0.5 * orders * omega * loop_period
+    hold = np.sinc(half / np.pi) * np.exp(-1j * half)
+    ratio = _ratio(laws)
+    supplied = dict.fromkeys(TERMS, 0.0)
+    energy = 0.0
+    for k, weight in ((0, 1.0), (1, ratio)):
+        energy += weight * _work(phasors(forces[k], vibration.frequency, period) * hold, xs[k], orders)
+        fitted = laws[k]
+        if fitted is None:
+            continue
+        helped = phasors(fitted.helped, vibration.frequency, period) * hold
+        for name, part in _terms(fitted, delays[k], xs[k], xs[1 - k], hold, orders * omega, loop_period):
+            supplied[name] += weight * _work(part, xs[k], orders)
+        supplied["friction compensation"] += weight * _work(helped, xs[k], orders)
+        limited = phasors(added[k], vibration.frequency, period) * hold
+        supplied["actuator limit"] += weight * _work(limited, xs[k], orders)
+    rubs = None
+    if all(k.damping is not None for k in known):
+        weighted = list(zip(known, xs, (1.0, ratio), strict=True))
+        rubs = (
+            sum(
+                w * np.pi * omega * (k.damping or 0.0) * float((np.abs(orders * x) ** 2).sum())
+                for k, x, w in weighted
+            ),
+            sum(w * 4 * (k.coulomb or 0.0) * float(abs(x[0])) for k, x, w in weighted),
+        )
+    steps = [k.resolution or arm.resolution for k, arm in zip(known, recording.arms, strict=True)]
+    return PairEvidence(
+        vibration=vibration,
+        leading=leading,
+        loop_period=loop_period,
+        laws=(laws[0], laws[1]),
+        amplitudes=(float(abs(xs[0][0])), float(abs(xs[1][0]))),
+        counts=tuple(2 * abs(x[0]) / step if step else np.inf for x, step in zip(xs, steps, strict=True)),  # type: ignore[arg-type]
+        delays=(delays[0], delays[1]),
+        rates=(rates[0], rates[1]),
+        behind=max(behind),
+        supplied=supplied,
+        energy=energy,
+        rubs=rubs,
+        rotary=recording.leader.motion == "rotary",
+    )
+
+
+def _arm(
+    arm: Recording, other: Recording, rows: slice, loop_period: float, vibration: Vibration
+) -> tuple[Array, ArmLaw | None, float | None, float | None, Array, float]:
+    """The force that acts, the law of an arm, how late its force is; the rate that limits it, what that adds
+    to the command, and the share of the force that is left over.
+
+    The law is looked for in the whole run, where it does what the force did: of a motion that repeats itself
+    to the last count many laws give the same force.
+    """
+    seen = arm.commanded if arm.commanded is not None else arm.applied
+    assert seen is not None
+    cycle = 1 / vibration.frequency
+    sign = 1.0 if float(np.cov((arm.position - other.position)[rows], seen[rows])[0, 1]) >= 0 else -1.0
+    links = _lags(_LONGEST_LINK * cycle, loop_period, _FEWEST_LINKS, _MOST_LINKS)
+    lags = [0.0, loop_period] if arm.commanded is not None else _lags(0.3 * cycle, loop_period, 2, _MOST_LAGS)
+    whole = slice(max(0, rows.stop - _MOST_ROWS), rows.stop)
+    fits = []
+    for part in (whole, rows):
+        told = arm.position[part], other.position[part], sign * seen[part]
+        fitted = law.fit(*told, arm.period, loop_period, lags, links)
+        if fitted is not None:
+            fits.append(replace(fitted, helped=fitted.helped[rows.start - part.start :]))
+            if fitted.unexplained < _EXPLAINED:
+                break
+    best = min(fits, key=lambda one: one.unexplained, default=None)
+    delay: float | None = None if arm.applied is None or best is None else best.lag
+    acts = sign * (arm.applied if arm.applied is not None else seen)[rows]
+    rate, added, behind = None, np.zeros_like(acts), 0.0
+    if arm.commanded is not None and arm.applied is not None:
+        asked = sign * arm.commanded[rows]
+        between = drive.account(asked, acts, arm.position[rows], arm.period, loop_period, cycle)
+        delay, behind = between.delay_to_a_sample, min(between.by_delay, between.by_rate)
+        if between.by_nothing > _ALIKE and between.by_rate < _LIMITED * between.by_delay:
+            delay, rate, added = 0.0, between.rate, acts - asked
+    elif arm.applied is not None and drive.ramps(acts) > STRAIGHT:
+        behind = 1.0  # something does not follow, and the command that would tell is not there
+    return acts, best, delay, rate, added, behind
+
+
+def _lags(longest: float, step: float, fewest: int, most: int) -> list[float]:
+    return [k * step for k in range(min(max(fewest, int(longest / step)), most) + 1)]
+
+
+def _ratio(laws: Sequence[ArmLaw | None]) -> float:
+    """K_l/K_f, 1 where they are the same within what a file shows."""
+    leader, follower = laws
+    if leader is None or follower is None or not leader.stiffness or not follower.stiffness:
+        return 1.0
+    ratio = leader.stiffness / follower.stiffness
+    return 1.0 if abs(np.log(ratio)) < 0.02 else ratio
+
+
+def _terms(
+    fitted: ArmLaw,
+    delay: float | None,
+    own: Phasors,
+    other: Phasors,
+    hold: Phasors,
+    omegas: Array,
+    period: float,
+) -> list[tuple[str, Phasors]]:
+    k = fitted.stiffness
+    late = np.exp(-1j * omegas * (fitted.lag if delay is None else delay))
+    old = other * np.exp(-1j * omegas * fitted.link_delay)
+    speed = (1 - np.exp(-1j * omegas * period)) / period
+    return [
+        ("link delay", k * hold * (other - old)),
+        ("sampling", k * (hold - 1) * (own - other)),
+        ("delay", k * hold * (late - 1) * (own - old)),
+        ("damping", fitted.damping * hold * late * speed * (own - old)),
+        ("local damping", fitted.local_damping * hold * late * speed * own),
+    ]
+
+
+def _work(force: Phasors, x: Phasors, orders: Array) -> float:
+    return float(-np.pi * (orders * np.imag(force * np.conj(x))).sum())

@@ -1,0 +1,244 @@
+"""What a diagnosis looks at: time, position, and the force as the law asked for it, as the motor gave it.
+
+The reader of logs knows one column of the actuator's force. Here the two that a file may have are kept apart:
+
+    commanded   what the law computed from the newest sample, before any delay
+    applied     what the motor gave, from its current
+
+because what lies between them, a delay, a limit, a damper inside the drive, is among the causes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from zwidth.data.logs import Log
+from zwidth.data.logs.block import Block, Motion, whole_runs
+from zwidth.data.logs.names import role_of_force
+from zwidth.data.logs.read import log_of, opened
+from zwidth.data.logs.table import Table
+from zwidth.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+COMMANDED = "commanded_force"
+"""The key of the law's own force among `columns`, `units` and `scale`."""
+
+MOST_SAMPLES = 400_000
+"""Looked at, of the longest run: the last ones."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recording:
+    """One run without a gap, in SI units.
+
+    Parameters
+    ----------
+    source
+        Name of the file, or "arrays".
+    motion
+        "linear" or "rotary".
+    period
+        [s] between two rows; the loop's own sample period may be another.
+    resolution
+        [m; rad] step of the encoder, 0 where none is seen.
+    time, position
+        [s], [m; rad].
+    commanded, applied
+        [N; N·m] positive against increasing position, as a spring pushes; None where there is no such column.
+    findings
+        What was odd in the file, and what was supposed.
+    """
+
+    source: str
+    motion: Motion
+    period: float
+    resolution: float
+    time: Array
+    position: Array
+    commanded: Array | None
+    applied: Array | None
+    findings: tuple[str, ...]
+
+
+def read(
+    recording: Log | str | PathLike[str] | xr.Dataset,
+    *,
+    columns: Mapping[str, str | None] | None = None,
+    units: Mapping[str, str] | None = None,
+    scale: Mapping[str, object] | None = None,
+    **reading: Any,
+) -> Recording:
+    """Read whatever holds a recording; see `zwidth.diagnose`.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or holds no force of the actuator.
+    """
+    if isinstance(recording, Log):
+        if columns or units or scale or reading:
+            raise InputError("a log has been read already: give columns, units and scale to read_log")
+        return _recording(recording, None, recording, ())
+    sheet = reading.pop("sheet", None)
+    told = (dict(columns or {}), units or {}, scale or {}, reading)
+    if not isinstance(recording, str | PathLike):
+        names = [str(name) for name in recording.variables]
+        return _read(names, "the Dataset", lambda **given: Log.from_arrays(recording, **given), *told)
+    with opened(recording, sheet, columns) as table:
+        return read_of_table(table, *told)
+
+
+def read_of_table(
+    table: Table,
+    columns: Mapping[str, str | None],
+    units: Mapping[str, str],
+    scale: Mapping[str, object],
+    reading: Mapping[str, Any],
+) -> Recording:
+    """The same of the table of a file that is open."""
+    given = table.means.get("actuator_force")
+    told = (({} if given is None else {"actuator_force": given}) | dict(columns), units, scale, reading)
+    return _read(list(table.units), table.source, lambda **given: log_of(table, **given), *told)
+
+
+def _read(
+    names: list[str],
+    source: str,
+    log: Callable[..., Log],
+    columns: Mapping[str, str | None],
+    units: Mapping[str, str],
+    scale: Mapping[str, object],
+    reading: Mapping[str, Any],
+) -> Recording:
+    """A log for each force that there is, of the same rows."""
+    roles = _roles(names, source, columns)
+    if not roles:
+        raise InputError(
+            f"{source}: no column is known to be the actuator's force, and without it nobody can "
+            "say where the energy of a vibration comes from; say which with "
+            f'columns={{"{COMMANDED}": …}} for what the law asks for, or '
+            'columns={"actuator_force": …} for what the motor gives; there are '
+            f"{', '.join(names)}{_two_arms(names)}"
+        )
+    logs = {
+        role: log(**_arguments(role, column, columns, units, scale), **reading)
+        for role, column in roles.items()
+    }
+    first = next(iter(logs.values()))
+    supposed = tuple(
+        f'"{column}" is taken as the force that the law asked for'
+        for role, column in roles.items()
+        if role == "force"
+    )
+    return _recording(first, logs.get(COMMANDED) or logs.get("force"), logs.get("actuator_force"), supposed)
+
+
+def _roles(names: list[str], source: str, wanted: Mapping[str, str | None]) -> dict[str, str]:
+    """The column of each force: as the user said, or as it is called; "force" of one that might be either."""
+    found: dict[str, list[str]] = {}
+    for name in names:
+        if name not in wanted.values() and (role := role_of_force(name)) is not None:
+            found.setdefault(role, []).append(name)
+    roles: dict[str, str] = {}
+    for role in (COMMANDED, "actuator_force"):
+        if role in wanted:
+            column = wanted[role]
+            if column is not None:
+                roles[role] = column
+        elif len(found.get(role, ())) == 1:
+            roles[role] = found[role][0]
+        elif found.get(role) and not any(wanted.get(other) for other in (COMMANDED, "actuator_force")):
+            raise InputError(
+                f"{source}: {', '.join(found[role])} may each be the {role.replace('_', ' ')}; "
+                f'say which with columns={{"{role}": "{found[role][0]}"}}{_two_arms(names)}'
+            )
+    if not roles and len(found.get("force", ())) == 1:
+        roles["force"] = found["force"][0]
+    return roles
+
+
+_SIDES = (("left", "right"), ("action", "observation"))
+"""Names of two arms that do not say which of them leads."""
+
+
+def _two_arms(names: list[str]) -> str:
+    """What to do where there may be two arms in a file."""
+    several = any(all(any(side in name.lower() for name in names) for side in pair) for pair in _SIDES)
+    return (
+        ". If these are two arms, one following the other, say whose each is: "
+        'columns={"leader_position": …}, columns={"follower_position": …}, and the forces alike'
+        if several
+        else ""
+    )
+
+
+def _arguments(
+    role: str,
+    column: str,
+    columns: Mapping[str, str | None],
+    units: Mapping[str, str],
+    scale: Mapping[str, object],
+) -> dict[str, Any]:
+    """How to read the log in which the actuator's force is that column."""
+    chosen = {**columns, "actuator_force": column, "hand_force": None}
+    chosen.pop(COMMANDED, None)
+    key = COMMANDED if role == "force" else role
+    given: dict[str, Any] = {"columns": chosen}
+    for name, table in (("units", units), ("scale", scale)):
+        own = {k: v for k, v in table.items() if k not in (COMMANDED, "actuator_force", "hand_force")}
+        if key in table:
+            own["actuator_force"] = table[key]
+        if own:
+            given[name] = own
+    return given
+
+
+def _recording(log: Log, commanded: Log | None, applied: Log | None, supposed: tuple[str, ...]) -> Recording:
+    if log is applied and "actuator_force" not in log.channels:
+        raise InputError(
+            f"{log.source} holds no force of the actuator, and without it nobody can say where the energy "
+            'of a vibration comes from; read it with columns={"actuator_force": …}'
+        )
+    longest = _longest(log)
+    asked = None if commanded is None else _longest(commanded).actuator_force
+    given = None if applied is None else _longest(applied).actuator_force
+    if asked is not None and given is not None and _against(asked, given):
+        given = -given
+        supposed = (*supposed, _AGAINST)
+    return Recording(
+        source=log.source,
+        motion=log.motion,
+        period=log.sample_period,
+        resolution=log.resolution,
+        time=longest.time,
+        position=longest.position,
+        commanded=asked,
+        applied=given,
+        findings=(*supposed, *(finding.text for finding in log.findings if finding.kind != "no hand force")),
+    )
+
+
+_AGAINST = "the motor's force is the command with the other sign: both are taken to count alike"
+_ALIKE = 0.1
+"""Share of its variance by which a force may differ from the other's negative."""
+
+
+def _against(asked: Array, given: Array) -> bool:
+    """Whether one of two forces counts the other way."""
+    spread = float(np.var(given))
+    return bool(spread and np.var(given + asked) < _ALIKE * spread)
+
+
+def _longest(log: Log) -> Block:
+    run = max(whole_runs(log.blocks()), key=lambda block: block.time.size)
+    return run.part(slice(-MOST_SAMPLES, None))

@@ -1,0 +1,205 @@
+"""Which joints of one arm are passive with the springs of its controllers: each a wall on its own device."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar, NamedTuple
+
+from zwidth.data.gains.controllers import Controllers, JointLaw
+from zwidth.data.gains.plant import plant_of_file
+from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.transfer_function import PulseTransferFunction
+from zwidth.passivity.check import check
+from zwidth.passivity.outcome import COLOUR, Outcome
+from zwidth.passivity.result import Documented, evidence_of
+from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.text import shown
+from zwidth.quantity.units import parse_number
+from zwidth.showing import Headline, Lines, Part, Table
+
+_NONE = "–"
+_WORST: tuple[Outcome, ...] = ("active", "undecided", "passive without encoder steps", "passive in contact")
+
+
+@dataclass(frozen=True)
+class HeldJoint:
+    """A joint, its law and the verdict on it."""
+
+    law: JointLaw
+    verdict: Verdict
+
+    @property
+    def needed(self) -> float | None:
+        """The damping that the joint needs [N·m·s/rad]; None where none is enough, or it is not known."""
+        left = self.verdict.margins.get("damping")
+        return None if left is None else float(self.verdict.device.exact("damping")) - left
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data, units in the keys."""
+        return {
+            "name": self.law.name,
+            "source": self.law.source,
+            "stiffness_N_m_per_rad": float(self.law.stiffness),
+            "integral_N_m_per_rad_s": float(self.law.integral),
+            "damping_N_m_s_per_rad": float(self.law.damping),
+            "outcome": self.verdict.outcome,
+            "claim": self.verdict.claim,
+            "required_damping_N_m_s_per_rad": self.needed,
+        }
+
+
+@dataclass(frozen=True, repr=False)
+class HeldJoints(Documented):
+    """The verdicts on the joints of one arm, held at a target by springs and dampers.
+
+    Attributes
+    ----------
+    joints
+        Each with its verdict, which holds proof or motion.
+    notes
+        What was taken for granted.
+    """
+
+    FORMAT: ClassVar[str] = "zwidth held joints 1"
+
+    joints: tuple[HeldJoint, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def outcome(self) -> Outcome:
+        """Of all joints: "passive" where every one is, else the worst."""
+        found = [joint.verdict.outcome for joint in self.joints]
+        return next((outcome for outcome in _WORST if outcome in found), "passive")
+
+    @property
+    def claim(self) -> str:
+        """In a sentence."""
+        names = [joint.law.name for joint in self.joints if joint.verdict.outcome == self.outcome]
+        if self.outcome == "passive":
+            return "No motion of a hand that moves one joint takes energy out, with these gains."
+        what = {"active": "Energy comes out of", "undecided": "It is not known whether energy comes out of"}
+        return f"{what.get(self.outcome, 'Proved less than passive are')} {', '.join(names)}."
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data, units in the keys."""
+        return self._document([joint.to_dict() for joint in self.joints])
+
+    def saved(self) -> dict[str, Any]:
+        """The same with the proof, or the motion, of each joint."""
+        return self._document([{**joint.to_dict(), **evidence_of(joint.verdict)} for joint in self.joints])
+
+    def _document(self, joints: list[dict[str, Any]]) -> dict[str, Any]:
+        return {
+            "format": self.FORMAT,
+            "outcome": self.outcome,
+            "claim": self.claim,
+            "joints": joints,
+            "notes": list(self.notes),
+        }
+
+    def report(self) -> Iterator[Part]:
+        """The sentence, joint by joint, and what is taken for granted."""
+        yield Headline(self.outcome, COLOUR[self.outcome], self.claim)
+        heads = [["joint", "p", "i", "d", "b", "b needed", "verdict"]]
+        heads.append(["", "N·m/rad", "N·m/(rad·s)", *["N·m·s/rad"] * 3, ""])
+        rows = [
+            [
+                joint.law.name,
+                *(f"{float(v):g}" for v in (joint.law.stiffness, joint.law.integral, joint.law.damping)),
+                f"{float(joint.verdict.device.exact('damping')):g}",
+                _NONE if joint.needed is None else f"{joint.needed:.4g}",
+                joint.verdict.outcome,
+            ]
+            for joint in self.joints
+        ]
+        yield Table(rows=rows, heads=heads, lefts=1)
+        yield Lines(self.notes, "assumes")
+
+
+def check_controllers(
+    controllers: Controllers,
+    plant: str | Device,
+    rate: RealLike | None = None,
+    delay: RealLike | None = None,
+) -> HeldJoints:
+    """Decide for each joint of one arm whether a hand can take energy out of its spring.
+
+    Parameters
+    ----------
+    controllers
+        As `read_controllers` reads them.
+    plant
+        A TOML file with damping, coulomb_friction and resolution of the joints, or a rotary device for all.
+    rate
+        Of the controller [Hz]; None: that of the file.
+    delay
+        From reading to torque [s]; None: one period, as ros2_control reads, updates and writes in turn.
+
+    Raises
+    ------
+    InputError
+        If there are no joint gains or no rate, or a number is outside its bound.
+    """
+    loops = loops_of(controllers, plant, rate, delay)
+    joints = tuple(
+        HeldJoint(law, check(device, wall(law, loops.rate)))
+        for law, device in zip(controllers.joints, loops.devices, strict=True)
+    )
+    return HeldJoints(joints, loops.notes)
+
+
+class Loops(NamedTuple):
+    """Each joint as a device; the controller's rate [Hz], the delay [s]; what was taken for granted."""
+
+    devices: tuple[Device, ...]
+    rate: Fraction
+    delay: Fraction
+    notes: tuple[str, ...]
+
+
+def loops_of(
+    controllers: Controllers, plant: str | Device, rate: RealLike | None, delay: RealLike | None
+) -> Loops:
+    """The loops of joint gains; arguments and errors as of `check_controllers`."""
+    laws = controllers.joints
+    if not laws:
+        raise InputError(
+            "the file has no gains of joints; a Cartesian impedance is a wall at the end: "
+            "zwidth workspace ARM.urdf --pose --wall FILE"
+        )
+    often = controllers.rate if rate is None else parse_number(rate, "Hz", "rate").fraction
+    if often is None:
+        raise InputError("the file does not say its update_rate; give --rate [Hz]")
+    late = 1 / often if delay is None else parse_number(delay, "s", "delay").fraction
+    notes = (
+        *controllers.notes,
+        f"{shown(Exact(often), 'Hz')}, torque {shown(Exact(late), 's')} after the reading"
+        + (": one period, an assumption" if delay is None else ""),
+        "each joint by itself: what joints share, gravity and flexible gears are not in the model",
+    )
+    return Loops(tuple(_devices(laws, plant, often, late)), often, late, notes)
+
+
+def _devices(
+    laws: tuple[JointLaw, ...], plant: str | Device, rate: Fraction, delay: Fraction
+) -> list[Device]:
+    own = {"rate": Exact(rate), "delay": Exact(delay)}
+    if isinstance(plant, Device):
+        return [plant.replace(**own) for _ in laws]
+    rows = plant_of_file(len(laws), plant).follower
+    return [Device(**row, **own, motion="rotary", name=law.name) for law, row in zip(laws, rows, strict=True)]
+
+
+def wall(law: JointLaw, rate: Fraction) -> Environment:
+    """On both sides of the target: H(z) = p + i T/(z − 1) + d (z − 1)/(T z)."""
+    if not law.integral:
+        k, b = law.stiffness, law.damping * rate
+        return PulseTransferFunction([Exact(k + b), Exact(-b)], [1, 0])
+    p, i, d = law.stiffness, law.integral / rate, law.damping * rate
+    numerator = (p + d, i - p - 2 * d, d)
+    return PulseTransferFunction([Exact(c) for c in numerator], [1, -1, 0])

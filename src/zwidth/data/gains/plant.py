@@ -1,0 +1,140 @@
+"""The arms that the gains are for: b, f_c and encoder step of each joint, which no gain file has.
+
+From a TOML file,
+
+    [arm]                                       or [leader] and [follower]
+    damping = "0.5 N*m*s/rad"                   one for all joints, or a list
+    coulomb_friction = [0.3, 0.3, 0.2]
+    resolution = "0.1 mrad"
+
+or as published for the family, and then they were measured on no arm of the reader's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from zwidth.data.gains.file import GainTable, read_table
+from zwidth.data.gains.joint import JointGains
+from zwidth.data.gains.published import Family, PublishedPlant, plants
+from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.specification.table import quoted, suggestion
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.units import parse_number
+
+KEYS = ("damping", "coulomb_friction", "resolution")
+
+GivenPlant = str | Path | Device | Sequence[Device] | None
+
+
+@dataclass(frozen=True)
+class Plant:
+    """The numbers of each joint on both sides, as arguments of `Device`, and where they are from."""
+
+    leader: tuple[dict[str, Any], ...]
+    follower: tuple[dict[str, Any], ...]
+    note: str
+
+
+def plant_of(joints: Sequence[JointGains], family: Family, given: GivenPlant) -> Plant:
+    """The plant that was given: a file, a published name, a device for all joints or for each; the family's.
+
+    Raises
+    ------
+    InputError
+        If there is none, or its joints are not those of the gains.
+    """
+    if isinstance(given, Device):
+        given = [given] * len(joints)
+    if given is not None and not isinstance(given, (str, Path)):
+        return _of_devices(joints, given)
+    known = plants()
+    if given is None:
+        if not family.plant:
+            raise InputError(
+                f"no source gives damping and friction of the joints of {family.title}: give --plant with a "
+                "TOML file that has [arm] damping = … and coulomb_friction = …"
+            )
+        given = family.plant
+    if str(given) in known:
+        return _published(joints, family, known[str(given)])
+    if isinstance(given, str) and not Path(given).suffix:
+        raise InputError(
+            f"there is no published plant {quoted(given)}; {suggestion(given, known)}, or a TOML file"
+        )
+    return plant_of_file(len(joints), given)
+
+
+def _of_devices(joints: Sequence[JointGains], devices: Sequence[Device]) -> Plant:
+    if len(devices) != len(joints) or not all(isinstance(device, Device) for device in devices):
+        raise InputError(f"a plant is a Device, or one for each of the {len(joints)} joints")
+    if any(device.motion != "rotary" for device in devices):
+        raise InputError("the joints of an arm turn: give devices with motion='rotary'")
+    rows = tuple({key: device.exact(key) for key in KEYS} for device in devices)
+    return Plant(rows, rows, "damping and friction as given by the devices")
+
+
+def _published(joints: Sequence[JointGains], family: Family, plant: PublishedPlant) -> Plant:
+    if family.name not in plant.families:
+        raise InputError(
+            f"the plant {plant.name} is of {', '.join(plant.families)}, the gains are of {family.name}; give "
+            "a TOML file with the numbers of your arm"
+        )
+    rows = []
+    for n, joint in enumerate(joints):
+        by_place = plant.joints[n] if len(plant.joints) == len(joints) else None
+        found = plant.motors.get(joint.motor, by_place)
+        if found is None:
+            motor = f" with a {joint.motor}" if joint.motor else ""
+            raise InputError(
+                f"the plant {plant.name} has no numbers for {joint.name}{motor}; give --plant with a TOML "
+                "file that has [arm] damping = [...] and coulomb_friction = [...]"
+            )
+        rows.append({"damping": found[0], "coulomb_friction": found[1]})
+    note = (
+        f"damping and friction are published numbers, measured on no arm of yours: {plant.name}, "
+        f"{plant.source}"
+    )
+    return Plant(tuple(rows), tuple(rows), note)
+
+
+def plant_of_file(joints: int, path: str | Path) -> Plant:
+    """The plant of a TOML file, for so many joints.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or has no numbers for each joint.
+    """
+    table = read_table(path)
+    allowed = ("arm", "leader", "follower")
+    for key in table.values:
+        if key not in allowed:
+            raise InputError(f"{table.label}: a plant has no {quoted(key)}; {suggestion(key, allowed)}")
+    if ("arm" in table) == ("leader" in table and "follower" in table) or (
+        "arm" in table and len(table.values) > 1
+    ):
+        raise InputError(f"{table.label}: give [arm] for both arms, or [leader] and [follower]")
+    sides = ("arm", "arm") if "arm" in table else ("leader", "follower")
+    leader, follower = (_rows(table.table(side), joints) for side in sides)
+    return Plant(leader, follower, f"damping and friction of the joints are from {table.label}")
+
+
+def _rows(table: GainTable, joints: int) -> tuple[dict[str, Any], ...]:
+    for key in table.values:
+        if key not in KEYS:
+            raise InputError(f"{table.label}: an arm has no {quoted(key)}; {suggestion(key, KEYS)}")
+    if "damping" not in table:
+        raise InputError(f"{table.label}: damping is missing: without it nothing is passive")
+    columns: dict[str, list[Any]] = {}
+    for key, value in table.values.items():
+        unit = GLOSSARY[key].rotary_unit
+        if isinstance(value, list):
+            columns[key] = table.numbers(key, unit, joints)
+        else:
+            columns[key] = [parse_number(value, unit, table.where(key))] * joints
+    return tuple({key: column[n] for key, column in columns.items()} for n in range(joints))

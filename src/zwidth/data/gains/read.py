@@ -1,0 +1,118 @@
+"""Gain files as they are found, recognised by their keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+from zwidth.data.gains import feetech, i2rt, lerobot, openarm, piper
+from zwidth.data.gains.arms import ArmGains
+from zwidth.data.gains.file import GainTable, read_table
+from zwidth.errors import InputError
+from zwidth.model.specification.table import quoted, suggestion
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.units import parse_number
+
+BILATERAL_KP = "0.2"
+"""How much softer the leader's spring is than the follower's where nothing is given: of i2rt alone."""
+
+FAMILIES: Mapping[str, Callable[[GainTable], bool]] = MappingProxyType(
+    {module.NAME: module.fits for module in (openarm, i2rt, feetech, lerobot, piper)}
+)
+"""By name, what recognises a file."""
+
+
+def read_gains(
+    *paths: str | Path,
+    family: str | None = None,
+    bilateral_kp: RealLike | None = None,
+    supply_voltage: RealLike | None = None,
+    both: bool = False,
+) -> ArmGains:
+    """Read the gain files of two arms.
+
+    Parameters
+    ----------
+    paths
+        One file, or two of leader and follower: YAML, JSON or TOML.
+    family
+        "openarm", "i2rt", "lerobot-damiao", "lerobot-feetech" or "piper"; None: by the keys.
+    bilateral_kp
+        Of i2rt: the leader's kp in multiples of the file's, ≥ 0; None: 0.2.
+    supply_voltage
+        Of servos whose stiffness goes with it [V].
+    both
+        True: take the follower's gains on both sides of an arm whose leader is limp.
+
+    Returns
+    -------
+    ArmGains
+        The gains joint by joint in the units of the joint, with what each is and what is not known.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, is of no known family, or lacks a number.
+    """
+    if not 1 <= len(paths) <= 2:
+        raise InputError(
+            f"gains are read from one file, or from two of leader and follower, got {len(paths)}"
+        )
+    tables = [read_table(path) for path in paths]
+    name = _recognised(tables) if family is None else _known(family)
+    if bilateral_kp is not None and name != i2rt.NAME:
+        raise InputError(f"--bilateral-kp belongs to gains of {i2rt.NAME}, these are of {name}; leave it out")
+    if supply_voltage is not None and name != feetech.NAME:
+        raise InputError(
+            f"--supply-voltage belongs to gains of {feetech.NAME}, these are of {name}; leave it out"
+        )
+    if both and name in (openarm.NAME, i2rt.NAME):
+        raise InputError("--both is for gains of a follower alone; these are of both arms: leave it out")
+    return _read(name, tables, bilateral_kp, supply_voltage, both)
+
+
+def _read(
+    name: str,
+    tables: list[GainTable],
+    bilateral_kp: RealLike | None,
+    supply_voltage: RealLike | None,
+    both: bool,
+) -> ArmGains:
+    if name == i2rt.NAME:
+        share = parse_number(BILATERAL_KP if bilateral_kp is None else bilateral_kp, "1", "bilateral_kp")
+        if share < 0:
+            raise InputError(f"bilateral_kp must be ≥ 0, got {float(share):g}: a spring pulls back")
+        return i2rt.read(tables, share.fraction)
+    if name == feetech.NAME:
+        volts = None if supply_voltage is None else parse_number(supply_voltage, "V", "supply_voltage")
+        return feetech.read(tables, None if volts is None else volts.fraction, both)
+    if name == lerobot.NAME:
+        return lerobot.read(tables, both)
+    if name == piper.NAME:
+        return piper.read(tables, both)
+    return openarm.read(tables)
+
+
+def _recognised(tables: list[GainTable]) -> str:
+    found = []
+    for table in tables:
+        name = next((name for name, fits in FAMILIES.items() if fits(table)), None)
+        if name is None:
+            raise InputError(
+                f"{table.label}: no gains of a known arm; read are LeaderArmParam, FollowerArmParam "
+                "(OpenArm), kp, kd and motor_list (i2rt), position_p_coefficient or position_kp (LeRobot), "
+                "piper"
+            )
+        found.append(name)
+    if len(set(found)) > 1:
+        raise InputError(f"the files are of {' and '.join(found)}; give leader and follower of one kind")
+    return found[0]
+
+
+def _known(family: str) -> str:
+    if family not in FAMILIES:
+        raise InputError(
+            f"there is no family {quoted(str(family))} of gain files; {suggestion(str(family), FAMILIES)}"
+        )
+    return family

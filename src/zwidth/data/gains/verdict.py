@@ -1,0 +1,358 @@
+"""Which joints of an arm are passive with the gains of its files, and which gains would be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, ClassVar
+
+from zwidth.data.gains.arms import MOST_READINGS, ArmGains, Delay
+from zwidth.data.gains.best import best, passive_compensation, required_damping, stiffest
+from zwidth.data.gains.coupled import CoupledJoint
+from zwidth.data.gains.joint import JointGains
+from zwidth.data.gains.plant import GivenPlant
+from zwidth.errors import InputError
+from zwidth.model.specification.table import quoted, suggestion
+from zwidth.passivity.outcome import COLOUR, Outcome
+from zwidth.passivity.pairs import PairVerdict, check_pair
+from zwidth.passivity.pairs.limits import samples_around
+from zwidth.passivity.result import Documented
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.text import shown
+from zwidth.showing import Headline, Lines, Part, Table
+
+MOST_SAMPLES = 100
+"""Samples that readings may be old around both arms; beyond, a search takes seconds for a joint."""
+
+UNITS = "K in N·m/rad, kd and b in N·m·s/rad; leader/follower where they differ"
+_NONE = "none"
+
+
+def check_gains(
+    gains: ArmGains,
+    plant: GivenPlant = None,
+    rate: RealLike | None = None,
+    delay: Delay | None = None,
+    drive_rate: RealLike | None = None,
+    ideal_drive: bool = False,
+    compensated: bool = True,
+) -> GainsVerdict:
+    """Decide for each joint whether two hands can take energy out of it, with the gains of the files.
+
+    Parameters
+    ----------
+    gains
+        As `read_gains` reads them.
+    plant, rate, delay, drive_rate, ideal_drive, compensated
+        As `ArmGains.pairs` takes them; what is not given is the family's, and is said.
+
+    Raises
+    ------
+    InputError
+        If the leader feels nothing, no plant is known, or a number is outside its bound.
+    """
+    setting = gains.setting(plant, rate, delay, drive_rate, ideal_drive, compensated)
+    pairs = zip(gains.joints, setting.joints, strict=True)
+    joints = tuple(JointVerdict(joint, model, check_pair(model.pair())) for joint, model in pairs)
+    return GainsVerdict(gains, joints, setting.notes)
+
+
+@dataclass(frozen=True)
+class JointVerdict:
+    """The verdict on one joint, and the gains that would be passive.
+
+    Attributes
+    ----------
+    gains
+        Of the files.
+    model
+        The joint of both arms with all that decides it.
+    verdict
+        On the pair that they make.
+    """
+
+    gains: JointGains
+    model: CoupledJoint
+    verdict: PairVerdict
+
+    @property
+    def name(self) -> str:
+        """Of the joint."""
+        return self.gains.name
+
+    @property
+    def outcome(self) -> Outcome:
+        """ "passive", "active" or "undecided"."""
+        return self.verdict.outcome
+
+    @property
+    def is_searched(self) -> bool:
+        """False where readings are too old, or a drive's too many, to look for passive gains."""
+        pair = self.verdict.pair
+        return samples_around(pair) <= MOST_SAMPLES and pair.own_readings <= MOST_READINGS
+
+    @cached_property
+    def stiffest(self) -> CoupledJoint | None:
+        """The stiffest passive joint with the damping of the files, rounded down, proved; None if none is."""
+        return stiffest(self.model) if self.is_searched else None
+
+    @cached_property
+    def best(self) -> CoupledJoint | None:
+        """The stiffest passive joint over multiples of the damping, rounded and proved; None if none is."""
+        return best(self.model) if self.is_searched else None
+
+    @cached_property
+    def required_damping(self) -> float | None:
+        """The least b of both arms, the same, for the gains of the files [N·m·s/rad]; rounded up, proved."""
+        return required_damping(self.model) if self.is_searched else None
+
+    @cached_property
+    def compensation(self) -> float | None:
+        """How much of the compensation of friction is passive, 1 for all; None if none, or there is none."""
+        return passive_compensation(self.model) if self.is_searched else None
+
+    @cached_property
+    def with_ideal_drive(self) -> Outcome | None:
+        """The outcome if kd in the drive were a damper; None without a drive, or where it is taken so."""
+        if self.model.drive_rate is None or self.model.ideal_drive:
+            return None
+        return check_pair(replace(self.model, ideal_drive=True).pair()).outcome
+
+    @property
+    def limit(self) -> str:
+        """What binds, in a few words."""
+        verdict = self.verdict
+        if verdict.criterion.slips:
+            return "kd in the drive"
+        if verdict.violation is not None:
+            return f"at {verdict.violation.frequency:.3g} Hz"
+        return "" if verdict.passive else verdict.limit.partition(":")[0]
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the claim covers and takes for granted."""
+        ideal = "kd of an arm's own speed, in its drive, is a damper at once: b holds it, the controller not"
+        return (*self.verdict.small_print(), *([ideal] if self.model.is_ideal else []))
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data, units in the keys; every gain that is told was proved."""
+        return {
+            **self.gains.to_dict(),
+            "outcome": self.outcome,
+            "claim": self.verdict.claim,
+            "limit": self.limit,
+            "with_ideal_drive": self.with_ideal_drive,
+            "damping_N_m_s_per_rad": [float(b) for b in self.model.damping],
+            "assumptions": list(self.assumptions),
+            "is_searched": self.is_searched,
+            "stiffest": _gains(self.stiffest),
+            "best": _gains(self.best),
+            "largest_compensation": self.compensation,
+            "required_damping_N_m_s_per_rad": self.required_damping,
+        }
+
+    def saved(self) -> dict[str, Any]:
+        """The same with the proof, or the violation, for `zwidth verify`."""
+        parts = ("certificate", "violation", "motion")
+        found = {name: getattr(self.verdict, name) for name in parts}
+        proofs = {
+            "witness" if name == "motion" else name: part.saved()
+            for name, part in found.items()
+            if part is not None
+        }
+        return {**self.to_dict(), **proofs}
+
+
+@dataclass(frozen=True, repr=False)
+class GainsVerdict(Documented):
+    """The verdicts on all joints of an arm.
+
+    Attributes
+    ----------
+    gains
+        What the files say.
+    joints
+        The verdict on each joint.
+    taken
+        What was taken for granted that no file says.
+    """
+
+    FORMAT: ClassVar[str] = "zwidth gains 1"
+
+    gains: ArmGains
+    joints: tuple[JointVerdict, ...]
+    taken: tuple[str, ...]
+
+    @property
+    def outcome(self) -> Outcome:
+        """ "active" if a joint is, else "undecided" if a joint is, else "passive"."""
+        found = {joint.outcome for joint in self.joints}
+        return "active" if "active" in found else "undecided" if "undecided" in found else "passive"
+
+    @property
+    def claim(self) -> str:
+        """How many joints are what, in a sentence."""
+        counts = [
+            (sum(joint.outcome == outcome for joint in self.joints), outcome)
+            for outcome in ("passive", "active", "undecided")
+        ]
+        told = ", ".join(f"{count} {outcome}" for count, outcome in counts if count)
+        return f"Of {len(self.joints)} joints, each by itself: {told}."
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What each number is, what was taken for granted, and what is not counted."""
+        return (
+            *self.gains.notes,
+            *self.taken,
+            *self._slips(),
+            *self._unsearched(),
+            *self._steps(),
+            *self._each(),
+        )
+
+    def joint(self, name: str) -> JointVerdict:
+        """The verdict on one joint.
+
+        Raises
+        ------
+        InputError
+            If there is none of that name.
+        """
+        for joint in self.joints:
+            if joint.name == name:
+                return joint
+        names = [joint.name for joint in self.joints]
+        raise InputError(f"there is no joint {quoted(name)}; {suggestion(name, names)}")
+
+    def _slips(self) -> Iterator[str]:
+        slipping = [joint for joint in self.joints if joint.verdict.criterion.slips]
+        if slipping:
+            rate = slipping[0].verdict.pair.drive_rate
+            assert rate is not None, "only a drive gains between two samples"
+            yield (
+                f"kd in the drive: to and fro at {shown(float(rate) / 2, 'Hz')} the drive alone gives more "
+                "than b takes; no arm moves so, and drives filter: an ideal drive leaves that part out"
+            )
+
+    def _unsearched(self) -> Iterator[str]:
+        if not all(joint.is_searched for joint in self.joints):
+            yield (
+                f"passive gains are looked for where readings are at most {MOST_SAMPLES} samples "
+                f"old around both arms, and a drive has at most {MOST_READINGS} in a sample"
+            )
+
+    def _steps(self) -> Iterator[str]:
+        if any(side.resolution for joint in self.joints for side in joint.verdict.pair.sides):
+            return
+        step = self.gains.published.position_step
+        stiff = max(self.joints, key=lambda joint: joint.verdict.pair.stiffness.fraction)
+        friction = float(stiff.verdict.pair.stiffness) * float(step.value)
+        yield (
+            f"positions come in steps of {shown(step.value, 'rad')} ({step.source}): not counted, for the "
+            f"plant gives no resolution; of {stiff.name} the spring alone needs {shown(friction, 'N*m')} of "
+            "Coulomb friction for them"
+        )
+
+    def _each(self) -> Iterator[str]:
+        """What every joint's verdict takes for granted."""
+        shared = [set(joint.assumptions) for joint in self.joints]
+        yield from (text for text in self.joints[0].assumptions if all(text in s for s in shared))
+
+    def tables(self) -> tuple[Table, Table]:
+        """The verdict on each joint, and the gains that would be passive."""
+        decided = [["joint", "K", "kd", "b", "verdict", "limit", "with ideal drive"]]
+        better = [["joint", "largest K", "best K", "with kd", "b needed", "compensation"]]
+        return (
+            Table(rows=[_decided(joint) for joint in self.joints], heads=decided, lefts=1, caption=UNITS),
+            Table(rows=[_better(joint) for joint in self.joints], heads=better, lefts=1),
+        )
+
+    def report(self) -> Iterator[Part]:
+        """The sentence, the joints, the gains that would be passive, and what is taken for granted."""
+        yield Headline(self.outcome, COLOUR[self.outcome], self.claim)
+        first, second = self.tables()
+        yield first
+        yield second
+        yield Lines(self.notes, "assumptions")
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data, units in the keys."""
+        return self._document([joint.to_dict() for joint in self.joints])
+
+    def saved(self) -> dict[str, Any]:
+        """The same with the proof of each joint."""
+        return self._document([joint.saved() for joint in self.joints])
+
+    def _document(self, joints: list[dict[str, Any]]) -> dict[str, Any]:
+        return {
+            "format": self.FORMAT,
+            "outcome": self.outcome,
+            "claim": self.claim,
+            "family": self.gains.family,
+            "joints": joints,
+            "notes": list(self.notes),
+        }
+
+
+def _decided(joint: JointVerdict) -> list[str]:
+    return [
+        joint.name,
+        _stiffness(joint.model),
+        _damping(joint.model),
+        _sides(*joint.model.damping),
+        joint.outcome,
+        joint.limit,
+        joint.with_ideal_drive or "",
+    ]
+
+
+def _better(joint: JointVerdict) -> list[str]:
+    if not joint.is_searched:
+        return [joint.name, *["–"] * 5]
+    top, stiff, need = joint.best, joint.stiffest, joint.required_damping
+    return [
+        joint.name,
+        _NONE if stiff is None else _stiffness(stiff),
+        _NONE if top is None else _stiffness(top),
+        "" if top is None else _damping(top),
+        _NONE if need is None else f"{need:.4g}",
+        _share(joint),
+    ]
+
+
+def _share(joint: JointVerdict) -> str:
+    """Of the compensation of friction, in percent."""
+    if not joint.model.is_compensated:
+        return ""
+    return _NONE if joint.compensation is None else f"{100 * joint.compensation:.0f} %"
+
+
+def _stiffness(joint: CoupledJoint) -> str:
+    return _sides(*(gains.stiffness for gains in joint.gains))
+
+
+def _damping(joint: CoupledJoint) -> str:
+    """kd as the files have it: of the speed against the other arm, or of its own."""
+    return _sides(*(gains.damping or gains.local_damping for gains in joint.gains))
+
+
+def _sides(leader: Fraction, follower: Fraction) -> str:
+    """One number, or leader / follower."""
+    first, second = (f"{float(value):.4g}" for value in (leader, follower))
+    return first if first == second else f"{first}/{second}"
+
+
+def _gains(joint: CoupledJoint | None) -> dict[str, Any] | None:
+    if joint is None:
+        return None
+    return {
+        side: {
+            "stiffness_N_m_per_rad": float(own.stiffness),
+            "damping_N_m_s_per_rad": float(own.damping),
+            "local_damping_N_m_s_per_rad": float(own.local_damping),
+        }
+        for side, own in zip(("leader", "follower"), joint.gains, strict=True)
+    }

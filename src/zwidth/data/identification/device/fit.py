@@ -1,0 +1,141 @@
+"""What one way through a log leaves, and the parameters that follow from it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from zwidth.data.identification.device.choice import LONGER, SAFETY, SURE, Choice, Zero, shifts
+from zwidth.data.identification.device.estimate import Directions, Estimate, unit_of
+from zwidth.data.identification.device.moments import Moments
+from zwidth.data.identification.device.pieces import pieces
+from zwidth.data.identification.device.points import Points
+from zwidth.data.identification.device.pulses import Pulse, pulse
+from zwidth.data.identification.device.regression import Regression, regress
+from zwidth.data.logs import Log
+
+HINT = 0.8
+"""Confidence above which a bend that differs by direction is fitted, not only believed: it costs width."""
+
+
+class Found(NamedTuple):
+    """The sums.
+
+    Parameters
+    ----------
+    shape
+        The pulse.
+    late
+        By which the forces were recorded late [s].
+    shares
+        See `Choice`.
+    moments, longer
+        Of the pulses, and of those twice as long.
+    points
+        Some pulses, for pictures.
+    mass
+        Where it is given, and not fitted [kg; kg·m²].
+    motion
+        "linear" or "rotary".
+    """
+
+    shape: Pulse
+    late: float
+    shares: tuple[float, float]
+    moments: Moments
+    longer: Moments
+    points: Points
+    mass: float | None
+    motion: str
+
+    def regression(self, names: tuple[str, ...]) -> Regression | None:
+        """The named parameters by the pulses."""
+        return regress(self.moments, names, self.mass, self.shares[0])
+
+    def estimates(self, names: tuple[str, ...]) -> dict[str, Estimate] | None:
+        """The named parameters with all their uncertainty; None where there are too few strokes."""
+        fit = self.regression(names)
+        longer = regress(self.longer, names, self.mass, self.shares[1])
+        if fit is None or longer is None:
+            return None
+        offsets = {"force_lag": self.late}
+        return {
+            name: Estimate(
+                fit.value(name) + offsets.get(name, 0.0),
+                fit.error(name),
+                float(shift),
+                fit.degrees,
+                unit_of(name, self.motion),
+            )
+            for name, shift in zip(names, shifts(fit, longer), strict=True)
+        }
+
+    def directions(self, names: tuple[str, ...]) -> Directions | None:
+        """Damping into the wall, b + a, and out of it, b − a; None where the strokes do not tell."""
+        return self._directions((*names, "asymmetry"), 0.0)
+
+    def slopes(self, names: tuple[str, ...], speed: float) -> Directions | None:
+        """Slope of friction by speed, at this speed and in each direction, of a friction that is bent.
+
+            f = f_c + (b ± a) |v| + (c ± e) v² + s max(1 − |v|/v_s, 0),     f' = b ± a + 2 (c ± e) |v|
+
+        e, by which the bend differs, is fitted where there is a sign of it, s where slow pulses are long
+        enough; None where the strokes do not tell.
+        """
+        bent = (*names, "asymmetry", "quadratic")
+        for friction in dict.fromkeys(((*bent, *({"slow"} - {*names})), bent)):
+            fit = self.regression((*friction, "quadratic_asymmetry"))
+            differs = fit is not None and fit.sees("quadratic_asymmetry", HINT)
+            found = self._directions(fit.names if fit is not None and differs else friction, speed)
+            if found is not None:
+                return found
+        return None
+
+    def _directions(self, names: tuple[str, ...], speed: float) -> Directions | None:
+        fit, longer = self.regression(names), regress(self.longer, names, self.mass, self.shares[1])
+        if fit is None or longer is None:
+            return None
+        unit = unit_of("damping", self.motion)
+
+        def slope(both: float, side: float) -> Estimate:
+            of = {"damping": both, "asymmetry": side}
+            of |= {"quadratic": 2 * speed * both, "quadratic_asymmetry": 2 * speed * side}
+            weights = np.array([of.get(name, 0.0) for name in names])
+            shift = SAFETY * abs(float(weights @ (fit.values - longer.values)))
+            error = float(np.sqrt(weights @ fit.covariance @ weights))
+            return Estimate(float(weights @ fit.values), error, shift, fit.degrees, unit)
+
+        return Directions(slope(1.0, 1.0), slope(1.0, -1.0), slope(0.0, 1.0))
+
+    def sees(self, names: tuple[str, ...], term: str) -> bool:
+        """True where one term more is larger than its uncertainty, that of the method included."""
+        estimates = self.estimates((*names, term))
+        return estimates is not None and estimates[term].beyond(SURE)
+
+
+def gather(
+    log: Log,
+    choice: Choice,
+    *,
+    mass: float | None,
+    delay: float,
+    zero: Zero,
+    progress: Callable[[int, int], None] | None,
+) -> Found:
+    """Go through the log once; `delay` of the actuator's force in samples."""
+    shape, other = (pulse(h, delay, choice.late) for h in (choice.piece, LONGER * choice.piece))
+    late = choice.late * log.sample_period
+    sums, longer, points = Moments(choice.knee), Moments(choice.knee), Points(choice.knee)
+    found = Found(shape, late, choice.shares, sums, longer, points, mass, log.motion)
+    done = 0
+    for piece in pieces(log):
+        rows = piece.pulses(shape, log.sample_period)
+        found.moments.add(rows, zero)
+        found.points.add(rows, zero)
+        found.longer.add(piece.pulses(other, log.sample_period), zero)
+        done += piece.position.size
+        if progress is not None:
+            progress(done, log.samples)
+    return found

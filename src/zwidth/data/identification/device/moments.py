@@ -1,0 +1,138 @@
+"""Sums over strokes, all that an estimate needs, in an amount of memory that does not grow.
+
+    G_s = ½ Σ (A_even A_oddᵀ + A_odd A_evenᵀ)   over the pulses of stroke s,   A = (a, v, sgn v, …, f)
+
+G = Σ_s G_s gives the parameters, and Σ_s G_s ⊗ G_s how much the strokes differ among themselves,
+which is what their uncertainty is taken from.  The zero of a load cell drifts: from each piece
+of some seconds a straight line is taken out of every column first, so that a line in the
+force means nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.data.identification.device import pulses
+from zwidth.native.compiled import Array, compiled
+
+REGRESSORS = (
+    "mass",
+    "damping",
+    "coulomb_friction",
+    "spring",
+    "quadratic",
+    "force_lag",
+    "asymmetry",
+    "quadratic_asymmetry",
+    "slow",
+)
+"""What a force may be made of: m a, b v, f_c sgn v, k x, c v |v|, −τ df/dt of one that came late; a |v| of
+damping that is b + a into the wall and b − a out of it, e v² likewise of c; and s sgn v (1 − |v|/v_s) of
+friction that is larger at speeds below v_s (Stribeck)."""
+
+COLUMNS = len(REGRESSORS) + 1
+"""The regressors, and the force."""
+
+_UPPER = np.triu_indices(COLUMNS)
+
+PAIRS: NDArray[np.int64] = np.zeros((COLUMNS, COLUMNS), dtype=np.int64)
+"""Where a pair of columns stands among all pairs, in either order."""
+PAIRS[_UPPER] = np.arange(_UPPER[0].size)
+PAIRS.T[_UPPER] = PAIRS[_UPPER]
+
+
+@dataclass
+class Moments:
+    """The sums.
+
+    Parameters
+    ----------
+    knee
+        v_s [m/s; rad/s].
+    sum
+        G.
+    square
+        Σ_s G_s ⊗ G_s, as a matrix over the `PAIRS` of columns.
+    strokes, pulses
+        How many there were.
+    lines
+        Numbers that were fitted to take the lines out.
+    means
+        Sum over the pieces of the means of the columns.
+    pieces
+        How many pieces.
+    """
+
+    knee: float
+    sum: Array = field(default_factory=lambda: np.zeros((COLUMNS, COLUMNS)))
+    square: Array = field(default_factory=lambda: np.zeros((_UPPER[0].size, _UPPER[0].size)))
+    strokes: int = 0
+    pulses: int = 0
+    lines: int = 0
+    means: Array = field(default_factory=lambda: np.zeros(COLUMNS))
+    pieces: int = 0
+
+    def add(self, rows: Array, zero: str) -> None:
+        """Count in the pulses of one piece, its zero taken out."""
+        if not len(rows):
+            return
+        even, odd = halves(rows, self.knee)
+        self.means += (even + odd).mean(axis=0) / 2
+        self.pieces += 1
+        basis = line(rows, zero)
+        even = even - basis @ (basis.T @ even)
+        odd = odd - basis @ (basis.T @ odd)
+        self.lines += basis.shape[1]
+        _, stroke = np.unique(rows[:, pulses.STROKE], return_inverse=True)
+        count = int(stroke[-1]) + 1
+        parts = np.zeros((count, COLUMNS, COLUMNS))
+        _products(parts, even, odd, stroke)
+        flat = parts[:, _UPPER[0], _UPPER[1]]
+        self.sum += parts.sum(axis=0)
+        self.square += flat.T @ flat
+        self.strokes += count
+        self.pulses += len(rows)
+
+
+def line(rows: Array, zero: str) -> Array:
+    """What the zero of a piece may be, as orthonormal columns: a line, a constant, or nothing."""
+    time = rows[:, pulses.TIME]
+    columns = {"drifts": 2, "constant": 1, "exact": 0}[zero]
+    basis = np.stack([np.ones(len(rows)), time - time.mean()], axis=1)[:, : min(columns, len(rows))]
+    return np.linalg.qr(basis)[0]
+
+
+def halves(rows: Array, knee: float) -> tuple[Array, Array]:
+    """The columns of the pulses by the even samples and by the odd ones."""
+    found = []
+    for a, v in (
+        (pulses.EVEN_ACCELERATION, pulses.EVEN_VELOCITY),
+        (pulses.ODD_ACCELERATION, pulses.ODD_VELOCITY),
+    ):
+        speed, side = rows[:, v], rows[:, pulses.SIDE]
+        columns = (
+            rows[:, a],
+            speed,
+            side,
+            rows[:, pulses.POSITION],
+            speed * np.abs(speed),
+            -rows[:, pulses.FORCE_SLOPE],
+            speed * side,
+            speed * speed,
+            side * np.maximum(1 - np.abs(speed) / knee, 0.0),
+            rows[:, pulses.FORCE],
+        )
+        found.append(np.stack(columns, axis=1))
+    return found[0], found[1]
+
+
+@compiled
+def _products(parts: Array, even: Array, odd: Array, stroke: NDArray[np.int64]) -> None:
+    for n in range(even.shape[0]):
+        part = parts[stroke[n], :, :]
+        for i in range(even.shape[1]):
+            for j in range(even.shape[1]):
+                part[i, j] += 0.5 * (even[n, i] * odd[n, j] + odd[n, i] * even[n, j])

@@ -1,0 +1,255 @@
+"""A plan: how to move the device by hand, for how long, and when to stop.
+
+    K ≤ min(2b/T, 2f_c/Δ)
+
+(Abbott & Okamura 2005): of b and f_c only the one that sets the limit must be known well, and
+the plan gives the time to the speeds that tell it (`design`).  Its guess of m, b, f_c and of the
+noise may be poor: after each run the data decide, `MeasurementPlan.reached`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import ceil, inf, pi
+from typing import Any, Literal
+
+import numpy as np
+from scipy import stats
+
+from zwidth.data.identification.device.design import PARAMETERS, Stroke, best_shares, covariance
+from zwidth.data.identification.device.identified import Identified
+from zwidth.errors import InputError
+from zwidth.model.device.device import Device
+from zwidth.quantity.exact import Interval, ends
+from zwidth.quantity.text import told_quantity
+
+RUN = 30.0
+"""Length of a run [s]: a load cell is zeroed again after it."""
+
+FEWEST_STROKES = 60
+"""Below which an interval may be short by chance, and is not believed."""
+
+MARGIN = 1.15
+"""Times the speed to be seen, that fast strokes have: they vary, and means over pulses are less."""
+
+LEAST_SHARE = 0.1
+"""Of the time for the fast and for the slow strokes: a curved friction shows only where there are both."""
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class MeasurementPlan:
+    """How to move a device so that its limit becomes known.
+
+    Parameters
+    ----------
+    limits
+        Which parameter sets the limit of a wall: "damping" or "coulomb_friction".
+    guess
+        The device as it was guessed.
+    strokes, shares
+        Kinds of strokes, and the share of the time for each.
+    force_noise
+        Standard deviation of the force, per sample [N; N·m].
+    precision
+        Half-width of the interval that is wanted, in parts of the parameter.
+    confidence
+        Of that interval.
+    speed
+        Up to which friction is to be seen, both ways [m/s; rad/s]; None: nothing is asked.
+    """
+
+    limits: Literal["damping", "coulomb_friction"]
+    guess: Device
+    strokes: tuple[Stroke, ...]
+    shares: tuple[float, ...]
+    force_noise: float
+    precision: float
+    confidence: float
+    speed: float | None = None
+
+    def errors(self, seconds: float) -> dict[str, float]:
+        """Standard errors of mass, damping and Coulomb friction to expect after so much recorded motion.
+
+        Raises
+        ------
+        InputError
+            If seconds is not > 0.
+        """
+        if not 0 < seconds < inf:
+            raise InputError(f"seconds must be > 0, got {seconds!r}: so long the motion was recorded")
+        period = float(self.guess.exact("sample_period"))
+        variances = np.diag(covariance(self.strokes, self.shares, self.force_noise, period, seconds))
+        return dict(zip(PARAMETERS, np.sqrt(variances).tolist(), strict=True))
+
+    @property
+    def seconds(self) -> float:
+        """Recorded motion after which the limit should be known as well as wanted [s]."""
+        reach = float(stats.norm.ppf(0.5 + self.confidence / 2)) * self.errors(1.0)[self.limits]
+        return (reach / (self.precision * float(self.guess.exact(self.limits)))) ** 2
+
+    @property
+    def runs(self) -> int:
+        """How many runs of `RUN` seconds that is, at least as many as have `FEWEST_STROKES`."""
+        each = sum(w * RUN / s.duration for w, s in zip(self.shares, self.strokes, strict=True))
+        return max(ceil(self.seconds / RUN), ceil(FEWEST_STROKES / each))
+
+    @property
+    def force(self) -> float:
+        """Largest force of the hand to expect: m a + b v + f_c [N; N·m]."""
+        m, b, f_c = (float(self.guess.exact(name)) for name in PARAMETERS)
+        return max(m * s.acceleration for s in self.strokes) + b * max(s.speed for s in self.strokes) + f_c
+
+    def reached(self, found: Identified) -> bool:
+        """True where the limit is known as well, and up to the speed, that was wanted: stop.
+
+        Parameters
+        ----------
+        found
+            Of all runs so far together, see `Log.concatenate`.
+        """
+        value = found.estimates[self.limits].value
+        low, high = found.estimates[self.limits].interval(self.confidence)
+        seen = self.speed is None or found.speed >= self.speed
+        return seen and found.strokes >= FEWEST_STROKES and high - low <= 2 * self.precision * value
+
+    def __repr__(self) -> str:
+        """The protocol for a person."""
+        return "\n".join(_protocol(self))
+
+
+def _protocol(plan: MeasurementPlan) -> Iterator[str]:
+    rotary = plan.guess.motion == "rotary"
+    force = "N m" if rotary else "N"
+    symbol, wall = {"damping": ("b", "2b/T"), "coulomb_friction": ("f_c", "2f_c/Δ")}[plan.limits]
+    known = f"{symbol} within ±{plan.precision:.3g} of itself ({plan.confidence:.4g} confidence)"
+    yield f"To know {known}; it sets the limit K = {wall}:"
+    yield _reached(plan)
+    yield (
+        "1. Motor off. Hold the handle by the load cell and by nothing else; "
+        f"up to {plan.force:.2g} {force} will act."
+    )
+    yield "2. Let go, set the zero of the load cell, start to record."
+    for n, (stroke, share) in enumerate(zip(plan.strokes, plan.shares, strict=True), start=3):
+        yield f"{n}. {_spoken(stroke, share, rotary)}"
+    yield (
+        f"{3 + len(plan.strokes)}. Stop the recording. Identify all runs so far together. "
+        f"With {FEWEST_STROKES} strokes or more, and {symbol} known so well: done. Else go on with 2."
+    )
+    runs = f"{plan.runs} run{'s' if plan.runs > 1 else ''}"
+    yield (f"Expected: {runs} of {RUN:.0f} s. Let lengths and times vary, do not rest, do not hit the stops.")
+
+
+def _reached(plan: MeasurementPlan) -> str:
+    """Up to which speed friction will be seen, and what is known of it: a promise ends there."""
+    will = max(s.speed for s in plan.strokes) / MARGIN
+    seen = told_quantity(will, "friction_speed", plan.guess.motion, 2)
+    told = f"Friction will be seen up to some {seen}; at higher speeds it will not be known."
+    if plan.guess.friction_speed is None:
+        return told
+    before = float(ends(plan.guess.friction_speed)[0])
+    if before >= will:
+        told = f"{told[:-1]}: state the speed that a hand may have."
+    so_far = told_quantity(before, "friction_speed", plan.guess.motion, 3)
+    return f"So far it was seen up to {so_far}. {told}"
+
+
+def _spoken(stroke: Stroke, share: float, rotary: bool) -> str:
+    size = (
+        told_quantity(stroke.length, "position", "rotary", 3) if rotary else f"{100 * stroke.length:.3g} cm"
+    )
+    count = max(round(share * RUN / stroke.duration), 1)
+    return f"{count} strokes of some {size}, {stroke.duration:.3g} s each, to and fro."
+
+
+def plan_identification(
+    guess: Device | Identified,
+    *,
+    force_noise: float | None = None,
+    length: float = 0.06,
+    slow: float = 1.0,
+    fast: float = 0.25,
+    precision: float = 0.05,
+    confidence: float = 0.95,
+    speed: float | None = None,
+) -> MeasurementPlan:
+    """Plan the motion that tells how stiff a wall may be, ``K ≤ min(2b/T, 2f_c/Δ)``.
+
+    Parameters
+    ----------
+    guess
+        A device with mass, damping, Coulomb friction, resolution and sample period, of intervals the
+        middle; or what a first run showed.
+    force_noise
+        σ > 0 of the measured force, per sample [N; N·m]; None: what the first run showed.
+    length
+        L > 0 of a stroke that a person can make [m; rad]: as long as the workspace allows.
+    slow, fast
+        Time of a slow stroke and of the fastest a person can make, slow > fast > 0 [s].
+    precision
+        Wanted half-width, in parts of the value, between 0 and 1.
+    confidence
+        Between 0 and 1.
+    speed
+        Up to which friction is to be seen, into the wall and out of it, > 0 [m/s; rad/s]: the fast strokes
+        are made quick enough.  None: what they are.
+
+    Raises
+    ------
+    InputError
+        If a number is outside its bound, or the guess lacks one.
+    """
+    device = _middle(guess.device(None) if isinstance(guess, Identified) else guess)
+    if force_noise is None:
+        if not isinstance(guess, Identified):
+            raise InputError("force_noise is needed with a guessed device: σ of the load cell per sample [N]")
+        force_noise = guess.force_noise
+    given: dict[str, Any] = {"force_noise": force_noise, "length": length, "slow": slow, "fast": fast}
+    if speed is not None:
+        given["speed"] = speed
+    for name, value in given.items():
+        if not 0 < value < inf:
+            raise InputError(f"{name} must be > 0 and finite, got {value!r}: no plan can be made without it")
+    for name, value in {"precision": precision, "confidence": confidence}.items():
+        if not 0 < value < 1:
+            raise InputError(f"{name} must be between 0 and 1, got {value!r}; 0.05 and 0.95 are usual")
+    if slow <= fast:
+        raise InputError(
+            f"a slow stroke takes longer than a fast one, got slow {slow:g} s and fast {fast:g} s"
+        )
+    limits = _limiting(device)
+    if speed is not None:
+        fast = min(fast, length / 2 * pi / (MARGIN * speed))
+    strokes = (Stroke(length, slow), Stroke(length, fast))
+    shares = np.clip(best_shares(strokes, limits), LEAST_SHARE, 1 - LEAST_SHARE)
+    return MeasurementPlan(
+        limits=limits,
+        guess=device,
+        strokes=strokes,
+        shares=tuple(shares.tolist()),
+        force_noise=force_noise,
+        precision=precision,
+        confidence=confidence,
+        speed=speed,
+    )
+
+
+def _middle(device: Device) -> Device:
+    """The device with the middle of each interval."""
+    intervals = {k: v for k, v in device.parameters().items() if isinstance(v, Interval)}
+    return device.replace(**{k: float(v.low + v.high) / 2 for k, v in intervals.items()})
+
+
+def _limiting(device: Device) -> Literal["damping", "coulomb_friction"]:
+    if device.mass is None:
+        raise InputError("the guess has no mass: a rough one is enough, a kitchen scale will do")
+    for name in ("damping", "coulomb_friction"):
+        if not float(device.exact(name)) > 0:
+            raise InputError(
+                f"the guess of {name} must be > 0: it shall be known to a part of itself; guess roughly"
+            )
+    by_damping = device.exact("damping") / device.exact("sample_period")
+    coarse = device.exact("resolution")
+    if not coarse or by_damping <= device.exact("coulomb_friction") / coarse:
+        return "damping"
+    return "coulomb_friction"

@@ -1,0 +1,213 @@
+"""A log in short pieces, and the means of what was recorded over the pulses inside each.
+
+Within a piece what is slow is taken out of every mean as a cubic of time: where the finger
+wants to be, the zero of the load cell, gravity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from scipy.signal import cont2discrete, lfilter
+
+from zwidth.data.identification.device.strokes import count_without_steps, find_strokes
+from zwidth.data.identification.finger.weights import Weights
+from zwidth.data.logs import Log
+from zwidth.data.logs.block import whole_runs
+from zwidth.data.logs.stops import beyond
+from zwidth.errors import InputError
+from zwidth.native.compiled import Array
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+class Pieces(NamedTuple):
+    """What was recorded, a row for each piece.
+
+    Parameters
+    ----------
+    position, expected
+        [m; rad] as read, and as the perturbation alone would have it.
+    hand, actuator
+        [N; N·m]; None where there is none.
+    side
+        sgn ẋ inside strokes; 0 between, where the device turns or rests.
+    runs
+        How many pieces of each run follow each other.
+    clear
+        Of which pieces the means are taken.
+    """
+
+    position: Array
+    expected: Array | None
+    hand: Array | None
+    actuator: Array | None
+    side: Array
+    runs: tuple[int, ...]
+    clear: NDArray[np.bool_]
+
+
+class Means(NamedTuple):
+    """Means over pulses, a row for each.
+
+    Parameters
+    ----------
+    even, odd
+        ẍ, ẋ, x by the even and by the odd samples.
+    expected
+        The same as the perturbation alone would have it; None where it is not known.
+    hand
+        f_h.
+    actuator, actuator_slope
+        f_a as it was held, and its rate.
+    side, turning, moving
+        sgn ẋ, 0 in turns; the same with a change of sign in the middle of turns; and the part inside strokes.
+    piece
+        Which piece it is of.
+    """
+
+    even: Array
+    odd: Array
+    expected: Array | None
+    hand: Array | None
+    actuator: Array | None
+    actuator_slope: Array | None
+    side: Array
+    turning: Array
+    moving: Array
+    piece: NDArray[np.int64]
+
+
+def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
+    """The log cut into pieces of so many seconds, each within a run; what is left over is not used.
+
+    Where the hand's force answers, no means are taken of a piece in which its sensor is at an end of its
+    range: as a whole, since which of its pulses stay must not depend on the force that they show.
+    """
+    size = round(seconds / log.sample_period)
+    runs = [run for run in whole_runs(log.blocks()) if run.position.size >= size]
+    if not runs:
+        raise InputError(
+            f"{log.source} has no run of {seconds:g} s without a hole: {log.runs} runs in {log.duration:.3g} "
+            "s; record a minute, lose no samples, or take shorter pieces"
+        )
+
+    def rows(columns: Iterable[Array | None]) -> Array | None:
+        parts = [_cut(c, size) for c in columns if c is not None]
+        return np.concatenate(parts) if parts else None
+
+    position, side = rows(r.position for r in runs), rows(_side(r.position, log) for r in runs)
+    assert position is not None  # every log has positions
+    assert side is not None
+    hand, actuator = rows(r.hand_force for r in runs), rows(r.actuator_force for r in runs)
+    clear: NDArray[np.bool_] = np.ones(len(position), dtype=bool)
+    if by_hand and hand is not None:
+        clear = np.logical_not(np.any(beyond(hand, log.stops), axis=1))
+    return Pieces(position, None, hand, actuator, side, tuple(r.position.size // size for r in runs), clear)
+
+
+def response(log: Log, pieces: Pieces, total: Array, delay: float) -> Array:
+    """The position that the actuator's force alone would make of mass, damping and stiffness.
+
+    It only serves as instrument and need not be exact: the delay is taken in whole samples.
+    """
+    mass, damping, stiffness = (max(float(v), 1e-9) for v in total)
+    numerator, denominator, _ = cont2discrete(([-1.0], [mass, damping, stiffness]), log.sample_period, "zoh")
+    late = round(delay / log.sample_period)
+    assert pieces.actuator is not None  # it is the instrument
+    found, first = [], 0
+    for count in pieces.runs:
+        force = pieces.actuator[first : first + count].ravel()
+        force = np.concatenate([np.full(late, force[0]), force])[: force.size] - force.mean()
+        found.append(lfilter(numerator[0], denominator, force).reshape(count, -1))
+        first += count
+    return np.concatenate(found)
+
+
+def _side(position: Array, log: Log) -> Array:
+    """sgn ẋ of each sample inside a stroke, 0 between strokes."""
+    count = log.resolution or count_without_steps(position) or 1.0
+    strokes = find_strokes(np.floor((position - position[0]) / count + 0.5))
+    found = np.zeros(position.size)
+    for first, last, side in zip(strokes.first, strokes.last, strokes.side, strict=True):
+        found[first:last] = side
+    return found
+
+
+def _cut(values: Array, size: int) -> Array:
+    count = values.size // size
+    return values[: count * size].reshape(count, size)
+
+
+def means(pieces: Pieces, shape: Weights, period: float) -> Means | None:
+    """Over every pulse inside the pieces; None where none fits."""
+    reach = shape.reach
+    start = reach + shape.lag
+    centres = _centres(pieces.position.shape[1], shape)
+    if not centres.size or not pieces.clear.any():
+        return None
+    odd = (np.arange(-reach, reach + 1) & 1).astype(float)
+    hand, actuator = pieces.hand, pieces.actuator
+    clear = slice(None) if pieces.clear.all() else pieces.clear  # without a copy where none is left out
+
+    def mean(rows: Array, weights: Array, before: int = reach) -> Array:
+        windows = sliding_window_view(rows[clear], weights.size, axis=1)[:, centres - before]
+        found: Array = (windows @ weights).ravel()
+        return found
+
+    def motion(rows: Array, some: Array | float) -> Array:
+        near = rows - rows[:, :1]  # against rounding
+        columns = [mean(near, some * w) for w in shape.motion]
+        return np.stack(columns, axis=1) / (period**2, period, 1.0)
+
+    return Means(
+        motion(pieces.position, 2 * (1 - odd)),
+        motion(pieces.position, 2 * odd),
+        None if pieces.expected is None else motion(pieces.expected, 1.0),
+        None if hand is None else mean(hand, shape.force),
+        None if actuator is None else mean(actuator, shape.held, start),
+        None if actuator is None else mean(actuator, shape.steps, start) / period,
+        mean(pieces.side, shape.force),
+        mean(_turning(pieces.side), shape.force),
+        mean(np.abs(pieces.side), shape.force),
+        np.repeat(np.flatnonzero(pieces.clear), centres.size),
+    )
+
+
+def later(rows: Means, pieces: Pieces, shape: Weights, samples: int) -> Means:
+    """The same means with the force of the hand read so many samples later, where the pieces go on so
+    long."""
+    assert pieces.hand is not None  # it is what may be late
+    size, reach = pieces.position.shape[1], shape.reach
+    centres = _centres(size, shape)
+    inside = centres + reach + samples < size
+    hand = pieces.hand[pieces.clear]
+    windows = sliding_window_view(hand, shape.force.size, axis=1)[:, centres[inside] - reach + samples]
+    kept = np.tile(inside, len(hand))
+    found = Means(*(None if column is None else column[kept] for column in rows))  # type: ignore[arg-type]
+    return found._replace(hand=(windows @ shape.force).ravel())
+
+
+def _centres(size: int, shape: Weights) -> NDArray[np.int64]:
+    """The samples in the middle of the pulses of a piece."""
+    return np.arange(shape.reach + shape.lag, size - shape.reach, shape.piece)
+
+
+def _turning(side: Array) -> Array:
+    """Each 0 replaced by the nearest sign in its row.
+
+    A count is left by the edge by which it was entered, and a device that only turns, under a force that
+    hardly changes, turns in the middle between the two.
+    """
+    at = np.broadcast_to(np.arange(side.shape[1]), side.shape)
+    before = np.maximum.accumulate(np.where(side != 0, at, 0), axis=1)
+    after = np.minimum.accumulate(np.where(side != 0, at, side.shape[1] - 1)[:, ::-1], axis=1)[:, ::-1]
+    early, late = (np.take_along_axis(side, where, axis=1) for where in (before, after))
+    found: Array = np.where(
+        at - before < after - at, early, np.where(at - before > after - at, late, (early + late) / 2)
+    )
+    return found

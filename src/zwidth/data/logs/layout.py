@@ -1,0 +1,320 @@
+"""How a text is laid out: its delimiter, its decimal sign, its header, and where the numbers begin.
+
+The numbers begin at the first of the lines that all split into as many numbers.
+What stands above is a header, a line of units below it, or a preamble.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Literal, NamedTuple
+
+from zwidth.data.logs.cells import (
+    are_plain,
+    decimal_of,
+    is_clock,
+    is_date,
+    is_nothing,
+    is_number,
+)
+from zwidth.data.logs.scales import is_unit
+from zwidth.errors import InputError
+
+_DELIMITERS = (",", ";", "\t", "|", " ")
+_COMMENTS = ("#", "%", "//")
+MOST_SAMPLED = 2000
+"""Rows at the start by which it is judged how numbers are written."""
+
+_DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
+_NUMBER_AND_UNIT = re.compile(r"[+-]?\d[\d.,]*\s*[^\W\d_]+\Z")
+
+
+Sample = tuple[tuple[str, ...], ...]
+"""The first rows of numbers, split."""
+
+Kind = Literal["float", "int", "date", "calendar", "clock", "text"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Layout:
+    """The layout of a text.
+
+    Parameters
+    ----------
+    delimiter
+        One character; a space stands for any white space.
+    decimal
+        The decimal sign of columns that do not say it themselves.
+    names
+        Of the columns; "column 1" … where there is no header.
+    units
+        The unit of each column that a line below the header states.
+    skipped
+        Lines before the first numbers.
+    header
+        The line with the names, as it stands, or "".
+    sample
+        The first rows, split.
+    comments
+        Lines before the numbers that are comments.
+    """
+
+    delimiter: str
+    decimal: str
+    names: tuple[str, ...]
+    units: Mapping[str, str]
+    skipped: int
+    header: str
+    sample: Sample
+    comments: tuple[str, ...]
+
+    def kind(self, column: str) -> Kind:
+        """What the first rows of a column hold; "int" is too long for a float, a "date" in ISO 8601."""
+        return self._kinds[self.names.index(column)]
+
+    @cached_property
+    def _kinds(self) -> list[Kind]:
+        return [_kind(self.fields(name)) for name in self.names]
+
+    def fields(self, column: str) -> list[str]:
+        """The first rows of a column."""
+        return [row[self.names.index(column)] for row in self.sample]
+
+
+def _kind(fields: list[str]) -> Kind:
+    values = fields if are_plain(fields) else [field for field in fields if not is_nothing(field)]
+    if not values:
+        return "float"
+    if all(_DATE.match(value) for value in values):
+        return "date"
+    if all(re.fullmatch(r"\d{16,19}", value) for value in values):
+        return "int"
+    if values is fields:
+        return "float"
+    shares: dict[Kind, int] = {
+        "float": sum(map(is_number, values)),
+        "clock": sum(map(is_clock, values)),
+        "calendar": sum(map(is_date, values)),
+    }
+    kind = max(shares, key=lambda each: shares[each])
+    return kind if 2 * shares[kind] > len(values) else "text"
+
+
+@lru_cache(maxsize=2)
+def layout_of(text: str, source: str, whole: bool) -> Layout:
+    """The layout of a text that starts so; `whole` says that this is all of it.
+
+    A file that is opened again, as to see first whether it holds two arms, is not looked at again.
+    """
+    lines = text.splitlines()
+    if not whole and len(lines) > 1:
+        lines = lines[:-1]  # the last is cut in the middle
+    if not text.strip():
+        raise InputError(f"{source} is empty: {len(text)} characters, none of them a number")
+    rows = [(k, line) for k, line in enumerate(lines) if line.strip() and not is_comment(line)]
+    found = _most_columns(lines, rows)
+    if found.first < 0:
+        raise InputError(f"{source} holds no table of numbers: {_why_none(lines)}")
+    _refuse_rows_for_columns(found, len(rows), source)
+    return laid_out(lines, found.delimiter, found.columns, found.first, found.sample, source)
+
+
+def _most_columns(lines: list[str], rows: list[tuple[int, str]]) -> _Split:
+    """The table by the delimiter that makes most columns of the rows."""
+    bare = "\n".join(line for _, line in rows)
+    dividing = [d for d in _DELIMITERS if (len(bare.split()) > len(rows) if d == " " else d in bare)]
+    found = [_split_at(lines, rows, d) for d in dividing]
+    if not any(table.columns > 1 for table in found):  # of the others every line is one field
+        found += [_split_at(lines, rows, d) for d in _DELIMITERS if d not in dividing]
+    return max(found, key=lambda table: (table.columns, -_DELIMITERS.index(table.delimiter)))
+
+
+def split(line: str, delimiter: str) -> list[str]:
+    """The fields of a line, without their quotes."""
+    if delimiter == " ":
+        return line.split()
+    if '"' in line:
+        try:
+            found = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
+        except csv.Error:
+            found = line.split(delimiter)
+        return [field.strip().strip('"') for field in found]
+    return [field.strip() for field in line.split(delimiter)]
+
+
+def is_comment(line: str) -> bool:
+    """True where a line is no row."""
+    return line.lstrip().startswith(_COMMENTS)
+
+
+def _why_none(lines: list[str]) -> str:
+    with_unit = next((f for line in lines for f in split(line, ",") if _NUMBER_AND_UNIT.match(f)), None)
+    if with_unit is not None:
+        return f'cells such as "{with_unit[:40]}" hold a unit; write it once, in the header: "force [N]"'
+    return "no line splits into numbers at , ; tab | or space"
+
+
+def _refuse_rows_for_columns(table: _Split, count: int, source: str) -> None:
+    """A sheet in which each quantity is a row."""
+    if table.columns <= 3 * count or count > 8:
+        return
+    if sum(_is_text(row[0]) for row in table.rows if len(row) == table.columns) == count:
+        raise InputError(
+            f"{source} has {count} rows of {table.columns} fields, each with a name: the quantities are its "
+            "rows; transpose the sheet, so that each is a column with its name above it"
+        )
+
+
+def _is_text(field: str) -> bool:
+    return not (is_value(field) or is_nothing(field))
+
+
+def is_value(field: str) -> bool:
+    """True where a cell is a number, a time of day or a date."""
+    return is_number(field) or is_clock(field) or is_date(field) or bool(_DATE.match(field))
+
+
+def _numeric(fields: list[str]) -> bool:
+    """A row of a table: numbers stand in it, and text is rare."""
+    if are_plain(fields):
+        return bool(fields)
+    values = sum(map(is_value, fields))
+    return values > 0 and 2 * (values + sum(map(is_nothing, fields))) > len(fields)
+
+
+class _Split(NamedTuple):
+    """A text whose lines are split: how many columns of numbers that makes (0: none), from which line on
+    (−1: none), all its rows, and the first ones of numbers."""
+
+    delimiter: str
+    columns: int
+    first: int
+    rows: list[list[str]]
+    sample: Sample = ()
+
+
+def _split_at(lines: list[str], rows: list[tuple[int, str]], delimiter: str) -> _Split:
+    """Of the lines those that are rows, each with its number, split at a delimiter."""
+    found = [split(line, delimiter) for _, line in rows]
+    none = _Split(delimiter, 0, -1, found)
+    numeric = [_numeric(fields) for fields in found]
+    sizes = [len(fields) for fields, good in zip(found, numeric, strict=True) if good]
+    if not sizes:
+        return none
+    common = max(set(sizes), key=sizes.count)
+    fits = [good and len(fields) == common for fields, good in zip(found, numeric, strict=True)]
+    start = fits.index(True)
+    if sum(fits[start:]) < 0.8 * len(fits[start:]):
+        return none
+    first = rows[start][0]
+    if delimiter == "," and any(sign in line for line in lines[first : first + 9] for sign in ";\t"):
+        return none  # the comma is the decimal sign
+    sample = (
+        tuple(fields)
+        for (k, _), fields, good in zip(rows[start:], found[start:], fits[start:], strict=True)
+        if good and k < first + MOST_SAMPLED
+    )
+    return _Split(delimiter, common, first, found, tuple(sample))
+
+
+def sample_of(lines: list[str], delimiter: str, columns: int, first: int) -> Sample:
+    """The first rows of numbers, of lines of which it is known how they split and where the numbers begin."""
+    body = [
+        split(line, delimiter)
+        for line in lines[first : first + MOST_SAMPLED]
+        if line.strip() and not is_comment(line)
+    ]
+    return tuple(tuple(fields) for fields in body if len(fields) == columns and _numeric(fields))
+
+
+def laid_out(
+    lines: list[str], delimiter: str, columns: int, first: int, sample: Sample, source: str
+) -> Layout:
+    """The layout of lines of which it is known how they split, where numbers begin, and the first rows."""
+    above = [line for line in lines[:first] if line.strip()]
+    comments = tuple(line.strip() for line in above if is_comment(line))
+    plain = [line for line in above if not is_comment(line)]
+    header, names, units_line = _header(plain, comments, delimiter, columns, _empty_at_end(sample, columns))
+    if not header and delimiter == ",":
+        _refuse_two_commas(plain, columns, source)
+    names = _distinct([name or f"column {k + 1}" for k, name in enumerate(names or [""] * columns)])
+    units = {n: u.strip("[]() ") for n, u in zip(names, units_line, strict=False) if u.strip("[]() -")}
+    return Layout(
+        delimiter=delimiter,
+        decimal=decimal_of(field for row in sample for field in row)
+        or ("," if delimiter != "," and _commas(sample) else "."),
+        names=tuple(names),
+        units=units,
+        skipped=first,
+        header=header if header in plain else "",
+        sample=sample,
+        comments=comments,
+    )
+
+
+def _commas(sample: Sample) -> bool:
+    return any("," in field for fields in sample for field in fields)
+
+
+def _empty_at_end(sample: Sample, columns: int) -> int:
+    """Columns at the end in which nothing stands: of delimiters that end each row."""
+    filled = [k for row in sample for k, field in enumerate(row) if field]
+    return columns - 1 - max(filled, default=columns - 1)
+
+
+def _refuse_two_commas(plain: list[str], columns: int, source: str) -> None:
+    if any(2 * len(split(line, ",")) == columns for line in plain[-2:]):
+        raise InputError(
+            f"{source}: the header has {columns // 2} names and each row {columns} fields: the comma is the "
+            "decimal sign and stands between the columns as well; save the sheet with semicolons, or with "
+            "decimal points"
+        )
+
+
+def _header(
+    plain: list[str], comments: tuple[str, ...], delimiter: str, columns: int, empty: int
+) -> tuple[str, list[str], list[str]]:
+    """The line with the names, its fields, and the fields of the line of units below it."""
+
+    def fields_of(line: str) -> list[str] | None:
+        for fields in _ways_to_split(line, delimiter):
+            bare = fields[:columns] if not any(fields[columns:]) else fields
+            if columns - empty <= len(bare) <= columns:
+                return bare + [""] * (columns - len(bare))
+        return None
+
+    if plain and (below := fields_of(plain[-1])) is not None:
+        names = fields_of(plain[-2]) if len(plain) > 1 else None
+        if names is not None and any(below) and all(is_unit(field.strip("[]() -")) for field in below):
+            return plain[-2], names, below
+        return plain[-1], below, []
+    for other in _DELIMITERS[:-1]:
+        if plain and len(split(plain[-1], other)) == columns > 1:
+            return plain[-1], split(plain[-1], other), []
+    for line in reversed(comments):
+        found = fields_of(line.lstrip("#%/ "))
+        if found is not None and not line.startswith("# {"):
+            return line, found, []
+    return "", [], []
+
+
+def _ways_to_split(line: str, delimiter: str) -> list[list[str]]:
+    """Where white space separates, names may hold some: before a bracket, or one space of several."""
+    if delimiter != " ":
+        return [split(line, delimiter)]
+    bare = line.strip()
+    return [bare.split(), re.split(r"\s+(?![\[(])", bare), re.split(r"\t+|\s{2,}", bare)]
+
+
+def _distinct(names: list[str]) -> list[str]:
+    seen: Counter[str] = Counter()
+    result = []
+    for name in names:
+        seen[name] += 1
+        result.append(name if seen[name] == 1 else f"{name} ({seen[name]})")
+    return result

@@ -1,0 +1,184 @@
+"""Rows of a table in SI units, without those that hold no number.
+
+A row that is not finite in a column that is used is left out; the clock then
+sees a gap there.  Without a time column the row's number is the clock.  Stamps
+that are dates are counted from the first one, since a double has no room for
+microseconds in a year's worth of seconds.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from zwidth.data.logs.jumps import anchor_column, between_jumps, hand_damper
+from zwidth.data.logs.scales import Meaning
+from zwidth.data.logs.table import PIECE, Table, readable
+from zwidth.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+DATE = 1e8
+"""[s] Stamps beyond it, three years, are dates."""
+
+MEMORY = 2**28
+"""[bytes] A log whose numbers need no more is kept in memory after the first pass."""
+
+_FIRST = 2**14
+"""Rows of the first piece, where there are as many: the clock is read from them."""
+
+
+class Rows(NamedTuple):
+    """Consecutive rows, finite, in SI units."""
+
+    time: Array
+    position: Array
+    hand_force: Array | None
+    actuator_force: Array | None
+
+    def part(self, which: slice | Array) -> Rows:
+        """Some of the rows."""
+        return Rows(*(None if column is None else column[which] for column in self))  # type: ignore[arg-type]
+
+
+def joined(first: Rows, second: Rows) -> Rows:
+    """Two stretches one after the other."""
+    return Rows(*(None if a is None else np.concatenate((a, b)) for a, b in zip(first, second, strict=True)))  # type: ignore[arg-type]
+
+
+class Recording:
+    """The rows of a table, as often as wanted.
+
+    Parameters
+    ----------
+    table, meaning
+        The columns, and what they are.
+    period
+        [s] between rows where there is no time column; None where there is.
+    """
+
+    def __init__(self, table: Table, meaning: Meaning, period: float | None) -> None:
+        self.table, self.meaning, self.period = table, meaning, period
+        self._kept: list[Rows] | None = None
+        self._fits = True
+
+    def rows(self, tally: Counter[str] | None = None) -> Iterator[Rows]:
+        """Every finite row, in pieces of at most `PIECE` but for the first; `tally` counts the others."""
+        if self._kept is not None:
+            yield from self._kept
+            return
+        kept, size = [], 0
+        for piece in self._opened(Counter() if tally is None else tally):
+            size += sum(column.nbytes for column in piece if column is not None)
+            if size > MEMORY:
+                self._fits = False
+            if self._fits:
+                kept.append(piece)
+            else:
+                kept.clear()
+            yield piece
+        if self._fits:
+            self._kept = kept
+
+    def _opened(self, tally: Counter[str]) -> Iterator[Rows]:
+        """The pieces, enough of them joined at the beginning to read the clock from."""
+        with readable(self.table.source):
+            pieces = self._read(tally)
+            start = next(pieces, None)
+            while start is not None and start.time.size < _FIRST:
+                more = next(pieces, None)
+                if more is None:
+                    break
+                start = joined(start, more)
+            if start is not None:
+                yield start
+            yield from pieces
+
+    def _read(self, tally: Counter[str]) -> Iterator[Rows]:
+        quantities = tuple(self.meaning.columns)
+        names = tuple(self.meaning.columns[q] for q in quantities)
+        simulated = str(self.table.attributes.get("format", "")).startswith("zwidth trace")
+        damper = hand_damper(self.table) if simulated and "hand_force" in quantities else 0.0
+        more = {"sampled": "sampled"} if simulated else {}
+        anchor = anchor_column(self.table)
+        if damper and anchor is not None:
+            more["anchor"] = anchor
+        origin: Any = None
+        for values in self.table.read((*names, *more.values())):
+            columns = dict(zip((*quantities, *more), values, strict=True))
+            if simulated:
+                at_samples = columns.pop("sampled") != 0
+                if not at_samples.all():
+                    columns = {q: v[at_samples] for q, v in columns.items()}
+            if damper:
+                columns["hand_force"] = between_jumps(self.table, columns, damper)
+                del columns["anchor"]
+            if "time" in columns and origin is None and columns["time"].size:
+                origin = _origin(columns["time"], self.meaning.factors["time"])
+                tally["dates"] += bool(origin)
+            for k in range(0, columns["position"].size, PIECE):
+                part = {q: v[k : k + PIECE] for q, v in columns.items()}
+                yield self._finite(self._scaled(part, origin, tally["rows"]), tally)
+
+    def _scaled(self, columns: dict[str, Any], origin: Any, done: int) -> Rows:
+        if "time" not in columns:
+            assert self.period is not None
+            time = (done + np.arange(columns["position"].size)) * self.period
+        else:
+            time = _seconds(columns["time"], origin, self.meaning.factors["time"])
+        others = (
+            _times(columns[q], self.meaning.factors[q]) if q in columns else None
+            for q in ("position", "hand_force", "actuator_force")
+        )
+        return Rows(time, *others)  # type: ignore[arg-type]
+
+    def _finite(self, rows: Rows, tally: Counter[str]) -> Rows:
+        tally["rows"] += rows.time.size
+        used = [column for column in rows if column is not None]
+        if all(
+            np.isfinite(column.min(initial=0.0)) and np.isfinite(column.max(initial=0.0)) for column in used
+        ):
+            return rows
+        finite = np.logical_and.reduce([np.isfinite(column) for column in used])
+        infinite = np.logical_or.reduce([np.isinf(column) for column in used])
+        tally["infinite"] += int(infinite.sum())
+        tally["missing"] += int((~finite & ~infinite).sum())
+        return rows.part(finite)
+
+
+def _times(values: NDArray[Any], factor: float) -> Array:
+    if values.dtype.kind not in "fiub":
+        raise InputError(f"a column holds {values.dtype.name} where numbers belong")
+    if factor == 1.0:
+        return values.astype(np.float64, copy=False)
+    if 0 < abs(factor) < 1 and (1 / factor).is_integer():
+        return np.asarray(
+            values / (1 / factor)
+        )  # a decimal in mm divided by 1000 is the decimal in m, rounded once
+    return np.asarray(values * np.float64(factor))
+
+
+def _origin(time: NDArray[Any], factor: float) -> Any:
+    """What to subtract from stamps: 0, or the first of them if they are dates."""
+    if time.dtype.kind == "M":
+        return time[0]
+    finite = time[np.isfinite(time)] if time.dtype.kind == "f" else time
+    first = finite[0] if finite.size else time.dtype.type(0)
+    return first if abs(float(first)) * factor > DATE else time.dtype.type(0)
+
+
+def _seconds(time: NDArray[Any], origin: Any, factor: float) -> Array:
+    if time.dtype.kind == "M":
+        steps = (time - origin).astype("timedelta64[ns]")
+        seconds: Array = steps.astype(np.float64) / 1e9
+        seconds[np.isnat(steps)] = np.nan
+        return seconds
+    if time.dtype.kind in "iu":
+        return _times(time.astype(np.int64) - np.int64(origin), factor)
+    return _times(time - origin if origin else time, factor)

@@ -1,0 +1,237 @@
+"""A recording in MCAP, read from its first byte on as far as it is whole.
+
+The index at the end of a file is not used: a file that was cut off has none.  Chunks stand one after the
+other, each with its checksum; the first that is not there as a whole ends what is read.  Layout:
+https://mcap.dev/spec; a row is a message in CDR whose numbers are all float64.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from struct import Struct, error, unpack, unpack_from
+from typing import IO, Any, NamedTuple
+from zlib import crc32
+
+import numpy as np
+import pyarrow as pa
+
+from zwidth.data.logs.served.contents import Head, Part, from_json, head_in
+from zwidth.errors import InputError
+from zwidth.reading import check_chunk, check_expansion
+
+MAGIC = b"\x89MCAP0\r\n"
+HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, CHUNK_INDEX = range(1, 9)
+STATISTICS, METADATA, METADATA_INDEX, SUMMARY_OFFSET, DATA_END = 11, 12, 13, 14, 15
+
+RECORD = Struct("<BQ")
+"""What every record begins with: its kind, and the bytes that follow."""
+
+MESSAGE_HEAD = Struct("<HIQQ")
+"""Channel, number in a row, times of writing and of the sample [ns since 1970]."""
+
+CHUNK_HEAD = Struct("<QQQI")
+"""Times of the first and of the last message, bytes when expanded, their checksum."""
+
+CDR = b"\x00\x01\x00\x00"
+"""Before each message: little-endian."""
+
+ROWS, EVENTS = "/zwidth/model/samples", "/zwidth/events"
+"""Topics."""
+
+HEAD, END = "zwidth recording", "zwidth end"
+"""Names of the metadata at the beginning, and behind the last row."""
+
+
+class _Record(NamedTuple):
+    kind: int
+    content: bytes
+
+
+def mcap_head(path: Path) -> Head | None:
+    """What a recording says of itself; None for an MCAP of others.
+
+    Raises
+    ------
+    InputError
+        If it is ours and cannot be read.
+    """
+    with open(path, "rb") as file:
+        for record in _records(file, path):
+            if record.kind == METADATA:
+                name, said = _metadata(record.content)
+                if name == HEAD:
+                    text = said.get("json", "")
+                    if said.get("crc32") != str(crc32(text.encode())):
+                        raise InputError(f"{path} cannot be read: what it says of itself was changed")
+                    return head_in(text, path)[0]
+            if record.kind in (CHUNK, DATA_END):
+                return None
+    return None
+
+
+def mcap_parts(path: Path, head: Head) -> Iterator[Part]:
+    """Chunk by chunk, up to the first that is not whole."""
+    topics: dict[int, str] = {}
+    expanded = rows = events = 0
+    following: int | None = None
+    promised: dict[str, str] = {}
+    with open(path, "rb") as file:
+        for record in _records(file, path):
+            if record.kind == CHANNEL:
+                _note_channel(record.content, topics)
+            elif record.kind == METADATA:
+                name, said = _metadata(record.content)
+                if name == END:
+                    promised = said
+            elif record.kind == CHUNK:
+                data = _unpacked(record.content, path)
+                if data is None:
+                    return
+                expanded += len(data)
+                check_expansion(path, expanded)
+                found = _messages(data, topics, len(head.columns), following)
+                if found is None:
+                    return
+                part, following = found
+                rows, events = rows + len(part.rows), events + len(part.events)
+                yield part
+            elif record.kind == DATA_END:
+                break
+    # who writes a file anew may put the end before the last chunk
+    if (promised.get("rows"), promised.get("events")) == (str(rows), str(events)):
+        yield Part(np.empty((0, len(head.columns))), [], last=True)
+
+
+def _records(file: IO[bytes], path: Path) -> Iterator[_Record]:
+    """Whole records, one after the other."""
+    if file.read(len(MAGIC)) != MAGIC:
+        return
+    while len(start := file.read(RECORD.size)) == RECORD.size:
+        kind, size = RECORD.unpack(start)
+        if size > path.stat().st_size:
+            return
+        check_chunk(path, size)
+        content = file.read(size)
+        if len(content) < size:
+            return
+        yield _Record(kind, content)
+
+
+def _metadata(content: bytes) -> tuple[str, dict[str, str]]:
+    """Name and texts of a metadata record; no texts where it is none."""
+    try:
+        name, place = _text(content, 0)
+        (size,) = unpack_from("<I", content, place)
+        place, end = place + 4, place + 4 + size
+        said = {}
+        while place < end:
+            key, place = _text(content, place)
+            said[key], place = _text(content, place)
+    except (error, UnicodeDecodeError):
+        return "", {}
+    return name, said
+
+
+def _text(content: bytes, place: int) -> tuple[str, int]:
+    (size,) = unpack_from("<I", content, place)
+    end = place + 4 + size
+    return content[place + 4 : end].decode(), end
+
+
+def _note_channel(content: bytes, topics: dict[int, str]) -> None:
+    try:
+        number, _ = unpack_from("<HH", content)
+        topics[number] = _text(content, 4)[0]
+    except (error, UnicodeDecodeError):
+        return
+
+
+def _unpacked(content: bytes, path: Path) -> bytes | None:
+    """What a chunk expands to; None where its bytes are not those that were written."""
+    try:
+        _, _, size, checksum = CHUNK_HEAD.unpack_from(content)
+        codec, place = _text(content, CHUNK_HEAD.size)
+        (packed,) = unpack_from("<Q", content, place)
+    except (error, UnicodeDecodeError):
+        return None
+    check_chunk(path, size)
+    stored = content[place + 8 : place + 8 + packed]
+    if codec not in ("", "zstd", "lz4"):
+        raise InputError(f"{path} is not read: it is compressed by {codec!r}; zstd, lz4 and none are read")
+    data = _expanded(stored, codec, size)
+    if data is None or len(data) != size or (checksum and crc32(data) != checksum):
+        return None
+    return data
+
+
+def _expanded(stored: bytes, codec: str, size: int) -> bytes | None:
+    if codec == "":
+        return stored
+    try:
+        with pa.CompressedInputStream(pa.BufferReader(stored), codec) as stream:
+            return bytes(stream.read(size + 1))
+    except (OSError, pa.ArrowException):
+        return None
+
+
+def _messages(
+    data: bytes, topics: dict[int, str], width: int, following: int | None
+) -> tuple[Part, int | None] | None:
+    """The rows and events in a chunk, and the number of the row that follows.
+
+    None if it holds what no recorder writes, or does not begin with the row that is to follow: then a chunk
+    before it was passed over, since it is no more known as one.
+    """
+    rows: list[Any] = []
+    events: list[dict[str, Any]] = []
+    place = 0
+    try:
+        while place < len(data):
+            kind, size = RECORD.unpack_from(data, place)
+            inside = place + RECORD.size
+            if kind == CHANNEL:
+                _note_channel(data[inside : inside + size], topics)
+            elif kind == MESSAGE:
+                topic = topics.get(unpack_from("<H", data, inside)[0])
+                if topic == ROWS:
+                    found, first = _run_of_rows(data, place, width)
+                    if following not in (None, first):
+                        return None
+                    rows.append(found)
+                    following = (first + len(found)) % 2**32
+                    place += len(found) * _row_size(width)
+                    continue
+                if topic == EVENTS:
+                    events.append(_event(data[inside + MESSAGE_HEAD.size : inside + size]))
+            place = inside + size
+    except (error, ValueError):
+        return None
+    return Part(np.concatenate([np.empty((0, width)), *rows]), events), following
+
+
+def _row_size(width: int) -> int:
+    return RECORD.size + MESSAGE_HEAD.size + len(CDR) + 8 * width
+
+
+def _run_of_rows(data: bytes, place: int, width: int) -> tuple[Any, int]:
+    """The rows whose messages follow each other here, alike and counted up; the number of the first."""
+    step, before = _row_size(width), RECORD.size + 2
+    count = (len(data) - place) // step
+    table = np.frombuffer(data, np.uint8, count * step, place).reshape(count, step)
+    same = (table[:, :before] == table[:1, :before]).all(axis=1)
+    numbers = np.ascontiguousarray(table[:, before : before + 4]).view("<u4").ravel()
+    same &= numbers == (int(numbers[0] if count else 0) + np.arange(count)) % 2**32
+    run = count if same.all() else int(np.argmin(same))
+    own = step - 8 * width
+    headed = unpack("<Q", data[place + 1 : place + 9])[0] == step - RECORD.size
+    if run == 0 or not headed or (table[:run, own - 4 : own] != np.frombuffer(CDR, np.uint8)).any():
+        raise ValueError("a row is not as long as its columns say")
+    rows = np.ascontiguousarray(table[:run, own:]).view("<f8").astype(np.float64, copy=False)
+    return rows, int(numbers[0])
+
+
+def _event(message: bytes) -> dict[str, Any]:
+    """The JSON in a message of one string."""
+    (size,) = unpack_from("<I", message, len(CDR))
+    return from_json(message[8 : 8 + size - 1])

@@ -1,0 +1,105 @@
+"""What every format of file gives: named columns, the units it states, and their values piece by piece."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+from numpy.typing import NDArray
+
+from zwidth.data.logs.block import Finding
+from zwidth.errors import InputError
+
+PIECE = 2**18
+"""Rows that are read at once, where the format lets us choose."""
+
+MOST_COLUMNS = 64
+"""Of one matrix, or one message: more are no columns of a log."""
+
+Values = NDArray[Any]
+
+
+@dataclass(kw_only=True)
+class Table:
+    """Columns of a file.
+
+    Parameters
+    ----------
+    source
+        Name of the file, for messages.
+    units
+        Every column with the unit that the file states; None if it states none.
+    read
+        Gives the columns named, piece by piece: the same number of rows in each.
+    attributes
+        What the file says of itself.
+    notes
+        What was odd in the file; complete after `read` came to its end.
+    means
+        The column of each quantity, None where there is none, if the format says which: nobody guesses then.
+    sheet
+        Name of the sheet of a workbook; else "".
+    sheets
+        Of a workbook with several tables all of them, this one too: the longest; else empty.
+    """
+
+    source: str
+    units: Mapping[str, str | None]
+    read: Callable[[tuple[str, ...]], Iterator[tuple[Values, ...]]]
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+    notes: dict[str, Finding] = field(default_factory=dict)
+    means: Mapping[str, str | None] = field(default_factory=dict)
+    sheet: str = ""
+    sheets: tuple[Table, ...] = ()
+
+
+def understood_sheets(table: Table, understood: Callable[[Table], Any]) -> list[Table]:
+    """The sheets of a workbook that are understood; of another file its one table, unasked."""
+    found = []
+    for each in table.sheets:
+        try:
+            understood(each)
+        except InputError:
+            continue
+        found.append(each)
+    return found or [table]
+
+
+def in_pieces(
+    source: str, columns: Mapping[str, Values], names: tuple[str, ...]
+) -> Iterator[tuple[Values, ...]]:
+    """Columns that are held in memory, in pieces."""
+    rows = check_lengths(source, {name: columns[name].size for name in names})
+    for k in range(0, rows, PIECE):
+        yield tuple(columns[name][k : k + PIECE] for name in names)
+
+
+def check_lengths(source: str, sizes: Mapping[str, int]) -> int:
+    """The number of rows that all columns have; refuse those that differ."""
+    if len(set(sizes.values())) > 1:
+        said = ", ".join(f'"{name}" has {size} samples' for name, size in sizes.items())
+        raise InputError(f"{source}: {said}; choose columns of one length")
+    return next(iter(sizes.values()))
+
+
+@contextmanager
+def readable(source: str) -> Iterator[None]:
+    """Whatever a library says of foreign bytes becomes one message."""
+    try:
+        yield
+    except (InputError, KeyboardInterrupt, GeneratorExit):
+        raise
+    except MemoryError:
+        raise InputError(f"{source} cannot be read: it needs more memory than there is") from None
+    except Exception as error:  # what the libraries raise on foreign bytes is not documented
+        reason = (str(error) or type(error).__name__).splitlines()[0][:200]
+        raise InputError(f"{source} cannot be read: {reason}") from None
+
+
+def listed(names: Mapping[str, Any] | list[str]) -> str:
+    """Column names in a message, not more than a person reads."""
+    shown = [f'"{name}"' for name in list(names)[:30]]
+    more = len(names) - len(shown)
+    return ", ".join(shown) + (f" and {more} more" if more > 0 else "")

@@ -1,0 +1,234 @@
+"""Text: comma, semicolon, tab, white space; with or without a header; read a few megabytes at a time."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv as pc
+
+from zwidth.data.logs.block import Finding
+from zwidth.data.logs.cells import is_nothing, is_number
+from zwidth.data.logs.encoded import SNIFFED, opened_text, plain_lines, text_of
+from zwidth.data.logs.layout import Layout, layout_of
+from zwidth.data.logs.sheet import Sheet
+from zwidth.data.logs.table import Table, Values
+from zwidth.errors import InputError
+
+_PIECE = 2**23
+_NULLS = ["", "NaN", "nan", "NAN", "-nan", "null", "NULL", "None", "none", "NA", "N/A", "#N/A", "-"]
+_UNITS = {"date": "ns", "calendar": "ns", "clock": "s"}
+"""Of what is read from times that are written out."""
+
+_MOST_BROKEN = 0.01
+"""Share of rows of another length beyond which the file is not what it seems."""
+
+
+def text_table(path: Path) -> Table:
+    """The table in a text file."""
+    with opened_text(path) as file:
+        start = file.read(SNIFFED)
+        whole = not file.read(1)
+    layout = layout_of(text_of(start, str(path)), str(path), whole)
+    _refuse_one_column(layout, path)
+    attributes = _attributes(layout)
+    table = Table(
+        source=str(path),
+        units={name: unit_in(layout, name) for name in layout.names},
+        read=lambda names: _read(path, layout, names, table.notes),
+        attributes=attributes,
+    )
+    return table
+
+
+def unit_in(layout: Layout, name: str) -> str | None:
+    """The unit of a column: of times that are written out, or as the line below the header says."""
+    return _UNITS.get(layout.kind(name), layout.units.get(name))
+
+
+def _refuse_one_column(layout: Layout, path: Path) -> None:
+    if len(layout.names) == 1 and layout.header:
+        for sign, name in ((",", "comma"), (";", "semicolon"), ("\t", "tab"), ("|", "|")):
+            fields = layout.header.count(sign) + 1
+            if fields > 1:
+                raise InputError(
+                    f"{path}: the header splits into {fields} names at each {name}, but the rows do not; "
+                    "use one delimiter throughout"
+                )
+
+
+def _attributes(layout: Layout) -> dict[str, Any]:
+    for line in layout.comments:
+        if line.startswith("# {"):
+            try:
+                found = json.loads(line[2:])
+            except ValueError:
+                return {}
+            return found if isinstance(found, dict) else {}
+    return {}
+
+
+def _read(
+    path: Path, layout: Layout, names: tuple[str, ...], notes: dict[str, Finding]
+) -> Iterator[tuple[Values, ...]]:
+    parser = Parser(str(path), layout, names)
+    with opened_text(path) as file:
+        rest, above = b"", layout.skipped
+        while piece := file.read(_PIECE):
+            if above:
+                piece, above = _without_lines(piece, above), 0
+            end = piece.rfind(b"\n") + 1
+            if end == 0 and len(rest) + len(piece) > 2 * _PIECE:
+                if not piece.strip(b"\0"):
+                    break
+                raise InputError(f"{path} has a line of more than {_PIECE >> 20} MB; it is no table")
+            lines, rest = rest + piece[:end], piece[end:] if end else rest + piece
+            if b"\0" in lines:
+                rest = lines[lines.index(b"\0") :]
+                lines = lines[: len(lines) - len(rest)]
+                lines = lines[: lines.rfind(b"\n") + 1]
+                yield from parser.parse(lines)
+                break
+            yield from parser.parse(lines)
+    if rest.strip(b"\0 \r\n"):
+        parser.unfinished = True
+    if b"\0" in rest or (not rest.strip(b"\0") and rest):
+        notes["zeros"] = Finding(kind="zeros", text="the file ends in zero bytes: its end was never written")
+    parser.report(notes)
+
+
+def _without_lines(piece: bytes, count: int) -> bytes:
+    start = 0
+    for _ in range(count):
+        start = piece.index(b"\n", start) + 1
+    return piece[start:]
+
+
+class Parser:
+    """Parses whole lines, and counts what it had to leave out."""
+
+    def __init__(self, source: str, layout: Layout, names: tuple[str, ...]) -> None:
+        self.source, self.layout, self.names = source, layout, names
+        self.rows = self.broken = self.headers = 0
+        self.unfinished = False
+        letters = re.sub(r"[^a-zA-Z]|[eEdDnNaAiIfF]", "", layout.header)
+        self._letter = letters[:1].encode()  # in the header, and in no number
+        kinds = {"float": pa.float64(), "int": pa.int64(), "date": pa.timestamp("ns")}
+        for name in names:
+            if layout.kind(name) == "text":
+                raise InputError(f'{source}: column "{name}" holds text, such as "{self._example(name)}"')
+        self.types = {name: kinds[kind] for name in names if (kind := layout.kind(name)) in kinds}
+        self._sheet = Sheet(source, layout, names)
+        self._by_cells = len(self.types) < len(set(names))
+        self.notes, self.first_note = 0, ""
+
+    def parse(self, lines: bytes) -> Iterator[tuple[Values, ...]]:
+        """The columns of these lines."""
+        if not lines:
+            return
+        cleaned = self._cleaned(lines)
+        if cleaned.strip():
+            parts = self._quickly(cleaned)
+            if parts is None:
+                self._by_cells = True
+                parts = self._cell_by_cell(cleaned)
+            if self.broken > 20 and self.broken > _MOST_BROKEN * (self.rows + self.broken):
+                raise InputError(
+                    f"{self.source}: {self.broken} of {self.rows + self.broken} rows have another number of "
+                    f"columns than {len(self.layout.names)}; it is no table"
+                )
+            yield from parts
+
+    def _quickly(self, lines: bytes) -> list[tuple[Values, ...]] | None:
+        """None where a cell is not written as the quick reader has it."""
+        if self._by_cells:
+            return None
+        broken = self.broken
+        try:
+            table = self._parsed(lines)
+        except pa.ArrowInvalid:
+            self.broken = broken
+            return None
+        self.rows += table.num_rows
+        return [tuple(_numbers(part.column(name)) for name in self.names) for part in table.to_batches()]
+
+    def _cell_by_cell(self, lines: bytes) -> list[tuple[Values, ...]]:
+        piece = self._sheet.read(lines.decode(), self._line)
+        self.rows += piece.columns[0].size
+        self.broken += piece.broken
+        self.notes += piece.notes
+        self.first_note = self.first_note or piece.first_note
+        return [piece.columns]
+
+    def report(self, notes: dict[str, Finding]) -> None:
+        """Write down what was left out."""
+        if self.unfinished:
+            text = "the last line has no end, it may be cut off; it is left out"
+            notes["unfinished"] = Finding(kind="unfinished", text=text, samples=1)
+        if self.broken:
+            columns = len(self.layout.names)
+            text = f"{self.broken} rows have another number of columns than {columns}; they are left out"
+            notes["broken"] = Finding(kind="broken rows", text=text, samples=self.broken)
+        if self.notes:
+            lines = "1 line" if self.notes == 1 else f"{self.notes} lines"
+            text = f'{lines} of text below the table left out: "{self.first_note}"'
+            notes["text"] = Finding(kind="text", text=text)
+        if self.headers:
+            text = (
+                f"the header stands in the rows again, {self.headers} ×: files were put one after the other"
+            )
+            notes["headers"] = Finding(kind="headers", text=text)
+
+    def _parsed(self, lines: bytes) -> pa.Table:
+        layout = self.layout
+        return pc.read_csv(
+            pa.BufferReader(lines),
+            read_options=pc.ReadOptions(column_names=list(layout.names), block_size=_PIECE // 2),
+            parse_options=pc.ParseOptions(delimiter=layout.delimiter, invalid_row_handler=self._skip),
+            convert_options=pc.ConvertOptions(
+                include_columns=list(dict.fromkeys(self.names)),
+                column_types=self.types,
+                decimal_point=layout.decimal,
+                null_values=_NULLS,
+                strings_can_be_null=True,
+            ),
+        )
+
+    def _skip(self, row: Any) -> str:
+        self.broken += 1
+        return "skip"
+
+    def _cleaned(self, lines: bytes) -> bytes:
+        """Without comments, repeated headers and, where white space separates, more than one of it."""
+        lines = plain_lines(lines)
+        for sign in (b"#", b"%", b"//"):
+            if sign[:1] in lines:  # one byte is searched for far quicker than two
+                lines = re.sub(rb"(?m)^" + sign + rb"[^\n]*\n?", b"", lines)
+        if self._letter and self._letter in lines:
+            pattern = rb"(?m)^" + re.escape(self.layout.header.encode()) + rb"\r?\n"
+            lines, count = re.subn(pattern, b"", lines)
+            self.headers += count
+        if self.layout.delimiter == " ":
+            lines = re.sub(rb"[ \t]+", b" ", lines)
+            lines = re.sub(rb"(?m)^ | ?\r?$", b"", lines)
+        return lines
+
+    @property
+    def _line(self) -> int:
+        return self.layout.skipped + self.rows + self.broken
+
+    def _example(self, name: str) -> str:
+        fields = self.layout.fields(name)
+        return next((field for field in fields if not (is_number(field) or is_nothing(field))), "")[:40]
+
+
+def _numbers(column: pa.Array) -> Values:
+    values: Values = column.to_numpy(zero_copy_only=False)
+    if values.dtype == np.object_:
+        return values.astype(np.float64)
+    return values

@@ -1,0 +1,272 @@
+"""Which column of a spreadsheet is the time, the indentation and the force, and in what unit.
+
+A unit stands in the row below the names, in brackets, after a slash, or as the last word of a name.  A
+name is known by its words, in the languages in which testing machines speak; where no name is known, the
+one column in a unit of force is the force.  Two candidates are never chosen between, and a column whose
+unit nobody states is refused.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from zwidth.data.logs.block import Finding
+from zwidth.data.logs.outside import POUND, WEIGHT, measured_in
+from zwidth.data.logs.table import Table, listed
+from zwidth.errors import InputError
+from zwidth.quantity.dimension import Dimension, unit_of
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.spelling import spelled
+
+QUANTITIES = ("time", "indentation", "force")
+
+_DIMENSIONS: Mapping[str, Dimension] = {
+    "time": unit_of("s").dimension,
+    "indentation": unit_of("m").dimension,
+    "force": unit_of("N").dimension,
+}
+
+_WORDS: Mapping[str, tuple[str, ...]] = {
+    "time": (
+        "time zeit uhrzeit prüfzeit messzeit zeitstempel temps heure tiempo hora tempo ora elapsed timestamp "
+        "seconds sec t",
+    ),
+    "indentation": (
+        "indentation depth penetration eindringtiefe eindringung tiefe enfoncement indentación profundidad",
+        "displacement disp deflection compression extension elongation stroke travel weg standardweg "
+        "prüfweg traversenweg verschiebung auslenkung "
+        "déplacement deplacement desplazamiento spostamento",
+        "position pos crosshead traverse distance height z x",
+    ),
+    "force": ("force load kraft standardkraft last effort fuerza forza fz fn f",),
+}
+"""Words of each quantity, the better ones first."""
+
+_OTHER_WORDS = """
+setpoint target commanded command desired rate speed velocity stress strain error std deviation temperature
+soll geschwindigkeit spannung dehnung vitesse contrainte
+"""
+_OTHER = frozenset(_OTHER_WORDS.split())
+"""Words of what is measured besides, or was only wanted."""
+
+_TRIAL_WORDS = "trial trials sample specimen run test cycle repeat repetition replicate versuch essai"
+_TRIALS = frozenset(_TRIAL_WORDS.split())
+"""Words of a column that numbers the trials."""
+
+_MASSES: Mapping[str, float] = {
+    "g": float(WEIGHT / 1000),
+    "kg": float(WEIGHT),
+    **dict.fromkeys(("lb", "lbs"), float(POUND)),
+}
+"""A force in g is the weight of so much [N]."""
+
+_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
+_SLASH = re.compile(r"^(?P<name>.+?)\s*/\s*(?P<unit>[^/]+)$")
+_LAST = re.compile(r"^(?P<name>.+?)[\s_,]+(?P<unit>[^\s_,]+)$")
+_AGAIN = re.compile(r" \(\d+\)$")
+"""Behind a name that stands in the header more than once."""
+
+_WORD = re.compile(r"[^\W\d_]+")
+
+
+class Column(NamedTuple):
+    """A column as it was understood: its name in the file, and SI per number in it."""
+
+    name: str
+    factor: float
+
+
+class Columns(NamedTuple):
+    """The column of each quantity, that which numbers the trials, what was guessed, and of how many tests
+    that stand side by side these are one."""
+
+    time: Column
+    indentation: Column
+    force: Column
+    trial: str | None
+    findings: tuple[Finding, ...]
+    beside: int = 1
+
+
+def recognised(
+    table: Table,
+    chosen: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
+    number: int = 1,
+) -> Columns:
+    """The columns of a test: first what was chosen, then by name, then by unit; of several side by side that
+    of a number from 1.
+
+    Raises
+    ------
+    InputError
+        If one is not found, may be several, or has no unit or one of something else.
+    """
+    chosen, units = dict(chosen or {}), dict(units or {})
+    for what, given in (("column", chosen), ("unit", units)):
+        for key in given:
+            if key not in QUANTITIES:
+                raise InputError(f"{what}: there is no quantity {key!r}; there are {', '.join(QUANTITIES)}")
+    found: dict[str, str] = {}
+    beside = {} if chosen else _side_by_side(table)
+    tests = max(map(len, beside.values()), default=1)
+    chosen |= {quantity: names[min(number, len(names)) - 1] for quantity, names in beside.items()}
+    for quantity in QUANTITIES:
+        found[quantity] = _column(table, quantity, chosen, [*found.values(), *chosen.values()])
+    _refuse_without_unit(table, found, units)
+    factors = {q: _factor(table, q, name, units.get(q)) for q, name in found.items()}
+    numbered = [name for name in table.units if name not in found.values() and _TRIALS & set(_words(name))]
+    time, indentation, force = (Column(found[q], factors[q]) for q in QUANTITIES)
+    return Columns(
+        time,
+        indentation,
+        force,
+        numbered[0] if len(numbered) == 1 else None,
+        tuple(_guessed(table, found, chosen, units)),
+        tests,
+    )
+
+
+def _side_by_side(table: Table) -> dict[str, list[str]]:
+    """The columns of several tests beside each other, named alike but for a number; {} where there are not.
+
+    They may have one column of time together.
+    """
+    found: dict[str, list[str]] = {}
+    for quantity in QUANTITIES:
+        taken = [name for names in found.values() for name in names]
+        found[quantity] = _candidates(table, quantity, [name for name in table.units if name not in taken])
+    tests = max(map(len, found.values()))
+    alike = all(len({_stem(name) for name in names}) == 1 for names in found.values())
+    own = len(found["indentation"]) == len(found["force"]) == tests
+    return found if tests > 1 and alike and own and len(found["time"]) in (1, tests) else {}
+
+
+def _stem(name: str) -> str:
+    return re.sub(r"\s*\d+", "", _AGAIN.sub("", name)).lower()
+
+
+def _column(table: Table, quantity: str, chosen: Mapping[str, str], taken: list[str]) -> str:
+    if quantity in chosen:
+        if chosen[quantity] not in table.units:
+            raise InputError(
+                f'{table.source} has no column "{chosen[quantity]}"; there are {listed(dict(table.units))}'
+            )
+        return chosen[quantity]
+    candidates = _candidates(table, quantity, [name for name in table.units if name not in taken])
+    if len(candidates) > 1:
+        raise InputError(
+            f"{table.source}: {listed(candidates)} may each be the {quantity}; say which with "
+            f'columns={{"{quantity}": "{candidates[0]}"}}'
+        )
+    if not candidates:
+        raise InputError(
+            f"{table.source}: no column is known to be the {quantity}; say which with "
+            f'columns={{"{quantity}": …}}; there are {listed(dict(table.units)) or "no columns of numbers"}'
+        )
+    return candidates[0]
+
+
+def _candidates(table: Table, quantity: str, names: list[str]) -> list[str]:
+    """Those of the first kind of evidence that any has: the whole name, a word of it, the unit."""
+    fitting = [
+        name
+        for name in names
+        if _kind(_unit(table, name), quantity) in (None, quantity) and not _OTHER & set(_words(name))
+    ]
+    for tier in _WORDS[quantity]:
+        known = set(tier.split())
+        whole = [name for name in fitting if len(_words(name)) == 1 and _words(name)[0] in known]
+        some = [name for name in fitting if known & {word for word in _words(name) if len(word) > 1}]
+        if whole or some:
+            return whole or some
+    return [name for name in fitting if _kind(_unit(table, name), quantity) == quantity]
+
+
+def _words(column: str) -> list[str]:
+    """The words of a name without its unit, in small letters: "Compressive load [N]", "indentationDepth"."""
+    name = _split(column)[0]
+    return [word.lower() for word in _WORD.findall(re.sub(r"([a-z])([A-Z])", r"\1 \2", name))]
+
+
+def _split(column: str) -> tuple[str, str | None]:
+    """Name and unit; None where no unit stands there."""
+    bare = _AGAIN.sub("", column.strip().strip('"'))
+    for pattern in (_BRACKETS, _SLASH, _LAST):
+        found = pattern.match(bare)
+        if found and (_is_unit(found["unit"]) or pattern is _BRACKETS):
+            return found["name"], found["unit"].strip() or None
+    return bare, None
+
+
+def _unit(table: Table, column: str) -> str | None:
+    return table.units[column] or _split(column)[1]
+
+
+def _is_unit(text: str) -> bool:
+    return _kind(text, "") is not None
+
+
+def _kind(unit: str | None, quantity: str) -> str | None:
+    """The quantity of which it is a unit, "" of another one; None where it is none or nobody states it."""
+    if unit is None:
+        return None
+    bare = spelled(unit)
+    if quantity == "force" and bare in _MASSES:
+        return "force"
+    if not bare:
+        return None
+    try:
+        dimension = measured_in(bare).dimension
+    except InputError:
+        return None
+    return next((name for name, own in _DIMENSIONS.items() if own == dimension), "")
+
+
+def _refuse_without_unit(table: Table, found: Mapping[str, str], units: Mapping[str, str]) -> None:
+    """Ask for all units that nobody states at once."""
+    lacking = [q for q, name in found.items() if q not in units and not spelled(_unit(table, name) or "")]
+    if lacking:
+        names = listed([found[q] for q in lacking])
+        asked = " ".join(f'units={{"{q}": "{_EXAMPLES[q]}"}}' for q in lacking)
+        days = ' (units={"time": "days"} if they are such as 45987.43)' if "time" in lacking else ""
+        raise InputError(f"{table.source}: nobody says in which unit {names} is; state it with {asked}{days}")
+
+
+_EXAMPLES = {"time": "s", "indentation": "mm", "force": "N"}
+
+
+def _factor(table: Table, quantity: str, column: str, given: str | None) -> float:
+    """SI per number in the column."""
+    unit = given if given is not None else _unit(table, column)
+    assert unit is not None
+    kind = _kind(unit, quantity)
+    if kind != quantity:
+        what = "no unit that is known here" if kind is None else f"no unit of {_KINDS[quantity]}"
+        raise InputError(
+            f'{table.source}: the {quantity} in column "{column}" is in {unit}, {what}; state it '
+            f'with units={{"{quantity}": "{_EXAMPLES[quantity]}"}}'
+        )
+    bare = spelled(unit)
+    if quantity == "force" and bare in _MASSES:
+        return _MASSES[bare]
+    return float(Exact(measured_in(bare).scale))
+
+
+_KINDS = {"time": "time", "indentation": "length", "force": "force"}
+
+
+def _guessed(
+    table: Table, found: Mapping[str, str], chosen: Mapping[str, str], units: Mapping[str, str]
+) -> Iterator[Finding]:
+    """What a reader should see of how the columns were understood."""
+    for quantity, name in found.items():
+        unit = units.get(quantity) or _unit(table, name) or ""
+        known = {word for tier in _WORDS[quantity] for word in tier.split()}
+        if quantity not in chosen and not known & set(_words(name)):
+            text = f'"{name}" is taken for the {quantity}: no other column is in a unit of it'
+            yield Finding(kind="column", text=text)
+        if quantity == "force" and spelled(unit) in _MASSES:
+            yield Finding(kind="unit", text=f"a force in {unit} is taken as the weight of so much")

@@ -1,0 +1,170 @@
+"""The parameters of a tissue from a record of position and force: output error, least squares.
+
+    min over p of  Σ (y_k − ŷ_k(p))²
+
+What a recording adds to the tissue, a zero that drifts, a late force, holes, an end of the sensor's range, is
+looked for in what is left, and fitted, left out or refused; `search` has how.
+
+ŷ is the force of the continuous-time model under the measured position, linear between its samples, or the
+position under the force (creep): simulated without error, so that no sample period and no discretization
+enters the parameters.  The search runs over their logarithms: they stay positive, and their scales do not
+matter.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from zwidth.data.tissue.comparison import TissueComparison
+from zwidth.data.tissue.faults import hole_places
+from zwidth.data.tissue.model import Record, Response, as_model
+from zwidth.data.tissue.result import TissueFit
+from zwidth.data.tissue.search import fitted
+from zwidth.errors import InputError
+from zwidth.model.environment.modes import samples
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from numpy.typing import ArrayLike
+
+STANDARD_MODELS = ("kelvin-voigt", "maxwell", "standard-linear-solid", "generalized-maxwell")
+
+
+def fit_tissue(
+    time: ArrayLike | xr.Dataset,
+    position: ArrayLike | str | None = None,
+    force: ArrayLike | str | None = None,
+    *,
+    model: str = "standard-linear-solid",
+    branches: int | None = None,
+    response: Response = "force",
+    rest: float | None = None,
+    offset: bool = False,
+    noise: Literal["correlated", "white"] = "correlated",
+    motion: Literal["linear", "rotary"] = "linear",
+) -> TissueFit:
+    """The springs and dashpots of a tissue from measured positions and forces.
+
+    Parameters
+    ----------
+    time
+        Of the samples [s], increasing; or an xarray.Dataset along `time`, such as a trace.
+    position
+        x [m; rad]; the name of a variable where a Dataset is given, "position" by default.
+    force
+        With which the tissue resists [N; N·m]; or a name, by default "force", then "actuator_force".
+    model
+        "kelvin-voigt", "maxwell", "standard-linear-solid" (default), "generalized-maxwell" or
+        "hunt-crossley".
+    branches
+        Of "generalized-maxwell": 1 to 6, 2 by default.
+    response
+        What is predicted from the other, and carries the noise: "force" (default; relaxation, free motion)
+        or "position" (creep).
+    rest
+        The input before the first sample, for ever: a relaxation test whose step comes before the first
+        sample has rest=0.  None: that of the first sample.
+    offset
+        True to fit a constant added to the response as well: the bias of a sensor.
+    noise
+        "correlated" (default): the intervals allow for a memory of the noise; "white": they do not.
+    motion
+        "linear" or "rotary", for the units.
+
+    Raises
+    ------
+    InputError
+        If the samples, the model or an option is not one of these, there are fewer samples than parameters,
+        or the record is of no tissue: a sign turned round, too little within the sensor's range.
+
+    Notes
+    -----
+    Give positions that are > 0 inside the tissue, and samples in contact only: a linear model has no surface.
+    """
+    record = _record(time, position, force, response, rest)
+    chosen = as_model(model, branches, response)
+    if noise not in ("correlated", "white"):
+        raise InputError(f'noise is "correlated" or "white", got {noise!r}')
+    if motion not in ("linear", "rotary"):
+        raise InputError(f'motion is "linear" or "rotary", got {motion!r}')
+    count = len(chosen.parameters) + bool(offset)
+    if record.time.size < 2 * count:
+        raise InputError(
+            f"{record.time.size} samples do not fix {count} parameters; give {2 * count} at the least"
+        )
+    return fitted(chosen, record, bool(offset), noise, motion)
+
+
+def compare_tissues(
+    time: ArrayLike | xr.Dataset,
+    position: ArrayLike | str | None = None,
+    force: ArrayLike | str | None = None,
+    *,
+    models: tuple[str, ...] = STANDARD_MODELS,
+    **options: Any,
+) -> TissueComparison:
+    """Several models on one record, that of the smallest BIC first.
+
+    Parameters
+    ----------
+    time, position, force
+        As for `fit_tissue`.
+    models
+        Their names.
+    options
+        All else as for `fit_tissue`; `branches` goes to "generalized-maxwell".
+
+    Raises
+    ------
+    InputError
+        As `fit_tissue`.
+    """
+    branches = options.pop("branches", None)
+    fits = [
+        fit_tissue(
+            time,
+            position,
+            force,
+            model=name,
+            branches=branches if name == "generalized-maxwell" else None,
+            **options,
+        )
+        for name in models
+    ]
+    return TissueComparison(tuple(sorted(fits, key=lambda fit: fit.bic)))
+
+
+def _record(time: Any, position: Any, force: Any, response: object, rest: float | None) -> Record:
+    if response not in ("force", "position"):
+        raise InputError(f'response is "force" or "position", got {response!r}')
+    if hasattr(time, "data_vars"):
+        time, position, force = _from_dataset(time, position, force)
+    if position is None or force is None:
+        raise InputError("give time, position and force; or a Dataset that holds them")
+    t, x = samples(time, position, "position")
+    _, f = samples(time, force, "force")
+    if not np.ptp(x) and not (rest is not None and x[0] != rest) and response == "force":
+        raise InputError(
+            "the position never changes, so it says nothing: give a record of motion, or for a relaxation "
+            "test the position before its step as rest=0"
+        )
+    begins = hole_places(t, x if response == "force" else f)
+    if begins and response == "position":
+        raise InputError(
+            f"the record has a hole in time after t = {t[begins[0] - 1]:.6g} s, across which the force "
+            "changes: how the tissue crept meanwhile is not known; give the part before it or after it"
+        )
+    return Record(t, x, f, response, None if rest is None else float(rest), begins)
+
+
+def _from_dataset(data: Any, position: Any, force: Any) -> tuple[Any, Any, Any]:
+    first = next((name for name in ("force", "actuator_force") if name in data), "force")
+    names = "position" if position is None else position, first if force is None else force
+    for name in ("time", *names):
+        if not isinstance(name, str) or name not in data:
+            raise InputError(
+                f"the Dataset has no variable {name!r}; it has {', '.join(map(str, data.data_vars))}"
+            )
+    return data["time"].values, data[names[0]].values, data[names[1]].values

@@ -1,8 +1,0 @@
-"""A handle, a wall and a hand on a page: the emitted law, played at its true rate, seen and heard."""
-
-from zwidth.explorer.play.loop import played, played_pair
-from zwidth.explorer.play.page import play_page
-from zwidth.explorer.play.played import Played
-from zwidth.explorer.play.presets import presets
-
-__all__ = ["Played", "play_page", "played", "played_pair", "presets"]

@@ -1,6 +1,0 @@
-from zwidth.environment import VirtualBody as VirtualBody
-from zwidth.loop.admittance import simulate_admittance as simulate_admittance
-from zwidth.loop.pair.simulate import simulate_pair as simulate_pair
-from zwidth.loop.timing import Timing as Timing
-from zwidth.traces import SimulatedDevice as SimulatedDevice
-from zwidth.traces import simulate_batch as simulate_batch

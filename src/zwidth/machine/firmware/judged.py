@@ -1,0 +1,167 @@
+"""The verdict on a law in a machine's numbers: of the same loop, with ε less of Coulomb friction.
+
+A force that is off by e_k, |e_k| ≤ ε, gives Σ e_k Δx_k ≤ ε Σ |Δx_k| ≤ ε ∫ |v| dt more than the law's own.
+Coulomb friction takes f_c ∫ |v| dt.  So if no hand gains from the law with f_c − ε, none gains from the
+machine with f_c; whatever the delay is, since the force that is off is held as the law's is.
+
+A chain of laws that ends in force bounding needs no ε: that law pays for its own rounding, of 53 or 24 bits,
+and for the converter, and whatever is commanded before it may be off by anything.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from zwidth.machine.firmware.machine import Machine
+from zwidth.machine.servo.proving import least_friction
+from zwidth.model.device.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.model.rendering.rendered import laws_of
+from zwidth.model.rendering.rendering_law import LoopContext
+from zwidth.passivity.bounding import check_bounding, is_bounded
+from zwidth.passivity.check import check
+from zwidth.passivity.parameter_limits import has_stiffness, max_stiffness
+from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.quantity.text import quantity_unit
+
+Decide = Callable[[Device, Environment], Verdict]
+
+PROVED = ("passive", "theorem")
+
+_NUMBERS = {
+    "double": "the rounding of double",
+    "float": "the rounding of float",
+    "fixed": "the rounding of whole numbers",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Judged:
+    """A law, a machine, and what is proved of both together.
+
+    Parameters
+    ----------
+    machine
+        The law in the machine's numbers.
+    ideal
+        On the law in real numbers.
+    verdict
+        On the law with what friction the machine's numbers leave; on the law itself where they are not
+        counted.
+    counted
+        Whether the machine's numbers are in the verdict.
+    reason
+        Why they are not, or why nothing is proved of them.
+    bounded
+        Whether force bounding at the end pays for the rounding.
+    """
+
+    machine: Machine
+    ideal: Verdict
+    verdict: Verdict
+    counted: bool
+    reason: str = ""
+    bounded: bool = False
+
+    @property
+    def proved(self) -> bool:
+        """Whether no hand can take energy out of the loop with this machine in it.
+
+        The rounding of double alone is left out where it cannot be counted; the converter's is not, unless a
+        theorem counts it.
+        """
+        if self.verdict.outcome not in PROVED:
+            return False
+        return self.counted or (self.machine.number == "double" and self._steps_are_counted)
+
+    @property
+    def _steps_are_counted(self) -> bool:
+        """Whether the converter has no steps, or the proof of the law itself counts them."""
+        if self.machine.half_step == 0.0 or self.verdict.outcome != "theorem":
+            return self.machine.half_step == 0.0
+        law, device = self.verdict.environment, self.verdict.device
+        theorem = laws_of(law)[-1].theorem(LoopContext(device, law.met))
+        if theorem is None or not theorem.counts_force_steps:
+            return False
+        return ends(device.coulomb_friction)[0] >= theorem.coulomb_friction
+
+    @property
+    def outcome(self) -> str:
+        """Of the law in the machine's numbers: what is proved of the law alone is not proved of them.
+
+        Nor is it known that a hand gains where one gains with ε less of friction only.
+        """
+        if self.ideal.outcome in PROVED and not self.proved:
+            return "undecided"
+        return self.verdict.outcome
+
+    @property
+    def statement(self) -> str:
+        """What the numbers of the machine do to the verdict, in a sentence or two."""
+        m = self.machine
+        what, unit = _NUMBERS[m.number], quantity_unit("coulomb_friction", self.verdict.device.motion)
+        if self.bounded:
+            return f"Force bounding pays for {what} and the converter's steps; what comes before may be off."
+        if m.error is None:
+            return f"{what} is not in the verdict: {m.reason}."
+        off = f"The force is off by {m.error:.4g} {unit} at most: {m.half_step:.4g} by half a step of the "
+        off += f"converter, {m.rounding or 0.0:.3g} by {what}."
+        if not self.counted:
+            return f"{off} {self.reason}"
+        return f"{off} As much Coulomb friction is set aside for it, and the proof holds with what is left."
+
+    def cost(self, device: Device, environment: Environment) -> float | None:
+        """By how much the largest passive stiffness is less [N/m; N·m/rad]; None where that is no number."""
+        if not (self.counted and device.is_certain and has_stiffness(environment)):
+            return None
+        before, after = (max_stiffness(d, environment, True) for d in (device, self.verdict.device))
+        return None if before is None or after is None else before - after
+
+
+def judged(device: Device, environment: Environment, machine: Machine, decide: Decide = check) -> Judged:
+    """The verdict on a machine.
+
+    Parameters
+    ----------
+    device, environment
+        The loop.
+    machine
+        The law in the machine's numbers.
+    decide
+        In the place of `zwidth.check`.
+    """
+    bounded = _bounded(device, environment, machine)
+    if bounded is not None:
+        return bounded
+    ideal = decide(device, environment)
+    if machine.error is None:
+        return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=False, reason=machine.reason)
+    (friction, most), off = ends(device.coulomb_friction), Fraction(machine.error)
+    if friction < off:
+        unit = quantity_unit("coulomb_friction", device.motion)
+        return Judged(
+            machine=machine,
+            ideal=ideal,
+            verdict=ideal,
+            counted=False,
+            reason=f"The device has {float(friction):.4g} {unit} of Coulomb friction to pay for it.",
+        )
+    if ideal.outcome not in PROVED:
+        return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=True)
+    spent = Exact(friction - off) if most == friction else Interval(friction - off, most - off)
+    left = device.replace(coulomb_friction=spent)
+    return Judged(machine=machine, ideal=ideal, verdict=decide(left, environment), counted=True)
+
+
+def _bounded(device: Device, environment: Environment, machine: Machine) -> Judged | None:
+    """Of a chain that ends in force bounding, with the roundings that the machine has; None of any other."""
+    if machine.number == "fixed" or not is_bounded(environment) or isinstance(device.delay, Interval):
+        return None
+    found = check_bounding(least_friction(device), environment, single=machine.number == "float")
+    if found.certificate is None:
+        return None
+    verdict = Verdict("passive", found.scope, device, environment, certificate=found.certificate)
+    return Judged(machine=machine, ideal=verdict, verdict=verdict, counted=True, bounded=True)

@@ -1,0 +1,203 @@
+"""Device and hand between two samples, exactly, for a page or a bench that plays the device.
+
+    M ẍ = F − f_a − b ẋ − f_c sgn ẋ + k (x_a − x) + c (ẋ_a − ẋ)        M = m + m_h
+
+with the stops, the stiction, the turns and the energies of `loop.step`: the same operations, the same bits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+from zwidth.errors import InputError
+from zwidth.loop import series
+from zwidth.loop.free import free_response
+from zwidth.loop.ledger import book
+from zwidth.loop.plant import FORCE, GOAL, STATE_SIZE, Plant
+from zwidth.loop.step import advance
+from zwidth.machine.firmware.c99 import C99
+from zwidth.machine.firmware.c99 import KEYWORDS as OF_C
+from zwidth.machine.firmware.header import AS_BEFORE, DOUBLE, UNCONTRACTED, rounded
+from zwidth.machine.firmware.javascript import KEYWORDS as OF_JAVASCRIPT
+from zwidth.machine.firmware.javascript import JavaScript
+from zwidth.machine.firmware.printer import comment
+from zwidth.machine.firmware.program import Cells, Program, Variable
+from zwidth.machine.firmware.specialise import specialised
+from zwidth.native.compiled import Array
+from zwidth.quantity.elementary.exponential import exp, expm1
+from zwidth.quantity.elementary.logarithm import log, log1p
+
+Hand = Literal["free", "anchored"]
+"""A force alone; or a spring and a damper to an anchor that moves, as well."""
+
+_APART = (exp, expm1, log, log1p, free_response, series.product_integral, book)
+
+_PLACES = (
+    ("POSITION", "m, or rad"),
+    ("VELOCITY", "m/s"),
+    ("DIRECTION", "sign of the velocity, 0 at rest"),
+    ("FORCE", "N: of the actuator now"),
+    ("GOAL", "N: where that goes to"),
+    ("HAND_WORK", "J since the beginning: what the hand put in"),
+    ("ACTUATOR_WORK", "J: what the actuator put in"),
+    ("VISCOUS", "J: lost in damping"),
+    ("COULOMB", "J: lost in dry friction"),
+    ("SOURCE_WORK", "J: what muscles put in"),
+    ("HAND_LOSS", "J: lost in the hand's damper"),
+    ("STOPS", "how often it came to rest or turned round"),
+    ("FAULT", "not 0 if the step gave up"),
+)
+
+
+def one_period(
+    state: Array,
+    work: Array,
+    plant: Plant,
+    force: float,
+    push: float,
+    anchor: float,
+    anchor_speed: float,
+    period: float,
+) -> None:
+    """The command of this sample acts from now on, then the plant moves by a period.
+
+    Parameters
+    ----------
+    state, work
+        As `loop.step.advance` has them.
+    plant
+        Its numbers.
+    force
+        f, of the law [N; N·m]; the actuator goes to it.
+    push
+        F, of the hand [N; N·m].
+    anchor, anchor_speed
+        x_a at the beginning [m; rad] and ẋ_a [m/s; rad/s].
+    period
+        T [s].
+    """
+    state[GOAL] = force
+    if plant.lag == 0.0 and plant.slew == 0.0:
+        state[FORCE] = force
+    advance(state, plant, push, anchor, anchor_speed, period, work)
+
+
+def given_plant(*, amplified: bool) -> Plant:
+    """A plant whose numbers are given at every call; without those of an amplifier where there is none."""
+    numbers = Plant(*(Variable("real", name) for name in Plant._fields))  # type: ignore[arg-type]
+    return numbers if amplified else numbers._replace(lag=0.0, slew=0.0)
+
+
+def plant_program(plant: Plant | None, period: float | None, hand: Hand) -> Program:
+    """The program of one period.
+
+    Parameters
+    ----------
+    plant
+        Its numbers, some of which may be a `given_plant`'s; None for numbers that are given at every call.
+    period
+        T > 0 [s]; None for one that is given at every call, last.
+    hand
+        "free" or "anchored".
+
+    Raises
+    ------
+    InputError
+        If T is not positive, or a free hand has a spring or a damper.
+    """
+    if period is not None and not period > 0.0:
+        raise InputError(f"the plant is moved from sample to sample: a period is > 0 s, got {period!r}")
+    if hand == "free" and plant is not None and (plant.stiffness != 0.0 or plant.hand_damping != 0.0):
+        raise InputError("this hand has a spring or a damper: they need an anchor, take hand='anchored'")
+    numbers = plant or given_plant(amplified=True)
+    if plant is None and hand == "free":
+        numbers = numbers._replace(stiffness=0.0, hand_damping=0.0)
+    anchor = (
+        [Variable("real", "anchor"), Variable("real", "anchor_speed")] if hand == "anchored" else [0.0, 0.0]
+    )
+    cells = Cells("state", STATE_SIZE), Cells("work", series.WORK)
+    given = Variable("real", "force"), Variable("real", "push")
+    length = Variable("real", "period") if period is None else float(period)
+    return specialised(one_period, (*cells, numbers, *given, *anchor, length), _APART)
+
+
+def plant_header(program: Program, *, name: str = "plant", about: Sequence[str] = ()) -> str:
+    """The C99 header of such a program: `plant_state`, `plant_init`, `plant_step`.
+
+    `plant_step(&s, …)` takes what the program's parameters are called, in that order.
+    """
+    c = C99(program, OF_C | {name}, prefix=name)
+    body = c.lines()
+    functions = c.function_lines()
+    given = "".join(f", double {v.hint}" for v in program.parameters)
+    upper = name.upper()
+    lines = [
+        *comment(about),
+        f"#ifndef {upper}_H",
+        f"#define {upper}_H",
+        "",
+        "#include <math.h>",
+        "#include <stdint.h>",
+        "",
+        rounded("double"),
+        DOUBLE,
+        "",
+        UNCONTRACTED,
+        "",
+        "/* what is where in state[] */",
+        *(f"#define {upper}_{place} {k}  /* {meaning} */" for k, (place, meaning) in enumerate(_PLACES)),
+        "",
+        f"typedef struct {{ double state[{STATE_SIZE}]; double work[{series.WORK}]; }} {name}_state;",
+        "",
+        *c.table_lines(),
+        *c.helper_lines(),
+        "",
+        *functions,
+        "/* At rest at this position, no force, no energy counted. */",
+        f"static inline void {name}_init({name}_state *s, double position)",
+        "{",
+        f"    for (int k = 0; k < {STATE_SIZE}; k += 1) {{ s->state[k] = 0.0; }}",
+        f"    for (int k = 0; k < {series.WORK}; k += 1) {{ s->work[k] = 0.0; }}",
+        f"    s->state[{upper}_POSITION] = position;",
+        "}",
+        "",
+        "/* One period under the law's force, which opposes penetration, and the hand's push. */",
+        f"static inline void {name}_step({name}_state *s{given})",
+        "{",
+        *body,
+        "}",
+        "",
+        AS_BEFORE,
+        "",
+        "#endif",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def plant_module(program: Program, *, about: Sequence[str] = ()) -> str:
+    """The ES module of such a program: `init`, `step`, and where in `state` everything is."""
+    js = JavaScript(program, OF_JAVASCRIPT)
+    body = js.lines()
+    functions = js.function_lines()
+    lines = [
+        *comment(about),
+        *(f"export const {place} = {k}; // {meaning}" for k, (place, meaning) in enumerate(_PLACES)),
+        "",
+        *js.table_lines(),
+        *js.helper_lines(),
+        "",
+        *functions,
+        "/* At rest at this position, no force, no energy counted. */",
+        "export function init(position) {",
+        f"    const s = {{ state: new Float64Array({STATE_SIZE}), work: new Float64Array({series.WORK}) }};",
+        "    s.state[POSITION] = position;",
+        "    return s;",
+        "}",
+        "",
+        "/* One period under the law's force, which opposes penetration, and the hand's push. */",
+        f"export function step(s{''.join(f', {v.hint}' for v in program.parameters)}) {{",
+        *body,
+        "}",
+    ]
+    return "\n".join(lines) + "\n"

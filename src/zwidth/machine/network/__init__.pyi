@@ -1,0 +1,14 @@
+from zwidth.machine.network.channel import Channel as Channel
+from zwidth.machine.network.device_run import DeviceRun as DeviceRun
+from zwidth.machine.network.frame import Frame as Frame
+from zwidth.machine.network.lossy import Lossy as Lossy
+from zwidth.machine.network.monitor import Link as Link
+from zwidth.machine.network.monitor import LinkReport as LinkReport
+from zwidth.machine.network.open import open_channel as open_channel
+from zwidth.machine.network.part_run import PartRun as PartRun
+from zwidth.machine.network.part_run import run_parts as run_parts
+from zwidth.machine.network.peer import Peer as Peer
+from zwidth.machine.network.peer import PeerReport as PeerReport
+from zwidth.machine.network.shared_memory import SharedMemory as SharedMemory
+from zwidth.machine.network.udp import UDP as UDP
+from zwidth.machine.network.zenoh import Zenoh as Zenoh

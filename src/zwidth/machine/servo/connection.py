@@ -1,0 +1,213 @@
+"""What the loop asks of a device: a position, and to give a force.
+
+A device is reached in one of two ways.  Where its protocol is bytes over a descriptor (a serial port, a
+socket) the two questions are compiled functions, called from the loop's thread without the interpreter's
+lock.  Where only a library speaks it they are methods in Python; the loop is then one in Python as well.
+
+Both have one axis, in SI units and in the device's own zero and sense: `Placement` says where on it the
+wall is.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import isfinite, nan
+from typing import ClassVar, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.errors import InputError
+from zwidth.machine.servo.posix import Bytes
+from zwidth.model.specification.table import Table, located
+from zwidth.native.compiled import Array, compiled
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import plain, read_number
+
+# What a compiled connection and the loop say to each other, the first numbers of its memory:
+# the descriptor; the force that the device is to give along its axis; the position that it read; time [s] and
+# number of the sample since the loop began; until when an answer may be waited for [ns, of `posix.now`].
+# From TOLD on: what it tells besides, see `Connection.tells`; from OWN on: what it remembers itself.
+DESCRIPTOR, FORCE, READING, TIME, INDEX, UNTIL = range(6)
+TOLD = 8
+MOST_TOLD = 8
+OWN = TOLD + MOST_TOLD
+
+# What became of a question.
+GOOD, SILENT, GARBLED, STALE, REFUSED, CLOSED = range(6)
+
+STATUS = {
+    GOOD: "good",
+    SILENT: "no answer in time",
+    GARBLED: "an answer that is no whole frame, or whose checksum is wrong",
+    STALE: "an answer to an earlier question",
+    REFUSED: "the device itself reports a fault",
+    CLOSED: "the other side has closed",
+}
+
+
+Setting = tuple[str, str, str, str, str]
+"""What is set in a device that can change sign, size or end of a force.
+
+Its name as the maker has it (of a servo with the address of its register); its value as delivered, "" where
+the maker does not say it; the effect; what is done about it before any force is given, one of `DONE`; file
+and line, or page, in the version that `Connection.maker` names.
+"""
+
+REFUSES, TELLS, RESTORES, SETS, LEAVES = DONE = "read; refused", "read; told", "set; put back", "set", "left"
+
+exchanged = compiled
+"""Of ``f(memory, inbox, outbox) -> status``, which the loop is given."""
+
+
+class Opened(NamedTuple):
+    """What a compiled connection works on; allocated once."""
+
+    memory: Array
+    inbox: Bytes
+    outbox: Bytes
+
+
+def blank(own: int, inbox: int = 512, outbox: int = 512) -> Opened:
+    """Memory with room for `own` numbers from OWN on, and for so many bytes in and out."""
+    return Opened(np.zeros(OWN + own), np.zeros(inbox, np.uint8), np.zeros(outbox, np.uint8))
+
+
+class Connection(ABC):
+    """A device that can be served, one axis of it."""
+
+    motion: ClassVar[Literal["linear", "rotary"]]
+    """Of the readings and forces: metres and newtons, or radians and newton metres."""
+
+    late: ClassVar[int] = 0
+    """Samples that a force waits by the protocol: 1 where it travels with the next question."""
+
+    tells: ClassVar[tuple[str, ...]] = ()
+    """What it tells besides the position, units in the names; `MOST_TOLD` numbers, from memory[TOLD] on."""
+
+    maker: ClassVar[str] = ""
+    """Whose words `settings` go by, and of which version."""
+
+    settings: ClassVar[tuple[Setting, ...]] = ()
+    """All that can change sign, size or end of its force, as far as the maker tells."""
+
+    met_hardware: ClassVar[bool] = False
+    """False where only an emulator of the other side has been met."""
+
+    @property
+    @abstractmethod
+    def on_silence(self) -> str:
+        """What the device does by itself when nothing comes any more, in words."""
+
+    @property
+    def samples(self) -> int | None:
+        """None; of a simulated device the samples of its script, which begins anew with every run."""
+        return None
+
+    @abstractmethod
+    def close(self) -> None:
+        """Zero force, then let the device go; may be called again, and on a device that is gone."""
+
+    @abstractmethod
+    def describe(self) -> str:
+        """Which device, over what, which axis: one line."""
+
+
+class CompiledConnection(Connection):
+    """A device whose bytes are read and written by compiled functions.
+
+    ``measure(memory, inbox, outbox)`` asks for a position, waits until memory[UNTIL] at most, writes
+    memory[READING] [m; rad] if all went well, and returns what became of it.  ``apply(…)`` gives
+    memory[FORCE] [N; N·m, positive towards greater readings] and returns the same; it does not wait.
+    Neither may block, allocate or raise.
+    """
+
+    measure: ClassVar[Callable[[Array, NDArray[np.uint8], NDArray[np.uint8]], int]]
+    apply: ClassVar[Callable[[Array, NDArray[np.uint8], NDArray[np.uint8]], int]]
+
+    @abstractmethod
+    def open(self, sample_period: float) -> Opened:
+        """Reach the device, make it ready to give a force, set its own watchdog; force 0.
+
+        Raises
+        ------
+        InputError
+            If there is no such port or device, or it does not answer as it should.
+        """
+
+
+class LibraryConnection(Connection):
+    """A device that a library in Python speaks to."""
+
+    @abstractmethod
+    def open(self, sample_period: float) -> None:
+        """As of a compiled one."""
+
+    @abstractmethod
+    def measure(self, until: int) -> tuple[int, float]:
+        """(what became of it, position [m; rad])."""
+
+    @abstractmethod
+    def apply(self, force: float) -> int:
+        """Give a force along the device's axis [N; N·m]; what became of it."""
+
+
+def ask_library(connection: LibraryConnection, until: int) -> tuple[int, float]:
+    """As `measure`; an error of the system, such as a cable that is out, is a line that has closed."""
+    try:
+        return connection.measure(until)
+    except OSError:
+        return CLOSED, nan
+
+
+def give_library(connection: LibraryConnection, force: float) -> int:
+    """As `apply`, and as `ask_library`."""
+    try:
+        return connection.apply(force)
+    except OSError:
+        return CLOSED
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Where on the device's axis the wall is: ``x = sense (reading − origin)``.
+
+    Parameters
+    ----------
+    origin
+        Reading at the wall's surface [m; rad].
+    sense
+        1 where the wall lies towards greater readings, −1 where towards smaller ones.
+    """
+
+    origin: float = 0.0
+    sense: int = 1
+
+    def __post_init__(self) -> None:
+        if self.sense not in (1, -1) or not isfinite(self.origin):
+            raise InputError(
+                f"a wall lies towards greater readings, sense 1, or smaller ones, sense -1, from a finite "
+                f"origin on; got sense {self.sense} and origin {self.origin}"
+            )
+
+    @classmethod
+    def read(cls, table: Table, motion: str) -> Placement:
+        """From the keys origin and sense of a table.
+
+        Raises
+        ------
+        InputError
+            If one has a value it cannot have.
+        """
+        found = {}
+        for key, quantity in (("origin", GLOSSARY["position"]), ("sense", plain("sense", "1 or -1"))):
+            if key in table.values:
+                with located(table.where(key)):
+                    number = float(read_number(table.values[key], quantity, key, motion=motion))
+                    if key == "sense" and number not in (1, -1):
+                        raise InputError(f"sense is 1 or -1, got {number:g}")
+                    found[key] = number
+        with located(table.label):
+            return cls(found.get("origin", 0.0), int(found.get("sense", 1)))

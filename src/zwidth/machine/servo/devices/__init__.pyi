@@ -1,0 +1,11 @@
+from zwidth.machine.servo.devices.dynamixel import Dynamixel as Dynamixel
+from zwidth.machine.servo.devices.feetech import Feetech as Feetech
+from zwidth.machine.servo.devices.force_dimension import ForceDimension as ForceDimension
+from zwidth.machine.servo.devices.hapkit import Hapkit as Hapkit
+from zwidth.machine.servo.devices.haply import HaplyJoint as HaplyJoint
+from zwidth.machine.servo.devices.haply import HaplyMotor as HaplyMotor
+from zwidth.machine.servo.devices.haply import HaplyPantograph as HaplyPantograph
+from zwidth.machine.servo.devices.inverse import Inverse as Inverse
+from zwidth.machine.servo.devices.moteus import Moteus as Moteus
+from zwidth.machine.servo.devices.odrive import ODrive as ODrive
+from zwidth.machine.servo.devices.simulated import Simulated as Simulated

@@ -1,0 +1,129 @@
+"""Something that is served on this machine while a loop runs, and ends."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection
+from ipaddress import ip_address
+from types import SimpleNamespace, TracebackType
+from typing import Any
+
+from zwidth.errors import InputError
+from zwidth.machine.servo.live.library import library
+
+HOST = "127.0.0.1"
+"""Nobody on another machine is answered."""
+
+OWN = (HOST, "localhost", "::1")
+"""What this machine calls itself."""
+
+_FOREIGN = b"This server does not answer to that name: open the address that zwidth printed.\n"
+
+
+class Page:
+    """What is served, until `close`; ``with`` closes it as well.
+
+    Parameters
+    ----------
+    address
+        Where, such as "http://localhost:5006/".
+    close
+        Ends it.
+    """
+
+    def __init__(self, address: str, close: Callable[[], None]) -> None:
+        self.address = address
+        self._close: Callable[[], None] | None = close
+
+    def close(self) -> None:
+        """End it; may be called again."""
+        close, self._close = self._close, None
+        if close is not None:
+            close()
+
+    def __enter__(self) -> Page:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def checked_port(port: int) -> int:
+    """A port that can be asked for, 0 for any that is free.
+
+    Raises
+    ------
+    InputError
+        If it is none.
+    """
+    if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port <= 65535:
+        raise InputError(
+            f"{port!r} is no port: give a whole number from 1 to 65535, or 0 for one that is free"
+        )
+    return port
+
+
+def checked_origin(origin: str) -> str:
+    """What a browser calls pages of one site, such as "https://app.foxglove.dev".
+
+    Raises
+    ------
+    InputError
+        If it is no scheme and host; "null" is none, since pages of any site may be called so.
+    """
+    if not re.fullmatch(r"[a-z][a-z0-9+.-]*://[^\s/?#@]+/?", origin, re.IGNORECASE):
+        raise InputError(
+            f"{origin!r} is no origin of pages: give scheme and host, such as https://app.foxglove.dev"
+        )
+    return origin.rstrip("/").lower()
+
+
+def origins(names: Collection[str], port: int) -> list[str]:
+    """As a browser writes them: ``name:port``, an address of IPv6 in brackets."""
+    return [f"[{name}]:{port}" if ":" in name else f"{name}:{port}" for name in names]
+
+
+def guarded(application: Any, names: Collection[str], port: int, *, addresses: bool = False) -> Any:
+    """What Tornado is to serve in the place of `application`: a request to a foreign host meets no handler.
+
+    A page of another site whose name comes to mean this machine is of the same origin for a browser, and for
+    Tornado; only its Host tells.  A WebSocket begins as such a request.
+
+    Parameters
+    ----------
+    names
+        Of this server.
+    port
+        Of this server; only port 80 may be left out of a Host.
+    addresses
+        Any address in numbers will do: it comes to mean nothing else.
+    """
+    routing, http = library("tornado.routing", "Tornado"), library("tornado.httputil", "Tornado")
+    own = {*origins(names, port), *(names if port == 80 else ())}
+
+    def match(request: Any) -> dict[str, Any] | None:
+        host = request.headers.get("Host", "").lower()
+        return {} if host in own or (addresses and _is_address(host, port)) else None
+
+    def refused(request: Any) -> None:
+        start = http.ResponseStartLine("HTTP/1.1", 421, "Misdirected Request")
+        told = {"Content-Type": "text/plain", "Content-Length": str(len(_FOREIGN))}
+        request.connection.write_headers(start, http.HTTPHeaders(told), _FOREIGN)
+        request.connection.finish()
+
+    rules = [
+        routing.Rule(SimpleNamespace(match=match), application),
+        routing.Rule(routing.AnyMatches(), refused),
+    ]
+    return routing.RuleRouter(rules)
+
+
+def _is_address(host: str, port: int) -> bool:
+    """True of an address in numbers with this port."""
+    name = host.removesuffix(f":{port}").removeprefix("[").removesuffix("]")
+    try:
+        return host in origins([str(ip_address(name))], port)
+    except ValueError:
+        return False

@@ -1,0 +1,202 @@
+"""The loop: wait for the next sample's time, ask, compute, give, write down.
+
+Sample k is due at t_0 + k T, whatever became of those before: deadlines are absolute.  The loop sleeps until
+shortly before and then watches the clock.  Where it comes a period late or more, samples are missed: neither
+asked for nor computed, the force as it was.
+
+Of a compiled connection all of this is compiled, and runs without the interpreter's lock.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from copy import deepcopy
+from typing import NamedTuple
+
+import numpy as np
+
+from zwidth.machine.servo.connection import (
+    CLOSED,
+    FORCE,
+    GOOD,
+    INDEX,
+    READING,
+    REFUSED,
+    TIME,
+    UNTIL,
+    CompiledConnection,
+    LibraryConnection,
+    Opened,
+    ask_library,
+    give_library,
+)
+from zwidth.machine.servo.cycle import (
+    AWAKE_MOST,
+    CONTROL,
+    MISSED,
+    NONE,
+    NUMBERS,
+    PERIOD,
+    REASON,
+    ROWS,
+    SENSE,
+    SERVED,
+    WANTED,
+    Words,
+    answer,
+    noted,
+)
+from zwidth.machine.servo.pace import ANSWERED, MARGIN, margin, until
+from zwidth.machine.servo.posix import Bytes, now
+from zwidth.machine.servo.safety import BAD_ANSWER, DONE, RUNNING, ZEROS
+from zwidth.machine.servo.spread import BINS
+from zwidth.native.compiled import Array, compiled
+
+
+class Shared(NamedTuple):
+    """What the loop works on, and what the program around it sees."""
+
+    laws: Array
+    memories: Array
+    rests: Array
+    control: Words
+    numbers: Array
+    counts: Array
+    ring: Array
+    spread: Words
+
+
+def shared(capacity: int, remembered: int, ring: Array, counts: int) -> Shared:
+    """All of it, allocated once: room for two packed laws of so many numbers, which remember so many."""
+    control = np.zeros(CONTROL, np.int64)
+    control[WANTED] = control[SERVED] = NONE
+    return Shared(
+        laws=np.full((2, capacity), 0.0),  # np.zeros has no pages yet
+        memories=np.full((2, remembered), 0.0),
+        rests=np.full((2, 2, 2, remembered), 0.0),
+        control=control,
+        numbers=np.zeros(NUMBERS),
+        counts=np.full(counts, 0.0),
+        ring=ring,
+        spread=np.zeros(BINS, np.int64),
+    )
+
+
+@compiled
+def await_sample(k: int, start: int, period: float, awake: int, most: int) -> tuple[int, int, int, int]:
+    """Wait for sample k, or the next one that can still be taken.
+
+    Returns its number, when it was due, the time now, and the `awake` of the next one: how long before a
+    deadline the clock is watched [ns], `most` at most, see `pace.margin`.
+    """
+    due = start + int(k * period)
+    awake = margin(awake, until(due, awake), most)
+    at = now()
+    missed = int((at - due) / period)
+    if missed > 0:
+        k += missed
+        due = start + int(k * period)
+    return k, due, at, awake
+
+
+@compiled
+def lateness(at: int, due: int, period: float) -> float:
+    """How late a sample is [s], less than T."""
+    return min(max((at - due) * 1e-9, 0.0), period * (1.0 - 1e-9))
+
+
+@compiled
+def _run(
+    measure: Callable[[Array, Bytes, Bytes], int],
+    apply: Callable[[Array, Bytes, Bytes], int],
+    last: int,
+    memory: Array,
+    inbox: Bytes,
+    outbox: Bytes,
+    laws: Array,
+    memories: Array,
+    rests: Array,
+    control: Words,
+    n: Array,
+    counts: Array,
+    ring: Array,
+    spread: Words,
+) -> None:
+    """All samples from 0 to `last`, or for ever where it is negative, or until the force ends."""
+    period = n[PERIOD] * 1e9
+    k, zeros = 0, 0
+    most = int(n[AWAKE_MOST])
+    start, awake = now(), min(MARGIN, most)
+    while True:
+        taken, due, at, awake = await_sample(k, start, period, awake, most)
+        if k == 0:
+            taken, due, start = 0, at, at
+        if control[REASON] == RUNNING:
+            if 0 <= last < taken:
+                control[REASON] = DONE
+            else:
+                control[MISSED] += taken - k
+        k = taken
+        late = lateness(at, due, n[PERIOD])
+        memory[TIME], memory[INDEX] = k * n[PERIOD] + late, k
+        memory[UNTIL] = at + ANSWERED * period
+        status = measure(memory, inbox, outbox)
+        row = ring[control[ROWS] % ring.shape[0], :]
+        t = memory[TIME]
+        force = answer(status, k, t, at, memory, laws, memories, rests, control, n, counts, row)
+        memory[FORCE] = -n[SENSE] * force
+        given = apply(memory, inbox, outbox)
+        if given in (CLOSED, REFUSED) and control[REASON] == RUNNING:
+            control[REASON] = BAD_ANSWER + given
+        noted(row, late, (now() - at) * 1e-9, control, n, spread)
+        k += 1
+        if control[REASON] != RUNNING:
+            zeros += 1
+            if zeros == ZEROS:
+                return
+
+
+def run_compiled(connection: CompiledConnection, opened: Opened, last: int, shared: Shared) -> None:
+    """Run the loop over a compiled connection, up to sample `last` or, below 0, until it ends."""
+    kind = type(connection)
+    _run(kind.measure, kind.apply, last, *opened, *shared)  # type: ignore[arg-type]  # arrays of three kinds
+
+
+def _find(memory: Array, shared: Shared) -> None:
+    """Have what the loop in Python calls found in the library before the clock runs; on copies."""
+    loop = deepcopy(shared)
+    await_sample(0, now(), float(loop.numbers[PERIOD]) * 1e9, 0, 0)
+    lateness(0, 0, float(loop.numbers[PERIOD]))
+    answer(GOOD, 0, 0.0, now(), memory.copy(), *loop[:-2], loop.ring[0])
+    noted(loop.ring[0], 0.0, 0.0, loop.control, loop.numbers, loop.spread)
+
+
+def run_library(connection: LibraryConnection, opened: Opened, last: int, shared: Shared) -> None:
+    """The same over a library, in Python: whatever else runs in Python delays it."""
+    memory, n, control = opened.memory, shared.numbers, shared.control
+    ring, spread, step = shared.ring, shared.spread, float(n[PERIOD])
+    k = zeros = 0
+    _find(memory, shared)
+    most = int(n[AWAKE_MOST])
+    start, awake = now(), min(MARGIN, most)
+    while zeros < ZEROS:
+        taken, due, at, awake = await_sample(k, start, step * 1e9, awake, most)
+        if k == 0:
+            taken, due, start = 0, at, at
+        if control[REASON] == RUNNING:
+            if 0 <= last < taken:
+                control[REASON] = DONE
+            else:
+                control[MISSED] += taken - k
+        k = taken
+        late = lateness(at, due, step)
+        t = k * step + late
+        status, memory[READING] = ask_library(connection, int(at + ANSWERED * step * 1e9))
+        row = ring[control[ROWS] % ring.shape[0]]
+        force = answer(status, k, t, at, memory, *shared[:-2], row)
+        given = give_library(connection, -n[SENSE] * force)
+        if given in (CLOSED, REFUSED) and control[REASON] == RUNNING:
+            control[REASON] = BAD_ANSWER + given
+        noted(row, late, (now() - at) * 1e-9, control, n, spread)
+        k += 1
+        zeros += control[REASON] != RUNNING

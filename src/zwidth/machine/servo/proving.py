@@ -1,0 +1,108 @@
+"""What is claimed of a law before it is served, and what is refused.
+
+A law that is passive with a regular clock of T, but not with one that is always as late as one sample in a
+hundred is, is judged by the slower clock.  That is the law as it would be made for that clock: where it has
+damping, a filter or an estimator its coefficients are those of T + lateness there, and the loop runs with
+those of T.  Nothing is claimed of periods that vary from sample to sample; samples that are later still are
+counted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from zwidth.errors import InputError
+from zwidth.machine.servo.connection import CompiledConnection, Connection, LibraryConnection
+from zwidth.machine.servo.measured import Measured
+from zwidth.model.device.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.exact import Interval, ends
+
+Decide = Callable[[Device, Environment], Verdict]
+
+SERVED_OUTCOMES = ("passive", "theorem")
+"""Of a verdict, with which a law is served without being told to."""
+
+
+class NotProved(InputError):
+    """A law is not served, since it is not proved passive; its verdict says what is known of it."""
+
+    def __init__(self, verdict: Verdict, message: str) -> None:
+        super().__init__(message)
+        self.verdict = verdict
+
+
+def judged(
+    decide: Decide, device: Device, law: Environment, measured: Measured, *, simulated: bool
+) -> Verdict:
+    """What is claimed of a law, with the delay and the longest period that were measured.
+
+    The delay of a simulated device is its own, whatever the machine is like.
+    """
+    seen = device if simulated else device.replace(delay=measured.delay(device))
+    verdict = decide(seen, law)
+    if verdict.outcome not in SERVED_OUTCOMES:
+        return verdict
+    slower = decide(seen.replace(sample_period=measured.longest_period(device.exact("sample_period"))), law)
+    return verdict if slower.outcome in SERVED_OUTCOMES else slower
+
+
+def refuse_not_proved(verdict: Verdict, measured: Measured) -> None:
+    """Refuse to serve what has no proof.
+
+    Raises
+    ------
+    NotProved
+        If the outcome is none of `SERVED_OUTCOMES`.
+    """
+    if verdict.outcome not in SERVED_OUTCOMES:
+        late, exchange = (f"{1e6 * float(t):g} µs" for t in measured.supposed)
+        raise NotProved(
+            verdict,
+            f"this is not served, it is {verdict.outcome}: {verdict.claim} That is as measured here, "
+            f"samples {late} late and forces {exchange} after them. Soften the wall, raise the rate, or "
+            "say anyway, with a small force limit",
+        )
+
+
+def check_kinds(device: Device, connection: Connection) -> None:
+    """Refuse a device and a connection that do not go together.
+
+    Raises
+    ------
+    InputError
+        If one is of another kind, or they differ in motion.
+    """
+    if not isinstance(device, Device):
+        raise InputError(f"the device is a zwidth.Device, got {type(device).__name__}")
+    if not isinstance(connection, (CompiledConnection, LibraryConnection)):
+        raise InputError(
+            f"the connection is one of zwidth.servo.devices, got {type(connection).__name__}: it says how "
+            "the device is reached"
+        )
+    if connection.motion != device.motion:
+        raise InputError(
+            f"the device is {device.motion} and its connection {connection.motion}: position and force of "
+            "one are metres and newtons, of the other radians and newton metres; describe the device so"
+        )
+
+
+def least_friction(device: Device) -> Device:
+    """The device with the least friction that it may have: the law does not depend on it.
+
+    Raises
+    ------
+    InputError
+        If a number that a loop needs is an interval.
+    """
+    low = {key: ends(getattr(device, key))[0] for key in ("damping", "coulomb_friction", "delay")}
+    found = device.replace(stiction=None, **low)
+    uncertain = [key for key, value in found.parameters().items() if isinstance(value, Interval)]
+    needed = [key for key in uncertain if key not in ("mass", "friction_speed")]
+    if needed:
+        raise InputError(
+            f"{needed[0]} is the interval {getattr(device, needed[0])}, and a loop runs with one number: "
+            "give one; damping, coulomb_friction, delay and mass may stay intervals, which the verdict covers"
+        )
+    return found.replace(mass=None) if "mass" in uncertain else found

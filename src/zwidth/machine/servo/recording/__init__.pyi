@@ -1,0 +1,9 @@
+from zwidth.machine.servo.recording.recorder import Recorded as Recorded
+from zwidth.machine.servo.recording.recorder import Recorder as Recorder
+from zwidth.machine.servo.recording.recording import Recording as Recording
+from zwidth.machine.servo.recording.recording import read_recording as read_recording
+from zwidth.machine.servo.recording.replayed import Replay as Replay
+from zwidth.machine.servo.recording.replayed import Touch as Touch
+from zwidth.machine.servo.recording.replayed import replay as replay
+from zwidth.machine.servo.recording.replayed import touch_of as touch_of
+from zwidth.machine.servo.recording.simulated import trace_of as trace_of

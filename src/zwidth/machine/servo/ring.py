@@ -1,0 +1,122 @@
+"""What the loop writes down, and how it is read beside it: a ring of rows, one for each sample.
+
+The loop writes a row and then counts it; whoever reads copies the rows below the count, and throws away those
+that were written over meanwhile.  Nobody waits for anybody.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from zwidth.errors import InputError
+from zwidth.machine.servo.connection import MOST_TOLD, Connection
+from zwidth.native.compiled import Array
+
+(
+    SAMPLE,
+    AT,
+    LATE,
+    POSITION,
+    WISHED,
+    GIVEN,
+    ENERGY_OUT,
+    FRICTION_LOSS,
+    STATUS,
+    PHASE,
+    LAW,
+    LIMITED,
+    EXCHANGE,
+    TELLS,
+) = range(14)
+WIDTH = TELLS + MOST_TOLD
+
+MEASURING, WAITING, SERVING, ENDED = range(4)
+"""Phases: force 0 and no law; a law that waits for a force near 0; the law's force; force 0 for good."""
+
+PHASES = ("measuring", "waiting", "serving", "ended")
+
+FORCE_LIMITED, SLEW_LIMITED = 1, 2
+"""In LIMITED: the force was cut to its limit, or to what it may change in a sample; 3 for both."""
+
+_LEAST_ROWS = 1 << 14
+_KEPT = 4.0
+"""How long a row is kept at least [s]."""
+
+_SPARE = 8
+"""Rows before the oldest that may be written over while they are copied."""
+
+
+def ring(period: float) -> Array:
+    """Rows for some seconds; touched once, so that the loop waits for no page of memory."""
+    rows = _LEAST_ROWS
+    while rows * period < _KEPT:
+        rows *= 2
+    return np.full((rows, WIDTH), np.nan)
+
+
+def column_names(connection: Connection) -> tuple[str, ...]:
+    """Names of the columns, units in them."""
+    x, f = ("position_rad", "force_N_m") if connection.motion == "rotary" else ("position_m", "force_N")
+    own = ("sample", "time_s", "late_s", x, f"wished_{f}", f, "energy_out_J", "friction_loss_J")
+    return (*own, "status", "phase", "law", "limited", "exchange_s", *connection.tells)
+
+
+class Rows:
+    """The rows of a loop, as live graphs and recordings read them.
+
+    Parameters
+    ----------
+    connection
+        Which tells the names of the columns.
+    kept, written
+        The ring, and the array whose element `at` counts its rows.
+    period
+        T [s].
+    title
+        What is served, in words.
+    about
+        The same for a file: texts and numbers, units in the keys.
+    """
+
+    def __init__(
+        self,
+        connection: Connection,
+        kept: Array,
+        written: np.ndarray[Any, Any],
+        at: int,
+        *,
+        period: float,
+        title: str,
+        about: dict[str, Any],
+    ) -> None:
+        if len(connection.tells) > MOST_TOLD:
+            raise InputError(
+                f"a connection tells {MOST_TOLD} numbers at most besides the position, this one "
+                f"{len(connection.tells)}: a row of the ring has room for so many"
+            )
+        self.COLUMNS = column_names(connection)
+        self._kept, self._written, self._at = kept, written, at
+        self.period, self.motion, self.title, self.about = period, connection.motion, title, about
+        self.events: list[dict[str, Any]] = []
+
+    @property
+    def count(self) -> int:
+        """Rows written so far."""
+        return int(self._written[self._at])
+
+    def after(self, count: int) -> tuple[int, Array]:
+        """The rows after the first `count`, as far as they are kept; and how many there are now.
+
+        Rows that came too fast for the reader are left out: their `sample` shows it.
+        """
+        written, size = self.count, self._kept.shape[0]
+        first = max(count, written - size + _SPARE)
+        found = self._kept[np.arange(first, written) % size, : len(self.COLUMNS)]
+        gone = self.count - size + _SPARE - first  # written over while they were copied
+        return written, found[max(0, gone) :]
+
+    def column(self, name: str) -> int:
+        """Where a column is."""
+        return self.COLUMNS.index(name)

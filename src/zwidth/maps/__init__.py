@@ -1,7 +1,0 @@
-"""Maps over parameters: which walls a device can render, and what makes them many."""
-
-from zwidth.maps.boundary import stability_boundary
-from zwidth.maps.factors import z_width_factors
-from zwidth.maps.run import robust_boundary, z_width, z_width_certificate
-
-__all__ = ["robust_boundary", "stability_boundary", "z_width", "z_width_certificate", "z_width_factors"]

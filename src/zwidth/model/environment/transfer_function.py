@@ -1,0 +1,247 @@
+"""Any linear law, given as H(s) or as H(z), position → force.
+
+Both take coefficients in descending powers, as scipy.signal does, or a system
+of python-control, scipy.signal or harold.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Self
+
+from zwidth.errors import InputError
+from zwidth.model.environment.coefficients import Coefficients, read_transfer_function
+from zwidth.model.environment.discretization import (
+    ROUNDED,
+    Discretization,
+    choices,
+    discretize,
+    discretized_by,
+    trimmed,
+)
+from zwidth.model.environment.environment import Box, Environment, RationalFunction
+from zwidth.model.environment.system import LinearSystem, is_system, read_system
+from zwidth.model.environment.wording import polynomial_text
+from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.parameter import CertainOrNone, Reads, parameter, part
+
+_SAME_PERIOD = Fraction(1, 10**9)
+"""Two sample periods that differ by less, relatively, are one."""
+
+
+def _side(name: str, *default: None) -> Any:
+    """Numerator or denominator, which are read together."""
+    return part(
+        "coefficients", lambda value, _: value, *default, meaning=f"{name}, descending powers", required=True
+    )
+
+
+@dataclass(frozen=True)
+class PulseTransferFunction(Environment):
+    """A law given as the controller runs it, H(z) from sampled position to force.
+
+    It acts at any position: there is no surface.
+
+    Parameters
+    ----------
+    numerator, denominator
+        Coefficients in descending powers of z [N/m; N·m/rad]; H proper, of order ≤ 200.
+        Common factors are kept.  Or, in the place of both, a discrete system of
+        python-control, scipy.signal or harold.
+    sample_period
+        T > 0 [s] that the coefficients are meant for; a device of another is then refused.
+        None (default) where they do not say.
+
+    Raises
+    ------
+    InputError
+        If H is improper, has a zero denominator or too high an order; if a system is
+        continuous, complex, or has several inputs or outputs.
+    """
+
+    numerator: Reads[Coefficients, Any] = _side("numerator")
+    denominator: Reads[Coefficients, Sequence[RealLike] | None] = _side("denominator", None)
+    sample_period: CertainOrNone = parameter(
+        "sample_period", None, kept=Exact, bound="> 0", why="the force is held for T"
+    )
+
+    def __post_init__(self) -> None:
+        num, den, system = read_transfer_function(self.numerator, self.denominator)
+        if len(num) > len(den):
+            raise InputError(
+                f"H(z) has more zeros ({len(num) - 1}) than poles ({len(den) - 1}): it would need positions "
+                "that are still to come; multiply the denominator by a power of z"
+            )
+        self._keep(numerator=num, denominator=den, sample_period=_period(self.sample_period, system))
+        super().__post_init__()
+
+    def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
+        """H(z) as given [N/m].
+
+        Raises
+        ------
+        InputError
+            If H(z) was made for another sample period.
+        """
+        own = self.sample_period
+        if own is not None and abs(own.fraction - sample_period) > _SAME_PERIOD * own.fraction:
+            raise InputError(
+                f"H(z) was made for the sample period {float(own):.12g} s and the device samples every "
+                f"{float(sample_period):.12g} s; discretize it again, or change the device's rate"
+            )
+        return RationalFunction(_fractions(self.numerator), _fractions(self.denominator))
+
+    def scaled(self, factor: Fraction) -> Self:
+        """The law factor · H(z), exactly."""
+        return self.replace(numerator=tuple(c.fraction * factor for c in self.numerator))
+
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, on one line; coefficients carry no unit of their own."""
+        period = "" if self.sample_period is None else f", T = {float(self.sample_period):.6g} s"
+        return f"H(z) = {_ratio(self.numerator, self.denominator, 'z')}{period}"
+
+    def decided_by_corners(self, box: Box) -> bool:
+        """For T without delay: the requirement is proportional to it."""
+        return box.is_undelayed
+
+
+@dataclass(frozen=True)
+class ContinuousTransferFunction(Environment):
+    """A law given as H(s) from position to force, and how the controller discretizes it.
+
+    It acts at any position: there is no surface.
+
+    Parameters
+    ----------
+    numerator, denominator
+        Coefficients in descending powers of s [N/m; N·m/rad], of order ≤ 200.
+        Or, in the place of both, a continuous system of python-control, scipy.signal or harold.
+    discretization
+        "backward", "forward", "tustin", "zoh", "impulse" or "matched".  Needed: the same
+        H(s) may be passive under one and active under another.  The coefficients of H(z)
+        are exact for the first three and correctly rounded to doubles for the others.
+
+    Raises
+    ------
+    InputError
+        If the discretization is missing or unknown, H has a zero denominator or too high
+        an order; if a system is discrete, complex, or has several inputs or outputs.
+    """
+
+    numerator: Reads[Coefficients, Any] = _side("numerator")
+    denominator: Reads[Coefficients, Sequence[RealLike] | None] = _side("denominator", None)
+    discretization: Reads[Discretization, Discretization | None] = discretized_by(None)
+
+    def __post_init__(self) -> None:
+        if self.discretization is None:
+            raise InputError(
+                "a continuous H(s) needs a discretization, for the verdict depends on it: "
+                f"give discretization = one of {choices()}"
+            )
+        super().__post_init__()
+        num, den, system = read_transfer_function(self.numerator, self.denominator)
+        if system is not None and system.time == "discrete":
+            raise InputError("the system is discrete already; give it as PulseTransferFunction(system)")
+        self._keep(numerator=num, denominator=den)
+
+    @property
+    def coefficients_rounded(self) -> bool:
+        """True when H(z) has coefficients rounded to doubles."""
+        constant = len(self.numerator) == len(self.denominator) == 1
+        return self.discretization in ROUNDED and not constant
+
+    def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
+        """H(z) of H(s) [N/m]; common factors are kept.
+
+        Raises
+        ------
+        InputError
+            If the discretization would need samples that are still to come, or cannot
+            be computed in doubles.
+        """
+        num, den = _fractions(self.numerator), _fractions(self.denominator)
+        return discretize(num, den, self.discretization, sample_period)
+
+    def scaled(self, factor: Fraction) -> Self:
+        """The law factor · H(s), exactly."""
+        return self.replace(numerator=tuple(c.fraction * factor for c in self.numerator))
+
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, on one line; coefficients carry no unit of their own."""
+        ratio = _ratio(self.numerator, self.denominator, "s")
+        return f"H(s) = {ratio}, discretization {self.discretization}"
+
+
+def as_environment(thing: object, discretization: Discretization | None = None) -> Environment:
+    """An environment from anything that has an H.
+
+    Parameters
+    ----------
+    thing
+        An environment, which is returned as it is; or a linear system of python-control,
+        scipy.signal or harold.
+    discretization
+        For a continuous system, and for it alone.
+
+    Raises
+    ------
+    InputError
+        If it is none of these, a continuous system comes without a discretization, or a
+        discretization with anything else.
+    """
+    if isinstance(thing, Environment):
+        _refuse(discretization, "an environment has its own H(z)")
+        return thing
+    if not is_system(thing):
+        raise InputError(
+            f"an environment is a wall, a solid, a transfer function, or a system of python-control, "
+            f"scipy.signal or harold; got {thing!r}"
+        )
+    system = read_system(thing)
+    if system.time == "discrete" or (discretization is None and _is_constant(system)):
+        _refuse(discretization, "a discrete system has its own H(z)")
+        return PulseTransferFunction(system)
+    if system.time == "unsaid" and discretization is None:
+        raise InputError(
+            "the system has dt=None and so does not say whether it is H(s) or H(z); give it a dt, or write "
+            "PulseTransferFunction(system) or ContinuousTransferFunction(system, discretization=…)"
+        )
+    if discretization is None:
+        raise InputError(
+            "a continuous system needs a discretization, for the verdict depends on it: "
+            "ContinuousTransferFunction(system, discretization=…), or discretization=… where that is an "
+            f"argument, with one of {choices()}; or discretize it yourself"
+        )
+    return ContinuousTransferFunction(system, discretization=discretization)
+
+
+def _refuse(discretization: object, why: str) -> None:
+    if discretization is not None:
+        raise InputError(f"discretization = {discretization!r} has nothing to act on: {why}")
+
+
+def _is_constant(system: LinearSystem) -> bool:
+    return len(trimmed(system.numerator)) == len(trimmed(system.denominator)) == 1
+
+
+def _fractions(coefficients: Coefficients) -> tuple[Fraction, ...]:
+    return tuple(c.fraction for c in coefficients)
+
+
+def _period(given: Exact | None, system: LinearSystem | None) -> Exact | Fraction | None:
+    if system is not None and system.time == "continuous" and not _is_constant(system):
+        raise InputError(
+            "the system is continuous; give it as ContinuousTransferFunction(system, discretization=…) "
+            f"with one of {choices()}"
+        )
+    own = None if system is None else system.sample_period
+    if own is not None and given is not None:
+        raise InputError("the system has its own sample period; leave sample_period out")
+    return own if own is not None else given
+
+
+def _ratio(numerator: Coefficients, denominator: Coefficients, variable: str) -> str:
+    top, bottom = (polynomial_text(c, variable) for c in (numerator, denominator))
+    return top if bottom == "1" else f"({top})/({bottom})"

@@ -1,0 +1,92 @@
+"""A touch so soft that the position straddles an encoder pulse.
+
+With a coarse encoder the wall is a staircase: at an edge its force jumps by
+K Δ.  A push F beyond what the steps before it balance crosses the edge if
+F > f_c, and is thrown back if K Δ − F > f_c.  Both hold for some F when
+K Δ > 2 f_c, which is the bound of Abbott & Okamura (2005), equation (17).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from zwidth.model.operator.operator import LinearHand, Signals
+from zwidth.model.operator.parameter import ParametricOperator
+from zwidth.model.operator.quantities import (
+    DAMPING,
+    FORCE,
+    MASS,
+    NO_NEGATIVE_DAMPING,
+    NO_NEGATIVE_MASS,
+    OUTSIDE,
+    START,
+)
+from zwidth.quantity.glossary import Quantity
+from zwidth.quantity.parameter import parameter
+
+if TYPE_CHECKING:
+    from zwidth.model.operator.operator import Signal
+
+RISE = Quantity("rise", "t_r", "s", "s", "time in which the push grows to its full force")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SoftTouch(ParametricOperator):
+    """``f_h = F min(t/t_r, 1) − c ẋ − m_h ẍ``: a push barely above the friction.
+
+    The malicious touch for quantization: "simply touching the wall very
+    softly" (Abbott & Okamura 2005, section IV-C; no number is printed). It
+    buzzes where f_c < F < K Δ − f_c. The default 0.135 N lies in that window
+    on the haptic paddle (f_c = 0.12 N) with Δ = 2.24 mm for K = 120 and
+    240 N/m; at 80 and 90 N/m, K < 2 f_c/Δ = 107 N/m, there is no window. Force,
+    rise and start are chosen; mass and damping are those of `Finger`.
+
+    Parameters
+    ----------
+    force
+        F, positive into the wall; take it a little above the device's Coulomb
+        friction [N; N·m].
+    rise
+        t_r ≥ 0, time in which the push grows to F [s].
+    mass
+        m_h ≥ 0, moves with the handle [kg; kg·m²].
+    damping
+        c ≥ 0, of the finger [N·s/m; N·m·s/rad].
+    start
+        x_0 ≤ 0, where the handle starts [m; rad].
+
+    Raises
+    ------
+    InputError
+        If a number is not finite or outside its bound.
+    """
+
+    called = "soft touch"
+
+    force: float = parameter(FORCE, 0.135, kept=float)
+    rise: float = parameter(
+        RISE, 0.5, bound="≥ 0", why="a push grows forward in time; 0 is a sudden push", kept=float
+    )
+    mass: float = parameter(MASS, 0.006, bound="≥ 0", why=NO_NEGATIVE_MASS, kept=float)
+    damping: float = parameter(DAMPING, 1.7, bound="≥ 0", why=NO_NEGATIVE_DAMPING, kept=float)
+    start: float = parameter(START, -0.001, bound="≤ 0", why=OUTSIDE, kept=float)
+
+    @property
+    def hand(self) -> LinearHand:
+        """m_h and c; there is no spring, so that the push does not depend on the depth."""
+        return LinearHand(mass=self.mass, damping=self.damping)
+
+    @property
+    def initial_position(self) -> float:
+        """x_0 [m; rad]."""
+        return self.start
+
+    def signals(self, times: Signal) -> Signals:
+        """The push as it is when each interval begins; the damper holds to a hand at rest."""
+        grown = times[:-1] >= self.rise
+        part = np.where(grown, 1.0, times[:-1] / (self.rise or 1.0))
+        anchor = np.full(len(times), self.start) if self.damping else None
+        return Signals(force=self.force * part, anchor=anchor)

@@ -1,0 +1,66 @@
+"""What a law takes from the device where it was not told."""
+
+from __future__ import annotations
+
+from zwidth.errors import InputError
+from zwidth.model.rendering.rendering_law import LoopContext
+from zwidth.quantity.exact import Exact, Interval
+
+
+def given_or_known(given: Exact | None, at: LoopContext, key: str, parameter: str) -> float:
+    """A parameter of a law, or the device's `key` in its place.
+
+    Raises
+    ------
+    InputError
+        If neither is known, or the device has an interval.
+    """
+    if given is not None:
+        return float(given)
+    return known(at, key, f"{parameter} was not given and is otherwise the device's {key}")
+
+
+def known(at: LoopContext, key: str, why: str) -> float:
+    """A number of the device.
+
+    Raises
+    ------
+    InputError
+        If it has none; `why` says what it is needed for.
+    """
+    value = getattr(at.device, key)
+    if value is None:
+        raise InputError(f"{why}, which {at.device.name} does not have: give one of the two")
+    if isinstance(value, Interval):
+        raise InputError(f"{why}, which is not certain ({value}): give one of the two")
+    return float(value)
+
+
+def stiffness(at: LoopContext, why: str) -> float:
+    """K of the environment [N/m; N·m/rad].
+
+    Raises
+    ------
+    InputError
+        If its force is not K x at rest; `why` says what K is needed for.
+    """
+    met = at.environment
+    bent = met.power_law is not None and met.power_law.exponent != 1
+    if bent or at.stiffness <= 0:
+        raise InputError(f"{why}, and this environment has no K [N/m; N·m/rad]: {met.describe()}")
+    return at.stiffness
+
+
+def surface(at: LoopContext, law: str) -> None:
+    """Nothing, where the environment can be entered.
+
+    Raises
+    ------
+    InputError
+        If the hand cannot enter it, because it is never outside.
+    """
+    if not at.environment.unilateral:
+        raise InputError(
+            f"{law} acts when the hand enters, and this environment has no surface: "
+            f"{at.environment.describe()}"
+        )

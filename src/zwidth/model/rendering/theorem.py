@@ -1,0 +1,86 @@
+"""A proof on paper that a law is passive, and what of the device it counts.
+
+What a proof does not count, a device may not have: `unmet` compares the two, so that a promise is
+made on the numbers of the record and not on a sentence.
+
+The converter rounds to its nearest step, so a force errs by ΔF/2 at most.  That gives out at most
+(ΔF/2) |Δx| in a move, which as much Coulomb friction takes: docs, "Laws that bound the force".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from zwidth.model.device.actuator import current_rise
+from zwidth.model.device.device import Device
+from zwidth.quantity.text import quantity_unit
+
+
+@dataclass(frozen=True, kw_only=True)
+class Theorem:
+    """Why no hand takes energy out, by a proof on paper, and under what.
+
+    Parameters
+    ----------
+    statement
+        What is proved, in a few words.
+    counts_encoder
+        True if it holds behind the device's encoder, with counts of any size.
+    counts_delay
+        True if it holds with the device's delay.
+    counts_force_steps
+        True if it holds with a converter that rounds to the nearest step, where the device has
+        `coulomb_friction`.
+    counts_force_limit
+        True if it holds with an actuator that gives no more than its limit.
+    counts_current_rise
+        True if it holds for a current that takes time to rise.
+    coulomb_friction
+        f_c that the device needs [N; N·m], ≥ 0.
+    """
+
+    statement: str
+    counts_encoder: bool = False
+    counts_delay: bool = False
+    counts_force_steps: bool = False
+    counts_force_limit: bool = False
+    counts_current_rise: bool = False
+    coulomb_friction: Fraction = Fraction(0)
+
+    def unmet(self, device: Device) -> tuple[str, ...]:
+        """What of the device's record is outside the proof, in words; nothing where the promise holds."""
+        record = (
+            (self.counts_encoder, device.exact("resolution") > 0, "an encoder with counts"),
+            (self.counts_delay, device.exact("delay") > 0, "a delay"),
+            (self.counts_force_steps, device.force_resolution is not None, "the converter's steps"),
+            (self.counts_force_limit, device.force_limit is not None, "the force limit"),
+            (self.counts_current_rise, _rises_slowly(device), "a current that rises slowly"),
+        )
+        lacking = [f"{what}, not counted by the proof" for counts, there, what in record if there > counts]
+        has, unit = device.exact("coulomb_friction"), quantity_unit("coulomb_friction", device.motion)
+        if has < self.coulomb_friction:
+            lacking.append(
+                f"Coulomb friction of {float(has):.6g} {unit}, less than the "
+                f"{float(self.coulomb_friction):.6g} {unit} that the converter's steps take"
+            )
+        return tuple(lacking)
+
+    def holds_on(self, device: Device) -> bool:
+        """True where the device has nothing that the proof does not count."""
+        return not self.unmet(device)
+
+    def reason(self, device: Device) -> str:
+        """Why it holds, or why the promise is withheld, in a sentence."""
+        unmet = self.unmet(device)
+        return f"withheld: the device has {' and '.join(unmet)}" if unmet else self.statement
+
+
+def half_a_step(device: Device) -> Fraction:
+    """ΔF/2, the most by which the converter errs; 0 where its step is not known [N; N·m]."""
+    return Fraction(0) if device.force_resolution is None else device.exact("force_resolution") / 2
+
+
+def _rises_slowly(device: Device) -> bool:
+    """True where the record says that the force cannot be taken as instant."""
+    return current_rise(device).ok is False

@@ -1,0 +1,151 @@
+"""The types of environment that a specification can name.
+
+`TYPES` is the registry: a new environment is one line.  It feeds the reader
+here, the choices and the option help of the command line, and the docs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+from zwidth.errors import InputError
+from zwidth.model.environment import Environment
+from zwidth.model.kind import Kind, bracketed
+from zwidth.model.specification.scenes import build_elements
+from zwidth.model.specification.table import COMMAND_LINE, Table, located, quoted, suggestion
+from zwidth.model.specification.values import read
+from zwidth.quantity.parameter import Parameter
+
+DEEPEST = 4
+"""Couplings inside couplings; more is a mistake."""
+
+TYPES: Mapping[str, Kind] = MappingProxyType(
+    {
+        "wall": Kind("environment.wall", "Wall", "spring and damper inside x > 0"),
+        "maxwell": Kind("environment.viscoelastic", "Maxwell", "spring and dashpot in series"),
+        "standard-linear-solid": Kind(
+            "environment.viscoelastic",
+            "StandardLinearSolid",
+            "spring with one Maxwell branch beside it",
+        ),
+        "generalized-maxwell": Kind(
+            "environment.viscoelastic",
+            "GeneralizedMaxwell",
+            "spring with Maxwell branches beside it, a Prony series",
+        ),
+        "nonlinear-spring": Kind(
+            "environment.nonlinear_spring",
+            "NonlinearSpring",
+            "force through points, linear between them and constant beyond",
+        ),
+        "hunt-crossley": Kind(
+            "environment.hunt_crossley",
+            "HuntCrossley",
+            "contact whose damping grows with the depth, K uⁿ (1 + λ v)",
+        ),
+        "transfer-function": Kind(
+            "environment.transfer_function",
+            "ContinuousTransferFunction",
+            "H(s) with a discretization",
+        ),
+        "pulse-transfer-function": Kind("environment.transfer_function", "PulseTransferFunction", "H(z)"),
+        "virtual-coupling": Kind(
+            "rendering.virtual_coupling",
+            "VirtualCoupling",
+            "spring and damper between the device and another environment",
+        ),
+        "scene": Kind("scene.scene", "Scene", "masses, springs, contacts, … that give out no energy"),
+        "coupled-body": Kind(
+            "environment.coupled_body",
+            "CoupledBody",
+            "mass behind a virtual coupling, as an integrator steps it",
+        ),
+    }
+)
+
+
+def option_keys() -> dict[str, Parameter]:
+    """Every environment key under its name on the command line; with several meanings it has the first.
+
+    There `damping` is the device's, so the environment's is `virtual_damping`;
+    `sample_period`, too, is the device's. A key of the environment behind a
+    coupling is written `environment.stiffness`.  A scene is given in a file.
+    """
+    return {
+        "virtual_damping" if name == "damping" else name: key
+        for name, key in all_keys().items()
+        if key.form not in ("environment", "elements", "node") and name != "sample_period"
+    }
+
+
+def all_keys() -> dict[str, Parameter]:
+    """Every key of every environment; one with several meanings has the first."""
+    keys: dict[str, Parameter] = {}
+    for row in TYPES.values():
+        for name, key in row.keys.items():
+            keys.setdefault(name, key)
+    return keys
+
+
+def build_environment(table: Table, motion: str, depth: int = 0) -> Environment:
+    """The environment that a table describes, in the units of the device's motion.
+
+    Raises
+    ------
+    InputError
+        If the type or a key is unknown, missing, or has a value it cannot have.
+    """
+    kind = _kind(table)
+    keys = kind.keys
+    if "damping" in keys:
+        table.rename("virtual_damping", "damping")
+    allowed = ("type", *keys, *(["virtual_damping"] if "damping" in keys else []))
+    table.check_keys(allowed, f'an environment of type "{table.text("type")}"')
+    if missing := kind.missing(table.values):
+        needed = ", ".join(f"{_named(table, key)}{bracketed(keys[key], motion)}" for key in missing)
+        raise InputError(f'{table.label}: type "{table.text("type")}" needs {needed}')
+    arguments = {key: _read(table, key, keys[key], motion, depth) for key in table.values if key != "type"}
+    with located(table.label):
+        environment: Environment = kind.made(**arguments)
+    return environment
+
+
+def _named(table: Table, key: str) -> str:
+    """A key as it is written where the table was: as an option on the command line."""
+    if key == "elements":
+        return "elements, one [[environment.elements]] table each, in a file"
+    own = "virtual_damping" if key == "damping" else key
+    return f"--{own.replace('_', '-')}" if table.label == COMMAND_LINE else own
+
+
+def _kind(table: Table) -> Kind:
+    if "type" not in table.values:
+        raise InputError(f"{table.label}: type is missing; it may be: {', '.join(TYPES)}")
+    name = table.text("type")
+    if name not in TYPES:
+        hint = suggestion(name, TYPES)
+        raise InputError(f"{table.where('type')}: there is no environment of type {quoted(name)}; {hint}")
+    return TYPES[name]
+
+
+def _read(table: Table, key: str, own: Parameter, motion: str, depth: int) -> Any:
+    value = table.values[key]
+    if own.form == "environment":
+        return _nested(table, key, value, motion, depth)
+    if own.form == "elements":
+        return build_elements(value, table.where(key), motion)
+    with located(table.where(key)):
+        return read(value, key, own, motion)
+
+
+def _nested(table: Table, key: str, value: object, motion: str, depth: int) -> Environment:
+    if not isinstance(value, Mapping):
+        raise InputError(
+            f'{table.where(key)}: {key} is a table, such as [environment.environment] type = "wall"'
+        )
+    if depth >= DEEPEST:
+        raise InputError(f"{table.label}: more than {DEEPEST} couplings inside each other")
+    label = table.label.removesuffix("]") + ".environment]" if table.label.endswith("]") else table.label
+    return build_environment(Table(label, value), motion, depth + 1)

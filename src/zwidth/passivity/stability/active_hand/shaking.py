@@ -1,0 +1,244 @@
+"""A hand that is as active as it may be, or slightly more, and makes the loop grow.
+
+    Z(s) = m_h s + k_h/s + r − (a' + r) · 2ζω₁ s/(s² + 2ζω₁ s + ω₁²)
+
+Between 0 and f₀ its real part is at least −a', above f₀ it is ≥ 0, and at f₁ = ω₁/2π
+it is −a'.  The spring is chosen so that device, hand and wall swing at f₁, where the
+criterion is tightest; there the narrow resonance pays in what the loop does not take.
+That the loop then grows is decided in balls, not by an eigenvalue in doubles.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import cos, log, pi, sin
+from typing import NamedTuple
+
+import flint
+import numpy as np
+
+from zwidth.loop.sampled_plant import ball
+from zwidth.passivity.document import unit_key
+from zwidth.passivity.linear.loop import LinearLoop
+from zwidth.passivity.stability.active_hand.band import PI, Band
+from zwidth.passivity.stability.known_hand.characteristic import as_floats, decays
+from zwidth.quantity.balls import precision
+from zwidth.quantity.text import told_quantity
+
+EXCESS = 1e-3
+"""By how much more than its limit the hand is active."""
+_SHARPNESS = 0.005
+"""ζ: the resonance is so narrow that hardly anything of it is left outside the band."""
+_HIGHEST = 0.8
+"""Of f₀: where in the band the hand drives, at most."""
+_EQUAL = 1e-3
+"""Frequencies that are tight to this part are taken for equally tight."""
+_BITS = 512
+_ALIASES = 2000
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShakingHand:
+    """One hand of bounded activity with which device and wall swing up, contact kept.
+
+    Parameters
+    ----------
+    mass, stiffness
+        m_h [kg] and k_h [N/m].
+    activity
+        a', the largest −Re Z [N·s/m].
+    frequency
+        f₁, at which it drives [Hz].
+    damping
+        r, what it dissipates away from f₁ [N·s/m].
+    sharpness
+        ζ of its resonance.
+    doubling_time
+        In which the swing grows to twice its size [s].
+    motion
+        "linear", or "rotary": then kg·m², N·m/rad and N·m·s/rad.
+    """
+
+    mass: float
+    stiffness: float
+    activity: float
+    frequency: float
+    damping: float
+    sharpness: float
+    doubling_time: float
+    motion: str = "linear"
+
+    def to_dict(self) -> dict[str, float]:
+        """The hand as plain data, units in the keys."""
+        return {
+            unit_key("mass", self.motion): self.mass,
+            unit_key("stiffness", self.motion): self.stiffness,
+            unit_key("damping", self.motion).replace("damping", "activity"): self.activity,
+            unit_key("damping", self.motion): self.damping,
+            "frequency_Hz": self.frequency,
+            "sharpness": self.sharpness,
+            "doubling_time_s": self.doubling_time,
+        }
+
+    def describe(self) -> str:
+        """The hand in a line."""
+        activity, mass, stiffness = (
+            told_quantity(value, name, self.motion, digits)
+            for value, name, digits in (
+                (self.activity, "damping", 6),
+                (self.mass, "mass", 4),
+                (self.stiffness, "stiffness", 6),
+            )
+        )
+        return (
+            f"{activity} at {self.frequency:.4g} Hz, {mass} on {stiffness}: the swing doubles every "
+            f"{_spoken(self.doubling_time)}"
+        )
+
+
+def _spoken(seconds: float) -> str:
+    """A time as it is said: in hours and minutes where there are many seconds."""
+    size, unit = next(((s, u) for s, u in ((3600, "h"), (60, "min")) if seconds >= 2 * s), (1, "s"))
+    return f"{seconds / size:.3g} {unit}"
+
+
+def tolerance(loop: LinearLoop, angles: np.ndarray) -> np.ndarray:
+    """The largest activity at each θ alone, in doubles [N·s/m]: b (b − n)/(b − n (1 − s))."""
+    b = float(loop.damping)
+    need = np.array([loop.required_damping_at(Fraction(float(np.cos(t)))) for t in angles])
+    s = np.sinc(angles / (2 * np.pi)) ** 2
+    return np.asarray(b * (b - need) / (b - need * (1 - s)))
+
+
+def shaking_hand(loop: LinearLoop, mass: float, band: Band, motion: str = "linear") -> ShakingHand | None:
+    """A hand near the limit with which the loop grows; None where none was found.
+
+    Parameters
+    ----------
+    mass
+        Of the device [kg; kg·m²].
+    motion
+        "linear" or "rotary".
+    """
+    top = 2 * pi * float(band.below * loop.period)
+    angles = top * np.linspace(0.02, _HIGHEST, 40)
+    room = tolerance(loop, angles)
+    theta = float(angles[room <= room.min() + _EQUAL * abs(room.min())][-1])
+    omega = theta / float(loop.period)
+    line = complex(1 - np.exp(-1j * theta)) * _law(loop, theta) / float(loop.period)
+    whole = mass + max(mass, 2 * abs(line) / omega**3, 2 * abs(_law(loop, theta)) / omega**2)
+    activity, spring = _at_the_limit(loop, line, omega, whole)
+    if not activity > 0 or not spring >= 0:
+        return None
+    found = _grown(loop, mass, band, activity * (1 + EXCESS), omega, whole - mass, spring)
+    return None if found is None else replace(found, motion=motion)
+
+
+def _law(loop: LinearLoop, theta: float) -> complex:
+    """z⁻ᵈ H at e^{jθ}."""
+    zeta = complex(cos(theta), -sin(theta))
+    top, below = (np.polyval([float(c) for c in p[::-1]], zeta) for p in (loop.numerator, loop.denominator))
+    return complex(zeta**loop.whole_delay * top / below)
+
+
+def _at_the_limit(loop: LinearLoop, line: complex, omega: float, mass: float) -> tuple[float, float]:
+    """The activity and the spring of the hand with which the loop neither grows nor decays at ω."""
+    k = np.arange(1, _ALIASES + 1)
+    turn = 2 * np.pi / float(loop.period)
+    others = omega + turn * np.concatenate([-k[::-1], k])
+    b, spring = float(loop.damping), 0.0
+    for _ in range(30):  # the aliases hardly know the spring
+        rest = (1 / (others**2 * (b + 1j * (mass * others - spring / others)))).sum()
+        impedance = 1 / (omega**2 * (1 / line - rest))
+        spring = float(omega * (mass * omega - impedance.imag))
+    return float(b - impedance.real), spring
+
+
+class _Hand(NamedTuple):
+    mass: Fraction
+    spring: Fraction
+    omega: Fraction
+    sharpness: Fraction
+
+
+def _grown(
+    loop: LinearLoop, device: float, band: Band, activity: float, omega: float, mass: float, spring: float
+) -> ShakingHand | None:
+    hand = _Hand(*(Fraction(v) for v in (mass, spring, omega, _SHARPNESS)))
+    damping = _outside(Fraction(activity), hand, band)
+    with precision(_BITS):
+        polynomial = _characteristic(loop, Fraction(device), hand, damping, Fraction(activity))
+        grows = decays(polynomial) is False
+        size = float(np.abs(1 + np.roots(as_floats(polynomial))).max())
+    if not grows or size <= 1:
+        return None
+    return ShakingHand(
+        mass=mass,
+        stiffness=spring,
+        activity=activity,
+        frequency=omega / (2 * pi),
+        damping=float(damping),
+        sharpness=_SHARPNESS,
+        doubling_time=log(2) * float(loop.period) / log(size),
+    )
+
+
+def _outside(activity: Fraction, hand: _Hand, band: Band) -> Fraction:
+    """r ≥ (a' + r) β: β is the resonance's real part at f₀, from where it falls."""
+    edge = 2 * (PI - Fraction(1, 10**18)) * band.below
+    wide = (2 * hand.sharpness * hand.omega * edge) ** 2
+    beta = wide / ((edge**2 - hand.omega**2) ** 2 + wide)
+    return activity * beta / (1 - beta)
+
+
+def _characteristic(
+    loop: LinearLoop, device: Fraction, hand: _Hand, damping: Fraction, activity: Fraction
+) -> list[flint.arb]:
+    """det((1 + ζ) I − A) of the loop, descending powers of ζ = z − 1.
+
+    The state is x, v, the resonance's y and e, and the past positions and forces that the law knows.
+    """
+    flow = _flow(loop, device, hand, damping, activity)
+    force, positions = _force(loop)
+    size = len(force)
+    matrix = [[flint.arb(0) for _ in range(size)] for _ in range(size)]
+    for i in range(4):
+        for j in range(size):
+            matrix[i][j] = flow[i, 4] * ball(force[j]) + (flow[i, j] if j < 4 else 0)
+    for k in range(4, size):  # each past value is the one before it, a sample later
+        matrix[k][0 if k == 4 else k - 1] = flint.arb(1)
+    if size > 4 + positions:
+        matrix[4 + positions] = [ball(c) for c in force]
+    for k in range(size):
+        matrix[k][k] -= 1
+    polynomial: list[flint.arb] = flint.arb_mat(matrix).charpoly().coeffs()
+    return polynomial[::-1]
+
+
+def _flow(
+    loop: LinearLoop, device: Fraction, hand: _Hand, damping: Fraction, activity: Fraction
+) -> flint.arb_mat:
+    """x, v, y, e and the held force over a period: ẏ = 2ζω₁ (v − y) − ω₁ e, ė = ω₁ y, y/v the resonance."""
+    whole, wide = device + hand.mass, 2 * hand.sharpness * hand.omega
+    drag = loop.damping + damping
+    rows: list[list[Fraction | int]] = [
+        [0, 1, 0, 0, 0],
+        [-hand.spring / whole, -drag / whole, (activity + damping) / whole, 0, -1 / whole],
+        [0, wide, -wide, -hand.omega, 0],
+        [0, 0, hand.omega, 0, 0],
+        [0, 0, 0, 0, 0],
+    ]
+    return flint.arb_mat([[ball(Fraction(v) * loop.period) for v in row] for row in rows]).exp()
+
+
+def _force(loop: LinearLoop) -> tuple[list[Fraction], int]:
+    """The force of a sample from the state, D f = z⁻ᵈ N x, and how many past positions are in the state."""
+    positions = len(loop.numerator) - 1 + loop.whole_delay
+    first = loop.denominator[0]
+    force = [Fraction(0)] * (4 + positions + len(loop.denominator) - 1)
+    for j, c in enumerate(loop.numerator, loop.whole_delay):
+        force[3 + j if j else 0] = Fraction(c, first)
+    for j, c in enumerate(loop.denominator[1:]):
+        force[4 + positions + j] = -Fraction(c, first)
+    return force, positions

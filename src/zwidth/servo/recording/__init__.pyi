@@ -1,9 +1,0 @@
-from zwidth.servo.recording.recorder import Recorded as Recorded
-from zwidth.servo.recording.recorder import Recorder as Recorder
-from zwidth.servo.recording.recording import Recording as Recording
-from zwidth.servo.recording.recording import read_recording as read_recording
-from zwidth.servo.recording.replayed import Replay as Replay
-from zwidth.servo.recording.replayed import Touch as Touch
-from zwidth.servo.recording.replayed import replay as replay
-from zwidth.servo.recording.replayed import touch_of as touch_of
-from zwidth.servo.recording.simulated import trace_of as trace_of

@@ -1,0 +1,1 @@
+"""What a person looks at: plots, the report, the explorer; and long work with a bar."""

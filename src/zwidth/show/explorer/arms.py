@@ -1,0 +1,103 @@
+"""This device twice, leader and follower, joined by a spring and a damper over a link that delays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from bokeh.models import ColumnDataSource, Range1d
+
+from zwidth.model.specification.pairs import KEYS, pair_of
+from zwidth.passivity.pairs import PairVerdict, check_pair
+from zwidth.quantity.text import in_words
+from zwidth.show.explorer.computing import COUPLING_KEYS, pair_tables
+from zwidth.show.explorer.controls import Control, number_control
+from zwidth.show.explorer.look import GREEN, RED, new_figure
+from zwidth.show.explorer.scale import usual
+from zwidth.show.explorer.state import State
+from zwidth.show.explorer.verdict_card import headline
+from zwidth.show.plots.style import drawn_in, scale
+from zwidth.showing import Html, Lines, Table, element, join
+
+NAME = "Two arms"
+
+_ARGUMENTS = {"link_delay": "there"}
+
+
+def with_coupling(state: State) -> State:
+    """With a spring and a link between two arms, where none is said yet."""
+    if "stiffness" in state.extras.get("coupling", {}):
+        return state
+    unit = KEYS["stiffness"].unit_for(state.motion)
+    return state.with_extra("coupling", {"stiffness": f"{usual(unit) / 2:g} {unit}", "link_delay": "2 ms"})
+
+
+def pair_verdict(state: State) -> PairVerdict:
+    """The verdict on both arms.
+
+    Raises
+    ------
+    InputError
+        If they cannot be joined so.
+    """
+    return check_pair(pair_of(pair_tables(state)))
+
+
+def coupling_controls(verdict: PairVerdict) -> tuple[Control, ...]:
+    """What joins the arms, on sliders."""
+    pair = verdict.pair
+    found = []
+    for key in COUPLING_KEYS:
+        own = KEYS[key]._replace(required=key == "stiffness")
+        value = getattr(pair, _ARGUMENTS.get(key, key))
+        found.append(number_control(f"coupling.{key}", own, value, pair.motion, in_words(key)))
+    return tuple(found)
+
+
+def pair_card(verdict: PairVerdict, advice: Sequence[str] | None) -> Html:
+    """Outcome, claim, what is required, what to change; `advice` None while it is looked for."""
+    rows = Table(rows=list(verdict.rows())).html
+    covers = Lines(verdict.small_print(), "What this covers").html
+    if advice is None:
+        said: Html = element("p", "Looking for what to change …", **{"class": "quiet"})
+    else:
+        said = join(element("h3", "Each of these alone"), Lines(advice).html) if advice else join()
+    return join(headline(verdict), element("div", rows, **{"class": "numbers"}), said, covers)
+
+
+class LinkPicture:
+    """The largest passive stiffness against the delay of the link, and where the page is."""
+
+    def __init__(self) -> None:
+        self._stairs = ColumnDataSource({"left": [], "right": [], "top": []})
+        self._here = ColumnDataSource({"delay": [], "stiffness": []})
+        self._x, self._y = Range1d(0, 1), Range1d(0, 1)
+        self.figure: Any = new_figure(
+            "link delay, each way", "stiffness", height=300, x_range=self._x, y_range=self._y
+        )
+        self.figure.quad(
+            left="left", right="right", top="top", bottom=0, source=self._stairs,
+            fill_color=GREEN, fill_alpha=0.3, line_color=None,
+        )  # fmt: skip
+        self.figure.scatter("delay", "stiffness", source=self._here, size=12, color=RED)
+
+    def show(self, found: tuple[list[float], list[float]], verdict: PairVerdict) -> str:
+        """Draw it; a sentence about what is seen."""
+        delays, stiffness = found
+        pair = verdict.pair
+        here = float(pair.there), float(pair.felt_stiffness)
+        factor, unit = scale([delays[-1]], "s")
+        ends = [factor * delay for delay in delays]
+        up, k_unit = drawn_in("stiffness", pair.motion)
+        self._stairs.data = {"left": ends[:-1], "right": ends[1:], "top": [up * k for k in stiffness[1:]]}
+        self._here.data = {"delay": [factor * here[0]], "stiffness": [up * here[1]]}
+        self._x.update(start=0, end=factor * delays[-1])
+        self._y.update(start=0, end=1.25 * up * max([*stiffness, here[1]]))
+        self.figure.xaxis[0].axis_label = f"link delay, each way [{unit}]"
+        self.figure.yaxis[0].axis_label = f"stiffness [{k_unit}]"
+        return "Shaded: passive. A reading that is a sample older leaves less stiffness."
+
+    def clear(self) -> None:
+        """Nothing to draw."""
+        self._stairs.data = {"left": [], "right": [], "top": []}
+        self._here.data = {"delay": [], "stiffness": []}

@@ -1,0 +1,180 @@
+"""Loops to begin with; the verdict on each is asked for where the page is made."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from zwidth.model.device.device import Device
+from zwidth.model.device.rotary import rotary
+from zwidth.model.environment import PulseTransferFunction, StandardLinearSolid, Wall
+from zwidth.model.environment.nonlinear_spring import NonlinearSpring
+from zwidth.model.operator import LinearHand
+from zwidth.model.pairs import Pair
+from zwidth.model.rendering import render
+from zwidth.model.rendering.energy.force_bounding import ForceBounding
+from zwidth.model.rendering.energy.passivity_controller import PassivityController
+from zwidth.show.explorer.play.loop import played, played_pair
+from zwidth.show.explorer.play.played import Played
+
+_SPRING = LinearHand(mass=0.0, stiffness=60.0, damping=0.2)
+"""What the follower is tied to [kg, N/m, N·s/m]."""
+
+_PRESS = "Take the handle, push it slowly into the wall, hold it there, then let go."
+
+
+LIGHT = LinearHand(mass=0.006, stiffness=200.0, damping=0.2)
+"""A hand that holds the handle with two finger tips [kg, N/m, N·s/m]: it damps little."""
+
+
+def presets() -> list[Played]:
+    """Every loop of the page, in its order."""
+    return [_passive(), _buzz(), _bounce(), _wobble(), _tissue(), _detents(), *_hard_wall(), *_arms()]
+
+
+def _paddle(**changes: Any) -> Device:
+    """The haptic paddle of the catalogue, in round numbers."""
+    paddle = Device(
+        mass="36 g",
+        damping="0.15 N*s/m",
+        coulomb_friction="0.12 N",
+        resolution="22.4 um",
+        rate="1 kHz",
+        force_limit="16.5 N",
+        name="haptic paddle",
+    )
+    return paddle.replace(**changes)
+
+
+def _smooth(**changes: Any) -> Device:
+    """The same on good bearings: friction hides nothing, and the motor is small."""
+    given = {"damping": "0.1 N*s/m", "coulomb_friction": "0.01 N", "force_limit": "5 N", **changes}
+    return _paddle(**given)
+
+
+def _passive() -> Played:
+    return played(
+        _paddle(),
+        Wall(300),
+        name="A wall that is proved",
+        do=_PRESS,
+        notice="The handle comes to rest at once, and there is nothing to hear but the press itself.",
+    )
+
+
+def _buzz() -> Played:
+    return played(
+        _smooth(resolution="0.3 mm"),
+        Wall(1500, 10),
+        name="Buzz: a coarse encoder",
+        hand=LIGHT,
+        do=_PRESS,
+        notice="Each count is a jump of the measured velocity, and of the damper's force: it buzzes.",
+    )
+
+
+def _bounce() -> Played:
+    return played(
+        _smooth(rate="100 Hz", force_limit="2 N"),
+        Wall(500),
+        name="Bounce: a slow rate",
+        hand=LIGHT,
+        do="Push the handle into the wall and hold the hand still, some millimetres inside.",
+        notice="The force is up to 10 ms old: the handle comes out faster than it went in, again and again.",
+    )
+
+
+def _wobble() -> Played:
+    wheel = rotary(
+        inertia="0.05 kg*m^2",
+        damping="0.02 N*m*s/rad",
+        coulomb_friction="0.05 N*m",
+        resolution="0.1 mrad",
+        rate="500 Hz",
+        delay="10 ms",
+        force_limit="2 N*m",
+        name="wheel",
+    )
+    return played(
+        wheel,
+        PulseTransferFunction([20], [1]),
+        name="Death wobble: a wheel, hands off",
+        reach=3.0,
+        do="Turn the wheel a little, then let go and keep your hands off.",
+        notice="Held, it is calm. Hands off it swings on and on: the motor gives what friction takes.",
+    )
+
+
+def _tissue() -> Played:
+    return played(
+        _paddle(),
+        StandardLinearSolid(60, 150, 4),
+        name="Soft tissue",
+        do="Press in, wait, and come back quickly.",
+        notice="The force falls while you wait, and on the way back there is less of it.",
+    )
+
+
+def _detents() -> Played:
+    return played(
+        _paddle(),
+        NonlinearSpring.detents(3, "8 mm", "0.5 N"),
+        name="Detents",
+        do="Move the handle from one notch to the next, and let go between them.",
+        notice="It is drawn into the nearest notch and rests there.",
+    )
+
+
+def _hard_wall() -> list[Played]:
+    ideal, wall = _smooth(resolution=0), Wall(4000)
+    counted = _smooth()
+    controller = PassivityController(largest_damping="unlimited")
+    return [
+        played(
+            ideal,
+            wall,
+            name="Too hard a wall",
+            hand=LIGHT,
+            do=_PRESS,
+            notice="It kicks the hand back, and the hand gets out more energy than it put in.",
+        ),
+        played(
+            ideal,
+            render(wall, controller),
+            name="The same, passivity controller on",
+            hand=LIGHT,
+            do=_PRESS,
+            notice="Energy that is about to come out is taken by damping: the kicks are gone. "
+            "What is proved of it is said above, and no more.",
+        ),
+        played(
+            counted,
+            render(wall, ForceBounding()),
+            name="The same, force bounding on",
+            hand=LIGHT,
+            do=_PRESS,
+            notice="The force is never more than what the hand has paid for: softer, and proved.",
+        ),
+    ]
+
+
+def _arms() -> list[Played]:
+    arm = _smooth(damping="0.15 N*s/m", force_limit="1 N")
+    near = Pair(arm, arm, stiffness=100, damping="0.02")
+    return [
+        played_pair(
+            near,
+            name="Two arms, no delay",
+            hand=LIGHT,
+            follower=_SPRING,
+            do="Lead one arm; the other follows, tied to a spring.",
+            notice="The hand feels the spring that the follower pulls at.",
+        ),
+        played_pair(
+            near.replace(delay="20 ms"),
+            name="Two arms, a link of 20 ms",
+            hand=LIGHT,
+            follower=_SPRING,
+            do="Lead one arm quickly to and fro, then let go.",
+            notice="Each arm is told where the other was 20 ms ago: they swing, and go on.",
+        ),
+    ]

@@ -1,0 +1,116 @@
+"""Everything about one verdict in one picture."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
+
+from zwidth.errors import InputError
+from zwidth.model.rendering import VirtualCoupling
+from zwidth.model.scene import Scene
+from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.verdict import Verdict
+from zwidth.show.plots.budget import draw_damping, draw_friction, has_friction
+from zwidth.show.plots.criterion import draw_criterion
+from zwidth.show.plots.plane import draw_plane, has_plane
+from zwidth.show.plots.scene import draw_scene
+from zwidth.show.plots.storage import draw_storage
+from zwidth.show.plots.style import LOOK, OUTCOME, new_figure, page_heading, shown_name
+from zwidth.show.plots.witness import draw_witness
+
+Draw = Callable[[Figure, SubplotSpec, Any], None]
+
+
+@rc_context(LOOK)
+def check_figure(verdict: Verdict) -> Figure:
+    """The criterion, the budget, and where they apply the plane, the witness and the scene, in one figure."""
+    panels = list(panels_of(verdict).values())
+    if not panels:
+        raise InputError("there is nothing to draw of this verdict: it has neither H(z) nor a motion")
+    rows = (len(panels) + 1) // 2
+    figure = new_figure(11.0, 4.4 * rows + 0.7)
+    grid = figure.add_gridspec(rows, 2)
+    for k, draw in enumerate(panels):
+        last_alone = k == len(panels) - 1 and k % 2 == 0
+        draw(figure, grid[k // 2, :] if last_alone else grid[k // 2, k % 2], verdict)
+    text = f"{shown_name(verdict.device)}: {verdict.outcome}. {verdict.claim}"
+    page_heading(figure, text, color=OUTCOME[verdict.outcome])
+    figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.08, hspace=0.06, wspace=0.05)
+    return figure
+
+
+@rc_context(LOOK)
+def panel_figure(draw: Draw, verdict: Verdict, width: float, height: float) -> Figure:
+    """One of `panels_of` by itself; sizes in inches."""
+    figure = new_figure(width, height)
+    draw(figure, figure.add_gridspec(1, 1)[0], verdict)
+    return figure
+
+
+def panels_of(verdict: Verdict) -> dict[str, Draw]:
+    """What draws each picture that there is of a verdict, by name."""
+    panels: dict[str, Draw] = {}
+    if isinstance(verdict, LinearVerdict):
+        panels["criterion"] = _criterion
+        if verdict.decision.is_spring and has_plane(verdict.device) and verdict.decision.loop.numerator[0]:
+            panels["plane"] = _plane
+        panels["budget"] = _budget
+    if verdict.witness is not None:
+        panels["motion"] = _witness
+    elif verdict.available_storage is not None and verdict.available_storage.storage is not None:
+        panels["storage"] = _storage
+    if scene_of(verdict) is not None:
+        panels["scene"] = _scene
+    return panels
+
+
+def scene_of(verdict: Verdict) -> Scene | None:
+    """The scene that is rendered, behind whatever couplings, if it is one."""
+    met = verdict.environment.met
+    while isinstance(met, VirtualCoupling):
+        met = met.environment
+    return met if isinstance(met, Scene) else None
+
+
+def _scene(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
+    scene = scene_of(verdict)
+    assert scene is not None
+    draw_scene(figure.add_subplot(place), scene, verdict.device.motion)
+
+
+def _criterion(figure: Figure, place: SubplotSpec, verdict: LinearVerdict) -> None:
+    draw_criterion(figure.add_subplot(place), verdict)
+
+
+def _plane(figure: Figure, place: SubplotSpec, verdict: LinearVerdict) -> None:
+    draw_plane(figure.add_subplot(place), verdict.device, verdict.decision.loop.static_stiffness)
+
+
+def _budget(figure: Figure, place: SubplotSpec, verdict: LinearVerdict) -> None:
+    if not has_friction(verdict):
+        axes = figure.add_subplot(place)
+        draw_damping(axes, verdict)
+        axes.set_ylim(-1.2, 2.2)  # two bars in the room of four
+        return
+    rows = place.subgridspec(2, 1)
+    draw_damping(figure.add_subplot(rows[0]), verdict)
+    draw_friction(figure.add_subplot(rows[1]), verdict)
+
+
+def _witness(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
+    rows = place.subgridspec(3, 1)
+    top = figure.add_subplot(rows[0])
+    others = [figure.add_subplot(rows[k], sharex=top) for k in (1, 2)]
+    for axes in (top, others[0]):
+        axes.tick_params(labelbottom=False)
+    draw_witness([top, *others], verdict)
+
+
+def _storage(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
+    assert verdict.available_storage is not None
+    assert verdict.available_storage.storage is not None
+    draw_storage(figure.add_subplot(place), verdict.available_storage.storage)

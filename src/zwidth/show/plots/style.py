@@ -1,0 +1,177 @@
+"""How every picture looks: colours, sizes, axis labels with units.
+
+Colours are those of Okabe & Ito (2008), told apart with any colour vision;
+no meaning hangs on a colour alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import ceil, floor, isfinite, log10
+from re import sub
+from textwrap import fill
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import text_to_path
+
+from zwidth.model.device import Device
+from zwidth.passivity.outcome import TOLD
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.spoken import spoken
+from zwidth.quantity.text import PREFIXES, in_words, unit_text
+from zwidth.showing import printable
+
+BLACK, GREY = "#222222", "#777777"
+BLUE, SKY = "#0072B2", "#56B4E9"
+GREEN, ORANGE, RED, PURPLE = "#009E73", "#E69F00", "#D55E00", "#CC79A7"
+
+OUTCOME = {outcome: told.colour for outcome, told in TOLD.items()}
+"""Colour of each outcome; the word always stands beside it."""
+
+LOOK: Any = {
+    "figure.facecolor": "white",  # a page of its own, also where everything around it is dark
+    "savefig.facecolor": "auto",
+    "axes.facecolor": "white",
+    "axes.edgecolor": BLACK,
+    "axes.titlecolor": BLACK,
+    "text.color": BLACK,
+    "legend.labelcolor": BLACK,
+    "xtick.color": BLACK,
+    "ytick.color": BLACK,
+    "axes.formatter.useoffset": False,
+    "font.size": 9,
+    "axes.titlesize": 10,
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.labelcolor": BLACK,
+    "legend.frameon": False,
+    "legend.fontsize": 8.5,
+    "lines.linewidth": 1.8,
+    "xtick.labelsize": 8.5,
+    "ytick.labelsize": 8.5,
+}
+"""Settings under which every picture is drawn."""
+
+_LONGEST = 36
+"""Characters of a device's name that are drawn."""
+
+_SCALED = ("m", "s", "J", "N", "rad", "N*m")
+
+
+def new_figure(width: float = 6.4, height: float = 4.0) -> Figure:
+    """An empty figure that belongs to no window; sizes in inches."""
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def label(name: str, motion: str = "linear", text: str | None = None, unit: str | None = None) -> str:
+    """An axis label from the glossary: name, symbol, unit."""
+    quantity = GLOSSARY[name]
+    words = in_words(quantity.name) if text is None else text
+    shown = unit_text(spoken(quantity.unit_for(motion))[1] if unit is None else unit) or "1"
+    return f"{words} {symbol(name)} [{shown}]".strip()
+
+
+def symbol(name: str) -> str:
+    """The symbol of a quantity with its index set low."""
+    return low_index(GLOSSARY[name].symbol)
+
+
+def low_index(text: str) -> str:
+    """ "f_c/(K Δ)" with the c set low."""
+    return sub(r"([A-Za-zτ])_(\w+)", r"$\1_{\2}$", text)
+
+
+def number(value: float) -> str:
+    """Four digits, with a minus sign and no exponent where it is readable."""
+    text = f"{value + 0.0:.4g}"  # + 0.0: no negative zero
+    if "e" in text:
+        mantissa, power = text.split("e")
+        text = f"{mantissa}·10{''.join(_SUPERSCRIPT[c] for c in str(int(power)))}"
+    return text.replace("-", "−")
+
+
+_SUPERSCRIPT = dict(zip("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹", strict=True))
+
+
+def scale(values: Iterable[float], unit: str) -> tuple[float, str]:
+    """(factor, unit) with which these values are read without exponents, such as (1000, "mm")."""
+    factor, unit = spoken(unit)
+    largest = factor * max((abs(v) for v in values if isfinite(v)), default=0.0)
+    if unit not in _SCALED or largest == 0:
+        return factor, unit_text(unit)
+    power = max(-12, min(6, 3 * floor(log10(largest * 1.0000001) / 3)))
+    return factor * 10.0**-power, PREFIXES[power] + unit_text(unit)
+
+
+def drawn_in(name: str, motion: str) -> tuple[float, str]:
+    """(factor, unit) of an axis with the `label` of a quantity: SI, an angle in the unit that was typed."""
+    factor, unit = spoken(GLOSSARY[name].unit_for(motion))
+    return factor, unit_text(unit)
+
+
+def quantity_text(value: float, name: str, motion: str = "linear") -> str:
+    """A value with its unit, such as "6.6 µJ" or "0.15 N·s/m"."""
+    factor, unit = scale([value], GLOSSARY[name].unit_for(motion))
+    return f"{number(value * factor)} {unit}"
+
+
+def shown_name(device: Device) -> str:
+    """The name of a device on one short line; it is drawn as it is, without mathematics."""
+    name = printable(" ".join(device.name.split()))
+    return name if len(name) <= _LONGEST else name[: _LONGEST - 1] + "…"
+
+
+def verbatim(text: str) -> str:
+    """Text of others as it is drawn: nothing in it is mathematics, and nothing obeyed."""
+    return printable(text).replace("$", r"\$")
+
+
+def heading(axes: Axes, text: str, size: float = 10.0, **style: Any) -> None:
+    """A title that ends where its place in the figure does, on as many lines as that takes."""
+    figure: Any = axes.figure
+    place = axes.get_subplotspec()
+    box = axes.get_position() if place is None else place.get_position(figure)
+    axes.set_title(broken(text, box.width * figure.bbox.width / figure.dpi, size), fontsize=size, **style)
+
+
+def page_heading(figure: Figure, text: str, size: float = 11.0, color: str = BLACK) -> None:
+    """A title over all of a figure, as it is written, on as many lines as the width takes."""
+    lines = broken(text, 0.97 * figure.get_figwidth(), size)
+    figure.suptitle(lines, x=0.01, ha="left", fontsize=size, color=color, parse_math=False)
+
+
+def broken(text: str, width: float, size: float = 10.0) -> str:
+    """Text on as few lines as a width [inches] allows at a size [points]; its own breaks stay."""
+    return "\n".join(_broken(line, 72 * width, size) for line in text.splitlines())
+
+
+def _broken(line: str, room: float, size: float) -> str:
+    lines = max(1, ceil(_long(line, size) / room))
+    for count in range(lines, lines + 3):
+        split = fill(line, max(1, ceil(len(line) / count) + 8)) if count > 1 else line
+        if all(_long(part, size) <= room for part in split.splitlines()):
+            break
+    return split
+
+
+def _long(text: str, size: float) -> float:
+    """How wide it is drawn [points]."""
+    wide, _, _ = text_to_path.get_text_width_height_descent(text, FontProperties(size=size), False)
+    return float(wide)
+
+
+def as_written(text: object) -> str:
+    """A description with its units as people write them: "30 N*m" with a point, "kg*m^2" with a raised 2."""
+    return str(text).replace("*", "·").replace("^2", "²")
+
+
+def note(axes: Axes, text: str) -> None:
+    """A small line under the picture: what is left out, and why."""
+    axes.annotate(
+        text, (0, 0), (0, -34), xycoords="axes fraction", textcoords="offset points",
+        va="top", fontsize=7.5, color=GREY,
+    )  # fmt: skip

@@ -1,0 +1,94 @@
+"""A report to hand on: verdict, scope, proof, figures and where each number comes from, in one file.
+
+The same verdict gives the same bytes, in every process and folder: no date, no path, no random number.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+
+from zwidth.errors import InputError
+from zwidth.passivity.result import Answer
+from zwidth.show.report.contents import contents
+from zwidth.show.report.provenance import Provenance
+from zwidth.writing import check_target, writing_whole
+
+__all__ = ["ENDINGS", "Provenance", "html", "pdf", "save"]
+
+ENDINGS = (".html", ".pdf")
+
+
+def html(verdict: Answer, provenance: Provenance | None = None) -> str:
+    """The report as one page of HTML that asks for nothing else: no script, no font, no address abroad.
+
+    Parameters
+    ----------
+    verdict
+        What `zwidth.check` returned.
+    provenance
+        Where each number of the loop comes from, and the command; by default what can be seen of the loop.
+    """
+    from zwidth.show.report.html_page import page
+
+    return page(contents(verdict, provenance))
+
+
+def pdf(verdict: Answer, provenance: Provenance | None = None) -> bytes:
+    """The report as a PDF file, the proof attached; takes ReportLab, the extra `report`.
+
+    Parameters
+    ----------
+    verdict, provenance
+        As for `html`.
+
+    Raises
+    ------
+    InputError
+        If ReportLab is not installed.
+    """
+    from zwidth.show.report.pdf_file import document
+
+    return document(contents(verdict, provenance))
+
+
+def save(
+    verdict: Answer, path: str | Path, provenance: Provenance | None = None, overwrite: bool = False
+) -> None:
+    """Write the report; the ending of the file, .html or .pdf, says how.
+
+    Parameters
+    ----------
+    verdict, provenance
+        As for `html`.
+    path
+        The file.
+    overwrite
+        Replace one that exists.
+
+    Raises
+    ------
+    InputError
+        If the ending is another one, the file exists or cannot be written, or ReportLab is not installed.
+    """
+    target = Path(path)
+    check_ending(target)
+    check_target(target, overwrite, "overwrite=True")
+    is_pdf = target.suffix.lower() == ".pdf"
+    made = pdf(verdict, provenance) if is_pdf else html(verdict, provenance).encode()
+    with writing_whole(target) as file:
+        file.write(made)
+
+
+def check_ending(path: Path) -> None:
+    """Refuse a name of which no report can be made, before anything is computed.
+
+    Raises
+    ------
+    InputError
+        If it ends otherwise than in one of `ENDINGS`, or in .pdf where ReportLab is not installed.
+    """
+    if path.suffix.lower() not in ENDINGS:
+        raise InputError(f"a report is written as .html or .pdf, got {path.name!r}; for example report.html")
+    if path.suffix.lower() == ".pdf":
+        import_module("zwidth.show.report.pdf_file")

@@ -1,8 +1,0 @@
-from zwidth.operator.hand_impedance import HandImpedance as HandImpedance
-from zwidth.stability.absolute import AbsoluteStability as AbsoluteStability
-from zwidth.stability.absolute import absolute_stability as absolute_stability
-from zwidth.stability.active_hand import ToleratedActivity as ToleratedActivity
-from zwidth.stability.active_hand import tolerated_activity as tolerated_activity
-from zwidth.stability.known_hand import Stability as Stability
-from zwidth.stability.known_hand import coupled_stability as coupled_stability
-from zwidth.stability.virtual_mass import stable_virtual_masses as stable_virtual_masses

@@ -1,0 +1,1 @@
+"""Many loops: laws beside each other, maps over parameters, tables of loops."""

@@ -1,0 +1,222 @@
+"""What is known of a law for every hand: which road proves it, which motion refutes it, what that counts.
+
+A status is about the loop that the bench simulates: encoder, delay, the converter's steps and the force
+limit as the device states them.  So a proof for an ideal actuator is not enough where they are known:
+
+- The converter errs by ΔF/2 at most, which ΔF/2 of Coulomb friction pays for.  Whatever is proved of a
+  device with that much less friction is proved of this one, steps and all.
+- The proofs of walls cover a force limit: it makes no wall steeper (docs, "Contact made and broken").
+- Other proofs say what they count; what they do not count withholds the promise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+import numpy as np
+
+from zwidth.model.device.actuator import current_rise
+from zwidth.model.device.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.model.rendering.rendered import laws_of
+from zwidth.model.rendering.rendering_law import LoopContext
+from zwidth.model.rendering.theorem import half_a_step
+from zwidth.passivity.bounding import check_bounding, is_bounded
+from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.covering import covering
+from zwidth.passivity.scope import Scope, scope_of
+from zwidth.passivity.verdict import Verdict
+from zwidth.passivity.witness.witness import Witness
+from zwidth.study.bench.adversary import LONGEST, Attack, taken_out
+from zwidth.study.bench.iteration import by_value_iteration
+
+Status = Literal["passive", "theorem", "active", "undecided"]
+
+PROOFS = {"passive": "certificate", "theorem": "paper", "active": "motion", "undecided": "none"}
+"""What stands behind a status."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Standing:
+    """What is known of a law for every hand, contact made and broken, and why.
+
+    Parameters
+    ----------
+    status
+        "passive" with a certificate, "theorem" by a proof on paper, no certificate, "active" with a motion,
+        or "undecided".
+    reason
+        Why, in a sentence.
+    withheld
+        Promises that the law makes and this device does not let it keep, in words; empty where there is
+        none.
+    scope
+        What it is about.  Encoder, force limit and converter steps count as the device states them: a motion
+        counts all of them, a proof what it was made for.  Every force acts at once, as in the simulator.
+    """
+
+    status: Status
+    reason: str
+    scope: Scope
+    withheld: tuple[str, ...] = ()
+
+    @property
+    def proof(self) -> str:
+        """What stands behind the status: "certificate", "paper", "motion" or "none"."""
+        return PROOFS[self.status]
+
+    @property
+    def evidence(self) -> str:
+        """Reason, and what is withheld."""
+        return ". ".join(part.removesuffix(".") for part in (self.reason, *self.withheld))
+
+
+def standing(device: Device, law: Environment, found: Attack) -> Standing:
+    """What is known of a law; `found` is the best motion of the adversary."""
+    if found.extracts:
+        return Standing(status="active", reason=str(found), scope=_scope(device, law))
+    withheld: list[str] = []
+    for road in (_by_check, _by_a_covering_wall, _by_bounding, _by_a_theorem):
+        outcome = road(device, law)
+        if isinstance(outcome, Standing):
+            return outcome
+        withheld += outcome
+    refuted, reason = by_value_iteration(device, law, found)
+    status: Status = "active" if refuted else "undecided"
+    kept_back = () if refuted else tuple(withheld)
+    return Standing(status=status, reason=reason, scope=_scope(device, law), withheld=kept_back)
+
+
+def _scope(device: Device, law: Environment) -> Scope:
+    """Contact made and broken, with all that the device states of its actuator."""
+    return scope_of(device, law).replace(
+        force_limit=device.force_limit is not None, force_steps=device.force_resolution is not None
+    )
+
+
+def _by_check(device: Device, law: Environment) -> Standing | list[str]:
+    """The verdict on a law without a row, with steps and limit of the actuator counted."""
+    if laws_of(law):
+        return []
+    verdict, why_not = _with_the_actuator(device, law)
+    if verdict is not None:
+        reason = f"{verdict.claim}{_paid(device)}"
+        return Standing(status="passive", reason=reason, scope=_scope(device, law))
+    ideal = check_by_closed_forms(device, law)
+    if ideal.is_proved:
+        return [f"For an ideal actuator: {ideal.claim} {why_not}"]
+    if ideal.outcome == "active":
+        if _takes_out(device, law, ideal):
+            return Standing(status="active", reason=ideal.claim, scope=_scope(device, law))
+        return [f"For an ideal actuator: {ideal.claim} With this one that motion does not gain."]
+    return [ideal.claim]
+
+
+def _by_a_covering_wall(device: Device, law: Environment) -> Standing | list[str]:
+    """A spring with laws that add no more than α |Δx|/T, by the proof of a wall with damping α."""
+    half = min(half_a_step(device), device.exact("coulomb_friction"))
+    covered = covering(_without(device, half), law)  # what is left beside the converter's steps
+    if covered is None:
+        return []
+    less, wall = _without(covered[0], -half), covered[1]
+    verdict, why_not = _with_the_actuator(less, wall)
+    dry = device.exact("coulomb_friction") - less.exact("coulomb_friction")
+    more = f" and {float(dry):.6g} N of Coulomb friction" if dry else ""
+    added = f"What the laws add is never more than that of {wall.damping} N·s/m{more}"
+    if verdict is None:
+        promised = check_by_closed_forms(less, wall).outcome == "passive"
+        return [f"{added}, which is covered for an ideal actuator. {why_not}"] if promised else []
+    return Standing(
+        status="passive",
+        reason=f"{added}, and every such force is covered, contact made and broken: "
+        f"{verdict.claim}{_paid(device)}",
+        scope=_scope(device, law),
+    )
+
+
+def _by_bounding(device: Device, law: Environment) -> Standing | list[str]:
+    """Force bounding, by its certificate: it is told of steps and limit."""
+    if not is_bounded(law):
+        return []
+    bounding = check_bounding(device, law)
+    if bounding.outcome != "passive":
+        return [f"The promise of force bounding is withheld. {bounding.claim}"]
+    return Standing(status="passive", reason=bounding.claim, scope=bounding.scope)
+
+
+def _by_a_theorem(device: Device, law: Environment) -> Standing | list[str]:
+    """A proof on paper, where the device has nothing that it does not count."""
+    chain = laws_of(law)
+    if not chain:
+        return []
+    last = chain[-1]
+    theorem = last.theorem(LoopContext(device, law.met))
+    if theorem is None:
+        return []
+    if not theorem.holds_on(device):
+        return [f"The promise of {last.describe(device.motion)} is {theorem.reason(device)}."]
+    return Standing(
+        status="theorem",
+        reason=f"By a proof on paper, no certificate: {theorem.statement}.",
+        scope=_scope(device, law),
+    )
+
+
+def _with_the_actuator(device: Device, law: Environment) -> tuple[Verdict | None, str]:
+    """A proof for contact made and broken that covers the actuator; or why there is none."""
+    slow = _slow_current(device)
+    if slow:
+        return None, slow[0]
+    spare = device.exact("coulomb_friction") - half_a_step(device)
+    if spare < 0:
+        return None, (
+            f"The converter's steps are not covered: they take {float(half_a_step(device)):.6g} N of Coulomb "
+            f"friction, and the device has {float(device.exact('coulomb_friction')):.6g} N."
+        )
+    verdict = check_by_closed_forms(_without(device, half_a_step(device)), law)
+    if verdict.outcome == "passive":
+        return verdict, ""
+    if verdict.outcome == "passive in contact":
+        return None, "Making and breaking contact is not covered."
+    half = float(half_a_step(device))
+    return (
+        None,
+        f"The converter's steps are not covered: the {half:.6g} N that they take is needed elsewhere.",
+    )
+
+
+def _without(device: Device, friction: Fraction) -> Device:
+    """The device with so much less friction; with the stiction that it has."""
+    if friction == 0:
+        return device
+    return device.replace(coulomb_friction=device.exact("coulomb_friction") - friction)
+
+
+def _paid(device: Device) -> str:
+    """What is said of the actuator."""
+    parts = []
+    if device.force_resolution is not None:
+        half = float(half_a_step(device))
+        parts.append(f"the converter's steps are counted: {half:.3g} N of friction pays for them")
+    if device.force_limit is not None:
+        parts.append("the force limit is counted")
+    return f" ({'; '.join(parts)})" if parts else ""
+
+
+def _slow_current(device: Device) -> list[str]:
+    """Where the record says that the force cannot be taken as instant."""
+    rise = current_rise(device)
+    return [f"A proof takes the force as instant, and it is not: {rise.text}."] if rise.ok is False else []
+
+
+def _takes_out(device: Device, law: Environment, verdict: Verdict) -> bool:
+    """Whether the motion of a verdict gains with the actuator that the device states."""
+    if device.force_resolution is None and device.force_limit is None:
+        return True
+    if not isinstance(verdict.witness, Witness) or verdict.witness.motion.samples > LONGEST:
+        return False
+    whole = verdict.witness.motion.listed()
+    positions, switches = (np.array(xs, float) for xs in (whole.positions, whole.switch_positions))
+    return taken_out(device, law, positions, switches if switches.size else None) > 0

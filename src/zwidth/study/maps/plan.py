@@ -1,0 +1,209 @@
+"""A request made ready: all that a chunk needs, computed once and the same for every worker.
+
+    passive          K ≤ K_max(B), the smaller of  2 (b − g|B|)/((2d + 1) T)  and  2 f_c/Δ − v|B|/T
+    admissible speed (f_c − F)/(b_need − b),  F = (K + v|B|/T) Δ/2,  b_need = (2d + 1) K T/2 + g|B|
+
+with g = Σ|w_j| and v = T ‖h_v‖₁ of the velocity estimate: the two conditions for contact made and
+broken, and what is left of them for a hand of bounded speed (docs: contact made and broken).
+K_max is rational, so that a cell is passive by an exact comparison.  With a delay of d + α samples,
+0 < α < 1, it is the root of
+
+    b (b − Q) = α(1 − α) (K T + 2 g|B|)²/4,    Q = (2d + 1 + 2α) K T/2 + g|B|,    2 b_need = Q + √(Q² + …),
+
+rounded down.  With a filter whose response does not end no condition covers a wall with damping; a spring
+alone is compared with
+
+    b² − b (K T/2)(2d + 1 + 2α) − ¼ T² α(1 − α) K² ≥ 0,    2 b ≥ (K T/2)(2d + 1 + 2α),    f_c ≥ K Δ/2.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.loop.sampled_plant import Coefficients, Motion
+from zwidth.model.environment import Wall
+from zwidth.model.environment.environment import RationalFunction
+from zwidth.passivity.decision import decide
+from zwidth.passivity.formulas.delayed_spring import spring_stiffness
+from zwidth.passivity.linear.contact import damped_wall, root_above
+from zwidth.passivity.stability.known_hand.characteristic import Family, as_floats, bilinear, family
+from zwidth.passivity.stability.known_hand.coupled import motion_of
+from zwidth.passivity.stability.known_hand.crossing import last_stable_of_each, plain
+from zwidth.quantity.balls import precision
+from zwidth.quantity.exact import Exact
+from zwidth.study.maps.request import Array, Request
+from zwidth.study.maps.sustained import sustained_walls
+
+_NOT_COVERED = "walls with this velocity filter, whose response does not end"
+
+_BITS = 192
+"""Of the coefficients before they are rounded to doubles."""
+
+
+class HandPlan(NamedTuple):
+    """One hand: its polynomials in w as doubles, and what an exact decision starts from."""
+
+    name: str
+    free: Array
+    stiff: Array
+    damped: Array
+    slack: float
+    """How far a coefficient may be from the true one beyond its rounding: the radius of its ball."""
+    motion: Motion
+    velocity: RationalFunction
+
+
+class Contact(NamedTuple):
+    """The two conditions for contact made and broken as numbers: see above; `part` is α(1 − α)."""
+
+    period: float
+    part: float
+    hold: float
+    gain: float
+    variation: float
+    damping: float
+    friction: float
+    half_step: float
+
+
+class Plan(NamedTuple):
+    """What a chunk is computed from."""
+
+    stiffness: Array
+    damping: Array
+    passive: NDArray[np.int64]
+    """For each B how many of the stiffnesses are passive, from the softest on."""
+    sustained: NDArray[np.int64]
+    """For each B the first stiffness that is passive while contact lasts, and the one past the last."""
+    limit: Array
+    """For each B the largest passive stiffness, below 0 or NaN where none is."""
+    contact: Contact | None
+    hands: tuple[HandPlan, ...]
+    not_covered: str
+    """Why walls with damping have no condition for contact made and broken; "" where they have one."""
+
+
+def plan(asked: Request) -> Plan:
+    """All that does not depend on the chunk."""
+    period = asked.device.exact("sample_period")
+    k, b = asked.stiffness.values, asked.virtual_damping.values
+    contact = _contact(asked, period)
+    softest_first = [Exact(value).fraction for value in k]
+    if contact is not None:
+        limits = [_limit(contact, abs(Exact(value).fraction)) for value in b]
+        passive = [bisect_right(softest_first, limit) for limit in limits]
+        ends = [float(limit) for limit in limits]
+    else:
+        springs = sum(_spring_passes(asked, stiffness) for stiffness in softest_first)
+        passive = [springs if value == 0 else 0 for value in b]
+        ends = [spring_limit(asked) if value == 0 else np.nan for value in b]
+    velocity = _positive(asked.velocity_filter.transfer(period))
+    return Plan(
+        stiffness=k,
+        damping=b,
+        passive=np.array(passive, dtype=np.int64),
+        sustained=sustained_walls(asked),
+        limit=np.array(ends),
+        contact=None if contact is None else Contact(*(float(value) for value in contact)),
+        hands=tuple(_hand(name, motion_of(asked.device, hand), velocity) for name, hand in asked.hands),
+        not_covered="" if contact is not None else _NOT_COVERED,
+    )
+
+
+def spring_limit(asked: Request) -> float:
+    """The stiffest spring, B = 0, that is passive, contact made and broken [N/m; N·m/rad]; to rounding."""
+    device = asked.device
+    by_damping = float(spring_stiffness(*(device.exact(k) for k in ("damping", "sample_period", "delay"))))
+    count = float(device.exact("resolution"))
+    return min(by_damping, 2 * float(device.exact("coulomb_friction")) / count) if count else by_damping
+
+
+def _spring_passes(asked: Request, stiffness: Fraction) -> bool:
+    """Whether a spring is passive, by the exact conditions."""
+    device = asked.device
+    period, b = device.exact("sample_period"), device.exact("damping")
+    late = device.exact("delay") / period
+    part = late % 1
+    turned = stiffness * period / 2
+    linear = turned * (2 * late + 1)
+    # the larger root is asked for: for b = 0 and a delay of whole samples the square alone is 0
+    viscous = 2 * b >= linear and b * b - b * linear - part * (1 - part) * turned * turned >= 0
+    return viscous and 2 * device.exact("coulomb_friction") >= stiffness * device.exact("resolution")
+
+
+def _contact(asked: Request, period: Fraction) -> tuple[Fraction, ...] | None:
+    """The numbers of `Contact`, exact; None where no condition covers the loop."""
+    device = asked.device
+    wall = Wall(1, 1, velocity_filter=asked.velocity_filter)
+    unit, late = damped_wall(wall, period), device.exact("delay") / period
+    if unit is None or decide(device, wall).contact_damping is None:
+        return None
+    return (
+        period,
+        late % 1 * (1 - late % 1),
+        (2 * late + 1) * period / 2,
+        unit.estimate.gain,
+        unit.estimate.variation / period,
+        device.exact("damping"),
+        device.exact("coulomb_friction"),
+        device.exact("resolution") / 2,
+    )
+
+
+def stable_limits(hand: HandPlan, damping: Array) -> Array:
+    """For each B the largest stiffness that is stable with a hand, NaN where none is; floats, for curves."""
+    with precision(_BITS):
+        polynomials = plain(family(hand.motion, hand.velocity))
+    found = last_stable_of_each(polynomials, damping)
+    return np.array([np.nan if end is None else end.stiffness for end in found])
+
+
+def _positive(velocity: RationalFunction) -> RationalFunction:
+    """The same function with a positive leading coefficient below: Routh's signs are then all +."""
+    sign = 1 if velocity.denominator[0] > 0 else -1
+    return RationalFunction(*(tuple(sign * c for c in part) for part in velocity))
+
+
+def _limit(contact: tuple[Fraction, ...], b: Fraction) -> Fraction:
+    """K_max for one |B|; below 0 where no stiffness will do."""
+    period, part, hold, gain, variation, damping, friction, half_step = contact
+    viscous = _viscous_limit(period, part, hold, damping, gain * b)
+    return viscous if half_step == 0 else min(viscous, friction / half_step - variation * b)
+
+
+def _viscous_limit(
+    period: Fraction, part: Fraction, hold: Fraction, damping: Fraction, asked: Fraction
+) -> Fraction:
+    """The larger root K of (part/4) T² K² + m K − n, rounded down; below 0 where no stiffness will do."""
+    left = damping - asked
+    if part == 0:
+        return left / hold
+    m, n = damping * hold + part * period * asked, damping * left - part * asked**2
+    if n <= 0 or left <= 0:
+        return min(n, left)
+    return 2 * n / (m + root_above(m**2 + part * period**2 * n))
+
+
+def _hand(name: str, motion: Motion, velocity: RationalFunction) -> HandPlan:
+    with precision(_BITS):
+        parts = _in_w(family(motion, velocity))
+        free, stiff, damped = (as_floats(part) for part in parts)
+        slack = max(_radius(c) for part in parts for c in part)
+    return HandPlan(name, free, stiff, damped, slack, motion, velocity)
+
+
+def _radius(coefficient: Any) -> float:
+    """Of its ball, and a little more."""
+    return 0.0 if isinstance(coefficient, Fraction) else 1.01 * float(coefficient.rad())
+
+
+def _in_w(polynomials: Family) -> list[Coefficients]:
+    """The three polynomials in w, all with the degree of the first."""
+    size = len(polynomials.free)
+    padded: list[Any] = [[*([0 * part[0]] * (size - len(part))), *part] for part in polynomials]
+    return [bilinear(part) for part in padded]

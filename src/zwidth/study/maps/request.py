@@ -1,0 +1,170 @@
+"""What a map is of: a device, a grid of walls, the hands that are known.
+
+A cell stands for the wall at its middle, (K, B) = low + (i + ½)(high − low)/n, as the double nearest to it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.environment import BackwardDifference, Wall
+from zwidth.model.environment.velocity import VelocityEstimator
+from zwidth.model.operator import Dowel, Finger, HandsOn
+from zwidth.model.operator.hand_impedance import HandImpedance, as_hand
+from zwidth.passivity.stability.known_hand.coupled import motion_of
+from zwidth.quantity.exact import Exact, RealLike, ends
+from zwidth.study.chunks.layout import Layout
+
+Array = NDArray[np.float64]
+
+FORMAT = "zwidth map 1"
+
+MOST_CELLS = 100_000_000
+"""Of one map; more are a mistake in the numbers."""
+
+CHUNK = 128
+"""Cells along one side of what is computed and stored at a time."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """The middles of n equal cells from `low` to `high`."""
+
+    low: Exact
+    high: Exact
+    cells: int
+
+    @property
+    def values(self) -> Array:
+        """The middles, each the nearest double."""
+        step = (self.high.fraction - self.low.fraction) / self.cells
+        return np.array([float(self.low.fraction + step * (i + Fraction(1, 2))) for i in range(self.cells)])
+
+    @property
+    def width(self) -> float:
+        """Of one cell."""
+        return (float(self.high) - float(self.low)) / self.cells
+
+
+@dataclass(frozen=True)
+class Request:
+    """All that the bits of a map depend on."""
+
+    device: Device
+    stiffness: Axis
+    virtual_damping: Axis
+    velocity_filter: VelocityEstimator
+    hands: tuple[tuple[str, HandImpedance], ...]
+
+    @property
+    def layout(self) -> Layout:
+        """The arrays of the map."""
+        stable = {f"stable_{name}": "bool" for name, _ in self.hands}
+        return Layout(
+            "map",
+            FORMAT,
+            self.digest(),
+            self.describe(),
+            {"stiffness": self.stiffness.values, "virtual_damping": self.virtual_damping.values},
+            (CHUNK, CHUNK),
+            {"passive": "bool", "passive_sustained": "bool", "admissible_speed": "float64"} | stable,
+        )
+
+    def describe(self) -> dict[str, Any]:
+        """The request as JSON holds it; exact numbers as text."""
+        return {
+            "device": {
+                **{
+                    key: str(value.fraction)
+                    for key, value in self.device.parameters().items()
+                    if isinstance(value, Exact)
+                },
+                "motion": self.device.motion,
+            },
+            "stiffness": _axis(self.stiffness),
+            "virtual_damping": _axis(self.virtual_damping),
+            "velocity_filter": [
+                [str(c) for c in part]
+                for part in self.velocity_filter.transfer(self.device.exact("sample_period"))
+            ],
+            "hands": {
+                name: [str(ends(value)[0]) for value in (hand.mass, hand.stiffness, hand.damping)]
+                for name, hand in self.hands
+            },
+            "chunk": CHUNK,
+        }
+
+    def digest(self) -> str:
+        """A name for the request: another one has another."""
+        return hashlib.sha256(json.dumps(self.describe(), sort_keys=True).encode()).hexdigest()
+
+
+def _axis(axis: Axis) -> list[str]:
+    return [str(axis.low.fraction), str(axis.high.fraction), str(axis.cells)]
+
+
+def standard_hands(motion: str = "linear") -> dict[str, Any]:
+    """No hand, a finger and a wooden dowel, by name; on a device that turns no hand and two on a wheel."""
+    if motion == "rotary":
+        return {"none": None, "hands-on": HandsOn()}
+    return {"none": None, "finger": Finger(), "dowel": Dowel(force=1)}
+
+
+def request(
+    device: Device,
+    stiffness: tuple[RealLike, RealLike],
+    virtual_damping: tuple[RealLike, RealLike],
+    cells: tuple[int, int],
+    velocity_filter: VelocityEstimator | None,
+    hands: Mapping[str, Any] | None,
+) -> Request:
+    """Read what `z_width` is given.
+
+    Raises
+    ------
+    InputError
+        If a range or a number of cells cannot be, a parameter is an interval, or the mass is unknown.
+    """
+    if not device.is_certain:
+        raise InputError(
+            "a map is of one device, and a parameter of this one is an interval; choose a value in it"
+        )
+    named = standard_hands(device.motion) if hands is None else dict(hands)
+    known = tuple((name, as_hand(hand)) for name, hand in named.items())
+    for name, hand in known:
+        if not motion_of(device, hand).is_certain:
+            raise InputError(
+                f"hand {name}: a map needs one value of each number; robust_boundary covers intervals"
+            )
+    velocity = BackwardDifference() if velocity_filter is None else velocity_filter
+    Wall(1, 1, velocity_filter=velocity)  # says what is wrong with it
+    k = _read_axis("stiffness", stiffness, cells[0])
+    b = _read_axis("virtual_damping", virtual_damping, cells[1])
+    if k.low.fraction < 0:
+        raise InputError(f"stiffness must be ≥ 0, got {k.low:g}: a negative spring pulls the hand in")
+    if k.cells * b.cells > MOST_CELLS:
+        raise InputError(
+            f"a map has at most {MOST_CELLS} cells, got {k.cells * b.cells}; a picture needs far fewer"
+        )
+    return Request(device, k, b, velocity, known)
+
+
+def _read_axis(name: str, both: tuple[RealLike, RealLike], cells: int) -> Axis:
+    low, high = (Exact(end) for end in both)
+    if low >= high:
+        raise InputError(
+            f"{name} runs from its smaller to its larger end, got {low:g} … {high:g}; swap the ends"
+        )
+    if cells != int(cells) or cells < 1:
+        raise InputError(f"cells along {name} must be a whole number ≥ 1, got {cells}")
+    return Axis(low, high, int(cells))

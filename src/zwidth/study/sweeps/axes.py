@@ -1,0 +1,188 @@
+"""The values of one parameter that is varied: a range, a range of equal ratios, or a list.
+
+    100:3000:50      50 values from 100 to 3000, evenly spaced
+    0:5 ms:20        the unit may stand once
+    1:1000:20 log    each the same number of times the one before
+    0, 1 ms, 2.5 ms  a list
+
+Each value is a double, and means the decimal that Python prints for it, as everywhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.errors import InputError
+from zwidth.model.specification.table import quoted
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.units import parse_number
+
+MOST_VALUES = 1_000_000
+"""Of one parameter; more are a mistake in the numbers."""
+
+_WRITTEN = "100:3000:50, 1:1000:20 log, or a list 0, 1 ms, 2 ms"
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One parameter and its values.
+
+    Parameters
+    ----------
+    name, unit
+        Of the parameter; SI.
+    values
+        In this order, no two the same.
+    """
+
+    name: str
+    unit: str
+    values: tuple[float, ...]
+
+    @property
+    def array(self) -> NDArray[np.float64]:
+        """The values."""
+        return np.array(self.values)
+
+    def told(self, value: float) -> str:
+        """The parameter at one value, "delay = 0.001 s"."""
+        return f"{self.name} = {value:.12g}{'' if self.unit == '1' else f' {self.unit}'}"
+
+
+def axis(name: str, given: object, unit: str) -> Axis:
+    """Read the values of a parameter.
+
+    Parameters
+    ----------
+    name, unit
+        Of the parameter; what has no unit of its own is in this one.
+    given
+        A text as above, (start, stop, count), (start, stop, count, "log"), or a list of values.
+
+    Raises
+    ------
+    InputError
+        If it is neither, a value cannot be, or is there twice.
+    """
+    values = _values(name, given, unit)
+    if not values:
+        raise InputError(f"{name}: there is no value to take; write {_WRITTEN}")
+    if len(values) > MOST_VALUES:
+        raise InputError(f"{name}: at most {MOST_VALUES} values, got {len(values)}")
+    seen: set[float] = set()
+    for value in values:
+        if value in seen:
+            raise InputError(f"{name} has the value {value:.12g} {unit} twice; each loop is asked once")
+        seen.add(value)
+    return Axis(name, unit, values)
+
+
+def _values(name: str, given: object, unit: str) -> tuple[float, ...]:
+    if isinstance(given, str):
+        return _typed(name, given, unit)
+    if isinstance(given, tuple) and len(given) in (3, 4):
+        start, stop, count = given[:3]
+        return _range(name, start, stop, count, unit, log=_is_log(name, given[3:]))
+    if isinstance(given, Iterable):
+        return tuple(float(parse_number(_plain(value), unit, name)) for value in given)
+    raise InputError(
+        f"{name} is varied over a text such as {_WRITTEN}; over (start, stop, count); or over a list"
+    )
+
+
+def _plain(value: Any) -> Any:
+    """A number of numpy as Python has it."""
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _is_log(name: str, rest: tuple[object, ...]) -> bool:
+    if rest not in ((), ("log",)):
+        raise InputError(f'{name}: after start, stop and count may come "log", got {rest[0]!r}')
+    return bool(rest)
+
+
+def _typed(name: str, text: str, unit: str) -> tuple[float, ...]:
+    if ":" not in text:
+        return tuple(float(value) for value in _numbers(name, text.split(","), unit))
+    parts = [part.strip() for part in text.split(":")]
+    if len(parts) != 3:
+        raise InputError(f"{name}: a range is start:stop:count, got {quoted(text)}; write {_WRITTEN}")
+    count, _, rest = parts[2].partition(" ")
+    start, stop = _numbers(name, parts[:2], unit)
+    if rest.strip() not in ("", "log"):
+        raise InputError(
+            f"{name}: after the count of {quoted(text)} may come log alone; a unit belongs to start and "
+            "stop, as in 0:5 ms:20"
+        )
+    return _range(name, start, stop, count, unit, log=bool(rest.strip()))
+
+
+def _numbers(name: str, parts: list[str], unit: str) -> list[Exact]:
+    """The numbers of a text; the unit of the last is that of those before it, if they all have none."""
+    bare = [not any(map(str.isalpha, _mantissa(part))) for part in parts]
+    own = _unit_of(parts[-1])
+    if own and all(bare[:-1]):
+        parts = [*(f"{part} {own}" for part in parts[:-1]), parts[-1]]
+    elif not own and not all(bare):
+        raise InputError(f"{name}: the unit belongs after the last of the numbers, or after every one")
+    return [parse_number(part.strip(), unit, name) for part in parts]
+
+
+def _mantissa(part: str) -> str:
+    """A number without the e of its exponent."""
+    return part.lower().replace("e-", "").replace("e+", "") if any(map(str.isdigit, part)) else part
+
+
+def _unit_of(part: str) -> str:
+    """What stands behind the number."""
+    text = part.strip()
+    end = next((i for i in range(len(text), 0, -1) if _is_number(text[:i])), 0)
+    return text[end:].strip()
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _range(name: str, start: Any, stop: Any, count: Any, unit: str, *, log: bool) -> tuple[float, ...]:
+    low, high = (parse_number(_plain(end), unit, name).fraction for end in (start, stop))
+    try:
+        number = int(count)
+        whole = number == float(count)
+    except (TypeError, ValueError, OverflowError):
+        whole = False
+    if not whole or not 2 <= number <= MOST_VALUES:
+        raise InputError(
+            f"{name}: the count is a whole number from 2 to {MOST_VALUES}, got {quoted(str(count))}; for one "
+            "value give it as an option of its own"
+        )
+    if low >= high:
+        raise InputError(
+            f"{name} runs from its smaller to its larger end, got {float(low):g} … {float(high):g}; "
+            "swap the ends"
+        )
+    if log and low <= 0:
+        raise InputError(f"{name}: a range of equal ratios begins above 0, got {float(low):g}")
+    between = _ratios if log else _steps
+    return tuple(float(value) for value in between(low, high, number))
+
+
+def _steps(low: Fraction, high: Fraction, count: int) -> list[Fraction]:
+    return [low + (high - low) * i / (count - 1) for i in range(count)]
+
+
+def _ratios(low: Fraction, high: Fraction, count: int) -> list[Any]:
+    """Six digits each, as a person would write them down: the same on every machine."""
+    ratio = float(high / low)
+    inner = [Exact(f"{float(low) * ratio ** (i / (count - 1)):.6g}") for i in range(1, count - 1)]
+    return [low, *inner, high]

@@ -1,0 +1,172 @@
+"""Sweeps in files: a zarr store, or a table of Parquet with a row for each loop.
+
+Parquet holds the unit in the name of each column, `stiffness_N_per_m`, and all that is said of the sweep as
+JSON in the metadata of its schema.  Until it is whole the sweep is in a zarr store beside it.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Mapping
+from io import BytesIO
+from math import prod
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from zwidth.errors import InputError
+from zwidth.missing import did_you_mean
+from zwidth.quantity.glossary import unit_suffix
+from zwidth.reading import check_parquet, shown_only
+from zwidth.study.sweeps.columns import Column
+from zwidth.study.sweeps.request import FORMAT, Request
+from zwidth.writing import first_line, writing_whole
+
+ZARR, PARQUET = ".zarr", ".parquet"
+
+
+def load_sweep(path: str | PathLike[str]) -> xr.Dataset:
+    """The sweep in a file that `sweep` wrote, equal to the one that it gave back.
+
+    Parameters
+    ----------
+    path
+        Ends in .zarr or .parquet.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it holds no whole sweep.
+    """
+    source = Path(path)
+    readers = {ZARR: _read_zarr, PARQUET: _read_parquet}
+    if source.suffix not in readers:
+        raise InputError(f"a sweep is a file that ends in {ZARR} or {PARQUET}, got {str(path)!r}")
+    if not source.exists():
+        raise InputError(f"{source} cannot be read: there is no such file{did_you_mean(source)}")
+    try:
+        found = shown_only(readers[source.suffix](source)[0], source)
+    except InputError:
+        raise
+    except Exception as error:  # what the libraries raise on foreign bytes is not documented
+        raise InputError(f"{source} holds no sweep that can be read: {first_line(error)}") from None
+    return found
+
+
+def begun(path: Path) -> Path:
+    """The store in which a table is until it is whole."""
+    return path.with_name(f"{path.name}.begun")
+
+
+def saved_table(path: Path, asked: Request) -> xr.Dataset:
+    """The sweep of a table that is whole.
+
+    Raises
+    ------
+    InputError
+        If the file holds another one.
+    """
+    try:
+        found, digest = _read_parquet(path)
+    except Exception:  # whatever it is, it is not this sweep
+        digest = ""
+    if digest != asked.digest():
+        raise InputError(f"{path} exists and holds another sweep, or none; choose another name or remove it")
+    return found
+
+
+def save_table(path: Path, asked: Request, found: xr.Dataset) -> None:
+    """Write the table whole, and then remove the store in which it was begun.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    grids = np.meshgrid(*(found[name].values for name in found.dims), indexing="ij", copy=False)
+    columns: dict[str, Any] = {
+        _column(str(name), found[name]): grid.ravel() for name, grid in zip(found.dims, grids, strict=True)
+    }
+    for name, values in found.data_vars.items():
+        flat = values.values.ravel()
+        words = flat.dtype.kind == "U"
+        columns[_column(str(name), values)] = pa.array(flat).dictionary_encode() if words else pa.array(flat)
+    told = {
+        "digest": asked.digest(),
+        "attributes": found.attrs,
+        "axes": {str(name): [str(v) for v in found[name].values.tolist()] for name in found.dims},
+        "variables": {str(name): dict(found[name].attrs) for name in found.variables},
+    }
+    table = pa.table(columns).replace_schema_metadata({"zwidth": json.dumps(told)})
+    whole = BytesIO()
+    pq.write_table(table, whole)
+    with writing_whole(path) as file:
+        file.write(whole.getbuffer())
+    shutil.rmtree(begun(path), ignore_errors=True)
+
+
+def _column(name: str, values: xr.DataArray) -> str:
+    """The name of a column: with its unit, if it has one."""
+    unit = values.attrs.get("units", "")
+    return name if unit in ("", "1") else f"{name}_{unit_suffix(unit)}"
+
+
+def _read_parquet(path: Path) -> tuple[xr.Dataset, str]:
+    import pyarrow.parquet as pq
+
+    check_parquet(path)
+    table = pq.read_table(path)
+    told = json.loads((table.schema.metadata or {}).get(b"zwidth", b"{}"))
+    _refuse_foreign(path, told.get("attributes", {}).get("format"))
+    axes = {name: np.array([float(value) for value in values]) for name, values in told["axes"].items()}
+    shape = tuple(map(len, axes.values()))
+    if prod(shape) != table.num_rows:
+        raise InputError(f"{path} is not whole: {table.num_rows} rows for {prod(shape)} loops")
+    variables = {}
+    for name, about in told["variables"].items():
+        if name not in axes:
+            column = table[_column(name, xr.DataArray(attrs=about))]
+            values = np.array(column.to_pylist()) if "units" not in about else column.to_numpy()
+            variables[name] = (tuple(axes), values.reshape(shape), about)
+    coordinates = {name: (name, values, told["variables"][name]) for name, values in axes.items()}
+    return xr.Dataset(variables, coordinates, told["attributes"]), told["digest"]
+
+
+def _read_zarr(path: Path) -> tuple[xr.Dataset, str]:
+    try:
+        import zarr
+    except ImportError:
+        raise InputError(
+            f'{path} is read by zarr, which is not installed: pip install "zwidth[maps]"'
+        ) from None
+    group: Any = zarr.open_group(path, mode="r")
+    _refuse_foreign(path, group.attrs.get("format"))
+    told = group.attrs.get("told")
+    if told is None:
+        raise InputError(f"{path} is not whole: the command that began it goes on with it")
+    coordinates: dict[str, Any] = {}
+    variables: dict[str, Any] = {}
+    dims = tuple(group.attrs["request"]["axes"])
+    for name in dims:
+        coordinates[name] = (name, np.asarray(group[name]), dict(group[name].attrs))
+    for name, own in told["columns"].items():
+        kept = np.asarray(group[name])
+        variables[name] = (dims, *_shown(kept, own))
+    return xr.Dataset(variables, coordinates, told["attributes"]), str(group.attrs.get("digest"))
+
+
+def _shown(kept: Any, own: Mapping[str, Any]) -> tuple[Any, dict[str, Any]]:
+    column = Column(own["meaning"], own["unit"], tuple(own["words"]), own["several"])
+    return column.shown(kept), column.told()
+
+
+def _refuse_foreign(path: Path, kind: object) -> None:
+    if kind != FORMAT:
+        raise InputError(f"{path} holds no sweep of this version")
