@@ -5,7 +5,8 @@
 
 Pairs are drawn by `shaken_pairs.py`, which knows nothing of the diagnosis.  FOLDER keeps the logs.  `--learn`
 prints the exponent γ of `zwidth.data.diagnosis.pairs.causes` that makes the drawn causes likeliest; its seed
-must be another than that of the count.  A change is put into the arms themselves, not into what was identified.
+must be another than that of the count.  A change is put into the arms themselves, not into what was
+identified.
 """
 
 from __future__ import annotations

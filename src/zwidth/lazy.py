@@ -8,9 +8,13 @@ from __future__ import annotations
 
 import ast
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib import import_module
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 ABOVE: dict[str, str] = {}
@@ -40,6 +44,42 @@ def attach(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]],
         return found
 
     return get, lambda: sorted(places), sorted(places)
+
+
+class PublicRooms(MetaPathFinder, Loader):
+    """Rooms that a package offers from a floor below: ``import zwidth.rendering`` is the room itself.
+
+    Parameters
+    ----------
+    package
+        Whose stub says where each of them is.
+    """
+
+    def __init__(self, package: str) -> None:
+        self.package = package
+        self.places = dict(_places(Path(str(sys.modules[package].__file__)).with_suffix(".pyi")))
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """Where the first part after the package is offered, and is a room."""
+        package, _, rest = name.partition(".")
+        room, _, inner = rest.partition(".") if package == self.package else ("", "", "")
+        if room not in self.places:
+            return None
+        where = ".".join((*self.places[room], *filter(None, [inner])))
+        return ModuleSpec(name, self, origin=where) if find_spec(where) else None
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        """The room, whose own specification is kept."""
+        room = import_module(str(spec.origin))
+        spec.loader_state = room.__spec__
+        return room
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Nothing: it was run under its own name."""
+        assert module.__spec__ is not None
+        module.__spec__ = module.__spec__.loader_state
 
 
 def _places(stub: Path) -> list[tuple[str, tuple[str, str]]]:

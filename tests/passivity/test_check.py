@@ -14,8 +14,8 @@ from zwidth import checker
 from zwidth.passivity import gap
 from zwidth.passivity.advice import in_lines
 from zwidth.passivity.certificate import verify_document
-from zwidth.passivity.document import to_json
 from zwidth.passivity.witness.motion import Motion
+from zwidth.quantity.json_text import to_json
 
 PADDLE = zw.Device(
     mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, sample_period=1e-3, name="paddle"

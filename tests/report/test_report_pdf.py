@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 import zwidth as zw
-from zwidth.passivity.document import json_file
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.json_text import json_file
 
 reportlab = pytest.importorskip("reportlab")
 

@@ -15,8 +15,8 @@ from typing import Any, ClassVar
 from zwidth.errors import InputError
 from zwidth.model.specification.table import plain, quoted
 from zwidth.passivity.document import unit_key
-from zwidth.passivity.result import Documented
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import at_most, in_words, outward_decimal, shown_at_most, unit_text

@@ -1,1 +1,1 @@
-"""From recordings: logs, and what they tell of a device, a tissue, a finger, of what shakes; files of gains."""
+"""From recordings: logs, what they tell of a device, a tissue, a finger, of what shakes; files of gains."""

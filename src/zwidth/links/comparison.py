@@ -27,7 +27,7 @@ from zwidth.links.wave_port import WavePort
 from zwidth.loop.traces.scores import static_stiffness
 from zwidth.model.device import Device
 from zwidth.model.operator import PrescribedMotion, RecordedForce
-from zwidth.passivity.result import Documented
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.parameter import parameters_of, read_number

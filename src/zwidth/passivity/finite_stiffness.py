@@ -24,10 +24,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.errors import InputError
 from zwidth.passivity.document import unit_key
-from zwidth.passivity.result import Documented
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.text import told_quantity
 from zwidth.showing import Part, Table
 

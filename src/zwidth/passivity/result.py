@@ -3,99 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from zwidth.checker import EVIDENCE, verify
 from zwidth.errors import InputError
-from zwidth.lazy import above
-from zwidth.passivity.document import save_json, to_json
 from zwidth.passivity.flat import to_dataset, to_series
 from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.wording import lines
-from zwidth.showing import Headline, Lines, Part, Picture, Shown, Table
+from zwidth.quantity.documented import Documented
+from zwidth.showing import Headline, Lines, Part, Table
 
 
 def evidence_of(result: object) -> dict[str, Any]:
     """The proofs and motions that a result holds, as plain data."""
     found = {name: getattr(result, name, None) for name in EVIDENCE}
     return {name: part.saved() for name, part in found.items() if part is not None}
-
-
-class Documented(Shown):
-    """Something that is plain data too: it can be saved, and drawn where there is a picture of it."""
-
-    FORMAT: ClassVar[str]
-    """Under which its document is known."""
-
-    PICTURE: ClassVar[str] = ""
-    """What draws it, among the plots above."""
-
-    def to_dict(self) -> dict[str, Any]:
-        """It as plain data, a unit in every key of a physical quantity."""
-        raise NotImplementedError
-
-    def to_json(self) -> str:
-        """`to_dict` as JSON text, every exact number digit for digit."""
-        return to_json(self.to_dict())
-
-    def saved(self) -> dict[str, Any]:
-        """What `save` writes."""
-        return self.to_dict()
-
-    def save(self, path: str | Path) -> None:
-        """Write it as JSON, with its evidence for `zwidth verify`.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written.
-        """
-        save_json(path, self.saved())
-
-    def plot(self, path: str | Path | None = None) -> Any:
-        """Its picture, a matplotlib figure that belongs to no window; saved where a path is given.
-
-        Parameters
-        ----------
-        path
-            Ends in .png, .svg or .pdf.
-
-        Raises
-        ------
-        InputError
-            If there is nothing to draw, or the file cannot be written.
-        """
-        figure = self.figure()
-        if path is not None:
-            above("plots").save_figure(lambda: figure, path, overwrite=True)
-        return figure
-
-    def pictures(self) -> Iterable[Picture]:
-        """Its picture for a notebook, small; none where there is nothing to draw."""
-        if not self.PICTURE:
-            return ()
-        try:
-            figure = self.figure()
-        except InputError:
-            return ()
-        data = above("plots").encoded(figure, "png", dpi=_SMALL)
-        return (Picture(data, "png", self.says()),)
-
-    def says(self) -> str:
-        """What its picture shows, for those who cannot see it."""
-        return type(self).__name__
-
-    def figure(self) -> Any:
-        """What `plot` returns."""
-        if not self.PICTURE:
-            raise InputError(f"there is no picture of this {type(self).__name__}")
-        return getattr(above("plots"), self.PICTURE)(self)
-
-
-_SMALL = 80
-"""Dots in an inch of a picture in a notebook."""
 
 
 class Result(Documented):

@@ -12,9 +12,10 @@ from typing import Any
 from zwidth.passivity import claims
 from zwidth.passivity.actuator_demand import actuator_demand, is_beyond
 from zwidth.passivity.advice import Advice, in_lines
-from zwidth.passivity.document import save_json, unit_key
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.found import Found
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.json_text import save_json
 from zwidth.quantity.text import enough, in_unit, in_words
 from zwidth.showing import Lines, Part
 

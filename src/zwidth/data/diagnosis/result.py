@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Diagnosis(Answer[Change, Evidence, Recording]):
     """Why it shook: `cause` is one of the keys of `zwidth.data.diagnosis.CAUSES`, or None where the data do
-    not say, and `confidence` how often such a finding is right, among faults simulated as the weights were learnt
-    from.
+    not say, and `confidence` how often such a finding is right, among faults simulated as the weights were
+    learnt from.
 
     Parameters
     ----------
@@ -95,4 +95,5 @@ class Diagnosis(Answer[Change, Evidence, Recording]):
         return written(change.device, change.environment)
 
     def _figure(self) -> Figure:
-        return above("plots").diagnosis_figure(self.recording, self.seen, self.claim)
+        figure: Figure = above("plots").diagnosis_figure(self.recording, self.seen, self.claim)
+        return figure

@@ -15,8 +15,9 @@ from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import PulseTransferFunction
 from zwidth.passivity.check import check
 from zwidth.passivity.outcome import COLOUR, Outcome
-from zwidth.passivity.result import Documented, evidence_of
+from zwidth.passivity.result import evidence_of
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number

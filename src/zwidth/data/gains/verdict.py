@@ -18,7 +18,7 @@ from zwidth.model.specification.table import quoted, suggestion
 from zwidth.passivity.outcome import COLOUR, Outcome
 from zwidth.passivity.pairs import PairVerdict, check_pair
 from zwidth.passivity.pairs.limits import samples_around
-from zwidth.passivity.result import Documented
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
 from zwidth.showing import Headline, Lines, Part, Table

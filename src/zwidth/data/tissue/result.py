@@ -18,7 +18,7 @@ from zwidth.lazy import above
 from zwidth.model.environment.discretization import Discretization
 from zwidth.model.environment.environment import Environment
 from zwidth.native.compiled import Array
-from zwidth.passivity.result import Documented
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import unit_text

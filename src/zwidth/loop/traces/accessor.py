@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import xarray as xr
 
@@ -18,9 +18,6 @@ from zwidth.loop.traces.files import save_trace
 from zwidth.loop.traces.perceived import WEBER, noticeable_differences
 from zwidth.loop.traces.scores import static_stiffness, tracking_error
 from zwidth.loop.traces.sound import save_sound
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @xr.register_dataset_accessor("zwidth")  # type: ignore[no-untyped-call]
@@ -84,10 +81,10 @@ class TraceAccessor:
         """How many just-noticeable differences this is from a stiffness, see `noticeable_differences`."""
         return noticeable_differences(self.felt_stiffness, wanted, weber)
 
-    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
+    def plot(self, path: str | PathLike[str] | None = None) -> Any:
         """Position, force and energy against time, as the papers draw them; saved if a path is given."""
         plots = above("plots")
-        figure: Figure = (plots.pair_trace_figure if self._both else plots.trace_figure)(self._trace)
+        figure = (plots.pair_trace_figure if self._both else plots.trace_figure)(self._trace)
         if path is not None:
             plots.save_figure(lambda: figure, Path(path), overwrite=True)
         return figure

@@ -11,14 +11,13 @@ from zwidth.errors import InputError
 from zwidth.lazy import above
 from zwidth.loop.energy import ledger
 from zwidth.loop.traces.measures import COLUMNS, keyed, measure, units_of
-from zwidth.passivity.result import Documented
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import unit_text
 from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,9 +83,10 @@ class Comparison(Documented):
         ]
         return [head, *lines]
 
-    def figure(self) -> Figure:
+    def figure(self) -> Any:
         """All traces in one figure."""
-        return above("plots").comparison_figure(self.traces)
+        figure = above("plots").comparison_figure(self.traces)
+        return figure
 
     def report(self) -> Iterable[Part]:
         """The table."""

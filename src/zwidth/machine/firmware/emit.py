@@ -23,11 +23,11 @@ from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.check import check
-from zwidth.passivity.document import to_json
 from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.result import Result
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Interval, RealLike, ends
+from zwidth.quantity.json_text import to_json
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import quantity_unit, shown, told, told_quantity
 from zwidth.quantity.units import parse, parse_number

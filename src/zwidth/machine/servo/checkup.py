@@ -14,8 +14,8 @@ from zwidth.machine.servo.priority import Granted
 from zwidth.model.device import Device
 from zwidth.model.environment import Wall
 from zwidth.model.environment.environment import Environment
-from zwidth.passivity.result import Documented
 from zwidth.progress import progress_bar
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import read_number

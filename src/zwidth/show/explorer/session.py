@@ -19,8 +19,8 @@ from zwidth.model.specification.environments import TYPES
 from zwidth.model.specification.read import Specification
 from zwidth.model.specification.table import plain
 from zwidth.model.specification.write import written
-from zwidth.passivity.document import to_json
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.json_text import to_json
 from zwidth.quantity.spoken import angles_in, answers_in
 from zwidth.show.explorer import starts
 from zwidth.show.explorer.computing import answered, reported

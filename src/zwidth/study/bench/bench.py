@@ -21,7 +21,7 @@ from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.environment.wall import Wall
 from zwidth.model.pairs import Pair
-from zwidth.passivity.result import Documented
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import shown
@@ -173,7 +173,8 @@ class LawComparison(Documented):
 
     def figure(self) -> Figure:
         """Stability against fidelity, and the touches of each law."""
-        return above("plots").laws_figure(self)
+        figure: Figure = above("plots").laws_figure(self)
+        return figure
 
 
 def _finite(number: float) -> float | None:

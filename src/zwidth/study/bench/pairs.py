@@ -16,7 +16,7 @@ from zwidth.model.environment import Wall
 from zwidth.model.operator import PrescribedMotion, RecordedForce
 from zwidth.model.pairs import Pair
 from zwidth.passivity.pairs import PairCriterion, PairVerdict, check_pair
-from zwidth.passivity.result import Documented
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import shown, unit_text
 from zwidth.showing import Part, Table

@@ -23,9 +23,9 @@ import xarray as xr
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.environment.velocity import VelocityEstimator
-from zwidth.passivity.document import to_json
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.json_text import to_json
 from zwidth.study.chunks.layout import Layers, Place
 from zwidth.study.chunks.store import computed
 from zwidth.study.chunks.workers import Finished, on_cluster, on_threads

@@ -9,9 +9,9 @@ import xarray as xr
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
-from zwidth.passivity.document import to_json
 from zwidth.passivity.scope import scope_of
 from zwidth.quantity.exact import Interval
+from zwidth.quantity.json_text import to_json
 from zwidth.study.chunks.layout import Layers
 from zwidth.study.sweeps.columns import REFUSED
 from zwidth.study.sweeps.questions import HANDS

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, kw_only=True, repr=False)
 class PairDiagnosis(Answer[PairChange, PairEvidence, PairRecording]):
     """Why two arms shook that follow each other: `cause` is one of `zwidth.data.diagnosis.PAIR_CAUSES`, or
-    None where the data do not say, and `confidence` how often such a finding is right, among simulated pairs that
-    shake for one reason.
+    None where the data do not say, and `confidence` how often such a finding is right, among simulated
+    pairs that shake for one reason.
     """
 
     @property
@@ -86,7 +86,8 @@ class PairDiagnosis(Answer[PairChange, PairEvidence, PairRecording]):
         return written_pair(change.pair)
 
     def _figure(self) -> Figure:
-        return above("plots").pair_figure(self.recording, self.seen, self.claim)
+        figure: Figure = above("plots").pair_figure(self.recording, self.seen, self.claim)
+        return figure
 
 
 def _unit(name: str, seen: PairEvidence) -> str:

@@ -74,7 +74,7 @@ class Identified(Shown, IdentifiedNumbers):
         force
             Replace a file that exists.
         """
-        figure = above("plots").identification_figure(self)
+        figure: Figure = above("plots").identification_figure(self)
         if path is not None:
             above("plots").save_figure(lambda: figure, Path(path), overwrite=force)
         return figure

@@ -20,7 +20,7 @@ from zwidth.errors import InputError
 from zwidth.lazy import above
 from zwidth.model.environment.discretization import Discretization
 from zwidth.model.environment.environment import Environment
-from zwidth.passivity.result import Documented
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.text import shown
 from zwidth.showing import Lines, Part, Table
 

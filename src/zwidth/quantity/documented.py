@@ -1,0 +1,87 @@
+"""What can be said as plain data, saved, and drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, ClassVar
+
+from zwidth.errors import InputError
+from zwidth.lazy import above
+from zwidth.quantity.json_text import save_json, to_json
+from zwidth.showing import Picture, Shown
+
+
+class Documented(Shown):
+    """Something that is plain data too: it can be saved, and drawn where there is a picture of it."""
+
+    FORMAT: ClassVar[str]
+    """Under which its document is known."""
+
+    PICTURE: ClassVar[str] = ""
+    """What draws it, among the plots above."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """It as plain data, a unit in every key of a physical quantity."""
+        raise NotImplementedError
+
+    def to_json(self) -> str:
+        """`to_dict` as JSON text, every exact number digit for digit."""
+        return to_json(self.to_dict())
+
+    def saved(self) -> dict[str, Any]:
+        """What `save` writes."""
+        return self.to_dict()
+
+    def save(self, path: str | Path) -> None:
+        """Write it as JSON, with its evidence for `zwidth verify`.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written.
+        """
+        save_json(path, self.saved())
+
+    def plot(self, path: str | Path | None = None) -> Any:
+        """Its picture, a matplotlib figure that belongs to no window; saved where a path is given.
+
+        Parameters
+        ----------
+        path
+            Ends in .png, .svg or .pdf.
+
+        Raises
+        ------
+        InputError
+            If there is nothing to draw, or the file cannot be written.
+        """
+        figure = self.figure()
+        if path is not None:
+            above("plots").save_figure(lambda: figure, path, overwrite=True)
+        return figure
+
+    def pictures(self) -> Iterable[Picture]:
+        """Its picture for a notebook, small; none where there is nothing to draw."""
+        if not self.PICTURE:
+            return ()
+        try:
+            figure = self.figure()
+        except InputError:
+            return ()
+        data = above("plots").encoded(figure, "png", dpi=_SMALL)
+        return (Picture(data, "png", self.says()),)
+
+    def says(self) -> str:
+        """What its picture shows, for those who cannot see it."""
+        return type(self).__name__
+
+    def figure(self) -> Any:
+        """What `plot` returns."""
+        if not self.PICTURE:
+            raise InputError(f"there is no picture of this {type(self).__name__}")
+        return getattr(above("plots"), self.PICTURE)(self)
+
+
+_SMALL = 80
+"""Dots in an inch of a picture in a notebook."""
