@@ -125,11 +125,11 @@ def test_version_is_the_one_of_the_distribution() -> None:
 def test_what_is_shipped_beside_the_code() -> None:
     """Type checkers find the marker, the catalogue its data; checkers schemas, laws mains, pages modules."""
     assert (SOURCE / "py.typed").exists()
-    assert (SOURCE / "device" / "catalogue.toml").exists()
-    assert (SOURCE / "gains" / "families.toml").exists()
+    assert (SOURCE / "model" / "device" / "catalogue.toml").exists()
+    assert (SOURCE / "data" / "gains" / "families.toml").exists()
     assert (SOURCE / "checker" / "schemas" / "spring.json").exists()
-    assert (SOURCE / "firmware" / "mains" / "shared" / "guard.h").exists()
-    assert (SOURCE / "explorer" / "play" / "engine.mjs").exists()
+    assert (SOURCE / "machine" / "firmware" / "mains" / "shared" / "guard.h").exists()
+    assert (SOURCE / "show" / "explorer" / "play" / "engine.mjs").exists()
 
 
 def _tracked() -> list[Path]:

@@ -57,7 +57,8 @@ class PublicRooms(MetaPathFinder, Loader):
 
     def __init__(self, package: str) -> None:
         self.package = package
-        self.places = dict(_places(Path(str(sys.modules[package].__file__)).with_suffix(".pyi")))
+        stub = Path(str(sys.modules[package].__file__)).with_suffix(".pyi")
+        self.places = {name: place for name, place in _places(stub) if place[0] != package}
 
     def find_spec(
         self, name: str, path: Sequence[str] | None, target: ModuleType | None = None

@@ -13,7 +13,7 @@ from written_rows import COLUMNS, WrittenRows, drawn
 
 import zwidth as zw
 from zwidth import InputError
-from zwidth.loop import Timing
+from zwidth.loop.timing import Timing
 from zwidth.machine.servo import Placement, Safety
 from zwidth.machine.servo.devices import Simulated
 from zwidth.machine.servo.recording import Recorder, Recording, read_recording, replay, touch_of
