@@ -36,13 +36,7 @@ _STEP = 2**20
 
 
 def shown_only(data: xr.Dataset, path: Path) -> xr.Dataset:
-    """A Dataset of a file, its attributes without what a terminal or a page would obey.
-
-    Raises
-    ------
-    InputError
-        If a name in it has such a character: it would be another one without.
-    """
+    """A Dataset of a file, its attributes without what a terminal or a page would obey."""
     if not all(str(name).isprintable() for name in (*data.variables, *data.dims)):
         raise InputError(f"{path} is not read: a name in it holds control characters")
     parts: list[Any] = [data, *data.variables.values()]

@@ -35,14 +35,7 @@ _ANYBODY = 0o666
 
 
 def check_target(path: Path, force: bool, how: str = "force=True") -> None:
-    """Refuse a place where nothing can be written, or a file would be lost, before anything is computed.
-
-    Raises
-    ------
-    InputError
-        If it exists and `force` is False, is a directory, lies in none, or may not be written; `how` is what
-        to give in the place of `force`.
-    """
+    """Refuse a place where nothing can be written, or a file would be lost, before anything is computed."""
     try:
         if b"\0" in os.fsencode(path):
             raise InputError(f"{path} cannot be written: a name has no zero bytes")
@@ -69,11 +62,6 @@ def writing_whole(path: Path) -> Iterator[IO[bytes]]:
     """A file to write to; at the end it takes the place of `path`, or of the file that a link names.
 
     What exists and is no file, such as /dev/null, keeps its place and is written itself.
-
-    Raises
-    ------
-    InputError
-        If writing fails for a reason of the disk; what was there is then still there, and nothing else.
     """
     try:
         with _opened(path) as file:
@@ -155,13 +143,7 @@ def _is_formula(text: str) -> bool:
 
 @contextmanager
 def alone(path: Path) -> Iterator[None]:
-    """What grows at `path` grows by one process at a time; the system forgets the lock of one that is killed.
-
-    Raises
-    ------
-    InputError
-        If another process is at it, or nothing can be written there.
-    """
+    """What grows at `path` grows by one process at a time; the system forgets the lock of one that is killed."""
     if path.is_symlink() and not path.exists():
         raise InputError(f"{path} is a link that leads nowhere; choose another name or remove it first")
     lock = path.with_name(f".{path.name}.lock")

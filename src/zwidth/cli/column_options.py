@@ -14,13 +14,7 @@ SHEET = "of a workbook, where several hold a recording"
 
 
 def pairs_of(option: str, typed: Sequence[str] | None, quantities: Sequence[str]) -> dict[str, str]:
-    """What an option that may come several times says of each quantity.
-
-    Raises
-    ------
-    InputError
-        If it is not written QUANTITY=VALUE, or names a quantity that there is not, or one twice.
-    """
+    """What an option that may come several times says of each quantity."""
     pairs = dict(_pair(option, text, quantities) for text in typed or ())
     if len(pairs) < len(typed or ()):
         raise InputError(f"{option} names a quantity twice; which one is meant?")

@@ -41,11 +41,6 @@ def asked(arguments: argparse.Namespace, in_range: bool = False) -> Asked:
         Of the command line.
     in_range
         True where a device of the catalogue may have its stated ranges in the place of what nobody published.
-
-    Raises
-    ------
-    InputError
-        If anything cannot be used: it says where it stands and what is allowed.
     """
     from zwidth.model.specification.laws import with_laws
     from zwidth.model.specification.read import WITH_LAWS, Specification, built, merged, read_tables

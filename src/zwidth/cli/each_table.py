@@ -183,11 +183,6 @@ def read_measured(path: Path, motion: str) -> dict[str, float]:
     """From which stiffness on each device was seen to shake [N/m; N·m/rad].
 
     A line for each device, its name and the stiffness, with a unit or in that of the head: "stiffness [N/m]".
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, a line has no such stiffness above 0, or names a device twice.
     """
     rows, unit = _lines(path), GLOSSARY["stiffness"].unit_for(motion)
     bracket = _UNIT.search(" ".join(rows[0][1:2])) if rows else None

@@ -38,13 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def copy_to(folder: Path, force: bool) -> None:
-    """Copy every sample into a folder, all of them or none.
-
-    Raises
-    ------
-    InputError
-        If one exists and `force` is False, or the folder cannot be made.
-    """
+    """Copy every sample into a folder, all of them or none."""
     try:
         folder.mkdir(exist_ok=True)
     except (OSError, ValueError) as error:

@@ -19,13 +19,7 @@ ABOUT = "of each hand alone, as long as it keeps contact; dry friction and encod
 
 
 def named_hands(typed: str, motion: str) -> dict[str, Any]:
-    """The hands of a list of names.
-
-    Raises
-    ------
-    InputError
-        If one is not known.
-    """
+    """The hands of a list of names."""
     from zwidth.study.maps.request import standard_hands
 
     known, names = standard_hands(motion), [name.strip() for name in typed.split(",")]
@@ -36,13 +30,7 @@ def named_hands(typed: str, motion: str) -> dict[str, Any]:
 
 
 def with_hands(loop: Specification, typed: str | None) -> dict[str, Stability]:
-    """Of each hand whether it comes to rest against what is rendered; nothing where none is named.
-
-    Raises
-    ------
-    InputError
-        If a hand is not known, or the loop is not one that this is known of.
-    """
+    """Of each hand whether it comes to rest against what is rendered; nothing where none is named."""
     if typed is None:
         return {}
     from zwidth.passivity.stability import coupled_stability

@@ -30,13 +30,7 @@ def hand_parameters() -> Iterator[Parameter]:
 
 
 def known_hands(arguments: argparse.Namespace, motion: str) -> dict[str, HandImpedance | None]:
-    """What holds the leader or the follower, None for nobody; without those that any hand may hold.
-
-    Raises
-    ------
-    InputError
-        If a kind is unknown, or a number has a value it cannot have.
-    """
+    """What holds the leader or the follower, None for nobody; without those that any hand may hold."""
     typed = given(arguments, [p.key for p in hand_parameters()])
     return {
         side: _hand(option, {k: v for k, v in typed.items() if k.partition(".")[0] == option}, motion)

@@ -105,13 +105,7 @@ def _announce(seconds: float) -> None:
 
 
 def _refuse_without_stiffness(loop: Specification) -> None:
-    """Ask for the parameter where there is no stiffness to take.
-
-    Raises
-    ------
-    InputError
-        If the environment has no single stiffness: it says of what a limit can be sought.
-    """
+    """Ask for the parameter where there is no stiffness to take."""
     met = loop.environment.met
     if hasattr(met, "stiffness"):
         return
@@ -129,13 +123,7 @@ def _refuse_without_stiffness(loop: Specification) -> None:
 
 
 def named(typed: str) -> str:
-    """The name in Python of what is an option here: `damping` is always the device's.
-
-    Raises
-    ------
-    InputError
-        If there is no such parameter.
-    """
+    """The name in Python of what is an option here: `damping` is always the device's."""
     name = typed.strip().replace("-", "_")
     on_device, in_environment = set(PROPERTIES) & set(GLOSSARY), {*option_keys(), "gain"}
     if name not in on_device | in_environment:

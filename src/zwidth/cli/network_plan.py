@@ -139,13 +139,7 @@ class Plan:
         return (*self.periods, *self.devices)
 
     def runs(self, name: str, duration: Exact) -> PartRun | DeviceRun | PortRun:
-        """What the process of a name steps.
-
-        Raises
-        ------
-        InputError
-            If there is no such process, or the device cannot be simulated.
-        """
+        """What the process of a name steps."""
         if name not in self.names:
             raise InputError(f'no process is called "{name}"; there are: {", ".join(self.names)}')
         if name not in self.devices:
@@ -156,13 +150,7 @@ class Plan:
         return held.runs(WavePort(held.device, impedance=w), duration, name)
 
     def peer(self, name: str, duration: Exact) -> Peer:
-        """The same with its channels open.
-
-        Raises
-        ------
-        InputError
-            As `runs`, or if a channel cannot be opened.
-        """
+        """The same with its channels open."""
         runs = self.runs(name, duration)
         with ExitStack() as opened:  # closed again if one cannot be opened
             channels = {
@@ -174,13 +162,7 @@ class Plan:
 
 
 def load_plan(path: Path) -> Plan:
-    """Read the file of a network.
-
-    Raises
-    ------
-    InputError
-        If anything cannot be used: it says where it stands and what is allowed.
-    """
+    """Read the file of a network."""
     tables = read_tables([path], ("environment", "network"))
     for needed in ("environment", "network"):
         if needed not in tables:

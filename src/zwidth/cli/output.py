@@ -79,13 +79,7 @@ def encodes(text: str, stream: TextIO | None = None) -> bool:
 
 @contextmanager
 def quiet_pipe(stream: TextIO | None = None) -> Iterator[None]:
-    """Write inside, and do not complain when the reader, such as `head`, has left.
-
-    Raises
-    ------
-    InputError
-        If the stream cannot be written for another reason, such as a full disk.
-    """
+    """Write inside, and do not complain when the reader, such as `head`, has left."""
     stream = stream or sys.stdout
     if stream is None:  # the process was started without it
         yield
@@ -137,24 +131,12 @@ def print_json(text: str) -> None:
 
 
 def check_new(path: Path, force: bool) -> None:
-    """Refuse a path that cannot be written, or where a file would be lost.
-
-    Raises
-    ------
-    InputError
-        See `check_target`.
-    """
+    """Refuse a path that cannot be written, or where a file would be lost."""
     check_target(path, force, "--force")
 
 
 def target(option: str, given: str | None, suffixes: Sequence[str], force: bool) -> Path | None:
-    """The file of an option, checked before anything is computed; None where none was asked for.
-
-    Raises
-    ------
-    InputError
-        If it ends in none of these, cannot be written, or would be lost.
-    """
+    """The file of an option, checked before anything is computed; None where none was asked for."""
     if given is None:
         return None
     path = Path(given)
@@ -167,13 +149,7 @@ def target(option: str, given: str | None, suffixes: Sequence[str], force: bool)
 def targets(
     plot: str | None, save: str | None, force: bool, option: str = "--save"
 ) -> tuple[Path | None, Path | None]:
-    """The files of --plot and --save, or what takes its place, checked before anything is computed.
-
-    Raises
-    ------
-    InputError
-        If one cannot be written or would be lost, or both are the same.
-    """
+    """The files of --plot and --save, or what takes its place, checked before anything is computed."""
     picture = target("--plot", plot, PICTURES, force)
     document = None if save is None else Path(save)
     if document is None:

@@ -10,13 +10,7 @@ from zwidth.model.specification.table import quoted, suggestion
 
 
 def schema(kind: str) -> str:
-    """What stands in the file of a kind of document, in lines for people.
-
-    Raises
-    ------
-    InputError
-        If there is no such kind.
-    """
+    """What stands in the file of a kind of document, in lines for people."""
     shipped = {
         path.name.removesuffix(".json").replace("-", " "): path
         for path in files("zwidth.checker").joinpath("schemas").iterdir()

@@ -38,15 +38,7 @@ _DURATION = "10 s"
 
 
 def served_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> PairServoReport:
-    """The report of the pair that tables and command line describe, served.
-
-    Raises
-    ------
-    PairNotProved
-        If the pair is not proved passive, and --anyway is not given.
-    InputError
-        If anything cannot be used.
-    """
+    """The report of the pair that tables and command line describe, served."""
     from zwidth.machine.servo import PairServo, Placement
     from zwidth.machine.servo.safety import read_safety
 

@@ -48,13 +48,7 @@ def safety_parameters() -> list[Parameter]:
 
 
 def reached(table: Table, motion: str) -> tuple[Connection | None, Placement | None]:
-    """The connection of a table, and where the wall is; None and None for the simulated one.
-
-    Raises
-    ------
-    InputError
-        If a key is unknown or has a value it cannot have.
-    """
+    """The connection of a table, and where the wall is; None and None for the simulated one."""
     from zwidth.machine.servo import Placement
     from zwidth.machine.servo.devices.registry import SIMULATED, build_connection
 

@@ -185,13 +185,7 @@ def _surface(met: Environment) -> float | None:
 
 
 def own_duration(operator: Any, period: float) -> float:
-    """How long a record or a witness lasts [s].
-
-    Raises
-    ------
-    InputError
-        If the hand has no end of its own.
-    """
+    """How long a record or a witness lasts [s]."""
     if hasattr(operator, "newtons"):
         return len(operator.newtons) * period
     if hasattr(operator, "intervals"):

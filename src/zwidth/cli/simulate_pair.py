@@ -19,13 +19,7 @@ if TYPE_CHECKING:
 
 
 def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> Trace:
-    """The trace of the pair, and of what holds it, that tables and command line describe.
-
-    Raises
-    ------
-    InputError
-        If anything cannot be used.
-    """
+    """The trace of the pair, and of what holds it, that tables and command line describe."""
     from zwidth.cli.simulation_tables import (
         FOLLOWER,
         build_follower,
@@ -48,13 +42,7 @@ def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -
 
 
 def pair_with_options(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> Pair:
-    """The pair of the tables, with what the command line says of its coupling.
-
-    Raises
-    ------
-    InputError
-        If there is an environment or a law, or an option that does not say of which arm.
-    """
+    """The pair of the tables, with what the command line says of its coupling."""
     for name in ("environment", "law"):
         if name in tables or (name == "law" and arguments.law):
             raise InputError(

@@ -151,13 +151,7 @@ def _shared() -> dict[str, tuple[Quantity, list[str]]]:
 def build_touch(
     operator: Table | None, simulation: Table | None, overrides: Mapping[str, str], motion: str
 ) -> Touch:
-    """The hand and the run that tables and command line describe.
-
-    Raises
-    ------
-    InputError
-        If a key is unknown or missing, or has a value it cannot have.
-    """
+    """The hand and the run that tables and command line describe."""
     hand_table = operator or Table(COMMAND_LINE, {})
     run_table = simulation or Table(COMMAND_LINE, {})
     for key, value in overrides.items():
@@ -179,13 +173,7 @@ def build_touch(
 
 
 def build_follower(table: Table | None, overrides: Mapping[str, str], motion: str) -> Operator | Wall | None:
-    """What holds the follower of a pair, as tables and command line describe it; None for nobody.
-
-    Raises
-    ------
-    InputError
-        As `build_touch`.
-    """
+    """What holds the follower of a pair, as tables and command line describe it; None for nobody."""
     table = table or Table(COMMAND_LINE, {})
     for key, value in overrides.items():
         table.override("type" if key == FOLLOWER else key.removeprefix(f"{FOLLOWER}."), value)
@@ -206,13 +194,7 @@ def build_follower(table: Table | None, overrides: Mapping[str, str], motion: st
 
 
 def build_hand(table: Table, motion: str, option: str = OPERATOR) -> Operator:
-    """The hand that a table describes; `option` is what it is called on the command line.
-
-    Raises
-    ------
-    InputError
-        As `build_touch`.
-    """
+    """The hand that a table describes; `option` is what it is called on the command line."""
     if "type" not in table.values:
         kinds = "; ".join(f"{name}, {IN_A_WORD[name]}" for name in _fitting(motion))
         flag = f"--{option.replace('_', '-')}"

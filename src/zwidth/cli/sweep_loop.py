@@ -40,11 +40,6 @@ def asked(arguments: argparse.Namespace, of: str, vary: Mapping[str, str]) -> As
     """The loop, and the further arguments of the question.
 
     What is varied need not be given: it begins with its last value.
-
-    Raises
-    ------
-    InputError
-        If anything cannot be used, or an option is none of this command.
     """
     begun, unknown = _begin(arguments, vary)
     _refuse_others(arguments, of)

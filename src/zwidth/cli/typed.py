@@ -32,13 +32,7 @@ class Once(argparse.Action):
 
 
 def heed_angles(arguments: argparse.Namespace) -> None:
-    """Answer in the angles that were asked for.
-
-    Raises
-    ------
-    InputError
-        If there are none of that name.
-    """
+    """Answer in the angles that were asked for."""
     if arguments.angles is not None:
         if arguments.angles not in ANGLES:
             raise InputError(f"--angles is one of {', '.join(ANGLES)}, got {arguments.angles[:40]!r}")

@@ -78,13 +78,7 @@ def _schema(arguments: argparse.Namespace) -> int:
 
 
 def judged(path: str) -> Judged:
-    """What the checker finds of a file.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or holds nothing to be checked.
-    """
+    """What the checker finds of a file."""
     try:
         return judge_file(path)
     except Unreadable as error:

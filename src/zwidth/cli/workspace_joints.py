@@ -41,13 +41,7 @@ def add_joint_options(parser: argparse.ArgumentParser) -> None:
 
 
 def joints_of(arguments: argparse.Namespace) -> dict[str, Any]:
-    """What is given of the joints, a list for each kind; of damping perhaps the rows of a matrix.
-
-    Raises
-    ------
-    InputError
-        If something is given twice, or the file cannot be used.
-    """
+    """What is given of the joints, a list for each kind; of damping perhaps the rows of a matrix."""
     by_option = {
         key: [float(parse_number(part.strip(), unit, option[2:])) for part in text.split(",")]
         for option, key, unit, _ in _JOINT_OPTIONS
@@ -61,13 +55,7 @@ def joints_of(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def read_joints(path: Path) -> dict[str, Any]:
-    """The table [joints] of a TOML file.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or an entry is no list of numbers.
-    """
+    """The table [joints] of a TOML file."""
     from zwidth.model.specification.read import read_tables
 
     table = read_tables([path], ("joints",))["joints"]

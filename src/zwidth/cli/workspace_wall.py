@@ -86,13 +86,7 @@ def is_of_controllers(path: Path) -> bool:
 
 
 def cartesian_of(path: Path) -> CartesianGains:
-    """The impedance of a parameter file of ros2_control, with its rate, where the file says one.
-
-    Raises
-    ------
-    InputError
-        If there is not one.
-    """
+    """The impedance of a parameter file of ros2_control, with its rate, where the file says one."""
     from zwidth.data.gains import read_controllers
 
     found, name = read_controllers(path), f"--wall {path.name}"
@@ -123,13 +117,7 @@ def left_out(arguments: argparse.Namespace, turns: int) -> list[str]:
 
 
 def read_wall(path: Path, turns: int) -> MatrixWall:
-    """A `MatrixWall` from the table [wall] of a TOML file.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or a matrix in it cannot be used.
-    """
+    """A `MatrixWall` from the table [wall] of a TOML file."""
     from zwidth.model.arms.matrix_wall import MatrixWall
     from zwidth.model.specification.read import read_tables
 

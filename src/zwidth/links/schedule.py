@@ -55,11 +55,6 @@ class Schedule(Parametric):
         Share that arrives twice, 0 … 1.
     seed
         Of the draws: the same seed gives the same link.
-
-    Raises
-    ------
-    InputError
-        If a number is out of its bounds.
     """
 
     delay: Certain = parameter("link_delay", 0, kept=Exact, bound="≥ 0", why=_EARLY, meaning="each way")

@@ -130,13 +130,7 @@ def simulated(
 
 
 def check_ends(leader: Port, follower: Port) -> None:
-    """Two ports of one clock, in one unit.
-
-    Raises
-    ------
-    InputError
-        If they are not.
-    """
+    """Two ports of one clock, in one unit."""
     for name, port in (("leader", leader), ("follower", follower)):
         if not isinstance(port, Port):
             raise InputError(f"{name} is a port of zwidth.links, got {type(port).__name__}")

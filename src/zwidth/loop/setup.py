@@ -106,11 +106,6 @@ def prepare(
     `known` keeps what belongs to a device and a hand, so that many loops with the
     same two, and the same amplifier, timing and duration, compute it once. Both
     must live as long as it.  `single` is of the `LoopContext`.
-
-    Raises
-    ------
-    InputError
-        If anything cannot be simulated.
     """
     law = as_environment(environment)
     rest, operator = _at_rest(device, law, operator, initial_position, known)

@@ -116,15 +116,7 @@ def compiler() -> list[str] | None:
 
 
 def build() -> Library:
-    """Translate all step functions, compile them, and put the library in its place.
-
-    Raises
-    ------
-    OutsideError
-        If a step function is outside what is translated, with file and line.
-    OSError
-        If there is no compiler, it fails, or the library cannot be written.
-    """
+    """Translate all step functions, compile them, and put the library in its place."""
     command = compiler()
     if command is None:
         raise FileNotFoundError("there is no C compiler")
@@ -140,13 +132,7 @@ def build() -> Library:
 
 
 def translated() -> str:
-    """All step functions in C, and what is told of them.
-
-    Raises
-    ------
-    OutsideError
-        If a step function is outside what is translated, with file and line.
-    """
+    """All step functions in C, and what is told of them."""
     from zwidth.native.translation import Translation
 
     translation = Translation(PACKAGE)

@@ -28,13 +28,7 @@ class Defined(NamedTuple):
     node: ast.FunctionDef | ast.ClassDef
 
     def takes(self) -> list[ast.arg]:
-        """The arguments of a function.
-
-        Raises
-        ------
-        OutsideError
-            If it does not take them one by one.
-        """
+        """The arguments of a function."""
         assert isinstance(self.node, ast.FunctionDef)
         given = self.node.args
         if given.vararg or given.kwarg or given.kwonlyargs or given.posonlyargs:

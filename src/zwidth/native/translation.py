@@ -29,13 +29,7 @@ class Translation:
         self._by_hand = BY_HAND.read_text(encoding="utf-8")
 
     def text(self) -> str:
-        """The whole text.
-
-        Raises
-        ------
-        OutsideError
-            If a step function is outside what can be translated; all that are, line by line.
-        """
+        """The whole text."""
         bodies, faults = list[str](), list[str]()
         own = list(self.package.step_functions())
         for of in own:

@@ -117,13 +117,7 @@ _PLAIN: dict[str, Type] = {"float": REAL, "int": WHOLE, "bool": TRUTH}
 
 
 def annotated(node: ast.expr | None, module: Module) -> Type:
-    """What an annotation says.
-
-    Raises
-    ------
-    OutsideError
-        If no step function can take it.
-    """
+    """What an annotation says."""
     if node is None:
         raise module.outside(ast.Pass(), "a step function says what it takes and returns")
     if isinstance(node, ast.Constant) and node.value is None:

@@ -33,13 +33,7 @@ _TIMING = ("sample_period", "delay")
 
 
 def worst_corners(device: Device, environment: Environment) -> list[Loop]:
-    """The certain loops at the corners of the box of parameters.
-
-    Raises
-    ------
-    InputError
-        If more than six parameters of law and timing are intervals.
-    """
+    """The certain loops at the corners of the box of parameters."""
     device = _at_ends(device, damping=0, coulomb_friction=0, resolution=1)
     timings = [_values(getattr(device, key)) for key in _TIMING]
     laws = list(_variants(environment))

@@ -165,13 +165,7 @@ class Decision:
 
 
 def decide(device: Device, environment: Environment) -> Decision:
-    """The decision for one certain device and environment.
-
-    Raises
-    ------
-    InputError
-        If a parameter is an interval, or the loop has no exact H(z).
-    """
+    """The decision for one certain device and environment."""
     loop = linear_loop(device, environment)
     setting = Setting(
         loop,

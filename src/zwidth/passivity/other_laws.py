@@ -59,11 +59,6 @@ def check_other(
         Told the number of states that still improve, while values are iterated.
     iterate
         False to iterate none.
-
-    Raises
-    ------
-    InputError
-        If it is none of these, or another parameter is an interval.
     """
     worst = _at_its_worst(device)
     asked = scope_of(device, law)

@@ -118,13 +118,7 @@ class Answer(Result):
         return None
 
     def __bool__(self) -> bool:
-        """Refuse to be true or false.
-
-        Raises
-        ------
-        InputError
-            Always: every object is true, and "if verdict:" would read as a proof.
-        """
+        """Refuse to be true or false."""
         raise InputError(
             f"this answer is {self.outcome!r}, and an answer is neither true nor false: "
             f"ask .{self.YES}, which is True for a proof alone, or compare .outcome"

@@ -254,13 +254,7 @@ def scope_of(device: Device, environment: Environment) -> Scope:
 
 
 def as_contact(value: object) -> Contact:
-    """Read the keyword that says which contact is asked about.
-
-    Raises
-    ------
-    InputError
-        If it is neither "made and broken" nor "kept".
-    """
+    """Read the keyword that says which contact is asked about."""
     if value == "made and broken":
         return "made and broken"
     if value == "kept":

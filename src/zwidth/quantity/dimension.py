@@ -110,11 +110,6 @@ def unit_of(text: str, example: str = "N*s/m") -> Unit:
         The unit as it was typed.
     example
         A unit that would do, for the message.
-
-    Raises
-    ------
-    InputError
-        If the text is not a product of known units.
     """
     total, position = ONE, 0
     while position < len(text):

@@ -13,13 +13,7 @@ from zwidth.writing import writing_whole
 
 
 def save_json(path: str | Path, document: object) -> None:
-    """Write a document whole, or not at all.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be written.
-    """
+    """Write a document whole, or not at all."""
     with writing_whole(Path(path)) as file:
         file.write(json_file(document))
 

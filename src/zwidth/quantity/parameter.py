@@ -269,13 +269,7 @@ def plain(name: str, meaning: str, symbol: str = "") -> Quantity:
 
 
 def one_of(name: str, value: T, *words: T) -> T:
-    """The value, if it is one of these words.
-
-    Raises
-    ------
-    InputError
-        If it is none of them.
-    """
+    """The value, if it is one of these words."""
     if value not in words:
         raise InputError(f"{name} is one of {', '.join(map(repr, words))}, got {value!r}")
     return value
@@ -307,11 +301,6 @@ def read_number(
         As in `Parameter`.
     motion
         "linear" or "rotary", whose unit a text then has; "" where nobody knows: it may have either.
-
-    Raises
-    ------
-    InputError
-        If it is no finite number, of another dimension, or outside the bound.
     """
     number = _read(value, quantity, name, parse if uncertain else parse_number, motion)
     low, high = (number.low, number.high) if isinstance(number, Interval) else (number, number)
@@ -354,13 +343,7 @@ _AS_IT_IS = (Exact, int, float, Fraction)
 
 
 def read_numbers(value: Any, quantity: Quantity, name: str) -> tuple[Exact, ...]:
-    """A list of numbers, as `read_number` reads each.
-
-    Raises
-    ------
-    InputError
-        If it is no list, or one of them is no such number.
-    """
+    """A list of numbers, as `read_number` reads each."""
     if isinstance(value, str) or not isinstance(value, Iterable):
         raise InputError(f"{name} is a list of numbers, got {value!r}")
     return tuple(read_number(one, quantity, f"{name}[{i}]") for i, one in enumerate(value))

@@ -54,11 +54,6 @@ def answers_in(*units: str) -> Iterator[None]:
     ----------
     units
         "rad", "deg" or "turn", and "rpm" for speeds.
-
-    Raises
-    ------
-    InputError
-        If it is none of them.
     """
     unknown = [unit for unit in units if unit not in ANGLES]
     if unknown:

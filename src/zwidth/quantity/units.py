@@ -47,11 +47,6 @@ def parse(value: object, unit: str, what: str) -> Exact | Interval:
         The unit of the quantity, such as "N*s/m"; the result is in it.
     what
         The quantity's name, for the messages.
-
-    Raises
-    ------
-    InputError
-        If it is no number, not finite, or of another dimension.
     """
     if isinstance(value, Interval):
         return value

@@ -21,13 +21,7 @@ def beside(name: str) -> Device | None:
 
 
 def device_of(name: str) -> Device:
-    """The device of a file or of the catalogue, whose rate and damping may be made up.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or has no device.
-    """
+    """The device of a file or of the catalogue, whose rate and damping may be made up."""
     return load_device([name], {key: _ANY[key] for key in lacking(name) or ()})
 
 

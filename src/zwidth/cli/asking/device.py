@@ -36,13 +36,7 @@ _HEAD = "As zwidth new device was told. What was not measured is an estimate: zw
 
 
 def described(ask: Asker, path: Path) -> Written:
-    """Ask about a device; its file, and what to do next.
-
-    Raises
-    ------
-    InputError
-        If an answer cannot be used, or one is missing that must be given.
-    """
+    """Ask about a device; its file, and what to do next."""
     motion = _motion(ask)
     rows = [Row("motion", motion), _row(ask, inertia(motion), motion), _encoder(ask, motion)]
     if motion == "rotary" and (radius := ask(RADIUS)) is not None:

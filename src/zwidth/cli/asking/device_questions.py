@@ -21,13 +21,7 @@ NEEDED = ("rate", "damping")
 
 
 def motion_of(answer: str) -> str:
-    """ "rotary" or "linear", in these words or in others.
-
-    Raises
-    ------
-    InputError
-        If it is neither.
-    """
+    """ "rotary" or "linear", in these words or in others."""
     said = set(answer.lower().split())
     found = [motion for motion, words in _MOTIONS.items() if said & words]
     if len(found) != 1:

@@ -27,13 +27,7 @@ _GEARED = re.compile(r"(?P<encoder>.+?)\s*(?:[x×]|\btimes\b)\s*(?P<ratio>[0-9.]
 
 
 def read_encoder(answer: str, motion: str) -> Row:
-    """The row of the file that says the size of one count.
-
-    Raises
-    ------
-    InputError
-        If the answer is no such size.
-    """
+    """The row of the file that says the size of one count."""
     if motion == "linear":
         if re.search(r"count|step|cpr|line|ppr|bit|\^", answer, re.IGNORECASE):
             raise InputError(
@@ -80,13 +74,7 @@ def _of_the_motor(encoder: str, typed: str) -> Row:
 
 
 def encoder_understood(answer: str, motion: str) -> str:
-    """What one count is, in SI; how many there are in a turn.
-
-    Raises
-    ------
-    InputError
-        As `read_encoder`.
-    """
+    """What one count is, in SI; how many there are in a turn."""
     row = read_encoder(answer, motion)
     unit = "rad" if motion == "rotary" else "m"
     if row.key == "resolution":

@@ -45,11 +45,6 @@ def described(ask: Asker, path: Path, named: str | None = None) -> Written:
         Where the file will be.
     named
         The device that is to render it, a file or a name in the catalogue; None: `DEVICE`, where it is there.
-
-    Raises
-    ------
-    InputError
-        If the device cannot be read, an answer cannot be used, or one is missing.
     """
     kind = kind_of(ask.sure(TYPE))
     whose = DEVICE if named is None else named
@@ -86,13 +81,7 @@ def _next(path: Path, whose: str) -> list[str]:
 
 
 def refuse_a_device(path: Path) -> None:
-    """Refuse to write over the file of a device: its name was most likely meant as the device.
-
-    Raises
-    ------
-    InputError
-        If there is a device in it.
-    """
+    """Refuse to write over the file of a device: its name was most likely meant as the device."""
     if path.exists() and lacking(str(path)) is not None:
         name = shlex.quote(str(path))
         raise InputError(

@@ -18,13 +18,7 @@ _ALSO = {"stop": "bump-stop", "bumpstop": "bump-stop", "end-stop": "bump-stop", 
 
 
 def kind_of(answer: str) -> str:
-    """ "wall", "detents" or "bump-stop", in these words or in others.
-
-    Raises
-    ------
-    InputError
-        If it is none of them.
-    """
+    """ "wall", "detents" or "bump-stop", in these words or in others."""
     word = "-".join(answer.lower().replace("_", " ").split())
     kind = _ALSO.get(word, word)
     if kind not in _KINDS:

@@ -23,13 +23,7 @@ def with_unit(answer: str, unit: str) -> str:
 
 
 def need_unit(answer: str, number: Exact | Interval, unit: str, key: str) -> None:
-    """Ask for the unit of a length or an angle: 1000 is hardly a kilometre, 10 hardly ten radians.
-
-    Raises
-    ------
-    InputError
-        If it has none, and is not 0.
-    """
+    """Ask for the unit of a length or an angle: 1000 is hardly a kilometre, 10 hardly ten radians."""
     if unit in _LIKELY and is_bare(answer) and any(ends(number)):
         raise InputError(
             f'{key} needs its unit, got {answer[:40]}: write "{answer[:40]} {_LIKELY[unit]}", '

@@ -89,13 +89,7 @@ class Asker:
         return key in self._given
 
     def __call__(self, question: Question) -> str | None:
-        """The answer, checked; None where it is not known.
-
-        Raises
-        ------
-        InputError
-            If an answer that is no dialogue cannot be used.
-        """
+        """The answer, checked; None where it is not known."""
         self._asked.append(question.option)
         if question.key in self._given:
             return self._checked(question, self._given.pop(question.key), COMMAND_LINE)[0]
@@ -111,13 +105,7 @@ class Asker:
         return None
 
     def sure(self, question: Question) -> str:
-        """An answer without which there is no file.
-
-        Raises
-        ------
-        InputError
-            If there is none.
-        """
+        """An answer without which there is no file."""
         for _ in range(_TRIES if self.in_terminal else 1):
             if (answer := self(question)) is not None:
                 return answer

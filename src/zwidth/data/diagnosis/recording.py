@@ -78,13 +78,7 @@ def read(
     scale: Mapping[str, object] | None = None,
     **reading: Any,
 ) -> Recording:
-    """Read whatever holds a recording; see `zwidth.diagnose`.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or holds no force of the actuator.
-    """
+    """Read whatever holds a recording; see `zwidth.diagnose`."""
     if isinstance(recording, Log):
         if columns or units or scale or reading:
             raise InputError("a log has been read already: give columns, units and scale to read_log")

@@ -142,13 +142,7 @@ def _compensated(environment: Environment) -> tuple[Environment, FrictionCompens
 
 
 def transfer(environment: Environment, period: float) -> tuple[Array, Array]:
-    """H(z) in numbers.
-
-    Raises
-    ------
-    InputError
-        If the law has none: it is not linear, or one of its numbers is an interval.
-    """
+    """H(z) in numbers."""
     if not environment.has_transfer_function:
         raise InputError(
             f"{environment.describe()}: a recording is compared with a law that has an H(z), as a wall has; "

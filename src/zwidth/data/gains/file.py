@@ -69,13 +69,7 @@ class GainTable:
         return parse_number(self.values[key], unit, self.where(key)).fraction
 
     def numbers(self, key: str, unit: str, joints: int | None = None) -> list[Fraction]:
-        """A list of a number for each joint.
-
-        Raises
-        ------
-        InputError
-            If there is no such list, or it has another number of joints.
-        """
+        """A list of a number for each joint."""
         if key not in self.values:
             raise InputError(f"{self.label}: {key} is missing: a gain for each joint [{unit}]")
         given = self.values[key]
@@ -96,13 +90,7 @@ class GainTable:
 
 
 def read_table(path: str | Path) -> GainTable:
-    """The keys of a YAML, JSON or TOML file.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read as one of them.
-    """
+    """The keys of a YAML, JSON or TOML file."""
     name = quoted(str(path))
     path = Path(path)
     text = _text(path, name)

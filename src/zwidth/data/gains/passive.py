@@ -148,13 +148,7 @@ def passive_gains(
 
 
 def share_of(given: RealLike) -> Fraction:
-    """How much of each joint's damping gains may use.
-
-    Raises
-    ------
-    InputError
-        If it is no part of it.
-    """
+    """How much of each joint's damping gains may use."""
     part = parse_number(given, "1", "share").fraction
     if not 0 < part <= 1:
         raise InputError(

@@ -41,13 +41,7 @@ class Plant:
 
 
 def plant_of(joints: Sequence[JointGains], family: Family, given: GivenPlant) -> Plant:
-    """The plant that was given: a file, a published name, a device for all joints or for each; the family's.
-
-    Raises
-    ------
-    InputError
-        If there is none, or its joints are not those of the gains.
-    """
+    """The plant that was given: a file, a published name, a device for all joints or for each; the family's."""
     if isinstance(given, Device):
         given = [given] * len(joints)
     if given is not None and not isinstance(given, (str, Path)):
@@ -103,13 +97,7 @@ def _published(joints: Sequence[JointGains], family: Family, plant: PublishedPla
 
 
 def plant_of_file(joints: int, path: str | Path) -> Plant:
-    """The plant of a TOML file, for so many joints.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or has no numbers for each joint.
-    """
+    """The plant of a TOML file, for so many joints."""
     table = read_table(path)
     allowed = ("arm", "leader", "follower")
     for key in table.values:

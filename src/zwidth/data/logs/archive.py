@@ -38,13 +38,7 @@ Kind = Literal["workbook", "binary", "open document", "other"]
 
 
 def kind_of_archive(path: Path) -> Kind:
-    """What a zip archive holds, by the names in it.
-
-    Raises
-    ------
-    InputError
-        If it is damaged.
-    """
+    """What a zip archive holds, by the names in it."""
     with _opened(path) as archive:
         names = set(archive.namelist())
         if "xl/workbook.bin" in names:

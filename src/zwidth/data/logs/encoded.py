@@ -21,13 +21,7 @@ _SIGNS = (("\u2212", "-"), ("\u00a0", " "), ("\u202f", " "), ("\ufeff", ""))
 
 
 def opened_text(path: Path) -> IO[bytes] | Bounded:
-    """The bytes of a file; UTF-16, and lines that end in a carriage return alone, are turned over whole.
-
-    Raises
-    ------
-    InputError
-        If it is no text.
-    """
+    """The bytes of a file; UTF-16, and lines that end in a carriage return alone, are turned over whole."""
     with _opened(path) as file:
         start = file.read(SNIFFED)
     encoding = _wide(start)
@@ -46,13 +40,7 @@ def opened_text(path: Path) -> IO[bytes] | Bounded:
 
 
 def text_of(start: bytes, source: str) -> str:
-    """The text that bytes at the start of a file are.
-
-    Raises
-    ------
-    InputError
-        If they are none.
-    """
+    """The text that bytes at the start of a file are."""
     text = _decoded(start)
     if _CONTROL.search(text[:4096]):
         raise InputError(f"{source} is no text: its first bytes hold control characters; which format is it?")

@@ -26,13 +26,7 @@ _OUTSIDE: Mapping[str, tuple[str, Fraction]] = {
 
 
 def measured_in(text: str) -> Unit:
-    """A unit as `unit_of` has it, or one of these.
-
-    Raises
-    ------
-    InputError
-        If it is neither.
-    """
+    """A unit as `unit_of` has it, or one of these."""
     try:
         return unit_of(text)
     except InputError:

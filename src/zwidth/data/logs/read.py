@@ -85,11 +85,6 @@ def opened(
     """The table of a file, from which several logs may be made; what cannot be read inside is refused.
 
     Of a workbook it is that of the sheet, or of the one sheet that has these columns and a position.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or several sheets may be meant.
     """
     with readable(str(path)):
         yield _one_sheet(table_of_file(Path(path), sheet), columns or {})
@@ -140,13 +135,7 @@ def log_of(
 
 
 def table_of_file(path: Path, sheet: str | None = None) -> Table:
-    """The table of a file, by its first bytes: the libraries take their time to load.
-
-    Raises
-    ------
-    InputError
-        If there is no such file or sheet, or it is none that is read.
-    """
+    """The table of a file, by its first bytes: the libraries take their time to load."""
     if path.is_dir() and not (path / "metadata.yaml").is_file():
         if (path / "meta" / "info.json").is_file() and (episodes := sorted(path.glob("data/*/*.parquet"))):
             raise InputError(

@@ -45,13 +45,7 @@ class Sheet:
         self._last = dict.fromkeys(names, float("nan"))
 
     def read(self, lines: str, before: int) -> Piece:
-        """The columns of whole lines, which come after so many of the file.
-
-        Raises
-        ------
-        InputError
-            If a cell is neither a number nor known to say that there is none.
-        """
+        """The columns of whole lines, which come after so many of the file."""
         rows, broken = [], 0
         for k, line in enumerate(lines.splitlines()):
             if not line.strip() or is_comment(line):

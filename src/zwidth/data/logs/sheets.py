@@ -29,11 +29,6 @@ def table_of_sheets(book: Sheets, sheet: str | None) -> Table:
     """The longest table, and in `Table.sheets` all of them where there are several; or that of one sheet.
 
     Sheets that are hidden are read where they are named.
-
-    Raises
-    ------
-    InputError
-        If there is no such sheet, or no table of numbers.
     """
     names = [name for name, shown in book.shown.items() if shown] if sheet is None else [_named(book, sheet)]
     grids = {name: grid for name in names if (grid := grid_of(book.rows(name), _source(book, name)))}

@@ -32,13 +32,7 @@ _DAY_0 = datetime(1899, 12, 31)
 
 
 def workbook_table(path: Path, sheet: str | None) -> Table:
-    """The tables in a workbook, or that of one sheet.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, has no such sheet, or no table of numbers.
-    """
+    """The tables in a workbook, or that of one sheet."""
     check_workbook(path)
     with _opened(path, results=True) as book:
         shown = {each.title: each.sheet_state == "visible" for each in book.worksheets}

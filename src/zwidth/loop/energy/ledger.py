@@ -158,13 +158,7 @@ class Ledger(Shown):
 
 
 def ledger(trace: AnyTrace) -> Ledger:
-    """The ledger of a trace.
-
-    Raises
-    ------
-    InputError
-        If the Dataset lacks one of the energies: it is no trace.
-    """
+    """The ledger of a trace."""
     missing = [name for name in _ROWS if name not in trace]
     if missing:
         raise InputError(f"this Dataset is no trace: it lacks {', '.join(missing)}")

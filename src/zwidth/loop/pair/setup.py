@@ -97,13 +97,7 @@ def prepare_pair(
     points_per_sample: int,
     friction: tuple[FrictionCurve | None, FrictionCurve | None] = (None, None),
 ) -> PairSetup:
-    """Check everything and lay it out; arguments as of `simulate_pair`.
-
-    Raises
-    ------
-    InputError
-        If anything cannot be simulated.
-    """
+    """Check everything and lay it out; arguments as of `simulate_pair`."""
     holders = (leader, follower)
     walls = [_wall(name, holder) for name, holder in zip(("leader", "follower"), holders, strict=True)]
     if all(not isinstance(holder, Operator) for holder in holders):

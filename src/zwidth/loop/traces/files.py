@@ -74,13 +74,7 @@ def save_trace(trace: xr.Dataset, path: str | PathLike[str], *, force: bool = Fa
 
 
 def save_netcdf(data: xr.Dataset, path: Path) -> None:
-    """Save any Dataset as NetCDF 4, in the place of what was there.
-
-    Raises
-    ------
-    InputError
-        If it cannot be written.
-    """
+    """Save any Dataset as NetCDF 4, in the place of what was there."""
     with writing_whole(path) as file:
         _write_netcdf(data, file)
 

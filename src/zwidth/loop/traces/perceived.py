@@ -33,11 +33,6 @@ def noticeable_differences(felt: float, wanted: float, weber: float = WEBER) -> 
         K_wanted > 0, in the same unit.
     weber
         w > 0, the smallest part by which two stiffnesses are told apart.
-
-    Raises
-    ------
-    InputError
-        If the wanted stiffness or Weber's fraction is not finite and > 0.
     """
     for name, value in (("wanted", wanted), ("weber", weber)):
         if not (isfinite(value) and value > 0):

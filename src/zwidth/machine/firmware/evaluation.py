@@ -127,11 +127,6 @@ class Evaluation:
             Of its parameters.
         memory
             Low, high and error of every place before the call.
-
-        Raises
-        ------
-        NoBound
-            If a loop depends on what is not known, or a number has no bound.
         """
         way = _Way(dict(given), [remembered(k, *m) for k, m in enumerate(memory)], {})
         self.block(program.body, way, keep=True)

@@ -93,13 +93,6 @@ def lowered(program: Program, scale: Scale, sizes: Mapping[Variable, Bound], cel
         Of every result, how large it is.
     cells
         How large what it remembers is.
-
-    Raises
-    ------
-    NoBound
-        If an operation has no fixed-point form here.
-    TooLarge
-        If a number leaves its word.
     """
     return _Lowering(units_of(program, scale), sizes, cells).whole(program)
 

@@ -99,11 +99,6 @@ def invariant(
         Of the machine.
     converter
         See `Evaluation`.
-
-    Raises
-    ------
-    NoBound
-        If there is no bound, or none was found; and why.
     """
     memory = rest.places
     for _ in range(_MOST_PASSES):

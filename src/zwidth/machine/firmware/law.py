@@ -86,12 +86,6 @@ def law_program(device: Device, environment: Environment | object, *, single: bo
     single
         True where the machine keeps numbers in 24 bits: a law that reckons with its own rounding then
         sets more aside.
-
-    Raises
-    ------
-    InputError
-        If the loop cannot be simulated, the device's numbers are intervals, or the law is outside of what
-        can be emitted.
     """
     if not device.is_certain:
         keys = (f.name for f in fields(device))

@@ -54,11 +54,6 @@ class LiveTelemetry:
         Of the device [N·s/m; N·m·s/rad], [N; N·m]: what its friction loss is counted with. Default 0.
     kept
         So many rows are kept, the newest ones.
-
-    Raises
-    ------
-    InputError
-        If the line falls silent before it was said what the numbers are.
     """
 
     def __init__(

@@ -107,11 +107,6 @@ def machine(
         In fixed point, where the device's converter has no known step: the unit of the force [N; N·m].
     enough
         In fixed point: a rounding that needs no wider numbers [N; N·m]; by default a 1000th of the force.
-
-    Raises
-    ------
-    InputError
-        If the law has no form in fixed point; and why.
     """
     if number != "double" and not law.pays:
         law = replace(law, program=simplified(law.program))

@@ -100,11 +100,6 @@ def plant_program(plant: Plant | None, period: float | None, hand: Hand) -> Prog
         T > 0 [s]; None for one that is given at every call, last.
     hand
         "free" or "anchored".
-
-    Raises
-    ------
-    InputError
-        If T is not positive, or a free hand has a spring or a damper.
     """
     if period is not None and not period > 0.0:
         raise InputError(f"the plant is moved from sample to sample: a period is > 0 s, got {period!r}")

@@ -17,13 +17,7 @@ _PACKAGE = Package(PACKAGE)
 
 @cache
 def source_of(function: Callable[..., Any]) -> Defined:
-    """Where a compiled function, or a plain one, stands.
-
-    Raises
-    ------
-    InputError
-        If it is no function whose source is at hand.
-    """
+    """Where a compiled function, or a plain one, stands."""
     plain = getattr(function, "py_func", function)
     path = Path(plain.__code__.co_filename if hasattr(plain, "__code__") else "")
     if not path.is_file():

@@ -59,11 +59,6 @@ def specialised(
         a `Variable` for a number that is given at every call.
     apart
         Functions whose calls stay calls: a program that would be too long without them.
-
-    Raises
-    ------
-    InputError
-        If something in it, or in what it calls, is outside the subset; with file and line.
     """
     source = source_of(function)
     body: list[Statement] = []

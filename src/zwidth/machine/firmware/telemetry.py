@@ -54,11 +54,6 @@ def read_telemetry(path: str | PathLike[str]) -> xr.Dataset:
     ----------
     path
         Bytes as the serial line gave them: begun and ended anywhere, with damaged and missing packets.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or no packet says what its numbers are.
     """
     source = Path(path)
     decoder = Decoder()

@@ -154,13 +154,7 @@ class Units:
 
 
 def units_of(program: Program, scale: Scale) -> Units:
-    """The units of a program.
-
-    Raises
-    ------
-    NoBound
-        If an operation has no fixed-point form.
-    """
+    """The units of a program."""
     units = Units(scale, {p: Unit(0, 0, 0) for p in program.parameters})
     while True:
         before = (dict(units.values), dict(units.cells))

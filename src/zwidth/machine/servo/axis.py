@@ -35,11 +35,6 @@ class Axis:
         Where x = 0 is on its axis, and which way x goes.
     sample_period
         T [s].
-
-    Raises
-    ------
-    InputError
-        If the device cannot be reached.
     """
 
     def __init__(

@@ -77,11 +77,6 @@ def stiffness_cost(device: Device, environment: Environment, lateness: float) ->
         As for `zwidth.check`.
     lateness
         L [s].
-
-    Raises
-    ------
-    InputError
-        If the law has no stiffness or no closed forms, or if it, the period or the delay is an interval.
     """
     if not has_stiffness(environment):
         raise InputError(

@@ -119,11 +119,6 @@ def measure_lateness(
         That the loop keeps to; None for any.
     progress
         Is told (seconds done, in all).
-
-    Raises
-    ------
-    InputError
-        On a system without these clocks, and if there is no such core.
     """
     check_supported()
     ordinary = RealTime(priority=0, memory=False, core=core)

@@ -40,11 +40,6 @@ def pack(
         Up to which it may begin [N; N·m].
     single
         True where the machine keeps numbers in 24 bits.
-
-    Raises
-    ------
-    InputError
-        If the loop cannot be simulated, or the law is at rest nowhere.
     """
     begins = unloaded_range(environment, force, here)
     if begins[0] > begins[1]:

@@ -21,13 +21,7 @@ SUPPORTED = sys.platform != "win32"
 
 
 def check_supported() -> None:
-    """Refuse a system without these calls.
-
-    Raises
-    ------
-    InputError
-        On Windows.
-    """
+    """Refuse a system without these calls."""
     if not SUPPORTED:
         raise InputError(
             "serving needs the clock and the descriptors of a POSIX system, Linux or macOS; this is Windows: "

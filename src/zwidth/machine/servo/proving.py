@@ -49,13 +49,7 @@ def judged(
 
 
 def refuse_not_proved(verdict: Verdict, measured: Measured) -> None:
-    """Refuse to serve what has no proof.
-
-    Raises
-    ------
-    NotProved
-        If the outcome is none of `SERVED_OUTCOMES`.
-    """
+    """Refuse to serve what has no proof."""
     if verdict.outcome not in SERVED_OUTCOMES:
         late, exchange = (f"{1e6 * float(t):g} µs" for t in measured.supposed)
         raise NotProved(
@@ -67,13 +61,7 @@ def refuse_not_proved(verdict: Verdict, measured: Measured) -> None:
 
 
 def check_kinds(device: Device, connection: Connection) -> None:
-    """Refuse a device and a connection that do not go together.
-
-    Raises
-    ------
-    InputError
-        If one is of another kind, or they differ in motion.
-    """
+    """Refuse a device and a connection that do not go together."""
     if not isinstance(device, Device):
         raise InputError(f"the device is a zwidth.Device, got {type(device).__name__}")
     if not isinstance(connection, (CompiledConnection, LibraryConnection)):
@@ -89,13 +77,7 @@ def check_kinds(device: Device, connection: Connection) -> None:
 
 
 def least_friction(device: Device) -> Device:
-    """The device with the least friction that it may have: the law does not depend on it.
-
-    Raises
-    ------
-    InputError
-        If a number that a loop needs is an interval.
-    """
+    """The device with the least friction that it may have: the law does not depend on it."""
     low = {key: ends(getattr(device, key))[0] for key in ("damping", "coulomb_friction", "delay")}
     found = device.replace(stiction=None, **low)
     uncertain = [key for key, value in found.parameters().items() if isinstance(value, Interval)]

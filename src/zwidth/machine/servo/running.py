@@ -63,13 +63,7 @@ class LoopThread:
         self._over.wait()  # not Thread.join: Ctrl-C in it makes Python 3.11 take the thread for ended
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Wait until the loop has ended; False if it has not within so long [s].
-
-        Raises
-        ------
-        Exception
-            What a connection in Python raised in the loop.
-        """
+        """Wait until the loop has ended; False if it has not within so long [s]."""
         until = None if timeout is None else time.monotonic() + timeout
         while self.running:
             left = 0.1 if until is None else min(0.1, until - time.monotonic())

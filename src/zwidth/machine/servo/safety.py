@@ -64,11 +64,6 @@ class Safety(Parametric):
         For so long the loop may not have run, > 0 [s]. Default 50 ms.
     host_timeout
         For so long the program around the loop may not have run, > 0 [s]. Default 1 s.
-
-    Raises
-    ------
-    InputError
-        If a number is outside its bound.
     """
 
     force: CertainOrNone = parameter("force", None, bound="> 0", why="a limit of 0 gives nothing")
@@ -95,13 +90,7 @@ MEANINGS = {
 
 
 def read_safety(table: Table, motion: str) -> Safety:
-    """The safety that a table describes.
-
-    Raises
-    ------
-    InputError
-        If a key is unknown or has a value it cannot have.
-    """
+    """The safety that a table describes."""
     known = parameters_of(Safety)
     table.check_keys(known, "the safety")
     values = {}

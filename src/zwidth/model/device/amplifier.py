@@ -51,13 +51,7 @@ class Amplifier(ABC):
 
     @abstractmethod
     def actuation(self, device: Device) -> Actuation:
-        """Its numbers on a device.
-
-        Raises
-        ------
-        InputError
-            If the device lacks a number that this amplifier needs.
-        """
+        """Its numbers on a device."""
 
     @abstractmethod
     def describe(self) -> str:

@@ -120,13 +120,7 @@ def names() -> tuple[str, ...]:
 
 
 def entry(name: str) -> Entry:
-    """What is published about one device.
-
-    Raises
-    ------
-    InputError
-        If the catalogue has no such name.
-    """
+    """What is published about one device."""
     found = _entries().get(name)
     if found is None:
         near = get_close_matches(str(name), names(), n=1)
@@ -166,11 +160,6 @@ def in_range(name: str, /, **overrides: Any) -> DeviceInRange:
         One of `names()`.
     overrides
         As of `device`; what is given needs no range.
-
-    Raises
-    ------
-    InputError
-        As `device`; if a number that a verdict needs has no range either.
     """
     found = entry(name)
     arguments = _arguments(found, overrides)

@@ -27,11 +27,6 @@ def read_transfer_function(
     """Numerator and denominator as a person gives them: two sequences, or a system, read already or not.
 
     Leading zeros are dropped and nothing else is: common factors stay.
-
-    Raises
-    ------
-    InputError
-        If they are not coefficients, the denominator is zero, or the order above 200.
     """
     if isinstance(numerator, LinearSystem):
         return (*_checked(*_in_range(numerator.numerator, numerator.denominator)), numerator)

@@ -39,13 +39,7 @@ class Compliance(NamedTuple):
 
 
 def compliance(solid: Environment | Elements) -> Compliance:
-    """1/H(s) of a solid in partial fractions.
-
-    Raises
-    ------
-    InputError
-        If the solid is another law, or has neither spring nor dashpot that a force could rest on.
-    """
+    """1/H(s) of a solid in partial fractions."""
     parts = solid if isinstance(solid, Elements) else elements(solid)
     if not (parts.spring or parts.dashpot or parts.branches):
         raise InputError("a solid without spring and dashpot has no creep: nothing resists the force")

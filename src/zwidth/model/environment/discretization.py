@@ -38,13 +38,7 @@ LARGEST_ORDER = 200
 
 
 def as_discretization(name: object) -> Discretization:
-    """Check the name of a discretization.
-
-    Raises
-    ------
-    InputError
-        If it is not one of the six.
-    """
+    """Check the name of a discretization."""
     if name not in CHOICES:
         raise InputError(f"discretization is one of {choices()}; got {name!r}")
     return name  # type: ignore[return-value]
@@ -70,12 +64,6 @@ def discretize(
     """H(z) of H(s) = numerator/denominator for the sample period T > 0 [s].
 
     Common factors of the two polynomials are kept.
-
-    Raises
-    ------
-    InputError
-        If H(z) would need samples that are still to come, or a rounded
-        coefficient is too large for a double.
     """
     num, den = trimmed(numerator), trimmed(denominator)
     if len(num) == len(den) == 1:

@@ -257,13 +257,7 @@ def clamping(default: bool = False) -> Any:
 
 
 def certain(value: Exact | Interval, key: str) -> Fraction:
-    """The exact value of a parameter that H(z) is computed from.
-
-    Raises
-    ------
-    InputError
-        If it is an interval: H(z) is a function of one value.
-    """
+    """The exact value of a parameter that H(z) is computed from."""
     if isinstance(value, Interval):
         raise InputError(f"{key} is the interval {value}; H(z) needs one value of it")
     return value.fraction

@@ -52,14 +52,7 @@ def size_of(system: Any) -> tuple[int, int]:
 
 
 def read_matrix_system(system: Any) -> MatrixSystem:
-    """A square system, entry by entry.
-
-    Raises
-    ------
-    InputError
-        If it has not as many inputs as outputs, is no transfer function or state space, or holds
-        a number that is not finite.
-    """
+    """A square system, entry by entry."""
     system = renamed(system)
     outputs, inputs = size_of(system)
     if outputs != inputs:

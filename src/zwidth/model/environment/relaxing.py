@@ -50,13 +50,7 @@ class Elements(NamedTuple):
 
 
 def elements(solid: Environment) -> Elements:
-    """Springs and dashpots of a wall or a viscoelastic solid.
-
-    Raises
-    ------
-    InputError
-        If it is neither, a parameter is an interval, or a damping is negative.
-    """
+    """Springs and dashpots of a wall or a viscoelastic solid."""
     spring, dashpot, branches = _parts(solid)
     numbers = float(certain(spring, "stiffness")), float(certain(dashpot, "damping"))
     pairs = [

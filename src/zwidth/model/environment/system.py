@@ -40,14 +40,7 @@ def is_system(thing: object) -> bool:
 
 
 def read_system(system: Any) -> LinearSystem:
-    """The transfer function of a single-input single-output linear system.
-
-    Raises
-    ------
-    InputError
-        If the system has several inputs or outputs, is not a transfer function,
-        state space or zeros–poles–gain model, or holds a number that is not finite.
-    """
+    """The transfer function of a single-input single-output linear system."""
     system = renamed(system)
     if all(hasattr(system, name) for name in ("A", "B", "C", "D")):
         num, den = _from_state_space(system)

@@ -184,12 +184,6 @@ def as_environment(thing: object, discretization: Discretization | None = None) 
         scipy.signal or harold.
     discretization
         For a continuous system, and for it alone.
-
-    Raises
-    ------
-    InputError
-        If it is none of these, a continuous system comes without a discretization, or a
-        discretization with anything else.
     """
     if isinstance(thing, Environment):
         _refuse(discretization, "an environment has its own H(z)")

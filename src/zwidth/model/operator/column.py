@@ -26,11 +26,6 @@ def read_column(path: str | Path, column: str | int | None = None) -> list[float
         Comma, semicolon or blank separates; "#" starts a comment; the first line may be names.
     column
         Its name or its number from 0; None where there is only one.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, has no such column, or a value is no number.
     """
     try:
         with Path(path).open(encoding="utf-8-sig", newline="") as lines:

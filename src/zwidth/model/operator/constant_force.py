@@ -28,11 +28,6 @@ class ConstantForce(ParametricOperator):
     ----------
     force
         F, positive into the wall [N; N·m].
-
-    Raises
-    ------
-    InputError
-        If the force is not a finite number.
     """
 
     force: float = parameter(FORCE, 1.0, kept=float)

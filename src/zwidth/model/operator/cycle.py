@@ -33,11 +33,6 @@ class Cycle(ParametricOperator):
     ----------
     low, high
         The two positions, low < high [m; rad].
-
-    Raises
-    ------
-    InputError
-        If a number is not finite, or low ≥ high.
     """
 
     called = "cycle"

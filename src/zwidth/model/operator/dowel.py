@@ -58,11 +58,6 @@ class Dowel(ParametricOperator):
         c ≥ 0, what a firmer grip adds [N·s/m; N·m·s/rad]. Default 0.
     start
         x_0 ≤ 0, where the handle starts from rest [m; rad].
-
-    Raises
-    ------
-    InputError
-        If a number is not finite or outside its bound.
     """
 
     called = "dowel"
@@ -84,11 +79,6 @@ class Dowel(ParametricOperator):
             ρ > 0 [kg/m³].
         others
             The other arguments of `Dowel`.
-
-        Raises
-        ------
-        InputError
-            If a size is not a finite number > 0.
         """
         for name, value in {"length": length, "diameter": diameter, "density": density}.items():
             if not 0 < value < np.inf:

@@ -66,11 +66,6 @@ class Finger(ParametricOperator):
         v > 0, of the approach [m/s; rad/s].
     start
         x_0 ≤ 0, where anchor and handle start [m; rad].
-
-    Raises
-    ------
-    InputError
-        If a number is not finite or outside its bound.
     """
 
     called = "finger"

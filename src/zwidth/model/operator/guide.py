@@ -37,11 +37,6 @@ class Guide(ParametricOperator):
         v > 0 [m/s; rad/s].
     depth
         x_end ≥ 0, where it stops [m; rad].
-
-    Raises
-    ------
-    InputError
-        If a number is not finite or outside its bound.
     """
 
     called = "linear guide"

@@ -62,13 +62,7 @@ class HandImpedance(Parametric):
 
 
 def as_hand(hand: Any) -> HandImpedance:
-    """Read a hand: None for none, a `HandImpedance`, or an operator whose linear part is meant.
-
-    Raises
-    ------
-    InputError
-        If it is none of these, or an operator that prescribes the motion.
-    """
+    """Read a hand: None for none, a `HandImpedance`, or an operator whose linear part is meant."""
     if hand is None:
         return HandImpedance()
     if isinstance(hand, HandImpedance):

@@ -29,13 +29,7 @@ def as_path(positions: Path) -> Signal | Callable[[float], float]:
 
 
 def sampled(path: Signal | Callable[[float], float], times: Signal) -> Signal:
-    """The path at the instants; a record that is shorter stays at its end, a longer one is cut.
-
-    Raises
-    ------
-    InputError
-        If a function gives something else than a finite number.
-    """
+    """The path at the instants; a record that is shorter stays at its end, a longer one is cut."""
     if callable(path):
         return np.array([_position(path, float(t)) for t in times])
     return held(path, len(times))
@@ -61,11 +55,6 @@ def listed(witness: Any, rounds: int | None) -> tuple[Signal, Signal | None]:
         A witness of `check`, or its motion.
     rounds
         How often its repeated parts are done; None as in the witness.
-
-    Raises
-    ------
-    InputError
-        If it is neither, or too long to list.
     """
     motion = getattr(witness, "motion", witness)
     if not all(hasattr(motion, name) for name in ("listed", "repeated", "samples")):
@@ -89,13 +78,7 @@ def listed(witness: Any, rounds: int | None) -> tuple[Signal, Signal | None]:
 
 
 def check_period(period: float | None, times: Signal) -> None:
-    """Refuse to replay a motion at another sample period than its own, where that is known [s].
-
-    Raises
-    ------
-    InputError
-        If the periods differ.
-    """
+    """Refuse to replay a motion at another sample period than its own, where that is known [s]."""
     given = float(times[-1] - times[0]) / (len(times) - 1)
     if period is not None and abs(given - period) > 1e-6 * period:
         raise InputError(

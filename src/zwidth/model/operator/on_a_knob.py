@@ -51,11 +51,6 @@ class FingersOn(Finger):
         ω > 0, of the approach [rad/s].
     start
         θ_0 ≤ 0, where anchor and knob start [rad].
-
-    Raises
-    ------
-    InputError
-        If a number is not finite or outside its bound.
     """
 
     called = "fingers on a knob"

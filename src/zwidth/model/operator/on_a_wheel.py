@@ -62,11 +62,6 @@ class HandsOn(Finger):
         ω > 0, of the approach [rad/s].
     start
         θ_0 ≤ 0, where anchor and wheel start [rad].
-
-    Raises
-    ------
-    InputError
-        If a number is not finite or outside its bound.
     """
 
     called = "hands on"

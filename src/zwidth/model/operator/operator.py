@@ -93,13 +93,7 @@ class Operator(ABC):
 
     @abstractmethod
     def signals(self, times: Signal) -> Signals:
-        """What the hand does, at the sample instants t_0 … t_N [s].
-
-        Raises
-        ------
-        InputError
-            If the operator holds a record of another length.
-        """
+        """What the hand does, at the sample instants t_0 … t_N [s]."""
 
     @abstractmethod
     def describe(self, motion: str = "linear") -> str:

@@ -36,12 +36,6 @@ class PrescribedMotion(Parametric, RecordedOperator):
     switch_positions
         Position in each interval when the force changes, duration/T of them
         [m; rad]; None for a straight line.
-
-    Raises
-    ------
-    InputError
-        If the values are not one row of finite numbers; later, if they are
-        more or fewer than the touch has instants.
     """
 
     positions: Reads[Signal | Callable[[float], float], Path] = part(

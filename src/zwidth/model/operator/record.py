@@ -17,13 +17,7 @@ if TYPE_CHECKING:
 
 
 def as_record(values: ArrayLike, what: str, unit: str) -> Signal:
-    """One finite number per sample, as a read-only array of its own.
-
-    Raises
-    ------
-    InputError
-        If the values are not one row of numbers, none at all, or not all finite.
-    """
+    """One finite number per sample, as a read-only array of its own."""
     try:
         record = np.array(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):

@@ -32,12 +32,6 @@ class RecordedForce(Parametric, RecordedOperator):
     newtons
         F_k, positive into the wall, one value for each sample interval of the
         touch, so duration/T of them [N; N·m].
-
-    Raises
-    ------
-    InputError
-        If the values are not one row of finite numbers; later, if they are
-        more or fewer than the intervals of the touch.
     """
 
     newtons: Reads[Signal, ArrayLike] = part("force record", _record, meaning="the force of each interval")
@@ -53,11 +47,6 @@ class RecordedForce(Parametric, RecordedOperator):
             first line may be names.
         column
             Its name, or its number from 0; not needed where there is only one.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be read, has no such column, or a value is no number.
         """
         return cls(read_column(path, column))
 

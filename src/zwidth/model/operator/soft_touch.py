@@ -57,11 +57,6 @@ class SoftTouch(ParametricOperator):
         c ≥ 0, of the finger [N·s/m; N·m·s/rad].
     start
         x_0 ≤ 0, where the handle starts [m; rad].
-
-    Raises
-    ------
-    InputError
-        If a number is not finite or outside its bound.
     """
 
     called = "soft touch"

@@ -35,11 +35,6 @@ class TypicalTouch(Finger):
     ----------
     mass, stiffness, damping, force, speed, start
         As for `Finger`.
-
-    Raises
-    ------
-    InputError
-        If a number is not finite or outside its bound.
     """
 
     called = "typical touch"
@@ -66,11 +61,6 @@ class MaliciousTouch(Finger):
     ----------
     mass, stiffness, damping, force, speed, start
         As for `Finger`.
-
-    Raises
-    ------
-    InputError
-        If a number is not finite or outside its bound.
     """
 
     called = "malicious touch"

@@ -46,12 +46,6 @@ class Tracking(RecordedOperator, ParametricOperator):
         c ≥ 0 [N·s/m; N·m·s/rad].
     mass
         m_h ≥ 0, moves with the handle [kg; kg·m²]. Default 0.
-
-    Raises
-    ------
-    InputError
-        If the positions are not one row of finite numbers, or a number is
-        outside its bound.
     """
 
     positions: Reads[Signal | Callable[[float], float], Path | Any] = part(
@@ -92,11 +86,6 @@ class Tracking(RecordedOperator, ParametricOperator):
             ζ ≥ 0 [1].
         mass
             m_h ≥ 0, the hand's part of it [kg; kg·m²].
-
-        Raises
-        ------
-        InputError
-            If a number is not finite or outside its bound.
         """
         for name, value in {"frequency": frequency, "moved_mass": moved_mass}.items():
             if not 0 < value < inf:

@@ -27,11 +27,6 @@ class WitnessMotion(Operator):
         A witness, `zw.check(device, environment).witness` or that of `zw.available_storage`, or its motion.
     rounds
         How often its repeated parts are done, ≥ 1; None as in the witness.
-
-    Raises
-    ------
-    InputError
-        If it is no witness, or too long to list; later, if it was found for another sample period.
     """
 
     witness: Any = field(kw_only=False)

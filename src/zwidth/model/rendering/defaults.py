@@ -8,26 +8,14 @@ from zwidth.quantity.exact import Exact, Interval
 
 
 def given_or_known(given: Exact | None, at: LoopContext, key: str, parameter: str) -> float:
-    """A parameter of a law, or the device's `key` in its place.
-
-    Raises
-    ------
-    InputError
-        If neither is known, or the device has an interval.
-    """
+    """A parameter of a law, or the device's `key` in its place."""
     if given is not None:
         return float(given)
     return known(at, key, f"{parameter} was not given and is otherwise the device's {key}")
 
 
 def known(at: LoopContext, key: str, why: str) -> float:
-    """A number of the device.
-
-    Raises
-    ------
-    InputError
-        If it has none; `why` says what it is needed for.
-    """
+    """A number of the device."""
     value = getattr(at.device, key)
     if value is None:
         raise InputError(f"{why}, which {at.device.name} does not have: give one of the two")
@@ -37,13 +25,7 @@ def known(at: LoopContext, key: str, why: str) -> float:
 
 
 def stiffness(at: LoopContext, why: str) -> float:
-    """K of the environment [N/m; N·m/rad].
-
-    Raises
-    ------
-    InputError
-        If its force is not K x at rest; `why` says what K is needed for.
-    """
+    """K of the environment [N/m; N·m/rad]."""
     met = at.environment
     bent = met.power_law is not None and met.power_law.exponent != 1
     if bent or at.stiffness <= 0:
@@ -52,13 +34,7 @@ def stiffness(at: LoopContext, why: str) -> float:
 
 
 def surface(at: LoopContext, law: str) -> None:
-    """Nothing, where the environment can be entered.
-
-    Raises
-    ------
-    InputError
-        If the hand cannot enter it, because it is never outside.
-    """
+    """Nothing, where the environment can be entered."""
     if not at.environment.unilateral:
         raise InputError(
             f"{law} acts when the hand enters, and this environment has no surface: "

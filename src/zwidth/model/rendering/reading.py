@@ -15,13 +15,7 @@ from zwidth.quantity.parameter import PLAIN, part
 
 
 def count(name: str, value: RealLike, why: str) -> int:
-    """A whole number of samples, at least 1.
-
-    Raises
-    ------
-    InputError
-        If it is not.
-    """
+    """A whole number of samples, at least 1."""
     whole = isinstance(value, int | Exact) and not isinstance(value, bool) and value == int(value)
     if not whole or value < 1:  # type: ignore[operator]
         raise InputError(f"{name} is a whole number of samples, at least 1, got {value}: {why}")
@@ -39,13 +33,7 @@ def updated_every() -> Any:
 
 
 def damping_per_sample(at: LoopContext, law: str) -> float:
-    """b/T, rounded down: what the device takes per squared move of one sample, at least [N/m; N·m/rad].
-
-    Raises
-    ------
-    InputError
-        If the device has no damping.
-    """
+    """b/T, rounded down: what the device takes per squared move of one sample, at least [N/m; N·m/rad]."""
     damping = at.device.exact("damping")
     if damping <= 0:
         raise InputError(

@@ -102,11 +102,6 @@ def path(name: str) -> Path:
     ----------
     name
         One of `names()`.
-
-    Raises
-    ------
-    InputError
-        If there is no such sample.
     """
     if name not in names():
         raise InputError(f"there is no sample {name[:60]!r}; there are: {', '.join(names())}")

@@ -24,13 +24,7 @@ _POWER = {1: 0, 0: 1, -1: 2}
 
 
 def impedance(elements: Sequence[Element], net: Ties, period: Fraction) -> RationalFunction:
-    """Z(z) [N·s/m], common factors cancelled; the elements are linear and none is a lever.
-
-    Raises
-    ------
-    InputError
-        If nothing holds a node.
-    """
+    """Z(z) [N·s/m], common factors cancelled; the elements are linear and none is a lever."""
     size = len(net.roots) + 1  # the port last
     y = [[flint.fmpq_poly([0]) for _ in range(size)] for _ in range(size)]
     for element, across in zip(elements, net.across, strict=True):

@@ -83,13 +83,7 @@ class Packed:
 
 
 def pack(elements: Sequence[Element], net: Ties, period: Fraction) -> Packed:
-    """The arrays; the elements are those that `net` has, without levers.
-
-    Raises
-    ------
-    InputError
-        If no linear element holds a node, so that its velocity has more than one answer.
-    """
+    """The arrays; the elements are those that `net` has, without levers."""
     joined = list(zip(elements, net.across, strict=True))
     linear = [(e, a) for e, a in joined if e.law is None]
     others = [(e, a) for e, a in joined if e.law is not None]

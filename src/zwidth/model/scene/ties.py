@@ -54,13 +54,7 @@ def unheld(node: str) -> InputError:
 
 
 def ties(elements: Sequence[Element], port: str) -> Ties:
-    """Nodes and ties of the elements; `port` is "" for none.
-
-    Raises
-    ------
-    InputError
-        If the port is tied to the ground.
-    """
+    """Nodes and ties of the elements; `port` is "" for none."""
     places = _tied(elements, port)
     if port and places[port][0] == GROUND:
         raise InputError(f'the port "{port}" is tied to the ground: nothing could be felt; untie it')

@@ -90,13 +90,7 @@ def all_keys() -> dict[str, Parameter]:
 
 
 def build_environment(table: Table, motion: str, depth: int = 0) -> Environment:
-    """The environment that a table describes, in the units of the device's motion.
-
-    Raises
-    ------
-    InputError
-        If the type or a key is unknown, missing, or has a value it cannot have.
-    """
+    """The environment that a table describes, in the units of the device's motion."""
     kind = _kind(table)
     keys = kind.keys
     if "damping" in keys:

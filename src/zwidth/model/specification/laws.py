@@ -53,23 +53,12 @@ def with_laws(
         What stood behind each `--law`; takes the place of the file's.
     motion
         "linear" or "rotary", of the device.
-
-    Raises
-    ------
-    InputError
-        If a law or a key is unknown, or has a value it cannot have.
     """
     return behind_laws(environment, law_tables(table, typed), motion)
 
 
 def law_tables(table: Table | None, typed: Iterable[str] | None) -> list[Table]:
-    """The table of each law, as `with_laws` takes them.
-
-    Raises
-    ------
-    InputError
-        If there are too many.
-    """
+    """The table of each law, as `with_laws` takes them."""
     tables = _tables(table) if typed is None else [*_named(typed)]
     if len(tables) > MOST:
         raise InputError(f"{tables[MOST].label}: more than {MOST} laws in a chain")
@@ -77,13 +66,7 @@ def law_tables(table: Table | None, typed: Iterable[str] | None) -> list[Table]:
 
 
 def behind_laws(environment: Environment, tables: Iterable[Table], motion: str) -> Environment:
-    """The environment behind the law of each table; itself where there are none.
-
-    Raises
-    ------
-    InputError
-        As `build_law`.
-    """
+    """The environment behind the law of each table; itself where there are none."""
     laws = [build_law(law, motion) for law in tables]
     if not laws:
         return environment
@@ -108,13 +91,7 @@ def _named(typed: Iterable[str]) -> Iterable[Table]:
 
 
 def build_law(table: Table, motion: str) -> RenderingLaw:
-    """The law that a table describes, in the units of the device's motion.
-
-    Raises
-    ------
-    InputError
-        If the type or a key is unknown, missing, or has a value it cannot have.
-    """
+    """The law that a table describes, in the units of the device's motion."""
     law: RenderingLaw = _built(table, LAWS, "law", motion)
     return law
 

@@ -62,11 +62,6 @@ def load_pair(sources: Sequence[Path | str], overrides: Mapping[str, str] | None
         TOML files, or names of the catalogue.
     overrides
         Values of the coupling by name, as typed: {"stiffness": "100", "virtual_damping": "0.1"}.
-
-    Raises
-    ------
-    InputError
-        If anything cannot be used: it says where it stands and what is allowed.
     """
     if not sources:
         raise InputError(
@@ -91,13 +86,7 @@ def _of_two(files: Sequence[Mapping[str, Table]], overrides: Mapping[str, str]) 
 
 
 def pair_of(tables: Mapping[str, Table], overrides: Mapping[str, str] | None = None) -> Pair:
-    """The pair that the tables of one file describe.
-
-    Raises
-    ------
-    InputError
-        As `load_pair`.
-    """
+    """The pair that the tables of one file describe."""
     arms = [tables[name] for name in ("leader", "follower") if name in tables]
     if "device" in tables and arms:
         raise InputError(

@@ -94,24 +94,12 @@ def load(sources: Sequence[Path | str], overrides: Mapping[str, str] | None = No
 
 
 def specified(tables: Mapping[str, Table], overrides: Mapping[str, str] | None = None) -> Specification:
-    """The device and the environment of tables, as `load` reads them.
-
-    Raises
-    ------
-    InputError
-        As `load`.
-    """
+    """The device and the environment of tables, as `load` reads them."""
     return built(*merged(tables, overrides))
 
 
 def merged(tables: Mapping[str, Table], overrides: Mapping[str, str] | None = None) -> tuple[Table, Table]:
-    """The tables of device and environment, with the command line's parameters in them.
-
-    Raises
-    ------
-    InputError
-        As `load`.
-    """
+    """The tables of device and environment, with the command line's parameters in them."""
     names = {key.replace("-", "_"): value for key, value in (overrides or {}).items()}
     device_names = {key: value for key, value in names.items() if key in DEVICE_KEYS}
     environment_names = {key: value for key, value in names.items() if key not in DEVICE_KEYS}
@@ -139,11 +127,6 @@ def built(device_table: Table, environment: Table, in_range: bool = False) -> Sp
         The tables.
     in_range
         True where a device of the catalogue may have its stated ranges in the place of what nobody published.
-
-    Raises
-    ------
-    InputError
-        As `load`.
     """
     ranges: Mapping[str, Range] = {}
     if in_range and "catalogue" in device_table.values:
@@ -155,36 +138,17 @@ def built(device_table: Table, environment: Table, in_range: bool = False) -> Sp
 
 
 def load_device(sources: Sequence[Path | str], overrides: Mapping[str, str]) -> Device:
-    """The device alone: files with a [device] or a name in the catalogue, then the command line's parameters.
-
-    Raises
-    ------
-    InputError
-        As `load`; if a file has an environment, which would be ignored.
-    """
+    """The device alone: files with a [device] or a name in the catalogue, then the command line's parameters."""
     return build_device(_device_table(read_tables(sources, ("device",)), overrides))
 
 
 def specified_device(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> Device:
-    """The device of tables, with the command line's parameters.
-
-    Raises
-    ------
-    InputError
-        As `build_device`, or if there is none.
-    """
+    """The device of tables, with the command line's parameters."""
     return build_device(_device_table(tables, overrides))
 
 
 def build_device(table: Table) -> Device:
-    """The device that a table describes.
-
-    Raises
-    ------
-    InputError
-        If a key is unknown, missing, contradicts another or has a value it
-        cannot have.
-    """
+    """The device that a table describes."""
     if "catalogue" in table.values:
         return _catalogued(table, catalogue.device)
     table.check_keys(DEVICE_KEYS, "a device")
@@ -217,13 +181,7 @@ def _device_value(table: Table, key: str, motion: str) -> Any:
 
 
 def question_time(written: object, delay: Exact | Interval, name: str) -> None:
-    """Ask for the unit of a delay that is hardly meant in seconds.
-
-    Raises
-    ------
-    InputError
-        If it has none, and is half a second or more.
-    """
+    """Ask for the unit of a delay that is hardly meant in seconds."""
     bare = not (isinstance(written, str) and any(map(str.isalpha, written)))
     if bare and ends(delay)[1] >= _LONG_DELAY:
         seconds = f"{float(ends(delay)[1]):g}"
@@ -254,13 +212,7 @@ def _catalogued(table: Table, build: Callable[..., T]) -> T:
 
 
 def read_tables(sources: Sequence[Path | str], kinds: Sequence[str] = LOOP_TABLES) -> dict[str, Table]:
-    """The tables in files, by kind.
-
-    Raises
-    ------
-    InputError
-        If a file cannot be read or has a table that is not of these kinds.
-    """
+    """The tables in files, by kind."""
     tables: dict[str, Table] = {}
     for source in sources:
         for kind, table in _read(source, kinds).items():
@@ -285,13 +237,7 @@ def _read(source: Path | str, kinds: Sequence[str]) -> dict[str, Table]:
 
 
 def tables_of(text: str, name: str, kinds: Sequence[str] = LOOP_TABLES) -> dict[str, Table]:
-    """The tables of a text, by kind; `name` says in messages where it stands.
-
-    Raises
-    ------
-    InputError
-        If it is not TOML, is empty, or has a table that is not of these kinds.
-    """
+    """The tables of a text, by kind; `name` says in messages where it stands."""
     content = _parse(text, name)
     for key, value in content.items():
         if key == "law" and key not in kinds:
@@ -418,13 +364,7 @@ def _device_table(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> 
 
 
 def environment_table(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> Table:
-    """The table of the environment, with the command line's parameters in it.
-
-    Raises
-    ------
-    InputError
-        If there is none, or a parameter that no environment has.
-    """
+    """The table of the environment, with the command line's parameters in it."""
     table = tables.get("environment")
     known = option_keys()
     if table is None:

@@ -41,13 +41,7 @@ MOST = 10_000
 
 
 def build_elements(value: object, label: str, motion: str) -> list[Element]:
-    """The elements that tables describe; `label` says where they stand.
-
-    Raises
-    ------
-    InputError
-        If they are no tables, or one has an unknown type or key, lacks one, or has a value it cannot have.
-    """
+    """The elements that tables describe; `label` says where they stand."""
     if not isinstance(value, list) or not all(isinstance(one, Mapping) for one in value):
         raise InputError(f'{label}: elements are tables, such as [[environment.elements]] type = "mass"')
     if len(value) > MOST:

@@ -24,13 +24,7 @@ from zwidth.quantity.units import parse, parse_number
 
 
 def read(value: Any, key: str, own: Parameter, motion: str) -> Any:
-    """The value of one key, in the unit of the device's motion.
-
-    Raises
-    ------
-    InputError
-        If it is not what the field takes.
-    """
+    """The value of one key, in the unit of the device's motion."""
     unit = own.unit_for(motion)
     if own.form == "uncertain":
         return parse(value, unit, key)
@@ -124,13 +118,7 @@ FILTERS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 def velocity_filter(
     value: object, key: str = "velocity_filter"
 ) -> BackwardDifference | Window | OnePole | VelocityFilter:
-    """A velocity estimator from a table, or a text such as "window 5" or "one-pole 50 Hz".
-
-    Raises
-    ------
-    InputError
-        If the type or a key is unknown, missing, or has a value it cannot have.
-    """
+    """A velocity estimator from a table, or a text such as "window 5" or "one-pole 50 Hz"."""
     if isinstance(value, str):
         value = _filter_table(value)
     if not isinstance(value, Mapping):
@@ -167,13 +155,7 @@ def _time_constant(arguments: Mapping[str, object]) -> Exact | Interval:
 
 
 def time_constant_of(cutoff: Exact | Fraction) -> Exact:
-    """τ = 1/(2πf) [s] of a cut-off frequency [Hz], rounded to a double as a controller would hold it.
-
-    Raises
-    ------
-    InputError
-        If f ≤ 0.
-    """
+    """τ = 1/(2πf) [s] of a cut-off frequency [Hz], rounded to a double as a controller would hold it."""
     if cutoff <= 0:
         raise InputError(f"cutoff must be > 0 Hz, got {float(cutoff):g}: the filter would pass nothing")
     return Exact(1 / (2 * math.pi * float(cutoff)))

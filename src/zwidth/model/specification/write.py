@@ -37,13 +37,7 @@ class Tables(NamedTuple):
 
 
 def tables(device: Device, environment: Environment) -> Tables:
-    """The loop as the tables that `written` writes, each quantity a text with its unit.
-
-    Raises
-    ------
-    InputError
-        If a specification has no words for the environment or a law.
-    """
+    """The loop as the tables that `written` writes, each quantity a text with its unit."""
     chain = getattr(environment, "laws", ())
     inner = environment.environment if chain else environment  # type: ignore[attr-defined]
     laws = tuple(_law(link, LAWS, device.motion) for link in chain)
@@ -57,11 +51,6 @@ def written(device: Device, environment: Environment) -> str:
     ----------
     device, environment
         A loop; the environment may stand behind laws in a chain.
-
-    Raises
-    ------
-    InputError
-        If a specification has no words for it: an environment or a law of one's own.
     """
     values = tables(device, environment)
     rows = [("[device]", values.device), ("[environment]", values.environment)]
@@ -74,13 +63,7 @@ def written(device: Device, environment: Environment) -> str:
 
 
 def written_environment(environment: Environment, motion: str = "linear") -> str:
-    """The environment alone, as the file that stands beside a device: `zwidth check DEVICE FILE`.
-
-    Raises
-    ------
-    InputError
-        If a specification has no words for it.
-    """
+    """The environment alone, as the file that stands beside a device: `zwidth check DEVICE FILE`."""
     text = "\n".join(["[environment]", *lines(_environment(environment, motion)), ""])
     again = build_environment(tables_of(text, "environment")["environment"], motion)
     if again != environment:
@@ -89,13 +72,7 @@ def written_environment(environment: Environment, motion: str = "linear") -> str
 
 
 def parsed(text: str, name: str = "specification") -> Specification:
-    """The loop of a text, with its laws in a chain; `name` says in messages where it stands.
-
-    Raises
-    ------
-    InputError
-        If it is no specification of a loop, or anything in it cannot be used.
-    """
+    """The loop of a text, with its laws in a chain; `name` says in messages where it stands."""
     found = tables_of(text, name, WITH_LAWS)
     loop = specified({kind: table for kind, table in found.items() if kind != "law"})
     row = found.get("law")

@@ -12,13 +12,7 @@ from zwidth.quantity.parameter import parameters_of
 
 
 def written_pair(pair: Pair) -> str:
-    """A pair as a specification in TOML.
-
-    Raises
-    ------
-    InputError
-        If a specification has no words for it.
-    """
+    """A pair as a specification in TOML."""
     tables = [
         ("[leader]", device_table(pair.leader)),
         ("[follower]", device_table(pair.follower)),

@@ -54,13 +54,7 @@ class Parameter(NamedTuple):
 
 
 def parameter_of(device: Device, environment: Environment, name: str) -> Parameter:
-    """The parameter that is asked for, one of a rendered environment included; the laws follow it.
-
-    Raises
-    ------
-    InputError
-        If there is none of that name, or it is not one number.
-    """
+    """The parameter that is asked for, one of a rendered environment included; the laws follow it."""
     owner, _, key = name.rpartition(".")
     met = environment.met
     in_environment = {f.name for f in fields(met)} - {"exponent"}  # it changes the unit of K

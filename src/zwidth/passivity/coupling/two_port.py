@@ -78,11 +78,6 @@ def impedance_display(
         − Re(p12 p21), and `needed_damping` [N·s/m].  Attributes: `unconditionally_stable`,
         `tightest_frequency` [Hz].
 
-    Raises
-    ------
-    InputError
-        If a number is outside its bound or an interval.
-
     References
     ----------
     Adams & Hannaford, IEEE Transactions on Robotics and Automation 15(3), 1999.
@@ -134,11 +129,6 @@ def admittance_display(
         As for `impedance_display`, with `re_p11` a mobility, `re_p22` an impedance and, in the place of
         the damping, `needed_impedance` = the Re Z_c that is needed [N·s/m].
 
-    Raises
-    ------
-    InputError
-        If a number is outside its bound or an interval, the mass is not known, or there is a delay.
-
     Notes
     -----
     The conditions are those of Adams & Hannaford (1999); the model of the inner loop is derived for this
@@ -184,11 +174,6 @@ def llewellyn_damping(stiffness: RealLike, damping: RealLike, sample_period: Rea
         K_c ≥ 0 [N/m; N·m/rad] and B_c ≥ 0 [N·s/m; N·m·s/rad], not both 0.
     sample_period
         T > 0 [s].
-
-    Raises
-    ------
-    InputError
-        If a number is outside its bound.
 
     Notes
     -----

@@ -67,11 +67,6 @@ def kelvin_voigt_damping(stiffness: RealLike, damping: RealLike, sample_period: 
     Exact
         The smallest device damping [N·s/m; N·m·s/rad].
 
-    Raises
-    ------
-    InputError
-        If K < 0 or T ≤ 0.
-
     References
     ----------
     Colgate & Schenkel, Journal of Robotic Systems 14(1), 1997.
@@ -107,11 +102,6 @@ def window_damping(
     -------
     Exact or float
         The smallest device damping [N·s/m; N·m·s/rad].
-
-    Raises
-    ------
-    InputError
-        If K < 0, T ≤ 0, or N is outside its range.
 
     Notes
     -----
@@ -166,11 +156,6 @@ def standard_linear_solid_damping(
     Exact
         The smallest device damping [N·s/m; N·m·s/rad].
 
-    Raises
-    ------
-    InputError
-        If a number is outside its range or the discretization is another one.
-
     References
     ----------
     "A passivity criterion for real-time haptic simulation of viscoelastic soft
@@ -211,11 +196,6 @@ def abbott_okamura_stiffness(
     StiffnessLimits
         (2b/T, 2f_c/Δ) [N/m; N·m/rad].
 
-    Raises
-    ------
-    InputError
-        If a number is outside its range.
-
     References
     ----------
     Abbott & Okamura, IEEE Transactions on Robotics 21(5), 2005, equation (3).
@@ -252,11 +232,6 @@ def quantized_kelvin_voigt_friction(
     -------
     Exact
         Coulomb friction with which the encoder costs nothing [N; N·m].
-
-    Raises
-    ------
-    InputError
-        If K < 0, Δ < 0 or T ≤ 0.
 
     Notes
     -----
@@ -299,11 +274,6 @@ def damped_wall_damping(
     Exact
         Device damping that is enough [N·s/m; N·m·s/rad].
 
-    Raises
-    ------
-    InputError
-        If K < 0, T ≤ 0 or d is no whole number ≥ 0.
-
     Notes
     -----
     Derived for this project; the proof is in the documentation.
@@ -343,11 +313,6 @@ def damped_wall_friction(
     -------
     Exact
         Coulomb friction that is enough [N; N·m].
-
-    Raises
-    ------
-    InputError
-        If K < 0, Δ < 0 or t_v ≤ 0.
 
     Notes
     -----

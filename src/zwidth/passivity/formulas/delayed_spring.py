@@ -35,11 +35,6 @@ def spring_damping(stiffness: RealLike, sample_period: RealLike, delay: RealLike
     Exact or float
         The smallest device damping [N·s/m; N·m·s/rad].
 
-    Raises
-    ------
-    InputError
-        If K < 0, T ≤ 0 or delay < 0.
-
     Notes
     -----
     Derived for this project.  In one interval the hand meets g = f(k−d−1) for
@@ -74,11 +69,6 @@ def spring_stiffness(damping: RealLike, sample_period: RealLike, delay: RealLike
     -------
     Exact or float
         The largest stiffness [N/m; N·m/rad]; 2b/T without delay.
-
-    Raises
-    ------
-    InputError
-        If b < 0, T ≤ 0 or delay < 0.
     """
     b = nonnegative("damping", damping, "viscous friction takes energy, it never gives any")
     t = positive("sample_period", sample_period, NO_CLOCK)

@@ -65,13 +65,7 @@ class SpringNeed:
 
 
 def spring_need(device: Device, spring: Environment) -> SpringNeed:
-    """What the slopes of a spring ask of a device.
-
-    Raises
-    ------
-    InputError
-        If a number of the device is an interval.
-    """
+    """What the slopes of a spring ask of a device."""
     points = [(x.fraction, f.fraction) for x, f in spring.points]
     slopes = [(f1 - f0) / (x1 - x0) for (x0, f0), (x1, f1) in pairwise(points)]
     largest, steepest = max(*slopes, Fraction(0)), max(map(abs, slopes))

@@ -107,11 +107,6 @@ def fast_press(device: Device, stiffness: RealLike, counts: int | None = None) -
         As for `plane_point`, with Δ > 0 and K > 2b/T.
     counts
         n; the smallest that gains if not given.
-
-    Raises
-    ------
-    InputError
-        If Δ = 0, K ≤ 2b/T, or n is too small.
     """
     wall = quantized_wall(device, stiffness)
     _require_encoder(wall)
@@ -148,11 +143,6 @@ def edge_crossing(device: Device, stiffness: RealLike) -> Counterexample:
     ----------
     device, stiffness
         As for `plane_point`, with Δ > 0 and K > 2f_c/Δ.
-
-    Raises
-    ------
-    InputError
-        If Δ = 0 or K ≤ 2f_c/Δ.
     """
     wall = quantized_wall(device, stiffness)
     _require_encoder(wall)

@@ -94,11 +94,6 @@ def plane_point(device: Device, stiffness: RealLike) -> PlanePoint:
         Certain values of b, T, f_c and Δ, without delay.
     stiffness
         K > 0 [N/m; N·m/rad].
-
-    Raises
-    ------
-    InputError
-        If K ≤ 0, a value is an interval, the device has a delay, or f_c = Δ = 0.
     """
     wall = quantized_wall(device, stiffness)
     if wall.step == 0 and wall.friction == 0:
@@ -152,11 +147,6 @@ def catalogue_coordinates(stiffness: RealLike) -> dict[str, tuple[Exact | None, 
     ----------
     stiffness
         K > 0 [N/m; N·m/rad].
-
-    Raises
-    ------
-    InputError
-        If K ≤ 0.
     """
     k = _stiffness(stiffness)
     marks = {name: _coordinates(catalogue.entry(name).known(), k) for name in catalogue.names()}

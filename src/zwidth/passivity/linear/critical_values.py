@@ -48,11 +48,6 @@ def critical_values(law: Law, degree: int, loop: LinearLoop, scale: Fraction) ->
         On the same device: its b, T and delay are taken.
     scale
         A value of the size that is looked for.
-
-    Raises
-    ------
-    InputError
-        If orders and delays are so high that this would take minutes.
     """
     numbers = [Fraction(i) for i in range(1, 2 * degree + 2)]
     loops = _on_one_scale([law(scale * number) for number in numbers], loop)

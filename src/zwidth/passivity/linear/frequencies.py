@@ -11,13 +11,7 @@ _POINTS = 2000
 
 
 def sampled_frequencies(given: ArrayLike | None, period: float) -> NDArray[np.float64]:
-    """Those that were given, or 2000 evenly between 0 and 1/(2T) [Hz].
-
-    Raises
-    ------
-    InputError
-        If one is not above 0 and at most half the rate.
-    """
+    """Those that were given, or 2000 evenly between 0 and 1/(2T) [Hz]."""
     nyquist = 0.5 / period
     if given is None:
         return np.asarray((np.arange(_POINTS) + 0.5) * (nyquist / _POINTS), dtype=np.float64)

@@ -219,14 +219,7 @@ def _float(value: fmpq) -> float:
 
 
 def linear_loop(device: Device, environment: Environment) -> LinearLoop:
-    """The exact loop of a certain device and environment.
-
-    Raises
-    ------
-    InputError
-        If a parameter is an interval, H(z) does not exist, order and delay together
-        exceed `LARGEST_DEGREE`, or its whole coefficients have more than `LARGEST_DIGITS`.
-    """
+    """The exact loop of a certain device and environment."""
     period = device.exact("sample_period")
     h = environment.pulse_transfer_function(period)
     return loop_from(h, device.exact("damping"), period, device.exact("delay"))

@@ -64,11 +64,6 @@ def prove_nonnegative(p: fmpz_poly, known: bool = False) -> Positivity | Fractio
     known
         True where p ≥ 0 is known and only its factors are asked for: a squarefree g crosses each of its
         zeros, and has none.
-
-    Raises
-    ------
-    TooClose
-        If p comes so close to zero that more than `MOST_WORDS` would be read.
     """
     if p.degree() < 0:
         return Positivity(0, 0, (), (1,))

@@ -29,12 +29,6 @@ def read_port(thing: Environment | Any, period: Fraction | None = None) -> Port:
     """A port from a square system of python-control, scipy.signal or harold, or from an environment's H(z).
 
     `period` is that of an environment, and of a discrete system that says none.
-
-    Raises
-    ------
-    InputError
-        If it is neither, has not as many inputs as outputs, is not causal in discrete time, of too high
-        an order or too large, or does not say whether its time is continuous.
     """
     if isinstance(thing, Environment):
         if period is None:

@@ -128,13 +128,7 @@ class RelativeIndex(Shown):
 
 
 def relative_index(port: Port, reference: RealLike = 1) -> RelativeIndex:
-    """R of a port at a reference, between two rationals a part in 10¹² from each other.
-
-    Raises
-    ------
-    InputError
-        If the reference is not positive.
-    """
+    """R of a port at a reference, between two rationals a part in 10¹² from each other."""
     z = Exact(reference).fraction
     if z <= 0:
         raise InputError(

@@ -203,13 +203,7 @@ class SampleTable(Result):
 
 
 def read_samples(frequencies: Any, values: Any, what: str) -> tuple[Any, Any]:
-    """f [Hz], ascending, and for each a square matrix, of one port a number: (samples, ports, ports).
-
-    Raises
-    ------
-    InputError
-        If they are something else, are empty or not finite.
-    """
+    """f [Hz], ascending, and for each a square matrix, of one port a number: (samples, ports, ports)."""
     try:
         f, s = np.asarray(frequencies, dtype=float), np.asarray(values, dtype=complex)
     except (TypeError, ValueError):
@@ -229,13 +223,7 @@ def read_samples(frequencies: Any, values: Any, what: str) -> tuple[Any, Any]:
 
 
 def read_errors(error: Any, samples: int) -> list[Fraction]:
-    """By how much each sample may be wrong: one number for all, or one for each.
-
-    Raises
-    ------
-    InputError
-        If one is negative, or there are not so many.
-    """
+    """By how much each sample may be wrong: one number for all, or one for each."""
     given = list(error) if hasattr(error, "__len__") and not isinstance(error, str) else [error] * samples
     if len(given) != samples:
         raise InputError(f"error is one number, or one for each of the {samples} samples; got {len(given)}")

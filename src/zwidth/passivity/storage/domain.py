@@ -84,14 +84,7 @@ class Domain:
 
 
 def losses_of(device: Device, friction: FrictionCurve | None = None) -> Losses:
-    """What the hand meets besides the law.
-
-    Raises
-    ------
-    InputError
-        If a parameter is an interval, the encoder is ideal, or a friction curve meets a
-        delay that is not whole samples.
-    """
+    """What the hand meets besides the law."""
     resolution, period, delay = (device.exact(k) for k in ("resolution", "sample_period", "delay"))
     if resolution == 0:
         raise InputError(
@@ -124,11 +117,6 @@ def domain_for(
     speed
         Largest mean speed of the hand over a sample, or over each part of it between two
         changes of the force [m/s; rad/s], > 0; None likewise.
-
-    Raises
-    ------
-    InputError
-        If a number is not positive, or a law that relaxes meets a delay that is not whole samples.
     """
     if law.relaxing is not None and losses.curve is not None:
         raise InputError("a friction curve is not taken with a law that relaxes: take a model below it")
@@ -182,13 +170,7 @@ def states_of(law: FiniteLaw, losses: Losses, domain: Domain) -> int:
 
 
 def counts_of(name: str, value: RealLike | None, unit: Fraction) -> Fraction:
-    """A bound on the hand in counts; 0 where there is none.
-
-    Raises
-    ------
-    InputError
-        If it is not > 0.
-    """
+    """A bound on the hand in counts; 0 where there is none."""
     if value is None:
         return Fraction(0)
     exact = Exact(value).fraction

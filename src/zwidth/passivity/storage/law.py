@@ -172,13 +172,6 @@ def finite_law(
         Without intervals.
     force_limit, force_resolution
         True to count in the actuator's force limit, the steps of its converter.
-
-    Raises
-    ------
-    InputError
-        If the law has two or more parts that relax, or one that swings, or remembers
-        longer than `LONGEST_MEMORY` readings; or if there is no force limit or no step of
-        the converter to count in.
     """
     limit = _counted(device, "force_limit", "the force limit is") if force_limit else None
     step = _counted(device, "force_resolution", "converter steps are") if force_resolution else None

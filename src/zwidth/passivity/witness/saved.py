@@ -22,11 +22,6 @@ def saved_motion(document: object, name: str) -> Motion:
         As `read_document` gives it.
     name
         Of the file, for messages.
-
-    Raises
-    ------
-    InputError
-        If there is no motion in it.
     """
     found: Any = document
     if isinstance(found, Mapping) and isinstance(found.get("witness"), Mapping):

@@ -41,13 +41,7 @@ def is_loopback(address: str) -> bool:
 
 
 def token_for(address: str, given: str | None) -> str | None:
-    """The token that is asked for, made where none was given; None where only this machine is answered.
-
-    Raises
-    ------
-    InputError
-        If a given one is short, or has characters that an address and a cookie do not carry.
-    """
+    """The token that is asked for, made where none was given; None where only this machine is answered."""
     if given is None:
         return None if is_loopback(address) else secrets.token_urlsafe(24)
     if len(given) < SHORTEST or not all(c.isascii() and (c.isalnum() or c in "-_") for c in given):

@@ -33,13 +33,7 @@ def with_coupling(state: State) -> State:
 
 
 def pair_verdict(state: State) -> PairVerdict:
-    """The verdict on both arms.
-
-    Raises
-    ------
-    InputError
-        If they cannot be joined so.
-    """
+    """The verdict on both arms."""
     return check_pair(pair_of(pair_tables(state)))
 
 

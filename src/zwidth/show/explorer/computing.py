@@ -74,13 +74,7 @@ class Row(NamedTuple):
 
 
 def operator_of(state: State) -> ParametricOperator:
-    """The hand that touches the loop; the usual one of its device where none is chosen.
-
-    Raises
-    ------
-    InputError
-        If there is no such hand, or a number of it cannot be used.
-    """
+    """The hand that touches the loop; the usual one of its device where none is chosen."""
     values = dict(state.extras.get("operator", {}))
     values.pop("type", None)
     name = hand_kind_of(state)
@@ -159,13 +153,7 @@ def middle(value: Exact | Interval) -> float:
 
 
 def moved(state: State) -> Replay:
-    """The motion that takes energy out, sample by sample.
-
-    Raises
-    ------
-    InputError
-        If the loop has none, or none that can be shown.
-    """
+    """The motion that takes energy out, sample by sample."""
     from zwidth.show.plots.replay import replay
 
     loop = state.loop()

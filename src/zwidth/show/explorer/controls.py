@@ -219,13 +219,7 @@ def _else(path: str, key: str, own: Parameter, value: object) -> Control:
 
 
 def read_entry(control: Control, text: str) -> object:
-    """What was typed, as `State.changed` takes it; None where the entry was emptied.
-
-    Raises
-    ------
-    InputError
-        If it must not be empty, or is no list or table.
-    """
+    """What was typed, as `State.changed` takes it; None where the entry was emptied."""
     text = text.strip()
     if len(text) > 4000:
         raise InputError(f"{control.label}: more than 4000 characters; give it in a file")

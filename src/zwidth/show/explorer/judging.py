@@ -40,13 +40,7 @@ class Judged(NamedTuple):
 
 
 def judged_at_once(loop: Specification) -> Judged:
-    """The verdict by closed forms, in milliseconds, where there is one.
-
-    Raises
-    ------
-    InputError
-        As `check`.
-    """
+    """The verdict by closed forms, in milliseconds, where there is one."""
     device, law = loop.device, loop.environment
     if not law.has_transfer_function or _is_large(loop):
         return Judged(loop, None, final=False)
@@ -63,13 +57,7 @@ def _is_large(loop: Specification) -> bool:
 
 
 def judged_in_full(state: State) -> Verdict:
-    """What `zwidth.check` says, for a process of its own.
-
-    Raises
-    ------
-    InputError
-        As `check`.
-    """
+    """What `zwidth.check` says, for a process of its own."""
     loop = state.loop()
     verdict = check(loop.device, loop.environment, progress=lambda _: None)
     if isinstance(verdict, LinearVerdict):

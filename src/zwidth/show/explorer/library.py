@@ -8,13 +8,7 @@ from zwidth.errors import InputError
 
 
 def need_libraries() -> None:
-    """Nothing, if they are.
-
-    Raises
-    ------
-    InputError
-        If Panel or Bokeh is not installed.
-    """
+    """Nothing, if they are."""
     for module, name in (("panel", "Panel"), ("bokeh", "Bokeh")):
         if find_spec(module) is None:
             raise InputError(

@@ -80,11 +80,6 @@ def from_sources(
         Parameters by name, as typed: {"rate": "2 kHz", "stiffness": "770"}.
     laws
         Names of laws in a chain behind the environment.
-
-    Raises
-    ------
-    InputError
-        If one cannot be read, or has no loop.
     """
     typed = dict(typed or {})
     if not (sources or typed or laws):

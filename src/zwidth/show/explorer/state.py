@@ -68,36 +68,18 @@ class State:
 
     @staticmethod
     def of(device: Device, environment: Environment) -> State:
-        """The tables of a loop.
-
-        Raises
-        ------
-        InputError
-            If a specification has no words for the environment or a law: one of one's own.
-        """
+        """The tables of a loop."""
         return State(*tables(device, environment))
 
     def loop(self) -> Specification:
-        """Device, and environment behind its laws.
-
-        Raises
-        ------
-        InputError
-            If a key or a value cannot be used: it says which, and what is allowed.
-        """
+        """Device, and environment behind its laws."""
         device = build_device(Table("device", deepcopy(dict(self.device))))
         environment = build_environment(Table("environment", deepcopy(dict(self.environment))), device.motion)
         row = Table("law", {ROW: deepcopy([*map(dict, self.laws)])}) if self.laws else None
         return Specification(device, with_laws(environment, row, None, device.motion))
 
     def settled(self) -> State:
-        """The same loop with every parameter that it has, in the words of `tables`.
-
-        Raises
-        ------
-        InputError
-            As `loop`.
-        """
+        """The same loop with every parameter that it has, in the words of `tables`."""
         loop = self.loop()
         return replace(State.of(loop.device, loop.environment), extras=self.extras)
 
@@ -207,11 +189,6 @@ def from_query(query: Sequence[tuple[str, str]]) -> State:
     ----------
     query
         Its keys and values, decoded, in order.
-
-    Raises
-    ------
-    InputError
-        If it is too long, or a key or a value cannot be used.
     """
     if sum(len(key) + len(value) for key, value in query) > LONGEST_QUERY:
         raise InputError(f"the address is longer than {LONGEST_QUERY} characters; give the loop as a file")
@@ -295,11 +272,6 @@ def from_file(text: str, name: str, shown: State) -> Given:
         Of the file, for messages.
     shown
         The loop before.
-
-    Raises
-    ------
-    InputError
-        If it is too large, or no specification of a loop.
     """
     if len(text.encode("utf-8", "replace")) > LARGEST_FILE:
         raise InputError(
@@ -335,24 +307,12 @@ def _rendered(found: Mapping[str, Table], shown: State) -> Given:
 
 
 def catalogued(name: str) -> Device:
-    """A device of the catalogue; where no source gives damping or rate, with one to begin with.
-
-    Raises
-    ------
-    InputError
-        If there is none of this name.
-    """
+    """A device of the catalogue; where no source gives damping or rate, with one to begin with."""
     return catalogue.device(name, **lacking_of(name))
 
 
 def lacking_of(name: str) -> dict[str, str]:
-    """What no source gives of a device of the catalogue and a loop cannot do without, to begin with.
-
-    Raises
-    ------
-    InputError
-        If there is none of this name.
-    """
+    """What no source gives of a device of the catalogue and a loop cannot do without, to begin with."""
     found = catalogue.entry(name)
     return _lacking(found.known(), found.motion)
 

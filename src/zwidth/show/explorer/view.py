@@ -65,13 +65,7 @@ def wide(figure: Any) -> Any:
 
 
 def given(controls: Mapping[str, Control], event: Event) -> tuple[Control, object]:
-    """Which control an event is of, and its value as `State.changed` takes it.
-
-    Raises
-    ------
-    InputError
-        If there is no such control any more, or the value is none of it.
-    """
+    """Which control an event is of, and its value as `State.changed` takes it."""
     path, value = str(event.get("path")), event.get("value")
     control = controls.get(path)
     if control is None:

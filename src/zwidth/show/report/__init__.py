@@ -81,13 +81,7 @@ def save(
 
 
 def check_ending(path: Path) -> None:
-    """Refuse a name of which no report can be made, before anything is computed.
-
-    Raises
-    ------
-    InputError
-        If it ends otherwise than in one of `ENDINGS`, or in .pdf where ReportLab is not installed.
-    """
+    """Refuse a name of which no report can be made, before anything is computed."""
     if path.suffix.lower() not in ENDINGS:
         raise InputError(f"a report is written as .html or .pdf, got {path.name!r}; for example report.html")
     if path.suffix.lower() == ".pdf":

@@ -26,13 +26,7 @@ _TURNED = {"N/m": ("N*m/rad", 2), "N": ("N*m", 1), "m": ("rad", -1), "N*s/m": ("
 
 
 def radius_of(device: Device, given: RealLike | None) -> Exact:
-    """The radius at which a device that turns is touched [m].
-
-    Raises
-    ------
-    InputError
-        If none is given, or it is no length > 0.
-    """
+    """The radius at which a device that turns is touched [m]."""
     if given is None:
         raise InputError(
             f"the touches of the bench are a finger's, at a handle or rim, and {device.name} turns: say how "

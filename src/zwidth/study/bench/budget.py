@@ -28,26 +28,14 @@ class Budget:
     rounds: float
 
     def __call__(self, improved: int) -> None:
-        """One round more.
-
-        Raises
-        ------
-        Spent
-            If that was one too many.
-        """
+        """One round more."""
         self.rounds -= 1
         if self.rounds < 0:
             raise Spent
 
 
 def budget_of(program: DynamicProgram, moves: float) -> Budget:
-    """For so many moves against one law.
-
-    Raises
-    ------
-    InputError
-        If not even one round is within them.
-    """
+    """For so many moves against one law."""
     width = 2 * program.domain.reach + 1
     states = program.domain.cells * width ** (program.law.memory + program.losses.delay)
     if program.law.relaxing is not None:

@@ -76,13 +76,7 @@ def _rounds(program: RowProgram, told: Budget) -> Iterator[bool | Gain | None]:
 
 
 def _largest(device: Device, law: Environment) -> RowProgram:
-    """The dynamic program on the largest domain with no more than `STATES`; a larger one has no fewer.
-
-    Raises
-    ------
-    DoesNotClose
-        If there are more on the smallest one.
-    """
+    """The dynamic program on the largest domain with no more than `STATES`; a larger one has no fewer."""
     program = None
     for counts in reversed(COUNTS):
         try:

@@ -121,13 +121,7 @@ LAWS: Mapping[str, Law] = {
 
 
 def wall_to_render(environment: Environment) -> Wall:
-    """What the laws of the bench render.
-
-    Raises
-    ------
-    InputError
-        If it is no wall.
-    """
+    """What the laws of the bench render."""
     wall = wall_of(environment)
     if wall is None:
         raise InputError(f"the bench compares how a wall is rendered, got {environment.describe()}")

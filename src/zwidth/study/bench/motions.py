@@ -71,13 +71,7 @@ def count_of(device: Device, fastest: RealLike) -> Fraction:
 
 
 def as_speed(device: Device, fastest: RealLike) -> Fraction:
-    """The speed of the fastest hand [m/s].
-
-    Raises
-    ------
-    InputError
-        If it does not cross an edge of the encoder within a sample, or is no finite number.
-    """
+    """The speed of the fastest hand [m/s]."""
     least = 2.5 * EDGE * float(device.exact("resolution") / device.exact("sample_period"))
     if not (isfinite(float(fastest)) and float(fastest) > 0 and float(fastest) >= least):
         raise InputError(

@@ -52,13 +52,7 @@ class Store:
         return [tuple(map(int, place)) for place in np.argwhere(self._done[:] == 0)]
 
     def write(self, place: Place, layers: Layers) -> None:
-        """Keep a chunk, and then say that it is there.
-
-        Raises
-        ------
-        InputError
-            If the disk does not take it; what was kept before is.
-        """
+        """Keep a chunk, and then say that it is there."""
         with _on_disk(self._path, self._layout):
             for name, values in layers.items():
                 array: Any = self._group[name]
@@ -88,11 +82,6 @@ def computed(
         Of a zarr store; None to keep nothing.
     progress
         Is told how many chunks are done, and of how many.
-
-    Raises
-    ------
-    InputError
-        If the store cannot be used.
     """
     keep: Any = Memory(layout) if path is None else Store(path, layout)
     left = keep.left
@@ -105,13 +94,7 @@ def computed(
 
 
 def say(path: Path, layout: Layout, told: Mapping[str, Any]) -> None:
-    """Write into a store that is whole what is to be said of it.
-
-    Raises
-    ------
-    InputError
-        If the disk does not take it.
-    """
+    """Write into a store that is whole what is to be said of it."""
     import zarr  # it was there to compute the store
 
     with _on_disk(path, layout):

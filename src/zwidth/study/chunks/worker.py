@@ -42,13 +42,7 @@ class Worker:
         self._say((compute, ready))
 
     def ask(self, place: Place) -> Layers:
-        """The layers of one chunk.
-
-        Raises
-        ------
-        InputError
-            If the process is gone: somebody ended it, or the memory was full.
-        """
+        """The layers of one chunk."""
         try:
             self._say(place)
             failed, answer = pickle.load(self.process.stdout)  # type: ignore[arg-type]  # it is a pipe

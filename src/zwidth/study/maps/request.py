@@ -128,13 +128,7 @@ def request(
     velocity_filter: VelocityEstimator | None,
     hands: Mapping[str, Any] | None,
 ) -> Request:
-    """Read what `z_width` is given.
-
-    Raises
-    ------
-    InputError
-        If a range or a number of cells cannot be, a parameter is an interval, or the mass is unknown.
-    """
+    """Read what `z_width` is given."""
     if not device.is_certain:
         raise InputError(
             "a map is of one device, and a parameter of this one is an interval; choose a value in it"

@@ -64,11 +64,6 @@ def axis(name: str, given: object, unit: str) -> Axis:
         Of the parameter; what has no unit of its own is in this one.
     given
         A text as above, (start, stop, count), (start, stop, count, "log"), or a list of values.
-
-    Raises
-    ------
-    InputError
-        If it is neither, a value cannot be, or is there twice.
     """
     values = _values(name, given, unit)
     if not values:

@@ -63,13 +63,7 @@ def begun(path: Path) -> Path:
 
 
 def saved_table(path: Path, asked: Request) -> xr.Dataset:
-    """The sweep of a table that is whole.
-
-    Raises
-    ------
-    InputError
-        If the file holds another one.
-    """
+    """The sweep of a table that is whole."""
     try:
         found, digest = _read_parquet(path)
     except Exception:  # whatever it is, it is not this sweep
@@ -80,13 +74,7 @@ def saved_table(path: Path, asked: Request) -> xr.Dataset:
 
 
 def save_table(path: Path, asked: Request, found: xr.Dataset) -> None:
-    """Write the table whole, and then remove the store in which it was begun.
-
-    Raises
-    ------
-    InputError
-        If it cannot be written.
-    """
+    """Write the table whole, and then remove the store in which it was begun."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 

@@ -87,13 +87,7 @@ class Part(NamedTuple):
 
 
 def parameter(loop: Loop, typed: str) -> Parameter:
-    """The number of that name.
-
-    Raises
-    ------
-    InputError
-        If the loop has none: it says what it has.
-    """
+    """The number of that name."""
     name = typed.strip().replace("-", "_")
     known = {
         f"{part.before}{_ALIAS.get((label, key), key)}": Parameter(name, unit, label, key)
@@ -120,13 +114,7 @@ def _unknown(typed: str, name: str, known: Iterable[str]) -> str:
 
 
 def changed(loop: Loop, values: Mapping[Parameter, float]) -> Loop:
-    """The loop with other numbers; those of one part are set at once.
-
-    Raises
-    ------
-    InputError
-        If it cannot be.
-    """
+    """The loop with other numbers; those of one part are set at once."""
     parts: dict[str, Changes] = {}
     for own, value in values.items():
         parts.setdefault(own.part, {})[own.key] = Exact(value)

@@ -128,13 +128,7 @@ class Request:
         )
 
     def at(self, place: tuple[int, ...]) -> Loop:
-        """One loop, by its place along each axis.
-
-        Raises
-        ------
-        InputError
-            If its numbers exclude one another.
-        """
+        """One loop, by its place along each axis."""
         values = (own.values[n] for own, n in zip(self.axes, place, strict=True))
         return changed(self.loop, dict(zip(self.parameters, values, strict=True)))
 
@@ -157,13 +151,7 @@ class Request:
 
 
 def request(of: str, loop: Loop, vary: Mapping[str, object]) -> Request:
-    """Read what `sweep` is given.
-
-    Raises
-    ------
-    InputError
-        If there is no such question or parameter, a value cannot be, or there are too many loops.
-    """
+    """Read what `sweep` is given."""
     if of not in QUESTIONS:
         raise InputError(f"a sweep is of {', '.join(QUESTIONS)}, got {quoted(str(of))}; "
                          f"{suggestion(str(of), QUESTIONS)}")  # fmt: skip

@@ -38,13 +38,7 @@ def numbers_within(thing: Any, motion: str) -> Units:
 
 
 def with_numbers(thing: Any, new: Mapping[str, Any]) -> Any:
-    """The thing with other numbers, by the names of `numbers_within`; all of them are set at once.
-
-    Raises
-    ------
-    InputError
-        If it cannot be.
-    """
+    """The thing with other numbers, by the names of `numbers_within`; all of them are set at once."""
     own: dict[str, Any] = {}
     inner: dict[str, dict[str, Any]] = {}
     for name, value in new.items():

@@ -79,13 +79,7 @@ def read_pair(
     scale: Mapping[str, object] | None = None,
     **reading: Any,
 ) -> PairRecording:
-    """Both arms; keys may carry `leader_` or `follower_`, a key without is of both.
-
-    Raises
-    ------
-    InputError
-        If one of the arms cannot be read, or the two do not have the same rows.
-    """
+    """Both arms; keys may carry `leader_` or `follower_`, a key without is of both."""
     sheet = reading.pop("sheet", None)
     told = (columns or {}, units or {}, scale or {}, reading)
     if not isinstance(recording, str | PathLike):

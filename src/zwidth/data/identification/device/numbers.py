@@ -103,11 +103,6 @@ class IdentifiedNumbers:
             Between 0 and 1; None: the best guesses instead of intervals.
         others
             Further arguments of `Device`, such as name or force_limit.
-
-        Raises
-        ------
-        InputError
-            If the confidence is no such number, or Coulomb friction is seen that was not fitted.
         """
         if self.shows("wrong model"):
             raise InputError(
@@ -221,11 +216,6 @@ class IdentifiedNumbers:
         bins
             How many bins of speed each way, 2 or more, each with as many pulses; fewer are taken where the
             strokes are few.
-
-        Raises
-        ------
-        InputError
-            If one of the two is no such number, or the strokes are too few.
         """
         from zwidth.data.identification.device.curve import curve_below
 

@@ -82,13 +82,7 @@ def as_json(said: dict[str, Any]) -> str:
 
 
 def from_json(text: str | bytes) -> dict[str, Any]:
-    """A table of JSON; what is no number there, such as NaN, becomes a text.
-
-    Raises
-    ------
-    ValueError
-        If it is none.
-    """
+    """A table of JSON; what is no number there, such as NaN, becomes a text."""
     try:
         found = json.loads(text, parse_constant=str)
     except RecursionError:
@@ -107,13 +101,7 @@ class Part(NamedTuple):
 
 
 def head_in(text: str | bytes, source: object) -> tuple[Head, dict[str, Any]]:
-    """The head in a text of JSON, and what is said more.
-
-    Raises
-    ------
-    InputError
-        If it is none, or one of another version.
-    """
+    """The head in a text of JSON, and what is said more."""
     try:
         said = from_json(text)
         form = said.pop("format")

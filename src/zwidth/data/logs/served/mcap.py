@@ -49,13 +49,7 @@ class _Record(NamedTuple):
 
 
 def mcap_head(path: Path) -> Head | None:
-    """What a recording says of itself; None for an MCAP of others.
-
-    Raises
-    ------
-    InputError
-        If it is ours and cannot be read.
-    """
+    """What a recording says of itself; None for an MCAP of others."""
     with open(path, "rb") as file:
         for record in _records(file, path):
             if record.kind == METADATA:

@@ -53,13 +53,7 @@ class About:
 
 
 def about_in(content: bytes) -> About:
-    """What a packet of text says.
-
-    Raises
-    ------
-    InputError
-        If it is of another version, or lacks a number.
-    """
+    """What a packet of text says."""
     flags, text = content[0], content[1:].decode("ascii", "replace")
     first, *lines = text.splitlines() or [""]
     if first != FORMAT:

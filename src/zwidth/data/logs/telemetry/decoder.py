@@ -97,11 +97,6 @@ class Decoder:
             What has come since.
         last
             Nothing more comes.
-
-        Raises
-        ------
-        InputError
-            If they are of another version, or of two laws.
         """
         held = np.frombuffer(self._held + data, dtype=np.uint8)
         found = find(held, last=last)

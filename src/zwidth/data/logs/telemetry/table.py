@@ -29,13 +29,7 @@ def is_telemetry(start: bytes) -> bool:
 
 
 def telemetry_table(path: Path) -> Table:
-    """The table of a file of telemetry; its columns are known by what they are called.
-
-    Raises
-    ------
-    InputError
-        If no packet of the file says what the numbers are.
-    """
+    """The table of a file of telemetry; its columns are known by what they are called."""
     about = about_of(path)
     position, force = COLUMNS[about.motion]
     resolution = "resolution_m" if about.motion == "linear" else "resolution_rad"
@@ -54,13 +48,7 @@ def telemetry_table(path: Path) -> Table:
 
 
 def about_of(path: Path) -> About:
-    """What the first text of a file says.
-
-    Raises
-    ------
-    InputError
-        If there is none.
-    """
+    """What the first text of a file says."""
     decoder = Decoder()
     for _ in samples_of(path, decoder):
         if decoder.about is not None:

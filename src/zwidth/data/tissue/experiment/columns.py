@@ -98,11 +98,6 @@ def recognised(
 ) -> Columns:
     """The columns of a test: first what was chosen, then by name, then by unit; of several side by side that
     of a number from 1.
-
-    Raises
-    ------
-    InputError
-        If one is not found, may be several, or has no unit or one of something else.
     """
     chosen, units = dict(chosen or {}), dict(units or {})
     for what, given in (("column", chosen), ("unit", units)):

@@ -63,13 +63,7 @@ class Solved(NamedTuple):
 
 
 def solved(task: Task, near: Solved | None = None) -> Solved:
-    """The fit of a task, from that of one much like it where there is one.
-
-    Raises
-    ------
-    InputError
-        If the test has fewer samples than there are numbers.
-    """
+    """The fit of a task, from that of one much like it where there is one."""
     white = with_memory(task.test.time, 0.0)
     numbers = task.own + task.zero + task.surface + task.held
     if numbers >= task.test.time.size:

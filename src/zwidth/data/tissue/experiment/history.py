@@ -61,13 +61,7 @@ class History(NamedTuple):
 
 
 def history_of(trial: Trial, kind: Kind, source: str) -> History:
-    """Signs, zero, surface and end of a test.
-
-    Raises
-    ------
-    InputError
-        If nothing pushes, or what is left is too short.
-    """
+    """Signs, zero, surface and end of a test."""
     held = trial.force if kind == "creep" else trial.indentation
     loaded = kind != "loading" and not changes(held)
     x, f, said = _turned(trial, kind, loaded)

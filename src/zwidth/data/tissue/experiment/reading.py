@@ -41,11 +41,6 @@ def read_tests(
 ) -> list[Raw]:
     """Every test in a file that stands beside the others, or on another sheet of a workbook; one after the
     other they are still together.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or a column or its unit is not known.
     """
     with readable(str(path)):
         table = table_of_file(Path(path), sheet)

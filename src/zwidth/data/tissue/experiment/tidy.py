@@ -29,13 +29,7 @@ class Trial(NamedTuple):
 
 
 def one_trial(raw: Raw, number: int = 1) -> Trial:
-    """The trial of a number from 1, of those that come one after the other.
-
-    Raises
-    ------
-    InputError
-        If it has too few samples.
-    """
+    """The trial of a number from 1, of those that come one after the other."""
     said = list(raw.findings)
     parts, gone = _parts(raw)
     if gone:

@@ -38,11 +38,6 @@ def files(target: str, *, prefix: str = "law", folder: str = "law") -> dict[str,
         Of the names in the header, and the header's own name.
     folder
         Name of the folder: Arduino wants that of a sketch to be the same.
-
-    Raises
-    ------
-    InputError
-        If there is none for this target, or the prefix is no name in C.
     """
     if target not in _FILES:
         raise InputError(f'there is no main program for "{target}"; there is one for {", ".join(TARGETS)}')

@@ -48,13 +48,7 @@ class BusServo(CompiledConnection):
         self._before: list[tuple[int, int, int]] = []
 
     def open(self, sample_period: float) -> Opened:
-        """Reach the servo, read what it is, set it up; force 0.
-
-        Raises
-        ------
-        InputError
-            If there is no such port, the servo does not answer, reports a fault, or cannot give a force.
-        """
+        """Reach the servo, read what it is, set it up; force 0."""
         self._line = open_port(self.port, self.baud)
         self._opened = blank(_REMEMBERED)
         self._opened.memory[DESCRIPTOR] = self._line.fileno()

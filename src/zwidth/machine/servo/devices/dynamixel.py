@@ -148,11 +148,6 @@ class Dynamixel(BusServo):
     reverse
         True where a positive current turns the servo towards smaller positions.  None: not, and a servo whose
         drive mode is Reverse is refused, for by the e-Manual that inverts positions alone on most models.
-
-    Raises
-    ------
-    InputError
-        If a number is out of its bounds.
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "rotary"

@@ -122,11 +122,6 @@ class Feetech(BusServo):
         in.
     baud
         Of the bus [1/s].
-
-    Raises
-    ------
-    InputError
-        If a number is out of its bounds.
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "rotary"

@@ -189,13 +189,7 @@ class ForceDimension(LibraryConnection):
 
 
 def _library() -> Any:
-    """The package's module of the maker's functions.
-
-    Raises
-    ------
-    InputError
-        If the package is not installed, or does not find the maker's library.
-    """
+    """The package's module of the maker's functions."""
     if importlib.util.find_spec(_PACKAGE) is None:
         raise InputError(
             "the package that calls the library of Force Dimension is not installed; "

@@ -193,11 +193,6 @@ class Moteus(CompiledConnection):
         True for a controller's own UART: lines end in a checksum, both ways.  USB has its own.
     baud
         Of the UART [1/s]; an adapter on USB ignores it.
-
-    Raises
-    ------
-    InputError
-        If a number is out of its bounds.
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "rotary"

@@ -176,13 +176,7 @@ def keys() -> dict[str, tuple[Key, list[str]]]:
 
 
 def build_connection(table: Table) -> Connection:
-    """The connection that a table describes.
-
-    Raises
-    ------
-    InputError
-        If its type is unknown, a key is unknown or missing, or has a value it cannot have.
-    """
+    """The connection that a table describes."""
     kind = table.text("type")
     if kind not in CONNECTIONS:
         hint = suggestion(kind, (SIMULATED, *CONNECTIONS))

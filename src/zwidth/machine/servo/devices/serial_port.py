@@ -27,11 +27,6 @@ def open_port(port: str, baud: int) -> Any:
         "/dev/ttyACM0", "/dev/cu.usbmodem1"; a pseudo-terminal too, which has no baud rate.
     baud
         Bits per second on the wire [1/s]; USB devices that only look like serial ports ignore it.
-
-    Raises
-    ------
-    InputError
-        If pyserial is not installed, or the port is not there, not ours to open, or in use.
     """
     check_supported()
     try:

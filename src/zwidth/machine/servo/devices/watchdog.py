@@ -14,11 +14,6 @@ def check_watchdog(watchdog: float, sample_period: float) -> None:
         After so long without a force the device ends it [s].
     sample_period
         Of the loop [s].
-
-    Raises
-    ------
-    InputError
-        If the watchdog is shorter than two sample periods.
     """
     if watchdog < 2 * sample_period:
         raise InputError(

@@ -35,13 +35,7 @@ UNFINISHED, WRONG = -1, -2
 
 
 def connect(host: str, port: int, path: str, seconds: float) -> tuple[socket.socket, bytes]:
-    """The open line, and what came behind the handshake already.
-
-    Raises
-    ------
-    InputError
-        If nobody listens there, or who does answers as no WebSocket.
-    """
+    """The open line, and what came behind the handshake already."""
     where = f"ws://{host}:{port}{path}"
     try:
         line = socket.create_connection((host, port), timeout=seconds)
@@ -84,13 +78,7 @@ def _handshake(line: socket.socket, host: str, path: str) -> bytes:
 
 
 def read_message(line: socket.socket, behind: bytes) -> tuple[bytes, bytes]:
-    """(The payload of the next message, what came behind it), waiting as long as the line's timeout.
-
-    Raises
-    ------
-    InputError
-        If the line ends or nothing comes, or what comes is no message.
-    """
+    """(The payload of the next message, what came behind it), waiting as long as the line's timeout."""
     message, data = b"", behind
     while True:
         first, start, end = header(np.frombuffer(data, np.uint8), 0, len(data))

@@ -17,11 +17,6 @@ def library(module: str, name: str) -> Any:
         To import.
     name
         As its makers write it.
-
-    Raises
-    ------
-    InputError
-        If it is not installed.
     """
     try:
         return importlib.import_module(module)

@@ -51,13 +51,7 @@ class Page:
 
 
 def checked_port(port: int) -> int:
-    """A port that can be asked for, 0 for any that is free.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
+    """A port that can be asked for, 0 for any that is free."""
     if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port <= 65535:
         raise InputError(
             f"{port!r} is no port: give a whole number from 1 to 65535, or 0 for one that is free"
@@ -66,13 +60,7 @@ def checked_port(port: int) -> int:
 
 
 def checked_origin(origin: str) -> str:
-    """What a browser calls pages of one site, such as "https://app.foxglove.dev".
-
-    Raises
-    ------
-    InputError
-        If it is no scheme and host; "null" is none, since pages of any site may be called so.
-    """
+    """What a browser calls pages of one site, such as "https://app.foxglove.dev"."""
     if not re.fullmatch(r"[a-z][a-z0-9+.-]*://[^\s/?#@]+/?", origin, re.IGNORECASE):
         raise InputError(
             f"{origin!r} is no origin of pages: give scheme and host, such as https://app.foxglove.dev"

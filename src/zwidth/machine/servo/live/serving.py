@@ -13,13 +13,7 @@ from zwidth.machine.servo.live.page import HOST
 
 
 def bound(port: int) -> tuple[list[Any], int]:
-    """Sockets that listen on this machine alone, and their port.
-
-    Raises
-    ------
-    InputError
-        If Tornado is not installed, or the port is in use.
-    """
+    """Sockets that listen on this machine alone, and their port."""
     try:
         sockets = library("tornado.netutil", "Tornado").bind_sockets(port, HOST)
     except OSError as error:

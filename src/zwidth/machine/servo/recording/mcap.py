@@ -69,11 +69,6 @@ class McapFile:
         What is known before the first row.
     force
         What is there is lost; else there must be nothing, nor a link.
-
-    Raises
-    ------
-    OSError
-        If the disk does not take it.
     """
 
     def __init__(self, path: Path, head: Head, force: bool = False) -> None:

@@ -36,12 +36,6 @@ def joint_damping(given: Damping, joints: int) -> tuple[float, ...] | tuple[tupl
         between a sliding joint and one that turns].
     joints
         m, how many.
-
-    Raises
-    ------
-    InputError
-        If a number is missing, not finite or negative, or the matrix is not m × m, symmetric and without
-        negative eigenvalues.
     """
     try:
         values = np.atleast_1d(np.asarray(given, dtype=np.float64))

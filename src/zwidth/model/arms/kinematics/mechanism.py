@@ -124,13 +124,7 @@ class Mechanism:
 def mechanism(
     name: str, damping_is: str, written: Sequence[Written], frames: Sequence[Frame], notes: Sequence[str] = ()
 ) -> Mechanism:
-    """The table, with each joint that follows another moved by that one's coordinate.
-
-    Raises
-    ------
-    InputError
-        If a joint follows none, or itself, or its friction is < 0.
-    """
+    """The table, with each joint that follows another moved by that one's coordinate."""
     for joint in written:
         if joint.damping < 0 or joint.friction < 0:
             raise InputError(f"line {joint.line}: joint {joint.name!r} has a friction < 0, and none drives")

@@ -54,13 +54,7 @@ class _Settings(NamedTuple):
 
 
 def read_mjcf(root: Element, stem: str) -> Mechanism:
-    """The joints as MuJoCo numbers them.
-
-    Raises
-    ------
-    InputError
-        If MuJoCo would refuse it, or something could move the hand in a way that is not read.
-    """
+    """The joints as MuJoCo numbers them."""
     for section in root.parts:
         if section.tag not in _SECTIONS.split():
             raise section.wrong("is no section of an MJCF")

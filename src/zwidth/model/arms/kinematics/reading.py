@@ -105,13 +105,7 @@ def read_arm(
 
 
 def read_mechanism(path: Path) -> Mechanism:
-    """What a .urdf, .xml or .mjcf file describes.
-
-    Raises
-    ------
-    InputError
-        If it is none of these, cannot be read, or nothing in it moves.
-    """
+    """What a .urdf, .xml or .mjcf file describes."""
     if path.suffix.lower() not in _ENDINGS:
         raise InputError(f"an arm is described in a .urdf, .xml or .mjcf file, got {path.name!r}")
     if not path.is_file():

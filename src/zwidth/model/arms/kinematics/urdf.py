@@ -25,13 +25,7 @@ _MOVES = {"revolute": False, "continuous": False, "prismatic": True}
 
 
 def read_urdf(root: Element, stem: str) -> Mechanism:
-    """The joints from the base on, those of one link by their names, as ROS numbers them.
-
-    Raises
-    ------
-    InputError
-        If something is missing, said twice or not of a tree, or a joint has more than one axis.
-    """
+    """The joints from the base on, those of one link by their names, as ROS numbers them."""
     links, joints = _named(root, "link"), _named(root, "joint")
     below: dict[str, list[Element]] = {name: [] for name in links}
     ends = {

@@ -37,11 +37,6 @@ def largest_damping(given: Limit, device: Device, spring: Exact | None) -> Fract
     That is b − K (T/2 + delay) before a spring of K [N/m; N·m/rad] that leaves something of b, so that a
     wall that is proved stays proved where there is no delay; otherwise b.  Of intervals it is the largest
     of any device within.
-
-    Raises
-    ------
-    InputError
-        If it was not given and the device has no damping.
     """
     if given == UNLIMITED:
         return None

@@ -70,11 +70,6 @@ class CrossingCorrection(Modelled):
     **model
         Of device and finger: mass, damping (None: the device's), finger_mass,
         finger_stiffness, finger_damping and finger_position.
-
-    Raises
-    ------
-    InputError
-        If a number is outside its bound.
     """
 
     code: ClassVar[float] = CROSSING

@@ -89,11 +89,6 @@ class Modelled(RenderingLaw):
         c ≥ 0 [N·s/m; N·m·s/rad].
     finger_position
         x_a, where the finger's spring is at rest [m; rad].
-
-    Raises
-    ------
-    InputError
-        If a number is outside its bound.
     """
 
     mass: CertainOrNone = parameter(

@@ -18,13 +18,7 @@ _windowed, _ticked, _filtered = adaptive_window.step, tick_time.step, kalman.ste
 
 
 def as_estimator(velocity: Estimator | None) -> Estimator:
-    """The estimator; by default the adaptive window.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
+    """The estimator; by default the adaptive window."""
     chosen: Any = AdaptiveWindow() if velocity is None else velocity
     if not isinstance(chosen, Estimator):
         raise InputError(

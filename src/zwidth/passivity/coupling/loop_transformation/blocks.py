@@ -41,11 +41,6 @@ def delay_sum(
         T > 0 [s].
     delay
         dT ≥ 0, a whole number of samples [s].
-
-    Raises
-    ------
-    InputError
-        If a number is outside its bound.
     """
     t = positive("sample_period", sample_period, NO_CLOCK)
     alpha = positive("damping", damping, "nothing pays for the hold without it")

@@ -69,13 +69,7 @@ class HeldPair:
 
     @property
     def motion(self) -> Motion:
-        """What moves there, arm and hand together.
-
-        Raises
-        ------
-        InputError
-            If the mass of the arm is unknown.
-        """
+        """What moves there, arm and hand together."""
         device = getattr(self.pair, self.held)
         if device.mass is None:
             raise InputError(
@@ -109,13 +103,7 @@ class HeldPair:
 
 
 def held_pair(pair: Pair, leader: Any = ANY, follower: Any = ANY) -> HeldPair:
-    """What holds which arm, as `check_held_pair` is asked.
-
-    Raises
-    ------
-    InputError
-        If not just one arm is held, or the hand is none.
-    """
+    """What holds which arm, as `check_held_pair` is asked."""
     given = {
         name: hand
         for name, hand in (("leader", leader), ("follower", follower))
@@ -178,13 +166,7 @@ def felt(pair: HeldPair, motion: Motion) -> tuple[RationalFunction, RationalFunc
 
 
 def felt_loop(pair: HeldPair, motion: Motion) -> tuple[LinearLoop, LinearLoop]:
-    """The free arm before that law; and the same before what comes through of the held arm's encoder.
-
-    Raises
-    ------
-    InputError
-        If readings and forces are too old for its order to be decided.
-    """
+    """The free arm before that law; and the same before what comes through of the held arm's encoder."""
     side = pair.arms[0].side
     law, stray = (loop_from(h, side.damping, pair.pair.sample_period, side.delay) for h in felt(pair, motion))
     return law, stray

@@ -93,11 +93,6 @@ def periodic_motion(plant: Plant, slope: float, gap: float, longest: int = 120) 
         From where the hand rests to the surface, ≠ 0; < 0 for a hand that presses.
     longest
         Longest period tried [samples], 2 … 1000.
-
-    Raises
-    ------
-    InputError
-        If a number is out of its bound.
     """
     if not slope > 0 or gap == 0 or not 2 <= longest <= 1000:
         raise InputError(

@@ -60,13 +60,7 @@ class Plant:
 
 
 def given_plant(system: PulseTransferFunction) -> Plant:
-    """G(z) as typed: stable and strictly proper.
-
-    Raises
-    ------
-    InputError
-        If it is not.
-    """
+    """G(z) as typed: stable and strictly proper."""
     top, bottom = ([Exact(c).fraction for c in part] for part in (system.numerator, system.denominator))
     while top and top[0] == 0:
         top = top[1:]
@@ -83,14 +77,7 @@ def given_plant(system: PulseTransferFunction) -> Plant:
 
 
 def touched_plant(device: Device, hand: LinearHand | Operator) -> Plant:
-    """The device in a hand that is a mass, a spring and a damper to a resting anchor.
-
-    Raises
-    ------
-    InputError
-        If a number of the device is an interval or missing; if friction or encoder are not ideal; if
-        nothing damps.
-    """
+    """The device in a hand that is a mass, a spring and a damper to a resting anchor."""
     loop = _numbers(device, hand.hand if isinstance(hand, Operator) else hand)
     mass, damping = loop["mass"] + loop["hand_mass"], loop["damping"] + loop["hand_damping"]
     period, late = loop["sample_period"], loop["delay"] / loop["sample_period"]

@@ -46,13 +46,7 @@ class Band(NamedTuple):
 
 
 def band_of(below: Fraction, period: Fraction) -> Band:
-    """The band up to f₀.
-
-    Raises
-    ------
-    InputError
-        If f₀ is not between 0 and the Nyquist frequency 1/(2T).
-    """
+    """The band up to f₀."""
     if not 0 < below <= 1 / (2 * period):
         raise InputError(
             f"below must be > 0 and at most half the rate, {float(1 / (2 * period)):g} Hz, got "

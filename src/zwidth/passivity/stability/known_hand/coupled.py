@@ -178,13 +178,7 @@ def _checked(motion: Motion, transfer: RationalFunction, units: str) -> tuple[Fo
 
 
 def motion_of(device: Device, hand: HandImpedance) -> Motion:
-    """Device and hand together, as `plant` takes them.
-
-    Raises
-    ------
-    InputError
-        If the mass is unknown, or period or delay is an interval.
-    """
+    """Device and hand together, as `plant` takes them."""
     if device.mass is None:
         raise InputError(
             "stability with a known hand depends on the mass of the device, and it is unknown; give mass"

@@ -79,12 +79,6 @@ def row_law(
         True for a hand that begins at `lowest` and nowhere else.
     force_limit, force_resolution
         True to count in the actuator's force limit, the steps of its converter.
-
-    Raises
-    ------
-    InputError
-        If it cannot be simulated, the delay is no whole number of samples, or there is no
-        force limit or no step of the converter to count in.
     """
     for counted, key in ((force_limit, "force_limit"), (force_resolution, "force_resolution")):
         if counted and getattr(device, key) is None:

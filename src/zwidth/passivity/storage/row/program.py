@@ -145,13 +145,6 @@ def row_program(
 
     `domains` are tried for what is not given: counts on either side, and counts a sample.  On the last
     of them the law may have so many states as `most`.
-
-    Raises
-    ------
-    DoesNotClose
-        If the law does not close on any of them.
-    InputError
-        If values cannot be iterated.
     """
     losses = losses_of(device, friction)
     max_depth = counts_of("penetration", penetration, losses.resolution)

@@ -95,15 +95,7 @@ class Table:
 
 
 def tabulate(law: RowLaw, domain: Domain, most: int = MOST_STATES) -> Table:
-    """All states of a law on a grid.
-
-    Raises
-    ------
-    DoesNotClose
-        If there are more than `most`, or fewer where each remembers very much.
-    InputError
-        If a force is no number.
-    """
+    """All states of a law on a grid."""
     known: dict[bytes, int] = {}
     found = _Found([], [])
     begun = []

@@ -72,13 +72,7 @@ def freely() -> Until:
 
 
 def checked_effort(effort: float) -> float:
-    """How much may be done.
-
-    Raises
-    ------
-    InputError
-        If it is not a number ≥ 0.
-    """
+    """How much may be done."""
     if isinstance(effort, bool) or not isinstance(effort, int | float) or not effort >= 0:
         raise InputError(
             f"effort must be a number ≥ 0, got {effort!r}: it is how much may be tried, 1 being about a "
@@ -88,13 +82,7 @@ def checked_effort(effort: float) -> float:
 
 
 def time_limit(seconds: float | None) -> float:
-    """The time that a search may take [s]; inf where none is given.
-
-    Raises
-    ------
-    InputError
-        If it is not a number ≥ 0.
-    """
+    """The time that a search may take [s]; inf where none is given."""
     if seconds is None:
         return inf
     if not isinstance(seconds, int | float) or not seconds >= 0:
