@@ -1,4 +1,4 @@
-"""No file, and no folder, needs itself through others: imports at the top, deferred, or for types alone."""
+"""No file, and no folder, needs itself through others: at the top, deferred, for types alone, or by name."""
 
 from __future__ import annotations
 
@@ -29,6 +29,8 @@ def imports_of(name: str, text: str, first_page: bool, known: Iterable[str]) -> 
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith(("import_module", "find_spec")):
+            found |= set(_named(node.args[0]))
         elif isinstance(node, ast.ImportFrom):
             above = name.split(".") if first_page else name.split(".")[:-1]
             start = above[: len(above) - node.level + 1] if node.level else []
@@ -38,13 +40,22 @@ def imports_of(name: str, text: str, first_page: bool, known: Iterable[str]) -> 
     return (found & set(known)) - {name}
 
 
+def _named(given: ast.expr) -> Iterator[str]:
+    """The module that a text names, or the folder that it begins with, what follows being computed."""
+    start = given.values[0] if isinstance(given, ast.JoinedStr) else given
+    if isinstance(start, ast.Constant) and isinstance(start.value, str):
+        yield start.value.rstrip(".")
+
+
 def imports() -> Imports:
-    """Of the whole package."""
+    """Of the whole package, with what the stubs name."""
     files = modules()
-    return {
-        name: imports_of(name, path.read_text(encoding="utf-8"), path.name == "__init__.py", files)
-        for name, path in files.items()
-    }
+    found = {}
+    for name, path in files.items():
+        pages = [page for page in (path, path.with_suffix(".pyi")) if page.exists()]
+        text = "\n".join(page.read_text(encoding="utf-8") for page in pages)
+        found[name] = imports_of(name, text, path.name == "__init__.py", files)
+    return found
 
 
 def folded(imported: Imports, folder: str) -> Imports:
@@ -87,7 +98,7 @@ def test_no_folder_has_a_circle(folder: str, imported: Imports) -> None:
 
 
 def test_a_circle_would_be_seen() -> None:
-    """Of two files that name each other, one at the top and one in a function, and of two folders."""
+    """Of two files that name each other, at the top, in a function or by a text, and of two folders."""
     known = ("p.a", "p.b.c", "p.b.d", "p.b")
     graph = {
         "p.a": imports_of("p.a", "from p.b.c import x", False, known),
@@ -98,3 +109,7 @@ def test_a_circle_would_be_seen() -> None:
     assert graph == {"p.a": {"p.b.c"}, "p.b.c": {"p.b.d"}, "p.b.d": {"p.a"}, "p.b": {"p.b.c"}}
     assert sorted(set(circle(folded(graph, "p")))) == ["a", "b"]
     assert circle(folded(graph, "p.b")) == []
+    assert imports_of("p.a", 'f(import_module("p.b.c"), import_module(f"p.b.{x}"))', False, known) == {
+        "p.b.c",
+        "p.b",
+    }
