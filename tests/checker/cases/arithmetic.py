@@ -102,17 +102,35 @@ def curvature_is_bounded_closely() -> str:
     return ""
 
 
-def roots_have_few_bits() -> str:
-    """Of numbers whose root is a unit or two."""
+def what_has_few_bits_is_rounded_outward() -> str:
+    """Roots of a unit or two, and inverses of numbers so far from 1 that their slope is a part of a unit."""
     functions, enclosed = module("functions"), module("enclosed").Enclosed
-    for bits, middle in product(range(3), range(1, 9)):
-        for slopes, radius in (((), 0), ((1,), 0), ((), middle - 1), ((middle // 2,), middle // 3)):
+    for bits, middle in product(range(4), (*range(1, 9), 13, 29, 63, 200)):
+        for slopes, radius in (
+            ((), 0),
+            ((1,), 0),
+            ((), middle - 1),
+            ((middle // 2,), middle // 3),
+            ((middle // 4,), 0),
+        ):
             x = enclosed(bits, middle, slopes, radius)
-            if x.reach < middle:
-                wrong = outside(functions.root(x), x, square_root, 1 << 40)
+            if x.reach >= middle:
+                continue
+            for y, function, right in (
+                (x, functions.root, square_root),
+                (x, functions.inverse, lambda v: 1 / v),
+                (-x, functions.inverse, lambda v: 1 / v),
+            ):
+                wrong = outside(function(y), y, right, 1 << 40)
                 if wrong:
-                    return wrong
+                    return f"{function.__name__}: {wrong}"
     return ""
+
+
+def a_slope_is_known_to_a_unit() -> str:
+    """Of a number so far from 1 that the slope of its inverse is some hundred units."""
+    x = module("enclosed").Enclosed(22, 880539593, (21290496,))
+    return outside(module("functions").inverse(x), x, lambda v: 1 / v, 1 << 40)
 
 
 def what_may_be_0_has_no_inverse() -> str:
@@ -308,8 +326,10 @@ def what_is_open_is_not_decided() -> str:
 
 
 def coprime_polynomials_are_told() -> str:
-    """True only of those without a common root, whatever the size of the coefficients."""
+    """True only of those without a common root, whatever the size of the coefficients; modulo primes."""
     are_coprime = module("coprime").are_coprime
+    if not all(pow(base, p - 1, p) == 1 for p in module("coprime")._PRIMES for base in (3, 5, 7)):
+        return "modulo what is no prime"
     for shared, a, b in product(INSIDE, INSIDE, NOT_INSIDE):
         n, d = ([10**50 * c for c in expanded(*part)[::-1]] for part in ((shared, a), (shared, b)))
         if are_coprime(n, d) or are_coprime([*n, 0], [*d, 0]) or are_coprime([], d):
@@ -590,7 +610,8 @@ def sizes_of_a_product_are_bounded() -> str:
 CHECKS = (
     functions_are_rounded_outward,
     curvature_is_bounded_closely,
-    roots_have_few_bits,
+    what_has_few_bits_is_rounded_outward,
+    a_slope_is_known_to_a_unit,
     what_may_be_0_has_no_inverse,
     sines_are_rounded_outward,
     series_are_cut_off_outward,

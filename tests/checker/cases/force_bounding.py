@@ -11,6 +11,8 @@ from . import TINY, Fraction, accepted, put, refused, without
 
 U = Fraction(1, 100)
 HAIR = ((1 + U) ** 9 - 1) / (1 - U) ** 13
+DOUBLE = Fraction(1, 1 << 53)
+HAIR_OF_DOUBLES = ((1 + DOUBLE) ** 9 - 1) / (1 - DOUBLE) ** 13
 # b/T = 4, f_c = 2.02, Δ = ½, ΔF = ¼
 BOUND = {
     "kind": "force bounding",
@@ -52,6 +54,7 @@ CASES = [
         fed_with="",
     ),
     accepted("without rounding", EXACT),
+    accepted("rounded as doubles are", put(BOUND, {"law.hair": HAIR_OF_DOUBLES, "law.roundoff": DOUBLE})),
     refused(
         "without rounding, less friction",
         put(EXACT, {"loop.coulomb_friction_N": 2 - TINY}),

@@ -119,6 +119,31 @@ def what_is_damped_or_held_is_not_free() -> str:
     return ""
 
 
+def a_mass_twice_as_large_moves_half_as_far() -> str:
+    """Free, however late its force is."""
+    motions, none = module("held_motion"), (Fraction(0),) * 2
+    for late in (Fraction(0), Fraction(1, 2), Fraction(7, 3)):
+        light, heavy = (
+            motions.sampled_free(motions.Motion((Fraction(m),) * 2, none, none, Fraction(1), late))
+            for m in (1, 2)
+        )
+        if (light[0], *light[1:]) != ([2 * x for x in heavy[0]], *heavy[1:]):
+            return f"{late} samples late: {light}, {heavy}"
+    return ""
+
+
+def every_term_of_a_cosine_sum_counts() -> str:
+    """But for those that are 0; a unit of the last digit as well as any."""
+    positive = module("absolute")._require_positive
+    for sums, right in (
+        ([1, 0, 0], True), ([3, 0, -2], True), ([1, 0, -2], False), ([2, 1], True), ([1, 1], False),
+        ([1, -1], False), ([2, -1], True), ([0, 0], False), ([0], False),
+    ):  # fmt: skip
+        if refuses(positive, [number(4, x) for x in sums], refusal()) is right:
+            return f"{sums}"
+    return ""
+
+
 def halves_make_the_whole() -> str:
     """Cut at the middle of what is not certain; all else as it was."""
     motions = module("held_motion")
@@ -234,6 +259,8 @@ CHECKS = (
     what_is_near_1_is_enclosed,
     what_moves_too_far_is_not_summed,
     what_is_damped_or_held_is_not_free,
+    a_mass_twice_as_large_moves_half_as_far,
+    every_term_of_a_cosine_sum_counts,
     halves_make_the_whole,
     plants_are_padded_with_what_is_0,
     what_is_damped_nowhere_is_not_stable,

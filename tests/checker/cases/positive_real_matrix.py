@@ -207,6 +207,15 @@ CASES = [
     ),
     refused("offset 0", put(CONSTANT, {"proof.offset": 0}), "proof.offset must be > 0"),
     refused("offset below 0", put(CONSTANT, {"proof.offset": -1}), "proof.offset must be > 0"),
+    *(
+        refused(
+            f"a resolvent {name}", put(DIAGONAL, {"proof.resolvent.numerators": rows}), "not that of the port"
+        )
+        for name, rows in (
+            ("of 0", [[[], []], [[], []]]),
+            ("with more beside the diagonal", [[[1, 4, 3], [1]], [[], [1, 3, 2]]]),
+        )
+    ),
     refused(
         "a resolvent that is not proper",
         put(CONSTANT, {"proof.resolvent.numerators": [[[2, 2], [-1]], [[-1], [2]]]}),

@@ -525,6 +525,7 @@ CASES = [
         "a law that relaxes, moves of two counts, a sample late",
         put(relaxing(-1, 1, [0] * 90, {}, largest_move_counts=2), {"loop.delay_s": 1}),
     ),
+    accepted("a law that relaxes, one cell", relaxing(0, 0, [0] * 4, {})),
     accepted("a law that relaxes, outside", relaxing(-5, -3, [0] * 18, {"taps_N_per_m": [1]})),
     *(
         refused(f"a law that relaxes, {name}", relaxing(-3, 1, [0] * 50, law), FORCES_TOO_LARGE)
