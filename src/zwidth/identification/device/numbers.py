@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 from zwidth.device.device import Device
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from zwidth.device.friction import FrictionCurve
+    from zwidth.loop.trace import Trace
 
 BINS = 6
 """Of speed, each way."""
@@ -64,7 +66,7 @@ class IdentifiedNumbers:
         How many the numbers rest on.
     findings
         What a person should know.
-    points
+    seen
         Mean speed and friction of up to some ten thousand pulses, for pictures.
     """
 
@@ -85,7 +87,12 @@ class IdentifiedNumbers:
     strokes: int
     pulses: int
     findings: tuple[Finding, ...]
-    points: xr.Dataset
+    seen: Trace
+
+    @cached_property
+    def points(self) -> xr.Dataset:
+        """What was seen, as an xarray.Dataset."""
+        return self.seen.dataset()
 
     def device(self, confidence: float | None = 0.99, **others: Any) -> Device:
         """A device with less friction than the data show, f_c + b |v| at every speed that they show.
@@ -229,7 +236,7 @@ class IdentifiedNumbers:
         """
         from zwidth.identification.device.curve import curve_below
 
-        return curve_below(self.points, confidence, bins, self.least_damping(confidence))
+        return curve_below(self.seen, confidence, bins, self.least_damping(confidence))
 
 
 def _parameter(estimate: Estimate, confidence: float | None) -> float | Interval:

@@ -15,7 +15,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
 
 from zwidth.compiled import Array
 from zwidth.errors import InputError
@@ -23,6 +22,7 @@ from zwidth.identification.tissue.experiment.estimate import Solved, solved
 from zwidth.identification.tissue.experiment.history import History, about_surface
 from zwidth.identification.tissue.experiment.prediction import Fine, Task, fines_of, predicted
 from zwidth.identification.tissue.model import Model, as_model
+from zwidth.identification.tissue.uncertainty import by_chance
 
 APART = 6.0
 """Difference of AICc beyond which a model is told apart: the other is exp(−3), a twentieth, as likely."""
@@ -181,4 +181,4 @@ def leftover(found: Solved) -> float:
         return 1.0
     r = np.array([float(left[k:] @ left[:-k]) / size for k in range(1, lags + 1)])
     value = n * (n + 2) * float((r**2 / (n - np.arange(1, lags + 1))).sum())
-    return float(stats.chi2.sf(value, lags - bool(found.noise.memory)))
+    return by_chance(value, lags - bool(found.noise.memory))

@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.stats import chi2
 
 from zwidth.environment.discretization import Discretization
 from zwidth.environment.environment import Environment
@@ -19,6 +18,7 @@ from zwidth.identification.tissue.experiment.history import History
 from zwidth.identification.tissue.experiment.kind import Kind
 from zwidth.identification.tissue.experiment.slowest import Slowest, slowest_of
 from zwidth.identification.tissue.result import TissueFit
+from zwidth.identification.tissue.uncertainty import by_chance
 from zwidth.passivity.result import Documented
 from zwidth.quantity.text import shown
 from zwidth.showing import Lines, Part, Table
@@ -151,7 +151,7 @@ class TissueTest(Documented):
             at = np.array([fit.estimates[k] for fit in fits])
             weight = np.array([max(fit.covariance[k, k], 1e-300) for fit in fits]) ** -1.0
             mean = float(at @ weight / weight.sum())
-            if chi2.sf(float((at - mean) ** 2 @ weight), len(fits) - 1) < UNLIKELY:
+            if by_chance(float((at - mean) ** 2 @ weight), len(fits) - 1) < UNLIKELY:
                 found.append(name)
         return found
 
