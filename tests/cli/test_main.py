@@ -324,6 +324,11 @@ def test_interrupt(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     assert run(*PASSIVE).status == 130
 
 
+FROM_SAMPLES = (
+    "import os, zwidth.samples; from zwidth.cli.main import main; os.chdir(*zwidth.samples.__path__); "
+)
+
+
 @pytest.mark.parametrize(
     ("code", "absent"),
     [
@@ -347,6 +352,23 @@ def test_interrupt(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
             "main(['simulate', 'haptic-paddle', '--stiffness', '9', '--virtual-damping', '0.01', "
             "'--operator', 'finger', '--duration', '0.1', '--json'])",
             ("scipy", "matplotlib", "xarray", "pandas", "zwidth.passivity", "zwidth.checker", "rich"),
+        ),
+        (
+            "from zwidth.cli.main import main; main(['plan', 'haptic-paddle', '--force-noise', '0.1 N'])",
+            ("scipy.stats", "scipy.optimize", "matplotlib", "xarray", "pandas"),
+        ),
+        (f"{FROM_SAMPLES}main(['gains', 'leader.yaml', 'follower.yaml'])", ("scipy", "matplotlib", "xarray")),
+        (
+            f"{FROM_SAMPLES}main(['identify', 'session.csv'])",
+            ("scipy.stats", "scipy.optimize", "matplotlib", "xarray", "pandas"),
+        ),
+        (
+            f"{FROM_SAMPLES}main(['tissue', 'relaxation.csv', 'phantom'])",
+            ("scipy.stats", "scipy.signal", "matplotlib", "xarray", "pandas"),
+        ),
+        (
+            f"{FROM_SAMPLES}main(['diagnose', 'shaking.csv', 'wheel.toml'])",
+            ("scipy", "matplotlib", "xarray", "pandas"),
         ),
         (
             "import zwidth; zwidth.simulate, zwidth.traces.load_trace",
