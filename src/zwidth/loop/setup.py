@@ -179,11 +179,8 @@ def started(laid: Sequence[Laid], starts: Array) -> tuple[Array, Array, Array]:
     """States, laws and memories, a row for each loop: laws equally long, `starts` as of `Laid`."""
     states = np.zeros((len(laid), STATE_SIZE))
     positions, velocities, phases = starts.T
-    states[:, POSITION], states[:, VELOCITY], states[:, DIRECTION] = (
-        positions,
-        velocities,
-        np.sign(velocities),
-    )
+    states[:, POSITION], states[:, VELOCITY] = positions, velocities
+    states[:, DIRECTION] = np.sign(velocities)
     numbers = np.array([loop.packed.numbers for loop in laid])
     numbers[:, laws.PHASE] = phases
     memories = [
@@ -199,7 +196,7 @@ class Packed(NamedTuple):
     numbers: Array
     row: tuple[RenderingLaw, ...]
     unit: Array
-    remembers: int
+    remembers: int  # by law and row, the force between them aside
 
 
 def _packed(law: Environment, device: Device, frame: Frame, single: bool, known: dict[Any, Any]) -> Packed:
