@@ -132,7 +132,7 @@ def simulated(library: Path) -> dict[str, float]:
         push = zw.operators.RecordedForce(hand)
         duration = SAMPLES * 1e-3
         setup = prepare(device, environment, push, duration, initial_position=-0.01, amplifier=amplifier)
-        commands, record, work = empty_record(setup)
+        commands, record, work = empty_record(setup.frame)
 
         def run(setup=setup, commands=commands, record=record, work=work) -> None:
             run_setup(setup, setup.state.copy(), setup.memory.copy(), work, commands, record, None)

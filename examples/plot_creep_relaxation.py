@@ -13,6 +13,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
+from zwidth.model.environment.creeping import compliance
 from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
@@ -53,6 +54,6 @@ left.legend()
 
 for name, (body, *_) in bodies.items():
     print(f"{name:22} {1e3 * under_a_pulse(body)[-1]:7.3f} mm stay")
-((rate, _),) = zw.environment.creeping.compliance(bodies["standard linear solid"][0]).modes
+((rate, _),) = compliance(bodies["standard linear solid"][0]).modes
 print(f"relaxation time {ETA1 / MU1:.3f} s, retardation time {1 / rate:.3f} s")
 plt.show()

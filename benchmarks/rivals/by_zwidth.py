@@ -62,7 +62,7 @@ def call() -> None:
 def kernel() -> None:
     """The compiled loop."""
     setup = laid_out(SAMPLES)
-    commands, record, work = empty_record(setup)
+    commands, record, work = empty_record(setup.frame)
 
     def simulate(_samples: int) -> list[float]:
         run_setup(setup, setup.state.copy(), setup.memory.copy(), work, commands, record, None)

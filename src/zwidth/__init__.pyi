@@ -1,5 +1,6 @@
 from zwidth import links as links
 from zwidth.checker import verify as verify
+from zwidth.data import gains as gains
 from zwidth.data import identification as identification
 from zwidth.data import tissue as tissue
 from zwidth.data.diagnosis import diagnose as diagnose

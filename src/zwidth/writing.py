@@ -143,7 +143,7 @@ def _is_formula(text: str) -> bool:
 
 @contextmanager
 def alone(path: Path) -> Iterator[None]:
-    """What grows at `path` grows by one process at a time; the system forgets the lock of one that is killed."""
+    """What grows at `path` grows by one process at a time; the lock of one that is killed is forgotten."""
     if path.is_symlink() and not path.exists():
         raise InputError(f"{path} is a link that leads nowhere; choose another name or remove it first")
     lock = path.with_name(f".{path.name}.lock")

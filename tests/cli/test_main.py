@@ -324,6 +324,11 @@ def test_interrupt(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     assert run(*PASSIVE).status == 130
 
 
+FROM_SAMPLES = (
+    "import os, zwidth.samples; from zwidth.cli.main import main; os.chdir(*zwidth.samples.__path__); "
+)
+
+
 @pytest.mark.parametrize(
     ("code", "absent"),
     [
@@ -349,8 +354,25 @@ def test_interrupt(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
             ("scipy", "matplotlib", "xarray", "pandas", "zwidth.passivity", "zwidth.checker", "rich"),
         ),
         (
-            "import zwidth; zwidth.simulate, zwidth.loop.traces.load_trace",
-            ("scipy.stats", "matplotlib", "zwidth.identification", "zwidth.study.bench.bench"),
+            "from zwidth.cli.main import main; main(['plan', 'haptic-paddle', '--force-noise', '0.1 N'])",
+            ("scipy.stats", "scipy.optimize", "matplotlib", "xarray", "pandas"),
+        ),
+        (f"{FROM_SAMPLES}main(['gains', 'leader.yaml', 'follower.yaml'])", ("scipy", "matplotlib", "xarray")),
+        (
+            f"{FROM_SAMPLES}main(['identify', 'session.csv'])",
+            ("scipy.stats", "scipy.optimize", "matplotlib", "xarray", "pandas"),
+        ),
+        (
+            f"{FROM_SAMPLES}main(['tissue', 'relaxation.csv', 'phantom'])",
+            ("scipy.stats", "scipy.signal", "matplotlib", "xarray", "pandas"),
+        ),
+        (
+            f"{FROM_SAMPLES}main(['diagnose', 'shaking.csv', 'wheel.toml'])",
+            ("scipy", "matplotlib", "xarray", "pandas"),
+        ),
+        (
+            "import zwidth; zwidth.simulate, zwidth.traces.load_trace",
+            ("scipy.stats", "matplotlib", "zwidth.data.identification", "zwidth.study.bench.bench"),
         ),
     ],
 )
@@ -430,7 +452,7 @@ def test_the_closed_forms_are_worked_out_once(monkeypatch: pytest.MonkeyPatch) -
     assert asked == ["made and broken"]
 
 
-@pytest.mark.parametrize("module", ["zwidth.cli.main", "zwidth.cli.options", "zwidth.servo.serving"])
+@pytest.mark.parametrize("module", ["zwidth.cli.main", "zwidth.cli.options", "zwidth.machine.servo.serving"])
 def test_ctrl_c_during_an_import_ends_quietly(module: str) -> None:
     """Status 130 and one line, whichever import it comes in: of the face itself or of a command."""
     code = f"""

@@ -7,11 +7,11 @@ simulated alone.
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import fields, replace
 from functools import partial
-from itertools import product
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -28,11 +28,12 @@ from zwidth.loop.plant import (
     POSITION,
     SATURATED,
     SOURCE_WORK,
+    STATE_SIZE,
     STOPS,
     VELOCITY,
     VISCOUS,
 )
-from zwidth.loop.setup import Frame, Setup, empty_record, prepare
+from zwidth.loop.setup import Laid, empty_record, laid_out, started
 from zwidth.loop.simulate import Progress
 from zwidth.loop.summary import DEEPEST, EXTRACTED, HIGHEST, LOWEST, PEAK, SUMMARY, run_each
 from zwidth.loop.trace import UNITS, VARIABLES
@@ -40,13 +41,14 @@ from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator.operator import Operator
-from zwidth.quantity.exact import RealLike
+from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+    Indices = NDArray[np.int64]
 
 T = TypeVar("T")
 
@@ -134,12 +136,9 @@ def simulate_batch(
     """
     axes = _axes(vary, together)
     base = _Base(device, as_environment(environment), operator, options)
-    choices = list(zip(*axes.values(), strict=True)) if together else list(product(*axes.values()))
     owners = [_owner(name, base) for name in axes]
-    made: dict[Any, Any] = {}  # keeps every part alive, so that `known` may go by identity
-    known: dict[Any, Frame] = {}
-    setups = [_prepare(base, owners, choice, duration, made, known) for choice in choices]
-    states, summaries, finished = _run_all(setups, _workers(workers), progress)
+    loops = _laid_out(base, axes, owners, together, duration)
+    states, summaries, finished = _run_all(loops, _workers(workers), progress)
     return _dataset(base, axes, owners, together, states, summaries, finished)
 
 
@@ -199,33 +198,60 @@ def _choices(parts: Mapping[str, Iterable[str]]) -> str:
     return "there are " + "; ".join(f"{part}: {', '.join(keys)}" for part, keys in parts.items())
 
 
-def _prepare(
-    base: _Base,
-    owners: list[tuple[str, str]],
-    choice: Sequence[Any],
-    duration: RealLike,
-    made: dict[Any, Any],
-    known: dict[Any, Frame],
-) -> Setup:
-    changes: dict[str, dict[str, Any]] = {"device": {}, "environment": {}, "operator": {}, "option": {}}
-    for (owner, key), value in zip(owners, choice, strict=True):
-        changes[owner][key] = value.item() if isinstance(value, np.generic) else value
-    device = _changed(base.device, changes["device"], base.device.replace, made)
-    environment = _changed(base.environment, changes["environment"], base.environment.replace, made)
-    operator = _changed(base.operator, changes["operator"], partial(replace, base.operator), made)
-    options = {**base.options, **changes["option"]}
-    return prepare(device, environment, operator, duration, known=known, **options)
+class _Loops(NamedTuple):
+    """Many loops: what they are laid out as, which of these each one is, and how it starts."""
+
+    laid: list[Laid]
+    which: list[int]
+    starts: Array
 
 
-def _changed(part: T, changes: dict[str, Any], make: Callable[..., T], made: dict[Any, Any]) -> T:
-    """The part with these changes, made once and kept for the other loops that have them."""
-    if not changes:
-        return part
-    key = (id(part), tuple(changes.items()))
-    if key not in made:
-        made[key] = make(**changes)
-    result: T = made[key]
-    return result
+def _laid_out(
+    base: _Base, axes: dict[str, list[Any]], owners: list[tuple[str, str]], together: bool, duration: RealLike
+) -> _Loops:
+    """Each part is made, and each three parts are laid out, once for all loops that have them."""
+    lengths = [len(values) for values in axes.values()]
+    taken = [np.arange(lengths[0])] * len(axes) if together else [*np.indices(lengths).reshape(len(axes), -1)]
+    varied: dict[str, dict[str, tuple[list[Any], Indices]]] = defaultdict(dict)
+    for (owner, key), values, row in zip(owners, axes.values(), taken, strict=True):
+        plain = [value.item() if isinstance(value, np.generic) else value for value in values]
+        varied[owner][key] = plain, row
+    devices, of_device = _parts(base.device, base.device.replace, varied["device"])
+    laws, of_law = _parts(base.environment, base.environment.replace, varied["environment"])
+    hands, of_hand = _parts(base.operator, partial(replace, base.operator), varied["operator"])
+    parts = np.stack(np.broadcast_arrays(of_device, of_law, of_hand, taken[0])[:3])
+    kinds, which = np.unique(parts, axis=1, return_inverse=True)
+    options, known = dict(base.options), dict[Any, Any]()
+    own = [
+        varied["option"].get(key, ([options.pop(key, usual)], np.zeros_like(taken[0])))
+        for key, usual in zip(OPTIONS, (None, 0.0, 0.0), strict=True)
+    ]
+    placed = own[0][0] != [None]
+    laid = [
+        laid_out(devices[i], laws[j], hands[k], duration, known, placed=placed, **options)
+        for i, j, k in kinds.T.tolist()
+    ]
+    chosen = ([values[i] for i in row.tolist()] for values, row in own)
+    rows = which.ravel().tolist()
+    starts = [laid[i].starts(*start) for i, *start in zip(rows, *chosen, strict=True)]
+    return _Loops(laid, rows, np.array(starts))
+
+
+def _parts(
+    part: T, make: Callable[..., T], varied: dict[str, tuple[list[Any], Indices]]
+) -> tuple[list[T], Indices]:
+    """A part as often as its values differ, and which of these each loop has."""
+    if not varied:
+        return [part], np.array([0])
+    rows, read = [], []
+    for values, row in varied.values():
+        first: dict[Any, int] = {}
+        rows.append(np.array([first.setdefault(value, i) for i, value in enumerate(values)])[row])
+        # a float is read here, once for all parts that take it
+        read.append([Exact(v) if type(v) is float and 1e-40 < abs(v) < 1e40 else v for v in values])
+    chosen, which = np.unique(rows, axis=1, return_inverse=True)
+    given = ((values[i] for values, i in zip(read, row, strict=True)) for row in chosen.T.tolist())
+    return [make(**dict(zip(varied, values, strict=True))) for values in given], which.ravel()
 
 
 def _workers(given: int | None) -> int:
@@ -237,26 +263,28 @@ def _workers(given: int | None) -> int:
 
 
 def _run_all(
-    setups: list[Setup], threads: int, progress: Progress | None
+    loops: _Loops, threads: int, progress: Progress | None
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
     """(states, summaries, finished) of all loops, a row each."""
-    states = np.array([setup.state for setup in setups])
-    summaries = np.full((len(setups), SUMMARY), np.nan)
-    finished = np.zeros(len(setups), dtype=bool)
+    count = len(loops.which)
+    states, summaries = np.zeros((count, STATE_SIZE)), np.full((count, SUMMARY), np.nan)
+    finished = np.zeros(count, dtype=bool)
     stop: list[bool] = []
 
     def job(rows: list[int]) -> None:
         if not stop:
-            states[rows], summaries[rows] = _run_block([setups[row] for row in rows])
+            states[rows], summaries[rows] = _run_block(
+                [loops.laid[loops.which[row]] for row in rows], loops.starts[rows]
+            )
             finished[rows] = True
 
     pool = ThreadPoolExecutor(threads)
-    futures: list[Future[None]] = [pool.submit(job, rows) for rows in _blocks(setups)]
+    futures: list[Future[None]] = [pool.submit(job, rows) for rows in _blocks(loops)]
     try:
         for future in as_completed(futures):
             future.result()
             if progress is not None:
-                progress(int(finished.sum()), len(setups))
+                progress(int(finished.sum()), count)
     except KeyboardInterrupt:
         stop.append(True)
         if not finished.any():
@@ -266,26 +294,27 @@ def _run_all(
     return states, summaries, finished
 
 
-def _blocks(setups: list[Setup]) -> list[list[int]]:
+def _blocks(loops: _Loops) -> list[list[int]]:
     """BLOCK loops each that have clock and hand in common, and a law of the same length."""
+    keys = []
+    for laid in loops.laid:
+        f, law = laid.frame, laid.packed
+        keys.append((id(f.signals), f.late, f.offset, f.points, law.numbers.size, law.remembers, laid.plain))
     groups: dict[tuple[Any, ...], list[int]] = {}
-    for row, setup in enumerate(setups):
-        f = setup.frame
-        key = id(f.signals), f.late, f.offset, f.points, setup.law.size, setup.memory.size
-        groups.setdefault(key, []).append(row)
+    for row, which in enumerate(loops.which):
+        groups.setdefault(keys[which], []).append(row)
     return [rows[at : at + BLOCK] for rows in groups.values() for at in range(0, len(rows), BLOCK)]
 
 
-def _run_block(setups: list[Setup]) -> tuple[Array, Array]:
+def _run_block(laid: list[Laid], starts: Array) -> tuple[Array, Array]:
     """(states, summaries), a row for each loop."""
-    first = setups[0]
-    states, summaries = np.array([setup.state for setup in setups]), np.empty((len(setups), SUMMARY))
-    commands, record, work = empty_record(first)
+    states, laws, memories = started(laid, starts)
+    summaries, frame = np.empty((len(laid), SUMMARY)), laid[0].frame
+    commands, record, work = empty_record(frame)
+    plants = np.array([loop.frame.plant for loop in laid])
     run_each(
-        first.frame.points, states, np.array([setup.frame.plant for setup in setups]),
-        np.array([setup.law for setup in setups]), np.array([setup.memory for setup in setups]), work,
-        first.frame.late, first.frame.offset, first.frame.lengths, first.frame.arrivals, first.frame.missed,
-        *first.optional(), commands, record, summaries,
+        laid[0].plain, frame.points, states, plants, laws, memories, work, frame.late, frame.offset,
+        frame.lengths, frame.arrivals, frame.missed, *frame.optional(), commands, record, summaries,
     )  # fmt: skip
     return states, summaries
 

@@ -10,8 +10,6 @@ that whatever else enters the next position is added up before the force.
 
 from __future__ import annotations
 
-import numpy as np
-
 from zwidth.loop.free import free_response
 from zwidth.loop.kernel import (
     R_ACTUATOR,
@@ -27,7 +25,7 @@ from zwidth.loop.kernel import (
     R_VISCOUS,
     packed_plant,
 )
-from zwidth.loop.law import BILATERAL, GATE, HEADER, LIMIT
+from zwidth.loop.law import BILATERAL, GATE, HEADER, LIMIT, PHASE, RESOLUTION, STEP, measured, rounded
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
     COULOMB,
@@ -59,16 +57,8 @@ def run_plain(
     force: Array,
     commands: Array,
     record: Array,
-    count: float | None,
-    phase: float | None,
-    step: float | None,
 ) -> None:
-    """Run as `kernel.run` does, for a `Setup` that is `plain`.
-
-    Encoder resolution, its phase and the converter's step are None where there
-    is none: each combination is compiled on its own, since a condition in the
-    chain takes as long as what it decides about.
-    """
+    """Run as `kernel.run` does, for a `Setup` that is `plain`."""
     plant = packed_plant(numbers)
     inverse = 1.0 / (plant.mass + plant.hand_mass)
     drag, coulomb, stiction = plant.damping, plant.coulomb, plant.stiction
@@ -79,23 +69,18 @@ def run_plain(
     if limit == 0.0:
         limit = 1e300
     one_sided, gain = law[GATE] != BILATERAL, law[HEADER + 1]
+    count, phase, step = law[RESOLUTION], law[PHASE], law[STEP]
     samples = commands.shape[0] - 1
     x, v, side, f = state[POSITION], state[VELOCITY], state[DIRECTION], state[FORCE]
     hand, actuator = state[HAND_WORK], state[ACTUATOR_WORK]
     viscous, dry, source = state[VISCOUS], state[COULOMB], state[SOURCE_WORK]
     for k in range(first, last):
-        reading = x
-        if count is not None:
-            quotient = x / count
-            if phase is not None:
-                quotient += phase
-            reading = count * np.floor(quotient)
+        reading = measured(x, count, phase)
         command = 0.0
         if reading > 0.0 or not one_sided:
             command = gain * reading
             state[INSIDE] += 1.0
-        if step is not None:
-            command = step * np.floor(command / step + 0.5)
+        command = rounded(command, step)
         if abs(command) > limit:  # a branch, not a min and a max in the chain
             command = limit if command > 0.0 else -limit
             state[SATURATED] += 1.0
@@ -117,7 +102,7 @@ def run_plain(
         record[R_HAND_LOSS, k] = 0.0
         if k == samples:
             break
-        push = force[k]
+        push = force[k] if force.shape[0] > 0 else 0.0
         if side == 0.0 and abs(push - f) <= stiction:
             continue
         base = (push - side * coulomb - drag * v) * inverse

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil, sqrt
+from math import ceil, isfinite, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -56,34 +57,12 @@ class Setup:
     memory: Array
     state: Array
     frame: Frame
-
-    @property
-    def columns(self) -> int:
-        """Instants in the record."""
-        return self.frame.samples * self.frame.points + 1
-
-    @property
-    def plain(self) -> bool:
-        """True where `plain.run_plain` runs it: free mass, spring, regular clock, one force an interval."""
-        f, p = self.frame, self.frame.plant
-        free = p.stiffness == 0.0 and p.hand_damping == 0.0 and p.lag == 0.0 and p.slew == 0.0
-        memoryless = self.law[laws.SECTIONS] == 1 and self.law[laws.HEADER] == 0
-        linear = self.law[laws.CLAMPED] == 0
-        clock = f.offset == 0.0 and f.points == 1 and not f.arrivals.size and not f.missed.size
-        memoryless &= self.law[laws.CHAIN] == 0
-        return bool(free and memoryless and linear and clock and f.signals.position is None)
+    plain: bool
 
     @property
     def plant_numbers(self) -> Array:
         """The plant as the kernel reads it."""
         return np.array(self.frame.plant)
-
-    def optional(self) -> tuple[Array, Array, Array, Array]:
-        """Force, anchor, target and switch as arrays, empty where there is none."""
-        s = self.frame.signals
-        given = (s.force, s.anchor, s.position, s.switch_position)
-        force, anchor, target, switch = (_NONE if v is None else v for v in given)
-        return force, anchor, target, switch
 
 
 def prepare(
@@ -98,62 +77,129 @@ def prepare(
     amplifier: Amplifier | None = None,
     timing: Timing | None = None,
     points_per_sample: int = 1,
-    known: dict[Any, Any] | None = None,
     single: bool = False,
 ) -> Setup:
     """Check everything and lay it out; arguments as of `simulate`.
 
-    `known` keeps what belongs to a device and a hand, so that many loops with the
-    same two, and the same amplifier, timing and duration, compute it once. Both
-    must live as long as it.  `single` is of the `LoopContext`.
+    `single` is of the `LoopContext`.
     """
-    law = as_environment(environment)
-    rest, operator = _at_rest(device, law, operator, initial_position, known)
-    frame = frame_of(device, operator, duration, amplifier, timing, points_per_sample, known)
-    phase = _number(encoder_phase, "encoder_phase")
-    if not 0 <= phase < 1:
-        raise InputError(f"encoder_phase is a part of one count, 0 ≤ phase < 1, got {phase:g}")
-    start = rest if initial_position is None else initial_position
-    if operator.kinematic:
-        assert frame.signals.position is not None
-        _refuse_start(initial_position, initial_velocity)
-        start = float(frame.signals.position[0])
-    position, velocity = _number(start, "initial_position"), _number(initial_velocity, "initial_velocity")
-    state = np.zeros(STATE_SIZE)
-    state[POSITION], state[VELOCITY] = position, velocity
-    state[DIRECTION] = (velocity > 0.0) - (velocity < 0.0)
-    reading = laws.measured(position, frame.resolution, phase)
-    packed = _packed(law, device, frame, single, known)
-    numbers = packed.numbers.copy()
-    numbers[laws.PHASE] = phase
+    law, placed = as_environment(environment), initial_position is not None
+    laid = laid_out(
+        device, law, operator, duration, {}, placed=placed, amplifier=amplifier, timing=timing,
+        points_per_sample=points_per_sample, single=single,
+    )  # fmt: skip
+    start = laid.starts(initial_position, initial_velocity, encoder_phase)
+    states, numbers, memories = started([laid], np.array([start]))
     return Setup(
         device=device,
         environment=law,
-        operator=operator,
+        operator=laid.operator,
         timing=timing,
-        encoder_phase=phase,
-        law=numbers,
-        memory=_remembered(numbers, packed.row, packed.unit, reading),
-        state=state,
-        frame=frame,
+        encoder_phase=start[2],
+        law=numbers[0],
+        memory=memories[0],
+        state=states[0],
+        frame=laid.frame,
+        plain=laid.plain,
     )
 
 
-class _Packed(NamedTuple):
+class Laid(NamedTuple):
+    """A loop but for where it starts."""
+
+    operator: Operator
+    rest: float
+    frame: Frame
+    packed: Packed
+
+    @property
+    def plain(self) -> bool:
+        """True where `plain.run_plain` runs it: free mass, spring, regular clock, one force an interval."""
+        f, p, law = self.frame, self.frame.plant, self.packed.numbers
+        free = p.stiffness == 0.0 and p.hand_damping == 0.0 and p.lag == 0.0 and p.slew == 0.0
+        memoryless = law[laws.SECTIONS] == 1 and law[laws.HEADER] == 0 and law[laws.CHAIN] == 0
+        linear = law[laws.CLAMPED] == 0
+        clock = f.offset == 0.0 and f.points == 1 and not f.arrivals.size and not f.missed.size
+        return bool(free and memoryless and linear and clock and f.signals.position is None)
+
+    def starts(self, position: float | None, velocity: float, phase: float) -> tuple[float, float, float]:
+        """The same, checked; without a position the one where it rests.
+
+        Raises
+        ------
+        InputError
+            If it cannot start so.
+        """
+        part = _number(phase, "encoder_phase")
+        if not 0 <= part < 1:
+            raise InputError(f"encoder_phase is a part of one count, 0 ≤ phase < 1, got {part:g}")
+        if self.operator.kinematic:
+            _refuse_start(position, velocity)
+        place = self.rest if position is None else position
+        return _number(place, "initial_position"), _number(velocity, "initial_velocity"), part
+
+
+def laid_out(
+    device: Device,
+    law: Environment,
+    operator: Operator,
+    duration: RealLike,
+    known: dict[Any, Any],
+    *,
+    placed: bool,
+    amplifier: Amplifier | None = None,
+    timing: Timing | None = None,
+    points_per_sample: int = 1,
+    single: bool = False,
+) -> Laid:
+    """Everything but the start checked and laid out; `placed` where somebody chose it.
+
+    `known` keeps what belongs to a device and a hand, or to a law, so that many loops with the same two, and
+    the same options and duration, compute it once. They must live as long as it.
+
+    Raises
+    ------
+    InputError
+        If anything cannot be simulated.
+    """
+    rest, operator = _at_rest(device, law, operator, placed, known)
+    frame = frame_of(device, operator, duration, amplifier, timing, points_per_sample, known)
+    if operator.kinematic:
+        assert frame.signals.position is not None
+        rest = float(frame.signals.position[0])
+    return Laid(operator, rest, frame, _packed(law, device, frame, single, known))
+
+
+def started(laid: Sequence[Laid], starts: Array) -> tuple[Array, Array, Array]:
+    """States, laws and memories, a row for each loop: laws equally long, `starts` as of `Laid`."""
+    states = np.zeros((len(laid), STATE_SIZE))
+    positions, velocities, phases = starts.T
+    states[:, POSITION], states[:, VELOCITY] = positions, velocities
+    states[:, DIRECTION] = np.sign(velocities)
+    numbers = np.array([loop.packed.numbers for loop in laid])
+    numbers[:, laws.PHASE] = phases
+    memories = [
+        _remembered(law, packed.row, packed.unit, laws.measured(position, frame.resolution, phase))
+        for (_, _, frame, packed), law, (position, _, phase) in zip(laid, numbers, starts, strict=True)
+    ]
+    return states, numbers, np.array(memories)
+
+
+class Packed(NamedTuple):
     """An environment and the laws that render it, as the kernel reads them, the encoder's phase left out."""
 
     numbers: Array
     row: tuple[RenderingLaw, ...]
     unit: Array
+    remembers: int  # by law and row, the force between them aside
 
 
-def _packed(
-    law: Environment, device: Device, frame: Frame, single: bool, known: dict[Any, Any] | None
-) -> _Packed:
+def _packed(law: Environment, device: Device, frame: Frame, single: bool, known: dict[Any, Any]) -> Packed:
     actuation, period = frame.actuation, frame.period
-    key = ("law", id(law), id(device) if (row := laws_of(law)) else None, frame.resolution, period, actuation)
-    if known is not None and key in known:
-        found: _Packed = known[key]
+    clock = period.as_integer_ratio()  # a tuple has its hash sooner
+    key = ("law", id(law), id(device) if (row := laws_of(law)) else None, frame.resolution, clock, actuation)
+    if key in known:
+        found: Packed = known[key]
         return found
     met = law.met
     clamped = float(met.clamped and not met.spring)  # a spring pushes wherever it acts
@@ -165,33 +211,28 @@ def _packed(
     for link in row:
         own = link.numbers(context)
         links += [link.code, float(len(own)), float(link.state_size), *own]
-    begins = [float(len(row)), float(len(alone)), float(len(_resting(alone, unit, 0.0)))]
-    packed = _Packed(np.array([*header, *kinds, *begins, *body, *links]), row, unit)
-    if known is not None:
-        known[key] = packed
-    return packed
+    remembered = len(_resting(alone, unit, 0.0))
+    begins = [float(len(row)), float(len(alone)), float(remembered)]
+    numbers = np.array([*header, *kinds, *begins, *body, *links])
+    known[key] = Packed(numbers, row, unit, remembered + sum(link.state_size for link in row))
+    return known[key]
 
 
 def _at_rest(
-    device: Device,
-    law: Environment,
-    operator: Operator,
-    initial_position: float | None,
-    known: dict[Any, Any] | None,
+    device: Device, law: Environment, operator: Operator, placed: bool, known: dict[Any, Any]
 ) -> tuple[float, Operator]:
     """Where the touch starts and the hand that starts there: where the law rests, unless somebody chose."""
     if not (isinstance(device, Device) and isinstance(operator, Operator)):
         return 0.0, operator  # refused further on
     given = operator.initial_position
-    if initial_position is not None or operator.kinematic or operator.start_is_chosen:
+    if placed or operator.kinematic or operator.start_is_chosen:
         return given, operator
     place = rest_position(law, device.exact("sample_period"), given)
     if place == given:
         return given, operator
-    moved = {} if known is None else known.setdefault("at rest", {})
-    if (id(operator), place) not in moved:
-        moved[id(operator), place] = operator.starting_at(place)
-    return place, moved[id(operator), place]
+    if (moved := ("at rest", id(operator), place)) not in known:
+        known[moved] = operator.starting_at(place)
+    return place, known[moved]
 
 
 class Frame(NamedTuple):
@@ -212,6 +253,18 @@ class Frame(NamedTuple):
     missed: Array
     signals: Signals
 
+    @property
+    def columns(self) -> int:
+        """Instants in the record."""
+        return self.samples * self.points + 1
+
+    def optional(self) -> tuple[Array, Array, Array, Array]:
+        """Force, anchor, target and switch as arrays, empty where there is none."""
+        s = self.signals
+        given = (s.force, s.anchor, s.position, s.switch_position)
+        force, anchor, target, switch = (_NONE if v is None else v for v in given)
+        return force, anchor, target, switch
+
 
 def frame_of(
     device: Device,
@@ -223,9 +276,11 @@ def frame_of(
     known: dict[Any, Any] | None = None,
 ) -> Frame:
     """Device, hand and clock checked and laid out, whatever the law; arguments as of `prepare`."""
+    known = {} if known is None else known
     key = (id(device), id(operator))
-    if known is not None and key in known:
-        return known[key]
+    if key in known:
+        found: Frame = known[key]
+        return found
     if not isinstance(device, Device):
         raise InputError(f"the device is a zwidth.Device, got {type(device).__name__}")
     if not isinstance(operator, Operator):
@@ -241,13 +296,13 @@ def frame_of(
     actuation = drive.actuation(device)
     plant = _plant(device, operator, actuation)
     _check_pieces(plant, float(period), operator.kinematic)
-    delay, own = device.exact("delay"), {} if known is None else known.setdefault("clock", {})
-    if (clock := (id(operator), samples, period, delay)) not in own:
+    delay = device.exact("delay")
+    if (clock := (id(operator), samples, period, delay)) not in known:
         times, *others = _clock(timing, samples, period, delay)
         signals = operator.signals(times)
         check_signals(signals, samples)
-        own[clock] = times, *others, signals
-    times, lengths, arrivals, missed, signals = own[clock]
+        known[clock] = times, *others, signals
+    times, lengths, arrivals, missed, signals = known[clock]
     if signals.switch_position is not None and timing is not None:
         raise InputError("a motion with switch positions needs a regular clock: leave timing out")
     ratio = delay / period
@@ -259,7 +314,7 @@ def frame_of(
         )
     offset = float(ratio % 1 * period)
     late = min(ratio.numerator // ratio.denominator, samples + 1)  # later than all is late enough
-    frame = Frame(
+    known[key] = frame = Frame(
         samples=samples,
         points=points,
         period=period,
@@ -275,8 +330,6 @@ def frame_of(
         missed=missed,
         signals=signals,
     )
-    if known is not None:
-        known[key] = frame
     return frame
 
 
@@ -317,11 +370,12 @@ def sections_of(environment: Environment, period: Fraction) -> list[list[float]]
 
 def _section(environment: Environment, period: Fraction) -> list[float]:
     numerator, denominator = environment.pulse_transfer_function(period)
-    lead = denominator[0]
-    order = len(denominator) - 1
-    b = [Fraction(0)] * (order + 1 - len(numerator)) + [c / lead for c in numerator]
-    a = [c / lead for c in denominator[1:]]
-    return [float(order), *map(float, b), *map(float, a)]
+    n, d = denominator[0].as_integer_ratio()
+    # of whole numbers the quotient is rounded once, as that of fractions is, and needs no common divisor
+    b, a = (
+        [c.numerator * d / (c.denominator * n) or 0.0 for c in row] for row in (numerator, denominator[1:])
+    )
+    return [float(len(a)), *[0.0] * (len(a) + 1 - len(b)), *b, *a]
 
 
 def resting_memory(setup: Setup, reading: float) -> Array:
@@ -363,8 +417,8 @@ def _at_one(law: Array) -> Array:
     for _ in range(int(law[laws.SECTIONS])):
         order = int(law[at])
         b, a = law[at + 1 : at + 2 + order], np.concatenate(([1.0], law[at + 2 + order : at + 2 + 2 * order]))
-        gain = float(a.sum())
-        y = float(b.sum()) / gain if gain != 0.0 else 0.0
+        gain = float(np.add.reduce(a))
+        y = float(np.add.reduce(b)) / gain if gain != 0.0 else 0.0
         later = 0.0
         own: list[float] = []
         for i in range(order, 0, -1):
@@ -482,11 +536,11 @@ def _number(value: object, what: str) -> float:
         number = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         raise InputError(f"{what} is a number, got {value!r}") from None
-    if not np.isfinite(number):
+    if not isfinite(number):
         raise InputError(f"{what} must be finite, got {number}")
     return number
 
 
-def empty_record(setup: Setup) -> tuple[Array, Array, Array]:
+def empty_record(frame: Frame) -> tuple[Array, Array, Array]:
     """(commands, record, work) to run into."""
-    return np.zeros(setup.frame.samples + 1), np.empty((RECORDED, setup.columns)), np.zeros(WORK)
+    return np.zeros(frame.samples + 1), np.empty((RECORDED, frame.columns)), np.zeros(WORK)

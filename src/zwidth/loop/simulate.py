@@ -13,7 +13,6 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.loop.kernel import run
-from zwidth.loop.law import PHASE, RESOLUTION, STEP
 from zwidth.loop.pair.setup import Holder
 from zwidth.loop.pair.simulate import Friction, simulated_pair
 from zwidth.loop.plain import run_plain
@@ -197,7 +196,7 @@ def simulated(
         timing=timing,
         points_per_sample=points_per_sample,
     )
-    commands, record, work = empty_record(setup)
+    commands, record, work = empty_record(setup.frame)
     state, memory = setup.state.copy(), setup.memory.copy()
     done = run_setup(setup, state, memory, work, commands, record, progress)
     if state[FAULT] != 0.0:
@@ -242,12 +241,10 @@ def run_samples(
 ) -> None:
     """Take the samples `first` … `last` − 1, each with the interval behind it; can be called again."""
     numbers, law, late = setup.plant_numbers, setup.law, setup.frame.late
-    force, anchor, target, switch = setup.optional()
+    force, anchor, target, switch = setup.frame.optional()
     if setup.plain:
-        push = force if force.size else np.zeros(setup.frame.samples)
         period = float(setup.frame.lengths[0])
-        count, phase, step = (law[key] or None for key in (RESOLUTION, PHASE, STEP))
-        run_plain(first, last, state, numbers, law, late, period, push, commands, record, count, phase, step)
+        run_plain(first, last, state, numbers, law, late, period, force, commands, record)
         return
     run(
         first, last, setup.frame.points, state, numbers, law, memory, work,

@@ -108,7 +108,7 @@ class SimulatedDevice:
             timing=timing,
             points_per_sample=points_per_sample,
         )
-        self._commands, self._record, self._work = empty_record(self._setup)
+        self._commands, self._record, self._work = empty_record(self._setup.frame)
         self._state, self._memory = self._setup.state.copy(), self._setup.memory.copy()
         self._done = 0
         self.samples = self._setup.frame.samples

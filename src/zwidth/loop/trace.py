@@ -123,7 +123,8 @@ AnyTrace: TypeAlias = "xr.Dataset | Trace"
 
 def build_trace(setup: Setup, record: Array, done: int, *, stops: int) -> Trace:
     """The trace of the first `done` samples of a record, up to where the numbers outgrow any meaning."""
-    finished = min(setup.columns, done * setup.frame.points if done <= setup.frame.samples else setup.columns)
+    whole = setup.frame.columns
+    finished = min(whole, done * setup.frame.points if done <= setup.frame.samples else whole)
     columns = before_overflow(record, finished)
     values = values_of(setup.frame, record, columns)
     device = setup.device
@@ -139,7 +140,7 @@ def build_trace(setup: Setup, record: Array, done: int, *, stops: int) -> Trace:
     attributes = {**_attrs(setup, stops), **_stored(setup, values)}
     if columns < finished:
         attributes["diverged_at_s"] = float(time[-1])
-    elif finished < setup.columns:
+    elif finished < whole:
         attributes["interrupted_at_s"] = float(time[-1])
     return Trace(variables, coordinates, attributes)
 

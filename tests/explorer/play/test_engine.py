@@ -88,10 +88,10 @@ def test_a_hand_that_lets_go(tmp_path: Path) -> None:
     device, environment = loop.loop
     hand = Tracking(taken, stiffness=HAND.stiffness, damping=HAND.damping, mass=HAND.mass)
     setup = prepare(device, environment, hand, (len(pointer) - 1) * 0.001)
-    commands, record, work = empty_record(setup)
+    commands, record, work = empty_record(setup.frame)
     state, memory = setup.state.copy(), setup.memory.copy()
     nobody = np.array(setup.frame.plant._replace(hand_mass=0.0, stiffness=0.0, hand_damping=0.0))
-    force, anchor, target, switch = setup.optional()
+    force, anchor, target, switch = setup.frame.optional()
     frame = setup.frame
     for begin, end, numbers, path in (
         (0, 600, setup.plant_numbers, anchor),

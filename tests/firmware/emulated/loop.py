@@ -80,8 +80,8 @@ def closed(
         device, Wall(stiffness=1), operator, duration
     )  # of the wall only that it begins at 0 is used
     frame, state, plant = setup.frame, setup.state, setup.frame.plant
-    commands, record, work = empty_record(setup)
-    signals, h, limit = setup.optional(), float(frame.period), setup.law[LIMIT]
+    commands, record, work = empty_record(setup.frame)
+    signals, h, limit = setup.frame.optional(), float(frame.period), setup.law[LIMIT]
     counts = np.zeros(frame.samples + 1, np.int32)
     due = 0
     for k in range(frame.samples + 1):

@@ -16,7 +16,6 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.signal import lfilter
 
 from zwidth.data.diagnosis import law
 from zwidth.data.diagnosis.law import Law
@@ -164,6 +163,8 @@ def compare(
     of_command: bool,
 ) -> Stated:
     """Hold a law beside a force of the same rows, positive against increasing position."""
+    from scipy.signal import lfilter  # scipy takes its time
+
     times = np.arange(position.size, dtype=np.float64) * row_period
     samples = np.arange(0.0, times[-1] + loop_period / 2, loop_period)
     bare, helping = _compensated(environment)

@@ -228,6 +228,8 @@ class Parser:
 
 
 def _numbers(column: pa.Array) -> Values:
+    if not column.null_count and not pa.types.is_timestamp(column.type):
+        return np.from_dlpack(column)  # `to_numpy` loads pandas, if it is there
     values: Values = column.to_numpy(zero_copy_only=False)
     if values.dtype == np.object_:
         return values.astype(np.float64)

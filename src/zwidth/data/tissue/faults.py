@@ -18,14 +18,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
-from scipy.interpolate import CubicHermiteSpline
-from scipy.signal import lfilter
 
 from zwidth.data.identification.device.choice import SURE
 from zwidth.data.logs.stops import Stops
 from zwidth.data.tissue.model import Model, Record
-from zwidth.data.tissue.uncertainty import Noise
+from zwidth.data.tissue.uncertainty import Noise, by_chance, coloured
 from zwidth.errors import InputError
 from zwidth.model.environment.modes import decaying
 from zwidth.native.compiled import Array
@@ -82,6 +79,8 @@ class Faults(NamedTuple):
         """A prediction as it is recorded late by so much [s]; smooth between its samples."""
         if not self.late:
             return predicted
+        from scipy.interpolate import CubicHermiteSpline  # scipy takes its time
+
         smooth = CubicHermiteSpline(time, predicted, np.gradient(predicted, time))
         if self.late == "delay" or late < LEAST:
             return np.asarray(smooth(time - late))
@@ -131,11 +130,11 @@ def unlikely(jacobian: Array, left: Array, columns: Array, noise: Noise) -> floa
     beside = columns - basis @ (basis.T @ columns)
     if not (np.linalg.norm(beside, axis=0) > 1e-6 * np.linalg.norm(columns, axis=0)).all():
         return 1.0
-    coloured = lfilter([1.0], noise.coefficients, beside[::-1], axis=0)
+    back = coloured(noise.coefficients, beside[::-1])
     score = beside.T @ left
-    spread = noise.variance * coloured.T @ coloured
+    spread = noise.variance * back.T @ back
     value = float(score @ np.linalg.lstsq(spread, score, rcond=None)[0])
-    return float(stats.chi2.sf(value, columns.shape[1]))
+    return by_chance(value, columns.shape[1])
 
 
 def sudden(model: Model, p: list[float], record: Record, left: Array) -> int | None:
@@ -147,8 +146,8 @@ def sudden(model: Model, p: list[float], record: Record, left: Array) -> int | N
         return None
     mu, eta = max(model.elements(p).branches, key=lambda pair: pair[1])
     keep = float(np.exp(-np.median(np.diff(record.time)) * mu / eta))
-    ahead = lfilter([1.0], [1.0, -keep], left[::-1])[::-1]
-    weight = lfilter([1.0], [1.0, -keep * keep], np.ones(left.size))[::-1]
+    ahead = coloured(np.array([1.0, -keep]), left[::-1, None])[::-1, 0]
+    weight = coloured(np.array([1.0, -keep * keep]), np.ones((left.size, 1)))[::-1, 0]
     score = np.abs(ahead) / np.sqrt(weight)
     score[:2] = score[-8:] = 0.0
     return int(np.argmax(score))

@@ -134,7 +134,7 @@ class TissueFit(Documented):
         InputError
             If there is no such parameter, or the level is not between 0 and 1.
         """
-        from scipy.stats import t
+        from scipy.special import stdtrit
 
         if name not in self.values:
             raise InputError(f"there is no parameter {name!r}; there are {', '.join(self.values)}")
@@ -142,7 +142,7 @@ class TissueFit(Documented):
             raise InputError(f"level is > 0 and < 1, such as 0.95; got {level!r}")
         place = list(self.values).index(name)
         middle = float(self.estimates[place])
-        sure = float(t.ppf(0.5 + level / 2, self.degrees_of_freedom))
+        sure = float(stdtrit(self.degrees_of_freedom, 0.5 + level / 2))
         reach = sure * self.spreads[name]
         if name == "offset":
             return middle - reach, middle + reach

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from zwidth.native.compiled import Array
+from zwidth.native.compiled import Array, compiled
 
 LARGEST_ORDER = 12
 """Of the noise; a memory longer than so many samples is cut."""
@@ -60,15 +60,37 @@ def noise_of(residuals: Array, largest_order: int = LARGEST_ORDER) -> Noise:
     return best
 
 
+def coloured(coefficients: Array, white: Array) -> Array:
+    """Noise of white noise, column by column: y(k) = w(k) − Σ a_i y(k − i)."""
+    found = np.empty(white.shape)
+    _colour(coefficients, np.ascontiguousarray(white), found)
+    return found
+
+
+@compiled
+def _colour(coefficients: Array, white: Array, found: Array) -> None:
+    for k in range(white.shape[0]):
+        for column in range(white.shape[1]):
+            before = 0.0
+            for i in range(min(k, coefficients.shape[0] - 1), 0, -1):
+                before -= coefficients[i] * found[k - i, column]
+            found[k, column] = before + white[k, column]
+
+
+def by_chance(value: float, degrees: int) -> float:
+    """How seldom a sum of so many squares of white noise, each of variance 1, is larger."""
+    from scipy.special import chdtrc  # scipy.stats, which has it too, takes four times as long to load
+
+    return float(chdtrc(degrees, max(value, 0.0))) if degrees > 0 else float("nan")
+
+
 def covariance(jacobian: Array, noise: Noise) -> tuple[Array, float]:
     """The covariance of the parameters, and the condition number of the Jacobian."""
-    from scipy.signal import lfilter
-
     u, s, vt = np.linalg.svd(jacobian, full_matrices=False)
     largest = s[0] if s.size and s[0] > 0.0 else 1.0
     kept = np.maximum(s, _SMALLEST * largest)
-    coloured = lfilter([1.0], noise.coefficients, u[::-1], axis=0)
+    back = coloured(noise.coefficients, u[::-1])
     k = jacobian.shape[1]
     scale = noise.variance * noise.samples / max(noise.samples - k, 1.0)
-    half = coloured / kept @ vt
+    half = back / kept @ vt
     return scale * half.T @ half, float(largest / s[-1]) if s[-1] > 0.0 else float("inf")

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import linprog
 
 Array = npt.NDArray[np.float64]
 
@@ -84,6 +83,8 @@ def _noise(matrices: Array, added: Array) -> float:
 def _over(cuts: Array, sides: Array) -> tuple[Array, float]:
     """The least t ≥ 0 over the cuts; its multipliers say below what no sum is, however it rounds."""
     exact = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
+    from scipy.optimize import linprog  # scipy takes its time
+
     found = linprog(np.ones(cuts.shape[1]), A_ub=-cuts, b_ub=-sides, method="highs", options=exact)
     multipliers = np.maximum(-found.ineqlin.marginals, 0.0)
     return np.maximum(found.x, 0.0), float(multipliers @ sides / max(1.0, (multipliers @ cuts).max()))

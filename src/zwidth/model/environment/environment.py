@@ -268,7 +268,8 @@ def multiply(a: tuple[Fraction, ...], b: tuple[Fraction, ...]) -> tuple[Fraction
     product = [Fraction(0)] * (len(a) + len(b) - 1)
     for i, x in enumerate(a):
         for j, y in enumerate(b):
-            product[i + j] += x * y
+            if x and y:  # most coefficients are 0, and a sum of fractions is dear
+                product[i + j] = product[i + j] + x * y if product[i + j] else x * y
     return tuple(product)
 
 
@@ -277,4 +278,4 @@ def add(a: tuple[Fraction, ...], b: tuple[Fraction, ...]) -> tuple[Fraction, ...
     length = max(len(a), len(b))
     x = (Fraction(0),) * (length - len(a)) + a
     y = (Fraction(0),) * (length - len(b)) + b
-    return tuple(p + q for p, q in zip(x, y, strict=True))
+    return tuple(p + q if p and q else p or q for p, q in zip(x, y, strict=True))

@@ -138,7 +138,7 @@ def built(device_table: Table, environment: Table, in_range: bool = False) -> Sp
 
 
 def load_device(sources: Sequence[Path | str], overrides: Mapping[str, str]) -> Device:
-    """The device alone: files with a [device] or a name in the catalogue, then the command line's parameters."""
+    """The device alone: files with a [device] or a name of the catalogue, then what the command line says."""
     return build_device(_device_table(read_tables(sources, ("device",)), overrides))
 
 

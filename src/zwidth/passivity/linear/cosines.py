@@ -21,7 +21,7 @@ def whole_product(a: Sequence[int], b: Sequence[int]) -> fmpz_poly:
     size = max(len(a), len(b))
     product, middle = fmpz_poly([*a]) * fmpz_poly([*[0] * (size - len(b)), *b[::-1]]), size - 1
     return from_whole_cosines(
-        [product[middle], *(product[middle + j] + product[middle - j] for j in range(1, size))]
+        [product[middle], *[product[middle + j] + product[middle - j] for j in range(1, size)]]
     )
 
 
@@ -34,10 +34,10 @@ def from_cosines(a: Sequence[fmpq]) -> fmpq_poly:
 def from_whole_cosines(a: Sequence[fmpz | int]) -> fmpz_poly:
     """The same of whole numbers; many of them by halves, with T_{m+k} = 2 T_m T_k − T_{m−k}."""
     if len(a) <= _FEW:
-        return sum((w * fmpz_poly.chebyshev_t(j) for j, w in enumerate(a) if w), fmpz_poly([]))
+        return sum([w * fmpz_poly.chebyshev_t(j) for j, w in enumerate(a) if w], fmpz_poly([]))
     m = len(a) // 2
     low, high = list(a[:m]), a[m + 1 :]
     for k, weight in enumerate(high, 1):
         low[m - k] -= weight
-    upper = from_whole_cosines([a[m], *(2 * weight for weight in high)])
+    upper = from_whole_cosines([a[m], *[2 * weight for weight in high]])
     return from_whole_cosines(low) + fmpz_poly.chebyshev_t(m) * upper

@@ -112,7 +112,7 @@ class PairCriterion:
         """M_ll, M_ff and det M in c, times positive numbers."""
         leader, follower, crossed = self.forms
         echoes = [_echoed({}, arm) for arm in self.arms]
-        scale = lcm(*(int(v.q) for form in (*self.forms, *echoes) for v in form.values()))
+        scale = lcm(*[int(v.q) for form in (*self.forms, *echoes) for v in form.values()])
         powers = [
             (crossed[k] * scale).p if k in crossed else 0 for k in range(min(crossed), max(crossed) + 1)
         ]
@@ -278,7 +278,7 @@ def _crossed(leader: Arm, follower: Arm) -> Sums:
     its = [(power + follower.age, as_fmpq(share)) for power, share in follower.mixed]
     for p, share in mine:
         for q, part in its:
-            _add(found, ((k, stretch * share * part / 2) for k in range(1 - p, q)))
+            _add(found, [(k, stretch * share * part / 2) for k in range(1 - p, q)])
         _add(found, ((-p, -share * _rubbed(leader) / 2),))
     rubbed = as_fmpq(follower.weight) * _rubbed(follower)
     _add(found, ((q, -part * rubbed / 2) for q, part in its))

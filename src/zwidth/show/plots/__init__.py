@@ -1,6 +1,6 @@
 """Pictures of a verdict: what is asked for, what is there, what the hand does.
 
-Import it by name, `import zwidth.show.plots`: nothing else in the package does, so
+Import it by name, `import zwidth.plots`: nothing else in the package does, so
 that a verdict never waits for matplotlib.  `criterion`, `plane`, `budget`,
 `witness`, `worst_case`, `storage`, `cycle`, `indices`, `check_figure`,
 `limit_figure`, `plot_held_pair`, `plot_lateness`, `plot_links`, `plot_pair`, `plot_scene`, `postures_figure`,
@@ -12,3 +12,6 @@ in the look of `LOOK` if your axes have it.
 from zwidth.lazy import attach
 
 __getattr__, __dir__, __all__ = attach(__name__)
+
+for _name in ("budget", "criterion", "cycle", "indices", "plane", "storage", "witness", "worst_case"):
+    __getattr__(_name)  # each is a file, too: the function is found before anybody asks for the file

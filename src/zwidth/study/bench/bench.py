@@ -286,7 +286,7 @@ def _step_time(device: Device, law: Environment, touch: Touch) -> float:
     setup = prepare(device, law, touch.hand, _TIMED * period)
     best = float("inf")
     for _ in range(2):
-        commands, record, work = empty_record(setup)
+        commands, record, work = empty_record(setup.frame)
         start = time.perf_counter()
         run_setup(setup, setup.state.copy(), setup.memory.copy(), work, commands, record, None)
         best = min(best, time.perf_counter() - start)

@@ -25,7 +25,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy import stats
+from scipy.special import stdtrit
 
 from zwidth.errors import InputError
 from zwidth.model.device.friction import FrictionCurve
@@ -33,6 +33,7 @@ from zwidth.model.device.friction import FrictionCurve
 if TYPE_CHECKING:
     import xarray as xr
 
+    from zwidth.loop.trace import AnyTrace
     from zwidth.native.compiled import Array
 
 FEWEST_STROKES = 8
@@ -69,7 +70,7 @@ class Side(NamedTuple):
         return [Side(*part) for part in zip(*(np.array_split(c, bins) for c in self), strict=True)]
 
 
-def sides(points: xr.Dataset) -> tuple[Side, Side]:
+def sides(points: AnyTrace) -> tuple[Side, Side]:
     """The pulses into the wall, and those out of it."""
     velocity = points["speed"].values
     order = np.argsort(np.abs(velocity), kind="stable")
@@ -79,7 +80,7 @@ def sides(points: xr.Dataset) -> tuple[Side, Side]:
     return into, out
 
 
-def fastest(points: xr.Dataset) -> tuple[float, float]:
+def fastest(points: AnyTrace) -> tuple[float, float]:
     """The speed that 32 strokes, or a quarter of them, went beyond, into the wall and out of it [m/s; rad/s].
 
     0 where there are none.
@@ -98,7 +99,7 @@ def _fastest(side: Side) -> float:
     return float(np.sort(most)[-rank])
 
 
-def friction_bins(points: xr.Dataset, bins: int) -> xr.Dataset:
+def friction_bins(points: AnyTrace, bins: int) -> xr.Dataset:
     """Mean speed and mean friction by direction and speed, each bin with as many pulses of its direction.
 
     Parameters
@@ -142,7 +143,7 @@ class _Mean(NamedTuple):
 
     def low(self, confidence: float) -> float:
         """What it is at least."""
-        return self.friction - float(stats.t.ppf(confidence, max(self.strokes - 1, 1))) * self.error
+        return self.friction - float(stdtrit(max(self.strokes - 1, 1), confidence)) * self.error
 
 
 def _binned(ways: tuple[Side, Side], bins: int) -> list[list[_Mean]]:
@@ -183,7 +184,7 @@ def _bend_up(means: list[_Mean]) -> Array:
     return taken
 
 
-def curve_below(points: xr.Dataset, confidence: float, bins: int, steepest: float) -> FrictionCurve:
+def curve_below(points: AnyTrace, confidence: float, bins: int, steepest: float) -> FrictionCurve:
     """The lower bounds as a friction curve with this slope [N·s/m; N·m·s/rad] beyond the largest speed."""
     if not 0 < confidence < 1:
         raise InputError(
@@ -203,7 +204,7 @@ def _bounds(speed: Array, low: Array) -> list[tuple[float, float]]:
     return list(zip(speed.tolist(), low.tolist(), strict=True))
 
 
-def lower_bounds(points: xr.Dataset, confidence: float, bins: int) -> list[tuple[Array, Array]]:
+def lower_bounds(points: AnyTrace, confidence: float, bins: int) -> list[tuple[Array, Array]]:
     """Each way, the speeds from rest on, and what friction is at least, all together [N; N·m]."""
     ways = sides(points)
     found = _binned(ways, bins)

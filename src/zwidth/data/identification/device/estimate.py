@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from scipy import stats
+from scipy.special import stdtrit
 
 from zwidth.data.logs import Finding
 from zwidth.quantity.spoken import spoken
@@ -79,7 +79,7 @@ def unit_of(parameter: str, motion: str) -> str:
 
 def student(confidence: float, degrees: int) -> float:
     """t, standard errors to either side of an interval that holds the truth this often."""
-    return float(stats.t.ppf(0.5 + confidence / 2, degrees))
+    return float(stdtrit(degrees, 0.5 + confidence / 2))
 
 
 def perhaps_none(estimates: Mapping[str, Estimate], names: Iterable[str]) -> Iterator[Finding]:

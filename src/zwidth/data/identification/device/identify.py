@@ -54,8 +54,8 @@ def identify(
     viscous = found.regression(tuple(n for n in names if n not in ("coulomb_friction", "slow")))
     if estimates is None or fit is None or viscous is None:
         raise InputError(too_little(log))
-    points = found.points.dataset(fit, mass, log.motion)
-    quickest = fastest(points)
+    seen = found.points.labelled(fit, mass, log.motion)
+    quickest = fastest(seen)
     directions, slopes = found.directions(names), found.slopes(names, min(quickest))
     if directions is None or slopes is None or not min(quickest) > 0:
         raise InputError(too_little(log))
@@ -82,7 +82,7 @@ def identify(
             *log.findings,
             *findings(found, names, estimates, directions, slopes, min(quickest), log.sample_period),
         ),
-        points=points,
+        seen=seen,
     )
 
 

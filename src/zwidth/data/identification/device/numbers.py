@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 from zwidth.data.identification.device.estimate import MOST_CONFIDENCE, Directions, Estimate
@@ -19,6 +20,7 @@ from zwidth.quantity.exact import Interval, as_parameter, ends
 if TYPE_CHECKING:
     import xarray as xr
 
+    from zwidth.loop.trace import Trace
     from zwidth.model.device.friction import FrictionCurve
 
 BINS = 6
@@ -64,7 +66,7 @@ class IdentifiedNumbers:
         How many the numbers rest on.
     findings
         What a person should know.
-    points
+    seen
         Mean speed and friction of up to some ten thousand pulses, for pictures.
     """
 
@@ -85,7 +87,12 @@ class IdentifiedNumbers:
     strokes: int
     pulses: int
     findings: tuple[Finding, ...]
-    points: xr.Dataset
+    seen: Trace
+
+    @cached_property
+    def points(self) -> xr.Dataset:
+        """What was seen, as an xarray.Dataset."""
+        return self.seen.dataset()
 
     def device(self, confidence: float | None = 0.99, **others: Any) -> Device:
         """A device with less friction than the data show, f_c + b |v| at every speed that they show.
@@ -219,7 +226,7 @@ class IdentifiedNumbers:
         """
         from zwidth.data.identification.device.curve import curve_below
 
-        return curve_below(self.points, confidence, bins, self.least_damping(confidence))
+        return curve_below(self.seen, confidence, bins, self.least_damping(confidence))
 
 
 def _parameter(estimate: Estimate, confidence: float | None) -> float | Interval:

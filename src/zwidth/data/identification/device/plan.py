@@ -15,7 +15,7 @@ from math import ceil, inf, pi
 from typing import Any, Literal
 
 import numpy as np
-from scipy import stats
+from scipy.special import ndtri
 
 from zwidth.data.identification.device.design import PARAMETERS, Stroke, best_shares, covariance
 from zwidth.data.identification.device.identified import Identified
@@ -85,7 +85,7 @@ class MeasurementPlan:
     @property
     def seconds(self) -> float:
         """Recorded motion after which the limit should be known as well as wanted [s]."""
-        reach = float(stats.norm.ppf(0.5 + self.confidence / 2)) * self.errors(1.0)[self.limits]
+        reach = float(ndtri(0.5 + self.confidence / 2)) * self.errors(1.0)[self.limits]
         return (reach / (self.precision * float(self.guess.exact(self.limits)))) ** 2
 
     @property

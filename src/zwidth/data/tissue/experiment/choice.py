@@ -15,12 +15,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
 
 from zwidth.data.tissue.experiment.estimate import Solved, solved
 from zwidth.data.tissue.experiment.history import History, about_surface
 from zwidth.data.tissue.experiment.prediction import Fine, Task, fines_of, predicted
 from zwidth.data.tissue.model import Model, as_model
+from zwidth.data.tissue.uncertainty import by_chance
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
 
@@ -181,4 +181,4 @@ def leftover(found: Solved) -> float:
         return 1.0
     r = np.array([float(left[k:] @ left[:-k]) / size for k in range(1, lags + 1)])
     value = n * (n + 2) * float((r**2 / (n - np.arange(1, lags + 1))).sum())
-    return float(stats.chi2.sf(value, lags - bool(found.noise.memory)))
+    return by_chance(value, lags - bool(found.noise.memory))

@@ -9,13 +9,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.stats import chi2
 
 from zwidth.data.tissue.experiment.choice import UNLIKELY, Tried, label, leftover
 from zwidth.data.tissue.experiment.history import History
 from zwidth.data.tissue.experiment.kind import Kind
 from zwidth.data.tissue.experiment.slowest import Slowest, slowest_of
 from zwidth.data.tissue.result import TissueFit
+from zwidth.data.tissue.uncertainty import by_chance
 from zwidth.errors import InputError
 from zwidth.lazy import above
 from zwidth.model.environment.discretization import Discretization
@@ -152,7 +152,7 @@ class TissueTest(Documented):
             at = np.array([fit.estimates[k] for fit in fits])
             weight = np.array([max(fit.covariance[k, k], 1e-300) for fit in fits]) ** -1.0
             mean = float(at @ weight / weight.sum())
-            if chi2.sf(float((at - mean) ** 2 @ weight), len(fits) - 1) < UNLIKELY:
+            if by_chance(float((at - mean) ** 2 @ weight), len(fits) - 1) < UNLIKELY:
                 found.append(name)
         return found
 

@@ -17,7 +17,7 @@ from math import exp, log
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from zwidth.data.tissue.experiment.estimate import Solved, solved
 from zwidth.data.tissue.experiment.prediction import Task, derivatives, predicted
@@ -57,7 +57,7 @@ def slowest_of(task: Task, found: Solved) -> Slowest | None:
     own = float(found.point[branch + 1] - found.point[branch])
     left, jacobian = found.whitened
     variance = float(left @ left) / max(left.size - jacobian.shape[1], 1)
-    most = float(student.ppf(SURE, max(found.noise.independent - jacobian.shape[1], 1.0))) ** 2
+    most = float(stdtrit(max(found.noise.independent - jacobian.shape[1], 1.0), SURE)) ** 2
 
     def missed(at: float) -> float:
         return (_least(task, found, branch, at) - float(left @ left)) / variance - most

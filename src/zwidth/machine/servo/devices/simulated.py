@@ -295,7 +295,7 @@ class Simulated(CompiledConnection):
             If it is served at another period than its own.
         """
         setup = self.setup()
-        frame, (force, anchor, target, switch) = setup.frame, setup.optional()
+        frame, (force, anchor, target, switch) = setup.frame, setup.frame.optional()
         if sample_period != float(frame.period):
             raise InputError(
                 f"the simulated device has a sample period of {float(frame.period):g} s, and is served at "

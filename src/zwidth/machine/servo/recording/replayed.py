@@ -12,13 +12,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from zwidth.data.logs.served.contents import COLUMNS, ROWS_LOST
 from zwidth.errors import InputError
-from zwidth.loop.simulate import simulate
+from zwidth.loop.simulate import simulated
 from zwidth.loop.timing import Timing
 from zwidth.machine.servo.recording.recording import Recording
 from zwidth.machine.servo.ring import SERVING
@@ -35,6 +36,8 @@ from zwidth.quantity.text import quantity_unit
 if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import NDArray
+
+    from zwidth.loop.trace import Trace
 
     Array = NDArray[np.float64]
 
@@ -78,8 +81,8 @@ class Replay:
 
     Parameters
     ----------
-    trace
-        Of the simulation.
+    simulated
+        What the simulation gives.
     samples
         Compared: those whose force the law gave, uncut.
     different
@@ -90,11 +93,16 @@ class Replay:
         "linear" or "rotary".
     """
 
-    trace: xr.Dataset
+    simulated: Trace
     samples: int
     different: int
     largest: float
     motion: str
+
+    @cached_property
+    def trace(self) -> xr.Dataset:
+        """What the simulation gives, as `zwidth.simulate` has it."""
+        return self.simulated.dataset()
 
     @property
     def unit_key(self) -> str:
@@ -185,7 +193,7 @@ def replay(
         As `touch_of` and `zwidth.simulate` do.
     """
     touch = touch_of(recording, device, environment, law=law)
-    trace = simulate(
+    trace = simulated(
         touch.device,
         touch.environment,
         touch.operator,
@@ -199,7 +207,7 @@ def replay(
     given = recording.columns[COLUMNS[recording.motion][1]][touch.rows][compared]
     found = trace["commanded_force"].values[numbers - numbers[0]][compared]
     return Replay(
-        trace=trace,
+        simulated=trace,
         samples=int(given.size),
         different=int((given != found).sum()),
         largest=float(np.abs(given - found).max(initial=0.0)),

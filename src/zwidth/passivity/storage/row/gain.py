@@ -145,7 +145,7 @@ def _simulated(path: Motion, law: RowLaw, device: Device, environment: Environme
     x = np.concatenate((x[: part.first + 1], around, x[part.last + 1 :], x[-1:]))  # the mass at rest again
     period = device.exact("sample_period")
     setup = prepare(device, environment, PrescribedMotion(x), (len(x) - 1) * period)
-    commands, record, work = empty_record(setup)
+    commands, record, work = empty_record(setup.frame)
     setup = replace(setup, law=law.packed)
     run_setup(setup, setup.state.copy(), setup.memory.copy(), work, commands, record, None)
     taken = -record[R_HAND_WORK]
