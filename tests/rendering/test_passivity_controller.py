@@ -205,7 +205,7 @@ def undamped(link):
         (lambda: PassivityController(largest_force=-1), "largest_force must be > 0"),
         (lambda: PassivityController(slowest=float("nan")), "slowest"),
         (lambda: zw.render(zw.Wall(300)), "no law was given"),
-        (lambda: zw.render(zw.Wall(300), zw.Wall(2)), "zwidth.model.rendering"),
+        (lambda: zw.render(zw.Wall(300), zw.Wall(2)), "zwidth.rendering"),
         (lambda: zw.render("wall", PassivityController()), "environment"),
         (
             lambda: zw.simulate(
