@@ -20,7 +20,7 @@ from scipy.spatial.transform import Rotation
 
 from zwidth.errors import InputError
 from zwidth.model.arms import PosedArm
-from zwidth.model.arms.kinematics.reading import read_mechanism
+from zwidth.model.arms.reading import read_mechanism
 
 TURNS = {"quat": 4, "axisangle": 4, "xyaxes": 6, "zaxis": 3, "euler": 3}
 

@@ -17,7 +17,7 @@ from documents.seeds import MAKERS
 
 import zwidth as zw
 from zwidth.model.arms import BUILT_IN, built_in
-from zwidth.quantity.json_text import to_json
+from zwidth.quantity.text import to_json
 
 TIMES = 5
 WRITTEN_DOWN = ("arm",)

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.model.arms.kinematics.builtin import built_in
+from zwidth.model.arms.reading import built_in
 from zwidth.showing import (
     OBEYED,
     Headline,

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.quantity.json_text import save_json
+from zwidth.quantity.text import save_json
 from zwidth.writing import check_target, csv_cell, csv_text, writing_whole
 
 LOOP = zw.Device(mass=0.04, damping=0.15, sample_period=0.001), zw.Wall(200)

@@ -21,7 +21,7 @@ from zwidth.passivity.storage.evidence.coarse import prove_on_cells
 from zwidth.passivity.storage.program import program_of
 from zwidth.passivity.storage.slow_hands import slow_hands
 from zwidth.passivity.storage.solve.effort import freely
-from zwidth.quantity.json_text import to_json
+from zwidth.quantity.text import to_json
 
 Document = dict[str, Any]
 

@@ -20,7 +20,7 @@ from zwidth.cli.options import (
 from zwidth.data.gains import published
 from zwidth.model.kind import Kind
 from zwidth.model.rendering import ESTIMATORS, LAWS
-from zwidth.model.specification import pairs
+from zwidth.model.specification import load as pairs
 from zwidth.model.specification.environments import TYPES, all_keys
 from zwidth.quantity.glossary import GLOSSARY
 

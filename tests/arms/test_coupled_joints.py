@@ -14,8 +14,8 @@ from described_arms import random_arm
 import zwidth as zw
 from zwidth.checker import verify
 from zwidth.model.arms import Arm, LeggedArm, PlanarChain, built_in, read_arm
+from zwidth.model.arms.arm import ArmMotion
 from zwidth.model.arms.joints import as_matrix
-from zwidth.model.arms.motion import ArmMotion
 
 Array = npt.NDArray[np.float64]
 

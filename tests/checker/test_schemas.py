@@ -15,7 +15,7 @@ from jsonschema import Draft202012Validator
 from zwidth import checker
 from zwidth.checker.kinds import KINDS
 from zwidth.checker.schema import FOLDER, file_of, text_of, write
-from zwidth.quantity.json_text import to_json
+from zwidth.quantity.text import to_json
 
 ALL = [*KINDS, "corners"]
 

@@ -14,7 +14,7 @@ import pytest
 import zwidth as zw
 from zwidth import checker
 from zwidth.checker.kinds import KINDS
-from zwidth.quantity.json_text import to_json
+from zwidth.quantity.text import to_json
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 DEVICE = zw.Device(damping="0.2", sample_period="0.001", coulomb_friction=0, resolution=0)

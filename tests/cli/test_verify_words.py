@@ -14,7 +14,7 @@ import zwidth as zw
 from zwidth import checker
 from zwidth.checker import judge
 from zwidth.cli.main import main
-from zwidth.quantity.json_text import to_json
+from zwidth.quantity.text import to_json
 
 PADDLE = zw.Device(
     mass=0.036, damping=0.15, rate=1000, coulomb_friction=0.12, resolution=22.4e-6, delay=0.0004

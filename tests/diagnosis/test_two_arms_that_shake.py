@@ -15,8 +15,8 @@ import zwidth as zw
 from zwidth.data.diagnosis import PAIR_CAUSES
 from zwidth.data.diagnosis.pairs import law
 from zwidth.data.diagnosis.pairs.recording import holds_two_arms, read_pair
-from zwidth.model.specification.pairs import load_pair
-from zwidth.model.specification.write_pair import written_pair
+from zwidth.model.specification.load import load_pair
+from zwidth.model.specification.write import written_pair
 
 LATE_LINK = {"link": 4, "viscous": 0.05, "limit": 3.0}
 RNG = np.random.default_rng(5)

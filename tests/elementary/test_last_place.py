@@ -9,11 +9,7 @@ import mpmath
 import pytest
 from points import both, error_of, even, wide
 
-from zwidth.quantity.elementary.double_double import two_product, two_sum
-from zwidth.quantity.elementary.exponential import exp, expm1
-from zwidth.quantity.elementary.hyperbolic import tanh
-from zwidth.quantity.elementary.logarithm import log, log1p
-from zwidth.quantity.elementary.power import power
+from zwidth.quantity.elementary import exp, expm1, log, log1p, power, tanh, two_product, two_sum
 
 POINTS = 3000
 

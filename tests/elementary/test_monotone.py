@@ -10,10 +10,7 @@ import pytest
 from points import both, even, wide
 
 from zwidth.native.compiled import Array
-from zwidth.quantity.elementary.exponential import exp, expm1
-from zwidth.quantity.elementary.hyperbolic import tanh
-from zwidth.quantity.elementary.logarithm import log, log1p
-from zwidth.quantity.elementary.power import power
+from zwidth.quantity.elementary import exp, expm1, log, log1p, power, tanh
 
 LONG = 300
 """Doubles in a neighbourhood."""

@@ -6,10 +6,7 @@ from math import copysign, inf, isnan, nan, nextafter
 
 import pytest
 
-from zwidth.quantity.elementary.exponential import exp, expm1
-from zwidth.quantity.elementary.hyperbolic import tanh
-from zwidth.quantity.elementary.logarithm import log, log1p
-from zwidth.quantity.elementary.power import power
+from zwidth.quantity.elementary import exp, expm1, log, log1p, power, tanh
 
 LARGEST = 1.7976931348623157e308
 SMALLEST = 5e-324

@@ -10,8 +10,8 @@ import pytest
 from stepped_body import forces
 
 import zwidth as zw
+from zwidth.model.environment.bodies import Integrator
 from zwidth.model.environment.environment import multiply
-from zwidth.model.environment.integrators import Integrator
 
 T = Fraction(1, 1000)
 INTEGRATORS = get_args(Integrator)

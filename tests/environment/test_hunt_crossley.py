@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import zwidth as zw
-from zwidth.model.environment.hunt_crossley import resting_force
+from zwidth.model.environment.nonlinear import resting_force
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 
@@ -86,8 +86,8 @@ def test_there_is_no_pulse_transfer_function() -> None:
 def test_it_is_loaded_when_it_is_first_used() -> None:
     """Few loops have one."""
     code = (
-        "import sys, zwidth as zw; assert 'zwidth.model.environment.hunt_crossley' not in sys.modules; "
-        "zw.HuntCrossley(1); assert 'zwidth.model.environment.hunt_crossley' in sys.modules"
+        "import sys, zwidth as zw; assert 'zwidth.model.environment.nonlinear' not in sys.modules; "
+        "zw.HuntCrossley(1); assert 'zwidth.model.environment.nonlinear' in sys.modules"
     )
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
 

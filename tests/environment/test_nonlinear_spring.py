@@ -100,7 +100,7 @@ def test_there_is_no_pulse_transfer_function() -> None:
 def test_it_is_loaded_when_it_is_first_used() -> None:
     """Few loops have one."""
     code = (
-        "import sys, zwidth; assert 'zwidth.model.environment.nonlinear_spring' not in sys.modules; "
+        "import sys, zwidth; assert 'zwidth.model.environment.nonlinear' not in sys.modules; "
         "from zwidth.model.environment import NonlinearSpring as same; assert zwidth.NonlinearSpring is same"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -13,8 +13,7 @@ from scipy.integrate import solve_ivp
 
 import zwidth as zw
 from zwidth.data.tissue import creep, force_response, position_response, relaxation
-from zwidth.model.environment.creeping import compliance
-from zwidth.model.environment.relaxing import elements
+from zwidth.model.environment.relaxing import compliance, elements
 
 SOLIDS = [
     zw.Wall(120, 3.5),

@@ -78,7 +78,7 @@ def test_equal_numbers_are_equal_hands(kind: type[Any]) -> None:
     assert hand == same
     assert hash(hand) == hash(same)
     assert hand != kind()
-    assert eval(repr(hand), vars(operators)) == hand
+    assert eval(repr(hand), {name: getattr(operators, name) for name in operators.__all__}) == hand
 
 
 @EACH

@@ -6,7 +6,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.model.operator import OPERATORS, Finger, FingersOn, HandsOn, usual_hand
-from zwidth.model.operator.usual import usual_kind
+from zwidth.model.operator.named import usual_kind
 from zwidth.show.explorer.computing import hand_kind_of, operator_of
 from zwidth.show.explorer.play import played
 from zwidth.show.explorer.state import State

@@ -15,7 +15,7 @@ from zwidth.passivity import gap
 from zwidth.passivity.advice import in_lines
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.witness.motion import Motion
-from zwidth.quantity.json_text import to_json
+from zwidth.quantity.text import to_json
 
 PADDLE = zw.Device(
     mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, sample_period=1e-3, name="paddle"

@@ -24,7 +24,7 @@ from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.passivity.linear.loop import linear_loop
 from zwidth.passivity.witness.motion import Motion, Pattern, realize
 from zwidth.passivity.witness.witness import Setting
-from zwidth.quantity.json_text import to_json
+from zwidth.quantity.text import to_json
 
 DEVICE = zw.Device(
     damping="0.45", coulomb_friction="0.13", resolution="0.0004", sample_period="0.001", delay="0.0013"

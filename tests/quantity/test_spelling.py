@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from zwidth.quantity.dimension import unit_of
-from zwidth.quantity.spelling import spelled
+from zwidth.quantity.units import spelled, unit_of
 
 
 @pytest.mark.parametrize(

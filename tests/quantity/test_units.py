@@ -14,10 +14,9 @@ from hypothesis import strategies as st
 from strategies import decimals, texts, toml_values
 
 from zwidth.errors import InputError
-from zwidth.quantity.dimension import unit_of
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.units import parse, parse_number
+from zwidth.quantity.units import parse, parse_number, unit_of
 
 EXACT = [
     ("1 kHz", "Hz", "1000"),

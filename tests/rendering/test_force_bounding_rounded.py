@@ -11,7 +11,7 @@ from test_force_bounding import DEVICES, bounded
 
 import zwidth as zw
 from zwidth.model.rendering import ForceBounding
-from zwidth.model.rendering.energy.force_bounding import step
+from zwidth.model.rendering.bounding import force_bounding_step
 from zwidth.model.rendering.rendering_law import LoopContext
 
 
@@ -54,7 +54,7 @@ def test_each_line_and_each_bound_is_below_the_exact_one(friction, size):
             float(size) * int(n) if size else float(x) for n, x in zip(readings, exact, strict=True)
         )
         s = np.array([before, abs(energy), slope])
-        force = step(p, 0, s, 0, here, 1e300, applied)
+        force = force_bounding_step(p, 0, s, 0, here, 1e300, applied)
         e0, g0, f, g = (Fraction(float(v)) for v in (abs(energy), slope, applied, s[2]))
         if s[1] == 0 == s[2]:
             continue  # V ≥ 0 was the better line

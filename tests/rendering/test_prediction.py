@@ -9,7 +9,7 @@ from scipy.signal import cont2discrete
 
 import zwidth as zw
 from zwidth.model.rendering import CrossingCorrection, Extrapolation, HalfSamplePrediction, PoleMatched
-from zwidth.model.rendering.prediction import half_sample
+from zwidth.model.rendering.ahead import half_sample_step
 from zwidth.model.rendering.rendering_law import LoopContext
 
 T = 0.009
@@ -90,7 +90,7 @@ def test_a_push_that_the_model_does_not_know():
     """At rest against d the place T/2 ahead errs by −⅜ d T²/M."""
     law = HalfSamplePrediction(mass="0.37", damping=0)
     packed = np.array(law.numbers(LoopContext(DEVICE, zw.Wall(1))))
-    ahead = half_sample.step(packed, 0, np.array([0.002, 1.0]), 0, 0.002, 2.9)
+    ahead = half_sample_step(packed, 0, np.array([0.002, 1.0]), 0, 0.002, 2.9)
     assert ahead - 0.002 == pytest.approx(-3 / 8 * 2.9 * T**2 / 0.37, rel=1e-9)
 
 

@@ -11,7 +11,7 @@ from scipy.linalg import solve_discrete_are
 
 import zwidth as zw
 from zwidth.model.rendering import AdaptiveWindow, Damper, Kalman, TickTime
-from zwidth.model.rendering.velocity.kalman import gains
+from zwidth.model.rendering.velocity import gains
 
 FREE = zw.PulseTransferFunction([0], [1])
 """No force and no surface: a damper of 1 N·s/m on it commands its velocity."""

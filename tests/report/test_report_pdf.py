@@ -11,7 +11,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.json_text import json_file
+from zwidth.quantity.text import json_file
 
 reportlab = pytest.importorskip("reportlab")
 

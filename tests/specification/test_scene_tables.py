@@ -8,8 +8,7 @@ import pytest
 
 import zwidth as zw
 from zwidth import InputError
-from zwidth.model.specification.environments import build_environment
-from zwidth.model.specification.scenes import ELEMENTS
+from zwidth.model.specification.environments import ELEMENTS, build_environment
 from zwidth.model.specification.table import Table
 
 SPRING = {"type": "spring", "first": "handle", "second": "ground", "stiffness": "1 N/m"}

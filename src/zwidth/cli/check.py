@@ -128,7 +128,7 @@ def _ranges(loop: Specification, verdict: Verdict) -> OverRanges | None:
 
 
 def _in_full(verdict: Verdict, hands: Mapping[str, Stability], **reports: Report | None) -> str:
-    from zwidth.quantity.json_text import to_json
+    from zwidth.quantity.text import to_json
 
     return to_json({**verdict.to_dict(), **_reports(hands, **reports)})
 

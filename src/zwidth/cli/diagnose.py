@@ -141,7 +141,7 @@ def _pair_of_arms(arguments: argparse.Namespace) -> Pair | None:
         )
     if not arguments.sources:
         return None
-    from zwidth.model.specification.pairs import load_pair
+    from zwidth.model.specification.load import load_pair
 
     return load_pair(arguments.sources, {"stiffness": "1"})
 

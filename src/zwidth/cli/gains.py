@@ -154,7 +154,7 @@ def _of_controllers(files: list[str]) -> bool:
 def _held(arguments: argparse.Namespace) -> int:
     """The joints of one arm, each held at a target by the spring of its controller."""
     from zwidth.data.gains import check_controllers, passive_gains, read_controllers
-    from zwidth.quantity.json_text import to_json
+    from zwidth.quantity.text import to_json
 
     for option in (
         "joint",
@@ -224,7 +224,7 @@ def _target(arguments: argparse.Namespace) -> Path | None:
 def _cartesian(controllers: Controllers, arguments: argparse.Namespace) -> int:
     """An impedance at the end: what it is, and which command decides it."""
     if arguments.json:
-        from zwidth.quantity.json_text import to_json
+        from zwidth.quantity.text import to_json
 
         print_json(to_json({"outcome": "undecided", **controllers.to_dict()}))
     else:
@@ -238,7 +238,7 @@ def _of_one(
     verdict: GainsVerdict, arguments: argparse.Namespace, plot: Path | None, save: Path | None
 ) -> int:
     """One joint, with the notes on the gains."""
-    from zwidth.quantity.json_text import save_json, to_json
+    from zwidth.quantity.text import save_json, to_json
 
     pair, notes = verdict.joint(arguments.joint).verdict, {"notes": list(verdict.notes)}
     if save is not None:
@@ -260,7 +260,7 @@ def _told(gains: ArmGains, as_json: bool, save: Path | None) -> int:
     if save is not None:
         raise InputError("there is no law of both arms, so there is no verdict to save; --both makes one")
     if as_json:
-        from zwidth.quantity.json_text import to_json
+        from zwidth.quantity.text import to_json
 
         print_json(to_json(gains.to_dict()))
     else:

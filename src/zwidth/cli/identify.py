@@ -204,7 +204,7 @@ def _environment(arguments: argparse.Namespace) -> Any:
 
 
 def _json(found: Result) -> str:
-    from zwidth.quantity.json_text import to_json
+    from zwidth.quantity.text import to_json
 
     document = {
         **found.identified.to_dict(found.confidence),

@@ -154,7 +154,7 @@ def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
 
 def _json(bracket: Bracket) -> str:
     """The bracket without the storage function, which is as large as the grid; --save writes it."""
-    from zwidth.quantity.json_text import to_json
+    from zwidth.quantity.text import to_json
 
     document = bracket.to_dict()
     if bracket.storage is not None:

@@ -243,7 +243,7 @@ def _region(name: str, found: xr.Dataset) -> str:
 def _json(found: xr.Dataset) -> str:
     """The regions and the free device, units in the keys."""
     from zwidth.quantity.glossary import unit_suffix
-    from zwidth.quantity.json_text import to_json
+    from zwidth.quantity.text import to_json
 
     unit = unit_suffix(found["largest_stiffness"].attrs["units"])
     regions: dict[str, dict[str, Any]] = {}

@@ -34,8 +34,8 @@ from zwidth.machine.network.open import open_channel
 from zwidth.machine.network.part_run import PartRun
 from zwidth.machine.network.peer import Peer
 from zwidth.model.device import Device
+from zwidth.model.operator.named import usual_kind
 from zwidth.model.operator.operator import Operator
-from zwidth.model.operator.usual import usual_kind
 from zwidth.model.scene.parts import Cut, best_parts, cut_scene
 from zwidth.model.scene.scene import Scene
 from zwidth.model.specification.environments import build_environment

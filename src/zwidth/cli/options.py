@@ -15,7 +15,7 @@ from zwidth.cli.typed import heed_angles as heed_angles
 from zwidth.errors import InputError
 from zwidth.model.device.rotary import ROTARY
 from zwidth.model.rendering import LAWS
-from zwidth.model.specification import pairs
+from zwidth.model.specification import load as pairs
 from zwidth.model.specification.environments import TYPES, option_keys
 from zwidth.model.specification.read import DEVICE_KEYS
 from zwidth.model.specification.table import quoted

@@ -8,7 +8,7 @@ from zwidth.cli.decision import exit_status
 from zwidth.cli.known_hands import hand_parameters, known_hands
 from zwidth.cli.options import add_all, add_in_full, add_output, coupling_parameters, given
 from zwidth.cli.output import print_json, say_written, targets
-from zwidth.model.specification.pairs import load_pair
+from zwidth.model.specification.load import load_pair
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -23,8 +23,8 @@ from zwidth.cli.output import PICTURES, print_json, say_written, target
 from zwidth.cli.simulate_pair import pair_measures, simulated_pair
 from zwidth.errors import InputError
 from zwidth.model.environment import Environment, NonlinearSpring
-from zwidth.model.operator.parameter import ParametricOperator
-from zwidth.model.operator.usual import usual_kind
+from zwidth.model.operator.named import usual_kind
+from zwidth.model.operator.operator import ParametricOperator
 from zwidth.model.specification.laws import with_laws
 from zwidth.model.specification.read import PAIR_TABLES, TABLES, read_tables, specified
 from zwidth.model.specification.table import Table

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from zwidth.cli.options import given, overrides
 from zwidth.errors import InputError
 from zwidth.model.pairs import Pair
-from zwidth.model.specification.pairs import option_keys, pair_of
+from zwidth.model.specification.load import option_keys, pair_of
 from zwidth.model.specification.read import PAIR_TABLES
 from zwidth.model.specification.table import Table
 from zwidth.quantity.glossary import GLOSSARY

@@ -168,7 +168,7 @@ def _loop(
 
 
 def _pair(arguments: argparse.Namespace) -> Asked:
-    from zwidth.model.specification.pairs import load_pair
+    from zwidth.model.specification.load import load_pair
 
     return Asked(load_pair(arguments.sources, given(arguments, [p.key for p in coupling_parameters()])))
 

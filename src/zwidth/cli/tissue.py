@@ -208,7 +208,7 @@ def _save(found: Result, path: Path, scaled: bool) -> None:
 
 
 def _json(found: Result) -> str:
-    from zwidth.quantity.json_text import to_json
+    from zwidth.quantity.text import to_json
 
     document = found.test.to_dict()
     wall = found.wall

@@ -142,7 +142,7 @@ def _postures(arguments: argparse.Namespace, plot: Path | None, save: Path | Non
     from zwidth.cli.workspace_postures import print_postures
     from zwidth.passivity.outcome import TOLD
     from zwidth.passivity.workspace import stiffness_over_postures
-    from zwidth.quantity.json_text import to_json
+    from zwidth.quantity.text import to_json
 
     for option in ("torque_held_up_to", "largest_force", "points"):
         if getattr(arguments, option) is not None:
@@ -208,7 +208,7 @@ def _borne(arguments: argparse.Namespace, arm: Arm) -> BorneImpedance:
 def _null_space(arguments: argparse.Namespace, plot: Path | None, save: Path | None) -> int:
     """Wall and null-space spring together; there is no map of it to save."""
     from zwidth.passivity.outcome import TOLD
-    from zwidth.quantity.json_text import to_json
+    from zwidth.quantity.text import to_json
 
     if save is not None and save.suffix.lower() != ".json":
         raise InputError(f"of a null-space spring there is no map: save as .json, got {save.name!r}")

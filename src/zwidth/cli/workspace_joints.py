@@ -20,7 +20,7 @@ from zwidth.model.specification.table import located
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
-    from zwidth.model.arms.kinematics.arm import Arm
+    from zwidth.model.arms.arm import Arm
 
 _JOINT_OPTIONS = (
     ("--joint-damping", "damping", "N*m*s/rad", "viscous friction of the joints"),

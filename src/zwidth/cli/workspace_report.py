@@ -108,7 +108,7 @@ def _friction(space: Workspace, steps: EncoderSteps) -> Iterator[tuple[str, str]
     has = f"it has {', '.join(shown(f, 'N*m') for f in own)}" if own else "it has none that is known"
     more = f"{more} more for each newton of the wall"
     yield "Coulomb friction", f"{enough} in joint {_joints(space)}, and {more}, cover the steps; {has}"
-    from zwidth.model.arms.held import in_words
+    from zwidth.model.arms.encoders import in_words
 
     covered = f"covered up to {in_words(steps.covered)}" if steps.covered else "covered at no force"
     known = (

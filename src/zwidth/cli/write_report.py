@@ -92,7 +92,7 @@ def _of_a_pair(sources: Sequence[str]) -> Mapping[str, Table] | None:
 
 def _pair(tables: Mapping[str, Table], arguments: argparse.Namespace) -> tuple[Answer, Provenance]:
     """The verdict on two arms, and where their numbers come from."""
-    from zwidth.model.specification.pairs import pair_of
+    from zwidth.model.specification.load import pair_of
     from zwidth.passivity.check import check
     from zwidth.show.report.pair_provenance import of_pair
     from zwidth.show.report.provenance import Provenance

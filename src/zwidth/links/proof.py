@@ -8,7 +8,7 @@ from zwidth.links import memory
 from zwidth.links.port import Port
 from zwidth.links.sure_losses import ROUNDING
 from zwidth.links.wave_port import MARGIN
-from zwidth.model.device.actuator import current_rise
+from zwidth.model.device.amplifier import current_rise
 from zwidth.passivity.bounding import ROUNDOFF
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import unit_key

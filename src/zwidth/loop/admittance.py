@@ -22,9 +22,9 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.loop.setup import check_signals, whole_samples
 from zwidth.loop.trace import LARGEST, UNITS, VARIABLES
-from zwidth.model.environment.virtual_body import VirtualBody
+from zwidth.model.environment.bodies import VirtualBody
 from zwidth.model.operator.operator import LinearHand, Operator
-from zwidth.model.rendering.energy.parallel_controller import (
+from zwidth.model.rendering.parallel_controller import (
     ENERGY,
     STATE_SIZE,
     ParallelController,

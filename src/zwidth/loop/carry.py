@@ -20,7 +20,7 @@ from zwidth.loop.plant import (
     Plant,
 )
 from zwidth.native.compiled import Array, compiled
-from zwidth.quantity.elementary.exponential import expm1
+from zwidth.quantity.elementary import expm1
 
 
 @compiled

@@ -14,8 +14,7 @@ and v is monotone, so that it has one zero at most, where h1 = −v0/a0.  For sm
 from __future__ import annotations
 
 from zwidth.native.compiled import compiled
-from zwidth.quantity.elementary.exponential import expm1
-from zwidth.quantity.elementary.logarithm import log1p
+from zwidth.quantity.elementary import expm1, log1p
 
 _SERIES_UP_TO = 1.0
 _TERMS = 40

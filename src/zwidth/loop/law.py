@@ -22,7 +22,7 @@ import numpy as np
 from zwidth.model.rendering.chain import after, before
 from zwidth.model.scene.step import scene_force
 from zwidth.native.compiled import Array, compiled
-from zwidth.quantity.elementary.power import power
+from zwidth.quantity.elementary import power
 
 BILATERAL, PENETRATION, SURFACE = 0.0, 1.0, 2.0
 """At the surface: a law without one; one fed with max(x_m, 0); one fed with x_m.  Both push inside only."""

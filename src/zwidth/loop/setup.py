@@ -24,7 +24,7 @@ from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator.operator import Operator, Signals
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.model.rendering.rendering_law import LoopContext, RenderingLaw
-from zwidth.model.scene.layout import scene_at_rest
+from zwidth.model.scene.forces import scene_at_rest
 from zwidth.quantity.exact import Exact, RealLike
 
 if TYPE_CHECKING:

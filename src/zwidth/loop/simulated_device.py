@@ -24,7 +24,7 @@ from zwidth.model.device.amplifier import Amplifier
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment, RationalFunction
 from zwidth.model.operator.operator import Operator
-from zwidth.model.rendering.energy.force_bounding import ForceBounding
+from zwidth.model.rendering.bounding import ForceBounding
 from zwidth.model.rendering.rendered import Rendered
 from zwidth.quantity.exact import RealLike
 

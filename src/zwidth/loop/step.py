@@ -39,8 +39,7 @@ from zwidth.loop.series import (
     value,
 )
 from zwidth.native.compiled import Array, compiled
-from zwidth.quantity.elementary.exponential import exp, expm1
-from zwidth.quantity.elementary.logarithm import log
+from zwidth.quantity.elementary import exp, expm1, log
 
 _MOST_EVENTS = 100_000
 _BISECTIONS = 200

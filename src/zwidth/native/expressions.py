@@ -6,9 +6,7 @@ import ast
 from contextlib import suppress
 from typing import Any, NamedTuple, Protocol
 
-from zwidth.native.names import Defined, Module, is_step_function
-from zwidth.native.reader import SPELLED, Reader
-from zwidth.native.signature import Signature, address
+from zwidth.native.names import SPELLED, Defined, Module, Reader, is_step_function
 from zwidth.native.types import (
     ITEMS,
     REAL,
@@ -19,7 +17,9 @@ from zwidth.native.types import (
     Maybe,
     Number,
     Several,
+    Signature,
     Type,
+    address,
     fields,
     joined,
 )

@@ -15,7 +15,7 @@ from typing import Any, Literal
 from zwidth.checker import verify
 from zwidth.errors import InputError
 from zwidth.model.device import Device
-from zwidth.model.device.actuator import current_rise
+from zwidth.model.device.amplifier import current_rise
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.rendering.rendered import laws_of

@@ -37,7 +37,7 @@ from zwidth.passivity.witness.witness import Witness
 
 if TYPE_CHECKING:
     from zwidth.model.arms import Arm
-    from zwidth.model.arms.matrix_wall import MatrixWall
+    from zwidth.model.arms.wall import MatrixWall
     from zwidth.model.environment import Wall
     from zwidth.passivity.pairs import PairVerdict
     from zwidth.passivity.pairs.held import HeldVerdict

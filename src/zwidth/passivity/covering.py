@@ -12,7 +12,7 @@ from fractions import Fraction
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.wall import Wall, wall_of
-from zwidth.model.rendering.force.friction_compensation import FrictionCompensation
+from zwidth.model.rendering.friction_compensation import FrictionCompensation
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.tangents import best_tangent, line_of
 from zwidth.quantity.exact import Exact, ends

@@ -9,7 +9,7 @@ from functools import cached_property
 from math import cos, pi
 from typing import Any
 
-from zwidth.model.device.actuator import ActuatorCheck, actuator_checks
+from zwidth.model.device.amplifier import ActuatorCheck, actuator_checks
 from zwidth.passivity import parameter_limits
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget

@@ -18,7 +18,7 @@ from math import inf
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
-from zwidth.model.environment.nonlinear_spring import NonlinearSpring
+from zwidth.model.environment.nonlinear import NonlinearSpring
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.budget import DELAY, QUANTIZATION, SAMPLING
 from zwidth.passivity.formulas.nonlinear_spring import certify_spring, spring_need

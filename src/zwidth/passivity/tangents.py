@@ -16,7 +16,7 @@ from fractions import Fraction
 from math import cosh, exp, tanh
 from typing import NamedTuple
 
-from zwidth.model.pairs import FrictionCompensation
+from zwidth.model.rendering.friction_compensation import FrictionCompensation
 from zwidth.quantity.balls import ball, middle, precision
 
 _BITS = 200

@@ -15,8 +15,7 @@ from zwidth.passivity.advice import Advice, in_lines
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.found import Found
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.json_text import save_json
-from zwidth.quantity.text import enough, in_unit, in_words
+from zwidth.quantity.text import enough, in_unit, in_words, save_json
 from zwidth.showing import Lines, Part
 
 

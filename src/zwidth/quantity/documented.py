@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from zwidth.errors import InputError
 from zwidth.lazy import above
-from zwidth.quantity.json_text import save_json, to_json
+from zwidth.quantity.text import save_json, to_json
 from zwidth.showing import Picture, Shown
 
 

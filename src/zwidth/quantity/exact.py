@@ -1,9 +1,8 @@
 """A number means the decimal that a person typed.
 
 0.15 is 3/20, although the nearest binary float is a little less.  `Exact` is a
-float to every user of it and carries that rational beside it, so that a limit
-such as K = 2b/T is met exactly and nothing is decided by rounding.
-`Interval` is a parameter known only between two such numbers.
+float to every user of it and carries that rational beside it, so that a limit such as K = 2b/T is met exactly
+and nothing is decided by rounding.  `Interval` is a parameter known only between two such numbers.
 """
 
 from __future__ import annotations

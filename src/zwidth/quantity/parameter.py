@@ -194,6 +194,13 @@ def parameter(
     return field(default=default, metadata={"parameter": own})
 
 
+def exact(
+    quantity: Quantity | str, default: Any = MISSING, bound: str = "", why: str = "", meaning: str = ""
+) -> Any:
+    """`parameter` of a number that is kept as an `Exact`."""
+    return parameter(quantity, default, kept=Exact, bound=bound, why=why, meaning=meaning)
+
+
 def flag(meaning: str, default: Any = MISSING, *, more: str = "") -> Any:
     """True or False as a field of a data class; `meaning` goes on after "True": "to count anew"."""
 
@@ -285,22 +292,10 @@ def read_number(
     why: str = "",
     motion: str = "",
 ) -> Any:
-    """A number in SI, exact; where it may be uncertain also an interval.
+    """A number in SI, exact, from a number or a text with a unit; where it may be uncertain also an interval.
 
-    Parameters
-    ----------
-    value
-        As given: a number, or a text with a unit.
-    quantity
-        What it is of.
-    name
-        Of the argument, for the messages.
-    uncertain
-        True where an interval, or a pair of ends, may be given.
-    bound, why
-        As in `Parameter`.
-    motion
-        "linear" or "rotary", whose unit a text then has; "" where nobody knows: it may have either.
+    `name` is that of the argument, for the messages; a text has the unit of the motion, "linear" or "rotary",
+    or of either where nobody knows: "".
     """
     number = _read(value, quantity, name, parse if uncertain else parse_number, motion)
     low, high = (number.low, number.high) if isinstance(number, Interval) else (number, number)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from zwidth.errors import InputError
 from zwidth.model.arms import PlanarChain, built_in
-from zwidth.model.arms.kinematics.joint_damping import joint_damping
+from zwidth.model.arms.arm import joint_damping
 
 BELT = np.array([[1.0, 0.0], [-0.7, 1.0]])
 """The second motor sits in the base: its belt turns with q₂ − 0.7 q₁."""

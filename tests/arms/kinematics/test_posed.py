@@ -12,7 +12,7 @@ from described_arms import random_arm
 
 import zwidth as zw
 from zwidth.model.arms import PlanarChain, PosedArm, built_in, read_arm
-from zwidth.model.arms.kinematics.turn import coordinates, product, rates
+from zwidth.model.arms.described import coordinates, product, rates
 
 Array = npt.NDArray[np.float64]
 ARMS = ((2, ()), (6, ()), (7, ()), (4, (1,)))

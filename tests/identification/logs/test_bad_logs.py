@@ -13,7 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import zwidth as zw
-from zwidth.model.operator.column import read_column
+from zwidth.model.operator.recorded_force import read_column
 
 GOOD = "time_s,position_mm,force_N\n" + "".join(f"{k / 1000},{k % 37},{k % 11}\n" for k in range(2000))
 RANDOM = np.random.default_rng(1).bytes(20000)

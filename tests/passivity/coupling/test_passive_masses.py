@@ -14,7 +14,7 @@ from strategies import seeds
 
 import zwidth as zw
 from zwidth.checker import judge
-from zwidth.model.environment.integrators import Integrator
+from zwidth.model.environment.bodies import Integrator
 
 T = Fraction(1, 1000)
 B = Fraction(3, 20)

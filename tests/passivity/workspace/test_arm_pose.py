@@ -12,8 +12,8 @@ from described_arms import random_arm
 
 import zwidth as zw
 from zwidth.model.arms import Arm, PlanarChain, built_in, read_arm, wall_need
-from zwidth.model.arms.pose import loss_in_pose
 from zwidth.model.arms.replay import replay_cycle
+from zwidth.model.arms.wall import loss_in_pose
 from zwidth.passivity.workspace import Workspace
 
 Array = npt.NDArray[np.float64]

@@ -12,8 +12,15 @@ from described_arms import panda_like
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.model.arms.null_space import NullSpaceSpring, replay_both, task_jacobian
-from zwidth.model.arms.null_space_loop import Loop, Shape, gain, shapes
+from zwidth.model.arms.null_space import (
+    Loop,
+    NullSpaceSpring,
+    Shape,
+    gain,
+    replay_both,
+    shapes,
+    task_jacobian,
+)
 from zwidth.passivity.certificate import read_document, verify_document
 
 REST = (0.2, 1.0, 0.6)

@@ -21,7 +21,7 @@ from zwidth.data.diagnosis import law
 from zwidth.data.diagnosis.law import Law
 from zwidth.errors import InputError
 from zwidth.model.environment.environment import Environment
-from zwidth.model.rendering.force.friction_compensation import FrictionCompensation
+from zwidth.model.rendering.friction_compensation import FrictionCompensation
 from zwidth.model.rendering.rendered import Rendered
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import shown

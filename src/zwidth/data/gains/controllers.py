@@ -23,7 +23,7 @@ import numpy as np
 
 from zwidth.data.gains.file import GainTable, read_table
 from zwidth.errors import InputError
-from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.wall import MatrixWall
 from zwidth.model.specification.table import quoted
 from zwidth.quantity.text import shown
 

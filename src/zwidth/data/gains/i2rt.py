@@ -17,7 +17,7 @@ from zwidth.data.gains.arms import ArmGains
 from zwidth.data.gains.file import GainTable
 from zwidth.data.gains.joint import NONE, Gains, JointGains
 from zwidth.errors import InputError
-from zwidth.model.pairs import FrictionCompensation
+from zwidth.model.rendering.friction_compensation import FrictionCompensation
 from zwidth.quantity.exact import Exact
 
 NAME = "i2rt"

@@ -23,7 +23,7 @@ from zwidth.data.gains.parameters import Tree, double, place_of, text_of
 from zwidth.data.gains.passive import SHARE, rounded_down, share_of
 from zwidth.errors import InputError
 from zwidth.model.arms import Arm
-from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.wall import MatrixWall
 from zwidth.passivity.workspace import PostureMap, stiffness_over_postures
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from zwidth.model.pairs import FrictionCompensation
+from zwidth.model.rendering.friction_compensation import FrictionCompensation
 from zwidth.quantity.text import exact_text
 
 NONE = FrictionCompensation()

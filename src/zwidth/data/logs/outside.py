@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from zwidth.errors import InputError
-from zwidth.quantity.dimension import Unit, unit_of
+from zwidth.quantity.units import Unit, unit_of
 
 WEIGHT = Fraction("9.80665")
 """Of a kilogram [N], by definition (3rd CGPM, 1901)."""

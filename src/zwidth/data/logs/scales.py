@@ -13,11 +13,9 @@ from zwidth.data.logs.names import check_quantity, name_and_unit
 from zwidth.data.logs.outside import measured_in
 from zwidth.data.logs.table import Table
 from zwidth.errors import InputError
-from zwidth.quantity.dimension import PI, Dimension, Unit, unit_of
 from zwidth.quantity.exact import Exact
-from zwidth.quantity.spelling import plain, spelled
 from zwidth.quantity.spoken import note
-from zwidth.quantity.units import parse_number
+from zwidth.quantity.units import PI, Dimension, Unit, parse_number, plain, spelled, unit_of
 
 _LENGTH, _ANGLE, _TIME = unit_of("m").dimension, unit_of("rad").dimension, unit_of("s").dimension
 _FORCE, _TORQUE = unit_of("N").dimension, unit_of("N*m").dimension

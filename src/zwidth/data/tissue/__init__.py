@@ -15,8 +15,7 @@ from zwidth.data.tissue.fit import compare_tissues, fit_tissue
 from zwidth.data.tissue.published import track_five_parameters
 from zwidth.data.tissue.recursive import RecursiveSolid, Track, Tracker
 from zwidth.data.tissue.result import TissueFit
-from zwidth.model.environment.creeping import creep, position_response
-from zwidth.model.environment.relaxing import force_response, relaxation
+from zwidth.model.environment.relaxing import creep, force_response, position_response, relaxation
 
 __all__ = [
     "AdaptiveSolid",

@@ -27,7 +27,7 @@ from zwidth.loop.pair.contact import advance_against
 from zwidth.loop.pair.curve import advance_on, line_of, on_line
 from zwidth.loop.plant import POSITION, SATURATED, Plant
 from zwidth.native.compiled import Array, compiled
-from zwidth.quantity.elementary.hyperbolic import tanh
+from zwidth.quantity.elementary import tanh
 
 
 class Law(NamedTuple):

@@ -24,7 +24,7 @@ from zwidth.loop.trace import (
     own_version,
     values_of,
 )
-from zwidth.model.environment.wording import with_unit
+from zwidth.model.environment.environment import with_unit
 from zwidth.model.operator.operator import Operator, Signals
 
 if TYPE_CHECKING:

@@ -27,9 +27,8 @@ from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.result import Result
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Interval, RealLike, ends
-from zwidth.quantity.json_text import to_json
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import quantity_unit, shown, told, told_quantity
+from zwidth.quantity.text import quantity_unit, shown, to_json, told, told_quantity
 from zwidth.quantity.units import parse, parse_number
 from zwidth.showing import Headline
 from zwidth.writing import check_target, writing_whole

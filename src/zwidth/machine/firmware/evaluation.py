@@ -38,7 +38,7 @@ from zwidth.machine.firmware.program import (
     Store,
     Variable,
 )
-from zwidth.native.reader import by_kind
+from zwidth.native.names import by_kind
 
 Rounded = Operation | Store
 

@@ -25,8 +25,7 @@ from zwidth.machine.firmware.program import (
     Variable,
 )
 from zwidth.machine.firmware.values import Changing, Unknown, each, joined, record
-from zwidth.native.names import Attributes, Defined, floor
-from zwidth.native.reader import SPELLED, Reader
+from zwidth.native.names import SPELLED, Attributes, Defined, Reader, floor
 
 _FUNCTIONS: dict[Any, str] = {
     abs: "abs",

@@ -24,7 +24,7 @@ from zwidth.machine.firmware.program import (
     rewritten,
 )
 from zwidth.machine.firmware.units import SAME, Scale, Unit, Units, units_of
-from zwidth.native.reader import by_kind
+from zwidth.native.names import by_kind
 
 _ROOM = 1.01
 """What the error may add to a number, relative; `invariant` tells afterwards whether it did not add more."""

@@ -25,8 +25,7 @@ from zwidth.machine.firmware.printer import comment
 from zwidth.machine.firmware.program import Cells, Program, Variable
 from zwidth.machine.firmware.specialise import specialised
 from zwidth.native.compiled import Array
-from zwidth.quantity.elementary.exponential import exp, expm1
-from zwidth.quantity.elementary.logarithm import log, log1p
+from zwidth.quantity.elementary import exp, expm1, log, log1p
 
 Hand = Literal["free", "anchored"]
 """A force alone; or a spring and a damper to an anchor that moves, as well."""

@@ -31,7 +31,7 @@ from zwidth.machine.firmware.program import (
     everything,
     operands,
 )
-from zwidth.native.reader import by_kind
+from zwidth.native.names import by_kind
 
 AS_IN_C = {
     **{o: f"{{}} {o} {{}}" for o in ("+", "-", "*", "/", "<", "<=", "==", "!=", ">", ">=")},

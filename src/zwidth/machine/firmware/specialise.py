@@ -38,8 +38,7 @@ from zwidth.machine.firmware.program import (
 from zwidth.machine.firmware.source import source_of
 from zwidth.machine.firmware.syntax import EndOfLoop, NextPass, assigned, behind, counters, may_leave, returns
 from zwidth.machine.firmware.values import Changing, Unknown, each, flat, joined, set_all
-from zwidth.native.names import Defined, OutsideError
-from zwidth.native.reader import counted
+from zwidth.native.names import Defined, OutsideError, counted
 
 MOST_WRITTEN_OUT = 32
 """Passes of a loop that are written one after the other; a longer one stays a loop."""

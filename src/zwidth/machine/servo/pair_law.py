@@ -11,8 +11,7 @@ from __future__ import annotations
 from zwidth.loop.pair.kernel import Arm, command, hear
 from zwidth.loop.pair.setup import prepare_pair
 from zwidth.model.operator import PrescribedMotion
-from zwidth.model.pairs import Pair
-from zwidth.model.pairs.pair import LONGEST
+from zwidth.model.pairs import LONGEST, Pair
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import Exact
 

@@ -1,4 +1,6 @@
-"""What Coulomb friction in the joints covers the steps of their encoders, and up to which force of the wall.
+"""What a controller asks of the joints that reads counts, and that holds torques instead of forces.
+
+What Coulomb friction in the joints covers the steps of their encoders, and up to which force of the wall.
 
 A controller has only readings q̂, each the count in which its joint is: q_j = q̂_j + o_j ± Δ_j/2, with the
 same o_j in every count.  It renders the torque J(q̂)ᵀF(p(q̂)).  The arm with q′ = q − o moves as this one
@@ -18,17 +20,20 @@ bounds on the second derivatives of the point and of the turn.  Proof: docs/theo
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from decimal import ROUND_FLOOR, Context
 from math import inf
 
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.model.arms.kinematics import Arm, DescribedArm, PlanarChain, Sites
-from zwidth.model.arms.kinematics.turn import SECOND_DERIVATIVE
-from zwidth.model.arms.matrix_wall import MatrixWall
-from zwidth.model.arms.motion import ArmMotion
-from zwidth.model.arms.need import wall_matrices
+from zwidth.errors import InputError
+from zwidth.model.arms.arm import Arm, ArmMotion, Sites
+from zwidth.model.arms.chain import PlanarChain
+from zwidth.model.arms.described import SECOND_DERIVATIVE, DescribedArm
+from zwidth.model.arms.joints import sampled_jacobian_damping
+from zwidth.model.arms.wall import MatrixWall, wall_matrices
 from zwidth.model.environment.wall import Wall
 
 Array = npt.NDArray[np.float64]
@@ -114,22 +119,13 @@ def encoder_steps(arm: Arm, wall: Wall | MatrixWall, period: float, sites: Sites
 def covered_factors(arm: Arm, wall: Wall | MatrixWall, period: float, jacobians: Array) -> Array:
     """How many times as stiff the wall may be with friction covering the steps at each posture (…).
 
-    To first order in the steps and before next to no force of the wall:
+    To first order in the steps and before next to no force of the wall, J (…, n, m):
 
         f_c,i ≥ ½ Σ_j Δ_j (s |J_iᵀ K J_j| + (2/T) |J_iᵀ B J_j|)
 
     0 where friction does not even cover the steps of the virtual damping, ∞ where the steps cost nothing.
     Without virtual damping more stiffness than this gives energy out at a corner of the readings, where every
     joint crosses an edge; the force of the wall asks for more friction.
-
-    Parameters
-    ----------
-    arm
-        With encoder steps.
-    wall, period
-        T [s].
-    jacobians
-        (…, n, m).
     """
     k, b = wall_matrices(wall, jacobians.shape[-2])
     steps, turned = np.asarray(arm.resolution, dtype=np.float64), np.swapaxes(jacobians, -1, -2)
@@ -234,3 +230,54 @@ def _least(left: Array, each: Array | float) -> float:
     """The largest multiple of `each` that is left in every joint."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return float(np.where(np.asarray(each) > 0, left / each, inf).min()) / (1 + _ROUNDING)
+
+
+# What a controller asks of the joints that computes their torques once a sample and holds them.
+#
+#     c = ½ (h F + h_e M) T
+#
+# with the curvatures h of the point and h_e of the turn, and the largest force F and moment M of the
+# wall; `sampled_jacobian_damping` is one of the two.
+
+_DIGITS = 4
+
+
+def held_torque_damping(arm: Arm, period: float, delay_samples: int, largest: tuple[float, ...]) -> float:
+    """c, to be taken from every joint; 0 where the torque follows the arm [N·m·s/rad].
+
+    `largest` is F [N], in pose F and M [N·m], from `forces_of`; it is empty where the torque follows the arm.
+    """
+    if not largest:
+        return 0.0
+    curvatures = (arm.curvature, arm.turning_curvature) if arm.turns else (arm.curvature,)
+    if None in curvatures or delay_samples:
+        raise InputError(
+            "a bound for held torques is known for chains and descriptions without delay; "
+            "compute the torque several times in each period, and leave torque_held_up_to out"
+        )
+    return sum(
+        sampled_jacobian_damping(h or 0.0, force, period)
+        for h, force in zip(curvatures, largest, strict=True)
+    )
+
+
+def forces_of(arm: Arm, given: float | Sequence[float] | None, name: str) -> tuple[float, ...]:
+    """A force [N], in pose with a moment [N·m], as it was given for `name`; empty if it was not."""
+    if given is None:
+        return ()
+    try:
+        forces = np.atleast_1d(np.asarray(given, dtype=np.float64))
+    except (TypeError, ValueError):
+        forces = np.empty(0)
+    if forces.shape != (2 if arm.turns else 1,) or not ((forces >= 0) & (forces < np.inf)).all():
+        also = " and the largest moment, ≥ 0 N·m" if arm.turns else ""
+        raise InputError(f"{name} is the largest force of the wall, ≥ 0 N{also}; got {given!r}")
+    return tuple(forces.tolist())
+
+
+def in_words(largest: Sequence[float]) -> str:
+    """The force, and the moment, rounded down: a claim goes no further than its proof."""
+    down = Context(prec=_DIGITS, rounding=ROUND_FLOOR)
+    units = zip(largest, ("N", "N·m"), strict=False)
+    bounds = [f"{float(down.create_decimal(repr(value))):g} {unit}" for value, unit in units if value < MOST]
+    return " and ".join(bounds) or "any"

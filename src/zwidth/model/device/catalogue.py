@@ -1,13 +1,10 @@
 """The catalogue: real devices, each number with its source.
 
-A value that no source gives is unknown, and stays unknown: a device whose
-damping nobody has published can be used once the caller gives one.  Of some
-the catalogue states a range in its place, and why that range: `in_range`
-makes of it a device with intervals, of which a verdict holds for every value,
-or says which number to measure first.
-`recommended_stiffness` is what a vendor's or driver's authors allow as the
-largest stiffness; it is a recommendation, not a dynamic property, and no
-verdict rests on it.
+A value that no source gives is unknown, and stays unknown: a device whose damping nobody has published can be
+used once the caller gives one.  Of some the catalogue states a range in its place, and why that range:
+`in_range` makes of it a device with intervals, of which a verdict holds for every value, or says which number
+to measure first.  `recommended_stiffness` is what a vendor's or driver's authors allow as the largest
+stiffness; it is a recommendation, not a dynamic property, and no verdict rests on it.
 """
 
 from __future__ import annotations
@@ -100,14 +97,9 @@ class Entry:
 
 @dataclass(frozen=True)
 class DeviceInRange:
-    """A device of the catalogue some of whose numbers are known within a stated range only.
+    """A device of the catalogue some of whose numbers, as intervals, are known within a stated range only.
 
-    Parameters
-    ----------
-    device
-        With those numbers as intervals.
-    ranges
-        What they are, by parameter of the device.
+    `ranges` says within which, by parameter of the device.
     """
 
     device: Device

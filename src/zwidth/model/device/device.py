@@ -4,9 +4,8 @@ Model (Abbott & Okamura 2005, section II), x > 0 inside the wall:
 
     m ẍ = f_h − f_a − f_f,    f_f = f_c sgn ẋ + b ẋ   (when moving)
 
-The position is read every sample period T by an encoder of resolution Δ; the
-force computed from the sample at kT is applied at kT + delay and held until
-the next one arrives.
+The position is read every sample period T by an encoder of resolution Δ; the force computed from the sample
+at kT is applied at kT + delay and held until the next one arrives.
 """
 
 from __future__ import annotations
@@ -69,8 +68,7 @@ class Device(Parametric):
     sample_period, rate
         T [s] or 1/T [Hz], > 0; exactly one of the two.
     delay
-        Time from the sample to its force, any real number ≥ 0 [s]. Not given:
-        taken as 0, see `assumed`.
+        Time from the sample to its force, any real number ≥ 0 [s]. Not given: taken as 0, see `assumed`.
     force_limit
         Largest actuator force, > 0 [N; N·m]; None where unknown.
     force_resolution
@@ -113,10 +111,7 @@ class Device(Parametric):
         why="it is the largest speed at which friction was seen; leave it out otherwise",
     )
     resolution: _ZeroIfUnknown = parameter(
-        "resolution",
-        None,
-        bound="≥ 0",
-        why="it is the size of one encoder count; use 0 for an ideal sensor",
+        "resolution", None, bound="≥ 0", why="it is the size of one encoder count; use 0 for an ideal sensor"
     )
     sample_period: _ZeroIfUnknown = parameter(
         "sample_period",
@@ -134,10 +129,7 @@ class Device(Parametric):
         why="it is the largest magnitude the actuator gives; leave it out if unknown",
     )
     force_resolution: UncertainOrNone = parameter(
-        "force_resolution",
-        None,
-        bound="> 0",
-        why="it is one step of the converter; leave it out if unknown",
+        "force_resolution", None, bound="> 0", why="it is one step of the converter; leave it out if unknown"
     )
     motor_inductance: UncertainOrNone = parameter(
         "motor_inductance", None, bound="> 0", why="leave it out if unknown"
@@ -173,22 +165,9 @@ class Device(Parametric):
     ) -> None:
         if motion not in ("linear", "rotary"):
             raise InputError(f'motion is "linear" or "rotary", got {motion!r}')
-        period = _period(sample_period, rate)
-        given: dict[str, Given | None] = {
-            "mass": mass,
-            "damping": damping,
-            "coulomb_friction": coulomb_friction,
-            "stiction": stiction,
-            "friction_speed": friction_speed,
-            "resolution": resolution,
-            "sample_period": period,
-            "delay": delay,
-            "force_limit": force_limit,
-            "force_resolution": force_resolution,
-            "motor_inductance": motor_inductance,
-            "supply_voltage": supply_voltage,
-            "current_limit": current_limit,
-        }
+        everything = locals()
+        given: dict[str, Given | None] = {key: everything[key] for key in parameters_of(Device)}
+        given["sample_period"] = _period(sample_period, rate)
         assumed = tuple(key for key in _ZERO_IF_UNKNOWN if given[key] is None)
         given.update(dict.fromkeys(assumed, 0))
         read = {key: _read(key, value, motion) for key, value in given.items()}

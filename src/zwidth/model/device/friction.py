@@ -1,20 +1,18 @@
 """From a measured friction curve to the Coulomb-plus-viscous model below it.
 
-Real friction has stiction and bends.  Where the friction f(v) is at least
-f_c + b v at every speed, every passivity proof made with (f_c, b) holds
-(Abbott & Okamura 2005, section III-D and Fig. 6).  The models below a curve
-through the points (v_i, f_i) are the polygon
+Real friction has stiction and bends.  Where the friction f(v) is at least f_c + b v at every speed, every
+passivity proof made with (f_c, b) holds (Abbott & Okamura 2005, section III-D and Fig. 6).  The models below
+a curve through the points (v_i, f_i) are the polygon
 
     f_c ≥ 0,   0 ≤ b ≤ s,   f_c + b v_i ≤ f_i  for all i,
 
 with s the slope of the last chord.  No model is the largest in both numbers:
 the best ones are the upper-right edge of the polygon, exact here.
 
-What is assumed of the speeds that were not measured: between two points
-friction lies on their chord or above it; below the first speed, not below the
-first force; beyond the last speed, not below the last chord continued (or the
-last force, where that chord falls).  Hence b ≤ s.  A hand is free to be
-faster than any measurement, so this assumption belongs into the claim.
+What is assumed of the speeds that were not measured: between two points friction lies on their chord or above
+it; below the first speed, not below the first force; beyond the last speed, not below the last chord
+continued (or the last force, where that chord falls).  Hence b ≤ s.  A hand is free to be faster than any
+measurement, so this assumption belongs into the claim.
 """
 
 from __future__ import annotations

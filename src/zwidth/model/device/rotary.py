@@ -51,9 +51,8 @@ def rotary(
     stiction
         Largest friction torque at rest, ≥ τ_c [N·m]; None: τ_c.
     resolution, counts_per_turn
-        Δθ [rad], or N > 0 and then Δθ = 2π/N to double precision; one of the
-        two at most. N is counts, not lines: with quadrature decoding an
-        encoder of 500 lines gives 2000 counts per turn, at the axis whose
+        Δθ [rad], or N > 0 and then Δθ = 2π/N to double precision; one of the two at most. N is counts, not
+        lines: with quadrature decoding an encoder of 500 lines gives 2000 counts per turn, at the axis whose
         angle θ is (times the gear ratio, where there is one).
     handle_radius
         r > 0 [m]. With it the result has motion "linear", in newtons and

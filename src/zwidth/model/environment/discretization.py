@@ -7,10 +7,9 @@
     impulse    T Z{h(t)}                    impulse-invariant
     matched    z = e^{sT} for every pole and finite zero
 
-The first three put a rational function of z in the place of s: their
-coefficients are rational and exact.  Those of the last three contain e^{sT};
-they are computed with error bounds and rounded to the nearest double, which
-is what a controller would run.
+The first three put a rational function of z in the place of s: their coefficients are rational and exact.
+Those of the last three contain e^{sT}; they are computed with error bounds and rounded to the nearest double,
+which is what a controller would run.
 
 Polynomials are tuples of Fraction in descending powers, leading one not zero.
 """

@@ -1,24 +1,23 @@
 """The environment: what the hand meets.
 
-Every linear environment is, in contact, a pulse transfer function H(z) from the
-sampled position to the force, exact in its parameters.  That is all that the
-criteria need; what happens at the surface is said by `unilateral`, and whether
-the law may pull by `clamped`.
+Every linear environment is, in contact, a pulse transfer function H(z) from the sampled position to the
+force, exact in its parameters.  That is all that the criteria need; what happens at the surface is said by
+`unilateral`, and whether the law may pull by `clamped`.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from typing import Any, Literal, NamedTuple, Self
 
 from zwidth.errors import InputError
-from zwidth.model.environment.velocity_weights import Average, Decay
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Parametric, flag
+from zwidth.quantity.text import told_quantity
 
 
 class RationalFunction(NamedTuple):
@@ -26,6 +25,51 @@ class RationalFunction(NamedTuple):
 
     numerator: tuple[Fraction, ...]
     denominator: tuple[Fraction, ...]
+
+
+@dataclass(frozen=True)
+class Average:
+    """A velocity over the samples of a window, v(k) = Σ w_j (x(k−j) − x(k−j−1))/T."""
+
+    weights: tuple[Fraction, ...]
+
+    @property
+    def gain(self) -> Fraction:
+        """Σ|w_j|."""
+        return sum((abs(w) for w in self.weights), Fraction(0))
+
+    @property
+    def variation(self) -> Fraction:
+        """T ‖h_v‖₁ = |w_0| + Σ|w_j − w_{j−1}|, what comes after the last weight included."""
+        steps = zip((*self.weights, Fraction(0)), (Fraction(0), *self.weights), strict=True)
+        return sum((abs(w - before) for w, before in steps), Fraction(0))
+
+    @property
+    def document(self) -> list[str]:
+        """As exact data."""
+        return [str(w) for w in self.weights]
+
+
+@dataclass(frozen=True)
+class Decay:
+    """The same of one pole, whose weights decay: w_j = (1 − p) pʲ, 0 ≤ p < 1."""
+
+    pole: Fraction
+
+    @property
+    def gain(self) -> Fraction:
+        """Σ|w_j| = 1."""
+        return Fraction(1)
+
+    @property
+    def variation(self) -> Fraction:
+        """T ‖h_v‖₁ = 2 (1 − p)."""
+        return 2 * (1 - self.pole)
+
+    @property
+    def document(self) -> dict[str, str]:
+        """As exact data."""
+        return {"pole": str(self.pole)}
 
 
 class DampedSpring(NamedTuple):
@@ -279,3 +323,34 @@ def add(a: tuple[Fraction, ...], b: tuple[Fraction, ...]) -> tuple[Fraction, ...
     x = (Fraction(0),) * (length - len(a)) + a
     y = (Fraction(0),) * (length - len(b)) + b
     return tuple(p + q if p and q else p or q for p, q in zip(x, y, strict=True))
+
+
+_SUPERSCRIPT = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+_LONGEST = 6
+
+
+def with_unit(key: str, value: Exact | Interval, motion: str) -> str:
+    """A value and the unit its glossary entry has for the motion."""
+    return told_quantity(value, key, motion)
+
+
+def never_pulls(clamped: bool) -> str:
+    """How the line of a clamped law ends."""
+    return ", never pulls" if clamped else ""
+
+
+def polynomial_text(coefficients: Sequence[float], variable: str) -> str:
+    """A polynomial in descending powers; only its order if it is long."""
+    order = len(coefficients) - 1
+    if order > _LONGEST:
+        return f"[order {order}]"
+    terms = [_term(c, order - i, variable) for i, c in enumerate(coefficients) if c]
+    return " + ".join(terms).replace("+ -", "− ").replace("-", "−") or "0"
+
+
+def _term(coefficient: float, power: int, variable: str) -> str:
+    number = f"{coefficient:.6g}"
+    if power == 0:
+        return number
+    symbol = variable if power == 1 else variable + str(power).translate(_SUPERSCRIPT)
+    return symbol if number == "1" else f"{number} {symbol}"

@@ -1,8 +1,7 @@
 """The discretizations whose coefficients contain e^{sT}.
 
-Each is computed in ball arithmetic, at growing precision, until every
-coefficient is known to the nearest double.  A coefficient is then that double
-and, as every float here, stands for its shortest decimal.
+Each is computed in ball arithmetic, at growing precision, until every coefficient is known to the nearest
+double.  A coefficient is then that double and, as every float here, stands for its shortest decimal.
 
 Time is counted in sample periods: H(s) is first written in σ = sT.
 """
@@ -70,9 +69,8 @@ def impulse_invariant(numerator: Polynomial, denominator: Polynomial, period: Fr
 def matched(numerator: Polynomial, denominator: Polynomial, period: Fraction) -> RationalFunction:
     """Poles and finite zeros at z = e^{sT}; all but one of the zeros at infinity at z = −1.
 
-    The gain is that of H(s) at low frequencies: with H(s) → g sᵏ as s → 0,
-    H(z) → g ((z − 1)/T)ᵏ as z → 1.  For k = 0 this is the gain at rest
-    (Franklin, Powell & Workman, Digital Control, 6.2).
+    The gain is that of H(s) at low frequencies: with H(s) → g sᵏ as s → 0, H(z) → g ((z − 1)/T)ᵏ as z → 1.
+    For k = 0 this is the gain at rest (Franklin, Powell & Workman, Digital Control, 6.2).
     """
     num, zeros_at_0 = _without_origin(_in_periods(numerator, period))
     den, poles_at_0 = _without_origin(_in_periods(denominator, period))

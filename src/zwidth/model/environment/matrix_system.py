@@ -14,12 +14,12 @@ from typing import Any, Literal, NamedTuple
 from flint import fmpq, fmpq_mat, fmpq_poly
 
 from zwidth.errors import InputError
-from zwidth.model.environment.harold import renamed
 from zwidth.model.environment.system import (
     Polynomial,
     bounded,
     characteristic,
     number_of,
+    renamed,
     rows_of,
     time_of,
 )
@@ -85,9 +85,7 @@ def _from_transfer_functions(system: Any) -> Entries:
     return tuple(tuple((polynomial("num", i, j), polynomial("den", i, j)) for j in size) for i in size)
 
 
-def _from_state_space(
-    system: Any,
-) -> tuple[Entries, tuple[Rows, Rows, Rows] | None]:
+def _from_state_space(system: Any) -> tuple[Entries, tuple[Rows, Rows, Rows] | None]:
     """C (sI − A)⁻¹ B + D: (det(sI − A + b_j c_i) + (d_ij − 1) det(sI − A))/det(sI − A)."""
     bounded(len(system.A))
     a, b, c, d = (rows_of(getattr(system, name), name) for name in "ABCD")

@@ -14,9 +14,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from flint import fmpq, fmpq_poly
+
 from zwidth.errors import InputError
-from zwidth.model.environment.environment import RationalFunction, certain, multiply
-from zwidth.model.environment.velocity_weights import Average, Decay, finite_response
+from zwidth.model.environment.environment import Average, Decay, RationalFunction, certain, multiply
 from zwidth.quantity.exact import Exact, Interval, RealLike, ends
 from zwidth.quantity.parameter import Parametric, Reads, Uncertain, parameter, part
 
@@ -181,3 +182,15 @@ class VelocityFilter(Parametric):
 
 
 VelocityEstimator = BackwardDifference | Window | OnePole | VelocityFilter
+
+
+def finite_response(numerator: tuple[Fraction, ...], denominator: tuple[Fraction, ...]) -> Average | None:
+    """F(z) = Σ w_j z⁻ʲ, if it ends; coefficients in descending powers of z, F proper."""
+    late = (Fraction(0),) * (len(denominator) - len(numerator))
+    n, d = (
+        fmpq_poly([fmpq(c.numerator, c.denominator) for c in part])
+        for part in ((*late, *numerator), denominator)
+    )
+    if n % d != 0:
+        return None
+    return Average(tuple(Fraction(int(c.p), int(c.q)) for c in (n // d).coeffs()))

@@ -25,12 +25,7 @@ from fractions import Fraction
 from typing import Self
 
 from zwidth.errors import InputError
-from zwidth.model.environment.discretization import (
-    ROUNDED,
-    Discretization,
-    discretize,
-    discretized_by,
-)
+from zwidth.model.environment.discretization import ROUNDED, Discretization, discretize, discretized_by
 from zwidth.model.environment.environment import (
     Box,
     Environment,
@@ -39,9 +34,10 @@ from zwidth.model.environment.environment import (
     certain,
     clamping,
     multiply,
+    never_pulls,
+    with_unit,
 )
 from zwidth.model.environment.wall import NEGATIVE_SPRING, Wall
-from zwidth.model.environment.wording import never_pulls, with_unit
 from zwidth.quantity.exact import Exact, Interval, ends, times
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Given, Reads, Uncertain, parameter, part, read_number
@@ -98,9 +94,8 @@ class StandardLinearSolid(Environment):
 
     Notes
     -----
-    For μ1, η1 > 0 the loop without delay is passive iff
-    b ≥ μ0 T/2 + μ1 η1 T/(2 η1 + μ1 T) with backward Euler, and
-    b ≥ (μ0 + μ1) T/2 with Tustin's rule.
+    For μ1, η1 > 0 the loop without delay is passive iff b ≥ μ0 T/2 + μ1 η1 T/(2 η1 + μ1 T) with backward
+    Euler, and b ≥ (μ0 + μ1) T/2 with Tustin's rule.
     """
 
     stiffness: Uncertain = parameter("stiffness", bound="≥ 0", why=NEGATIVE_SPRING)
@@ -109,9 +104,7 @@ class StandardLinearSolid(Environment):
     discretization: Discretization = discretized_by("backward")
     clamped: bool = clamping()
 
-    @property
-    def unilateral(self) -> bool:
-        return True
+    unilateral = True
 
     @property
     def spring(self) -> bool:
@@ -119,7 +112,6 @@ class StandardLinearSolid(Environment):
 
     @property
     def coefficients_rounded(self) -> bool:
-        """True when H(z) has coefficients rounded to doubles."""
         return self.discretization in ROUNDED and not self.spring
 
     def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
@@ -138,15 +130,12 @@ class StandardLinearSolid(Environment):
         )
 
     def describe(self, motion: str = "linear") -> str:
-        """The law with its numbers, on one line."""
         k = with_unit("stiffness", self.stiffness, motion)
         branch = _branch_text((self.branch_stiffness, self.branch_damping), motion)
         return f"standard linear solid, {k} beside {branch}, {_ending(self)}"
 
-    @property
-    def rests_on_spring(self) -> bool:
-        """True: the branch relaxes to nothing."""
-        return True
+    rests_on_spring = True
+    """True: the branch relaxes to nothing."""
 
     def decided_by_corners(self, box: Box) -> bool:
         """For the spring μ0, which enters H linearly; without delay for a branch ≥ 0, backward or Tustin.
@@ -171,8 +160,7 @@ class GeneralizedMaxwell(Environment):
     stiffness
         μ0 ≥ 0 [N/m; N·m/rad].
     branches
-        Pairs (μᵢ, ηᵢ): μᵢ ≥ 0 [N/m; N·m/rad], ηᵢ of either sign [N·s/m; N·m·s/rad];
-        at most 60 of them.
+        Pairs (μᵢ, ηᵢ): μᵢ ≥ 0 [N/m; N·m/rad], ηᵢ of either sign [N·s/m; N·m·s/rad]; at most 60 of them.
     discretization
         "backward" (default), "forward", "tustin", "zoh", "impulse" or "matched".
     clamped
@@ -192,9 +180,7 @@ class GeneralizedMaxwell(Environment):
     discretization: Discretization = discretized_by("backward")
     clamped: bool = clamping()
 
-    @property
-    def unilateral(self) -> bool:
-        return True
+    unilateral = True
 
     @property
     def spring(self) -> bool:
@@ -202,7 +188,6 @@ class GeneralizedMaxwell(Environment):
 
     @property
     def coefficients_rounded(self) -> bool:
-        """True when H(z) has coefficients rounded to doubles."""
         return self.discretization in ROUNDED and not self.spring
 
     def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
@@ -220,15 +205,12 @@ class GeneralizedMaxwell(Environment):
         return self.replace(stiffness=times(self.stiffness, factor), branches=branches)
 
     def describe(self, motion: str = "linear") -> str:
-        """The law with its numbers, on one line."""
         parts = [with_unit("stiffness", self.stiffness, motion)]
         parts += [_branch_text(branch, motion) for branch in self.branches]
         return f"generalized Maxwell, {' beside '.join(parts)}, {_ending(self)}"
 
-    @property
-    def rests_on_spring(self) -> bool:
-        """True: the branches relax to nothing."""
-        return True
+    rests_on_spring = True
+    """True: the branches relax to nothing."""
 
     def decided_by_corners(self, box: Box) -> bool:
         """For the spring μ0, which enters H linearly."""
@@ -257,8 +239,7 @@ class Maxwell(Environment):
     stiffness
         μ ≥ 0 [N/m; N·m/rad].
     damping
-        η, of either sign [N·s/m; N·m·s/rad]; 0 transmits no force, a negative one makes
-        H(s) unstable.
+        η, of either sign [N·s/m; N·m·s/rad]; 0 transmits no force, a negative one makes H(s) unstable.
     discretization
         "backward" (default), "forward", "tustin", "zoh", "impulse" or "matched".
     clamped
@@ -275,13 +256,10 @@ class Maxwell(Environment):
     discretization: Discretization = discretized_by("backward")
     clamped: bool = clamping()
 
-    @property
-    def unilateral(self) -> bool:
-        return True
+    unilateral = True
 
     @property
     def coefficients_rounded(self) -> bool:
-        """True when H(z) has coefficients rounded to doubles."""
         return self.discretization in ROUNDED and _acts((self.stiffness, self.damping))
 
     def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
@@ -294,7 +272,6 @@ class Maxwell(Environment):
         return self.replace(stiffness=times(self.stiffness, factor), damping=times(self.damping, factor))
 
     def describe(self, motion: str = "linear") -> str:
-        """The law with its numbers, on one line."""
         branch = _branch_text((self.stiffness, self.damping), motion)
         return f"Maxwell body, {branch}, {_ending(self)}"
 

@@ -2,10 +2,9 @@
 
     f = K x + B v    if x > 0,   0 outside;      H(z) = K + B V(z)
 
-with V(z) the velocity estimator, by default the backward difference
-(Colgate & Schenkel 1997; Abbott & Okamura 2005, equation (2)).  A clamped wall
-never pulls, f = max(0, K x + B v): its damper does not hold back the hand that
-leaves quickly.
+with V(z) the velocity estimator, by default the backward difference (Colgate & Schenkel 1997; Abbott &
+Okamura 2005, equation (2)).  A clamped wall never pulls, f = max(0, K x + B v): its damper does not hold back
+the hand that leaves quickly.
 """
 
 from __future__ import annotations
@@ -24,9 +23,10 @@ from zwidth.model.environment.environment import (
     certain,
     clamping,
     multiply,
+    never_pulls,
+    with_unit,
 )
 from zwidth.model.environment.velocity import BackwardDifference, OnePole, VelocityEstimator
-from zwidth.model.environment.wording import never_pulls, with_unit
 from zwidth.quantity.exact import Exact, ends, times
 from zwidth.quantity.parameter import Reads, Uncertain, parameter, part
 
@@ -75,9 +75,7 @@ class Wall(Environment):
     )
     clamped: bool = clamping()
 
-    @property
-    def unilateral(self) -> bool:
-        return True
+    unilateral = True
 
     @property
     def spring(self) -> bool:
@@ -113,10 +111,8 @@ class Wall(Environment):
         """Rotations among its coordinates before an arm: none."""
         return 0
 
-    @property
-    def rests_on_spring(self) -> bool:
-        """True: at rest there is no velocity."""
-        return True
+    rests_on_spring = True
+    """True: at rest there is no velocity."""
 
     def damped_spring(self, sample_period: Fraction) -> DampedSpring:
         """K, B and how v is made of the last moves."""

@@ -58,7 +58,6 @@ class Rendered(Environment):
 
     @property
     def unilateral(self) -> bool:
-        """As the environment."""
         return self.environment.unilateral
 
     @property
@@ -66,36 +65,27 @@ class Rendered(Environment):
         """As the environment; a controller behind it may pull."""
         return self.environment.clamped
 
-    @property
-    def linear(self) -> bool:
-        """Not: the laws look at the sign of energy, contact or motion."""
-        return False
+    linear = False
+    """Not: the laws look at the sign of energy, contact or motion."""
 
-    @property
-    def has_transfer_function(self) -> bool:
-        """False."""
-        return False
+    has_transfer_function = False
 
     def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
-        """None: raises InputError."""
         raise InputError(
             f"there is no H(z) of this, its laws are not linear: {self.describe()}; zwidth.check decides it "
             "on other roads"
         )
 
     def describe(self, motion: str = "linear") -> str:
-        """Environment and laws, on one line."""
         laws = ", ".join(law.describe(motion) for law in self.laws)
         return f"{self.environment.describe(motion)}, with {laws}"
 
     @property
     def fed_with(self) -> Literal["position", "penetration"]:
-        """As the environment."""
         return self.environment.fed_with
 
     @property
     def met(self) -> Environment:
-        """The environment."""
         return self.environment
 
     def around(self, environment: Environment) -> Environment:

@@ -14,24 +14,18 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar, NamedTuple
 
+from zwidth.model.device.amplifier import current_rise
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
-from zwidth.model.rendering.theorem import Theorem
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import Parametric
+from zwidth.quantity.text import quantity_unit
 
 
 class LoopContext(NamedTuple):
-    """What a law is told once, before the loop runs.
+    """What a law is told once, before the loop runs: what the hand holds, and what it meets.
 
-    Parameters
-    ----------
-    device
-        What the hand holds.
-    environment
-        What it meets.
-    single
-        True where the machine keeps its numbers in 24 bits, not in 53.
+    `single` is True where the machine keeps its numbers in 24 bits, not in 53.
     """
 
     device: Device
@@ -50,17 +44,11 @@ class LoopContext(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RenderingLaw(Parametric, ABC):
-    """A law that changes the force of an environment, or the reading before it."""
-
-    code: ClassVar[float]
-    """Which step the compiled chain takes; its own for each law."""
+class SteppedLaw(Parametric, ABC):
+    """What a compiled step runs: the numbers that it reads, and those that it remembers."""
 
     state_size: ClassVar[int]
     """Numbers that it remembers."""
-
-    bounds_the_force: ClassVar[bool] = False
-    """True for force bounding: last in a row, it keeps to what the device pays for, whatever came before."""
 
     @abstractmethod
     def numbers(self, at: LoopContext) -> list[float]:
@@ -69,6 +57,21 @@ class RenderingLaw(Parametric, ABC):
     def initial_state(self, reading: float) -> list[float]:
         """What it remembers after the hand has been at a reading for ever."""
         return [reading] + [0.0] * (self.state_size - 1)
+
+    @abstractmethod
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, in a few words."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RenderingLaw(SteppedLaw):
+    """A law that changes the force of an environment, or the reading before it."""
+
+    code: ClassVar[float]
+    """Which step the compiled chain takes; its own for each law."""
+
+    bounds_the_force: ClassVar[bool] = False
+    """True for force bounding: last in a row, it keeps to what the device pays for, whatever came before."""
 
     def most_damping(self, device: Device, spring: Exact | None) -> Fraction | None:
         """α where what it adds is never more than α |Δx|/T; None where it is not so bounded.
@@ -86,6 +89,80 @@ class RenderingLaw(Parametric, ABC):
         """
         return None
 
-    @abstractmethod
-    def describe(self, motion: str = "linear") -> str:
-        """The law with its numbers, in a few words."""
+
+# A proof on paper that a law is passive, and what of the device it counts.
+#
+# What a proof does not count, a device may not have: `unmet` compares the two, so that a promise is
+# made on the numbers of the record and not on a sentence.
+#
+# The converter rounds to its nearest step, so a force errs by ΔF/2 at most.  That gives out at most
+# (ΔF/2) |Δx| in a move, which as much Coulomb friction takes: docs, "Laws that bound the force".
+
+
+@dataclass(frozen=True, kw_only=True)
+class Theorem:
+    """Why no hand takes energy out, by a proof on paper, and under what.
+
+    Parameters
+    ----------
+    statement
+        What is proved, in a few words.
+    counts_encoder
+        True if it holds behind the device's encoder, with counts of any size.
+    counts_delay
+        True if it holds with the device's delay.
+    counts_force_steps
+        True if it holds with a converter that rounds to the nearest step, where the device has
+        `coulomb_friction`.
+    counts_force_limit
+        True if it holds with an actuator that gives no more than its limit.
+    counts_current_rise
+        True if it holds for a current that takes time to rise.
+    coulomb_friction
+        f_c that the device needs [N; N·m], ≥ 0.
+    """
+
+    statement: str
+    counts_encoder: bool = False
+    counts_delay: bool = False
+    counts_force_steps: bool = False
+    counts_force_limit: bool = False
+    counts_current_rise: bool = False
+    coulomb_friction: Fraction = Fraction(0)
+
+    def unmet(self, device: Device) -> tuple[str, ...]:
+        """What of the device's record is outside the proof, in words; nothing where the promise holds."""
+        record = (
+            (self.counts_encoder, device.exact("resolution") > 0, "an encoder with counts"),
+            (self.counts_delay, device.exact("delay") > 0, "a delay"),
+            (self.counts_force_steps, device.force_resolution is not None, "the converter's steps"),
+            (self.counts_force_limit, device.force_limit is not None, "the force limit"),
+            (self.counts_current_rise, _rises_slowly(device), "a current that rises slowly"),
+        )
+        lacking = [f"{what}, not counted by the proof" for counts, there, what in record if there > counts]
+        has, unit = device.exact("coulomb_friction"), quantity_unit("coulomb_friction", device.motion)
+        if has < self.coulomb_friction:
+            lacking.append(
+                f"Coulomb friction of {float(has):.6g} {unit}, less than the "
+                f"{float(self.coulomb_friction):.6g} {unit} that the converter's steps take"
+            )
+        return tuple(lacking)
+
+    def holds_on(self, device: Device) -> bool:
+        """True where the device has nothing that the proof does not count."""
+        return not self.unmet(device)
+
+    def reason(self, device: Device) -> str:
+        """Why it holds, or why the promise is withheld, in a sentence."""
+        unmet = self.unmet(device)
+        return f"withheld: the device has {' and '.join(unmet)}" if unmet else self.statement
+
+
+def half_a_step(device: Device) -> Fraction:
+    """ΔF/2, the most by which the converter errs; 0 where its step is not known [N; N·m]."""
+    return Fraction(0) if device.force_resolution is None else device.exact("force_resolution") / 2
+
+
+def _rises_slowly(device: Device) -> bool:
+    """True where the record says that the force cannot be taken as instant."""
+    return current_rise(device).ok is False

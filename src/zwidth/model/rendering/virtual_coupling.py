@@ -2,11 +2,10 @@
 
     Z_c(z) = K_c + B_c (z − 1)/(T z)        H = Z_c E/(Z_c + E)
 
-The handle pulls at one end of the coupling, the environment E(z) holds the
-other (Colgate, Stanley & Brown 1995).  A device without delay that renders a wall
-of K_c and B_c ≥ 0 passively renders it before every E that is passive in discrete
-time, and no less will do for all of them: the coupling bounds what the hand can
-meet.  With a delay or B_c < 0 more is needed: see `zwidth.passivity.coupling.coupling`.
+The handle pulls at one end of the coupling, the environment E(z) holds the other (Colgate, Stanley & Brown
+1995).  A device without delay that renders a wall of K_c and B_c ≥ 0 passively renders it before every E that
+is passive in discrete time, and no less will do for all of them: the coupling bounds what the hand can meet.
+With a delay or B_c < 0 more is needed: see `zwidth.passivity.coupling.coupling`.
 """
 
 from __future__ import annotations
@@ -25,10 +24,10 @@ from zwidth.model.environment.environment import (
     add,
     certain,
     multiply,
+    with_unit,
 )
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.environment.wall import NEGATIVE_SPRING
-from zwidth.model.environment.wording import with_unit
 from zwidth.quantity.exact import ends
 from zwidth.quantity.parameter import Reads, Uncertain, parameter, part
 
@@ -71,22 +70,18 @@ class VirtualCoupling(Environment):
 
     @property
     def unilateral(self) -> bool:
-        """As the environment behind the coupling."""
         return self.environment.unilateral
 
     @property
     def linear(self) -> bool:
-        """As the environment."""
         return self.environment.linear
 
     @property
     def has_transfer_function(self) -> bool:
-        """As the environment."""
         return self.environment.has_transfer_function
 
     @property
     def starts_at_rest(self) -> bool:
-        """As the environment."""
         return self.environment.starts_at_rest
 
     @property
@@ -116,7 +111,6 @@ class VirtualCoupling(Environment):
 
     @property
     def coefficients_rounded(self) -> bool:
-        """True when the environment has coefficients rounded to doubles."""
         return self.environment.coefficients_rounded
 
     @property
@@ -147,7 +141,6 @@ class VirtualCoupling(Environment):
         return RationalFunction((k * period + b, -b), (period, Fraction(0)))
 
     def describe(self, motion: str = "linear") -> str:
-        """The law with its numbers, on one line."""
         k = with_unit("stiffness", self.stiffness, motion)
         b = with_unit("virtual_damping", self.damping, motion)
         return f"virtual coupling, {k} and {b}, before {self.environment.describe(motion)}"

@@ -3,11 +3,11 @@ from zwidth.model.scene.element import Element as Element
 from zwidth.model.scene.element import Lever as Lever
 from zwidth.model.scene.element import Mass as Mass
 from zwidth.model.scene.element import Spring as Spring
-from zwidth.model.scene.line_end import LineEnd as LineEnd
 from zwidth.model.scene.nonlinear import Contact as Contact
 from zwidth.model.scene.nonlinear import CoulombFriction as CoulombFriction
 from zwidth.model.scene.nonlinear import NonlinearSpring as NonlinearSpring
 from zwidth.model.scene.parts import Cut as Cut
+from zwidth.model.scene.parts import LineEnd as LineEnd
 from zwidth.model.scene.parts import best_parts as best_parts
 from zwidth.model.scene.parts import cut_scene as cut_scene
 from zwidth.model.scene.run import SceneRun as SceneRun

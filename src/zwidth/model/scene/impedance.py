@@ -15,8 +15,7 @@ from fractions import Fraction
 import flint
 
 from zwidth.model.environment.environment import RationalFunction
-from zwidth.model.scene.element import Element
-from zwidth.model.scene.ties import Ties, unheld
+from zwidth.model.scene.element import Element, Ties, unheld
 
 _S = flint.fmpq_poly([0, 1])
 _POWER = {1: 0, 0: 1, -1: 2}

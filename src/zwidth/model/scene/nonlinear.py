@@ -13,18 +13,17 @@ from itertools import pairwise
 from typing import ClassVar
 
 from zwidth.errors import InputError
-from zwidth.model.environment.nonlinear_spring import MOST_POINTS
-from zwidth.model.environment.wording import with_unit
-from zwidth.model.scene.element import GIVES_OUT, Element, NonlinearLaw, label, node
-from zwidth.quantity.exact import Exact
-from zwidth.quantity.parameter import Certain, Numbers, listed, parameter
+from zwidth.model.environment.environment import with_unit
+from zwidth.model.environment.nonlinear import MOST_POINTS
+from zwidth.model.scene.element import GIVES_OUT, Between, NonlinearLaw, label, node
+from zwidth.quantity.parameter import Certain, Numbers, exact, listed
 
 CONTACT, COULOMB, POINTS = 0.0, 1.0, 2.0
 """Which law the compiled step takes."""
 
 
 @dataclass(frozen=True)
-class Contact(Element):
+class Contact(Between):
     """A surface that pushes and never pulls, ``f = max(0, K δ + B dδ/dt)``, δ the depth.
 
     The first node meets the second from below: δ = max(0, y_first − y_second − gap).  Against "ground" it is
@@ -48,25 +47,16 @@ class Contact(Element):
 
     first: str = node("what touches")
     second: str = node("what is touched")
-    stiffness: Certain = parameter("stiffness", kept=Exact, bound="> 0", why=GIVES_OUT)
-    damping: Certain = parameter(
-        "virtual_damping", 0, kept=Exact, bound="≥ 0", why="it would give out energy"
-    )
-    gap: Certain = parameter("position", 0, kept=Exact, meaning="how far apart they are at first")
+    stiffness: Certain = exact("stiffness", bound="> 0", why=GIVES_OUT)
+    damping: Certain = exact("virtual_damping", 0, "≥ 0", "it would give out energy")
+    gap: Certain = exact("position", 0, meaning="how far apart they are at first")
     name: str = label()
 
     @property
-    def nodes(self) -> tuple[str, str]:
-        """What touches, and what is touched."""
-        return self.first, self.second
-
-    @property
     def law(self) -> NonlinearLaw:
-        """K, B and the gap."""
         return NonlinearLaw(CONTACT, (float(self.stiffness), float(self.damping), float(self.gap)))
 
     def describe(self, motion: str = "linear") -> str:
-        """The contact with its numbers."""
         numbers = [
             with_unit("stiffness", self.stiffness, motion),
             *([with_unit("virtual_damping", self.damping, motion)] if self.damping else []),
@@ -76,7 +66,7 @@ class Contact(Element):
 
 
 @dataclass(frozen=True)
-class CoulombFriction(Element):
+class CoulombFriction(Between):
     """Dry friction between two nodes, ``f = F sgn v``, any force up to F while they stick.
 
     Parameters
@@ -93,17 +83,11 @@ class CoulombFriction(Element):
 
     first: str = node("what slides")
     second: str = node("what it slides on")
-    force: Certain = parameter("force", kept=Exact, bound="> 0", why=GIVES_OUT, meaning="of dry friction")
+    force: Certain = exact("force", bound="> 0", why=GIVES_OUT, meaning="of dry friction")
     name: str = label()
 
     @property
-    def nodes(self) -> tuple[str, str]:
-        """What slides, and on what."""
-        return self.first, self.second
-
-    @property
     def title(self) -> str:
-        """Its name, or what it is and its nodes."""
         return super().title.replace("coulombfriction", "friction")
 
     @property
@@ -112,12 +96,11 @@ class CoulombFriction(Element):
         return NonlinearLaw(COULOMB, (float(self.force), 0.0))
 
     def describe(self, motion: str = "linear") -> str:
-        """The friction with its force."""
         return f"{self.title} {with_unit('force', self.force, motion)}"
 
 
 @dataclass(frozen=True)
-class NonlinearSpring(Element):
+class NonlinearSpring(Between):
     """A spring through points, linear between them and constant beyond, whose force never falls.
 
     Parameters
@@ -135,8 +118,6 @@ class NonlinearSpring(Element):
 
     symbol: ClassVar[str] = "N"
 
-    first: str = node("one end")
-    second: str = node("the other end")
     positions: Numbers = listed("position", meaning="stretches of the points, increasing")
     forces: Numbers = listed("force", meaning="forces at the points, nowhere decreasing")
     name: str = label()
@@ -163,13 +144,7 @@ class NonlinearSpring(Element):
             )
 
     @property
-    def nodes(self) -> tuple[str, str]:
-        """Its ends."""
-        return self.first, self.second
-
-    @property
     def title(self) -> str:
-        """Its name, or what it is and its nodes."""
         return super().title.replace("nonlinearspring", "nonlinear spring")
 
     @property
@@ -179,6 +154,5 @@ class NonlinearSpring(Element):
         return NonlinearLaw(POINTS, numbers)
 
     def describe(self, motion: str = "linear") -> str:
-        """The spring with the span of its points."""
         low, high = (with_unit("position", x, motion) for x in (self.positions[0], self.positions[-1]))
         return f"{self.title} {len(self.positions)} points from {low} to {high}"

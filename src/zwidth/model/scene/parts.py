@@ -16,15 +16,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 from zwidth.errors import InputError
-from zwidth.model.scene.element import GROUND, Element
-from zwidth.model.scene.line_end import LineEnd
+from zwidth.model.environment.environment import with_unit
+from zwidth.model.scene.element import GROUND, Element, label
+from zwidth.model.scene.element import node as named_node
 from zwidth.model.scene.scene import Scene
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import read_number
+from zwidth.quantity.parameter import Certain, exact, read_number
 from zwidth.quantity.text import readable, told_quantity
 from zwidth.showing import Part as Shows
 from zwidth.showing import Shown, Table
@@ -151,12 +152,7 @@ def cut_scene(
     titled, home, lines = _split(scene, _homes(scene, parts), tau)
     given = {
         name: read_number(
-            w,
-            GLOSSARY["wave_impedance"],
-            f"impedance of {name}",
-            bound="> 0",
-            why=_NO_FORCE,
-            motion=motion,
+            w, GLOSSARY["wave_impedance"], f"impedance of {name}", bound="> 0", why=_NO_FORCE, motion=motion
         )
         for name, w in (impedances or {}).items()
     }
@@ -313,3 +309,48 @@ def best_parts(scene: Scene, count: int) -> dict[str, tuple[str, ...]]:
     for node in scene.nodes:
         found.setdefault(root(node), []).append(node)
     return {f"part {i + 1}": tuple(nodes) for i, nodes in enumerate(found.values())}
+
+
+# Where a line to another part of a scene ends: a matched damper, and the force of the wave that comes in.
+#
+#     f̄ = w v̄ − f
+#
+# f is held over the step, as a port of `zwidth.links` gives it; w is the damping that such a port counts on.
+
+
+@dataclass(frozen=True)
+class LineEnd(Element):
+    """The end of a line at a node, ``f̄ = w v̄ − f``.
+
+    What it takes in goes into the line, and what comes out of the line it gives: its losses may be negative.
+
+    Parameters
+    ----------
+    node
+        Where it ends.
+    impedance
+        w > 0 [N·s/m; N·m·s/rad].
+    name
+        Of the line.
+    """
+
+    symbol: ClassVar[str] = "w"
+    leads_elsewhere: ClassVar[bool] = True
+
+    node: str = named_node("where the line ends")
+    impedance: Certain = exact("wave_impedance", bound="> 0", why="a wave of no impedance carries no force")
+    name: str = label()
+
+    @property
+    def nodes(self) -> tuple[str, str]:
+        return self.node, GROUND
+
+    @property
+    def title(self) -> str:
+        return self.name or f"line at {self.node}"
+
+    def resistance(self, period: Fraction) -> Fraction:
+        return self.impedance.fraction
+
+    def describe(self, motion: str = "linear") -> str:
+        return f"{self.title} {with_unit('wave_impedance', self.impedance, motion)}"

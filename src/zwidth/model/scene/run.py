@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.model.scene import layout as at
+from zwidth.model.scene import forces as at
 from zwidth.model.scene.scene import Scene
 from zwidth.model.scene.step import across, scene_force
 from zwidth.native.compiled import compiled

@@ -12,24 +12,23 @@ behind a virtual coupling that fits the device the whole is.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from zwidth.errors import InputError
 from zwidth.lazy import above
 from zwidth.model.environment.environment import CouplingLaw, Environment, RationalFunction, Stepped
-from zwidth.model.scene.coupling import coupled
-from zwidth.model.scene.element import GROUND, Element, read_node
-from zwidth.model.scene.ties import Ties, ties
+from zwidth.model.scene.element import GROUND, Element, Ties, read_node, ties
 from zwidth.quantity.parameter import part
 from zwidth.showing import Part, Shown, Table
 
 if TYPE_CHECKING:
     from zwidth.model.scene.pack import Packed
+
 
 MOST_STATES = 60
 """Of more the coefficients of H(z) have so many digits that a proof would take minutes."""
@@ -126,10 +125,8 @@ class Scene(Environment, Shown):
     def _states(self) -> int:
         return sum(e.ratio is None and e.law is None and e.reflection != 0 for e in self.elements)
 
-    @property
-    def passive_backward(self) -> bool:
-        """True: it is made so."""
-        return True
+    passive_backward = True
+    """True: it is made so."""
 
     @property
     def starts_at_rest(self) -> bool:
@@ -219,9 +216,62 @@ class Scene(Environment, Shown):
     __repr__ = Shown.__repr__
 
     def describe(self, motion: str = "linear") -> str:
-        """How many elements, on one line; a few are named."""
         if len(self.elements) > 4:
             return (
                 f'scene of {len(self.elements)} elements and {len(self.nodes)} nodes, held at "{self.port}"'
             )
         return f'scene held at "{self.port}": {"; ".join(e.describe(motion) for e in self.elements)}'
+
+
+# Virtual couplings before a scene, as elements of it.
+#
+#     f_k = K u_k + B (u_k − u_{k−1})/T,  u the stretch,
+#
+# is a spring K of the scene with a damper B + K T/2 beside it: K T/2 is what backward Euler loses more than
+# the midpoint rule.
+
+
+@dataclass(frozen=True)
+class CouplingPart(Element):
+    """Spring or damper of a coupling, of any sign: whether it is passive is not the scene's to say."""
+
+    symbol: ClassVar[str] = "Z"
+
+    ends: tuple[str, str]
+    number: Fraction
+    reflects: int
+
+    @property
+    def reflection(self) -> int:  # type: ignore[override]  # it has either
+        """1 of the spring, 0 of the damper."""
+        return self.reflects
+
+    @property
+    def nodes(self) -> tuple[str, str]:
+        return self.ends
+
+    @property
+    def title(self) -> str:
+        return f"coupling's {'spring' if self.reflects else 'damper'}"
+
+    def resistance(self, period: Fraction) -> Fraction:
+        return self.number
+
+    def describe(self, motion: str = "linear") -> str:
+        return self.title
+
+
+def coupled(
+    elements: Sequence[Element], port: str, couplings: Sequence[CouplingLaw], period: Fraction
+) -> tuple[tuple[Element, ...], str]:
+    """The elements with those of the couplings, the hand's first; and the hand's node, the new port."""
+    if not couplings:
+        return tuple(elements), port
+    hands = [" " * (i + 1) for i in range(len(couplings))]  # no node of a person's is called so
+    more = [
+        part
+        for (k, b), ends in zip(couplings, zip(hands, [*hands[1:], port], strict=True), strict=True)
+        for part in (CouplingPart(ends, k * period / 2, 1), CouplingPart(ends, b + k * period / 2, 0))
+        if part.number
+    ]
+    return (*more, *elements), hands[0]

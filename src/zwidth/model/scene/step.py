@@ -10,8 +10,7 @@ step depends on nothing but these.
 
 from __future__ import annotations
 
-from zwidth.model.scene.coupled import coupled_forces
-from zwidth.model.scene.layout import (
+from zwidth.model.scene.forces import (
     COMPLIANCE,
     FACTOR,
     FORCE,
@@ -26,8 +25,11 @@ from zwidth.model.scene.layout import (
     ROW,
     WAVES,
     WORK,
+    coupled_forces,
+    lost,
+    mean_force,
+    moved_on,
 )
-from zwidth.model.scene.mean_force import lost, mean_force, moved_on
 from zwidth.native.compiled import Array, compiled
 
 

@@ -8,59 +8,46 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from zwidth.errors import InputError
 from zwidth.model.environment import Environment
-from zwidth.model.kind import Kind, bracketed
-from zwidth.model.specification.scenes import build_elements
-from zwidth.model.specification.table import COMMAND_LINE, Table, located, quoted, suggestion
+from zwidth.model.kind import Kind, bracketed, kinds
+from zwidth.model.specification.table import COMMAND_LINE, Table, located, named_kind
 from zwidth.model.specification.values import read
 from zwidth.quantity.parameter import Parameter
+
+if TYPE_CHECKING:
+    from zwidth.model.scene import Element
+
 
 DEEPEST = 4
 """Couplings inside couplings; more is a mistake."""
 
 TYPES: Mapping[str, Kind] = MappingProxyType(
     {
-        "wall": Kind("environment.wall", "Wall", "spring and damper inside x > 0"),
-        "maxwell": Kind("environment.viscoelastic", "Maxwell", "spring and dashpot in series"),
+        "wall": Kind("environment", "Wall", "spring and damper inside x > 0"),
+        "maxwell": Kind("environment", "Maxwell", "spring and dashpot in series"),
         "standard-linear-solid": Kind(
-            "environment.viscoelastic",
-            "StandardLinearSolid",
-            "spring with one Maxwell branch beside it",
+            "environment", "StandardLinearSolid", "spring with one Maxwell branch beside it"
         ),
         "generalized-maxwell": Kind(
-            "environment.viscoelastic",
-            "GeneralizedMaxwell",
-            "spring with Maxwell branches beside it, a Prony series",
+            "environment", "GeneralizedMaxwell", "spring with Maxwell branches beside it, a Prony series"
         ),
         "nonlinear-spring": Kind(
-            "environment.nonlinear_spring",
-            "NonlinearSpring",
-            "force through points, linear between them and constant beyond",
+            "environment", "NonlinearSpring", "force through points, linear between them and constant beyond"
         ),
         "hunt-crossley": Kind(
-            "environment.hunt_crossley",
-            "HuntCrossley",
-            "contact whose damping grows with the depth, K uⁿ (1 + λ v)",
+            "environment", "HuntCrossley", "contact whose damping grows with the depth, K uⁿ (1 + λ v)"
         ),
-        "transfer-function": Kind(
-            "environment.transfer_function",
-            "ContinuousTransferFunction",
-            "H(s) with a discretization",
-        ),
-        "pulse-transfer-function": Kind("environment.transfer_function", "PulseTransferFunction", "H(z)"),
+        "transfer-function": Kind("environment", "ContinuousTransferFunction", "H(s) with a discretization"),
+        "pulse-transfer-function": Kind("environment", "PulseTransferFunction", "H(z)"),
         "virtual-coupling": Kind(
-            "rendering.virtual_coupling",
-            "VirtualCoupling",
-            "spring and damper between the device and another environment",
+            "rendering", "VirtualCoupling", "spring and damper between the device and another environment"
         ),
-        "scene": Kind("scene.scene", "Scene", "masses, springs, contacts, … that give out no energy"),
+        "scene": Kind("scene", "Scene", "masses, springs, contacts, … that give out no energy"),
         "coupled-body": Kind(
-            "environment.coupled_body",
-            "CoupledBody",
-            "mass behind a virtual coupling, as an integrator steps it",
+            "environment.bodies", "CoupledBody", "mass behind a virtual coupling, as an integrator steps it"
         ),
     }
 )
@@ -91,7 +78,7 @@ def all_keys() -> dict[str, Parameter]:
 
 def build_environment(table: Table, motion: str, depth: int = 0) -> Environment:
     """The environment that a table describes, in the units of the device's motion."""
-    kind = _kind(table)
+    kind = named_kind(table, TYPES, "environment of type")
     keys = kind.keys
     if "damping" in keys:
         table.rename("virtual_damping", "damping")
@@ -114,16 +101,6 @@ def _named(table: Table, key: str) -> str:
     return f"--{own.replace('_', '-')}" if table.label == COMMAND_LINE else own
 
 
-def _kind(table: Table) -> Kind:
-    if "type" not in table.values:
-        raise InputError(f"{table.label}: type is missing; it may be: {', '.join(TYPES)}")
-    name = table.text("type")
-    if name not in TYPES:
-        hint = suggestion(name, TYPES)
-        raise InputError(f"{table.where('type')}: there is no environment of type {quoted(name)}; {hint}")
-    return TYPES[name]
-
-
 def _read(table: Table, key: str, own: Parameter, motion: str, depth: int) -> Any:
     value = table.values[key]
     if own.form == "environment":
@@ -143,3 +120,43 @@ def _nested(table: Table, key: str, value: object, motion: str, depth: int) -> E
         raise InputError(f"{table.label}: more than {DEEPEST} couplings inside each other")
     label = table.label.removesuffix("]") + ".environment]" if table.label.endswith("]") else table.label
     return build_environment(Table(label, value), motion, depth + 1)
+
+
+ELEMENTS = kinds(
+    "scene",
+    {
+        "Mass": "body that moves along the axis",
+        "Spring": "spring between two nodes",
+        "Damper": "damper between two nodes",
+        "Lever": "rigid lever; of ratio 1 it makes two nodes one",
+        "Contact": "surface that pushes and never pulls",
+        "CoulombFriction": "dry friction between two nodes",
+        "NonlinearSpring": "spring through points",
+        "LineEnd": "end of a line to another part of a scene",
+    },
+)
+
+MOST = 10_000
+"""Elements of a scene in a file; more is a mistake."""
+
+
+def build_elements(value: object, label: str, motion: str) -> list[Element]:
+    """The elements that tables describe; `label` says where they stand."""
+    if not isinstance(value, list) or not all(isinstance(one, Mapping) for one in value):
+        raise InputError(f'{label}: elements are tables, such as [[environment.elements]] type = "mass"')
+    if len(value) > MOST:
+        raise InputError(f"{label}: {len(value)} elements, more than {MOST}")
+    return [_element(Table(f"{label}, element {n}", one), motion) for n, one in enumerate(value, 1)]
+
+
+def _element(table: Table, motion: str) -> Element:
+    kind = named_kind(table, ELEMENTS, "element")
+    name, keys = table.text("type"), kind.keys
+    table.check_keys(("type", *keys), f'an element of type "{name}"')
+    if missing := kind.missing(table.values):
+        needed = ", ".join(f"{key}{bracketed(keys[key], motion)}" for key in missing)
+        raise InputError(f'{table.label}: type "{name}" needs {needed}')
+    with located(table.label):
+        arguments = {key: read(v, key, keys[key], motion) for key, v in table.values.items() if key != "type"}
+        element: Element = kind.made(**arguments)
+        return element

@@ -18,7 +18,7 @@ from zwidth.errors import InputError
 from zwidth.model.environment import Environment
 from zwidth.model.kind import Kind, bracketed
 from zwidth.model.rendering import ESTIMATORS, LAWS
-from zwidth.model.specification.table import COMMAND_LINE, Table, located, quoted, suggestion
+from zwidth.model.specification.table import COMMAND_LINE, Table, located, named_kind
 from zwidth.model.specification.values import read
 from zwidth.quantity.parameter import Parameter
 
@@ -43,16 +43,7 @@ def with_laws(
 ) -> Environment:
     """The environment behind the laws that were given; itself where there are none.
 
-    Parameters
-    ----------
-    environment
-        What the hand meets.
-    table
-        The [[law]] tables of a file.
-    typed
-        What stood behind each `--law`; takes the place of the file's.
-    motion
-        "linear" or "rotary", of the device.
+    What stood behind each `--law`, `typed`, takes the place of a file's [[law]] tables.
     """
     return behind_laws(environment, law_tables(table, typed), motion)
 
@@ -97,12 +88,8 @@ def build_law(table: Table, motion: str) -> RenderingLaw:
 
 
 def _built(table: Table, kinds: Mapping[str, Kind], what: str, motion: str) -> Any:
-    if "type" not in table.values:
-        raise InputError(f"{table.label}: type is missing; it may be: {', '.join(kinds)}")
+    kind = named_kind(table, kinds, what)
     name = table.text("type")
-    if name not in kinds:
-        raise InputError(f"{table.label}: there is no {what} {quoted(name)}; {suggestion(name, kinds)}")
-    kind = kinds[name]
     table.check_keys(("type", *kind.keys), f'a {what} of type "{name}"')
     if missing := kind.missing(table.values):
         needed = ", ".join(f"{key}{bracketed(kind.keys[key], motion)}" for key in missing)

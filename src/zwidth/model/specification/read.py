@@ -4,10 +4,9 @@
     damping = "0.15 N*s/m"              type = "wall"
     rate = "1 kHz"                      stiffness = 300
 
-One file or two, or the name of a catalogue device in the place of the first;
-plain numbers are SI and exact as typed.  Every parameter can be overridden
-under its own name; `damping` is then the device's, `virtual_damping` the
-wall's.  Nothing is ignored: an unknown key is an error.
+One file or two, or the name of a catalogue device in the place of the first; plain numbers are SI and exact
+as typed.  Every parameter can be overridden under its own name; `damping` is then the device's,
+`virtual_damping` the wall's.  Nothing is ignored: an unknown key is an error.
 """
 
 from __future__ import annotations
@@ -60,12 +59,7 @@ _ONE_OF = (("rate", "sample_period"), ("resolution", "counts_per_turn"))
 class Specification:
     """What is to be checked: a device against an environment.
 
-    Parameters
-    ----------
-    device, environment
-        The loop.
-    ranges
-        By parameter of the device, what of it the catalogue states as a range; nothing where it is known.
+    `ranges` says by parameter of the device what of it the catalogue states as a range.
     """
 
     device: Device
@@ -79,8 +73,7 @@ def load(sources: Sequence[Path | str], overrides: Mapping[str, str] | None = No
     Parameters
     ----------
     sources
-        TOML files with [device] and [environment]; a name in the catalogue
-        stands for a [device].
+        TOML files with [device] and [environment]; a name in the catalogue stands for a [device].
     overrides
         Values by name, as typed: {"rate": "2 kHz", "virtual_damping": "0.1"}.
         Without an [environment] they describe a wall, or the `type` they give.
@@ -121,12 +114,7 @@ def keep_axis(device: Table, rendered: object) -> None:
 def built(device_table: Table, environment: Table, in_range: bool = False) -> Specification:
     """The device and the environment that two tables describe.
 
-    Parameters
-    ----------
-    device_table, environment
-        The tables.
-    in_range
-        True where a device of the catalogue may have its stated ranges in the place of what nobody published.
+    With `in_range` a device of the catalogue may have stated ranges in the place of what nobody published.
     """
     ranges: Mapping[str, Range] = {}
     if in_range and "catalogue" in device_table.values:
@@ -138,7 +126,7 @@ def built(device_table: Table, environment: Table, in_range: bool = False) -> Sp
 
 
 def load_device(sources: Sequence[Path | str], overrides: Mapping[str, str]) -> Device:
-    """The device alone: files with a [device] or a name of the catalogue, then what the command line says."""
+    """The device alone: files with a [device] or names of the catalogue, then the command line's values."""
     return build_device(_device_table(read_tables(sources, ("device",)), overrides))
 
 

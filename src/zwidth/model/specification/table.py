@@ -9,9 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from difflib import get_close_matches
+from typing import TYPE_CHECKING
 
 from zwidth.errors import InputError
 from zwidth.showing import one_line
+
+if TYPE_CHECKING:
+    from zwidth.model.kind import Kind
 
 COMMAND_LINE = "command line"
 
@@ -72,6 +76,18 @@ class Table:
         if not isinstance(value, str):
             raise InputError(f'{self.where(key)}: {key} is a text in quotes, such as {key} = "…"')
         return value
+
+
+def named_kind(table: Table, kinds: Mapping[str, Kind], what: str) -> Kind:
+    """The class that the type of a table names; `what` says of which sort it is."""
+    if "type" not in table.values:
+        raise InputError(f"{table.label}: type is missing; it may be: {', '.join(kinds)}")
+    name = table.text("type")
+    if name not in kinds:
+        raise InputError(
+            f"{table.where('type')}: there is no {what} {quoted(name)}; {suggestion(name, kinds)}"
+        )
+    return kinds[name]
 
 
 def plain(text: str, longest: int = 60) -> str:

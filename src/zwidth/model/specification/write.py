@@ -17,13 +17,15 @@ from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.environment import BackwardDifference, Environment, OnePole, VelocityFilter, Window
 from zwidth.model.kind import Kind, name_of
+from zwidth.model.pairs import Pair
 from zwidth.model.rendering import ESTIMATORS, LAWS
-from zwidth.model.specification.environments import TYPES, build_environment
+from zwidth.model.specification.environments import ELEMENTS, TYPES, build_environment
 from zwidth.model.specification.laws import with_laws
-from zwidth.model.specification.read import WITH_LAWS, Specification, specified, tables_of
-from zwidth.model.specification.scenes import ELEMENTS
-from zwidth.quantity.exact import Exact, Interval
+from zwidth.model.specification.load import KEYS, pair_of
+from zwidth.model.specification.read import PAIR_TABLES, WITH_LAWS, Specification, specified, tables_of
+from zwidth.quantity.exact import Exact, Interval, as_parameter
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import parameters_of
 from zwidth.quantity.text import exact_text
 from zwidth.showing import one_line
 
@@ -45,13 +47,7 @@ def tables(device: Device, environment: Environment) -> Tables:
 
 
 def written(device: Device, environment: Environment) -> str:
-    """The loop as a specification in TOML.
-
-    Parameters
-    ----------
-    device, environment
-        A loop; the environment may stand behind laws in a chain.
-    """
+    """The loop as a specification in TOML; the environment may stand behind laws in a chain."""
     values = tables(device, environment)
     rows = [("[device]", values.device), ("[environment]", values.environment)]
     rows += [("[[law]]", law) for law in values.laws]
@@ -169,4 +165,31 @@ def _law(law: object, kinds: Mapping[str, Kind], motion: str) -> dict[str, objec
             values[key] = _law(value, ESTIMATORS, motion)
         elif value is not None:
             values[key] = _value(value, kind.unit_for(motion))
+    return values
+
+
+def written_pair(pair: Pair) -> str:
+    """A pair as a specification in TOML."""
+    tables = [
+        ("[leader]", device_table(pair.leader)),
+        ("[follower]", device_table(pair.follower)),
+        ("[coupling]", _coupling(pair)),
+    ]
+    text = "\n".join(line for head, row in tables for line in (head, *lines(row), ""))
+    if pair_of(tables_of(text, "specification", PAIR_TABLES)) != pair:
+        raise InputError("a specification cannot say all of this pair")
+    return text
+
+
+def _coupling(pair: Pair) -> dict[str, object]:
+    values: dict[str, object] = {}
+    given = {"there": "link_delay", "back": "link_delay_back"}
+    for name, own in parameters_of(Pair).items():
+        value = getattr(pair, name)
+        if value is not None and (value != 0 or name == "stiffness"):
+            values[given.get(name, name)] = quantity_text(value, own.quantity.unit_for(pair.motion))
+    for prefix, law in (("", pair.compensation), ("follower_", pair.follower_compensation)):
+        for name in parameters_of(type(law)) if law is not None else ():
+            unit = KEYS[f"compensation_{name}"].quantity.unit_for(pair.motion)
+            values[f"{prefix}compensation_{name}"] = quantity_text(as_parameter(getattr(law, name)), unit)
     return values

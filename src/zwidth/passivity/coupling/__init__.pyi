@@ -1,4 +1,4 @@
-from zwidth.model.environment.coupled_body import CoupledBody as CoupledBody
+from zwidth.model.environment.bodies import CoupledBody as CoupledBody
 from zwidth.passivity.coupling import two_port as two_port
 from zwidth.passivity.coupling.coupling import CouplingCondition as CouplingCondition
 from zwidth.passivity.coupling.coupling import coupling_condition as coupling_condition

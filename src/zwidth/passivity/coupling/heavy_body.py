@@ -15,7 +15,7 @@ from typing import get_args
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device
-from zwidth.model.environment.integrators import Body, Integrator, stepped
+from zwidth.model.environment.bodies import Body, Integrator, stepped
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, nonnegative
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import one_of

@@ -17,9 +17,8 @@ from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device
-from zwidth.model.environment.coupled_body import CoupledBody
+from zwidth.model.environment.bodies import POWER_OF_MASS, CoupledBody, times
 from zwidth.model.environment.environment import RationalFunction
-from zwidth.model.environment.integrators import POWER_OF_MASS, times
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.critical_values import critical_values

@@ -18,8 +18,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt
 
-from zwidth.model.environment.environment import Environment
-from zwidth.model.environment.velocity_weights import Average, Decay
+from zwidth.model.environment.environment import Average, Decay, Environment
 from zwidth.passivity.linear.loop import LinearLoop
 
 _FINE = 10**12

@@ -21,7 +21,7 @@ from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
-from zwidth.model.environment.virtual_body import INTEGRATIONS, Integration
+from zwidth.model.environment.bodies import INTEGRATIONS, Integration
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, NO_CLOCK, nonnegative, positive
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import one_of

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from zwidth.model.arms import Sites
 from zwidth.model.arms.joints import surplus
-from zwidth.model.arms.pose import loss_in_pose
+from zwidth.model.arms.wall import loss_in_pose
 
 Array = npt.NDArray[np.float64]
 Truth = npt.NDArray[np.bool_]

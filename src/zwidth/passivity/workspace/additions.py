@@ -19,9 +19,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.model.arms.joints import as_matrix, single_addition
-from zwidth.model.arms.least import least_additions
-from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.joints import as_matrix, least_additions, single_addition
+from zwidth.model.arms.wall import MatrixWall
 from zwidth.model.environment.environment import certain
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.workspace.certificate import arm_certificate

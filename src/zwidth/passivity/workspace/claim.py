@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from zwidth.model.arms.encoders import EncoderSteps
-from zwidth.model.arms.held import in_words
+from zwidth.model.arms.encoders import EncoderSteps, in_words
 from zwidth.passivity.workspace.account import Account
 
 

@@ -9,10 +9,9 @@ import numpy.typing as npt
 
 from zwidth.errors import InputError
 from zwidth.model.arms import Arm, Sites
-from zwidth.model.arms.edges import first_motion
-from zwidth.model.arms.encoders import EncoderSteps, encoder_steps, with_encoders
-from zwidth.model.arms.held import in_words
-from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.encoders import EncoderSteps, encoder_steps, in_words, with_encoders
+from zwidth.model.arms.replay import first_motion
+from zwidth.model.arms.wall import MatrixWall
 from zwidth.model.environment.wall import Wall
 
 Array = npt.NDArray[np.float64]

@@ -23,10 +23,16 @@ import numpy.typing as npt
 from zwidth.errors import InputError
 from zwidth.model.arms import Arm, ArmMotion, DescribedArm, PlanarChain
 from zwidth.model.arms.joints import as_matrix, largest_scale
-from zwidth.model.arms.matrix_wall import MatrixWall
-from zwidth.model.arms.need import wall_need
-from zwidth.model.arms.null_space import NullSpaceSpring, fast_motion, moving, projector, task_jacobian
-from zwidth.model.arms.null_space_loop import Loop, slow_loop
+from zwidth.model.arms.null_space import (
+    Loop,
+    NullSpaceSpring,
+    fast_motion,
+    moving,
+    projector,
+    slow_loop,
+    task_jacobian,
+)
+from zwidth.model.arms.wall import MatrixWall, wall_need
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.outcome import Outcome

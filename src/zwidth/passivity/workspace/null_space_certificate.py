@@ -14,8 +14,8 @@ import numpy.typing as npt
 from zwidth.checker import verify
 from zwidth.model.arms import DescribedArm, PlanarChain
 from zwidth.model.arms.joints import as_matrix
-from zwidth.model.arms.need import wall_need
 from zwidth.model.arms.null_space import NullSpaceSpring, moving, projector, task_jacobian
+from zwidth.model.arms.wall import wall_need
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.workspace.certificate import (
     chain_document,

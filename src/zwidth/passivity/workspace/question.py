@@ -10,11 +10,9 @@ import numpy.typing as npt
 
 from zwidth.errors import InputError
 from zwidth.model.arms import Arm
-from zwidth.model.arms.held import forces_of, held_torque_damping
+from zwidth.model.arms.encoders import forces_of, held_torque_damping
 from zwidth.model.arms.joints import as_matrix
-from zwidth.model.arms.matrix_wall import MatrixWall
-from zwidth.model.arms.need import require_wall
-from zwidth.model.arms.pose import fits
+from zwidth.model.arms.wall import MatrixWall, fits, require_wall
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.workspace.counting import needs_encoders
 from zwidth.quantity.exact import RealLike

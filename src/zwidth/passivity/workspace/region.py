@@ -12,9 +12,8 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.model.arms import Arm
-from zwidth.model.arms.matrix_wall import MatrixWall
-from zwidth.model.arms.need import wall_need
 from zwidth.model.arms.replay import steps_of
+from zwidth.model.arms.wall import MatrixWall, wall_need
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.workspace.account import account_of, all_in_blocks, reached_cells, refinement

@@ -6,10 +6,9 @@ from math import isfinite
 from typing import Any
 
 from zwidth.model.arms import Arm, DescribedArm
+from zwidth.model.arms.arm import ArmMotion
 from zwidth.model.arms.encoders import EncoderSteps
-from zwidth.model.arms.matrix_wall import MatrixWall
-from zwidth.model.arms.motion import ArmMotion
-from zwidth.model.arms.need import wall_matrices
+from zwidth.model.arms.wall import MatrixWall, wall_matrices
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.workspace.additions import Additions
 

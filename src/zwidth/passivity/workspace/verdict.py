@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from zwidth.model.arms import Arm
+from zwidth.model.arms.arm import ArmMotion
 from zwidth.model.arms.encoders import EncoderSteps
-from zwidth.model.arms.matrix_wall import MatrixWall
-from zwidth.model.arms.motion import ArmMotion
+from zwidth.model.arms.wall import MatrixWall
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.outcome import Outcome

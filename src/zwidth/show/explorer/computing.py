@@ -13,8 +13,8 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.model.environment import Environment, Wall
 from zwidth.model.operator import OPERATORS, ParametricOperator
-from zwidth.model.operator.usual import usual_kind
-from zwidth.model.specification.pairs import pair_of
+from zwidth.model.operator.named import usual_kind
+from zwidth.model.specification.load import pair_of
 from zwidth.model.specification.table import Table, quoted, suggestion
 from zwidth.passivity.check import check
 from zwidth.passivity.witness.witness import Witness

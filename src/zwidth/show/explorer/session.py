@@ -20,8 +20,8 @@ from zwidth.model.specification.read import Specification
 from zwidth.model.specification.table import plain
 from zwidth.model.specification.write import written
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.json_text import to_json
 from zwidth.quantity.spoken import angles_in, answers_in
+from zwidth.quantity.text import to_json
 from zwidth.show.explorer import starts
 from zwidth.show.explorer.computing import answered, reported
 from zwidth.show.explorer.controls import Control

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FormatStrFormatter, NullLocator
 
 from zwidth.model.arms import DescribedArm
-from zwidth.model.arms.null_space_loop import Loop, Shape, gain, shapes
+from zwidth.model.arms.null_space import Loop, Shape, gain, shapes
 from zwidth.quantity.text import shown
 from zwidth.show.plots.style import (
     BLACK,

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
 from zwidth.errors import InputError
-from zwidth.model.arms.held import in_words
+from zwidth.model.arms.encoders import in_words
 from zwidth.passivity.workspace import Workspace
 from zwidth.quantity.text import unit_text
 from zwidth.show.plots.style import BLACK, GREY, LOOK, OUTCOME, RED, new_figure, note, page_heading, verbatim

@@ -14,7 +14,7 @@ from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.result import Answer
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.json_text import json_file
+from zwidth.quantity.text import json_file
 from zwidth.show.report.beyond import beyond
 from zwidth.show.report.motion import first_steps
 from zwidth.show.report.proof import Examined, checked, examined

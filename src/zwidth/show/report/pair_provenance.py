@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from zwidth.model.pairs import Pair
-from zwidth.model.specification.pairs import KEYS
+from zwidth.model.specification.load import KEYS
 from zwidth.model.specification.table import Table
 from zwidth.quantity.text import in_words
 from zwidth.show.report.provenance import Row, as_written, of_device, of_file

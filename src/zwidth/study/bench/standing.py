@@ -17,12 +17,11 @@ from typing import Literal
 
 import numpy as np
 
-from zwidth.model.device.actuator import current_rise
+from zwidth.model.device.amplifier import current_rise
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering.rendered import laws_of
-from zwidth.model.rendering.rendering_law import LoopContext
-from zwidth.model.rendering.theorem import half_a_step
+from zwidth.model.rendering.rendering_law import LoopContext, half_a_step
 from zwidth.passivity.bounding import check_bounding, is_bounded
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.covering import covering

@@ -25,7 +25,7 @@ from zwidth.model.device import Device
 from zwidth.model.environment.velocity import VelocityEstimator
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.json_text import to_json
+from zwidth.quantity.text import to_json
 from zwidth.study.chunks.layout import Layers, Place
 from zwidth.study.chunks.store import computed
 from zwidth.study.chunks.workers import Finished, on_cluster, on_threads

@@ -11,7 +11,7 @@ from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.passivity.scope import scope_of
 from zwidth.quantity.exact import Interval
-from zwidth.quantity.json_text import to_json
+from zwidth.quantity.text import to_json
 from zwidth.study.chunks.layout import Layers
 from zwidth.study.sweeps.columns import REFUSED
 from zwidth.study.sweeps.questions import HANDS

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from zwidth.model.device import Device
 from zwidth.model.environment import Wall
-from zwidth.model.environment.velocity_weights import Average
+from zwidth.model.environment.environment import Average
 from zwidth.passivity.budget import DELAY, LIMITS, QUANTIZATION, SAMPLING, VIRTUAL_DAMPING
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.linear.contact import DampedWall

@@ -8,8 +8,8 @@ from statistics import fmean
 from zwidth.data.diagnosis.lowered import PASSIVE, Lowered, largest, lowered_to, text_of, with_margin
 from zwidth.data.diagnosis.pairs.energy import PairEvidence
 from zwidth.errors import InputError
-from zwidth.model.pairs.pair import Pair
-from zwidth.model.rendering.force.friction_compensation import FrictionCompensation
+from zwidth.model.pairs import Pair
+from zwidth.model.rendering.friction_compensation import FrictionCompensation
 from zwidth.passivity.check import check
 from zwidth.passivity.pairs.verdict import PairVerdict
 from zwidth.quantity.glossary import GLOSSARY

@@ -17,7 +17,7 @@ from zwidth.data.diagnosis.pairs.energy import PairEvidence, gather, vibrates
 from zwidth.data.diagnosis.pairs.recording import ARMS, PairRecording, read_pair
 from zwidth.data.diagnosis.pairs.result import PairDiagnosis
 from zwidth.errors import InputError
-from zwidth.model.pairs.pair import Pair
+from zwidth.model.pairs import Pair
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import shown
 

@@ -81,7 +81,7 @@ class PairDiagnosis(Answer[PairChange, PairEvidence, PairRecording]):
         return document
 
     def _written(self, change: PairChange) -> str:
-        from zwidth.model.specification.write_pair import written_pair
+        from zwidth.model.specification.write import written_pair
 
         return written_pair(change.pair)
 

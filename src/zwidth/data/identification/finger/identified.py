@@ -9,7 +9,7 @@ from typing import Any, Literal
 from zwidth.data.identification.device.estimate import Estimate
 from zwidth.data.logs import Finding
 from zwidth.errors import InputError
-from zwidth.model.operator.finger import Finger
+from zwidth.model.operator.fingers import Finger
 
 
 @dataclass(frozen=True, kw_only=True)

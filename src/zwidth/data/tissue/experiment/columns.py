@@ -16,9 +16,8 @@ from zwidth.data.logs.block import Finding
 from zwidth.data.logs.outside import POUND, WEIGHT, measured_in
 from zwidth.data.logs.table import Table, listed
 from zwidth.errors import InputError
-from zwidth.quantity.dimension import Dimension, unit_of
 from zwidth.quantity.exact import Exact
-from zwidth.quantity.spelling import spelled
+from zwidth.quantity.units import Dimension, spelled, unit_of
 
 QUANTITIES = ("time", "indentation", "force")
 

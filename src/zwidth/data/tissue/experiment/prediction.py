@@ -21,8 +21,8 @@ import numpy as np
 
 from zwidth.data.tissue.experiment.history import History
 from zwidth.data.tissue.model import Model, Record
-from zwidth.model.environment.creeping import position_response
 from zwidth.model.environment.modes import decaying
+from zwidth.model.environment.relaxing import position_response
 from zwidth.native.compiled import Array
 
 FINER = 4

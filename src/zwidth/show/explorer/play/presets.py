@@ -7,12 +7,12 @@ from typing import Any
 from zwidth.model.device.device import Device
 from zwidth.model.device.rotary import rotary
 from zwidth.model.environment import PulseTransferFunction, StandardLinearSolid, Wall
-from zwidth.model.environment.nonlinear_spring import NonlinearSpring
+from zwidth.model.environment.nonlinear import NonlinearSpring
 from zwidth.model.operator import LinearHand
 from zwidth.model.pairs import Pair
 from zwidth.model.rendering import render
-from zwidth.model.rendering.energy.force_bounding import ForceBounding
-from zwidth.model.rendering.energy.passivity_controller import PassivityController
+from zwidth.model.rendering.bounding import ForceBounding
+from zwidth.model.rendering.passivity_controller import PassivityController
 from zwidth.show.explorer.play.loop import played, played_pair
 from zwidth.show.explorer.play.played import Played
 

@@ -1,0 +1,291 @@
+"""Arms by name and from robot descriptions.
+
+Reading robot descriptions: URDF and MJCF.
+
+Viscous and Coulomb friction and the limits of motion and effort are those of the
+description where they are not given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from math import cos, pi, radians, sin
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from zwidth.errors import InputError
+from zwidth.missing import did_you_mean
+from zwidth.model.arms.arm import Arm, Damping
+from zwidth.model.arms.chain import PlanarChain
+from zwidth.model.arms.described import DescribedArm, PosedArm
+from zwidth.model.arms.formats import read_mjcf, read_urdf
+from zwidth.model.arms.legs import Leg, LeggedArm
+from zwidth.model.arms.mechanism import Coordinate, Mechanism, parsed
+
+_ENDINGS = (".urdf", ".xml", ".mjcf")
+_FAR = 1e3
+"""Limits beyond are none [rad; m]."""
+
+
+def read_arm(
+    path: str | Path,
+    *,
+    frame: str | None = None,
+    hold: dict[str, float] | None = None,
+    damping: Damping | None = None,
+    coulomb_friction: Sequence[float] | None = None,
+    resolution: Sequence[float] = (),
+    torque_limit: Sequence[float] | None = None,
+    pose: bool = False,
+    rest: dict[str, float] | None = None,
+    whole: bool = False,
+) -> DescribedArm:
+    """Read an arm from a URDF or MJCF file.
+
+    Parameters
+    ----------
+    path
+        The file, .urdf, .xml or .mjcf. Meshes are not read.
+    frame
+        The frame at whose origin the hand is; None: the last one.
+    hold
+        Joints that stay at a value [rad; m], by name; the map moves two joints at most.
+        None: of more than two joints, all but the first two are held in the middle of their ranges.
+    damping, coulomb_friction, torque_limit
+        Of each joint [N·m·s/rad], [N·m], [N·m], or one number in a list for all of them; None: those of
+        the description. Damping may be a matrix, as of `Arm`, in the order of the description's joints.
+    resolution
+        Encoder step of each joint [rad; m]; descriptions have none.
+    pose
+        The hand holds the frame and turns with it: six coordinates, `PosedArm`. Default: it holds a point.
+    rest
+        In pose, by name: joints at which the wall's rotation is at rest [rad; m]; those that are not named,
+        in the middle of their ranges. None: in every orientation, for walls as stiff about every axis.
+    whole
+        Every joint that is not held goes over its whole range, for `zwidth.stiffness_over_postures`.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, a name is not in it, or its joints have no damping at all.
+    """
+    path = Path(path)
+    model = read_mechanism(path)
+    each, frames = model.coordinates, [frame.name for frame in model.frames]
+    m, names = len(each), [coordinate.name for coordinate in each]
+    if frame is not None and frame not in frames:
+        raise InputError(f"{path.name} has no frame {frame!r}; it has {', '.join(frames[:20])}")
+    b: Damping = tuple(c.damping for c in each) if damping is None else _for_each(damping, m)
+    if not np.any(b):
+        raise InputError(
+            f"{path.name} gives no joint any damping, and without damping no wall is passive; "
+            f"measure it and give damping, on the command line --joint-damping, or write {model.damping_is} "
+            "in the description"
+        )
+    limits = tuple(c.effort for c in each) if torque_limit is None else tuple(_for_each(torque_limit, m))
+    given: dict[str, Any] = {
+        "model": model,
+        "frame": frame or frames[-1],
+        "joint_range": _ranges(each, names, {} if whole and hold is None else hold, whole),
+        "damping": b,
+        "coulomb_friction": (
+            tuple(c.friction for c in each) if coulomb_friction is None else _for_each(coulomb_friction, m)
+        ),
+        "resolution": _for_each(resolution, m),
+        "torque_limit": limits if all(0 < v < np.inf for v in limits) else (),
+        "name": model.name,
+        "damping_source": _source(model) if damping is None else "",
+    }
+    if pose:
+        resting = None if rest is None else _rest(given["joint_range"], names, rest)
+        return PosedArm(rest=resting, **given)
+    if rest is not None:
+        raise InputError("rest is where the rotation of a wall in pose rests; a point does not turn")
+    return DescribedArm(**given)
+
+
+def read_mechanism(path: Path) -> Mechanism:
+    """What a .urdf, .xml or .mjcf file describes."""
+    if path.suffix.lower() not in _ENDINGS:
+        raise InputError(f"an arm is described in a .urdf, .xml or .mjcf file, got {path.name!r}")
+    if not path.is_file():
+        raise InputError(f"there is no file {path}{did_you_mean(path)}")
+    try:
+        root = parsed(path)
+        read = {"robot": read_urdf, "mujoco": read_mjcf}.get(root.tag)
+        if read is None:
+            raise root.wrong("is neither <robot>, of a URDF, nor <mujoco>, of an MJCF")
+        found = read(root, path.stem)
+    except InputError as error:
+        raise InputError(f"{path.name} cannot be read: {error}") from None
+    if not found.coordinates:
+        raise InputError(f"{path.name} has no joint that moves")
+    return found
+
+
+def _for_each(values: Any, count: int) -> Any:
+    """One number is that of every joint."""
+    alone = np.ndim(values) == 1 and len(values) == 1
+    return tuple(values) * count if alone else values
+
+
+def _source(model: Mechanism) -> str:
+    """Of damping that is the description's: that it may be none of the arm's."""
+    values = {each.damping for each in model.coordinates}
+    words = "from the description; simulators' files often hold placeholders: measure"
+    if len(model.coordinates) > 1 and all(float(f"{b:.0e}") == b for b in values):
+        told = "round numbers" if len(values) > 1 else "one number for every joint"
+        words = f"from the description, {told}, most likely a simulator's placeholders: measure"
+    return "; ".join([words, *model.notes])
+
+
+def _ranges(
+    each: Sequence[Coordinate], names: list[str], hold: dict[str, float] | None, whole: bool
+) -> tuple[tuple[float, float], ...]:
+    _named(hold or {}, names, "hold")
+    ranges = []
+    for i, joint in enumerate(each):
+        if hold is not None and joint.name in hold:
+            low = high = _held(joint, float(hold[joint.name]))
+        else:
+            low, high = _limits(joint)
+            if hold is None and i >= 2:
+                low = high = (low + high) / 2
+        ranges.append((low, high))
+    moving = [name for name, (low, high) in zip(names, ranges, strict=True) if high > low]
+    if not moving or (len(moving) > 2 and not whole):
+        raise InputError(f"the map moves one or two joints, here {len(moving)} would move; hold the others")
+    return tuple(ranges)
+
+
+def _rest(
+    ranges: tuple[tuple[float, float], ...], names: list[str], rest: dict[str, float]
+) -> tuple[float, ...]:
+    _named(rest, names, "rest")
+    return tuple(
+        float(rest.get(name, (low + high) / 2)) for name, (low, high) in zip(names, ranges, strict=True)
+    )
+
+
+def _named(given: dict[str, float], names: list[str], what: str) -> None:
+    unknown = sorted(set(given) - set(names))
+    if unknown:
+        raise InputError(f"{what}: there is no joint {unknown[0]!r}; there are {', '.join(names)}")
+
+
+def _held(joint: Coordinate, value: float) -> float:
+    low, high = joint.limits
+    if not (np.isfinite(value) and low <= value <= high):
+        ends = f"from {low:g} to {high:g} {'m' if joint.slides else 'rad'}"
+        bounds = ends if np.isfinite(joint.limits).any() else "finite"
+        raise InputError(f"hold: {joint.name} can be {bounds}, got {value:g}")
+    return value
+
+
+def _limits(joint: Coordinate) -> tuple[float, float]:
+    """A joint that turns without limits goes round once."""
+    if max(map(abs, joint.limits)) < _FAR:
+        return joint.limits
+    if joint.slides:
+        raise InputError(
+            f"joint {joint.name!r}, line {joint.line}, slides without limits; write them into the "
+            "description, or hold it"
+        )
+    return (-float(np.pi), float(np.pi))
+
+
+# Arms whose geometry is published; their joint friction is not, and must be given.
+#
+#     hapkit       one link: the handle 65.659 mm from the axis (Stanford Hapkit code)
+#     two-link     two links of 0.1 m: an example, not a product
+#     haply-2diy   five-bar pantograph, links 70 and 90 mm (Haply hAPI sketches); motors 38 mm
+#                  apart, as the sketches of generation 3 have it; older ones have them on one axis
+#     falcon       three legs at 105°, −15° and −135° (libnifalcon, geometry header): link 60 mm,
+#                  rod 102.5 mm, hinges 11.25 mm each, r = 40, s = −23.09, c = 14.43, f = −25 mm
+#
+# Encoder steps: 2π/4880 of the Haply's joints (hAPI sketches); of the Falcon 1280 counts
+# per turn of a motor that drives a disc of 110 mm by a shaft of 14.25 mm (libnifalcon).
+# The regions of work are choices of this project, inside the reach of each.
+
+
+def built_in(name: str, *, damping: float | Damping, **numbers: Any) -> Arm:
+    """An arm with published geometry.
+
+    Parameters
+    ----------
+    name
+        "hapkit", "two-link", "haply-2diy" or "falcon".
+    damping
+        Viscous friction of each joint, one number for all, or a matrix as of `Arm` [N·m·s/rad]; no source
+        gives it.
+    numbers
+        Other arguments of the arm: coulomb_friction [N·m], resolution [rad], torque_limit [N·m], or what
+        belongs to its geometry, such as `lower` and `upper` [m], `joint_range` [rad] or `pose`, of a chain.
+        One number stands for all joints.
+
+    Raises
+    ------
+    InputError
+        If the name is not known, or a number cannot be used.
+    """
+    if name not in BUILT_IN:
+        raise InputError(f"there is no arm {str(name)[:40]!r}; built in are {', '.join(BUILT_IN)}")
+    kind, given = BUILT_IN[name]()
+    if "pose" in numbers and kind is not PlanarChain:
+        raise InputError(
+            f"{name} has no pose: the hand holds a point and its joints do not turn the handle; "
+            "in pose there are hapkit, two-link and robot descriptions"
+        )
+    joints = len(given.get("links", given.get("legs", ())))
+    merged = {"name": name, **given, "damping": damping, **numbers}
+    for key in ("damping", "coulomb_friction", "resolution", "torque_limit"):
+        value = merged.get(key, ())
+        merged[key] = (value,) * joints if isinstance(value, (int, float)) else value
+    return kind(**merged)
+
+
+def _hapkit() -> tuple[type[Arm], dict[str, Any]]:
+    return PlanarChain, {"links": (0.065659,), "joint_range": ((-pi / 4, pi / 4),)}
+
+
+def _two_link() -> tuple[type[Arm], dict[str, Any]]:
+    return PlanarChain, {"links": (0.1, 0.1), "joint_range": ((0.0, pi), (pi / 6, 5 * pi / 6))}
+
+
+def _haply() -> tuple[type[Arm], dict[str, Any]]:
+    plane: dict[str, Any] = {"out": (1.0, 0.0), "up": (0.0, 1.0), "link": 0.07, "rod": 0.09}
+    legs = (
+        Leg(base=(-0.019, 0.0), bend=1, **plane),  # elbows outwards
+        Leg(base=(0.019, 0.0), bend=-1, **plane),
+    )
+    return LeggedArm, {
+        "legs": legs,
+        "lower": (-0.05, 0.05),
+        "upper": (0.05, 0.12),
+        "resolution": 2 * pi / 4880,
+    }
+
+
+def _falcon() -> tuple[type[Arm], dict[str, Any]]:
+    return LeggedArm, {
+        "legs": tuple(_falcon_leg(radians(angle)) for angle in (105, -15, -135)),
+        "lower": (-0.03, -0.03, 0.1),
+        "upper": (0.03, 0.03, 0.14),
+        "resolution": 2 * pi / 1280 * 14.25 / 110,
+    }
+
+
+def _falcon_leg(turn: float) -> Leg:
+    """p′_u = u − r + c and p′_v = v − s + f in the axes of the leg."""
+    out, across = (cos(turn), sin(turn), 0.0), (-sin(turn), cos(turn), 0.0)
+    u, v = 0.040 - 0.01443, -0.02309 + 0.025
+    base = tuple(u * a + v * b for a, b in zip(out, across, strict=True))
+    return Leg(base=base, out=out, up=(0.0, 0.0, 1.0), link=0.06, rod=0.1025, offset=0.0225)
+
+
+BUILT_IN: Mapping[str, Callable[[], tuple[type[Arm], dict[str, Any]]]] = MappingProxyType(
+    {"hapkit": _hapkit, "two-link": _two_link, "haply-2diy": _haply, "falcon": _falcon}
+)

@@ -1,1 +1,0 @@
-"""Laws that count energy or let through what has been paid for."""

@@ -1,1 +1,0 @@
-"""Laws of the force alone: its size, its rate, its steps, pulses and dampers."""
