@@ -13,10 +13,9 @@ import zwidth as zw
 from zwidth import checker
 from zwidth.checker import judge
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.decision import decide
-from zwidth.passivity.gap import has_gap
-from zwidth.passivity.storage.evidence.gain import Gain
-from zwidth.passivity.storage.evidence.playback import peak_force, settled_round
+from zwidth.passivity.criterion_choice import decide
+from zwidth.passivity.storage.gain import Gain, peak_force, settled_round
+from zwidth.passivity.value_iteration_fallback import has_gap
 from zwidth.passivity.wording import describe_hands
 
 PADDLE = zw.catalogue.device("haptic-paddle")

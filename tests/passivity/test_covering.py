@@ -8,7 +8,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.model.rendering import PassivityController, SlewLimit
-from zwidth.passivity.covering import covering
+from zwidth.passivity.covering_wall import covering
 
 TINY = Fraction(1, 10**9)
 DEVICE = zw.Device(damping=1, coulomb_friction="0.1", resolution=0, delay=0, rate="1 kHz")

@@ -9,7 +9,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.model.device.catalogue import DeviceInRange, Range
-from zwidth.passivity.over_ranges import OverRanges, over_ranges
+from zwidth.passivity.interval_devices import OverRanges, over_ranges
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.spoken import answers_in
 

@@ -33,7 +33,7 @@ from zwidth.cli.page import (
 )
 from zwidth.passivity.in_short import in_short
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.scope import TOLD
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.wording import intervals
 
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from zwidth.passivity.finite_stiffness import FiniteStiffnessReplay
-    from zwidth.passivity.over_ranges import OverRanges
+    from zwidth.passivity.interval_devices import OverRanges
     from zwidth.passivity.stability import Stability
     from zwidth.passivity.stability.active_hand import ToleratedActivity
 

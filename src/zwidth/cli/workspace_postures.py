@@ -23,7 +23,7 @@ def print_postures(
     """Print the verdict, the numbers, what was written and what is assumed on standard output."""
     from zwidth.cli.page import blocks, headline, items, more_with_all, page, section, small_print
     from zwidth.passivity.in_short import in_short
-    from zwidth.passivity.outcome import TOLD
+    from zwidth.passivity.scope import TOLD
 
     asked = found.question
     with page() as out:

@@ -23,7 +23,7 @@ from math import floor, log10, pi, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.errors import InputError
-from zwidth.passivity.document import unit_key
+from zwidth.passivity.scope import unit_key
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from zwidth.loop.trace import Trace
     from zwidth.model.device.device import Device
     from zwidth.model.operator.operator import Operator
-    from zwidth.passivity.storage.evidence.gain import Gain
+    from zwidth.passivity.storage.gain import Gain
 
 SLOWEST = 1.0
 """Bandwidth of the slowest hand that is tried [Hz]."""

@@ -17,14 +17,16 @@ from functools import partial
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device
+from zwidth.model.environment import PulseTransferFunction
 from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.model.rendering.rendering_law import LoopContext
-from zwidth.passivity import gap
-from zwidth.passivity.behind_coupling import Closed, decide_behind_coupling
+from zwidth.passivity import value_iteration_fallback as gap
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.covering import covering
-from zwidth.passivity.found import Need
+from zwidth.passivity.covering_wall import covering
+from zwidth.passivity.formulas.colgate_stanley_brown import ideal_device, law_of, needed_damping
+from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.outcome_evidence import Need
 from zwidth.passivity.scope import Law, Scope, scope_of
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
@@ -161,3 +163,43 @@ def _by_values(verdict: Verdict, progress: Progress | None) -> Verdict:
         scope = verdict.scope.replace(contact=found.scope.contact)
         return replace(verdict, outcome="active", scope=scope, motion=found.witness, available_storage=found)
     return verdict if found.outcome == "undecided" else replace(verdict, available_storage=found)
+
+
+# A scene behind a virtual coupling is decided by the coupling alone, whatever it is made of:
+#     Σ f_k (y_k − y_{k−1}) ≥ −S of the scene      by the way it is stepped
+#     b ≥ ¼ F(θ) [s (1 − cos θ) + (κ²/s)(1 + cos θ)]      then no hand takes energy out
+#
+# The second is decided, and certified, for the law Ĥ(z) that needs as much (`colgate_stanley_brown`).  With
+# an encoder no Coulomb friction is enough for every scene: then it is proved of a handle read without steps.
+
+
+Closed = Callable[[Device, Environment], LinearVerdict]
+"""How a law with H(z) is decided."""
+
+
+def decide_behind_coupling(open_still: Verdict, closed: Closed) -> Verdict:
+    """The verdict on a scene, from one that is undecided."""
+    device, coupling = open_still.device, open_still.environment.coupling
+    if coupling is None:
+        return replace(open_still, finding="no coupling")
+    period = device.exact("sample_period")
+    need = needed_damping(coupling.stiffness, coupling.damping, period, device.exact("delay"))
+    if need is None:
+        return replace(open_still, finding="no coupling is enough")
+    proved = closed(ideal_device(device), PulseTransferFunction(*law_of(need, period)))
+    least = proved.required_damping
+    has = float(device.exact("damping"))
+    verdict = replace(open_still, needs=() if least is None else (Need("damping", float(least), has),))
+    if proved.outcome != "passive" or proved.certificate is None:
+        return verdict
+    stepped = bool(ends(device.resolution)[1])
+    scope = verdict.scope.replace(
+        contact="made and broken", law=("behind a coupling",), encoder="not counted" if stepped else "ideal"
+    )
+    return replace(
+        verdict,
+        outcome="passive without encoder steps" if stepped else "passive",
+        scope=scope,
+        certificate=proved.certificate,
+        at_limit=proved.at_limit,
+    )

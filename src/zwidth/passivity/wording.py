@@ -14,7 +14,7 @@ from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_words, shown, told_quantity
 
 if TYPE_CHECKING:
-    from zwidth.passivity.outcome import Outcome
+    from zwidth.passivity.scope import Outcome
 
 NO_MOTION = "No motion of {hand}, however fast or skilled, can take energy out of this loop"
 

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.passivity import gap
+from zwidth.passivity import value_iteration_fallback as gap
+from zwidth.passivity.storage import effort
+from zwidth.passivity.storage import value_iteration as iterating
 from zwidth.passivity.storage.domain import domain_for, losses_of
-from zwidth.passivity.storage.grid.grid import Grid
-from zwidth.passivity.storage.grid.relaxing import RelaxingGrid
+from zwidth.passivity.storage.grid import Grid
 from zwidth.passivity.storage.law import finite_law
-from zwidth.passivity.storage.solve import effort
-from zwidth.passivity.storage.solve import value_iteration as iterating
-from zwidth.passivity.storage.solve.value_iteration import ValueIteration, value_iteration
+from zwidth.passivity.storage.relaxing_grid import RelaxingGrid
+from zwidth.passivity.storage.value_iteration import ValueIteration, value_iteration
 
 
 class LastFirst(ThreadPoolExecutor):

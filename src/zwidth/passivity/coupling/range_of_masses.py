@@ -21,13 +21,12 @@ from zwidth.model.environment.coupled_body import CoupledBody
 from zwidth.model.environment.environment import RationalFunction
 from zwidth.model.environment.integrators import POWER_OF_MASS, times
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.document import unit_key
+from zwidth.passivity.linear.criterion import LinearProof, decide_linear
 from zwidth.passivity.linear.critical_values import critical_values
-from zwidth.passivity.linear.linear import LinearProof, decide_linear
 from zwidth.passivity.linear.loop import linear_loop
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.result import Result, evidence_of
-from zwidth.passivity.scope import Scope
+from zwidth.passivity.scope import Scope, unit_key
 from zwidth.passivity.witness.sinusoid import simplest_between
 from zwidth.passivity.wording import lines
 from zwidth.quantity.exact import Exact

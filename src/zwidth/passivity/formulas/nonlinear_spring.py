@@ -19,9 +19,8 @@ from typing import Any
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import unit_key
 from zwidth.passivity.result import Evidence
-from zwidth.passivity.scope import Contact
+from zwidth.passivity.scope import Contact, unit_key
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import exact_text, quantity_unit
 

@@ -21,8 +21,8 @@ from flint import Ordering, fmpq_poly, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
 from zwidth.errors import InputError
 from zwidth.model.environment.environment import RationalFunction
+from zwidth.passivity.linear.exact_algebra import roots_inside
 from zwidth.passivity.linear.loop import LinearLoop
-from zwidth.passivity.linear.roots import roots_inside
 from zwidth.quantity.balls import as_fmpq
 
 Law = Callable[[Fraction], RationalFunction]

@@ -27,8 +27,7 @@ from flint import arb, arb_poly, fmpq, fmpq_poly, fmpz_poly
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment, RationalFunction
-from zwidth.passivity.linear.cosines import from_cosines, real_product
-from zwidth.passivity.linear.schur import is_schur
+from zwidth.passivity.linear.exact_algebra import from_cosines, is_schur, real_product
 from zwidth.quantity.balls import as_fmpq, as_fraction, precision
 
 LARGEST_DEGREE = 120

@@ -14,8 +14,7 @@ from fractions import Fraction
 from flint import fmpq, fmpz_poly
 
 from zwidth.errors import InputError
-from zwidth.passivity.linear.descartes import halves, on_unit_interval, sign_changes
-from zwidth.passivity.linear.roots import root_between
+from zwidth.passivity.linear.exact_algebra import halves, on_unit_interval, root_between, sign_changes
 from zwidth.quantity.balls import as_fmpq
 
 MOST_WORDS = 40_000_000

@@ -19,7 +19,7 @@ from flint import fmpq, fmpz_poly
 from numpy.typing import NDArray
 
 from zwidth.model.pairs import Side
-from zwidth.passivity.tangents import Line, line_of
+from zwidth.passivity.covering_wall import Line, line_of
 from zwidth.quantity.balls import as_fmpq, as_fraction
 
 Floats = NDArray[np.float64]

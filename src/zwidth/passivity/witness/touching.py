@@ -3,7 +3,7 @@
 A law fed with the position hears outside what it does not answer: a hand that comes in fast has
 loaded it for nothing but the friction of the way.  What it then gives out at the surface, in
 and out in turn, is a quadratic in the hand's moves once it is said at which samples the hand is
-inside.  So for each such rhythm the best moves follow by going backward from the last (`rhythm`).
+inside.  So for each such rhythm the best moves follow by going backward from the last (`contact_pattern_search`).
 Coulomb friction and counts of the encoder grow with the first power of the size only: a large
 enough motion pays for them.  The checker has the last word.
 """
@@ -18,11 +18,11 @@ from math import ceil
 from typing import Any
 
 from zwidth.model.environment.environment import Environment
-from zwidth.passivity.document import loop_document, unit_key
-from zwidth.passivity.linear.rhythm import Surface, rhythms
-from zwidth.passivity.linear.schur import is_schur
+from zwidth.passivity.linear.contact_pattern_search import Surface, rhythms
+from zwidth.passivity.linear.exact_algebra import is_schur
+from zwidth.passivity.scope import loop_document, unit_key
 from zwidth.passivity.witness.motion import Motion, round_up
-from zwidth.passivity.witness.short_sinusoid import oscillations
+from zwidth.passivity.witness.sinusoid import oscillations
 from zwidth.passivity.witness.witness import FORMAT, Setting, Witness
 
 _AMPLITUDE = Fraction(1, 1000)

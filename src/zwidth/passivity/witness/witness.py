@@ -12,10 +12,9 @@ from fractions import Fraction
 from typing import Any
 
 from zwidth.checker import verify
-from zwidth.passivity.document import loop_document, unit_key
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.result import Evidence
-from zwidth.passivity.scope import Contact
+from zwidth.passivity.scope import Contact, loop_document, unit_key
 from zwidth.passivity.witness.motion import Motion
 from zwidth.quantity.text import quantity_unit, readable
 

@@ -29,9 +29,8 @@ from zwidth.model.arms.null_space import NullSpaceSpring, fast_motion, moving, p
 from zwidth.model.arms.null_space_loop import Loop, slow_loop
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Scope
+from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.workspace.null_space_certificate import largest_certified, null_space_certificate
 from zwidth.passivity.workspace.question import Question, asked_of
 from zwidth.passivity.workspace.report import arm_document, finite, motion_document, wall_document

@@ -16,7 +16,7 @@ from zwidth.model.arms.matrix_wall import MatrixWall
 from zwidth.model.arms.need import wall_need
 from zwidth.model.arms.replay import steps_of
 from zwidth.model.environment.wall import Wall
-from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.scope import Outcome
 from zwidth.passivity.workspace.account import account_of, all_in_blocks, reached_cells, refinement
 from zwidth.passivity.workspace.additions import Additions
 from zwidth.passivity.workspace.claim import Covers, claim
