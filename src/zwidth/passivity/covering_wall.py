@@ -115,17 +115,9 @@ def best_tangent(
 ) -> Fraction:
     """The largest r that friction pays for; 0 if there is none.
 
-    Parameters
-    ----------
-    law
-        Which compensation.
-    move
-        Of an encoder count in a sample, as a multiple of v_s.
-    missing
-        What Coulomb friction lacks for a line of height h and slope s, beside the steps of the encoders, to
-        rounding [N; N·m].
-    pays
-        Whether, exactly, it lacks nothing for the tangent at r.
+    `law`: which compensation; `move`: of an encoder count in a sample, as a multiple of v_s; `missing`: what
+    Coulomb friction lacks for a line of height h and slope s, beside the steps of the encoders, to rounding
+    [N; N·m]; `pays`: whether, exactly, it lacks nothing for the tangent at r.
     """
     if not law.coulomb or not law.speed or pays(Fraction(1)):
         return Fraction(1)

@@ -36,51 +36,27 @@ _BETTER = {"damping": 1, "coulomb_friction": 1, "resolution": 0, "sample_period"
 
 
 class Measure(NamedTuple):
-    """The number to measure first.
+    """The number to measure first."""
 
-    Parameters
-    ----------
-    key
-        A parameter of the device.
-    enough
-        From here on, to the better end of its range, the loop is passive for every device in the other
-        ranges, in SI; None where no part of its range is proved to be enough.
-    times
-        How many times the largest stiffness grows over its range; inf from none at all.
-    """
-
-    key: str
+    key: str  # a parameter of the device
+    # from here on, to the better end of its range, the loop is passive for every device in the other ranges,
+    # in SI; None where no part of its range is proved to be enough
     enough: float | None
-    times: float
+    times: float  # how many times the largest stiffness grows over its range; inf from none at all
 
 
 @dataclass(frozen=True, kw_only=True)
 class OverRanges:
-    """What holds over the ranges of a device.
+    """What holds over the ranges of a device."""
 
-    Parameters
-    ----------
-    name
-        Of the device.
-    ranges
-        What is stated, by parameter of the device.
-    motion
-        "linear" or "rotary".
-    every
-        A stiffness up to which a wall is proved passive for every device in the ranges [N/m; N·m/rad], all
-        else as asked; 0 where none is, None where the law has no stiffness.
-    best
-        The same for the most favourable device.
-    first
-        What to measure first; None where nothing is left to know, or it cannot be told.
-    """
-
-    name: str
-    ranges: Mapping[str, Range]
-    motion: str
+    name: str  # of the device
+    ranges: Mapping[str, Range]  # what is stated, by parameter of the device
+    motion: str  # "linear" or "rotary"
+    # a stiffness up to which a wall is proved passive for every device in the ranges [N/m; N·m/rad], all else
+    # as asked; 0 where none is, None where the law has no stiffness
     every: float | None
-    best: float | None
-    first: Measure | None
+    best: float | None  # the same for the most favourable device
+    first: Measure | None  # what to measure first; None where nothing is left to know, or it cannot be told
 
     def rows(self) -> Iterator[tuple[str, str]]:
         """What holds for every device, what to measure first, what is stated."""
@@ -169,14 +145,7 @@ def _stiffness(value: float, motion: str) -> str:
 def over_ranges(found: DeviceInRange, law: Environment, verdict: Verdict) -> OverRanges:
     """What holds for every device in the ranges, for the most favourable, and what to measure first.
 
-    Parameters
-    ----------
-    found
-        The device, with its ranges.
-    law
-        What is rendered.
-    verdict
-        What `check` says of both.
+    `found`: the device, with its ranges; `law`: what is rendered; `verdict`: what `check` says of both.
     """
     said = OverRanges(
         name=found.device.name,

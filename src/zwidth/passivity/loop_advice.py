@@ -257,14 +257,8 @@ def binding_of_spring(device: Device, needs: Sequence[Need]) -> str:
 def advise_on_spring(device: Device, spring: Environment, passive: bool) -> tuple[Advice, ...]:
     """Advice on every number of a certain device and on the steepest slope.
 
-    Parameters
-    ----------
-    device
-        Whose parameters are no intervals.
-    spring
-        That is given by points.
-    passive
-        True to say how far each number may go, False for what to change.
+    `device`: whose parameters are no intervals; `spring`: that is given by points; `passive`: True to say how
+    far each number may go, False for what to change.
     """
     kind = "slack" if passive else "change"
     found = []

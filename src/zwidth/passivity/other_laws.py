@@ -49,18 +49,10 @@ def check_other(
 ) -> Verdict:
     """The verdict on a law without H(z).
 
-    Parameters
-    ----------
-    device
-        Where parameters are intervals, damping, Coulomb friction and resolution are taken at their worst.
-    law
-        A `NonlinearSpring`, a `HuntCrossley` contact, a scene, or what `render` gives.
-    closed
-        How a wall that covers laws in a chain is decided.
-    progress
-        Told the number of states that still improve, while values are iterated.
-    iterate
-        False to iterate none.
+    `device`: where parameters are intervals, damping, Coulomb friction and resolution are taken at their
+    worst; `law`: a `NonlinearSpring`, a `HuntCrossley` contact, a scene, or what `render` gives; `closed`:
+    how a wall that covers laws in a chain is decided; `progress`: told the number of states that still
+    improve, while values are iterated; `iterate`: False to iterate none.
     """
     worst = _at_its_worst(device)
     asked = scope_of(device, law)

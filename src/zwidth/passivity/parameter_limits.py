@@ -177,12 +177,8 @@ def likely_friction(decision: Decision, contact: bool) -> float:
 def likely_resolution(decision: Decision, contact: bool) -> float:
     """The coarsest encoder whose steps friction covers, 0 where none is fine enough.
 
-    Parameters
-    ----------
-    decision
-        Of the loop with an encoder of 1 m or 1 rad: friction is asked for in proportion.
-    contact
-        As for `provable`.
+    `decision`: of the loop with an encoder of 1 m or 1 rad: friction is asked for in proportion; `contact`:
+    as for `provable`.
     """
     need = likely_friction(decision, contact)
     return float(decision.setting.coulomb_friction) / need if need else inf
@@ -191,16 +187,8 @@ def likely_resolution(decision: Decision, contact: bool) -> float:
 def likely_value(change: Change, contact: bool, start: float, other: float, more: bool) -> float | None:
     """The value of a parameter at which all that there is is asked for; None where secants find none.
 
-    Parameters
-    ----------
-    change
-        The loop with a value of it.
-    contact
-        As for `provable`.
-    start, other
-        Where it is, and another value for where it is 0.
-    more
-        True where more of it is safer: then its inverse asks for more.
+    `change`: the loop with a value of it; `contact`: as for `provable`; `start`, `other`: where it is, and
+    another value for where it is 0; `more`: True where more of it is safer: then its inverse asks for more.
     """
 
     @cache  # asked of friction where it was asked of damping

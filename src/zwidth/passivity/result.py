@@ -82,18 +82,9 @@ class Evidence(Result):
 class Answer(Result):
     """The answer to a question: there are more than yes and no, so none of them is true or false.
 
-    Attributes
-    ----------
-    outcome
-        What came of the question, in a word.
-    claim
-        The same in a sentence.
-    scope
-        What it is about.
-    certificate
-        The proof; None where there is none.
-    witness
-        The motion against it; None where there is none.  Of a loop `violation` too.
+    `outcome`: what came of the question, in a word; `claim`: the same in a sentence; `scope`: what it is
+    about; `certificate`: the proof; None where there is none; `witness`: the motion against it; None where
+    there is none.  Of a loop `violation` too.
     """
 
     YES: ClassVar[str]

@@ -285,17 +285,10 @@ Outcome = Literal[
 
 
 class Told(NamedTuple):
-    """How an outcome is told.
+    """How an outcome is told."""
 
-    Parameters
-    ----------
-    status
-        The exit status of a command.  2 is bad input.
-    terminal, colour
-        Its colour in a terminal, and in a page.
-    """
-
-    status: int
+    status: int  # the exit status of a command.  2 is bad input.
+    # its colour in a terminal, and in a page
     terminal: str
     colour: str
 

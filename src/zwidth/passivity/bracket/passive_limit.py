@@ -163,16 +163,8 @@ Proof = Certificate | StorageFunction | RowStorage
 class BoundedSearch:
     """Looks for the two values of a bounded hand, and keeps the evidence at each.
 
-    Parameters
-    ----------
-    search
-        The parameter, and how much may still be done.
-    program
-        The dynamic program at a value.
-    slow
-        A closed form that covers this hand at a value, or None.
-    every
-        What is known of every hand.
+    `search`: the parameter, and how much may still be done; `program`: the dynamic program at a value;
+    `slow`: a closed form that covers this hand at a value, or None; `every`: what is known of every hand.
     """
 
     def __init__(

@@ -179,16 +179,9 @@ Clock = Callable[[], float]
 class Side:
     """One claim, and how far it has been shown.
 
-    Parameters
-    ----------
-    holds
-        Whether the claim was shown at a value with no more than what is given, of all that is done.
-    towards
-        1 if it is the harder to show the larger the value, −1 if the smaller.
-    origin
-        The first guess.
-    good
-        The farthest value at which it is known already.
+    `holds`: whether the claim was shown at a value with no more than what is given, of all that is done;
+    `towards`: 1 if it is the harder to show the larger the value, −1 if the smaller; `origin`: the first
+    guess; `good`: the farthest value at which it is known already.
     """
 
     def __init__(

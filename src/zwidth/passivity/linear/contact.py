@@ -41,19 +41,12 @@ _FINE = 10**12
 
 @dataclass(frozen=True)
 class DampedWall:
-    """A wall as the two conditions see it: K ≥ 0, B and the weights of its velocity estimate.
+    """A wall as the two conditions see it: K ≥ 0, B and the weights of its velocity estimate."""
 
-    Parameters
-    ----------
-    stiffness, damping
-        K [N/m; N·m/rad] and B [N·s/m; N·m·s/rad].
-    estimate
-        How v is made of the last moves.
-    """
-
+    # K [N/m; N·m/rad] and B [N·s/m; N·m·s/rad]
     stiffness: Fraction
     damping: Fraction
-    estimate: Average | Decay
+    estimate: Average | Decay  # how v is made of the last moves
 
     def required_damping(self, loop: LinearLoop) -> Fraction | None:
         """The device damping that covers contact made and broken; None with modes that grow unseen."""
@@ -69,14 +62,8 @@ class DampedWall:
 def enough_damping(loop: LinearLoop, stiffness: Fraction, asked: Fraction = Fraction(0)) -> Fraction:
     """The least b of the two inequalities above, rounded up where it is a root.
 
-    Parameters
-    ----------
-    loop
-        Whose delay and period count.
-    stiffness
-        K ≥ 0 [N/m; N·m/rad].
-    asked
-        |B| Σ|w_j| [N·s/m; N·m·s/rad].
+    `loop`: whose delay and period count; `stiffness`: K ≥ 0 [N/m; N·m/rad]; `asked`: |B| Σ|w_j|
+    [N·s/m; N·m·s/rad].
     """
     turned, alpha = stiffness * loop.period, loop.part_delay
     linear = turned / 2 * (2 * loop.whole_delay + 1 + 2 * alpha) + asked
@@ -143,24 +130,12 @@ class Part:
 
 @dataclass(frozen=True)
 class RelaxingLaw:
-    """A spring and parts that relax, as the conditions for contact made and broken see them.
+    """A spring and parts that relax, as the conditions for contact made and broken see them."""
 
-    Parameters
-    ----------
-    stiffness
-        K ≥ 0 [N/m; N·m/rad].
-    parts
-        All that H(z) has besides.
-    penetration
-        True if fed with the penetration max(q, 0), False if with the position q.
-    never_pulls
-        True if a force below 0 is given as 0.
-    """
-
-    stiffness: Fraction
-    parts: tuple[Part, ...]
-    penetration: bool
-    never_pulls: bool
+    stiffness: Fraction  # K ≥ 0 [N/m; N·m/rad]
+    parts: tuple[Part, ...]  # all that H(z) has besides
+    penetration: bool  # True if fed with the penetration max(q, 0), False if with the position q
+    never_pulls: bool  # True if a force below 0 is given as 0
 
     @property
     def fed_with(self) -> str:
@@ -310,18 +285,10 @@ _choice = lru_cache(maxsize=256)(Memory.choice)
 
 @dataclass(frozen=True)
 class MultiplierLaw:
-    """A one-sided law as the multiplier sees it; `never_pulls` if it is clamped.
+    """A one-sided law as the multiplier sees it; `never_pulls` if it is clamped."""
 
-    Parameters
-    ----------
-    stiffness
-        K = H(1) [N/m; N·m/rad].
-    rest
-        H − K, without damping.
-    """
-
-    stiffness: Fraction
-    rest: LinearLoop
+    stiffness: Fraction  # K = H(1) [N/m; N·m/rad]
+    rest: LinearLoop  # H − K, without damping
     never_pulls: bool
 
     @cached_property

@@ -45,27 +45,19 @@ _PRECISIONS = (256, 1024, 4096)
 
 @dataclass(frozen=True)
 class LinearLoop:
-    """A device and H(z), exact: what the linear criterion needs and no more.
+    """A device and H(z), exact: what the linear criterion needs and no more."""
 
-    Parameters
-    ----------
-    numerator, denominator
-        Coprime integer coefficients of N and D in ascending powers of ζ = z⁻¹.
-    damping, period
-        b [N·s/m] and T [s].
-    whole_delay, part_delay
-        d and α of delay = (d + α) T.
-    hidden_modes_decay
-        False when a factor that N and D had in common has a root on or outside
-        the unit circle: the port does not see that mode, the controller carries it.
-    """
-
+    # coprime integer coefficients of N and D in ascending powers of ζ = z⁻¹
     numerator: tuple[int, ...]
     denominator: tuple[int, ...]
+    # b [N·s/m] and T [s]
     damping: Fraction
     period: Fraction
+    # d and α of delay = (d + α) T
     whole_delay: int
     part_delay: Fraction
+    # False when a factor that N and D had in common has a root on or outside the unit circle: the port does
+    # not see that mode, the controller carries it
     hidden_modes_decay: bool = True
 
     def __getstate__(self) -> dict[str, object]:

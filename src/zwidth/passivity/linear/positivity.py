@@ -56,13 +56,8 @@ class Positivity:
 def prove_nonnegative(p: fmpz_poly, known: bool = False) -> Positivity | Fraction:
     """A proof that p ≥ 0 on [−1, 1], or a rational point of (−1, 1) where p < 0.
 
-    Parameters
-    ----------
-    p
-        The polynomial.
-    known
-        True where p ≥ 0 is known and only its factors are asked for: a squarefree g crosses each of its
-        zeros, and has none.
+    `p`: the polynomial; `known`: True where p ≥ 0 is known and only its factors are asked for: a squarefree g
+    crosses each of its zeros, and has none.
     """
     if p.degree() < 0:
         return Positivity(0, 0, (), (1,))

@@ -32,22 +32,14 @@ MOST_STATES = 40_000_000
 
 @dataclass(frozen=True)
 class Domain:
-    """Where the hand may be and how far it may go in one sample, in counts.
+    """Where the hand may be and how far it may go in one sample, in counts."""
 
-    Parameters
-    ----------
-    lowest, highest
-        The first and the last cell.
-    reach
-        The largest difference of two successive readings.
-    max_depth, max_speed
-        The bounds themselves, which need not be whole counts: no motion goes beyond
-        them.  None: the upper edge of the last cell, and the reach.
-    """
-
+    # the first and the last cell
     lowest: int
     highest: int
-    reach: int
+    reach: int  # the largest difference of two successive readings
+    # the bounds themselves, which need not be whole counts: no motion goes beyond them.  None: the upper edge
+    # of the last cell, and the reach.
     max_depth: Fraction | None = None
     max_speed: Fraction | None = None
 
@@ -111,16 +103,10 @@ def domain_for(
 ) -> Domain:
     """The cells and the largest move.
 
-    Parameters
-    ----------
-    law, losses
-        The loop.
-    penetration
-        Deepest position of the hand [m; rad], > 0; None: as many counts as are quickly gone through.
-        For a law on both sides of x = 0 it holds on both.
-    speed
-        Largest mean speed of the hand over a sample, or over each part of it between two
-        changes of the force [m/s; rad/s], > 0; None likewise.
+    `law`, `losses`: the loop; `penetration`: deepest position of the hand [m; rad], > 0; None: as many counts
+    as are quickly gone through. For a law on both sides of x = 0 it holds on both.  `speed`: largest mean
+    speed of the hand over a sample, or over each part of it between two changes of the force [m/s; rad/s], >
+    0; None likewise.
     """
     if law.relaxing is not None and losses.curve is not None:
         raise InputError("a friction curve is not taken with a law that relaxes: take a model below it")
@@ -204,30 +190,19 @@ Integers = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Losses:
-    """What a hand meets besides the law, exact.
+    """What a hand meets besides the law, exact."""
 
-    Parameters
-    ----------
-    damping, coulomb_friction
-        b [N·s/m] and f_c [N] of the device.
-    resolution, period
-        Δ > 0 [m] and T [s].
-    delay
-        Samples from a reading to the last interval in which its force acts.
-    part
-        Part of that interval for which it still does, 0 < part ≤ 1; the force of the
-        reading after it follows.  1 for a delay of whole samples.
-    curve
-        Friction measured at several speeds, in place of b and f_c.
-    """
-
+    # b [N·s/m] and f_c [N] of the device
     damping: Fraction
     coulomb_friction: Fraction
+    # Δ > 0 [m] and T [s]
     resolution: Fraction
     period: Fraction
-    delay: int
+    delay: int  # samples from a reading to the last interval in which its force acts
+    # part of that interval for which it still does, 0 < part ≤ 1; the force of the reading after it
+    # follows.  1 for a delay of whole samples.
     part: Fraction = Fraction(1)
-    curve: FrictionCurve | None = None
+    curve: FrictionCurve | None = None  # friction measured at several speeds, in place of b and f_c
 
     @property
     def lag(self) -> Fraction:

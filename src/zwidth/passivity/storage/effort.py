@@ -20,10 +20,7 @@ EFFORT = 60.0
 class Effort:
     """What was done so far, and when the time is over.
 
-    Parameters
-    ----------
-    seconds
-        After which it is [s]; inf: never.
+    `seconds`: after which it is [s]; inf: never.
     """
 
     def __init__(self, seconds: float = inf) -> None:
@@ -47,18 +44,10 @@ class Effort:
 
 
 class Until(NamedTuple):
-    """How far a part of a search may go.
+    """How far a part of a search may go."""
 
-    Parameters
-    ----------
-    effort
-        That of the whole.
-    most
-        Of it, when this part has to end.
-    """
-
-    effort: Effort
-    most: float
+    effort: Effort  # that of the whole
+    most: float  # of it, when this part has to end
 
     @property
     def is_over(self) -> bool:

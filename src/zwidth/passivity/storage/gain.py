@@ -298,27 +298,14 @@ _SETTLING = 400
 
 
 class Round(NamedTuple):
-    """One round of the cycle, the law settled.
+    """One round of the cycle, the law settled."""
 
-    Parameters
-    ----------
-    times
-        The samples, and the instants between them at which a delayed force changes [T].
-    positions
-        x then, the last as the first [m; rad].
-    forces
-        Held from each of them to the next [N; N·m].
-    energies
-        Taken out since the first sample, at each [J].
-    resolution
-        Δ [m; rad].
-    """
-
+    # the samples, and the instants between them at which a delayed force changes [T]
     times: tuple[float, ...]
-    positions: tuple[float, ...]
-    forces: tuple[float, ...]
-    energies: tuple[float, ...]
-    resolution: float
+    positions: tuple[float, ...]  # x then, the last as the first [m; rad]
+    forces: tuple[float, ...]  # held from each of them to the next [N; N·m]
+    energies: tuple[float, ...]  # taken out since the first sample, at each [J]
+    resolution: float  # Δ [m; rad]
 
 
 def settled_round(gain: Gain) -> Round:

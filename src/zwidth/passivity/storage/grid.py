@@ -49,26 +49,16 @@ _BY_ONE_HULL, _BY_HULLS, _BY_MOVES = 5e-8, 2e-7, 2e-8
 
 @dataclass(frozen=True)
 class Grid:
-    """The law, the losses and the domain on a grid of nodes.
+    """The law, the losses and the domain on a grid of nodes."""
 
-    Parameters
-    ----------
-    law, losses, domain
-        The loop, and where the hand may be.
-    steps
-        Into how many a cell is cut.
-    approximation
-        "outer" or "inner".
-    every
-        Counts of the encoder in a cell; more than 1 in an inner approximation only.  Losses and
-        domain are in cells.
-    """
-
+    # the loop, and where the hand may be
     law: FiniteLaw
     losses: Losses
     domain: Domain
-    steps: int
-    approximation: Approximation
+    steps: int  # into how many a cell is cut
+    approximation: Approximation  # "outer" or "inner"
+    # counts of the encoder in a cell; more than 1 in an inner approximation only.  Losses and domain are in
+    # cells.
     every: int = 1
 
     @cached_property

@@ -22,26 +22,13 @@ from zwidth.quantity.text import exact_text
 
 @dataclass(frozen=True)
 class HandBounds:
-    """Bounds on the hand, exact.
+    """Bounds on the hand, exact."""
 
-    Parameters
-    ----------
-    speed
-        Largest mean speed over a sample, or over each part of it with one force [m/s; rad/s].
-    penetration
-        Deepest position that a proof covers, a whole number of counts [m; rad].
-    max_depth
-        Deepest position of a motion that refutes, at most `penetration` [m; rad].
-    outside
-        How far outside the hand may go [m; rad]; None: any distance.
-    resolution, period
-        Δ [m; rad] and T [s].
-    """
-
-    speed: Fraction
-    penetration: Fraction
-    max_depth: Fraction
-    outside: Fraction | None
+    speed: Fraction  # largest mean speed over a sample, or over each part of it with one force [m/s; rad/s]
+    penetration: Fraction  # deepest position that a proof covers, a whole number of counts [m; rad]
+    max_depth: Fraction  # deepest position of a motion that refutes, at most `penetration` [m; rad]
+    outside: Fraction | None  # how far outside the hand may go [m; rad]; None: any distance
+    # Δ [m; rad] and T [s]
     resolution: Fraction
     period: Fraction
 

@@ -54,15 +54,9 @@ _MAX_ROUNDS = {"outer": 300, "inner": 60}
 
 @dataclass(frozen=True)
 class RelaxingGrid(Grid):
-    """A grid with levels of the average reading as a further dimension of its states.
+    """A grid with levels of the average reading as a further dimension of its states."""
 
-    Parameters
-    ----------
-    levels
-        Levels of a per count.
-    """
-
-    levels: int = 1
+    levels: int = 1  # levels of a per count
 
     @property
     def _max_energy(self) -> int:

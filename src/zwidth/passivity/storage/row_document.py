@@ -200,15 +200,9 @@ def _same_motion(
 
 @dataclass(frozen=True)
 class RowStorage(StorageFunction):
-    """The available storage of laws in a chain, from above.
+    """The available storage of laws in a chain, from above."""
 
-    Parameters
-    ----------
-    law
-        The laws as the simulator runs them.
-    """
-
-    law: RowLaw
+    law: RowLaw  # the laws as the simulator runs them
 
     def certificate(self) -> Certificate:
         """The proof as data: the table of the law, the losses, the grid, V."""

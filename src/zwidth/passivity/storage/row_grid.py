@@ -35,15 +35,9 @@ NO_LAW = FiniteLaw((), "none")
 
 @dataclass(frozen=True, kw_only=True)
 class RowGrid(Grid):
-    """A grid whose states are those of a table.
+    """A grid whose states are those of a table."""
 
-    Parameters
-    ----------
-    table
-        States, forces, and where each reading leads.
-    """
-
-    table: Table
+    table: Table  # states, forces, and where each reading leads
 
     @property
     def _max_force(self) -> Fraction:

@@ -30,33 +30,17 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class RowLaw:
-    """Laws in a chain as the simulator runs them.
+    """Laws in a chain as the simulator runs them."""
 
-    Parameters
-    ----------
-    packed
-        The numbers of environment and laws, see `loop.law`.
-    resting
-        What is remembered by a hand that has rested for ever, by count.
-    waiting
-        Forces that are kept, of which the oldest acts: one, and one more for each sample of delay.
-    description
-        Environment and laws, on one line.
-    specification
-        Device, environment and laws in TOML; empty where it has no words for them.
-    clamped, unilateral
-        As the environment.
-    limited, stepped
-        Whether force limit and converter steps of the actuator are counted in.
-    """
-
-    packed: Floats
-    resting: dict[int, Floats]
-    waiting: int
-    description: str
-    specification: str
+    packed: Floats  # the numbers of environment and laws, see `loop.law`
+    resting: dict[int, Floats]  # what is remembered by a hand that has rested for ever, by count
+    waiting: int  # forces that are kept, of which the oldest acts: one, and one more for each sample of delay
+    description: str  # environment and laws, on one line
+    specification: str  # device, environment and laws in TOML; empty where it has no words for them
+    # as the environment
     clamped: bool
     unilateral: bool
+    # whether force limit and converter steps of the actuator are counted in
     limited: bool
     stepped: bool
 
@@ -77,17 +61,10 @@ def row_law(
 ) -> RowLaw:
     """The law of laws in a chain in a device's loop.
 
-    Parameters
-    ----------
-    device, environment
-        Without intervals.
-    lowest
-        The first count of the grid: the hand begins at rest at any count from there to 0, or at
-        0 only where the environment has no surface.
-    only
-        True for a hand that begins at `lowest` and nowhere else.
-    force_limit, force_resolution
-        True to count in the actuator's force limit, the steps of its converter.
+    `device`, `environment`: without intervals; `lowest`: the first count of the grid: the hand begins at rest
+    at any count from there to 0, or at 0 only where the environment has no surface; `only`: True for a hand
+    that begins at `lowest` and nowhere else; `force_limit`, `force_resolution`: True to count in the
+    actuator's force limit, the steps of its converter.
     """
     for counted, key in ((force_limit, "force_limit"), (force_resolution, "force_resolution")):
         if counted and getattr(device, key) is None:
@@ -145,30 +122,18 @@ class DoesNotClose(InputError):
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """The graph of a law in a chain on a grid.
+    """The graph of a law in a chain on a grid."""
 
-    Parameters
-    ----------
-    lowest, highest, reach
-        Counts of the grid, and the largest difference of two successive readings.
-    counts
-        Of each state.
-    successors
-        The state after each reading, by state and by how many counts it is further on, from
-        −reach; −1 off the grid.
-    forces
-        What acts until the next sample [N; N·m].
-    starts
-        The states after the first sample of a hand that has rested.
-    """
-
+    # counts of the grid, and the largest difference of two successive readings
     lowest: int
     highest: int
     reach: int
-    counts: Integers
+    counts: Integers  # of each state
+    # the state after each reading, by state and by how many counts it is further on, from −reach; −1 off the
+    # grid
     successors: Integers
-    forces: Floats
-    starts: Integers
+    forces: Floats  # what acts until the next sample [N; N·m]
+    starts: Integers  # the states after the first sample of a hand that has rested
 
     @property
     def states(self) -> int:

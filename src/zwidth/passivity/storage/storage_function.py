@@ -32,18 +32,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StorageFunction:
-    """The available storage of a loop, from above.
+    """The available storage of a loop, from above."""
 
-    Parameters
-    ----------
-    iteration
-        A value iteration that no motion ended.
-    motion
-        "linear" or "rotary".
-    """
-
-    iteration: ValueIteration[Any]
-    motion: str
+    iteration: ValueIteration[Any]  # a value iteration that no motion ended
+    motion: str  # "linear" or "rotary"
 
     @property
     def grid(self) -> Grid:
@@ -141,15 +133,9 @@ def loop_document(losses: Losses, motion: str) -> dict[str, Any]:
 
 @dataclass(frozen=True, kw_only=True)
 class CoarseGrid(Grid):
-    """Ends of cells in a row; domain and losses are in cells, the ends counted from the lowest.
+    """Ends of cells in a row; domain and losses are in cells, the ends counted from the lowest."""
 
-    Parameters
-    ----------
-    count
-        Δ, the encoder's own [m; rad].
-    """
-
-    count: Fraction
+    count: Fraction  # Δ, the encoder's own [m; rad]
 
     @property
     def sheets(self) -> int:

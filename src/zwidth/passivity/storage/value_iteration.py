@@ -54,16 +54,9 @@ _LOOK = 4
 class Sweep(ABC):
     """V on one grid while it is improved, and how.
 
-    Parameters
-    ----------
-    value
-        V at the start, in energy units; improved in place.
-    threads
-        How many improve it at once.
-    work
-        What a round costs, in the unit of `effort`.
-    max_rounds
-        Rounds after which the search is given up.
+    `value`: V at the start, in energy units; improved in place; `threads`: how many improve it at once;
+    `work`: what a round costs, in the unit of `effort`; `max_rounds`: rounds after which the search is given
+    up.
     """
 
     def __init__(self, value: Integers, threads: int, work: float, max_rounds: float = inf) -> None:
@@ -87,20 +80,10 @@ class BestMoves(Sweep):
     those before it and those after it; so a cycle of best moves still gains: around one that did not, each
     state would have been improved after the next one in the same block.
 
-    Parameters
-    ----------
-    value
-        V at the start.
-    groups
-        Groups of states that are improved together.
-    move_at
-        The move of a state, by its flat index.
-    kernel
-        Called with V, the best moves, the first group and the last, and the tables.
-    tables
-        What does not change: forces, costs and where the nodes are.
-    work
-        What a state costs in a round, in the unit of `effort`.
+    `value`: V at the start; `groups`: groups of states that are improved together; `move_at`: the move of a
+    state, by its flat index; `kernel`: called with V, the best moves, the first group and the last, and the
+    tables; `tables`: what does not change: forces, costs and where the nodes are; `work`: what a state costs
+    in a round, in the unit of `effort`.
     """
 
     def __init__(
@@ -168,24 +151,13 @@ G = TypeVar("G", bound=Sweepable)
 
 @dataclass(frozen=True)
 class ValueIteration(Generic[G]):
-    """How a value iteration ended.
+    """How a value iteration ended."""
 
-    Parameters
-    ----------
-    grid
-        On which it ran.
-    value
-        V of each state in energy units, if no motion gains.
-    cycle
-        Otherwise the moves of a motion that gains in every round; empty if the time ran out.
-    rounds
-        Sweeps over the grid.
-    """
-
-    grid: G
-    value: Integers | None
+    grid: G  # on which it ran
+    value: Integers | None  # V of each state in energy units, if no motion gains
+    # otherwise the moves of a motion that gains in every round; empty if the time ran out
     cycle: tuple[Move, ...]
-    rounds: int
+    rounds: int  # sweeps over the grid
 
 
 def value_iteration(
@@ -193,14 +165,8 @@ def value_iteration(
 ) -> ValueIteration[G]:
     """Improve every state until a storage function or a gaining cycle is left.
 
-    Parameters
-    ----------
-    grid
-        The law, what moves cost, and the states.
-    until
-        When to give up; None: never.
-    progress
-        Called after each round with the number of states that improved.
+    `grid`: the law, what moves cost, and the states; `until`: when to give up; None: never; `progress`:
+    called after each round with the number of states that improved.
     """
     sweep = grid.sweep()
     limit = freely() if until is None else until

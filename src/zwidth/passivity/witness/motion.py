@@ -28,24 +28,15 @@ class Repeat(NamedTuple):
 
 @dataclass(frozen=True)
 class Motion:
-    """Positions at the samples, with parts that may be done many times.
+    """Positions at the samples, with parts that may be done many times."""
 
-    Parameters
-    ----------
-    positions
-        x(k) [m; rad], from rest to rest; each repeated part is listed once.
-        Where one ends ahead of its start, every round, and all that follows,
-        is that much further on.
-    switch_positions
-        Position in each interval at the instant when a delayed force changes;
-        empty for a delay of whole samples.
-    repeats
-        The parts done more than once, in order.
-    """
-
+    # x(k) [m; rad], from rest to rest; each repeated part is listed once. Where one ends ahead of its start,
+    # every round, and all that follows, is that much further on.
     positions: tuple[Fraction, ...]
+    # position in each interval at the instant when a delayed force changes; empty for a delay of whole
+    # samples
     switch_positions: tuple[Fraction, ...] = ()
-    repeats: tuple[Repeat, ...] = ()
+    repeats: tuple[Repeat, ...] = ()  # the parts done more than once, in order
 
     def repeated(self, times: int) -> Motion:
         """The same motion with another number of rounds in every repeated part."""
@@ -169,12 +160,7 @@ KINDS = ("motion", "contact motion", "row motion")
 def saved_motion(document: object, name: str) -> Motion:
     """The motion in a witness, an active verdict or a limit, as `zwidth check` and `zwidth limit` save them.
 
-    Parameters
-    ----------
-    document
-        As `read_document` gives it.
-    name
-        Of the file, for messages.
+    `document`: as `read_document` gives it; `name`: of the file, for messages.
     """
     found: Any = document
     if isinstance(found, Mapping) and isinstance(found.get("witness"), Mapping):
