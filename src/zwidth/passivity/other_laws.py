@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device
@@ -21,13 +20,13 @@ from zwidth.model.environment import PulseTransferFunction
 from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.model.rendering.rendering_law import LoopContext
-from zwidth.passivity import value_iteration_fallback as gap
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.covering_wall import covering
 from zwidth.passivity.formulas.colgate_stanley_brown import ideal_device, law_of, needed_damping
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.outcome_evidence import Need
 from zwidth.passivity.scope import Law, Scope, scope_of
+from zwidth.passivity.value_iteration_fallback import with_value_iteration
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
 
@@ -56,7 +55,11 @@ def check_other(
     """
     worst = _at_its_worst(device)
     asked = scope_of(device, law)
-    values: Values = partial(_by_values, progress=progress) if iterate else lambda verdict: verdict
+
+    def values(verdict: Verdict) -> Verdict:
+        """A motion refutes, a proof of bounded hands stands beside the verdict."""
+        return with_value_iteration(worst, law, verdict, progress) if iterate else verdict
+
     if law.points:
         verdict = _spring(worst, law, asked, values)
     elif law.power_law is not None:
@@ -140,21 +143,6 @@ def _on_paper(verdict: Verdict) -> Verdict | None:
     if theorem is None or not theorem.holds_on(ideal):
         return None
     return replace(verdict, outcome="theorem", theorem=theorem.statement)
-
-
-def _by_values(verdict: Verdict, progress: Progress | None) -> Verdict:
-    """What value iteration adds: a motion refutes, a proof of bounded hands stands beside the verdict."""
-    from zwidth.passivity.storage.solution import available_storage  # numpy and xarray take their time
-
-    try:
-        device, law = verdict.device, verdict.environment
-        found = available_storage(device, law, effort=gap.EFFORT, progress=progress)
-    except InputError:  # an ideal encoder, or a law that remembers too much
-        return verdict
-    if found.witness is not None:
-        scope = verdict.scope.replace(contact=found.scope.contact)
-        return replace(verdict, outcome="active", scope=scope, motion=found.witness, available_storage=found)
-    return verdict if found.outcome == "undecided" else replace(verdict, available_storage=found)
 
 
 # A scene behind a virtual coupling is decided by the coupling alone, whatever it is made of:

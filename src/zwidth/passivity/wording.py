@@ -77,11 +77,6 @@ _SAMPLING = {
 }
 
 
-def contact_of(contact: Contact) -> str:
-    """The contact that a result covers, in a few words."""
-    return _CONTACT[contact]
-
-
 def claim_of_passivity(scope: Scope, at_limit: bool) -> str:
     """The sentence of a proof."""
     hand = {"kept": "a hand that keeps contact"}.get(scope.contact, "the hand")

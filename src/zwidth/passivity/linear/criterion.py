@@ -22,17 +22,20 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
+from itertools import accumulate
 from math import acos, floor, inf, pi
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
-import numpy as np
 from flint import fmpq_poly
-from numpy.typing import ArrayLike, NDArray
 
 from zwidth.errors import InputError
 from zwidth.passivity.linear.exact_algebra import is_schur, roots_inside
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.positivity import Positivity, TooClose, prove_nonnegative
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
 
 Reason = Literal["criterion", "negative static stiffness", "unstable environment", "too close to zero"]
 
@@ -93,28 +96,15 @@ def closed_loop(loop: LinearLoop, offset: Fraction) -> list[int]:
     """n + g d of b + T ζ^{d+1} N/((1 − ζ) D) in lowest terms, ascending in ζ, as integers."""
     total = loop.damping + offset
     numerator = [0] * (loop.whole_delay + 1) + list(loop.numerator)
-    denominator = _times_one_minus_zeta(loop.denominator)
+    denominator = [x - y for x, y in zip([*loop.denominator, 0], [0, *loop.denominator], strict=True)]
     if sum(loop.numerator) == 0:  # (1 − ζ) divides N: cancel it
-        numerator = _over_one_minus_zeta(numerator)
+        numerator = list(accumulate(numerator[:-1]))
         denominator = list(loop.denominator)
     size = max(len(numerator), len(denominator))
     numerator += [0] * (size - len(numerator))
     denominator += [0] * (size - len(denominator))
     scale = total.denominator * loop.period.denominator
     return [int((total * y + loop.period * x) * scale) for x, y in zip(numerator, denominator, strict=True)]
-
-
-def _times_one_minus_zeta(a: tuple[int, ...]) -> list[int]:
-    return [x - y for x, y in zip([*a, 0], [0, *a], strict=True)]
-
-
-def _over_one_minus_zeta(a: list[int]) -> list[int]:
-    """a/(1 − ζ) for a(1) = 0: the running sums."""
-    total, quotient = 0, []
-    for coefficient in a[:-1]:
-        total += coefficient
-        quotient.append(total)
-    return quotient
 
 
 # At a given damping the tightest frequency is a root of a polynomial; raising b
@@ -181,6 +171,8 @@ _POINTS = 2000
 
 def sampled_frequencies(given: ArrayLike | None, period: float) -> NDArray[np.float64]:
     """Those that were given, or 2000 evenly between 0 and 1/(2T) [Hz]."""
+    import numpy as np  # a criterion needs none of it
+
     nyquist = 0.5 / period
     if given is None:
         return np.asarray((np.arange(_POINTS) + 0.5) * (nyquist / _POINTS), dtype=np.float64)

@@ -1,11 +1,11 @@
 """Walls and solids that are passive while the hand stays inside, and are not when it touches and leaves.
 
 A law fed with the position hears outside what it does not answer: a hand that comes in fast has loaded it
-for nothing but the friction of the way.  What it then gives out at the surface, in and out in turn, is a quadratic
-in the hand's moves once it is said at which samples the hand is inside.  So for each such pattern the best
-moves follow by going backward from the last (`contact_pattern_search`).  Coulomb friction and counts of the
-encoder grow with the first power of the size only: a large enough motion pays for them.  The checker has the
-last word.
+for nothing but the friction of the way.  What it then gives out at the surface, in and out in turn, is a
+quadratic in the hand's moves once it is said at which samples the hand is inside.  So for each such pattern
+the best moves follow by going backward from the last (`contact_pattern_search`).  Coulomb friction and counts
+of the encoder grow with the first power of the size only: a large enough motion pays for them.  The checker
+has the last word.
 """
 
 from __future__ import annotations
