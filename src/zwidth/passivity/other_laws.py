@@ -40,11 +40,7 @@ Values = Callable[[Verdict], Verdict]
 
 
 def check_other(
-    device: Device,
-    law: Environment,
-    closed: Closed,
-    progress: Progress | None = None,
-    iterate: bool = True,
+    device: Device, law: Environment, closed: Closed, progress: Progress | None = None, iterate: bool = True
 ) -> Verdict:
     """The verdict on a law without H(z).
 

@@ -110,10 +110,7 @@ def claim(verdict: Found) -> str:
 def assumptions(verdict: Found) -> tuple[str, ...]:
     """What the claim covers and takes for granted, line by line."""
     between = intervals(verdict.scope, verdict.outcome)
-    return (
-        *lines(verdict.scope, verdict.outcome),
-        *([] if between is None else [between]),
-    )
+    return (*lines(verdict.scope, verdict.outcome), *([] if between is None else [between]))
 
 
 _ROADS = {

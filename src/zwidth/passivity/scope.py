@@ -322,11 +322,7 @@ def unit_key(name: str, motion: str = "linear") -> str:
 
 
 def loop_document(
-    loop: LinearLoop,
-    coulomb_friction: Fraction,
-    resolution: Fraction,
-    unilateral: bool,
-    motion: str,
+    loop: LinearLoop, coulomb_friction: Fraction, resolution: Fraction, unilateral: bool, motion: str
 ) -> dict[str, Any]:
     """The loop that a proof or a motion speaks of, exact; H(z) in descending powers of z."""
     size = max(len(loop.numerator), len(loop.denominator))

@@ -84,10 +84,7 @@ class StorageFunction:
         return xr.DataArray(
             value.reshape(len(remembered), -1) * float(grid.energy_unit),
             dims=(name, "position"),
-            coords={
-                name: (name, remembered, counted),
-                "position": ("position", x.ravel(), {"units": unit}),
-            },
+            coords={name: (name, remembered, counted), "position": ("position", x.ravel(), {"units": unit})},
             attrs={"units": "J", "long_name": "available storage, at most"},
             name="available_storage",
         )
