@@ -31,11 +31,10 @@ from zwidth.cli.page import (
     section,
     small_print,
 )
-from zwidth.passivity.in_short import in_short
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.scope import TOLD
 from zwidth.passivity.verdict import Verdict
-from zwidth.passivity.wording import intervals
+from zwidth.passivity.wording import in_short, intervals
 
 if TYPE_CHECKING:
     from rich.console import Console

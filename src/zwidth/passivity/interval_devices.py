@@ -10,7 +10,7 @@ stiffness and every value said to be enough was itself proved, on the rest of th
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from math import ceil, floor, inf, isfinite, log10
@@ -147,28 +147,15 @@ def over_ranges(found: DeviceInRange, law: Environment, verdict: Verdict) -> Ove
 
     `found`: the device, with its ranges; `law`: what is rendered; `verdict`: what `check` says of both.
     """
+    device, keys = found.device, [key for key in found.ranges if key in _BETTER]
     said = OverRanges(
-        name=found.device.name,
-        ranges=found.ranges,
-        motion=found.device.motion,
-        every=None,
-        best=None,
-        first=None,
+        name=device.name, ranges=found.ranges, motion=device.motion, every=None, best=None, first=None
     )
     if not (law.has_transfer_function and law.is_certain and has_stiffness(law)):
         return said
-    keys = [key for key in found.ranges if key in _BETTER]
-    best = _at_end(found.device, keys, better=True)
-    every, most = (_proved_up_to(device, law) for device in (found.device, best))
+    every, best = (_proved_up_to(one, law) for one in (device, _at_end(device, keys, better=True)))
     open_still = verdict.outcome not in ("passive", "active")
-    return OverRanges(
-        name=said.name,
-        ranges=said.ranges,
-        motion=said.motion,
-        every=every,
-        best=most,
-        first=_first(found.device, keys, law) if open_still else None,
-    )
+    return replace(said, every=every, best=best, first=_first(device, keys, law) if open_still else None)
 
 
 def _at_end(device: Device, keys: list[str], better: bool) -> Device:

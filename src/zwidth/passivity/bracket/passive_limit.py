@@ -230,10 +230,8 @@ class BoundedSearch:
         for steps, fine in zip(STEPS, (FINE[0], *[FINE[1]] * 3), strict=True):
             if self.search.effort() >= self.search.most or self._is_done():
                 break
-            self.proving.holds, self.refuting.holds = (
-                partial(self._is_proved, steps),
-                partial(self._gains, fine),
-            )
+            self.proving.holds = partial(self._is_proved, steps)
+            self.refuting.holds = partial(self._gains, fine)
             self._approach(self.search.most)
             if self.proving.good is None:
                 break

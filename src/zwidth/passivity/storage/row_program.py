@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import ceil, floor
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -42,6 +42,11 @@ USUAL_STATES = 20_000
 class RowProgram:
     """Laws in a chain and one domain, on tables of either approximation; as `DynamicProgram`."""
 
+    too_large: ClassVar[None] = None  # a domain that is too large has no table, and no dynamic program
+    has_cells: ClassVar[bool] = False  # a table has the states of single counts
+    is_large: ClassVar[bool] = False  # no closed form stands in for it
+    takes_long: ClassVar[bool] = False  # how large its table is shows only as it is made
+
     device: Device
     environment: Environment
     law: RowLaw
@@ -54,26 +59,6 @@ class RowProgram:
     def motion(self) -> str:
         """Linear or rotary."""
         return self.device.motion
-
-    @property
-    def too_large(self) -> None:
-        """Nothing: a domain that is too large has no table, and no dynamic program."""
-        return
-
-    @property
-    def has_cells(self) -> bool:
-        """False: a table has the states of single counts."""
-        return False
-
-    @property
-    def is_large(self) -> bool:
-        """True where a storage function takes its time: no closed form stands in for it."""
-        return False
-
-    @property
-    def takes_long(self) -> bool:
-        """False: how large its table is shows only as it is made."""
-        return False
 
     def checking(self, steps: int) -> float:
         """What the checker may have to do over a storage function, in the unit of `effort`."""
