@@ -24,7 +24,7 @@ from zwidth.passivity.linear.criterion import LinearProof, Piece, prove_delays
 from zwidth.passivity.linear.one_norm import NormBound
 from zwidth.passivity.linear.positivity import Positivity
 from zwidth.passivity.result import Evidence
-from zwidth.passivity.scope import loop_document, unit_key
+from zwidth.passivity.scope import unit_key
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.text import exact_text
 
@@ -89,11 +89,7 @@ def certify(decision: Decision) -> dict[str, Any]:
 
 
 def _document(decision: Decision, kind: str) -> dict[str, Any]:
-    setting = decision.setting
-    loop = loop_document(
-        setting.loop, setting.coulomb_friction, setting.resolution, setting.unilateral, setting.motion
-    )
-    return {"format": FORMAT, "kind": kind, "loop": loop}
+    return {"format": FORMAT, "kind": kind, "loop": decision.setting.loop_document()}
 
 
 def linear_proof(decision: Decision) -> dict[str, Any]:

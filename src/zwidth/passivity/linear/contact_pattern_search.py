@@ -235,14 +235,9 @@ def _played(model: _Model, cycle: str) -> Iterator[_Played]:
     value = [[0.0] * model.size for _ in range(model.size)]
     gains: list[Row] = []
     symbols, before = "O", 0.0
-    for symbol in "O" * model.pending:
-        earlier = _earlier(model, value, symbol, "O")
-        if earlier is None:
-            return
-        value, symbols = earlier[0], symbol + symbols
-        gains.insert(0, earlier[1])
-    for rounds in range(1, _ROUNDS[-1] + 1):
-        for symbol in reversed(cycle if rounds > 1 else cycle.rstrip("O")):
+    for rounds in range(_ROUNDS[-1] + 1):  # before the first, what is still pending acts outside
+        ahead = cycle if rounds > 1 else cycle.rstrip("O") if rounds else "O" * model.pending
+        for symbol in reversed(ahead):
             earlier = _earlier(model, value, symbol, symbols[0])
             if earlier is None:
                 return

@@ -13,7 +13,7 @@ from zwidth.model.environment.environment import Environment
 from zwidth.passivity.certificate import FORMAT, Certificate, wall_document
 from zwidth.passivity.criterion_choice import Decision, decide
 from zwidth.passivity.linear.contact import DampedWall, enough_damping
-from zwidth.passivity.scope import Hands, loop_document, unit_key
+from zwidth.passivity.scope import Hands, unit_key
 from zwidth.passivity.storage.domain import Domain, Losses
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.passivity.witness.motion import Motion
@@ -141,15 +141,12 @@ def _covers(decision: Decision, damping: Fraction, friction: Fraction, speed: Fr
 
 
 def _document(decision: Decision, damping: Fraction, friction: Fraction, speed: Fraction) -> dict[str, Any]:
-    setting, motion = decision.setting, decision.setting.motion
-    loop = loop_document(
-        setting.loop, setting.coulomb_friction, setting.resolution, setting.unilateral, motion
-    )
+    motion = decision.setting.motion
     kind = "spring" if decision.is_spring else "contact"
     document: dict[str, Any] = {
         "format": FORMAT,
         "kind": KIND,
-        "loop": loop,
+        "loop": decision.setting.loop_document(),
         f"largest_speed_{'rad_per_s' if motion == 'rotary' else 'm_per_s'}": exact_text(speed),
         "enough": {
             "kind": kind,

@@ -20,7 +20,7 @@ from typing import Any
 from zwidth.model.environment.environment import Environment
 from zwidth.passivity.linear.contact_pattern_search import Surface, rhythms
 from zwidth.passivity.linear.exact_algebra import is_schur
-from zwidth.passivity.scope import loop_document, unit_key
+from zwidth.passivity.scope import unit_key
 from zwidth.passivity.witness.motion import Motion, round_up
 from zwidth.passivity.witness.sinusoid import oscillations
 from zwidth.passivity.witness.witness import FORMAT, Setting, Witness
@@ -56,12 +56,11 @@ class TouchedSetting(Setting):
 
     def document(self, motion: Motion, energy: Fraction) -> dict[str, Any]:
         """The motion in this setting as a document for the checker."""
-        loop = loop_document(self.loop, self.coulomb_friction, self.resolution, self.unilateral, self.motion)
         length = unit_key("position", self.motion).removeprefix("position_")
         document: dict[str, Any] = {
             "format": FORMAT,
             "kind": "touching motion",
-            "loop": loop,
+            "loop": self.loop_document(),
             "law": {"fed_with": self.fed_with, "never_pulls": self.never_pulls},
             unit_key("sample_period"): self.loop.period,
             "energy_J": energy,

@@ -20,7 +20,7 @@ from zwidth.passivity.linear.criterion import LinearRefutation, frequency, offse
 from zwidth.passivity.linear.exact_algebra import is_schur
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.result import Evidence
-from zwidth.passivity.scope import Contact, loop_document
+from zwidth.passivity.scope import Contact
 from zwidth.passivity.witness.edge_crossing import best_waits, edge_crossing
 from zwidth.passivity.witness.motion import Motion, Pattern, realize, round_up
 from zwidth.passivity.witness.sinusoid import (
@@ -70,8 +70,7 @@ class Violation(Evidence):
 
     def to_dict(self) -> dict[str, Any]:
         """The violation as plain data."""
-        s = self.setting
-        loop = loop_document(s.loop, s.coulomb_friction, s.resolution, s.unilateral, s.motion)
+        loop = self.setting.loop_document()
         return {"format": FORMAT, "kind": "violation", "loop": loop, "proof": self._proof()}
 
     def _proof(self) -> dict[str, Any]:

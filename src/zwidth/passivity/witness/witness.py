@@ -34,6 +34,10 @@ class Setting:
     unilateral: bool
     motion: str = "linear"
 
+    def loop_document(self) -> dict[str, Any]:
+        """Of all but the motion, exact."""
+        return loop_document(self.loop, self.coulomb_friction, self.resolution, self.unilateral, self.motion)
+
     def ideal(self) -> Setting:
         """Without Coulomb friction and with an ideal encoder: energy is then quadratic in size."""
         return replace(self, coulomb_friction=Fraction(0), resolution=Fraction(0))
@@ -71,8 +75,7 @@ class Setting:
 
     def document(self, motion: Motion, energy: Fraction) -> dict[str, Any]:
         """The motion in this setting as a document for the checker."""
-        loop = loop_document(self.loop, self.coulomb_friction, self.resolution, self.unilateral, self.motion)
-        document: dict[str, Any] = {"format": FORMAT, "kind": "motion", "loop": loop}
+        document: dict[str, Any] = {"format": FORMAT, "kind": "motion", "loop": self.loop_document()}
         document[unit_key("sample_period")] = self.loop.period
         document["energy_J"] = energy
         if motion.rounds > 1:
