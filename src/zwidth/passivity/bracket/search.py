@@ -173,7 +173,7 @@ _AHEAD = 0.5
 
 
 Clock = Callable[[], float]
-"""What has been done so far, as `solve.effort` counts it."""
+"""What has been done so far, as `effort` counts it."""
 
 
 class Side:

@@ -1,7 +1,7 @@
 """One arm of a pair in samples, and what moves within a sample lose.
 
 Compensation of friction under a line h + s v takes h of Coulomb friction, s/2 of damping and C + s/2 of local
-damping (`tangents`).  Of an arm whose drive reads more often it is computed once in T all the same: it takes
+damping (`covering_wall`).  Of an arm whose drive reads more often it is computed once in T all the same: it takes
 w (s/2 + (C + s/2) cos θ) from what the moves of a whole sample lose.
 """
 
