@@ -37,7 +37,7 @@ from zwidth.passivity.linear.contact import (
 from zwidth.passivity.linear.criterion import LinearProof, LinearRefutation, decide_linear
 from zwidth.passivity.linear.loop import LinearLoop, linear_loop
 from zwidth.passivity.linear.one_norm import NormBound, bound_one_norm
-from zwidth.passivity.witness.edge_crossing import best_waits
+from zwidth.passivity.witness.motion import best_waits
 from zwidth.passivity.witness.witness import Setting
 
 Kind = Literal["spring", "contact", "relaxing contact", "multiplier contact", "linear", "quantized"]

@@ -14,10 +14,9 @@ from plain_iteration import PlainIteration, exact_gain
 from strategies import seeds
 
 from zwidth.passivity.storage.domain import Domain, Losses
-from zwidth.passivity.storage.effort import Effort, Until
 from zwidth.passivity.storage.grid import Grid
 from zwidth.passivity.storage.law import FiniteLaw
-from zwidth.passivity.storage.value_iteration import value_iteration
+from zwidth.passivity.storage.value_iteration import Effort, Until, value_iteration
 
 LAWS = {
     "spring": ("position", 1, False, 0),

@@ -16,7 +16,6 @@ from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.bracket.bracket import Bracket, parameter_of, refuse_without_part
 from zwidth.passivity.bracket.search import NOTHING, Found, Search, approach, is_stepped
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.storage.effort import EFFORT, Effort, Until, checked_effort, time_limit
 from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.storage.hand_bounds import slow_hands
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of, program_scope
@@ -24,6 +23,7 @@ from zwidth.passivity.storage.row_document import RowStorage
 from zwidth.passivity.storage.row_program import RowProgram, row_program
 from zwidth.passivity.storage.row_table import DoesNotClose
 from zwidth.passivity.storage.storage_function import CELLS, StorageFunction
+from zwidth.passivity.storage.value_iteration import EFFORT, Effort, Until, checked_effort, time_limit
 from zwidth.quantity.exact import Exact, RealLike, ends
 
 _SOME_SECONDS = 10.0

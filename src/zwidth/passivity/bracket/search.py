@@ -13,11 +13,11 @@ from zwidth.passivity.bracket.bracket import Bracket, Parameter
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check, check_by_closed_forms
 from zwidth.passivity.scope import Scope
-from zwidth.passivity.storage.effort import Effort
 from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.storage.hand_bounds import HandBounds
 from zwidth.passivity.storage.row_document import RowStorage
 from zwidth.passivity.storage.storage_function import StorageFunction
+from zwidth.passivity.storage.value_iteration import Effort
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact

@@ -21,7 +21,6 @@ from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.scope import Contact, Hands, Law, Scope, scope_of
 from zwidth.passivity.storage.domain import Domain, Losses, domain_for, losses_of, states_of, too_large
-from zwidth.passivity.storage.effort import Until, freely
 from zwidth.passivity.storage.gain import Gain, gain
 from zwidth.passivity.storage.grid import Approximation, Grid
 from zwidth.passivity.storage.hand_bounds import HandBounds, hand_bounds
@@ -29,7 +28,7 @@ from zwidth.passivity.storage.law import FiniteLaw, finite_law
 from zwidth.passivity.storage.relaxing_grid import RelaxingGrid
 from zwidth.passivity.storage.row_program import RowProgram, row_program
 from zwidth.passivity.storage.storage_function import CELLS, StorageFunction, has_cells, prove_on_cells
-from zwidth.passivity.storage.value_iteration import Progress, value_iteration
+from zwidth.passivity.storage.value_iteration import Progress, Until, freely, value_iteration
 from zwidth.quantity.exact import RealLike
 
 STEPS = (8, 16, 32, 64)

@@ -26,11 +26,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zwidth.passivity.storage.domain import Integers
-from zwidth.passivity.storage.effort import Until
 from zwidth.passivity.storage.grid import Grid
 from zwidth.passivity.storage.hull import NOWHERE
 from zwidth.passivity.storage.relaxing_moves import RelaxingForce, best_cycle, follow, sweep_relaxing
-from zwidth.passivity.storage.value_iteration import THREADS, Move, Sweep, slices
+from zwidth.passivity.storage.value_iteration import THREADS, Move, Sweep, Until, slices
 
 ONE = 1 << 16
 """Weights of interpolation are whole multiples of 1/ONE, taken from both sides."""

@@ -21,13 +21,20 @@ from zwidth.model.environment.environment import Environment
 from zwidth.model.operator import PrescribedMotion
 from zwidth.passivity.scope import Contact, Hands, Law
 from zwidth.passivity.storage.domain import Domain, Losses, counts_of, losses_of
-from zwidth.passivity.storage.effort import Until
 from zwidth.passivity.storage.gain import Gain, motion_document
 from zwidth.passivity.storage.hand_bounds import HandBounds, hand_bounds
 from zwidth.passivity.storage.row_document import MOTION, RowStorage, Run, columns, law_document, same_law
-from zwidth.passivity.storage.row_grid import NO_LAW, RowGrid
-from zwidth.passivity.storage.row_table import MOST_STATES, DoesNotClose, RowLaw, Table, row_law, tabulate
-from zwidth.passivity.storage.value_iteration import Progress, ValueIteration, value_iteration
+from zwidth.passivity.storage.row_table import (
+    MOST_STATES,
+    NO_LAW,
+    DoesNotClose,
+    RowGrid,
+    RowLaw,
+    Table,
+    row_law,
+    tabulate,
+)
+from zwidth.passivity.storage.value_iteration import Progress, Until, ValueIteration, value_iteration
 from zwidth.passivity.witness.motion import Motion, Repeat
 from zwidth.quantity.exact import RealLike
 

@@ -13,13 +13,19 @@ from zwidth.model.environment.transfer_function import as_environment
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
-from zwidth.passivity.storage.effort import EFFORT, Effort, Until, checked_effort, time_limit
 from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.storage.hand_bounds import slow_hands
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of, program_scope
 from zwidth.passivity.storage.row_program import RowProgram
 from zwidth.passivity.storage.storage_function import CELLS, StorageFunction
-from zwidth.passivity.storage.value_iteration import Progress
+from zwidth.passivity.storage.value_iteration import (
+    EFFORT,
+    Effort,
+    Progress,
+    Until,
+    checked_effort,
+    time_limit,
+)
 from zwidth.passivity.wording import claim_of_passivity
 from zwidth.quantity.exact import RealLike
 

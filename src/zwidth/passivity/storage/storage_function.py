@@ -19,10 +19,9 @@ import numpy as np
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.scope import unit_key
 from zwidth.passivity.storage.domain import Domain, Integers, Losses
-from zwidth.passivity.storage.effort import Until
 from zwidth.passivity.storage.grid import Grid
 from zwidth.passivity.storage.law import FiniteLaw
-from zwidth.passivity.storage.value_iteration import Progress, ValueIteration, value_iteration
+from zwidth.passivity.storage.value_iteration import Progress, Until, ValueIteration, value_iteration
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text
 

@@ -21,8 +21,7 @@ from zwidth.passivity.linear.exact_algebra import is_schur
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import Contact
-from zwidth.passivity.witness.edge_crossing import best_waits, edge_crossing
-from zwidth.passivity.witness.motion import Motion, Pattern, realize, round_up
+from zwidth.passivity.witness.motion import Motion, Pattern, best_waits, edge_crossing, realize, round_up
 from zwidth.passivity.witness.sinusoid import (
     PRESS_LENGTHS,
     buildups,
