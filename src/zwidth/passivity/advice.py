@@ -126,8 +126,7 @@ _PHASES = (0, 0.2, 0.4, 0.5, 0.6, 0.8)
 
 _MOST_SAMPLES = 3
 
-_BESIDE = (Fraction(1, 2**30),)
-"""How far beside a limit that is known but for rounding it is asked."""
+_BESIDE = (Fraction(1, 2**30),)  # how far beside a limit that is known but for rounding it is asked
 
 
 @dataclass(frozen=True)

@@ -82,11 +82,8 @@ _BITS = 200
 _ROUNDED_UP = Fraction(1, 2**120)
 """More than what artanh in so many bits, and in the checker's, is off by, in proportion."""
 
-_DIGITS = 12
-"""Of 1 − r."""
-
-_FARTHEST = 30.0
-"""artanh r beyond which 1 − r² is as nothing."""
+_DIGITS = 12  # of 1 − r
+_FARTHEST = 30.0  # artanh r beyond which 1 − r² is as nothing
 
 
 class Line(NamedTuple):

@@ -46,11 +46,8 @@ QUICKEST = 60.0
 _PER_DECADE = 8
 _MASSES = (0.25, 1.0, 4.0)
 _MOST_SAMPLES = 4000
-_AFTER = 30
-"""Samples that the hand stays at the end of the motion."""
-
-_ROUNDING = 1e-9
-"""Energy that counts as got out, as part of the energy moved."""
+_AFTER = 30  # samples that the hand stays at the end of the motion
+_ROUNDING = 1e-9  # energy that counts as got out, as part of the energy moved
 
 
 class Reached(NamedTuple):

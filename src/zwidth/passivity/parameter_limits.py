@@ -153,12 +153,8 @@ def has_stiffness(environment: Environment) -> bool:
 Change = Callable[[Fraction], tuple[Device, Environment]]
 """The loop with a value of one of its parameters."""
 
-_MOST = 8
-"""Secants: where what is asked for is in proportion, two do."""
-
-_NEAR = 1e-13
-"""Of all that there is so much may be missing or left."""
-
+_MOST = 8  # secants: where what is asked for is in proportion, two do
+_NEAR = 1e-13  # of all that there is so much may be missing or left
 _ROUNDED = 1 + 1e-12
 
 

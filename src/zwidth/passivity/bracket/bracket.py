@@ -141,9 +141,7 @@ Loop = tuple[Device, Environment]
 MORE_IS_SAFER = frozenset({"damping", "coulomb_friction", "rate"})
 """Parameters of a device of which a loop needs enough; of all others it may have too much."""
 
-_MORE_OF_A_LAW_IS_SAFER = frozenset({"virtual_mass"})
-"""The same of an environment."""
-
+_MORE_OF_A_LAW_IS_SAFER = frozenset({"virtual_mass"})  # the same of an environment
 _NO_PART = {
     "mass": "a hand without a limit on its force moves every mass as it likes",
     "stiction": "only sliding friction is counted",

@@ -26,8 +26,7 @@ from zwidth.passivity.storage.storage_function import CELLS, StorageFunction
 from zwidth.passivity.storage.value_iteration import EFFORT, Effort, Until, checked_effort, time_limit
 from zwidth.quantity.exact import Exact, RealLike, ends
 
-_SOME_SECONDS = 10.0
-"""What needs no announcement."""
+_SOME_SECONDS = 10.0  # what needs no announcement
 
 
 def passive_limit(

@@ -42,8 +42,7 @@ def is_stepped(law: Environment) -> bool:
     return law.starts_at_rest and not law.has_transfer_function
 
 
-_LOOP = 0.01
-"""What one loop is counted as at least: closed forms decide a hundred in a second."""
+_LOOP = 0.01  # what one loop is counted as at least: closed forms decide a hundred in a second
 
 NOTHING = Found(None, None, None, None, Scope())
 
@@ -165,11 +164,8 @@ def _plain(value: float | None) -> float | None:
 # again loses only the best bracket.
 
 
-_FARTHEST = 60
-"""Doublings from the first guess after which there is no limit."""
-
-_AHEAD = 0.5
-"""Work by which the first side may be ahead of the other: it tells the other where to begin."""
+_FARTHEST = 60  # doublings from the first guess after which there is no limit
+_AHEAD = 0.5  # work by which the first side may be ahead of the other: it tells the other where to begin
 
 
 Clock = Callable[[], float]

@@ -35,8 +35,7 @@ from zwidth.passivity.linear.one_norm import NormBound, bound_one_norm
 from zwidth.passivity.linear.positivity import Positivity, TooClose, prove_nonnegative
 from zwidth.quantity.balls import as_fmpq, as_fraction
 
-_FINE = 10**12
-"""A root is taken to so many parts of itself, from above."""
+_FINE = 10**12  # a root is taken to so many parts of itself, from above
 
 
 @dataclass(frozen=True)

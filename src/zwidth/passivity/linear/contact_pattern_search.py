@@ -24,19 +24,14 @@ from zwidth.passivity.linear.loop import LinearLoop
 Row = list[float]
 Matrix = list[Row]
 
-_ROUNDS = (1, 2, 4, 8, 16, 32)
-"""How often a rhythm is repeated."""
-
+_ROUNDS = (1, 2, 4, 8, 16, 32)  # how often a rhythm is repeated
 _LONGEST_RUN = 1500
 _LARGEST_STATE = 14
-_ENOUGH = 1.1
-"""What is got at the surface over what the way in costs, at which the search stops."""
-
+_ENOUGH = 1.1  # what is got at the surface over what the way in costs, at which the search stops
 _TRIED, _HOPELESS, _FEW = 3, 0.75, 4
 """Rhythms after which the search ends if the best pays for less than this share; motions tried in the end."""
 
-_SETTLED = 1.002
-"""By how much more rounds must pay better to go on."""
+_SETTLED = 1.002  # by how much more rounds must pay better to go on
 
 
 @dataclass(frozen=True)

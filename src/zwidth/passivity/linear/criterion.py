@@ -113,8 +113,7 @@ def closed_loop(loop: LinearLoop, offset: Fraction) -> list[int]:
 # claimed there is decided exactly elsewhere.
 
 
-_FLAT = 1e-12
-"""Relative difference below which two frequencies are equally tight."""
+_FLAT = 1e-12  # relative difference below which two frequencies are equally tight
 
 
 @lru_cache(maxsize=16)

@@ -131,8 +131,7 @@ def halves(h: fmpz_poly) -> tuple[fmpz_poly, fmpz_poly]:
 
 Polynomial = TypeVar("Polynomial", fmpz_poly, arb_poly)
 
-_PRECISIONS = (256, 1024, 4096)
-"""Bits of the balls, one after the other."""
+_PRECISIONS = (256, 1024, 4096)  # bits of the balls, one after the other
 
 
 def is_schur(ascending: Sequence[int]) -> bool:
@@ -185,8 +184,7 @@ def _reversed(p: Polynomial) -> Polynomial:
 # Polynomials on the unit circle, ζ = e^{−jθ}, as polynomials in c = cos θ.
 
 
-_FEW = 32
-"""Cosines that are added one by one."""
+_FEW = 32  # cosines that are added one by one
 
 
 def real_product(a: Sequence[int], b: Sequence[int]) -> fmpq_poly:

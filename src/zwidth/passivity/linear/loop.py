@@ -39,8 +39,7 @@ HIGH_DEGREE = 40
 LARGEST_DIGITS = 1000
 """Digits of N and D as whole numbers that are still decided: a proof has more than twice as many."""
 
-_PRECISIONS = (256, 1024, 4096)
-"""Bits of the balls in which a need is evaluated, one after the other."""
+_PRECISIONS = (256, 1024, 4096)  # bits of the balls in which a need is evaluated, one after the other
 
 
 @dataclass(frozen=True)

@@ -33,11 +33,8 @@ class TooClose(InputError):
 
 _ONE = fmpz_poly([1])
 _HALF = fmpq(1, 2)
-_NARROW = Fraction(1, 100)
-"""Intervals in which a valley is looked for; in wider ones halving does."""
-
-_VALLEY_BITS = (256, 1024, 3072)
-"""To which its lowest point is computed, one after the other."""
+_NARROW = Fraction(1, 100)  # intervals in which a valley is looked for; in wider ones halving does
+_VALLEY_BITS = (256, 1024, 3072)  # to which its lowest point is computed, one after the other
 
 
 @dataclass(frozen=True)

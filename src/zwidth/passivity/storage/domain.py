@@ -148,8 +148,7 @@ def too_large(law: FiniteLaw, losses: Losses, domain: Domain) -> str | None:
     )
 
 
-_LONG = 64
-"""Readings of which there are too many states, however few moves there are: 3 ** 64 of them."""
+_LONG = 64  # readings of which there are too many states, however few moves there are: 3 ** 64 of them
 
 
 def states_of(law: FiniteLaw, losses: Losses, domain: Domain) -> int:

@@ -22,8 +22,7 @@ from zwidth.passivity.witness.motion import Motion, Repeat
 from zwidth.passivity.witness.witness import FORMAT, rounded_energy
 from zwidth.quantity.text import readable
 
-_NEAREST = 40
-"""Halvings of a count by which a hand on the upper edge of a cell may have to stay below it."""
+_NEAREST = 40  # halvings of a count by which a hand on the upper edge of a cell may have to stay below it
 
 
 @dataclass(frozen=True, repr=False)
@@ -228,8 +227,7 @@ def _witness(
 # s and s' the signs of both moves; or an end of a move, or of what is allowed.
 
 
-_GRID = 2**20
-"""Positions between samples are whole multiples of a count over this, to keep them short."""
+_GRID = 2**20  # positions between samples are whole multiples of a count over this, to keep them short
 
 
 def switch_positions(grid: Grid, x: list[Fraction], part: Repeat) -> tuple[Fraction, ...]:
@@ -293,8 +291,7 @@ def _best(
 # Played back: the force held in each interval, to rounding, to look at.
 
 
-_SETTLING = 400
-"""Rounds after which the law is taken to do the same in each."""
+_SETTLING = 400  # rounds after which the law is taken to do the same in each
 
 
 class Round(NamedTuple):

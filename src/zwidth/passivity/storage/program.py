@@ -37,21 +37,15 @@ STEPS = (8, 16, 32, 64)
 FINE = (1024, 16384)
 """The same when a motion is sought; its nodes lie near the edges."""
 
-_QUICK = 100_000_000
-"""Pairs of states and moves up to which a storage function is sought at once."""
-
+_QUICK = 100_000_000  # pairs of states and moves up to which a storage function is sought at once
 _CHECKED, _SLOWER = 300_000_000, 10
 """Of such pairs, in a unit of `effort`; and by how much laws that relax take longer."""
 
 _LONG = 0.2
 """In that unit, what the checker has to do on the coarsest steps where a search takes twenty times that."""
 
-_MOST_CHECKED = 1_500_000_000
-"""The same: what the checker takes on."""
-
-_STEPS_PER_MOVE = 256
-"""Steps in the longest move of a hand, at least, when a motion is sought."""
-
+_MOST_CHECKED = 1_500_000_000  # the same: what the checker takes on
+_STEPS_PER_MOVE = 256  # steps in the longest move of a hand, at least, when a motion is sought
 _MOST_STEPS = 2**20
 
 _STEPS_OF_MANY = 4
@@ -218,20 +212,11 @@ def program_scope(device: Device, environment: Environment, program: DynamicProg
 # found as quickly as behind a coarse encoder, and its motion gains behind the fine one, where it is counted.
 
 
-_REACHES = (4, 12, 24)
-"""Cells that the hand may go in one sample, about."""
-
-_FEW = 24
-"""Counts a sample up to which every count is looked at, and nothing else."""
-
-_NEAR = 12
-"""Counts a sample of a hand that stays near an edge, where there are too many for all of them."""
-
-_MAX_DEPTH = 64
-"""Cells that are looked at: for a law that is linear inside, depth by itself is of no use."""
-
-_MOST_WORK = 60_000
-"""States of a grid times the cells in reach, up to which a motion is sought on it."""
+_REACHES = (4, 12, 24)  # cells that the hand may go in one sample, about
+_FEW = 24  # counts a sample up to which every count is looked at, and nothing else
+_NEAR = 12  # counts a sample of a hand that stays near an edge, where there are too many for all of them
+_MAX_DEPTH = 64  # cells that are looked at: for a law that is linear inside, depth by itself is of no use
+_MOST_WORK = 60_000  # states of a grid times the cells in reach, up to which a motion is sought on it
 
 
 def grids(law: FiniteLaw, losses: Losses, domain: Domain) -> list[tuple[int, Domain]]:

@@ -34,15 +34,9 @@ from zwidth.passivity.storage.value_iteration import THREADS, Move, Sweep, Until
 ONE = 1 << 16
 """Weights of interpolation are whole multiples of 1/ONE, taken from both sides."""
 
-_MOVE = 5e-9
-"""What a move from a state costs in a round, in the unit of `effort`."""
-
-_STARTS = 12
-"""States from which the best moves are followed in one search."""
-
-_LONGEST = 160
-"""Moves that are followed."""
-
+_MOVE = 5e-9  # what a move from a state costs in a round, in the unit of `effort`
+_STARTS = 12  # states from which the best moves are followed in one search
+_LONGEST = 160  # moves that are followed
 _BLOCKS = 8
 """Blocks of cells, each improved by one thread from what the others were before the round: as many on every
 machine, so that it ends the same way on each.  (What is raised between levels depends on the order.)"""

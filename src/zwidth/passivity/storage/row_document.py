@@ -33,8 +33,7 @@ MOST_WORK = 10_000_000
 """Readings that a law is stepped through for somebody else's document, times the numbers that it remembers:
 some ten seconds of the dearest, windows of 1000 readings that are fitted at each length."""
 
-_A_REST = 1000
-"""What it costs to find what is remembered by a hand that has rested at one count, likewise."""
+_A_REST = 1000  # what it costs to find what is remembered by a hand that has rested at one count, likewise
 
 MOST_WAITING = 10_000
 """Samples of delay, likewise: each keeps a force."""

@@ -174,14 +174,9 @@ def row_program(
 # The cycle is one of states, so that the law does the same in each round, to the bit.
 
 
-_NEAREST = 40
-"""Halvings of a count by which a hand at an edge may have to stay inside its cell."""
-
-_SLOWEST, _SETTLING = 50_000, 40
-"""Samples of a slow way in, and rounds within which a law settles, at most."""
-
-_LONGEST = 2_000_000
-"""Samples that are simulated at most; of a longer motion the first rounds."""
+_NEAREST = 40  # halvings of a count by which a hand at an edge may have to stay inside its cell
+_SLOWEST, _SETTLING = 50_000, 40  # samples of a slow way in, and rounds within which a law settles, at most
+_LONGEST = 2_000_000  # samples that are simulated at most; of a longer motion the first rounds
 
 
 def row_gain(

@@ -116,11 +116,8 @@ def _specification(device: Device, environment: Environment) -> str:
 MOST_STATES = 100_000
 """States that a law in a chain may have on its grid."""
 
-_MOST_NUMBERS = 20_000_000
-"""Numbers that all states together may remember."""
-
-_AT_ONCE = 4_000_000
-"""Numbers that are stepped at once."""
+_MOST_NUMBERS = 20_000_000  # numbers that all states together may remember
+_AT_ONCE = 4_000_000  # numbers that are stepped at once
 
 
 class DoesNotClose(InputError):
@@ -246,8 +243,7 @@ if TYPE_CHECKING:
     pass
 
 
-_MOVE = 2.5e-9
-"""What a move from a state costs in a round, in the unit of `effort`."""
+_MOVE = 2.5e-9  # what a move from a state costs in a round, in the unit of `effort`
 
 NO_LAW = FiniteLaw((), "none")
 """In place of a law that can be written down: its forces stand in the table."""

@@ -213,8 +213,7 @@ CELLS = (16, 32, 64, 128)
 
 MOST_STATES = 400_000
 
-_CHECKED = 1e8
-"""Pairs of states and moves that the checker takes on in a unit of `effort`."""
+_CHECKED = 1e8  # pairs of states and moves that the checker takes on in a unit of `effort`
 
 
 def prove_on_cells(

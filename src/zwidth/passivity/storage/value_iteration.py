@@ -48,8 +48,7 @@ AT_ONCE = 20_000
 ROUND = 3e-4
 """What a round costs beside its states, in the unit of `effort`."""
 
-_LOOK = 4
-"""Rounds between two searches for a cycle: a search costs less than a round."""
+_LOOK = 4  # rounds between two searches for a cycle: a search costs less than a round
 
 
 class Sweep(ABC):

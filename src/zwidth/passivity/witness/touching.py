@@ -25,9 +25,7 @@ from zwidth.passivity.witness.motion import Motion, round_up
 from zwidth.passivity.witness.sinusoid import oscillations
 from zwidth.passivity.witness.witness import FORMAT, Setting, Witness
 
-_AMPLITUDE = Fraction(1, 1000)
-"""Size of a motion that friction does not force to be larger [m; rad]."""
-
+_AMPLITUDE = Fraction(1, 1000)  # size of a motion that friction does not force to be larger [m; rad]
 _FINENESS = (50, 200, 1000, 10_000)
 """Steps in which the largest position is counted; coarse ones make a smaller motion on counts."""
 

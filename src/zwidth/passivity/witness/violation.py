@@ -98,16 +98,11 @@ class Violation(Evidence):
 # friction, which grows with it.  The checker has the last word.
 
 
-_AMPLITUDE = Fraction(1, 1000)
-"""Penetration of a witness that friction does not force to be larger [m; rad]."""
-
+_AMPLITUDE = Fraction(1, 1000)  # penetration of a witness that friction does not force to be larger [m; rad]
 _FEW_ROUNDS = 1000
 
-_SHORT = 200
-"""Samples up to which a motion is preferred that does not return the law to its state."""
-
-_MOST_ROUNDED = 2500
-"""Samples up to which a motion off the law's whole numbers is recomputed exactly."""
+_SHORT = 200  # samples up to which a motion is preferred that does not return the law to its state
+_MOST_ROUNDED = 2500  # samples up to which a motion off the law's whole numbers is recomputed exactly
 
 
 def refute_linear(setting: Setting, reason: str) -> Witness | None:
