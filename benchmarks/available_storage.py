@@ -29,10 +29,10 @@ import numpy as np
 from in_c import WHOLE, WHOLES, library
 
 import zwidth as zw
-from zwidth.passivity.storage.grid.grid import Grid
+from zwidth.passivity.storage import value_iteration as solve
+from zwidth.passivity.storage.grid import Grid
+from zwidth.passivity.storage.hull import NOWHERE, extremes, sweep, worthwhile
 from zwidth.passivity.storage.program import DynamicProgram, program_of
-from zwidth.passivity.storage.solve import value_iteration as solve
-from zwidth.passivity.storage.solve.hull import NOWHERE, extremes, sweep, worthwhile
 from zwidth.quantity.exact import Exact
 
 PADDLE = zw.catalogue.device("haptic-paddle")

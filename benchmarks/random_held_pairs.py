@@ -22,7 +22,7 @@ from statistics import median
 import numpy as np
 
 import zwidth as zw
-from zwidth.passivity.linear.supremum import tightest
+from zwidth.passivity.linear.criterion import tightest
 from zwidth.passivity.pairs.held import HeldPair
 from zwidth.passivity.pairs.held.criterion import largest_held_stiffness
 from zwidth.passivity.pairs.held.law import felt_loop

@@ -18,7 +18,7 @@ from fractions import Fraction
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth.passivity.formulas.closed_forms import abbott_okamura_stiffness
+from zwidth.passivity.formulas.abbott_okamura import abbott_okamura_stiffness
 from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)

@@ -30,14 +30,14 @@ import numpy as np
 
 import zwidth as zw
 from zwidth.cli.main import main as command_line
-from zwidth.passivity.decision import decide
+from zwidth.passivity.criterion_choice import decide
 from zwidth.passivity.parameter_limits import required_damping
 from zwidth.passivity.storage.domain import Domain, domain_for, losses_of
-from zwidth.passivity.storage.evidence.gain import gain
-from zwidth.passivity.storage.grid.grid import Grid
+from zwidth.passivity.storage.gain import gain
+from zwidth.passivity.storage.grid import Grid
 from zwidth.passivity.storage.law import finite_law
 from zwidth.passivity.storage.program import DynamicProgram
-from zwidth.passivity.storage.solve.value_iteration import ValueIteration
+from zwidth.passivity.storage.value_iteration import ValueIteration
 from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)

@@ -23,7 +23,7 @@ from fractions import Fraction
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth.passivity.formulas.closed_forms import window_damping
+from zwidth.passivity.formulas.colgate_schenkel import window_damping
 from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)

@@ -14,7 +14,7 @@ from math import ceil
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth.passivity.formulas.closed_forms import spring_stiffness
+from zwidth.passivity.formulas.colgate_schenkel import spring_stiffness
 from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)

@@ -11,7 +11,7 @@ a faster computer helps, until the encoder takes over.
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth.passivity.formulas.closed_forms import abbott_okamura_stiffness
+from zwidth.passivity.formulas.abbott_okamura import abbott_okamura_stiffness
 from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)

@@ -12,7 +12,7 @@ bottom, with a coarse encoder and little dry friction, it buzzes.
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth.passivity.formulas.quantization import plane_point
+from zwidth.passivity.formulas.diolaiti import plane_point
 from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)

@@ -13,7 +13,7 @@ hand that is fast enough.
 import matplotlib.pyplot as plt
 
 import zwidth as zw
-from zwidth.passivity.formulas.quantization import admissible_speed
+from zwidth.passivity.formulas.diolaiti import admissible_speed
 from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)

@@ -15,7 +15,7 @@ from zwidth.model.arms import PlanarChain, read_arm
 from zwidth.model.arms.encoders import columns_in_cells, encoder_steps, friction_for, size_bound
 from zwidth.model.arms.replay import replay_cycle
 from zwidth.passivity.certificate import verify_document
-from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.scope import TOLD
 
 Array = npt.NDArray[np.float64]
 

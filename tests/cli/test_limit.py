@@ -13,7 +13,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.passivity.bracket.bounded import BoundedSearch
+from zwidth.passivity.bracket.passive_limit import BoundedSearch
 
 WALL = ("limit", "haptic-paddle", "--stiffness", "100", "--virtual-damping", "0.05")
 BOUNDED = (*WALL, "--penetration", "0.5 mm", "--speed", "0.3 m/s")

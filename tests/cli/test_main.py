@@ -444,7 +444,8 @@ def test_the_closed_forms_are_worked_out_once(monkeypatch: pytest.MonkeyPatch) -
 
     monkeypatch.setattr(sys.modules["zwidth.passivity.check"], "check_by_closed_forms", counted)
     monkeypatch.setattr(
-        "zwidth.passivity.gap.with_value_iteration", lambda device, law, verdict, progress: verdict
+        "zwidth.passivity.value_iteration_fallback.with_value_iteration",
+        lambda device, law, verdict, progress: verdict,
     )
     device = catalogue.device("haptic-paddle")
     law = zw.Wall(stiffness=120, damping="0.2", velocity_filter=zw.rendering.Window(3))

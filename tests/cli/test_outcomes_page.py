@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from zwidth.cli.main import main
-from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.scope import TOLD
 
 PAGE = (Path(__file__).parents[2] / "docs" / "outcomes.md").read_text(encoding="utf-8")
 ROWS = re.findall(r"^\| ([^|]+?) \|.*\| `zwidth ([^`]+)` \| (\d) \|$", PAGE, re.M)

@@ -19,8 +19,8 @@ from full_disk import full_disk
 import zwidth as zw
 from zwidth.model.operator import Dowel, Finger
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.decision import decide
-from zwidth.passivity.storage.slow_hands import slow_hands
+from zwidth.passivity.criterion_choice import decide
+from zwidth.passivity.storage.hand_bounds import slow_hands
 from zwidth.study.maps.chunk import compute
 from zwidth.study.maps.kernel import STABLE, UNKNOWN, UNSTABLE
 from zwidth.study.maps.kernel import decide as decide_cell
@@ -156,7 +156,7 @@ def test_the_admissible_speed_of_a_spring_is_that_of_the_plane() -> None:
     found = zw.z_width(PADDLE, (0, 20000), ("-1e-12", "1e-12"), cells=(40, 1))
     seen = set()
     for k, speed in zip(found["stiffness"].values, found["admissible_speed"].values[:, 0], strict=True):
-        exact = float(zw.formulas.quantization.admissible_speed(PADDLE, k))
+        exact = float(zw.formulas.admissible_speed(PADDLE, k))
         assert speed <= exact
         assert speed == exact or speed == pytest.approx(exact, rel=1e-11)
         seen.add("inf" if speed == np.inf else "0" if speed == 0 else "finite")

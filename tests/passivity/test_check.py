@@ -11,7 +11,7 @@ import scipy.signal
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.passivity import gap
+from zwidth.passivity import value_iteration_fallback as gap
 from zwidth.passivity.advice import in_lines
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.witness.motion import Motion

@@ -9,9 +9,8 @@ import pytest
 
 import zwidth as zw
 from zwidth.passivity import scope as record
-from zwidth.passivity.in_short import in_short
 from zwidth.passivity.scope import Hands, Scope
-from zwidth.passivity.wording import intervals, lines
+from zwidth.passivity.wording import in_short, intervals, lines
 
 PLAIN = Scope(damping=0.2, coulomb_friction=0.1, encoder="counted")
 

@@ -10,14 +10,14 @@ import pytest
 import zwidth as zw
 from zwidth.model.environment import OnePole, Window
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.decision import decide
-from zwidth.passivity.likely_limits import (
+from zwidth.passivity.criterion_choice import decide
+from zwidth.passivity.parameter_limits import (
     likely_damping,
     likely_friction,
     likely_resolution,
     likely_value,
+    provable,
 )
-from zwidth.passivity.parameter_limits import provable
 from zwidth.quantity.exact import Exact
 
 PADDLE: dict[str, Any] = {

@@ -13,7 +13,7 @@ from test_advice import drawn
 import zwidth as zw
 from zwidth.cli.limit_report import _claim
 from zwidth.passivity.bracket import Bracket, passive_limit
-from zwidth.passivity.bracket.parameter import parameter_of
+from zwidth.passivity.bracket.bracket import parameter_of
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.units import parse_number
 

@@ -7,7 +7,7 @@ import pytest
 import zwidth as zw
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.formulas.nonlinear_spring import certify_spring
-from zwidth.passivity.spring_advice import advise_on_spring
+from zwidth.passivity.loop_advice import advise_on_spring
 
 STOP = zw.NonlinearSpring(positions=["0.01", "0.013"], forces=[0, 3])
 """A bump stop of 1000 N/m, 10 mm away."""

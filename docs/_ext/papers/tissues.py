@@ -8,7 +8,8 @@ import numpy as np
 
 import zwidth as zw
 from papers.row import Row, close, drawn, row
-from zwidth.passivity.formulas.closed_forms import kelvin_voigt_damping, standard_linear_solid_damping
+from zwidth.passivity.formulas.colgate_schenkel import kelvin_voigt_damping
+from zwidth.passivity.formulas.standard_linear_solid import standard_linear_solid_damping
 
 TITLE = "A passivity criterion for real-time haptic simulation of viscoelastic soft tissues"
 

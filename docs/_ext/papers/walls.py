@@ -7,7 +7,7 @@ import numpy as np
 import zwidth as zw
 from papers.row import Row, close, drawn, row
 from papers.touches import experiments
-from zwidth.passivity.formulas.quantization import edge_crossing, fast_press, linear_worst_case, worst_case
+from zwidth.passivity.formulas.abbott_okamura import edge_crossing, fast_press, linear_worst_case, worst_case
 
 TITLE = "Effects of position quantization and sampling rate on virtual-wall passivity (Abbott & Okamura 2005)"
 

@@ -23,7 +23,7 @@ from zwidth.errors import InputError
 if TYPE_CHECKING:
     from zwidth.model.specification.read import Specification
     from zwidth.passivity.finite_stiffness import FiniteStiffnessReplay
-    from zwidth.passivity.over_ranges import OverRanges
+    from zwidth.passivity.interval_devices import OverRanges
     from zwidth.passivity.stability import Stability
     from zwidth.passivity.stability.active_hand import ToleratedActivity
     from zwidth.passivity.verdict import Verdict
@@ -122,7 +122,7 @@ def _ranges(loop: Specification, verdict: Verdict) -> OverRanges | None:
     if not loop.ranges:
         return None
     from zwidth.model.device.catalogue import DeviceInRange
-    from zwidth.passivity.over_ranges import over_ranges
+    from zwidth.passivity.interval_devices import over_ranges
 
     return over_ranges(DeviceInRange(loop.device, loop.ranges), loop.environment, verdict)
 

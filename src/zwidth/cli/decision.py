@@ -55,7 +55,7 @@ def asked(arguments: argparse.Namespace, in_range: bool = False) -> Asked:
 
 def exit_status(outcome: str) -> int:
     """What a command returns that ends in an outcome."""
-    from zwidth.passivity.outcome import TOLD
+    from zwidth.passivity.scope import TOLD
 
     return TOLD[outcome].status
 
@@ -63,7 +63,7 @@ def exit_status(outcome: str) -> int:
 def decided(loop: Specification, contact: str = "made and broken") -> Verdict:
     """What `zwidth.check` says, with a word to people who wait while values are iterated."""
     from zwidth.passivity.check import check, check_by_closed_forms
-    from zwidth.passivity.gap import has_gap, with_value_iteration
+    from zwidth.passivity.value_iteration_fallback import has_gap, with_value_iteration
 
     device, law, closed = loop.device, loop.environment, None
     if law.has_transfer_function:

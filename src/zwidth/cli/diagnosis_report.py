@@ -12,7 +12,7 @@ from rich.text import Text
 
 from zwidth.cli.options import overrides
 from zwidth.cli.page import below, grid, headline, items, more_with_all, page, section, small_print
-from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.scope import TOLD
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import shown

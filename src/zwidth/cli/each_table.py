@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 
 from zwidth.errors import InputError
 from zwidth.model.specification.table import plain, quoted
-from zwidth.passivity.document import unit_key
+from zwidth.passivity.scope import unit_key
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.glossary import GLOSSARY

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from zwidth.cli.output import say_written
 from zwidth.cli.page import Row, below, grid, headline, items, page, section
-from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.scope import TOLD
 
 if TYPE_CHECKING:
     from zwidth.machine.firmware.emit import Emitted

@@ -10,9 +10,9 @@ from rich.text import Text
 from zwidth.cli.page import headline, items, more_with_all, page, section
 from zwidth.cli.pair_report import print_pair
 from zwidth.data.gains import ArmGains, Controllers, GainsVerdict, HeldJoints, PassiveGains
-from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.pairs import PairVerdict
 from zwidth.passivity.pairs.in_short import pair_in_short
+from zwidth.passivity.scope import TOLD
 from zwidth.showing import Table
 
 

@@ -16,7 +16,7 @@ from zwidth.data.identification.device.limits import advice, percent
 from zwidth.data.identification.device.table import BOTH_SIDES, rows, source_name
 from zwidth.model.environment import Wall
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.scope import TOLD
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.text import shown, shown_at_most
 

@@ -25,7 +25,7 @@ from zwidth.cli.page import (
 )
 from zwidth.model.specification.read import Specification
 from zwidth.passivity.bracket import Bracket
-from zwidth.passivity.in_short import in_short
+from zwidth.passivity.wording import in_short
 from zwidth.quantity.text import in_words, shown
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from zwidth.cli.bars import levels
 from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
-    from zwidth.passivity.storage.evidence.gain import Gain
+    from zwidth.passivity.storage.gain import Gain
     from zwidth.passivity.witness.witness import Witness
 
 _SAMPLES_SHOWN = 48

@@ -25,10 +25,10 @@ from zwidth.cli.page import (
 )
 from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
-from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.pairs import PairVerdict, PairWitness
 from zwidth.passivity.pairs.held import HeldVerdict, HeldWitness
 from zwidth.passivity.pairs.in_short import pair_in_short
+from zwidth.passivity.scope import TOLD
 from zwidth.quantity.text import quantity_unit, shown
 
 if TYPE_CHECKING:

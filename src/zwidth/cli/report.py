@@ -31,17 +31,16 @@ from zwidth.cli.page import (
     section,
     small_print,
 )
-from zwidth.passivity.in_short import in_short
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.scope import TOLD
 from zwidth.passivity.verdict import Verdict
-from zwidth.passivity.wording import intervals
+from zwidth.passivity.wording import in_short, intervals
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from zwidth.passivity.finite_stiffness import FiniteStiffnessReplay
-    from zwidth.passivity.over_ranges import OverRanges
+    from zwidth.passivity.interval_devices import OverRanges
     from zwidth.passivity.stability import Stability
     from zwidth.passivity.stability.active_hand import ToleratedActivity
 

@@ -250,7 +250,7 @@ def _record(table: Table) -> Operator:
 
 def _witness(table: Table) -> Operator:
     from zwidth.passivity.certificate import read_document
-    from zwidth.passivity.witness.saved import saved_motion
+    from zwidth.passivity.witness.motion import saved_motion
 
     table.check_keys(("type", "file", "rounds"), f"the hand {WITNESS}")
     if "file" not in table.values:

@@ -9,7 +9,7 @@ from typing import Any, get_args
 import numpy as np
 import xarray as xr
 
-from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.scope import TOLD
 from zwidth.passivity.stability.known_hand.decide import Outcome as Rests
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import in_words, shown

@@ -13,7 +13,7 @@ from zwidth.cli.tissue_result import Result, Wall
 from zwidth.data.logs import Finding
 from zwidth.data.tissue import TissueTest
 from zwidth.passivity.bracket import Bracket
-from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.scope import TOLD
 from zwidth.quantity.text import shown
 
 _FEW = 4

@@ -17,7 +17,7 @@ from zwidth.cli.page import headline, items, page, section
 from zwidth.model.device import catalogue
 from zwidth.model.environment import Wall
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.scope import TOLD
 
 _SOFT, _STIFF, _QUICK = "300", "770", "2.6 kHz"
 

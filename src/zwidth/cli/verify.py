@@ -91,7 +91,7 @@ def _with_laws(found: Judged) -> tuple[Judged, dict[str, str]]:
     parts, laws = list[Part](), dict[str, str]()
     for part in found.parts:
         if part.verification.valid and part.evidence["kind"] in _LAWS_IN_A_ROW:
-            from zwidth.passivity.storage.row.document import law_of  # xarray takes its time
+            from zwidth.passivity.storage.row_document import law_of  # xarray takes its time
 
             try:
                 law = law_of(part.evidence)

@@ -99,7 +99,7 @@ def run(arguments: argparse.Namespace) -> int:
             f"--save: a file must end in .json for the verdict with its certificate, or in .nc for the map; "
             f"got {save.name!r}"
         )
-    from zwidth.passivity.outcome import TOLD
+    from zwidth.passivity.scope import TOLD
 
     if arguments.null_stiffness is not None:
         return _null_space(arguments, plot, save)
@@ -140,7 +140,7 @@ def _verdict(arguments: argparse.Namespace) -> Workspace:
 def _postures(arguments: argparse.Namespace, plot: Path | None, save: Path | None) -> int:
     """All joints over their ranges: no region is proved, and the report says so."""
     from zwidth.cli.workspace_postures import print_postures
-    from zwidth.passivity.outcome import TOLD
+    from zwidth.passivity.scope import TOLD
     from zwidth.passivity.workspace import stiffness_over_postures
     from zwidth.quantity.text import to_json
 
@@ -209,6 +209,8 @@ def _null_space(arguments: argparse.Namespace, plot: Path | None, save: Path | N
     """Wall and null-space spring together; there is no map of it to save."""
     from zwidth.passivity.outcome import TOLD
     from zwidth.quantity.text import to_json
+    from zwidth.passivity.scope import TOLD
+    from zwidth.quantity.json_text import to_json
 
     if save is not None and save.suffix.lower() != ".json":
         raise InputError(f"of a null-space spring there is no map: save as .json, got {save.name!r}")

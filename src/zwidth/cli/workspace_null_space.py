@@ -79,8 +79,8 @@ def _gains(arguments: argparse.Namespace) -> tuple[Any, Any]:
 def print_null_space(found: NullSpace, in_full: bool, without: Sequence[str]) -> None:
     """Print the verdict, the numbers and what is assumed on standard output."""
     from zwidth.cli.page import blocks, headline, items, more_with_all, page, section, small_print
-    from zwidth.passivity.in_short import in_short
-    from zwidth.passivity.outcome import TOLD
+    from zwidth.passivity.scope import TOLD
+    from zwidth.passivity.wording import in_short
 
     asked, spring = found.question, found.spring
     rest = ", ".join(f"{value:.3g}" for value in spring.rest)

@@ -22,8 +22,8 @@ def print_postures(
 ) -> None:
     """Print the verdict, the numbers, what was written and what is assumed on standard output."""
     from zwidth.cli.page import blocks, headline, items, more_with_all, page, section, small_print
-    from zwidth.passivity.in_short import in_short
-    from zwidth.passivity.outcome import TOLD
+    from zwidth.passivity.scope import TOLD
+    from zwidth.passivity.wording import in_short
 
     asked = found.question
     with page() as out:

@@ -31,8 +31,8 @@ _SHOWN = 1e-6
 def print_workspace(space: Workspace, in_full: bool = False, without: Sequence[str] = ()) -> None:
     """Print the verdict and what to change on standard output."""
     from zwidth.cli.page import blocks, grid, headline, items, more_with_all, page, section, small_print
-    from zwidth.passivity.in_short import in_short
-    from zwidth.passivity.outcome import TOLD
+    from zwidth.passivity.scope import TOLD
+    from zwidth.passivity.wording import in_short
 
     with page() as out:
         out.print(headline(space.outcome, TOLD[space.outcome].terminal, space.claim))

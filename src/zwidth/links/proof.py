@@ -11,7 +11,7 @@ from zwidth.links.wave_port import MARGIN
 from zwidth.model.device.amplifier import current_rise
 from zwidth.passivity.bounding import ROUNDOFF
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import unit_key
+from zwidth.passivity.scope import unit_key
 from zwidth.quantity.exact import ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text

@@ -12,9 +12,8 @@ from zwidth.links.port import Port
 from zwidth.links.proof import certificate_of, slow_actuator
 from zwidth.links.schedule import Schedule
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Scope
+from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.wording import TRANSMISSION
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import quantity_unit

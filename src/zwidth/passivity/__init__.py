@@ -2,9 +2,8 @@
 
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check
-from zwidth.passivity.formulas import closed_forms, quantization
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
 
-__all__ = ["Certificate", "Verdict", "Violation", "Witness", "check", "closed_forms", "quantization"]
+__all__ = ["Certificate", "Verdict", "Violation", "Witness", "check"]

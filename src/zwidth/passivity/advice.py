@@ -1,13 +1,26 @@
-"""Advice on one number, and how a report lists it: what is changed most easily first."""
+"""How far one number must be turned for a loop to become passive, or may be, and how a report lists it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from math import isinf
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cache
+from math import inf, isinf
 from typing import Literal
 
-from zwidth.quantity.text import in_words
+from zwidth.passivity.linear.boundary import (
+    COARSE,
+    SMALLEST,
+    Holds,
+    asked_seldom,
+    largest_holding,
+    smallest_holding,
+)
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.spoken import spoken
+from zwidth.quantity.text import alike, in_words, outward_decimal
 
 Kind = Literal["change", "slack"]
 
@@ -93,3 +106,179 @@ def _names(advice: Iterable[Advice]) -> str:
     """In words; "leader.damping" is that of one arm of a pair."""
     parts = (item.parameter.rpartition(".") for item in advice)
     return ", ".join(in_words(key) + (f" of the {arm}" if arm else "") for arm, _, key in parts)
+
+
+# Every value given was itself proved, all else as it was.  Where the proof may fail on the way to a limit
+# that holds, the way is looked at in steps, and the limit is the first place that fails.
+
+
+_NEVER_NOTHING = ("stiffness", "resolution", "link_delay")
+"""What nobody can set to 0 and keep what it is there for."""
+
+Guess = Callable[[], float | None]
+"""Where a limit may be looked for first; None where nothing is known of that."""
+
+Between = Callable[[float], Iterable[float]]
+"""Values between where a number is and where it may go."""
+
+_PHASES = (0, 0.2, 0.4, 0.5, 0.6, 0.8)
+"""Of a sample: behind which part of it a loop asks for most depends on the law."""
+
+_MOST_SAMPLES = 3
+
+_BESIDE = (Fraction(1, 2**30),)  # how far beside a limit that is known but for rounding it is asked
+
+
+@dataclass(frozen=True)
+class Knob:
+    """A number that one can turn: `holds` of a value that is proved; with `more`, more of it is safer.
+
+    `parameter` is a name of the glossary, behind "leader." or "follower." where it is of one arm.  Where
+    its limit may be looked for first says `likely`; where it is, but for rounding, `near`; `in_samples`,
+    that it is proved for delays of whole samples alone.  Where it may fail on the way to a limit that holds,
+    `between` names values on that way.  Of a number below 0 it is the size, and `sign` is −1.  `hands` is
+    said of whom it holds.
+    """
+
+    parameter: str
+    current: float
+    holds: Holds
+    more: bool
+    name: str
+    likely: Guess = lambda: None
+    in_samples: bool = False
+    between: Between | None = None
+    sign: int = 1
+    hands: str = ""
+    near: Guess = lambda: None
+
+    def proves(self, value: float) -> bool:
+        """Whether a value is proved, as the decimal that it is written as."""
+        return self.holds(Exact(value).fraction)
+
+    def is_change(self, to: float) -> bool:
+        """A remedy must lie on the safer side of where it is and be something one can set."""
+        is_none = to == inf or (to == 0 and self.parameter.rpartition(".")[2] in _NEVER_NOTHING)
+        return not is_none and (to > self.current if self.more else to < self.current)
+
+    @property
+    def stands_alone(self) -> bool:
+        """True where not even a hair to the safe side holds: a delay of whole samples that asks for less."""
+        beside = self.current * (1 + 1e-9 if self.more else 1 - 1e-9)
+        return self.in_samples or (self.between is not None and self.current > 0 and not self.proves(beside))
+
+
+def between_delays(now: float, period: float, to: float) -> Iterator[float]:
+    """Delays on the way from one to another: parts of the last samples and of the first [s]."""
+    first = int(now / period)
+    last = int(min(to, now + 1000 * period) / period)
+    samples = sorted({first, *range(max(first, last - _MOST_SAMPLES + 1), last + 1)})
+    yield from ((n + phase) * period for n in samples for phase in _PHASES)
+
+
+def between_rates(now: float, delay: float, to: float) -> Iterator[float]:
+    """The same of rates behind a delay: at which parts of a sample it ends, and some between [Hz]."""
+    least = to if 0 < to < inf else now / 1000
+    yield from between_sizes(now, least)
+    if delay:
+        yield from (r / delay for r in between_delays(least * delay, 1, now * delay))
+
+
+def between_sizes(now: float, to: float) -> Iterator[float]:
+    """Some values in proportion."""
+    low, high = now or to / 1000, to if 0 < to < inf else now * 1000 if to else now / 1000
+    yield from (low * (high / low) ** (part / 6) for part in range(1, 6)) if low and high else ()
+
+
+def turn_all(knobs: Iterable[Knob], motion: str, kind: Kind, grain: int = COARSE) -> list[Advice]:
+    """`turn` of each; what there is none of, and cannot be less of, is left out."""
+    found = [turn(knob, motion, kind, grain) for knob in knobs]
+    return [one for one in found if one.kind == "change" or one.to != 0 or one.current != 0]
+
+
+def turn(knob: Knob, motion: str, kind: Kind, grain: int = COARSE) -> Advice:
+    """How far a knob must be turned, or may be; `grain` as for `largest_holding`."""
+    seldom = asked_seldom(knob.holds, near, _BESIDE, not knob.more) if (near := knob.near()) else knob.holds
+    knob = replace(knob, holds=cache(seldom))  # at its limit, and for a shorter one, it is asked again
+    to = None
+    if knob.more or knob.current or kind == "slack":  # nothing is less than 0
+        to = _last_proved(knob, grain)
+    if to is not None and kind == "slack":
+        to = _first_crossing(knob, to, grain)
+    elif to is not None and not knob.is_change(to):
+        to = None
+    unit = GLOSSARY[knob.parameter.rpartition(".")[2]].unit_for(motion)
+    is_alone = to == knob.current and knob.stands_alone
+    text = _text(knob, None if to is None else outward(to, knob, spoken(unit)[0]), unit, kind, is_alone)
+    now, to = knob.sign * knob.current or 0.0, None if to is None else knob.sign * to
+    return Advice(knob.parameter, now, to, unit, kind, text, is_alone)
+
+
+def _first_crossing(knob: Knob, to: float, grain: int) -> float:
+    """How far it may go, where on the way there a value fails: to before the first that does."""
+    if knob.between is None or to == knob.current:
+        return to
+    least, most = sorted((knob.current, 0.0 if knob.more and to == inf else to))
+    ways = sorted((v for v in knob.between(to) if least < v < most), reverse=knob.more)
+    failing = next((v for v in ways if not knob.proves(v)), None)
+    if failing is None:
+        return to
+    good, bad = knob.current, failing
+    while abs(bad - good) > grain * 2.0**-53 * abs(bad):
+        middle = (good + bad) / 2
+        good, bad = (middle, bad) if knob.proves(middle) else (good, middle)
+    return _first_crossing(knob, _simplest_near(good, knob, grain), grain)
+
+
+def _last_proved(knob: Knob, grain: int) -> float | None:
+    """The last value that is proved, inf or 0 where that is any, None where none is."""
+    search = smallest_holding if knob.more else largest_holding
+    to = search(knob.holds, knob.current or 1e-4, grain, knob.likely())
+    if to is None or to == inf:
+        return to
+    if knob.more and to <= SMALLEST:
+        return inf if knob.parameter == "rate" else 0.0
+    return _simplest_near(to, knob, grain) if to > SMALLEST else to
+
+
+def _simplest_near(value: float, knob: Knob, grain: int) -> float:
+    """The shortest decimal within a grain of the boundary, if it is proved too."""
+    near = grain * 2.0**-51
+    low, high = sorted((value, value * (1 - near if knob.more else 1 + near)))
+    shorter = (float(f"{value:.{digits}g}") for digits in range(1, 9))
+    return next((v for v in shorter if low <= v <= high and knob.proves(v)), value)
+
+
+def outward(value: float, knob: Knob, factor: float = 1.0) -> float:
+    """Four significant digits on the safe side, in the unit of which one in SI is `factor`, if proved too.
+
+    Six or more where four are not, or are no farther than where it is.
+    """
+    if value == 0 or isinf(value) or value == knob.current:
+        return value
+    for digits in (4, 6, 9, 12):
+        rounded = outward_decimal(value * factor, knob.more, digits) / factor
+        is_farther = (rounded < knob.current) == (value < knob.current) and rounded != knob.current
+        if is_farther and knob.proves(rounded):
+            return rounded
+    return value
+
+
+def _text(knob: Knob, to: float | None, unit: str, kind: Kind, is_alone: bool) -> str:
+    name, hands = knob.name, knob.hands
+    higher = knob.more == (knob.sign > 0)
+    if kind == "change" and to is None:
+        return f"no {'higher' if higher else 'lower'} {name} was found that would do alone{hands}"
+    if to is None or to == inf:
+        return f"{name} may take any value{hands}" if to == inf else f"{name} has no slack"
+    size = to * spoken(unit)[0]
+    digits = next((n for n in range(6, 17) if abs(float(f"{size:.{n}g}") - size) <= 1e-15 * size), 17)
+    near = 4 if digits == 6 and abs(to - knob.current) > 2e-3 * abs(to) else 12
+    now, wanted = alike(unit, (knob.sign * knob.current, knob.sign * to), (near, digits))
+    if kind == "change":
+        return f"{'raise' if higher else 'lower'} the {name} from {now} to {wanted}{hands}"
+    if to == knob.current:
+        alone = f"proved where it is, {now}, and for delays of whole samples alone"
+        return f"{name} is {alone if is_alone else f'exactly at its limit, {now}'}"
+    bound = "as low as" if knob.more else "up to" if knob.sign > 0 else "down to"
+    return f"{name} may go {bound} {wanted}{hands} (now {now})"

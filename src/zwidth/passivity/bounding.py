@@ -21,9 +21,8 @@ from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.model.rendering.rendering_law import LoopContext
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import unit_key
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Scope, scope_of
+from zwidth.passivity.scope import Scope, scope_of, unit_key
 from zwidth.passivity.wording import if_friction_goes_on
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text

@@ -13,9 +13,8 @@ from fractions import Fraction
 
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.wall import wall_of
-from zwidth.passivity.decision import Decision
-from zwidth.passivity.linear.linear import LinearRefutation
-from zwidth.passivity.linear.supremum import frequency, tightest
+from zwidth.passivity.criterion_choice import Decision
+from zwidth.passivity.linear.criterion import LinearRefutation, frequency, tightest
 
 SAMPLING = "sampling against viscous damping"
 DELAY = "delay against viscous damping"

@@ -18,15 +18,13 @@ from zwidth.missing import did_you_mean
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.passivity.corners import Loop, corners_decide
-from zwidth.passivity.decision import Decision
-from zwidth.passivity.document import loop_document, unit_key
-from zwidth.passivity.linear.contact import DampedWall
-from zwidth.passivity.linear.delay_interval import Piece, prove_delays
-from zwidth.passivity.linear.linear import LinearProof
+from zwidth.passivity.criterion_choice import Decision
+from zwidth.passivity.linear.contact import DampedWall, RelaxingLaw
+from zwidth.passivity.linear.criterion import LinearProof, Piece, prove_delays
 from zwidth.passivity.linear.one_norm import NormBound
 from zwidth.passivity.linear.positivity import Positivity
-from zwidth.passivity.linear.relaxing_contact import RelaxingLaw
 from zwidth.passivity.result import Evidence
+from zwidth.passivity.scope import unit_key
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.text import exact_text
 
@@ -91,11 +89,7 @@ def certify(decision: Decision) -> dict[str, Any]:
 
 
 def _document(decision: Decision, kind: str) -> dict[str, Any]:
-    setting = decision.setting
-    loop = loop_document(
-        setting.loop, setting.coulomb_friction, setting.resolution, setting.unilateral, setting.motion
-    )
-    return {"format": FORMAT, "kind": kind, "loop": loop}
+    return {"format": FORMAT, "kind": kind, "loop": decision.setting.loop_document()}
 
 
 def linear_proof(decision: Decision) -> dict[str, Any]:

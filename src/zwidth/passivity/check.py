@@ -21,18 +21,16 @@ from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.pairs import Pair
 from zwidth.passivity.certificate import Certificate, certify_box
 from zwidth.passivity.corners import Loop, best_corner, worst_corners
-from zwidth.passivity.decision import Decision, decide
-from zwidth.passivity.found import Finding
-from zwidth.passivity.gap import has_gap, with_value_iteration
-from zwidth.passivity.linear.linear import LinearProof, LinearRefutation, decide_linear
+from zwidth.passivity.criterion_choice import Decision, decide
+from zwidth.passivity.linear.criterion import LinearProof, LinearRefutation, decide_linear, tightest
 from zwidth.passivity.linear.loop import HIGH_DEGREE, linear_loop
-from zwidth.passivity.linear.supremum import tightest
 from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.outcome_evidence import Finding
 from zwidth.passivity.scope import Also, Contact, Scope, as_contact, scope_of
+from zwidth.passivity.value_iteration_fallback import has_gap, with_value_iteration
 from zwidth.passivity.verdict import Verdict
-from zwidth.passivity.witness.refutation import refute_friction
 from zwidth.passivity.witness.touching import refute_touching
-from zwidth.passivity.witness.violation import Violation
+from zwidth.passivity.witness.violation import Violation, refute_friction
 from zwidth.passivity.witness.witness import Witness
 
 if TYPE_CHECKING:

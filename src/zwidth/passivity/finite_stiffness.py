@@ -23,7 +23,7 @@ from math import floor, log10, pi, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.errors import InputError
-from zwidth.passivity.document import unit_key
+from zwidth.passivity.scope import unit_key
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from zwidth.loop.trace import Trace
     from zwidth.model.device.device import Device
     from zwidth.model.operator.operator import Operator
-    from zwidth.passivity.storage.evidence.gain import Gain
+    from zwidth.passivity.storage.gain import Gain
 
 SLOWEST = 1.0
 """Bandwidth of the slowest hand that is tried [Hz]."""
@@ -46,11 +46,8 @@ QUICKEST = 60.0
 _PER_DECADE = 8
 _MASSES = (0.25, 1.0, 4.0)
 _MOST_SAMPLES = 4000
-_AFTER = 30
-"""Samples that the hand stays at the end of the motion."""
-
-_ROUNDING = 1e-9
-"""Energy that counts as got out, as part of the energy moved."""
+_AFTER = 30  # samples that the hand stays at the end of the motion
+_ROUNDING = 1e-9  # energy that counts as got out, as part of the energy moved
 
 
 class Reached(NamedTuple):

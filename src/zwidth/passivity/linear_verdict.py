@@ -14,8 +14,8 @@ from zwidth.passivity import parameter_limits
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.corners import Loop
-from zwidth.passivity.decision import Decision
-from zwidth.passivity.formulas.stability_plane import admissible_speed
+from zwidth.passivity.criterion_choice import Decision
+from zwidth.passivity.formulas.diolaiti import admissible_speed
 from zwidth.passivity.loop_advice import Asked, advise
 from zwidth.passivity.scope import Contact
 from zwidth.passivity.verdict import Verdict

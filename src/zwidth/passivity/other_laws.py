@@ -13,19 +13,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device
+from zwidth.model.environment import PulseTransferFunction
 from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.model.rendering.rendering_law import LoopContext
-from zwidth.passivity import gap
-from zwidth.passivity.behind_coupling import Closed, decide_behind_coupling
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.covering import covering
-from zwidth.passivity.found import Need
+from zwidth.passivity.covering_wall import covering
+from zwidth.passivity.formulas.colgate_stanley_brown import ideal_device, law_of, needed_damping
+from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.outcome_evidence import Need
 from zwidth.passivity.scope import Law, Scope, scope_of
+from zwidth.passivity.value_iteration_fallback import with_value_iteration
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
 
@@ -39,30 +40,22 @@ Values = Callable[[Verdict], Verdict]
 
 
 def check_other(
-    device: Device,
-    law: Environment,
-    closed: Closed,
-    progress: Progress | None = None,
-    iterate: bool = True,
+    device: Device, law: Environment, closed: Closed, progress: Progress | None = None, iterate: bool = True
 ) -> Verdict:
     """The verdict on a law without H(z).
 
-    Parameters
-    ----------
-    device
-        Where parameters are intervals, damping, Coulomb friction and resolution are taken at their worst.
-    law
-        A `NonlinearSpring`, a `HuntCrossley` contact, a scene, or what `render` gives.
-    closed
-        How a wall that covers laws in a chain is decided.
-    progress
-        Told the number of states that still improve, while values are iterated.
-    iterate
-        False to iterate none.
+    `device`: where parameters are intervals, damping, Coulomb friction and resolution are taken at their
+    worst; `law`: a `NonlinearSpring`, a `HuntCrossley` contact, a scene, or what `render` gives; `closed`:
+    how a wall that covers laws in a chain is decided; `progress`: told the number of states that still
+    improve, while values are iterated; `iterate`: False to iterate none.
     """
     worst = _at_its_worst(device)
     asked = scope_of(device, law)
-    values: Values = partial(_by_values, progress=progress) if iterate else lambda verdict: verdict
+
+    def values(verdict: Verdict) -> Verdict:
+        """A motion refutes, a proof of bounded hands stands beside the verdict."""
+        return with_value_iteration(worst, law, verdict, progress) if iterate else verdict
+
     if law.points:
         verdict = _spring(worst, law, asked, values)
     elif law.power_law is not None:
@@ -148,16 +141,41 @@ def _on_paper(verdict: Verdict) -> Verdict | None:
     return replace(verdict, outcome="theorem", theorem=theorem.statement)
 
 
-def _by_values(verdict: Verdict, progress: Progress | None) -> Verdict:
-    """What value iteration adds: a motion refutes, a proof of bounded hands stands beside the verdict."""
-    from zwidth.passivity.storage.solution import available_storage  # numpy and xarray take their time
+# A scene behind a virtual coupling is decided by the coupling alone, whatever it is made of:
+#     Σ f_k (y_k − y_{k−1}) ≥ −S of the scene      by the way it is stepped
+#     b ≥ ¼ F(θ) [s (1 − cos θ) + (κ²/s)(1 + cos θ)]      then no hand takes energy out
+#
+# The second is decided, and certified, for the law Ĥ(z) that needs as much (`colgate_stanley_brown`).  With
+# an encoder no Coulomb friction is enough for every scene: then it is proved of a handle read without steps.
 
-    try:
-        device, law = verdict.device, verdict.environment
-        found = available_storage(device, law, effort=gap.EFFORT, progress=progress)
-    except InputError:  # an ideal encoder, or a law that remembers too much
+
+Closed = Callable[[Device, Environment], LinearVerdict]
+"""How a law with H(z) is decided."""
+
+
+def decide_behind_coupling(open_still: Verdict, closed: Closed) -> Verdict:
+    """The verdict on a scene, from one that is undecided."""
+    device, coupling = open_still.device, open_still.environment.coupling
+    if coupling is None:
+        return replace(open_still, finding="no coupling")
+    period = device.exact("sample_period")
+    need = needed_damping(coupling.stiffness, coupling.damping, period, device.exact("delay"))
+    if need is None:
+        return replace(open_still, finding="no coupling is enough")
+    proved = closed(ideal_device(device), PulseTransferFunction(*law_of(need, period)))
+    least = proved.required_damping
+    has = float(device.exact("damping"))
+    verdict = replace(open_still, needs=() if least is None else (Need("damping", float(least), has),))
+    if proved.outcome != "passive" or proved.certificate is None:
         return verdict
-    if found.witness is not None:
-        scope = verdict.scope.replace(contact=found.scope.contact)
-        return replace(verdict, outcome="active", scope=scope, motion=found.witness, available_storage=found)
-    return verdict if found.outcome == "undecided" else replace(verdict, available_storage=found)
+    stepped = bool(ends(device.resolution)[1])
+    scope = verdict.scope.replace(
+        contact="made and broken", law=("behind a coupling",), encoder="not counted" if stepped else "ideal"
+    )
+    return replace(
+        verdict,
+        outcome="passive without encoder steps" if stepped else "passive",
+        scope=scope,
+        certificate=proved.certificate,
+        at_limit=proved.at_limit,
+    )

@@ -2,23 +2,27 @@
 
 A verdict means no more than the theorem behind it.  So every result carries this record, the words of its
 claim are made from it (`wording`), last and in one place, and what it says of contact is what the
-independent checker found in the proof.
+independent checker found in the proof.  With it stand the outcomes, and proofs and motions as plain data.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
+from fractions import Fraction
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from zwidth.errors import InputError
-from zwidth.passivity.document import unit_key
+from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.quantity.exact import Interval, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
+from zwidth.quantity.text import exact_text
 
 if TYPE_CHECKING:
     from zwidth.model.device import Device, FrictionCurve
     from zwidth.model.environment.environment import Environment
+
 
 Contact = Literal["made and broken", "kept", "both sides"]
 """The hand touches and leaves at will; it stays inside; the law has no surface at all."""
@@ -262,3 +266,77 @@ def as_contact(value: object) -> Contact:
     raise InputError(
         f'contact is "made and broken", as a hand does, or "kept", for one that never leaves; got {value!r}'
     )
+
+
+# What may come of a question, and by which word, colour and exit status each is told.
+#
+# passive             a proof, with contact made and broken at will, or as was asked
+# passive in contact  a proof of hands that stay inside alone, where nothing else was asked
+# passive without encoder steps
+#                     a proof of an arm, or of a scene, that is read without steps, where this one has them
+# theorem             a proof on paper, reckoned in doubles, without a certificate
+# active              a motion that takes energy out, or a proof that there is one
+# undecided           neither
+
+
+Outcome = Literal[
+    "passive", "passive in contact", "passive without encoder steps", "theorem", "active", "undecided"
+]
+
+
+class Told(NamedTuple):
+    """How an outcome is told."""
+
+    status: int  # the exit status of a command.  2 is bad input.
+    # its colour in a terminal, and in a page
+    terminal: str
+    colour: str
+
+
+TOLD: Mapping[str, Told] = MappingProxyType(
+    {
+        "passive": Told(0, "green", "#2a7d4f"),
+        "passive in contact": Told(4, "blue", "#1f5fa8"),
+        "passive without encoder steps": Told(4, "blue", "#1f5fa8"),
+        "theorem": Told(4, "blue", "#1f5fa8"),
+        "active": Told(1, "red", "#b3261e"),
+        "undecided": Told(3, "yellow", "#8a6d00"),
+    }
+)
+"""By outcome."""
+
+COLOUR: Mapping[str, str] = MappingProxyType(
+    {outcome: told.colour for outcome, told in TOLD.items()}
+    | {"stable": TOLD["passive"].colour, "unstable": TOLD["active"].colour}
+)
+"""By outcome, in a page; of a hand that is known too."""
+
+
+# Numbers are written exactly: as a decimal where one exists, otherwise as text "p/q".  Every key of a
+# physical quantity carries its unit.
+
+
+def unit_key(name: str, motion: str = "linear") -> str:
+    """The JSON key of a quantity: its name and its SI unit, `damping_N_s_per_m`."""
+    return GLOSSARY[name].key_for(motion)
+
+
+def loop_document(
+    loop: LinearLoop, coulomb_friction: Fraction, resolution: Fraction, unilateral: bool, motion: str
+) -> dict[str, Any]:
+    """The loop that a proof or a motion speaks of, exact; H(z) in descending powers of z."""
+    size = max(len(loop.numerator), len(loop.denominator))
+    delay = (loop.whole_delay + loop.part_delay) * loop.period
+    quantities = {
+        "damping": loop.damping,
+        "coulomb_friction": coulomb_friction,
+        "resolution": resolution,
+        "sample_period": loop.period,
+        "delay": delay,
+    }
+    return {
+        **{unit_key(name, motion): exact_text(value) for name, value in quantities.items()},
+        "numerator": [str(c) for c in (*loop.numerator, *[0] * (size - len(loop.numerator)))],
+        "denominator": [str(c) for c in (*loop.denominator, *[0] * (size - len(loop.denominator)))],
+        "unilateral": unilateral,
+    }

@@ -7,16 +7,22 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import inf
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from zwidth.passivity import claims
-from zwidth.passivity.actuator_demand import actuator_demand, is_beyond
+from zwidth.model.device import Device
 from zwidth.passivity.advice import Advice, in_lines
-from zwidth.passivity.document import unit_key
-from zwidth.passivity.found import Found
+from zwidth.passivity.outcome_evidence import Found, assumptions, claim, decided_by
+from zwidth.passivity.scope import unit_key
+from zwidth.passivity.witness.witness import Witness
+from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import enough, in_unit, in_words, save_json
+from zwidth.quantity.json_text import save_json
+from zwidth.quantity.text import enough, in_unit, in_words, told_quantity
 from zwidth.showing import Lines, Part
+
+if TYPE_CHECKING:
+    from zwidth.passivity.storage.gain import Gain
 
 
 @dataclass(frozen=True, repr=False)
@@ -64,17 +70,17 @@ class Verdict(Found):
     @property
     def claim(self) -> str:
         """The verdict in a sentence or two."""
-        return claims.claim(self)
+        return claim(self)
 
     @property
     def assumptions(self) -> tuple[str, ...]:
         """What the claim covers and takes for granted, line by line."""
-        return claims.assumptions(self)
+        return assumptions(self)
 
     @property
     def decided_by(self) -> str:
         """The road on which the outcome was found."""
-        return claims.decided_by(self)
+        return decided_by(self)
 
     @cached_property
     def demand(self) -> tuple[str, ...]:
@@ -124,7 +130,7 @@ class Verdict(Found):
         """The smallest single changes that would do, or the slack of each parameter; () if none is known."""
         if not (self.environment.points and self.device.is_certain):
             return ()
-        from zwidth.passivity.spring_advice import advise_on_spring
+        from zwidth.passivity.loop_advice import advise_on_spring
 
         return advise_on_spring(self.device, self.environment, self.is_proved)
 
@@ -159,7 +165,7 @@ class Verdict(Found):
         """The main numbers as (name, text) for a report."""
         rows = [("decided by", self.decided_by)]
         if self.environment.points and len(self.needs) == 2:  # with a part-sample delay one is not known
-            from zwidth.passivity.spring_advice import binding_of_spring
+            from zwidth.passivity.loop_advice import binding_of_spring
 
             rows.insert(0, ("limit", binding_of_spring(self.device, self.needs)))
         for need in self.needs:
@@ -178,3 +184,28 @@ def _part(left: float | None, has: float) -> float:
     if has:
         return left / has
     return -inf if left < 0 else inf
+
+
+def actuator_demand(device: Device, limit: Exact | Interval, witness: Witness | Gain) -> str:
+    """Whether the motion asks for more force than the limit of the device's actuator [N; N·m]."""
+    most = told_quantity(float(ends(limit)[1]), "force", device.motion)
+    needed = told_quantity(_peak_force(witness), "force", device.motion, 4)
+    if not is_beyond(limit, witness):
+        return f"the motion stays within the actuator's {most}: it asks for {needed}"
+    return (
+        f"the motion asks for {needed}, more than the actuator's {most}; with that "
+        "limit respected no motion is shown, and none is excluded"
+    )
+
+
+def is_beyond(limit: Exact | Interval, witness: Witness | Gain) -> bool:
+    """True where the motion asks for more than the limit [N; N·m]."""
+    return _peak_force(witness) > float(ends(limit)[1])
+
+
+def _peak_force(witness: Witness | Gain) -> float:
+    if isinstance(witness, Witness):
+        return witness.peak_force
+    from zwidth.passivity.storage.gain import peak_force  # loaded by now
+
+    return peak_force(witness)

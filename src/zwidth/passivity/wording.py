@@ -1,4 +1,4 @@
-"""What a scope says in words and as plain data: the one place where either is made.
+"""What a scope says in words, in full and in short: the one place where either is made.
 
 Nothing reads these sentences again: whoever needs a fact takes it from the record.
 """
@@ -6,80 +6,125 @@ Nothing reads these sentences again: whoever needs a fact takes it from the reco
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
-from zwidth.passivity.scope import Contact, Hands, Law, Scope
+from zwidth.passivity.scope import Contact, Encoder, Hands, Law, Outcome, Sampling, Scope, Torque
 from zwidth.quantity.exact import Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_words, shown, told_quantity
 
-if TYPE_CHECKING:
-    from zwidth.passivity.outcome import Outcome
-
 NO_MOTION = "No motion of {hand}, however fast or skilled, can take energy out of this loop"
 
-_CONTACT: dict[Contact, str] = {
-    "made and broken": "contact made and broken at any instant",
-    "kept": "contact is kept: the hand stays inside; making and breaking contact is not covered",
-    "both sides": (
+
+class _Said(NamedTuple):
+    in_full: str
+    in_short: str
+
+
+_CONTACT: dict[Contact, _Said] = {
+    "made and broken": _Said("contact made and broken at any instant", "contact made and broken"),
+    "kept": _Said(
+        "contact is kept: the hand stays inside; making and breaking contact is not covered",
+        "contact kept: making and breaking it is not covered",
+    ),
+    "both sides": _Said(
         "the law acts at every position: there is no contact to make or break; "
-        "what a spring holds where the motion starts may come back and is not counted"
+        "what a spring holds where the motion starts may come back and is not counted",
+        "a law that acts at every position: what a spring holds where the motion starts may come back and is "
+        "not counted",
     ),
 }
-_OF_A_MOTION: dict[Contact, str] = {
-    "made and broken": "the motion makes and breaks contact",
-    "kept": "the motion stays inside: a hand that keeps contact can make it",
-    "both sides": "the law acts at every position: there is no contact to make or break",
+_OF_A_MOTION: dict[Contact, _Said] = {
+    "made and broken": _Said("the motion makes and breaks contact", "the motion makes and breaks contact"),
+    "kept": _Said(
+        "the motion stays inside: a hand that keeps contact can make it", "the motion stays inside"
+    ),
+    "both sides": _Said(
+        "the law acts at every position: there is no contact to make or break",
+        "a law that acts at every position",
+    ),
 }
 _ALSO = {
     "springs": "the same holds for every spring law of slope 0 to K that is 0 somewhere",
     "clamped": "also for a wall that is clamped so that it never pulls",
 }
-_LAW = {
-    "rounded coefficients": "H(z) has the coefficients of its discretization rounded to double precision",
-    "rounded power": "K uⁿ is rounded to {digits} digits, as no decimal writes it",
-    "table": (
+_LAW: dict[Law, _Said] = {
+    "rounded coefficients": _Said(
+        "H(z) has the coefficients of its discretization rounded to double precision",
+        "coefficients of H(z) rounded to doubles",
+    ),
+    "rounded power": _Said("K uⁿ is rounded to {digits} digits, as no decimal writes it", "K uⁿ rounded"),
+    "table": _Said(
         "the law is a table of its states and forces, as the simulator's compiled law gives them in doubles; "
         "the checker takes the table as it stands; zwidth verify steps the law again where a file has its "
-        "parameters"
+        "parameters",
+        "the law as a table of its states and forces",
     ),
-    "doubles": "the law computes with doubles: every rounding is paid for, numbers below 1e-300 aside",
-    "floats": "the law computes with floats: every rounding is paid for, numbers below 1e-36 aside",
-    "behind a coupling": (
+    "doubles": _Said(
+        "the law computes with doubles: every rounding is paid for, numbers below 1e-300 aside",
+        "rounding of doubles counted, numbers below 1e-300 aside",
+    ),
+    "floats": _Said(
+        "the law computes with floats: every rounding is paid for, numbers below 1e-36 aside",
+        "rounding of floats counted, numbers below 1e-36 aside",
+    ),
+    "behind a coupling": _Said(
         "the scene gives out no energy of its own, by the way it is stepped, its rounding aside; "
         "the coupling is proved passive before every such environment; "
-        "what scene and coupling hold at first may come back"
+        "what scene and coupling hold at first may come back",
+        "rounding of the scene aside; what scene and coupling hold at first may come back",
     ),
-    "covered by a wall": "the laws add no more than the virtual damping of a wall, and that wall is proved",
-    "covered with less friction": (
+    "covered by a wall": _Said(
+        "the laws add no more than the virtual damping of a wall, and that wall is proved",
+        "the laws covered by the proof of a wall",
+    ),
+    "covered with less friction": _Said(
         "the laws add no more than the virtual damping of a wall and a part of Coulomb friction; "
-        "that wall is proved with what is left of it"
+        "that wall is proved with what is left of it",
+        "the laws covered by the proof of a wall with less friction",
     ),
-    "potential bounded below": "of springs: those whose potential is bounded below",
-    "energy at first bounded": "environments that have stored no more than a bounded energy at first",
-    "any before the last": "any environment, and any laws before the last one of the chain",
+    "potential bounded below": _Said(
+        "of springs: those whose potential is bounded below",
+        "of springs, those whose potential is bounded below",
+    ),
+    "energy at first bounded": _Said(
+        "environments that have stored no more than a bounded energy at first",
+        "environments of a bounded energy at first",
+    ),
+    "any before the last": _Said(
+        "any environment, and any laws before the last one of the chain",
+        "any environment and laws before the last one",
+    ),
 }
 AS_ONE = "motor, encoder and hand move as one"
 TRANSMISSION = f"{AS_ONE}: no cable, belt or gear gives way between them"
-_ENCODER = {
-    "ideal": "ideal position sensor: no quantization",
-    "counted": "encoder counts of one size, their phase against the surface unknown",
-    "not counted": "encoder steps are left out",
+_ENCODER: dict[Encoder, _Said] = {
+    "ideal": _Said("ideal position sensor: no quantization", "ideal position sensor"),
+    "counted": _Said(
+        "encoder counts of one size, their phase against the surface unknown", "encoder steps counted"
+    ),
+    "not counted": _Said("encoder steps are left out", "encoder steps left out"),
 }
-_TORQUE = {
-    "follows the arm": "the torque follows the arm within a period",
-    "follows the readings": "the torque follows the readings of the encoders within a period",
-    "held": "the torque is computed once a sample and held",
+_TORQUE: dict[Torque, _Said] = {
+    "": _Said("", ""),
+    "follows the arm": _Said(
+        "the torque follows the arm within a period", "the torque follows the arm within a period"
+    ),
+    "follows the readings": _Said(
+        "the torque follows the readings of the encoders within a period",
+        "the torque follows the encoders within a period",
+    ),
+    "held": _Said("the torque is computed once a sample and held", "the torque held over a sample"),
 }
-_SAMPLING = {
-    "constant": "a constant sample period and delay, no missed samples",
-    "any": "any sample period, delays and missed samples",
+_SAMPLING: dict[Sampling, _Said] = {
+    "constant": _Said(
+        "a constant sample period and delay, no missed samples",
+        "constant period and delay, no missed samples",
+    ),
+    "any": _Said(
+        "any sample period, delays and missed samples", "any sample period, delays and missed samples"
+    ),
 }
-
-
-def contact_of(contact: Contact) -> str:
-    """The contact that a result covers, in a few words."""
-    return _CONTACT[contact]
 
 
 def claim_of_passivity(scope: Scope, at_limit: bool) -> str:
@@ -124,7 +169,7 @@ def lines(scope: Scope, outcome: str | None = None) -> tuple[str, ...]:
 def _lines(scope: Scope, active: bool) -> Iterator[str]:
     yield "; ".join(
         [
-            (_OF_A_MOTION if active else _CONTACT)[scope.contact],
+            (_OF_A_MOTION if active else _CONTACT)[scope.contact].in_full,
             *([f"the law is fed with the {scope.fed_with}"] if scope.fed_with else []),
             *(["the law never pulls: a force below 0 is given as 0"] if scope.clamped else []),
             *(_ALSO[more] for more in scope.also),
@@ -143,22 +188,22 @@ def _lines(scope: Scope, active: bool) -> Iterator[str]:
     if scope.transmission:
         yield TRANSMISSION
     if scope.torque:
-        yield _TORQUE[scope.torque]
+        yield _TORQUE[scope.torque].in_full
     if scope.largest_force is not None:
         moment = "" if scope.largest_moment is None else f" and moments up to {scope.largest_moment:.6g} N·m"
         yield f"forces of the wall up to {told_quantity(scope.largest_force, 'force', scope.motion)}{moment}"
-    yield _SAMPLING[scope.sampling]
-    yield _ENCODER[scope.encoder]
+    yield _SAMPLING[scope.sampling].in_full
+    yield _ENCODER[scope.encoder].in_full
     yield from (f"{in_words(key)} was not given and taken as 0" for key in scope.assumed)
     yield from map(_of_the_law, scope.law)
 
 
 def _of_the_law(note: Law) -> str:
     if note != "rounded power":
-        return _LAW[note]
-    from zwidth.model.environment.nonlinear import DIGITS  # few loops have such a contact
+        return _LAW[note].in_full
+    from zwidth.model.environment.hunt_crossley import DIGITS  # few loops have such a contact
 
-    return _LAW[note].format(digits=DIGITS)
+    return _LAW[note].in_full.format(digits=DIGITS)
 
 
 def intervals(scope: Scope, outcome: Outcome) -> str | None:
@@ -248,3 +293,77 @@ def _sides(hands: Hands, motion: str) -> str:
 
 def _far(way: float, motion: str) -> str:
     return shown(way, GLOSSARY["position"].unit_for(motion))
+
+
+# In short: numbers and reasons may be left out, and nothing that makes a claim narrower.
+
+
+def in_short(scope: Scope, outcome: str | None = None, hands: bool = True) -> str:
+    """What a result takes for granted, in one paragraph; of a motion what it does.
+
+    `hands` is False where the hands stand elsewhere in the report.
+    """
+    return "; ".join(part for part in _short_parts(scope, outcome == "active", hands) if part)
+
+
+def _short_parts(scope: Scope, active: bool, hands: bool) -> Iterator[str]:
+    yield (_OF_A_MOTION if active else _CONTACT)[scope.contact].in_short
+    yield f"the law fed with the {scope.fed_with}" if scope.fed_with else ""
+    yield "the law never pulls" if scope.clamped else ""
+    yield f"the arm in its region, {scope.region}" if scope.region is not None else ""
+    if hands:
+        yield from _short_hands(scope, active)
+    yield _short_losses(scope)
+    yield _short_actuator(scope)
+    yield AS_ONE if scope.transmission else ""
+    yield _TORQUE[scope.torque].in_short
+    yield _short_forces(scope)
+    yield _SAMPLING[scope.sampling].in_short
+    yield _ENCODER[scope.encoder].in_short
+    if scope.assumed:
+        yield f"{', '.join(map(in_words, scope.assumed))} not given, taken as 0"
+    yield from (_LAW[note].in_short for note in scope.law)
+
+
+def _short_hands(scope: Scope, active: bool) -> Iterator[str]:
+    """A motion that was found is of a hand that is fast and strong enough to make it."""
+    bounded = not scope.hands.every and not active
+    if bounded:
+        yield f"only {describe_hands(scope.hands, scope.motion)}"
+    if scope.hands.impedance is None:
+        fast = bounded and scope.hands.speed is not None
+        yield "hands of any force" if fast else "hands of any speed and force"
+
+
+def _short_losses(scope: Scope) -> str:
+    if scope.friction is not None:
+        return "friction not below its measured curve, continued beyond its ends"
+    parts = []
+    if scope.damping is not None:
+        parts.append(f"b = {told_quantity(scope.damping, 'damping', scope.motion)}")
+        if scope.coulomb_friction is not None:
+            parts.append(f"f_c = {told_quantity(scope.coulomb_friction, 'force', scope.motion)}")
+    if not parts:
+        return ""
+    left_out = "" if scope.coulomb_friction is not None else ", Coulomb friction left out"
+    return f"at least {', '.join(parts)} in the device{left_out}{_short_measured(scope)}"
+
+
+def _short_measured(scope: Scope) -> str:
+    if scope.friction_speed is None:
+        return ""
+    speed = told_quantity(scope.friction_speed, "friction_speed", scope.motion)
+    return f", measured up to {speed} and taken for granted beyond"
+
+
+def _short_actuator(scope: Scope) -> str:
+    parts = {"force limit": scope.force_limit, "converter steps": scope.force_steps}
+    counted = [name for name, value in parts.items() if value]
+    return f"{' and '.join(counted)} counted, else an ideal actuator" if counted else "ideal actuator"
+
+
+def _short_forces(scope: Scope) -> str:
+    if scope.largest_force is None:
+        return ""
+    moment = "" if scope.largest_moment is None else f" and moments up to {scope.largest_moment:.6g} N·m"
+    return f"forces of the wall up to {told_quantity(scope.largest_force, 'force', scope.motion)}{moment}"

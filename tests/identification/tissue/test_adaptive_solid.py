@@ -145,7 +145,7 @@ def test_the_frozen_bound_is_reached():
 def test_required_damping_is_the_closed_form():
     """And a target that asks for more is scaled down to it, its relaxation time kept."""
     solid = Solid(300.0, 150.0, 7.0)
-    exact = zw.formulas.closed_forms.standard_linear_solid_damping(300, 150, 7, Fraction(1, 1000))
+    exact = zw.formulas.standard_linear_solid_damping(300, 150, 7, Fraction(1, 1000))
     assert required_damping(solid, T) == pytest.approx(float(exact), rel=1e-15)
     wall = AdaptiveSolid(PHANTOM, (1, 1, 1))
     scaled = wall.retune((3000, 1500, 70))

@@ -13,8 +13,8 @@ from scipy.linalg import expm
 
 import zwidth as zw
 from zwidth.model.environment.environment import add, multiply
-from zwidth.passivity.decision import decide
-from zwidth.passivity.linear.linear import LinearProof
+from zwidth.passivity.criterion_choice import decide
+from zwidth.passivity.linear.criterion import LinearProof
 from zwidth.passivity.witness.motion import Motion
 
 T = Fraction(1, 1000)

@@ -11,11 +11,10 @@ import pytest
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.passivity.formulas import closed_forms as forms
-from zwidth.passivity.linear.linear import LinearProof, LinearRefutation, decide_linear
+from zwidth.passivity import formulas as forms
+from zwidth.passivity.linear.criterion import LinearProof, LinearRefutation, decide_linear
 from zwidth.passivity.linear.loop import loop_from
-from zwidth.passivity.witness.edge_crossing import best_waits
-from zwidth.passivity.witness.motion import Motion, Repeat
+from zwidth.passivity.witness.motion import Motion, Repeat, best_waits
 from zwidth.passivity.witness.witness import Setting
 
 TINY = Fraction(1, 10**12)

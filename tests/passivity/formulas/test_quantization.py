@@ -11,7 +11,7 @@ import pytest
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.passivity.formulas import quantization as q
+from zwidth.passivity import formulas as q
 from zwidth.passivity.linear.loop import linear_loop
 from zwidth.passivity.witness.motion import Motion, Repeat
 from zwidth.passivity.witness.witness import Setting

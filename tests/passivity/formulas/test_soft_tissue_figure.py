@@ -13,9 +13,9 @@ from fractions import Fraction
 import pytest
 
 import zwidth as zw
-from zwidth.passivity.formulas import closed_forms as forms
+from zwidth.passivity import formulas as forms
 from zwidth.passivity.linear.boundary import largest_holding
-from zwidth.passivity.linear.linear import LinearProof, decide_linear
+from zwidth.passivity.linear.criterion import LinearProof, decide_linear
 from zwidth.passivity.linear.loop import loop_from
 
 DAMPING = Fraction("0.27")

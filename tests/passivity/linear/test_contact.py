@@ -12,10 +12,10 @@ from strategies import seeds
 
 import zwidth as zw
 from zwidth import checker
+from zwidth.passivity import formulas as forms
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.decision import decide
-from zwidth.passivity.formulas import closed_forms as forms
+from zwidth.passivity.criterion_choice import decide
 
 TINY = Fraction(1, 10**9)
 T = Fraction(1, 1000)

@@ -10,8 +10,7 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.passivity.linear.delay_interval import prove_delays
-from zwidth.passivity.linear.linear import LinearProof
+from zwidth.passivity.linear.criterion import LinearProof, prove_delays
 from zwidth.passivity.linear.loop import linear_loop
 
 PADDLE = zw.Device(damping="0.15", coulomb_friction="0.12", resolution="22.4 um", rate="1 kHz")

@@ -11,7 +11,7 @@ import pytest
 from flint import fmpq_poly, fmpz_poly
 
 import zwidth as zw
-from zwidth.passivity.linear import delay_interval, positivity
+from zwidth.passivity.linear import criterion, positivity
 from zwidth.passivity.linear.loop import LARGEST_DIGITS, linear_loop
 from zwidth.passivity.parameter_limits import provable
 from zwidth.passivity.witness.sinusoid import sinusoids
@@ -119,7 +119,7 @@ def test_pieces_of_a_delay_are_counted(monkeypatch):
     law = stable_law(10, 5)
     device = zw.Device(damping="22.75", sample_period="1 ms", delay=(0, "3 ms"))
     assert len(zw.check(device, law).certificate.documents[0]["proof"]["pieces"]) > 3
-    monkeypatch.setattr(delay_interval, "MOST_PIECES", 40)
+    monkeypatch.setattr(criterion, "MOST_PIECES", 40)
     assert zw.check(device, law).finding == "between corners"
 
 

@@ -14,14 +14,18 @@ from strategies import seeds
 from zwidth import checker
 from zwidth.model.environment.environment import RationalFunction
 from zwidth.passivity.certificate import certify
-from zwidth.passivity.decision import Decision
+from zwidth.passivity.criterion_choice import Decision
 from zwidth.passivity.linear.boundary import smallest_holding
-from zwidth.passivity.linear.linear import LinearProof, LinearRefutation, decide_linear
+from zwidth.passivity.linear.criterion import (
+    LinearProof,
+    LinearRefutation,
+    decide_linear,
+    frequency,
+    tightest,
+)
 from zwidth.passivity.linear.loop import loop_from
-from zwidth.passivity.linear.supremum import frequency, tightest
-from zwidth.passivity.witness.refutation import refute_linear
 from zwidth.passivity.witness.sinusoid import LONGEST_PERIOD, negative_band, simplest_between
-from zwidth.passivity.witness.violation import Violation
+from zwidth.passivity.witness.violation import Violation, refute_linear
 from zwidth.passivity.witness.witness import Setting
 
 T = Fraction(1, 1000)

@@ -15,7 +15,7 @@ from zwidth import checker
 from zwidth.checker.document.refusal import Invalid
 from zwidth.checker.loop.one_norm import NORM, one_norm_bound
 from zwidth.passivity.certificate import certify
-from zwidth.passivity.decision import Decision
+from zwidth.passivity.criterion_choice import Decision
 from zwidth.passivity.linear.loop import linear_loop
 from zwidth.passivity.linear.one_norm import _rounded, bound_one_norm
 from zwidth.passivity.witness.witness import Setting

@@ -11,7 +11,7 @@ import pytest
 from flint import fmpz_poly
 from strategies import seeds
 
-from zwidth.passivity.linear.roots import rational_roots_inside, real_roots, roots_inside
+from zwidth.passivity.linear.exact_algebra import rational_roots_inside, real_roots, roots_inside
 
 TINY = Fraction(1, 10**25)
 NEAR = Fraction(1, 2**120)

@@ -12,7 +12,7 @@ from polynomials import product
 from strategies import seeds
 
 from zwidth.checker.exact.roots import inside_unit_circle
-from zwidth.passivity.linear.schur import is_schur
+from zwidth.passivity.linear.exact_algebra import is_schur
 
 
 def polynomial(*factors):

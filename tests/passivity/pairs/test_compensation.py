@@ -10,9 +10,9 @@ import pytest
 from strategies import seeds
 
 import zwidth as zw
+from zwidth.passivity.covering_wall import line_of
 from zwidth.passivity.pairs.criterion import PairCriterion, spending
 from zwidth.passivity.pairs.evidence import energy_of
-from zwidth.passivity.tangents import line_of
 from zwidth.passivity.witness.motion import Motion
 
 BILLIONTH = Fraction(1, 10**9)

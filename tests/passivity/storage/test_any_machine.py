@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.passivity import gap
+from zwidth.passivity import value_iteration_fallback as gap
+from zwidth.passivity.storage import value_iteration as iterating
 from zwidth.passivity.storage.domain import domain_for, losses_of
-from zwidth.passivity.storage.grid.grid import Grid
-from zwidth.passivity.storage.grid.relaxing import RelaxingGrid
+from zwidth.passivity.storage.grid import Grid
 from zwidth.passivity.storage.law import finite_law
-from zwidth.passivity.storage.solve import effort
-from zwidth.passivity.storage.solve import value_iteration as iterating
-from zwidth.passivity.storage.solve.value_iteration import ValueIteration, value_iteration
+from zwidth.passivity.storage.relaxing_grid import RelaxingGrid
+from zwidth.passivity.storage.value_iteration import ValueIteration, value_iteration
 
 
 class LastFirst(ThreadPoolExecutor):
@@ -94,7 +93,7 @@ def test_a_slow_machine_finds_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
         return repr(bracket.to_dict()), repr(zw.check(paddle, wall.replace(stiffness=420)).to_dict())
 
     here = found()
-    monkeypatch.setattr(effort, "time", Slow())
+    monkeypatch.setattr(iterating, "time", Slow())
     assert found() == here
 
 
@@ -114,4 +113,4 @@ def test_an_end_by_time_is_said() -> None:
     assert "time given" in short.claim
     none = zw.available_storage(paddle, zw.Wall(700, "0.02"), **bounds, effort=0)
     assert (none.outcome, none.cut_by_time) == ("undecided", False)
-    assert gap.EFFORT < effort.EFFORT
+    assert gap.EFFORT < iterating.EFFORT

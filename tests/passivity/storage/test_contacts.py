@@ -19,8 +19,8 @@ import pytest
 import zwidth as zw
 from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import available_storage
-from zwidth.passivity.storage.evidence.playback import settled_round
-from zwidth.passivity.storage.grid.grid import Grid
+from zwidth.passivity.storage.gain import settled_round
+from zwidth.passivity.storage.grid import Grid
 from zwidth.passivity.storage.law import finite_law
 from zwidth.passivity.storage.program import program_of
 

@@ -21,7 +21,7 @@ import zwidth as zw
 from zwidth.loop.law import rounded
 from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import available_storage
-from zwidth.passivity.storage.evidence.playback import settled_round
+from zwidth.passivity.storage.gain import settled_round
 from zwidth.passivity.storage.law import FiniteLaw, finite_law
 
 STEP, COUNT, PERIOD = Fraction(2, 100), Fraction(1, 10**4), Fraction(1, 1000)

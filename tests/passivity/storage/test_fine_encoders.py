@@ -12,9 +12,9 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.passivity.storage import two_sides
+from zwidth.passivity.bracket import search as two_sides
+from zwidth.passivity.storage.hand_bounds import slow_hands
 from zwidth.passivity.storage.program import program_of
-from zwidth.passivity.storage.slow_hands import slow_hands
 from zwidth.quantity.exact import Exact
 
 ABOVE = Fraction(1001, 1000)

@@ -13,7 +13,7 @@ import zwidth as zw
 from zwidth import checker
 from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import available_storage
-from zwidth.passivity.storage.losses import Losses, inner_costs, outer_costs
+from zwidth.passivity.storage.domain import Losses, inner_costs, outer_costs
 
 PERIOD, RESOLUTION = Fraction(1, 1000), Fraction(1, 10000)
 DEVICE = zw.Device(damping=0, coulomb_friction=0, resolution=RESOLUTION, sample_period=PERIOD)

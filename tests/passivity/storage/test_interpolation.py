@@ -11,10 +11,9 @@ import pytest
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.passivity.storage.domain import Domain
-from zwidth.passivity.storage.grid.grid import Grid
+from zwidth.passivity.storage.domain import Domain, Losses
+from zwidth.passivity.storage.grid import Grid
 from zwidth.passivity.storage.law import FiniteLaw
-from zwidth.passivity.storage.losses import Losses
 
 HALF, QUARTER = Fraction(1, 2), Fraction(1, 4)
 

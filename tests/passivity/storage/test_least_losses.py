@@ -13,7 +13,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from strategies import seeds
 
-from zwidth.passivity.storage.losses import Losses
+from zwidth.passivity.storage.domain import Losses
 
 FRICTION, DAMPING, PERIOD = Fraction("0.12"), Fraction("0.15"), Fraction("0.003")
 PAID = Losses(DAMPING, FRICTION, Fraction("0.00224"), PERIOD, 1)

@@ -13,12 +13,10 @@ import pytest
 from plain_iteration import PlainIteration, exact_gain
 from strategies import seeds
 
-from zwidth.passivity.storage.domain import Domain
-from zwidth.passivity.storage.grid.grid import Grid
+from zwidth.passivity.storage.domain import Domain, Losses
+from zwidth.passivity.storage.grid import Grid
 from zwidth.passivity.storage.law import FiniteLaw
-from zwidth.passivity.storage.losses import Losses
-from zwidth.passivity.storage.solve.effort import Effort, Until
-from zwidth.passivity.storage.solve.value_iteration import value_iteration
+from zwidth.passivity.storage.value_iteration import Effort, Until, value_iteration
 
 LAWS = {
     "spring": ("position", 1, False, 0),

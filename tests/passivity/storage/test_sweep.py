@@ -7,11 +7,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from zwidth.passivity.storage.domain import Domain
-from zwidth.passivity.storage.grid.grid import Grid
+from zwidth.passivity.storage.domain import Domain, Losses
+from zwidth.passivity.storage.grid import Grid
+from zwidth.passivity.storage.hull import NOWHERE, sweep
 from zwidth.passivity.storage.law import FiniteLaw
-from zwidth.passivity.storage.losses import Losses
-from zwidth.passivity.storage.solve.hull import NOWHERE, sweep
 
 
 def _drawn(rng, memory):

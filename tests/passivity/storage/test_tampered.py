@@ -15,10 +15,10 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.passivity.storage.evidence.storage_function import StorageFunction
-from zwidth.passivity.storage.grid.grid import Grid
+from zwidth.passivity.storage.grid import Grid
 from zwidth.passivity.storage.program import program_of
-from zwidth.passivity.storage.solve.value_iteration import value_iteration
+from zwidth.passivity.storage.storage_function import StorageFunction
+from zwidth.passivity.storage.value_iteration import value_iteration
 
 BOUNDS = {"penetration": "0.0006", "speed": "0.3"}
 

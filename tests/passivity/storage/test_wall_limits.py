@@ -10,7 +10,7 @@ from random import Random
 import pytest
 
 import zwidth as zw
-from zwidth.passivity.formulas import closed_forms as forms
+from zwidth.passivity import formulas as forms
 from zwidth.passivity.storage.domain import Domain, losses_of
 from zwidth.passivity.storage.law import finite_law
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram

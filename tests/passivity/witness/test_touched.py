@@ -14,8 +14,8 @@ from strategies import seeds
 import zwidth as zw
 from zwidth import checker
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.decision import decide
-from zwidth.passivity.linear.rhythm import Surface, rhythms
+from zwidth.passivity.criterion_choice import decide
+from zwidth.passivity.linear.contact_pattern_search import Surface, rhythms
 from zwidth.passivity.witness.touching import TouchedSetting, refute_touching
 
 T = Fraction(1, 1000)

@@ -19,7 +19,7 @@ from zwidth.model.environment import BackwardDifference, Wall, Window
 from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.check import check, check_by_closed_forms
-from zwidth.passivity.covering import covering
+from zwidth.passivity.covering_wall import covering
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import ends
 

@@ -14,8 +14,8 @@ from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import PulseTransferFunction
 from zwidth.passivity.check import check
-from zwidth.passivity.outcome import COLOUR, Outcome
 from zwidth.passivity.result import evidence_of
+from zwidth.passivity.scope import COLOUR, Outcome
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact, RealLike

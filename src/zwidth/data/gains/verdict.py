@@ -15,9 +15,9 @@ from zwidth.data.gains.joint import JointGains
 from zwidth.data.gains.plant import GivenPlant
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted, suggestion
-from zwidth.passivity.outcome import COLOUR, Outcome
 from zwidth.passivity.pairs import PairVerdict, check_pair
 from zwidth.passivity.pairs.limits import samples_around
+from zwidth.passivity.scope import COLOUR, Outcome
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown

@@ -23,8 +23,8 @@ from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.check import check
-from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.result import Result
+from zwidth.passivity.scope import COLOUR
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Interval, RealLike, ends
 from zwidth.quantity.spoken import spoken

@@ -34,15 +34,13 @@ from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering import VirtualCoupling
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.document import unit_key
-from zwidth.passivity.formulas.coupling_need import ideal_device, law_of, needed_damping
+from zwidth.passivity.formulas.colgate_stanley_brown import ideal_device, law_of, needed_damping
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, nonnegative, number
-from zwidth.passivity.linear.linear import LinearRefutation
+from zwidth.passivity.linear.criterion import LinearRefutation
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import Answer
-from zwidth.passivity.scope import Scope
-from zwidth.passivity.storage.evidence.gain import Gain
+from zwidth.passivity.scope import Outcome, Scope, unit_key
+from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import told_quantity

@@ -36,11 +36,10 @@ from zwidth.model.environment.wall import wall_of
 from zwidth.model.rendering import VirtualCoupling
 from zwidth.passivity.check import check
 from zwidth.passivity.coupling.coupling import CouplingCondition, coupling_condition
-from zwidth.passivity.document import unit_key
-from zwidth.passivity.formulas.coupling_need import needed_damping
+from zwidth.passivity.formulas.colgate_stanley_brown import needed_damping
 from zwidth.passivity.formulas.hypotheses import number
 from zwidth.passivity.result import Result
-from zwidth.passivity.scope import Scope
+from zwidth.passivity.scope import Scope, unit_key
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import told_quantity

@@ -20,13 +20,12 @@ from zwidth.model.device import Device
 from zwidth.model.environment.bodies import POWER_OF_MASS, CoupledBody, times
 from zwidth.model.environment.environment import RationalFunction
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.document import unit_key
+from zwidth.passivity.linear.criterion import LinearProof, decide_linear
 from zwidth.passivity.linear.critical_values import critical_values
-from zwidth.passivity.linear.linear import LinearProof, decide_linear
 from zwidth.passivity.linear.loop import linear_loop
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.result import Result, evidence_of
-from zwidth.passivity.scope import Scope
+from zwidth.passivity.scope import Scope, unit_key
 from zwidth.passivity.witness.sinusoid import simplest_between
 from zwidth.passivity.wording import lines
 from zwidth.quantity.exact import Exact

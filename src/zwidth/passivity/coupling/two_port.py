@@ -32,7 +32,7 @@ from scipy.optimize import minimize_scalar
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, NO_CLOCK, nonnegative, positive
-from zwidth.passivity.linear.frequencies import sampled_frequencies
+from zwidth.passivity.linear.criterion import sampled_frequencies
 from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:

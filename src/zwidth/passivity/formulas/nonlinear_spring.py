@@ -19,39 +19,23 @@ from typing import Any
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import unit_key
 from zwidth.passivity.result import Evidence
-from zwidth.passivity.scope import Contact
+from zwidth.passivity.scope import Contact, unit_key
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import exact_text, quantity_unit
 
 
 @dataclass(frozen=True)
 class SpringNeed:
-    """What a nonlinear spring asks of a device, as far as it is proved.
+    """What a nonlinear spring asks of a device, as far as it is proved."""
 
-    Parameters
-    ----------
-    largest_slope
-        L ≥ 0, what the hold multiplies [N/m; N·m/rad].
-    steepest
-        s, the largest |slope|, what an encoder count multiplies [N/m; N·m/rad].
-    held
-        w T, what hold and delay ask for [N·s/m; N·m·s/rad].
-    within
-        α (1 − α) s² T²/4, what a force that changes within a sample adds [(N·s/m)²; (N·m·s/rad)²].
-    coulomb_friction
-        f_c that is enough [N; N·m].
-    bounded
-        True if the potential has a lowest value; else no friction is enough here.
-    """
-
-    largest_slope: Fraction
-    steepest: Fraction
-    held: Fraction
+    largest_slope: Fraction  # L ≥ 0, what the hold multiplies [N/m; N·m/rad]
+    steepest: Fraction  # s, the largest |slope|, what an encoder count multiplies [N/m; N·m/rad]
+    held: Fraction  # w T, what hold and delay ask for [N·s/m; N·m·s/rad]
+    # α (1 − α) s² T²/4, what a force that changes within a sample adds [(N·s/m)²; (N·m·s/rad)²]
     within: Fraction
-    coulomb_friction: Fraction
-    bounded: bool
+    coulomb_friction: Fraction  # f_c that is enough [N; N·m]
+    bounded: bool  # True if the potential has a lowest value; else no friction is enough here
 
     @property
     def damping(self) -> float:
@@ -84,21 +68,11 @@ def spring_need(device: Device, spring: Environment) -> SpringNeed:
 
 @dataclass(frozen=True, repr=False)
 class EndlessPull(Evidence):
-    """A proof that a spring gives out energy without end: it pulls away, and friction holds less.
+    """A proof that a spring gives out energy without end: it pulls away, and friction holds less."""
 
-    Parameters
-    ----------
-    document
-        The loop and the points, for the checker.
-    pull
-        The force with which it does [N; N·m].
-    unit
-        Of it.
-    """
-
-    document: dict[str, Any]
-    pull: float
-    unit: str
+    document: dict[str, Any]  # the loop and the points, for the checker
+    pull: float  # the force with which it does [N; N·m]
+    unit: str  # of it
 
     @property
     def witness(self) -> None:

@@ -21,8 +21,8 @@ from flint import Ordering, fmpq_poly, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
 from zwidth.errors import InputError
 from zwidth.model.environment.environment import RationalFunction
+from zwidth.passivity.linear.exact_algebra import roots_inside
 from zwidth.passivity.linear.loop import LinearLoop
-from zwidth.passivity.linear.roots import roots_inside
 from zwidth.quantity.balls import as_fmpq
 
 Law = Callable[[Fraction], RationalFunction]
@@ -38,16 +38,8 @@ _CIRCLE = ({"c": 1}, {"c": -1})
 def critical_values(law: Law, degree: int, loop: LinearLoop, scale: Fraction) -> list[Fraction]:
     """The values m > 0, ascending and to rounding, between which the verdict is one.
 
-    Parameters
-    ----------
-    law
-        H(z) as a function of m.
-    degree
-        The highest power of m in N and D, or a higher one.
-    loop
-        On the same device: its b, T and delay are taken.
-    scale
-        A value of the size that is looked for.
+    `law`: H(z) as a function of m; `degree`: the highest power of m in N and D, or a higher one; `loop`: on
+    the same device: its b, T and delay are taken; `scale`: a value of the size that is looked for.
     """
     numbers = [Fraction(i) for i in range(1, 2 * degree + 2)]
     loops = _on_one_scale([law(scale * number) for number in numbers], loop)

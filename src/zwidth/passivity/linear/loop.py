@@ -27,8 +27,7 @@ from flint import arb, arb_poly, fmpq, fmpq_poly, fmpz_poly
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment, RationalFunction
-from zwidth.passivity.linear.cosines import from_cosines, real_product
-from zwidth.passivity.linear.schur import is_schur
+from zwidth.passivity.linear.exact_algebra import from_cosines, is_schur, real_product
 from zwidth.quantity.balls import as_fmpq, as_fraction, precision
 
 LARGEST_DEGREE = 120
@@ -40,33 +39,24 @@ HIGH_DEGREE = 40
 LARGEST_DIGITS = 1000
 """Digits of N and D as whole numbers that are still decided: a proof has more than twice as many."""
 
-_PRECISIONS = (256, 1024, 4096)
-"""Bits of the balls in which a need is evaluated, one after the other."""
+_PRECISIONS = (256, 1024, 4096)  # bits of the balls in which a need is evaluated, one after the other
 
 
 @dataclass(frozen=True)
 class LinearLoop:
-    """A device and H(z), exact: what the linear criterion needs and no more.
+    """A device and H(z), exact: what the linear criterion needs and no more."""
 
-    Parameters
-    ----------
-    numerator, denominator
-        Coprime integer coefficients of N and D in ascending powers of ζ = z⁻¹.
-    damping, period
-        b [N·s/m] and T [s].
-    whole_delay, part_delay
-        d and α of delay = (d + α) T.
-    hidden_modes_decay
-        False when a factor that N and D had in common has a root on or outside
-        the unit circle: the port does not see that mode, the controller carries it.
-    """
-
+    # coprime integer coefficients of N and D in ascending powers of ζ = z⁻¹
     numerator: tuple[int, ...]
     denominator: tuple[int, ...]
+    # b [N·s/m] and T [s]
     damping: Fraction
     period: Fraction
+    # d and α of delay = (d + α) T
     whole_delay: int
     part_delay: Fraction
+    # False when a factor that N and D had in common has a root on or outside the unit circle: the port does
+    # not see that mode, the controller carries it
     hidden_modes_decay: bool = True
 
     def __getstate__(self) -> dict[str, object]:

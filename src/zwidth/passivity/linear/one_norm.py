@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 from flint import fmpq_poly, fmpz_poly
 
+from zwidth.passivity.linear.exact_algebra import rational_roots_inside
 from zwidth.passivity.linear.loop import LinearLoop
-from zwidth.passivity.linear.roots import rational_roots_inside
 from zwidth.quantity.balls import as_fmpq, as_fraction
 
 LONGEST = 1500

@@ -14,8 +14,7 @@ from fractions import Fraction
 from flint import fmpq, fmpz_poly
 
 from zwidth.errors import InputError
-from zwidth.passivity.linear.descartes import halves, on_unit_interval, sign_changes
-from zwidth.passivity.linear.roots import root_between
+from zwidth.passivity.linear.exact_algebra import halves, on_unit_interval, root_between, sign_changes
 from zwidth.quantity.balls import as_fmpq
 
 MOST_WORDS = 40_000_000
@@ -34,11 +33,8 @@ class TooClose(InputError):
 
 _ONE = fmpz_poly([1])
 _HALF = fmpq(1, 2)
-_NARROW = Fraction(1, 100)
-"""Intervals in which a valley is looked for; in wider ones halving does."""
-
-_VALLEY_BITS = (256, 1024, 3072)
-"""To which its lowest point is computed, one after the other."""
+_NARROW = Fraction(1, 100)  # intervals in which a valley is looked for; in wider ones halving does
+_VALLEY_BITS = (256, 1024, 3072)  # to which its lowest point is computed, one after the other
 
 
 @dataclass(frozen=True)
@@ -57,13 +53,8 @@ class Positivity:
 def prove_nonnegative(p: fmpz_poly, known: bool = False) -> Positivity | Fraction:
     """A proof that p ≥ 0 on [−1, 1], or a rational point of (−1, 1) where p < 0.
 
-    Parameters
-    ----------
-    p
-        The polynomial.
-    known
-        True where p ≥ 0 is known and only its factors are asked for: a squarefree g crosses each of its
-        zeros, and has none.
+    `p`: the polynomial; `known`: True where p ≥ 0 is known and only its factors are asked for: a squarefree g
+    crosses each of its zeros, and has none.
     """
     if p.degree() < 0:
         return Positivity(0, 0, (), (1,))

@@ -15,8 +15,16 @@ from typing import Any, Literal
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
-from zwidth.passivity.advice import Advice
-from zwidth.passivity.knob import Knob, between_delays, between_rates, between_sizes, outward, turn, turn_all
+from zwidth.passivity.advice import (
+    Advice,
+    Knob,
+    between_delays,
+    between_rates,
+    between_sizes,
+    outward,
+    turn,
+    turn_all,
+)
 from zwidth.passivity.linear.boundary import Holds
 from zwidth.passivity.pairs.criterion import PairCriterion, largest_spring
 from zwidth.passivity.pairs.limits import grain_of, is_passive, largest_stiffness, samples_around, with_share

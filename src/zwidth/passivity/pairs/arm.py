@@ -1,8 +1,8 @@
 """One arm of a pair in samples, and what moves within a sample lose.
 
 Compensation of friction under a line h + s v takes h of Coulomb friction, s/2 of damping and C + s/2 of local
-damping (`tangents`).  Of an arm whose drive reads more often it is computed once in T all the same: it takes
-w (s/2 + (C + s/2) cos θ) from what the moves of a whole sample lose.
+damping (`covering_wall`).  Of an arm whose drive reads more often it is computed once in T all the same: it
+takes w (s/2 + (C + s/2) cos θ) from what the moves of a whole sample lose.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from flint import fmpq, fmpz_poly
 from numpy.typing import NDArray
 
 from zwidth.model.pairs import Side
-from zwidth.passivity.tangents import Line, line_of
+from zwidth.passivity.covering_wall import Line, line_of
 from zwidth.quantity.balls import as_fmpq, as_fraction
 
 Floats = NDArray[np.float64]

@@ -36,10 +36,10 @@ from flint import fmpq, fmpz_poly
 from numpy.typing import NDArray
 
 from zwidth.model.pairs import Pair
-from zwidth.passivity.linear.cosines import from_whole_cosines, whole_product
+from zwidth.passivity.covering_wall import best_tangent
+from zwidth.passivity.linear.exact_algebra import from_whole_cosines, whole_product
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
 from zwidth.passivity.pairs.arm import Arm
-from zwidth.passivity.tangents import best_tangent
 from zwidth.quantity.balls import as_fmpq, as_fraction
 
 Sums = dict[int, fmpq]

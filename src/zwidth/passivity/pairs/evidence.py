@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from zwidth.checker import verify
 from zwidth.model.pairs import Pair, Side
-from zwidth.passivity.document import unit_key
+from zwidth.passivity.linear.criterion import frequency
 from zwidth.passivity.linear.positivity import Positivity
-from zwidth.passivity.linear.supremum import frequency
 from zwidth.passivity.result import Evidence
+from zwidth.passivity.scope import unit_key
 from zwidth.passivity.witness.motion import Motion, Repeat
 from zwidth.quantity.text import exact_text, quantity_unit, readable
 

@@ -20,8 +20,8 @@ from flint import arb
 
 from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
+from zwidth.passivity.linear.exact_algebra import roots_inside
 from zwidth.passivity.linear.positivity import prove_nonnegative
-from zwidth.passivity.linear.roots import roots_inside
 from zwidth.passivity.pairs.arm import Arm
 from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.passivity.pairs.evidence import PairWitness, energy_of

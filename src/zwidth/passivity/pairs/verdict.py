@@ -11,7 +11,6 @@ from typing import Any, ClassVar
 from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
 from zwidth.passivity.advice import Advice
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.advice import StiffnessAt, advise, stiffness_elsewhere
 from zwidth.passivity.pairs.assumed import assumed_of_arms, assumed_of_timing, friction_goes_on
 from zwidth.passivity.pairs.compensation import compensation_numbers, compensation_rows
@@ -28,7 +27,7 @@ from zwidth.passivity.pairs.limits import (
 from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
 from zwidth.passivity.pairs.slow import refute_compensation
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Scope
+from zwidth.passivity.scope import Outcome, Scope
 from zwidth.quantity.text import shown, shown_at_least, shown_at_most
 from zwidth.showing import Lines, Part
 

@@ -16,7 +16,7 @@ from fractions import Fraction
 from itertools import pairwise
 from math import inf
 
-from zwidth.passivity.linear.roots import roots_inside
+from zwidth.passivity.linear.exact_algebra import roots_inside
 from zwidth.passivity.ports.port import Port
 from zwidth.passivity.ports.positive_real import minors_at
 from zwidth.quantity.balls import as_fmpq

@@ -21,7 +21,7 @@ from typing import Literal
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from zwidth.passivity.linear.cosines import from_cosines
+from zwidth.passivity.linear.exact_algebra import from_cosines
 
 Time = Literal["continuous", "discrete"]
 

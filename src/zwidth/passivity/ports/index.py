@@ -18,7 +18,6 @@ from typing import Any, Literal
 
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.ports.bands import Band, bands
 from zwidth.passivity.ports.documents import motion_document, proof_document, system_document
 from zwidth.passivity.ports.extracting_input import ExtractingInput
@@ -28,6 +27,7 @@ from zwidth.passivity.ports.poles import places_of
 from zwidth.passivity.ports.port import Port
 from zwidth.passivity.ports.positive_real import prove_level
 from zwidth.passivity.ports.search import find_motion
+from zwidth.passivity.scope import Outcome
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.showing import Part, Shown
 

@@ -19,8 +19,6 @@ from zwidth.model.device import Device
 from zwidth.model.environment.discretization import Discretization
 from zwidth.model.environment.environment import Environment
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.document import unit_key
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.ports.bands import Band, in_words
 from zwidth.passivity.ports.extracting_input import ExtractingInput
 from zwidth.passivity.ports.index import PassivityIndex, evidenced
@@ -29,7 +27,7 @@ from zwidth.passivity.ports.reading import assumed_period, read_port
 from zwidth.passivity.ports.relative import RelativeIndex, relative_index
 from zwidth.passivity.ports.sampled import SampledDamping, sampled_damping
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Scope
+from zwidth.passivity.scope import Outcome, Scope, unit_key
 from zwidth.quantity.exact import RealLike
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from flint import fmpz_poly
 
-from zwidth.passivity.linear.schur import is_schur
+from zwidth.passivity.linear.exact_algebra import is_schur
 from zwidth.passivity.ports.circle import Time, in_zeta
 
 

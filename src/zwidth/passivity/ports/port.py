@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from flint import fmpq, fmpq_poly
 
-from zwidth.passivity.linear.cosines import real_product
+from zwidth.passivity.linear.exact_algebra import real_product
 from zwidth.passivity.ports.circle import ONE, OnCircle, Time, frequency_of, in_zeta, product
 from zwidth.passivity.ports.leverrier import leverrier, multiplied
 from zwidth.quantity.balls import as_fmpq, as_fraction

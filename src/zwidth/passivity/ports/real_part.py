@@ -14,7 +14,7 @@ from functools import cached_property
 
 from flint import fmpq_poly
 
-from zwidth.passivity.linear.roots import roots_inside
+from zwidth.passivity.linear.exact_algebra import roots_inside
 from zwidth.passivity.ports.port import Port
 from zwidth.passivity.ports.zeros import has_positive_sign, vanishes
 from zwidth.quantity.balls import as_fmpq, as_fraction

@@ -18,7 +18,7 @@ from flint import fmpq
 
 from zwidth.errors import InputError
 from zwidth.model.environment.system import number_of
-from zwidth.passivity.linear.elimination import negative_direction
+from zwidth.passivity.linear.exact_algebra import negative_direction
 from zwidth.passivity.result import Result
 from zwidth.quantity.balls import as_fmpq
 from zwidth.quantity.exact import Exact

@@ -22,8 +22,8 @@ from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.system import is_system, time_of
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.passivity import parameter_limits
-from zwidth.passivity.decision import decide
-from zwidth.passivity.linear.supremum import frequency, tightest
+from zwidth.passivity.criterion_choice import decide
+from zwidth.passivity.linear.criterion import frequency, tightest
 from zwidth.passivity.ports.largest import Largest, largest_level
 from zwidth.passivity.ports.port import Port, in_lowest_terms
 from zwidth.passivity.ports.reading import from_polynomials

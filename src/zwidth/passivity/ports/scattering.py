@@ -15,7 +15,6 @@ from functools import cached_property
 from typing import Any
 
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.ports.bands import Band, in_words
 from zwidth.passivity.ports.extracting_input import ExtractingInput
 from zwidth.passivity.ports.index import PassivityIndex, evidenced
@@ -24,7 +23,7 @@ from zwidth.passivity.ports.reading import assumed_period, read_port
 from zwidth.passivity.ports.relative import RelativeIndex, relative_index
 from zwidth.passivity.ports.waves import direct_power_of
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Scope
+from zwidth.passivity.scope import Outcome, Scope
 
 
 @dataclass(frozen=True, repr=False)

@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 from flint import fmpq, fmpq_mat, fmpz_poly
 
-from zwidth.passivity.linear.elimination import negative_direction
+from zwidth.passivity.linear.exact_algebra import negative_direction
 from zwidth.passivity.ports.gaussian import Gaussian, absorbed_at, form_at, place, to_float
 from zwidth.passivity.ports.motion import Motion, absorbed, absorbed_in_samples, answers
 from zwidth.passivity.ports.poles import places_of

@@ -15,7 +15,7 @@ from itertools import pairwise
 
 from flint import fmpq, fmpq_poly
 
-from zwidth.passivity.linear.roots import real_roots
+from zwidth.passivity.linear.exact_algebra import real_roots
 from zwidth.passivity.ports.port import Port
 from zwidth.passivity.ports.positive_real import minors_at
 from zwidth.passivity.ports.zeros import has_positive_sign, near, vanishes

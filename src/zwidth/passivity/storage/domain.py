@@ -1,16 +1,20 @@
-"""Where the hand may be and how fast it may go: from metres to encoder counts."""
+"""Where the hand may be and how fast it may go, in encoder counts; what the device takes out of a move."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
+from itertools import pairwise
 from math import ceil, floor
+
+import numpy as np
+from numpy.typing import NDArray
 
 from zwidth.errors import InputError
 from zwidth.model.device.device import Device
 from zwidth.model.device.friction import FrictionCurve
 from zwidth.passivity.storage.law import FiniteLaw
-from zwidth.passivity.storage.losses import Losses
 from zwidth.quantity.exact import Exact, RealLike
 
 RELAXING_COUNTS = {0: 24, 1: 6, 2: 3}
@@ -28,22 +32,14 @@ MOST_STATES = 40_000_000
 
 @dataclass(frozen=True)
 class Domain:
-    """Where the hand may be and how far it may go in one sample, in counts.
+    """Where the hand may be and how far it may go in one sample, in counts."""
 
-    Parameters
-    ----------
-    lowest, highest
-        The first and the last cell.
-    reach
-        The largest difference of two successive readings.
-    max_depth, max_speed
-        The bounds themselves, which need not be whole counts: no motion goes beyond
-        them.  None: the upper edge of the last cell, and the reach.
-    """
-
+    # the first and the last cell
     lowest: int
     highest: int
-    reach: int
+    reach: int  # the largest difference of two successive readings
+    # the bounds themselves, which need not be whole counts: no motion goes beyond them.  None: the upper edge
+    # of the last cell, and the reach.
     max_depth: Fraction | None = None
     max_speed: Fraction | None = None
 
@@ -107,16 +103,10 @@ def domain_for(
 ) -> Domain:
     """The cells and the largest move.
 
-    Parameters
-    ----------
-    law, losses
-        The loop.
-    penetration
-        Deepest position of the hand [m; rad], > 0; None: as many counts as are quickly gone through.
-        For a law on both sides of x = 0 it holds on both.
-    speed
-        Largest mean speed of the hand over a sample, or over each part of it between two
-        changes of the force [m/s; rad/s], > 0; None likewise.
+    `law`, `losses`: the loop; `penetration`: deepest position of the hand [m; rad], > 0; None: as many counts
+    as are quickly gone through. For a law on both sides of x = 0 it holds on both.  `speed`: largest mean
+    speed of the hand over a sample, or over each part of it between two changes of the force [m/s; rad/s], >
+    0; None likewise.
     """
     if law.relaxing is not None and losses.curve is not None:
         raise InputError("a friction curve is not taken with a law that relaxes: take a model below it")
@@ -158,8 +148,7 @@ def too_large(law: FiniteLaw, losses: Losses, domain: Domain) -> str | None:
     )
 
 
-_LONG = 64
-"""Readings of which there are too many states, however few moves there are: 3 ** 64 of them."""
+_LONG = 64  # readings of which there are too many states, however few moves there are: 3 ** 64 of them
 
 
 def states_of(law: FiniteLaw, losses: Losses, domain: Domain) -> int:
@@ -185,3 +174,114 @@ def _extent(law: FiniteLaw, losses: Losses) -> Fraction:
         return Fraction(0)
     ends = (law.points[0][0] / losses.resolution, law.points[-1][0] / losses.resolution)
     return Fraction(max(abs(floor(ends[0])), abs(ceil(ends[1]))) + 2)
+
+
+# The least loss over a distance D in a time t, for friction f_c + b v or more at speed v:
+#
+#     c(D) = f_c D + (b/t) D²
+#
+# For a measured curve F(v), with every model (f_c, b) below it: no less than the largest of
+# these, and no more than F(D/t) D, or F_min D for a hand that stops in between.
+
+
+Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Losses:
+    """What a hand meets besides the law, exact."""
+
+    # b [N·s/m] and f_c [N] of the device
+    damping: Fraction
+    coulomb_friction: Fraction
+    # Δ > 0 [m] and T [s]
+    resolution: Fraction
+    period: Fraction
+    delay: int  # samples from a reading to the last interval in which its force acts
+    # part of that interval for which it still does, 0 < part ≤ 1; the force of the reading after it
+    # follows.  1 for a delay of whole samples.
+    part: Fraction = Fraction(1)
+    curve: FrictionCurve | None = None  # friction measured at several speeds, in place of b and f_c
+
+    @property
+    def lag(self) -> Fraction:
+        """The delay [s]."""
+        return (self.delay - 1 + self.part) * self.period
+
+    @cached_property
+    def models(self) -> tuple[tuple[Fraction, Fraction], ...]:
+        """(f_c, b) of which each holds at every speed."""
+        if self.curve is None:
+            return ((self.coulomb_friction, self.damping),)
+        return tuple((m.coulomb_friction.fraction, m.damping.fraction) for m in self.curve.minorants())
+
+    @property
+    def max_friction(self) -> tuple[Fraction, Fraction]:
+        """(f_c, b) of which neither is ever exceeded."""
+        if self.curve is None:
+            return self.coulomb_friction, self.damping
+        rise = self.curve.forces[-1].fraction - self.curve.forces[-2].fraction
+        chord = self.curve.speeds[-1].fraction - self.curve.speeds[-2].fraction
+        return max(f.fraction for f in self.curve.forces), max(rise / chord, Fraction(0))
+
+    def lost(self, move: Fraction, part: Fraction) -> Fraction:
+        """What a move in a part of an interval may cost, at constant speed or in slow steps [J]."""
+        far = abs(move)
+        if self.curve is None:
+            return self.coulomb_friction * far + self.damping / (part * self.period) * far**2
+        points = [(v.fraction, f.fraction) for v, f in zip(self.curve.speeds, self.curve.forces, strict=True)]
+        least, slow = min((f, v) for v, f in points)
+        speed = far / (part * self.period)
+        return far * (least if speed <= slow else _on_chord(points, speed))
+
+
+def _on_chord(points: list[tuple[Fraction, Fraction]], speed: Fraction) -> Fraction:
+    """The curve at a speed: on its chords, before the first point as there, beyond the last as it rises."""
+    if speed <= points[0][0]:
+        return points[0][1]
+    chords = list(pairwise(points))
+    (v0, f0), (v1, f1) = next((chord for chord in chords if speed <= chord[1][0]), chords[-1])
+    slope = (f1 - f0) / (v1 - v0)
+    return f1 + (slope if speed <= v1 else max(slope, Fraction(0))) * (speed - v1)
+
+
+def outer_costs(
+    losses: Losses, far: Integers, span: Fraction, step: Fraction, unit: Fraction, off: int
+) -> Integers:
+    """At most what a move over 0, 1, … steps in a time costs, also on the chord between two of them.
+
+    far counts the steps, `off` is by how many force units a force may be off; in force units × steps.
+    """
+    tables = []
+    for friction, damping in losses.models:
+        drag = floor(damping / span * step / unit)
+        lost = np.where(far <= 1, 0, drag * far**2 - (drag + 3) // 4)
+        tables.append((floor(friction / unit) - off) * far + lost)
+    if len(tables) == 1:
+        return tables[0]
+    costs = np.array(tables)
+    best = np.argmax(costs[:, :-1] + costs[:, 1:], axis=0)  # the model that is taken between two steps
+    before, after = np.concatenate(([best[0]], best)), np.concatenate((best, [best[-1]]))
+    column = np.arange(far.size)
+    out: Integers = np.minimum(costs[before, column], costs[after, column])
+    return out
+
+
+def inner_costs(
+    losses: Losses, far: Integers, span: Fraction, step: Fraction, unit: Fraction, off: int
+) -> Integers:
+    """At least what it costs, likewise."""
+    if losses.curve is None:
+        drag = ceil(losses.damping / span * step / unit)
+        out: Integers = (floor(losses.coulomb_friction / unit) + off + 1) * far + drag * far**2
+        return out
+    speeds, forces = (
+        np.array([float(v) for v in side]) for side in (losses.curve.speeds, losses.curve.forces)
+    )
+    speed = far * float(step / span)
+    slope = max((forces[-1] - forces[-2]) / (speeds[-1] - speeds[-2]), 0.0)
+    on_chord = np.interp(speed, speeds, forces) + slope * np.maximum(speed - speeds[-1], 0)
+    slow = speeds[forces.argmin()]
+    force = np.where(speed <= slow, forces.min(), on_chord) / float(unit)
+    out = (np.ceil(force * (1 + 1e-12)).astype(np.int64) + off + 1) * far
+    return out

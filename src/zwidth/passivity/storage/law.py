@@ -26,6 +26,8 @@ from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.nonlinear import resting_force
 from zwidth.passivity.document import unit_key
+from zwidth.model.environment.hunt_crossley import resting_force
+from zwidth.passivity.scope import unit_key
 from zwidth.quantity.text import exact_text
 
 Surface = Literal["none", "position", "penetration"]
@@ -36,45 +38,26 @@ LONGEST_MEMORY = 6
 
 @dataclass(frozen=True)
 class FiniteLaw:
-    """A force computed from the last few readings of an encoder.
+    """A force computed from the last few readings of an encoder."""
 
-    Parameters
-    ----------
-    taps
-        c_0, c_1, …: f = Σ c_j u_{k−j} [N/m; N·m/rad].
-    surface
-        "none": u = q, the law acts everywhere.  "position": u = q, but the law
-        pushes inside only, where q > 0.  "penetration": the same with u = max(q, 0).
-    clamped
-        True if a negative force is replaced by 0.
-    points
-        A spring given by (position [m; rad], force [N; N·m]) in place of taps.
-    power
-        K and n of a contact K qⁿ in place of taps, or None.
-    rate
-        ρ = λ/T [1/m; 1/rad], by which the force of points or of a contact grows with the
-        way since the last reading.
-    force_limit
-        Largest force of the actuator [N; N·m], or None.
-    force_step
-        Step of the converter [N; N·m], or None: the nearest whole step, the upper one of two
-        equally near.  Then comes the force limit.
-    relaxing
-        (p, g) of a part y = g (u_k − a_k), a_{k+1} = p a_k + (1 − p) u_k that never
-        quite forgets, 0 ≤ p < 1, g [N/m; N·m/rad]; or None.
-    resets
-        True if a becomes 0 where the hand is outside.
-    """
-
-    taps: tuple[Fraction, ...]
+    taps: tuple[Fraction, ...]  # c_0, c_1, …: f = Σ c_j u_{k−j} [N/m; N·m/rad]
+    # "none": u = q, the law acts everywhere.  "position": u = q, but the law pushes inside only, where q >
+    # 0.  "penetration": the same with u = max(q, 0).
     surface: Surface
-    clamped: bool = False
+    clamped: bool = False  # True if a negative force is replaced by 0
+    # a spring given by (position [m; rad], force [N; N·m]) in place of taps
     points: tuple[tuple[Fraction, Fraction], ...] = ()
-    force_limit: Fraction | None = None
+    force_limit: Fraction | None = None  # largest force of the actuator [N; N·m], or None
+    # (p, g) of a part y = g (u_k − a_k), a_{k+1} = p a_k + (1 − p) u_k that never quite forgets, 0 ≤ p < 1, g
+    # [N/m; N·m/rad]; or None
     relaxing: tuple[Fraction, Fraction] | None = None
-    resets: bool = False
+    resets: bool = False  # True if a becomes 0 where the hand is outside
+    # step of the converter [N; N·m], or None: the nearest whole step, the upper one of two equally
+    # near.  Then comes the force limit.
     force_step: Fraction | None = None
-    power: tuple[Fraction, Fraction] | None = None
+    power: tuple[Fraction, Fraction] | None = None  # K and n of a contact K qⁿ in place of taps, or None
+    # ρ = λ/T [1/m; 1/rad], by which the force of points or of a contact grows with the way since the last
+    # reading
     rate: Fraction = Fraction(0)
 
     @property
@@ -166,12 +149,8 @@ def finite_law(
 ) -> FiniteLaw:
     """The law of an environment in a device's loop.
 
-    Parameters
-    ----------
-    device, environment
-        Without intervals.
-    force_limit, force_resolution
-        True to count in the actuator's force limit, the steps of its converter.
+    `device`, `environment`: without intervals; `force_limit`, `force_resolution`: True to count in the
+    actuator's force limit, the steps of its converter.
     """
     limit = _counted(device, "force_limit", "the force limit is") if force_limit else None
     step = _counted(device, "force_resolution", "converter steps are") if force_resolution else None

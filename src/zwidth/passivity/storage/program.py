@@ -8,6 +8,8 @@ State: position, and what the law remembers.  Move: Δx in one sample.  Reward:
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import floor
 from typing import Any
 
 from zwidth.errors import InputError
@@ -18,19 +20,15 @@ from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.scope import Contact, Hands, Law, Scope, scope_of
-from zwidth.passivity.storage.domain import Domain, domain_for, losses_of, states_of, too_large
-from zwidth.passivity.storage.evidence.coarse import CELLS, has_cells, prove_on_cells
-from zwidth.passivity.storage.evidence.gain import Gain, gain
-from zwidth.passivity.storage.evidence.storage_function import StorageFunction
-from zwidth.passivity.storage.grid.choice import grids
-from zwidth.passivity.storage.grid.grid import Approximation, Grid
-from zwidth.passivity.storage.grid.relaxing import RelaxingGrid
+from zwidth.passivity.storage.domain import Domain, Losses, domain_for, losses_of, states_of, too_large
+from zwidth.passivity.storage.gain import Gain, gain
+from zwidth.passivity.storage.grid import Approximation, Grid
 from zwidth.passivity.storage.hand_bounds import HandBounds, hand_bounds
 from zwidth.passivity.storage.law import FiniteLaw, finite_law
-from zwidth.passivity.storage.losses import Losses
-from zwidth.passivity.storage.row.program import RowProgram, row_program
-from zwidth.passivity.storage.solve.effort import Until, freely
-from zwidth.passivity.storage.solve.value_iteration import Progress, value_iteration
+from zwidth.passivity.storage.relaxing_grid import RelaxingGrid
+from zwidth.passivity.storage.row_program import RowProgram, row_program
+from zwidth.passivity.storage.storage_function import CELLS, StorageFunction, has_cells, prove_on_cells
+from zwidth.passivity.storage.value_iteration import Progress, Until, freely, value_iteration
 from zwidth.quantity.exact import RealLike
 
 STEPS = (8, 16, 32, 64)
@@ -39,21 +37,15 @@ STEPS = (8, 16, 32, 64)
 FINE = (1024, 16384)
 """The same when a motion is sought; its nodes lie near the edges."""
 
-_QUICK = 100_000_000
-"""Pairs of states and moves up to which a storage function is sought at once."""
-
+_QUICK = 100_000_000  # pairs of states and moves up to which a storage function is sought at once
 _CHECKED, _SLOWER = 300_000_000, 10
 """Of such pairs, in a unit of `effort`; and by how much laws that relax take longer."""
 
 _LONG = 0.2
 """In that unit, what the checker has to do on the coarsest steps where a search takes twenty times that."""
 
-_MOST_CHECKED = 1_500_000_000
-"""The same: what the checker takes on."""
-
-_STEPS_PER_MOVE = 256
-"""Steps in the longest move of a hand, at least, when a motion is sought."""
-
+_MOST_CHECKED = 1_500_000_000  # the same: what the checker takes on
+_STEPS_PER_MOVE = 256  # steps in the longest move of a hand, at least, when a motion is sought
 _MOST_STEPS = 2**20
 
 _STEPS_OF_MANY = 4
@@ -211,4 +203,69 @@ def program_scope(device: Device, environment: Environment, program: DynamicProg
         force_limit=limited,
         force_steps=stepped,
         law=program.inexact,
+    )
+
+
+# Which cells a motion is sought on: every n-th count of a fine encoder first, then every count.
+#
+# A hand that keeps to the first of every n counts is a hand like any other.  On cells of n counts it is
+# found as quickly as behind a coarse encoder, and its motion gains behind the fine one, where it is counted.
+
+
+_REACHES = (4, 12, 24)  # cells that the hand may go in one sample, about
+_FEW = 24  # counts a sample up to which every count is looked at, and nothing else
+_NEAR = 12  # counts a sample of a hand that stays near an edge, where there are too many for all of them
+_MAX_DEPTH = 64  # cells that are looked at: for a law that is linear inside, depth by itself is of no use
+_MOST_WORK = 60_000  # states of a grid times the cells in reach, up to which a motion is sought on it
+
+
+def grids(law: FiniteLaw, losses: Losses, domain: Domain) -> list[tuple[int, Domain]]:
+    """Counts in a cell, and the cells within the bounds; coarse to fine; none on which no hand moves."""
+    within = domain.within
+    far = min(domain.speed, Fraction(within.highest))
+    remembered = law.memory + losses.delay
+    found = []
+    many = far > _FEW or _work(law, losses, within) > _MOST_WORK
+    for reach in _REACHES if many else ():
+        counts = _counts(far, reach)
+        cells = domain.every(counts, remembered, _two_sided(law)) if counts > 1 else None
+        if cells is not None:
+            found.append((counts, _shallow(law, cells)))
+    here = within, _shallow(law, within), _near(law, within, remembered)
+    chosen = next((d for d in here if _work(law, losses, d) <= _MOST_WORK), here[-1])
+    whole = [] if chosen == within or too_large(law, losses, within) else [(1, within)]  # last, as it is slow
+    return [(counts, cells) for counts, cells in (*found, (1, chosen), *whole) if cells.reach > 0]
+
+
+def _work(law: FiniteLaw, losses: Losses, domain: Domain) -> int:
+    more = 1 if law.memory + losses.delay else 2 * domain.reach + 1
+    return states_of(law, losses, domain) * more
+
+
+def _counts(far: Fraction, reach: int) -> int:
+    """Counts in a cell with which the longest way is about `reach` cells and hardly anything more."""
+    about = far / reach
+    candidates = range(max(1, floor(about * 3 / 4)), max(1, floor(about * 4 / 3)) + 1)
+    return max(candidates, key=lambda n: (floor((far + 1) / n) * n / (far + 1), n))
+
+
+def _two_sided(law: FiniteLaw) -> bool:
+    return law.surface == "none" or (law.relaxing is not None and law.surface == "position")
+
+
+def _shallow(law: FiniteLaw, domain: Domain) -> Domain:
+    """Only some cells deep, where the law is linear inside."""
+    if law.is_curve or law.relaxing is not None:
+        return domain
+    lowest = max(domain.lowest, -_MAX_DEPTH) if law.surface == "none" else domain.lowest
+    return replace(domain, lowest=lowest, highest=min(domain.highest, max(_MAX_DEPTH, 3 * domain.reach)))
+
+
+def _near(law: FiniteLaw, domain: Domain, remembered: int) -> Domain:
+    """A hand that stays near an edge: few counts deep, few counts in a sample."""
+    reach = min(domain.reach, _NEAR // (1 + remembered))
+    highest = min(domain.highest, 2 * _NEAR)
+    lowest = max(domain.lowest, -2 * _NEAR if _two_sided(law) else 1 - (remembered + 1) * reach)
+    return replace(
+        domain, lowest=lowest, highest=highest, reach=reach, max_speed=min(domain.speed, Fraction(reach))
     )

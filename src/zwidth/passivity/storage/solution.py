@@ -11,17 +11,21 @@ from zwidth.model.device.friction import FrictionCurve
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Scope
-from zwidth.passivity.storage.evidence.coarse import CELLS
-from zwidth.passivity.storage.evidence.gain import Gain
-from zwidth.passivity.storage.evidence.storage_function import StorageFunction
+from zwidth.passivity.scope import Outcome, Scope
+from zwidth.passivity.storage.gain import Gain
+from zwidth.passivity.storage.hand_bounds import slow_hands
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of, program_scope
-from zwidth.passivity.storage.row.program import RowProgram
-from zwidth.passivity.storage.slow_hands import slow_hands
-from zwidth.passivity.storage.solve.effort import EFFORT, Effort, Until, checked_effort, time_limit
-from zwidth.passivity.storage.solve.value_iteration import Progress
+from zwidth.passivity.storage.row_program import RowProgram
+from zwidth.passivity.storage.storage_function import CELLS, StorageFunction
+from zwidth.passivity.storage.value_iteration import (
+    EFFORT,
+    Effort,
+    Progress,
+    Until,
+    checked_effort,
+    time_limit,
+)
 from zwidth.passivity.wording import claim_of_passivity
 from zwidth.quantity.exact import RealLike
 

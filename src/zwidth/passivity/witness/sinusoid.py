@@ -1,4 +1,4 @@
-"""The motion that refutes the linear criterion: a sinusoid of exactly p periods in q samples.
+"""Motions that refute a loop by H(z): sinusoids, and what builds up where the law is not stable.
 
 Where the criterion is negative over a band of frequencies, the fraction p/q
 of simplest denominator in the band gives the shortest periodic motion.  Every
@@ -8,18 +8,18 @@ for going in and out.
 
 from __future__ import annotations
 
+from cmath import phase
 from collections.abc import Iterator
 from fractions import Fraction
-from math import ceil, cos, log2, pi, sin
+from math import ceil, copysign, cos, isfinite, log, log2, pi, sin
 
 from flint import arb, fmpq, fmpz_poly
 
+from zwidth.passivity.linear.criterion import closed_loop, offset_of, tightest
+from zwidth.passivity.linear.exact_algebra import is_schur, roots_inside
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.positivity import prove_nonnegative
-from zwidth.passivity.linear.roots import roots_inside
-from zwidth.passivity.linear.schur import is_schur
-from zwidth.passivity.linear.supremum import tightest
-from zwidth.passivity.witness.motion import Pattern, Repeat
+from zwidth.passivity.witness.motion import Motion, Pattern, Repeat, any_damping, convolve
 from zwidth.quantity.balls import as_fmpq, middle, precision
 
 LONGEST_PERIOD = 10_000
@@ -195,3 +195,144 @@ def _bits_of_size(criterion: fmpz_poly, half_turns: fmpq) -> float:
     with precision(512 + criterion.height_bits()):
         gained = criterion(arb.cos_pi_fmpq(half_turns))
         return max(0.0, 0.5 * float((largest / abs(gained)).log_base(2)))
+
+
+# The shortest motions for laws with memory, to and fro from the surface, every sample listed.  Where a
+# criterion is clearly violated the law need not settle first: going to and fro at the violated frequency
+# gains from the first rounds on what a slow part of the law takes, such as a tissue that relaxes over
+# minutes.  The filter's exact numbers grow with every sample, which bounds the length.
+
+
+_SIZE = 256
+
+
+def oscillations(loop: LinearLoop, longest: int) -> Iterator[Motion]:
+    """Motions of at most `longest` samples at a violated frequency, shorter first; none in a narrow band."""
+    band = negative_band(loop)
+    if band is None:
+        return
+    turn = simplest_between(*band)
+    p, q = turn.numerator, turn.denominator
+    if q > longest:
+        return
+    cycle = [round(_SIZE * (1 - cos(2 * pi * (p * k % q) / q))) for k in range(1, q + 1)]
+    base = _SIZE // 8  # keeps contact between the rounds
+    rounds = 1
+    while rounds * q <= longest:
+        x = [0, *(base + c for c in cycle * rounds), 0]
+        yield Motion(tuple(Fraction(v) for v in x), _switches(loop, x))
+        rounds *= 4
+
+
+def _switches(loop: LinearLoop, x: list[int]) -> tuple[Fraction, ...]:
+    """The best places for a force that changes inside a sample, to the nearest 1/16; see `motion`."""
+    alpha, d = loop.part_delay, loop.whole_delay
+    if not alpha:
+        return ()
+    force = forces_of(loop, x)
+    gain = float(loop.period / (2 * (loop.damping or any_damping(loop))) * alpha * (1 - alpha))
+
+    def at(k: int) -> float:
+        return force[k] if k >= 0 else 0.0
+
+    ideal = (
+        x[k] + float(alpha) * (x[k + 1] - x[k]) - gain * (at(k - d - 1) - at(k - d))
+        for k in range(len(x) - 1)
+    )
+    return tuple(Fraction(round(16 * y), 16) for y in ideal)
+
+
+def forces_of(loop: LinearLoop, x: list[int]) -> list[float]:
+    """f(k) to rounding."""
+    d = [c / loop.denominator[0] for c in loop.denominator]
+    n = [c / loop.denominator[0] for c in loop.numerator]
+    f: list[float] = []
+    for k in range(len(x)):
+        value = sum(c * x[k - i] for i, c in enumerate(n) if k >= i)
+        f.append(value - sum(d[i] * f[k - i] for i in range(1, len(d)) if k >= i))
+    return f
+
+
+# Of a loop whose criterion is nonnegative but whose environment is not stable: a negative static stiffness
+# gives energy to a slow press.  An unstable law builds up force while the hand holds still; the hand then
+# lets itself be moved.  A pole on the unit circle is followed at its own frequency.
+
+
+_HOLDS = (8, 32, 128, 512, 2048)
+_STEP = 1024
+
+
+def slow_press(loop: LinearLoop) -> Pattern:
+    """A way in at constant speed, ending at rest inside; the repeated sample makes it as long as need be."""
+    settle = len(loop.numerator) + len(loop.denominator) + loop.whole_delay + 2
+    steady = range(settle + 2)
+    return Pattern((*steady, *[settle + 1] * settle), (Repeat(settle, settle + 1, 1),))
+
+
+PRESS_LENGTHS = tuple(4**k for k in range(1, 40))
+
+
+def holds(loop: LinearLoop) -> Iterator[Motion]:
+    """In by one step, still while the force of an unstable law grows, and one move with the newest force."""
+    for length in _HOLDS:
+        x = [0, *[_STEP] * length]
+        force = forces_of(loop, x)[length - loop.whole_delay] if length > loop.whole_delay else 0.0
+        if not isfinite(force):
+            return
+        share = float((1 - loop.part_delay) * loop.period)
+        move = force * share / 2 / float(loop.damping) if loop.damping else copysign(_STEP, force)
+        if move and isfinite(move):
+            positions = (*map(Fraction, x), _STEP - Fraction(f"{move:.3g}"))
+            yield Motion(positions, positions[:-1] if loop.part_delay else ())
+
+
+def buildups(loop: LinearLoop, unilateral: bool) -> Iterator[Motion]:
+    """Motions that follow an unstable or lossless mode of the law, then let the force do work."""
+    seen = fmpz_poly(list(loop.denominator[::-1])).complex_roots()
+    if loop.part_delay == 0:
+        seen = seen + fmpz_poly(closed_loop(loop, offset_of(loop))[::-1]).complex_roots()
+    modes = [complex(float(root.real), float(root.imag)) for root, _ in seen]
+    base = _way_in(loop) if unilateral else (0,)
+    if base is None:
+        return
+    for mode in modes:
+        if abs(mode) > 1 - 1e-9 and mode.imag >= -1e-12:
+            for length in _HOLDS:
+                yield _buildup(loop, mode, length, base)
+
+
+def _way_in(loop: LinearLoop) -> tuple[int, ...] | None:
+    """Whole w to a depth at which the start of a mode leaves x > 0; None where D(1) ≤ 0."""
+    at_one = sum(loop.follower)
+    if at_one <= 0:
+        return None
+    depth = 4 * _STEP * sum(abs(c) for c in loop.follower) // at_one + 1
+    ramp = 16 * len(loop.follower)
+    return (*(depth * k // ramp for k in range(ramp + 1)), *[depth] * len(loop.follower))
+
+
+def _buildup(loop: LinearLoop, mode: complex, length: int, base: tuple[int, ...]) -> Motion:
+    """w = ρᵏ cos φk (or k cos φk on the unit circle), then one step with the force."""
+    rate, angle = abs(mode), phase(mode)
+    lossless = rate <= 1 + 1e-9
+    if not lossless:  # an envelope beyond 1e18 would need more digits than it is worth
+        length = min(length, max(4, int(41 / log(rate))))
+    w = list(base)
+    for k in range(length):
+        w.append(base[-1] + round(_STEP * (k if lossless else rate**k) * cos(angle * k)))
+    x = [Fraction(v) for v in convolve(loop.follower, tuple(w))]
+    x.append(x[-1] + _release(loop, convolve(loop.numerator, tuple(w))))
+    if not loop.part_delay:
+        return Motion(tuple(x))
+    return Motion(tuple(x), tuple(a + loop.part_delay * (b - a) for a, b in zip(x, x[1:], strict=False)))
+
+
+def _release(loop: LinearLoop, forces: list[int]) -> Fraction:
+    """The last move: −f T/2b with the mean force f of the interval, where it gains most."""
+    content = Fraction(loop.denominator[0], loop.follower[0])
+    d, alpha = loop.whole_delay, loop.part_delay
+    late = forces[-1 - d] if d < len(forces) else 0
+    early = forces[-2 - d] if d + 1 < len(forces) else 0
+    mean = (alpha * early + (1 - alpha) * late) / content
+    b = loop.damping or max(abs(mean), Fraction(1)) * loop.period / (2 * _STEP)
+    return -Fraction(round(mean * loop.period / (2 * b)))

@@ -1,11 +1,11 @@
 """Walls and solids that are passive while the hand stays inside, and are not when it touches and leaves.
 
-A law fed with the position hears outside what it does not answer: a hand that comes in fast has
-loaded it for nothing but the friction of the way.  What it then gives out at the surface, in
-and out in turn, is a quadratic in the hand's moves once it is said at which samples the hand is
-inside.  So for each such rhythm the best moves follow by going backward from the last (`rhythm`).
-Coulomb friction and counts of the encoder grow with the first power of the size only: a large
-enough motion pays for them.  The checker has the last word.
+A law fed with the position hears outside what it does not answer: a hand that comes in fast has loaded it
+for nothing but the friction of the way.  What it then gives out at the surface, in and out in turn, is a
+quadratic in the hand's moves once it is said at which samples the hand is inside.  So for each such pattern
+the best moves follow by going backward from the last (`contact_pattern_search`).  Coulomb friction and counts
+of the encoder grow with the first power of the size only: a large enough motion pays for them.  The checker
+has the last word.
 """
 
 from __future__ import annotations
@@ -18,16 +18,14 @@ from math import ceil
 from typing import Any
 
 from zwidth.model.environment.environment import Environment
-from zwidth.passivity.document import loop_document, unit_key
-from zwidth.passivity.linear.rhythm import Surface, rhythms
-from zwidth.passivity.linear.schur import is_schur
+from zwidth.passivity.linear.contact_pattern_search import Surface, rhythms
+from zwidth.passivity.linear.exact_algebra import is_schur
+from zwidth.passivity.scope import unit_key
 from zwidth.passivity.witness.motion import Motion, round_up
-from zwidth.passivity.witness.short_sinusoid import oscillations
+from zwidth.passivity.witness.sinusoid import oscillations
 from zwidth.passivity.witness.witness import FORMAT, Setting, Witness
 
-_AMPLITUDE = Fraction(1, 1000)
-"""Size of a motion that friction does not force to be larger [m; rad]."""
-
+_AMPLITUDE = Fraction(1, 1000)  # size of a motion that friction does not force to be larger [m; rad]
 _FINENESS = (50, 200, 1000, 10_000)
 """Steps in which the largest position is counted; coarse ones make a smaller motion on counts."""
 
@@ -56,12 +54,11 @@ class TouchedSetting(Setting):
 
     def document(self, motion: Motion, energy: Fraction) -> dict[str, Any]:
         """The motion in this setting as a document for the checker."""
-        loop = loop_document(self.loop, self.coulomb_friction, self.resolution, self.unilateral, self.motion)
         length = unit_key("position", self.motion).removeprefix("position_")
         document: dict[str, Any] = {
             "format": FORMAT,
             "kind": "touching motion",
-            "loop": loop,
+            "loop": self.loop_document(),
             "law": {"fed_with": self.fed_with, "never_pulls": self.never_pulls},
             unit_key("sample_period"): self.loop.period,
             "energy_J": energy,

@@ -12,10 +12,9 @@ from fractions import Fraction
 from typing import Any
 
 from zwidth.checker import verify
-from zwidth.passivity.document import loop_document, unit_key
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.result import Evidence
-from zwidth.passivity.scope import Contact
+from zwidth.passivity.scope import Contact, loop_document, unit_key
 from zwidth.passivity.witness.motion import Motion
 from zwidth.quantity.text import quantity_unit, readable
 
@@ -34,6 +33,10 @@ class Setting:
     resolution: Fraction
     unilateral: bool
     motion: str = "linear"
+
+    def loop_document(self) -> dict[str, Any]:
+        """Of all but the motion, exact."""
+        return loop_document(self.loop, self.coulomb_friction, self.resolution, self.unilateral, self.motion)
 
     def ideal(self) -> Setting:
         """Without Coulomb friction and with an ideal encoder: energy is then quadratic in size."""
@@ -72,8 +75,7 @@ class Setting:
 
     def document(self, motion: Motion, energy: Fraction) -> dict[str, Any]:
         """The motion in this setting as a document for the checker."""
-        loop = loop_document(self.loop, self.coulomb_friction, self.resolution, self.unilateral, self.motion)
-        document: dict[str, Any] = {"format": FORMAT, "kind": "motion", "loop": loop}
+        document: dict[str, Any] = {"format": FORMAT, "kind": "motion", "loop": self.loop_document()}
         document[unit_key("sample_period")] = self.loop.period
         document["energy_J"] = energy
         if motion.rounds > 1:

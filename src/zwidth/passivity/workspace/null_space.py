@@ -35,9 +35,8 @@ from zwidth.model.arms.null_space import (
 from zwidth.model.arms.wall import MatrixWall, wall_need
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Scope
+from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.workspace.null_space_certificate import largest_certified, null_space_certificate
 from zwidth.passivity.workspace.question import Question, asked_of
 from zwidth.passivity.workspace.report import arm_document, finite, motion_document, wall_document

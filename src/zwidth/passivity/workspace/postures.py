@@ -26,9 +26,8 @@ from zwidth.model.arms.joints import largest_scale, surplus
 from zwidth.model.arms.replay import refuting_motion
 from zwidth.model.arms.wall import MatrixWall, wall_matrices, wall_need
 from zwidth.model.environment.wall import Wall
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Scope
+from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.workspace.mapped import scaled_stiffness, stiffness_factors
 from zwidth.passivity.workspace.question import Question, asked_of
 from zwidth.passivity.workspace.report import arm_document, finite, motion_document, wall_document

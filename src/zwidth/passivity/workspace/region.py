@@ -15,7 +15,7 @@ from zwidth.model.arms import Arm
 from zwidth.model.arms.replay import steps_of
 from zwidth.model.arms.wall import MatrixWall, wall_need
 from zwidth.model.environment.wall import Wall
-from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.scope import Outcome
 from zwidth.passivity.workspace.account import account_of, all_in_blocks, reached_cells, refinement
 from zwidth.passivity.workspace.additions import Additions
 from zwidth.passivity.workspace.claim import Covers, claim

@@ -13,9 +13,8 @@ from zwidth.model.arms.encoders import EncoderSteps
 from zwidth.model.arms.wall import MatrixWall
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Scope, Torque
+from zwidth.passivity.scope import Outcome, Scope, Torque
 from zwidth.passivity.workspace.additions import Additions
 from zwidth.passivity.workspace.report import (
     additions_document,

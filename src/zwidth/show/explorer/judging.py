@@ -11,9 +11,9 @@ from typing import NamedTuple
 from zwidth.errors import InputError
 from zwidth.model.specification.read import Specification
 from zwidth.passivity.check import check, check_by_closed_forms
-from zwidth.passivity.gap import has_gap
 from zwidth.passivity.linear.loop import linear_loop
 from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.value_iteration_fallback import has_gap
 from zwidth.passivity.verdict import Verdict
 from zwidth.show.explorer.state import State
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from zwidth.passivity.outcome import COLOUR
+from zwidth.passivity.scope import COLOUR
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.show.explorer.computing import Row
 from zwidth.show.plots.style import number, scale

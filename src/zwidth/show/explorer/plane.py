@@ -8,7 +8,7 @@ from bokeh.models import BoxAnnotation, ColumnDataSource, HoverTool, LabelSet, R
 from bokeh.models import Span as Line
 
 from zwidth.model.device import catalogue
-from zwidth.passivity.formulas.quantization import plane_point
+from zwidth.passivity.formulas.diolaiti import plane_point
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.passivity.outcome import COLOUR
+from zwidth.passivity.scope import COLOUR
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.text import unit_text
 from zwidth.showing import Html, Lines, Table, element, join

@@ -26,7 +26,7 @@ from zwidth.show.plots.style import (
 )
 
 if TYPE_CHECKING:
-    from zwidth.passivity.storage.evidence.gain import Gain
+    from zwidth.passivity.storage.gain import Gain
 
 _EDGES = 16
 """Encoder edges up to which each is drawn."""
@@ -53,7 +53,7 @@ def cycle(gain: Gain) -> Figure:
 
 def draw_cycle(rows: Sequence[Axes], gain: Gain) -> None:
     """The same on three given axes, one above the other."""
-    from zwidth.passivity.storage.evidence.playback import settled_round  # loaded by now
+    from zwidth.passivity.storage.gain import settled_round  # loaded by now
 
     motion = "rotary" if gain.unit == "rad" else "linear"
     once = settled_round(gain)

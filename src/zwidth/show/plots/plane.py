@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device, catalogue
-from zwidth.passivity.formulas.quantization import plane_point
+from zwidth.passivity.formulas.diolaiti import plane_point
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.show.plots.style import (
     BLACK,

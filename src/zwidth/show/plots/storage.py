@@ -20,7 +20,7 @@ from zwidth.show.plots.style import BLUE, LOOK, OUTCOME, SKY, heading, label, ne
 
 if TYPE_CHECKING:
     from zwidth.passivity.storage import AvailableStorage
-    from zwidth.passivity.storage.evidence.storage_function import StorageFunction
+    from zwidth.passivity.storage.storage_function import StorageFunction
 
 _EDGES = 400
 """Encoder edges up to which each has a tick."""

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from zwidth.errors import InputError
-from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.scope import TOLD
 from zwidth.quantity.text import in_words, shown, unit_text
 from zwidth.show.plots.files import save_figure
 from zwidth.show.plots.style import BLUE, LOOK, heading, new_figure, scale

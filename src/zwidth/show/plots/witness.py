@@ -34,7 +34,7 @@ from zwidth.show.plots.style import (
 )
 
 if TYPE_CHECKING:
-    from zwidth.passivity.storage.evidence.gain import Gain
+    from zwidth.passivity.storage.gain import Gain
 
 _DOTS = 60
 """Samples up to which each is marked."""

@@ -17,8 +17,9 @@ from matplotlib.figure import Figure
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device
-from zwidth.passivity.formulas.quantization import linear_worst_case, plane_point
-from zwidth.passivity.formulas.quantization import worst_case as worst_case_at
+from zwidth.passivity.formulas.abbott_okamura import linear_worst_case
+from zwidth.passivity.formulas.abbott_okamura import worst_case as worst_case_at
+from zwidth.passivity.formulas.diolaiti import plane_point
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.show.plots.style import (
     BLUE,

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 from zwidth.passivity.advice import in_lines
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.result import Answer
+from zwidth.passivity.scope import COLOUR
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.text import json_file
 from zwidth.show.report.beyond import beyond

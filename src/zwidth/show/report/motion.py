@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from zwidth.passivity.pairs.evidence import PairWitness
-from zwidth.passivity.storage.evidence.gain import Gain
-from zwidth.passivity.storage.evidence.playback import settled_round
+from zwidth.passivity.storage.gain import Gain, settled_round
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.showing import Part, Table

@@ -13,10 +13,10 @@ from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.storage import available_storage
-from zwidth.passivity.storage.evidence.gain import Gain
+from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of
-from zwidth.passivity.storage.row.program import COUNTS, RowProgram, row_program
-from zwidth.passivity.storage.row.table import DoesNotClose
+from zwidth.passivity.storage.row_program import COUNTS, RowProgram, row_program
+from zwidth.passivity.storage.row_table import DoesNotClose
 from zwidth.passivity.wording import describe_hands
 from zwidth.study.bench.adversary import Attack
 from zwidth.study.bench.budget import NODES, Budget, Spent, budget_of

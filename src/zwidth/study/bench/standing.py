@@ -24,7 +24,7 @@ from zwidth.model.rendering.rendered import laws_of
 from zwidth.model.rendering.rendering_law import LoopContext, half_a_step
 from zwidth.passivity.bounding import check_bounding, is_bounded
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.covering import covering
+from zwidth.passivity.covering_wall import covering
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness

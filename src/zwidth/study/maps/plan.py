@@ -28,8 +28,8 @@ from numpy.typing import NDArray
 from zwidth.loop.sampled_plant import Coefficients, Motion
 from zwidth.model.environment import Wall
 from zwidth.model.environment.environment import RationalFunction
-from zwidth.passivity.decision import decide
-from zwidth.passivity.formulas.delayed_spring import spring_stiffness
+from zwidth.passivity.criterion_choice import decide
+from zwidth.passivity.formulas.colgate_schenkel import spring_stiffness
 from zwidth.passivity.linear.contact import damped_wall, root_above
 from zwidth.passivity.stability.known_hand.characteristic import Family, as_floats, bilinear, family
 from zwidth.passivity.stability.known_hand.coupled import motion_of

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from zwidth.model.environment import Wall
 from zwidth.passivity.certificate import Certificate, certify
-from zwidth.passivity.decision import Decision, decide
+from zwidth.passivity.criterion_choice import Decision, decide
 from zwidth.quantity.exact import Exact
 from zwidth.study.maps.request import Array, Request
 

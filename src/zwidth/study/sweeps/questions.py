@@ -16,9 +16,8 @@ from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
 from zwidth.model.specification.table import quoted
 from zwidth.passivity.budget import LIMITS
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.verdict import LIMITS as LIMITS_OF_A_PAIR
-from zwidth.passivity.scope import Contact, Encoder, FedWith, Law, Scope
+from zwidth.passivity.scope import Contact, Encoder, FedWith, Law, Outcome, Scope
 from zwidth.passivity.stability.known_hand.decide import Outcome as Rests
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.study.sweeps.columns import Column, Columns
@@ -136,7 +135,7 @@ def _of_hands(loop: Loop) -> Answer:
 
 
 def _limited_columns(loop: Loop) -> Columns:
-    from zwidth.passivity.bracket.parameter import parameter_of
+    from zwidth.passivity.bracket.bracket import parameter_of
 
     assert isinstance(loop.subject, Device)
     assert loop.environment is not None

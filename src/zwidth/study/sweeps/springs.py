@@ -2,7 +2,7 @@
 
     b ≥ (K T/4) [2d + 1 + 2α + √((2d + 1)² + 8α(d + 1))]     and     f_c ≥ K Δ/2,      delay = (d + α) T
 
-are enough and necessary (`formulas.delayed_spring`; Abbott & Okamura 2005).  A loop near its limit is left to
+are enough and necessary (`spring_stiffness`; Abbott & Okamura 2005).  A loop near its limit is left to
 `zwidth.check`: there doubles may be wrong, and the motion that refutes it may be too long to be found.
 """
 

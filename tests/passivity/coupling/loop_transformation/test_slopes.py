@@ -18,9 +18,9 @@ T = Fraction(1, 1000)
 @pytest.mark.parametrize("delay", [0, 1, 2, 5])
 @pytest.mark.parametrize("least", [-500, -310, 0, 120, 500])
 def test_it_is_the_need_of_a_delayed_spring(delay, least):
-    """(2d + 1) K T/2, whatever the least slope from −K up: that of `closed_forms.spring_damping`."""
+    """(2d + 1) K T/2, whatever the least slope from −K up: that of `formulas.spring_damping`."""
     found = zw.coupling.required_damping_by_slopes(least, 500, T, delay * T)
-    assert found == zw.formulas.closed_forms.spring_damping(500, T, delay * T)
+    assert found == zw.formulas.spring_damping(500, T, delay * T)
 
 
 @pytest.mark.parametrize("delay", [0, 1, 2, 3])

@@ -28,11 +28,9 @@ from zwidth.passivity.coupling.loop_transformation.environment_class import Pass
 from zwidth.passivity.coupling.loop_transformation.forms import DIRECT, Connection, coupled, excess_form
 from zwidth.passivity.coupling.loop_transformation.least_damping import best_form, largest_need
 from zwidth.passivity.coupling.loop_transformation.slopes import exact_need, whole_delay
-from zwidth.passivity.document import unit_key
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, nonnegative, number
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import Answer
-from zwidth.passivity.scope import Scope
+from zwidth.passivity.scope import Outcome, Scope, unit_key
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import told_quantity
 

@@ -19,7 +19,7 @@ import numpy as np
 from flint import fmpq_poly
 from numpy.typing import NDArray
 
-from zwidth.passivity.linear.cosines import from_cosines
+from zwidth.passivity.linear.exact_algebra import from_cosines
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
 from zwidth.quantity.balls import as_fmpq
 

@@ -15,7 +15,7 @@ from functools import cached_property
 from zwidth.errors import InputError
 from zwidth.loop.sampled_plant import Motion
 from zwidth.passivity.linear.boundary import largest_holding, smallest_holding
-from zwidth.passivity.linear.linear import LinearProof, decide_linear
+from zwidth.passivity.linear.criterion import LinearProof, decide_linear
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.one_norm import bound_one_norm
 from zwidth.passivity.pairs.held.evidence import HeldViolation

@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 from zwidth.loop.sampled_plant import Motion
-from zwidth.passivity.linear.supremum import frequency
+from zwidth.passivity.linear.criterion import frequency
 from zwidth.passivity.pairs.evidence import CERTIFICATE, VIOLATION, pair_document
 from zwidth.passivity.pairs.held.law import HeldPair
 from zwidth.passivity.result import Evidence

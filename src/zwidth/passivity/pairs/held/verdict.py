@@ -12,7 +12,6 @@ from typing import Any, ClassVar
 
 from zwidth.model.pairs import Pair
 from zwidth.passivity.advice import Advice
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.advice import StiffnessAt
 from zwidth.passivity.pairs.assumed import assumed_of_arms, assumed_of_timing, friction_goes_on
 from zwidth.passivity.pairs.criterion import PairCriterion
@@ -28,7 +27,7 @@ from zwidth.passivity.pairs.held.wave import HeldWitness, gaining_wave
 from zwidth.passivity.pairs.limits import largest_stiffness
 from zwidth.passivity.pairs.verdict import check_pair
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Hands, Scope
+from zwidth.passivity.scope import Hands, Outcome, Scope
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import shown, shown_at_least, shown_at_most
 

@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 
 from zwidth.checker import verify
 from zwidth.model.pairs import Pair
-from zwidth.passivity.document import unit_key
-from zwidth.passivity.linear.supremum import tightest
+from zwidth.passivity.linear.criterion import tightest
 from zwidth.passivity.pairs.evidence import WITNESS
 from zwidth.passivity.pairs.held.evidence import HeldViolation, held_document
 from zwidth.passivity.pairs.held.law import felt, felt_loop
 from zwidth.passivity.result import Evidence
+from zwidth.passivity.scope import unit_key
 from zwidth.passivity.witness.motion import Repeat
 from zwidth.quantity.text import told_quantity
 

@@ -22,8 +22,8 @@ from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.environment import PulseTransferFunction
 from zwidth.model.operator.operator import LinearHand, Operator
-from zwidth.passivity.document import unit_key
-from zwidth.passivity.linear.schur import is_schur
+from zwidth.passivity.linear.exact_algebra import is_schur
+from zwidth.passivity.scope import unit_key
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text

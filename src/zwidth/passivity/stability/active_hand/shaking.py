@@ -19,8 +19,8 @@ import flint
 import numpy as np
 
 from zwidth.loop.sampled_plant import ball
-from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.loop import LinearLoop
+from zwidth.passivity.scope import unit_key
 from zwidth.passivity.stability.active_hand.band import PI, Band
 from zwidth.passivity.stability.known_hand.characteristic import as_floats, decays
 from zwidth.quantity.balls import precision

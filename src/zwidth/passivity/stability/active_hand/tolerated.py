@@ -28,13 +28,12 @@ from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.passivity.certificate import FORMAT, Certificate, certify, linear_proof, positivity_document
-from zwidth.passivity.decision import Decision, decide
-from zwidth.passivity.document import loop_document
+from zwidth.passivity.criterion_choice import Decision, decide
 from zwidth.passivity.linear.boundary import largest_holding
-from zwidth.passivity.linear.linear import LinearProof
+from zwidth.passivity.linear.criterion import LinearProof
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.result import Result
-from zwidth.passivity.scope import Contact, Hands, Scope, scope_of
+from zwidth.passivity.scope import Contact, Hands, Scope, loop_document, scope_of
 from zwidth.passivity.stability.active_hand.band import Band, band_of, prove_inside
 from zwidth.passivity.stability.active_hand.shaking import ShakingHand, shaking_hand, tolerance
 from zwidth.passivity.wording import if_friction_goes_on, lines

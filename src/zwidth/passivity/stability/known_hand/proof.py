@@ -10,7 +10,7 @@ from typing import Any
 from zwidth.loop.sampled_plant import Motion
 from zwidth.model.environment.environment import RationalFunction
 from zwidth.passivity.certificate import FORMAT
-from zwidth.passivity.document import unit_key
+from zwidth.passivity.scope import unit_key
 from zwidth.passivity.stability.known_hand.decide import Found
 from zwidth.quantity.text import exact_text
 

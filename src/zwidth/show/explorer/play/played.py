@@ -10,8 +10,8 @@ from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.operator import LinearHand
 from zwidth.model.pairs import Pair
-from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.result import Answer
+from zwidth.passivity.scope import COLOUR
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import in_words, shown, unit_text
 

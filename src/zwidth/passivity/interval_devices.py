@@ -1,0 +1,263 @@
+"""A device of the catalogue of which some numbers are known within stated ranges only.
+
+A verdict on its intervals is a verdict on every device in the ranges: more damping and Coulomb friction
+never hurt, a finer encoder never does, and where period, delay or law are intervals their corners are
+proved to decide (`corners`).  Beside it stands here what a person asks next: how stiff a wall may be for
+every device in the ranges and for the most favourable one, and which number to measure first.  Every
+stiffness and every value said to be enough was itself proved, on the rest of the ranges as intervals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+from math import ceil, floor, inf, isfinite, log10
+from typing import Any, NamedTuple
+
+from zwidth.errors import InputError
+from zwidth.model.device import Device
+from zwidth.model.device.catalogue import DeviceInRange, Range
+from zwidth.model.environment.environment import Environment
+from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.corners import Loop, worst_corners
+from zwidth.passivity.linear.boundary import COARSER, largest_holding, smallest_holding
+from zwidth.passivity.parameter_limits import has_stiffness, provable, stiffness_of
+from zwidth.passivity.scope import unit_key
+from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.spoken import spoken
+from zwidth.quantity.text import in_words, shown, told_quantity
+
+_BETTER = {"damping": 1, "coulomb_friction": 1, "resolution": 0, "sample_period": 0, "delay": 0}
+"""Of what a verdict depends on: which end, low or high, asks for less."""
+
+
+class Measure(NamedTuple):
+    """The number to measure first."""
+
+    key: str  # a parameter of the device
+    # from here on, to the better end of its range, the loop is passive for every device in the other ranges,
+    # in SI; None where no part of its range is proved to be enough
+    enough: float | None
+    times: float  # how many times the largest stiffness grows over its range; inf from none at all
+
+
+@dataclass(frozen=True, kw_only=True)
+class OverRanges:
+    """What holds over the ranges of a device."""
+
+    name: str  # of the device
+    ranges: Mapping[str, Range]  # what is stated, by parameter of the device
+    motion: str  # "linear" or "rotary"
+    # a stiffness up to which a wall is proved passive for every device in the ranges [N/m; N·m/rad], all else
+    # as asked; 0 where none is, None where the law has no stiffness
+    every: float | None
+    best: float | None  # the same for the most favourable device
+    first: Measure | None  # what to measure first; None where nothing is left to know, or it cannot be told
+
+    def rows(self) -> Iterator[tuple[str, str]]:
+        """What holds for every device, what to measure first, what is stated."""
+        if self.every is not None and self.best is not None:
+            yield "stiffness", self._stiffness()
+        if self.first is not None:
+            yield "measure first", self._first(self.first)
+        yield (
+            "ranges",
+            f"{self.stated()}; stated, not measured: zwidth devices {self.name} says why; below are the "
+            "numbers of the worst corner",
+        )
+
+    def stated(self) -> str:
+        """The ranges, in a line."""
+        return ", ".join(
+            f"{_named(k, own)} {shown(own.interval, own.unit)}" for k, own in self.ranges.items()
+        )
+
+    def why(self) -> Iterator[str]:
+        """Each range, and why it is stated."""
+        for key, own in self.ranges.items():
+            yield f"{_named(key, own)} {shown(own.interval, own.unit)}: {own.why}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """It as plain data, a unit in every key of a physical quantity."""
+        ranges = {
+            unit_key(_key(key, own), self.motion): {"low": own.low, "high": own.high, "why": own.why}
+            for key, own in self.ranges.items()
+        }
+        first = None
+        if self.first is not None:
+            enough = {unit_key(self.first.key, self.motion): self.first.enough}
+            times = self.first.times if isfinite(self.first.times) else None
+            first = {"parameter": self.first.key, "enough": enough, "times_the_stiffness": times}
+        return {
+            "stated": ranges,
+            f"passive_for_every_device_{unit_key('stiffness', self.motion)}": _finite(self.every),
+            f"passive_for_the_best_device_{unit_key('stiffness', self.motion)}": _finite(self.best),
+            "measure_first": first,
+        }
+
+    def _stiffness(self) -> str:
+        assert self.every is not None
+        assert self.best is not None
+        every, best = (_stiffness(value, self.motion) for value in (self.every, self.best))
+        return f"passive for every device in the ranges: {every}; for the most favourable: {best}"
+
+    def _first(self, first: Measure) -> str:
+        name = _named(first.key, self.ranges[first.key])
+        if first.enough is not None:
+            side = "at least" if _BETTER[first.key] or name == "rate" else "at most"
+            enough = shown(first.enough, GLOSSARY[first.key].unit_for(self.motion), 3)
+            if name == "rate":
+                enough = shown(_rounded_up(1 / first.enough), "Hz", 3)
+            return f"{name}: if it is {side} {enough}, this is passive for every device in the other ranges"
+        grows = "from none" if first.times == inf else f"{first.times:.2g} times"
+        return f"{name}: over its range the largest stiffness grows {grows}, more than over any other"
+
+
+def _finite(value: float | None) -> float | None:
+    return None if value == inf else value
+
+
+def _key(key: str, own: Range) -> str:
+    """What the range is of: of a period it is stated as a rate."""
+    return "rate" if own.unit == "Hz" else key
+
+
+def _rounded_up(value: float) -> float:
+    """To three digits."""
+    unit = 10.0 ** (floor(log10(value)) - 2)
+    return ceil(value / unit) * unit
+
+
+def _named(key: str, own: Range) -> str:
+    return in_words(_key(key, own))
+
+
+def _stiffness(value: float, motion: str) -> str:
+    if value == inf:
+        return "any"
+    return f"up to {told_quantity(value, 'stiffness', motion)}" if value else "none is proved"
+
+
+def over_ranges(found: DeviceInRange, law: Environment, verdict: Verdict) -> OverRanges:
+    """What holds for every device in the ranges, for the most favourable, and what to measure first.
+
+    `found`: the device, with its ranges; `law`: what is rendered; `verdict`: what `check` says of both.
+    """
+    device, keys = found.device, [key for key in found.ranges if key in _BETTER]
+    said = OverRanges(
+        name=device.name, ranges=found.ranges, motion=device.motion, every=None, best=None, first=None
+    )
+    if not (law.has_transfer_function and law.is_certain and has_stiffness(law)):
+        return said
+    every, best = (_proved_up_to(one, law) for one in (device, _at_end(device, keys, better=True)))
+    open_still = verdict.outcome not in ("passive", "active")
+    return replace(said, every=every, best=best, first=_first(device, keys, law) if open_still else None)
+
+
+def _at_end(device: Device, keys: list[str], better: bool) -> Device:
+    """The device with one end of these parameters, the one that asks for less, or the other."""
+    chosen = {
+        key: Exact(ends(getattr(device, key))[_BETTER[key] if better else 1 - _BETTER[key]]) for key in keys
+    }
+    return device.replace(**chosen) if chosen else device
+
+
+def _proved_up_to(device: Device, law: Environment) -> float:
+    """A stiffness that `check` proves for the whole box of parameters, near the largest; 0 for none."""
+    largest = _largest(device, law)
+    if largest in (0.0, inf):
+        return largest
+    factor = spoken(GLOSSARY["stiffness"].unit_for(device.motion))[0]
+    for digits in (3, 2):
+        scale = 10.0 ** (floor(log10(largest * factor)) - digits + 1)
+        rounded = floor(largest * factor / scale * (1 + 1e-12)) * scale / factor
+        if rounded > 0 and _is_passive(device, law.replace(stiffness=Exact(f"{rounded:.15g}"))):
+            return rounded
+    return 0.0
+
+
+def _is_passive(device: Device, law: Environment) -> bool:
+    """Whether every device in the box is, contact made and broken; what cannot be decided is not."""
+    try:
+        return check_by_closed_forms(device, law).outcome == "passive"
+    except InputError:
+        return False
+
+
+def _largest(device: Device, law: Environment) -> float:
+    """The largest stiffness that holds at all corners, to a part in a thousand; 0 for none."""
+
+    def holds(k: Fraction) -> bool:
+        return _all_hold(device, law.replace(stiffness=Exact(k)))
+
+    return largest_holding(holds, float(stiffness_of(law)) or 1.0, COARSER) or 0.0
+
+
+def _all_hold(device: Device, law: Environment) -> bool:
+    """Whether every corner of the box is proved, contact made and broken."""
+    corners = [partial(_itself, corner) for corner in worst_corners(device, law)]
+    return all(provable(corner, Fraction(0), True) for corner in corners)
+
+
+def _itself(corner: Loop, _: Fraction) -> Loop:
+    return corner
+
+
+def _first(device: Device, keys: list[str], law: Environment) -> Measure | None:
+    """The parameter that moves the answer most, the others at their worst; else the others at their best."""
+    if not keys:
+        return None
+    worst, best = _largest(device, law), _largest(_at_end(device, keys, better=True), law)
+    told_apart = []
+    for key in keys:
+        others = [other for other in keys if other != key]
+        alone = _largest(_at_end(device, [key], better=True), law)
+        kept_back = _largest(_at_end(_at_end(device, [key], better=False), others, better=True), law)
+        told_apart.append((_ratio(alone, worst), _ratio(best, kept_back), key))
+    gains, loses, key = max(told_apart)
+    if gains <= 1.001 and loses <= 1.001:
+        return None
+    enough = _enough(device, key, law)
+    settled = [(value, other) for other in keys if (value := _enough(device, other, law)) is not None]
+    if enough is None and settled:
+        enough, key = settled[0]
+    return Measure(key, enough, gains if gains > 1.001 else loses)
+
+
+def _ratio(more: float, less: float) -> float:
+    return 1.0 if more == less else inf if less == 0 else more / less
+
+
+def _enough(device: Device, key: str, law: Environment) -> float | None:
+    """From where on one parameter alone makes the loop passive, to the better end of its range; proved."""
+    low, high = ends(getattr(device, key))
+    upward = bool(_BETTER[key])
+
+    def holds(value: Fraction) -> bool:
+        if not low <= value <= high:
+            return (value > high) if upward else (value < low)
+        return _all_hold(device.replace(**{key: Exact(value)}), law)
+
+    if not holds(high if upward else low):
+        return None
+    search = smallest_holding if upward else largest_holding
+    found = search(holds, float((low + high) / 2), COARSER)
+    if found is None:
+        return None
+    value = _outward(found, upward, spoken(GLOSSARY[key].unit_for(device.motion))[0])
+    value = min(max(value, float(low)), float(high))
+    part = Interval(Exact(value), Exact(high)) if upward else Interval(Exact(low), Exact(value))
+    return value if _is_passive(device.replace(**{key: part}), law) else None
+
+
+def _outward(value: float, upward: bool, factor: float) -> float:
+    """Three digits, on the side of more damping or of a finer encoder, in the unit that is told."""
+    if value == 0 or not isfinite(value):
+        return value
+    scale = 10.0 ** (floor(log10(value * factor)) - 2)
+    steps = value * factor / scale
+    return float(f"{((-floor(-steps)) if upward else floor(steps)) * scale / factor:.15g}")

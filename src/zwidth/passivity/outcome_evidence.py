@@ -1,0 +1,249 @@
+"""What was found of a loop: the outcome, the evidence for it, and the sentences that are made from both."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.criterion_choice import Decision
+from zwidth.passivity.linear.criterion import LinearRefutation
+from zwidth.passivity.result import PassivityAnswer
+from zwidth.passivity.scope import Outcome, Scope
+from zwidth.passivity.witness.violation import Violation
+from zwidth.passivity.witness.witness import Witness
+from zwidth.passivity.wording import claim_of_passivity, describe_hands, intervals, lines
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import enough, in_unit, in_words
+
+if TYPE_CHECKING:
+    from zwidth.passivity.formulas.nonlinear_spring import EndlessPull
+    from zwidth.passivity.storage import AvailableStorage
+    from zwidth.passivity.storage.gain import Gain
+
+
+Finding = Literal[
+    "open",
+    "unconfirmed",
+    "between corners",
+    "depends on values",
+    "no lowest energy",
+    "no coupling",
+    "no coupling is enough",
+]
+"""Why a loop is undecided: neither shown; a proof that the checker did not confirm; proved at the corners of
+intervals and not between them; active at one corner and not at others; a spring that pulls away for ever, but
+no more than Coulomb friction holds; a scene without a coupling; one behind a coupling that loses nothing."""
+
+
+class Need(NamedTuple):
+    """What is enough of "damping" [N·s/m; N·m·s/rad] or "coulomb_friction" [N; N·m], and what there is."""
+
+    name: str
+    needed: float
+    has: float
+
+
+@dataclass(frozen=True, repr=False)
+class Found(PassivityAnswer):
+    """What was found of a sampled loop: the outcome, what it is about, and the evidence.
+
+    `Verdict` is this in words, and says what each entry is.
+    """
+
+    outcome: Outcome
+    scope: Scope
+    device: Device
+    environment: Environment
+    certificate: Certificate | None = None
+    violation: Violation | EndlessPull | None = None
+    motion: Witness | Gain | None = None
+    available_storage: AvailableStorage | None = None
+    finding: Finding = "open"
+    at_limit: bool = False
+    theorem: str = ""
+    needs: tuple[Need, ...] = ()
+
+    @property
+    def is_proved(self) -> bool:
+        """True for "passive" and for "passive in contact"."""
+        return self.outcome in ("passive", "passive in contact")
+
+    @cached_property
+    def witness(self) -> Witness | Gain | None:
+        """The motion that takes energy out, made when it is first asked for.
+
+        None where the loop is not active, or no motion that was found is short enough to be written down.
+        """
+        if self.motion is not None or self.violation is None:
+            return self.motion
+        return self.violation.witness
+
+
+def claim(verdict: Found) -> str:
+    """The verdict in a sentence or two."""
+    if verdict.outcome == "active":
+        if verdict.violation is not None:
+            return f"The hand can take any amount of energy out of this loop: {verdict.violation.describe()}."
+        assert verdict.witness is not None
+        return f"A motion of the hand takes energy out of this loop: {verdict.witness.describe()}."
+    if verdict.outcome == "theorem":
+        return f"By a proof on paper, without a certificate: {verdict.theorem}."
+    if verdict.outcome == "undecided":
+        return " ".join([_undecided(verdict), *_by_bounded_hands(verdict)])
+    proved = claim_of_passivity(verdict.scope, verdict.at_limit)
+    if verdict.outcome == "passive without encoder steps":
+        return (
+            f"Read without encoder steps: {proved} With steps no Coulomb friction is enough for every scene, "
+            "and of this one nothing is known."
+        )
+    if verdict.outcome == "passive":
+        return proved
+    open_still = ["Of one that touches and leaves nothing is proved or refuted."]
+    return " ".join([proved, *(list(_by_bounded_hands(verdict)) or open_still)])
+
+
+def assumptions(verdict: Found) -> tuple[str, ...]:
+    """What the claim covers and takes for granted, line by line."""
+    between = intervals(verdict.scope, verdict.outcome)
+    return (*lines(verdict.scope, verdict.outcome), *([] if between is None else [between]))
+
+
+_ROADS = {
+    "spring": "the closed conditions of a spring",
+    "contact": "the closed conditions of a damped wall, contact made and broken",
+    "relaxing contact": "the closed conditions of a law that relaxes, contact made and broken",
+    "multiplier contact": "a multiplier, contact made and broken",
+    "linear": "the linear criterion",
+    "quantized": "the linear criterion, and a bound on the force error of the encoder",
+    "delays": "the linear criterion, for every delay of the interval",
+    "nonlinear spring": "the slopes of the spring",
+    "force bounding": "force bounding, the last law in the row",
+}
+"""By kind of certificate."""
+
+
+def decided_by(verdict: Found) -> str:
+    """The road on which the outcome was found."""
+    if "behind a coupling" in verdict.scope.law:
+        return "the condition on the coupling, whatever passive scene stands behind it"
+    if verdict.certificate is not None:
+        documents = verdict.certificate.documents
+        return "; ".join(dict.fromkeys(_ROADS.get(d["kind"], d["kind"]) for d in documents))
+    if verdict.outcome == "theorem":
+        return "a proof on paper"
+    if verdict.outcome == "undecided":
+        return "nothing"
+    if verdict.violation is not None:
+        return "the linear criterion" if hasattr(verdict, "decision") else "the ends of the spring"
+    return "a motion" if verdict.available_storage is None else "a motion found by value iteration"
+
+
+def _by_bounded_hands(verdict: Found) -> Iterator[str]:
+    """What is proved of hands within bounds, contact made and broken."""
+    found = verdict.available_storage
+    if found is not None and found.outcome == "passive":
+        hands = describe_hands(found.scope.hands, found.scope.motion)
+        yield f"Contact made and broken: proved passive for {hands}."
+
+
+def _undecided(verdict: Found) -> str:
+    if verdict.finding == "unconfirmed":
+        return "A proof was found, but the independent checker did not confirm it within its bounds."
+    if verdict.finding == "between corners":
+        return (
+            "Passive at every corner of the intervals; that every value between them is too is not proved "
+            "for intervals of these parameters together."
+        )
+    if verdict.finding == "depends on values":
+        return (
+            "The answer depends on where in its intervals the loop lies: energy can be taken out at the "
+            "worst corner, and for other values that is not known."
+        )
+    if verdict.finding == "no lowest energy":
+        return (
+            "Beyond an end the spring pulls away, with no more than Coulomb friction holds: its potential "
+            "has no lowest value, and no proof for that is known."
+        )
+    if verdict.finding == "no coupling":
+        return (
+            "Of a scene that is not linear, or of many elements, a proof is known only behind a virtual "
+            "coupling: zwidth.VirtualCoupling(stiffness, damping, scene)."
+        )
+    if verdict.finding == "no coupling is enough":
+        return (
+            "The coupling's damping takes away as much as its stiffness holds, K T + 2 B ≤ 0: no damping of "
+            "the device is enough for every scene behind it."
+        )
+    decision: Decision | None = getattr(verdict, "decision", None)  # of laws with H(z)
+    return _not_found(verdict) if decision is None else _open(decision)
+
+
+def _not_found(verdict: Found) -> str:
+    """What is known of a law without H(z)."""
+    found = "Neither a proof for every hand nor a motion that takes energy out was found"
+    unit = verdict.device.unit
+    lacking = [
+        f"{in_words(need.name)} of {enough(need.needed, unit(need.name))} is proved enough, and there is "
+        f"{in_unit(need.has, unit(need.name))}"
+        for need in verdict.needs
+        if need.has < need.needed
+    ]
+    return f"{'; '.join([found, *lacking])}."
+
+
+def _open(decision: Decision) -> str:
+    """What is proved on both sides where the loop itself is neither proved nor refuted."""
+    if decision.is_clamped:
+        return _clamped(decision)
+    if isinstance(decision.viscous, LinearRefutation):
+        if decision.viscous.reason == "too close to zero":
+            return (
+                "The linear criterion comes so close to zero that to tell its sign would take more work than "
+                "is spent on it. Give the law with fewer digits or of a lower order, or change the damping: "
+                "the damping that is required is known, and is given with what is proved."
+            )
+        return (
+            f"Passivity cannot be proved ({decision.viscous.reason}); that energy comes out was not "
+            "confirmed by the independent checker within its bounds."
+        )
+    if not decision.loop.hidden_modes_decay:
+        return (
+            "Numerator and denominator of H(z) share a root on or outside the unit circle. The port does not "
+            "see it, but the controller as written carries a mode that never dies out: cancel it and check "
+            "again."
+        )
+    need, least = decision.sufficient_friction, decision.necessary_friction
+    has = float(decision.setting.coulomb_friction)
+    unit = GLOSSARY["coulomb_friction"].unit_for(decision.setting.motion)
+    does = "no amount is proved enough" if need is None else f"{enough(float(need), unit)} is enough"
+    edge = in_unit(least, unit)
+    below = (
+        f"straddling an encoder edge should gain below {edge}, yet no such motion was found short enough"
+        if has < least
+        else f"straddling an encoder edge gains only below {edge}"
+    )
+    return (
+        "Viscous damping is enough, but for an encoder with this law no exact condition on Coulomb friction "
+        f"is proved: {does}, {below}, and the device has {in_unit(has, unit)}."
+    )
+
+
+def _clamped(decision: Decision) -> str:
+    """What is known of a clamped law that is not proved."""
+    damping, friction = decision.contact_damping, decision.contact_friction
+    if damping is None or friction is None:
+        known = "and no other condition is known for this law and delay."
+    else:
+        loop, has, motion = decision.loop, float(decision.setting.coulomb_friction), decision.setting.motion
+        b, f = (GLOSSARY[name].unit_for(motion) for name in ("damping", "coulomb_friction"))
+        known = (
+            f"and what is proved enough is not there: damping of {enough(float(damping), b)}, the device "
+            f"has {in_unit(float(loop.damping), b)}; Coulomb friction of {enough(float(friction), f)}, it "
+            f"has {in_unit(has, f)}."
+        )
+    return f"The linear criterion does not cover a law whose force is clamped, {known}"

@@ -1,1 +1,0 @@
-"""Value iteration, and the kernels that improve V on each kind of grid."""
