@@ -14,8 +14,7 @@ from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.matrix_system import MatrixSystem, hidden_modes, read_matrix_system, size_of
 from zwidth.model.environment.system import LinearSystem, Polynomial, is_system, read_system, time_of
 from zwidth.passivity.linear.loop import LARGEST_DEGREE
-from zwidth.passivity.ports.circle import Time
-from zwidth.passivity.ports.poles import decays
+from zwidth.passivity.ports.circle import Time, decays
 from zwidth.passivity.ports.port import Port
 
 MOST_AXES = 6
