@@ -35,8 +35,14 @@ from zwidth.passivity.linear.linear import LinearProof
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.result import Result
 from zwidth.passivity.scope import Contact, Hands, Scope, scope_of
-from zwidth.passivity.stability.active_hand.band import Band, band_of, prove_inside
-from zwidth.passivity.stability.active_hand.shaking import ShakingHand, shaking_hand, tolerance
+from zwidth.passivity.stability.shaking_hand import (
+    Band,
+    ShakingHand,
+    band_of,
+    prove_inside,
+    shaking_hand,
+    tolerance,
+)
 from zwidth.passivity.wording import if_friction_goes_on, lines
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix

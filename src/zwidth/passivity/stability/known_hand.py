@@ -20,19 +20,27 @@ from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment, RationalFunction
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator.hand_impedance import HandImpedance, as_hand
-from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.boundary import largest_holding
 from zwidth.passivity.result import Answer
 from zwidth.passivity.scope import Hands, Scope, scope_of
-from zwidth.passivity.stability.known_hand.characteristic import PRECISIONS, as_floats, family, of_law
-from zwidth.passivity.stability.known_hand.crossing import Plain, last_stable, plain
-from zwidth.passivity.stability.known_hand.decide import Found, Outcome, decided
-from zwidth.passivity.stability.known_hand.proof import evidence
+from zwidth.passivity.stability.characteristic import (
+    PRECISIONS,
+    Found,
+    Outcome,
+    Plain,
+    as_floats,
+    decided,
+    family,
+    last_stable,
+    of_law,
+    plain,
+)
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import in_unit
+from zwidth.quantity.text import exact_text, in_unit
 
 _HALVINGS = 8
 """Of the stiffness, in that search."""
@@ -178,7 +186,7 @@ def _checked(motion: Motion, transfer: RationalFunction, units: str) -> tuple[Fo
 
 
 def motion_of(device: Device, hand: HandImpedance) -> Motion:
-    """Device and hand together, as `plant` takes them."""
+    """Device and hand together."""
     if device.mass is None:
         raise InputError(
             "stability with a known hand depends on the mass of the device, and it is unknown; give mass"
@@ -277,3 +285,25 @@ def _scope(device: Device, hand: HandImpedance, law: Environment) -> Scope:
         coulomb_friction=None,
         assumed=(),
     )
+
+
+def evidence(found: Found, motion: Motion, transfer: RationalFunction, units: str) -> dict[str, Any] | None:
+    """A document of kind "stability", or of kind "instability" with the unstable_hand; None for undecided."""
+    if found.outcome == "undecided":
+        return None
+    kind = "stability" if found.outcome == "stable" else "instability"
+    return {
+        "format": FORMAT,
+        "kind": kind,
+        "loop": _loop(motion if found.unstable_hand is None else found.unstable_hand, transfer, units),
+    }
+
+
+def _loop(motion: Motion, transfer: RationalFunction, units: str) -> dict[str, Any]:
+    return {
+        **motion.told(units),
+        unit_key("sample_period", units): exact_text(motion.period),
+        unit_key("delay", units): exact_text(motion.delay),
+        "numerator": [exact_text(c) for c in transfer.numerator],
+        "denominator": [exact_text(c) for c in transfer.denominator],
+    }
