@@ -12,17 +12,24 @@ from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.outcome import Outcome
-from zwidth.passivity.pairs.advice import StiffnessAt, advise, stiffness_elsewhere
-from zwidth.passivity.pairs.assumed import assumed_of_arms, assumed_of_timing, friction_goes_on
-from zwidth.passivity.pairs.compensation import compensation_numbers, compensation_rows
+from zwidth.passivity.pairs.assumed import (
+    assumed_of_arms,
+    assumed_of_timing,
+    compensation_numbers,
+    compensation_rows,
+    friction_goes_on,
+)
 from zwidth.passivity.pairs.criterion import PairCriterion, spending
 from zwidth.passivity.pairs.evidence import PairCertificate, PairViolation, PairWitness
 from zwidth.passivity.pairs.limits import (
+    StiffnessAt,
+    advise,
     is_passive,
     largest_compensation,
     largest_stiffness,
     required_damping,
     required_friction,
+    stiffness_elsewhere,
     with_share,
 )
 from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
