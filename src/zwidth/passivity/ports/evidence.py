@@ -197,28 +197,26 @@ def _directions(port: Port, level: Fraction, tangent: Fraction) -> Iterator[Axes
             return
 
 
-def _candidates(form: list[list[Gaussian]]) -> Iterator[Axes]:
-    scale = max(max(abs(x.real), abs(x.imaginary)) for row in form for x in row)
+def _candidates(form: tuple[fmpq_mat, fmpq_mat]) -> Iterator[Axes]:
+    scale = max(abs(x) for part in form for x in part.entries())
     if scale == 0:
         return
-    shown = np.array(
-        [[complex(to_float(x.real / scale), to_float(x.imaginary / scale)) for x in row] for row in form]
-    )
-    vector = np.linalg.eigh(shown)[1][:, 0]
+    real, imaginary = (np.array([[to_float(x / scale) for x in row] for row in p.tolist()]) for p in form)
+    vector = np.linalg.eigh(real + 1j * imaginary)[1][:, 0]
     vector = vector / vector[np.argmax(np.abs(vector))]
     for digits in (4, 9, 15):
         yield tuple((_decimal(a.real, digits), _decimal(-a.imag, digits)) for a in vector)
     exact = negative_direction(_embedded(form))
     if exact is not None:
-        size = len(form)
+        size = form[0].nrows()
         values = [as_fraction(x) for x in exact]
         yield tuple((values[i], -values[size + i]) for i in range(size))
 
 
-def _embedded(form: list[list[Gaussian]]) -> list[list[fmpq]]:
+def _embedded(form: tuple[fmpq_mat, fmpq_mat]) -> list[list[fmpq]]:
     """The real symmetric matrix (Re −Im; Im Re) of twice the size with the same values."""
-    upper = [[x.real for x in row] + [-x.imaginary for x in row] for row in form]
-    return upper + [[x.imaginary for x in row] + [x.real for x in row] for row in form]
+    rows = list(zip(*(part.tolist() for part in form), strict=True))
+    return [[*r, *(-x for x in i)] for r, i in rows] + [[*i, *r] for r, i in rows]
 
 
 def _polynomial(port: Port, level: Fraction) -> Motion | None:

@@ -17,7 +17,7 @@ from flint import fmpq, fmpq_poly
 
 from zwidth.passivity.linear.roots import real_roots, roots_inside
 from zwidth.passivity.ports.circle import Time, growing_place, has_positive_sign, near, places_of, vanishes
-from zwidth.passivity.ports.port import Port
+from zwidth.passivity.ports.port import Port, common_factor
 from zwidth.passivity.ports.positive_real import is_stable, minors_at, prove_minors
 from zwidth.quantity.balls import as_fmpq, as_fraction
 
@@ -140,7 +140,7 @@ class RealPart:
 def real_part(port: Port) -> RealPart:
     """Re F of one axis."""
     p, w = port.real_part
-    common = fmpq_poly(p.numer().gcd(w.numer()))
+    common = common_factor((p, w))
     p, w = p // common, w // common
     return RealPart(p, w) if has_positive_sign(w) else RealPart(-p, -w)
 
@@ -265,15 +265,9 @@ def _interpolated(values: list[fmpq_poly]) -> list[fmpq_poly]:
 
 def _split(coefficients: list[fmpq_poly]) -> Spectrum:
     """Without the factors that depend on c alone, and with those of σ alone apart."""
-    common = coefficients[0].numer()
-    for p in coefficients[1:]:
-        common = common.gcd(p.numer())
-    varying = [p // fmpq_poly(common) for p in coefficients]
-    columns = _transposed(varying)
-    shared = columns[0].numer()
-    for p in columns[1:]:
-        shared = shared.gcd(p.numer())
-    constant = fmpq_poly(shared)
+    common = common_factor(coefficients)
+    columns = _transposed([p // common for p in coefficients])
+    constant = common_factor(columns)
     rest = _transposed([p // constant for p in columns])
     while len(rest) > 1 and rest[-1].degree() < 0:
         rest.pop()
@@ -284,7 +278,7 @@ def _split(coefficients: list[fmpq_poly]) -> Spectrum:
 
 def _simple(p: fmpq_poly) -> fmpq_poly:
     """The same roots, each once."""
-    return p // fmpq_poly(p.numer().gcd(p.derivative().numer())) if p.degree() > 0 else p
+    return p // common_factor((p, p.derivative())) if p.degree() > 0 else p
 
 
 def _transposed(rows: list[fmpq_poly]) -> list[fmpq_poly]:

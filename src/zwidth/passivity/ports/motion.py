@@ -26,7 +26,7 @@ from functools import partial
 from math import comb, cos, pi, sin
 from typing import Literal, NamedTuple
 
-from flint import fmpq, fmpq_poly, fmpz
+from flint import fmpq, fmpq_mat, fmpq_poly, fmpz
 
 from zwidth.passivity.ports.port import Polynomials, Port
 from zwidth.quantity.balls import as_fmpq, as_fraction
@@ -218,24 +218,19 @@ def absorbed_at(port: Port, level: Fraction, at: Gaussian, latent: Vector) -> fm
     return total
 
 
-def form_at(port: Port, level: Fraction, at: Gaussian) -> list[list[Gaussian]]:
-    """Π_σ at a point, by polarization of its columns."""
-    sigma, size = as_fmpq(level), range(port.axes)
-    u, y = ([[value(side[k][j], at) for k in size] for j in size] for side in (port.inputs, port.outputs))
-    above = [
-        [
-            Gaussian(b.real - sigma * a.real, b.imaginary - sigma * a.imaginary)
-            for a, b in zip(p, q, strict=True)
-        ]
-        for p, q in zip(u, y, strict=True)
-    ]
+def form_at(port: Port, level: Fraction, at: Gaussian) -> tuple[fmpq_mat, fmpq_mat]:
+    """Π_σ at a point, its real and its imaginary part."""
+    (u, v), (y, z) = (_parts(side, at) for side in (port.inputs, port.outputs))
+    y, z = y - u * as_fmpq(level), z - v * as_fmpq(level)
+    real, imaginary = u.transpose() * y + v.transpose() * z, u.transpose() * z - v.transpose() * y
+    return (real + real.transpose()) * fmpq(1, 2), (imaginary - imaginary.transpose()) * fmpq(1, 2)
 
-    def entry(i: int, j: int) -> Gaussian:
-        left = _dot([_conjugate(a) for a in u[i]], above[j])
-        right = _dot([_conjugate(a) for a in above[i]], u[j])
-        return Gaussian((left.real + right.real) / 2, (left.imaginary + right.imaginary) / 2)
 
-    return [[entry(i, j) for j in size] for i in size]
+def _parts(side: Polynomials, at: Gaussian) -> tuple[fmpq_mat, fmpq_mat]:
+    """Of D or N at a point."""
+    rows = [[value(p, at) for p in row] for row in side]
+    real, imaginary = (fmpq_mat([[x[part] for x in row] for row in rows]) for part in (0, 1))
+    return real, imaginary
 
 
 def to_float(value: fmpq) -> float:
@@ -253,7 +248,3 @@ def _dot(row: Vector, column: Vector) -> Gaussian:
 
 def _times(a: Gaussian, b: Gaussian) -> Gaussian:
     return Gaussian(a.real * b.real - a.imaginary * b.imaginary, a.real * b.imaginary + a.imaginary * b.real)
-
-
-def _conjugate(a: Gaussian) -> Gaussian:
-    return Gaussian(a.real, -a.imaginary)

@@ -13,15 +13,16 @@ Of one axis that is Re(N D̄) − σ |D|², one polynomial in c.  Everything is 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, reduce
 from math import cos, inf, nan, nextafter, pi
+from operator import add, mul
 from typing import Any, NamedTuple
 
 import numpy as np
-from flint import fmpq, fmpq_poly
+from flint import fmpq, fmpq_poly, fmpz_poly
 
 from zwidth.passivity.linear.cosines import real_product
 from zwidth.passivity.ports.circle import ONE, OnCircle, Time, frequency_of, in_zeta, product
@@ -99,10 +100,7 @@ class Port:
 
         def pairing(a: Any, b: Any, i: int, j: int) -> OnCircle:
             """(Aᴴ B)_ij."""
-            total = product(b[0][j], a[0][i])
-            for k in size[1:]:
-                total = total + product(b[k][j], a[k][i])
-            return total
+            return reduce(add, (product(b[k][j], a[k][i]) for k in size))
 
         crossed = [[pairing(d, n, i, j) for j in size] for i in size]
         power = [[(crossed[i][j] + crossed[j][i].conjugate()) / 2 for j in size] for i in size]
@@ -203,17 +201,18 @@ def typed_at_most(value: Fraction) -> float:
     return double
 
 
+def common_factor(polynomials: Iterable[fmpq_poly]) -> fmpq_poly:
+    """The greatest, with whole coefficients."""
+    return fmpq_poly(reduce(fmpz_poly.gcd, (p.numer() for p in polynomials)))
+
+
 def in_lowest_terms(
     numerators: list[list[fmpq_poly]], denominator: fmpq_poly
 ) -> tuple[fmpq_poly, list[list[fmpq_poly]]] | None:
     """(π, R) with R/π the same matrix and no factor common to π and all of R; None over 0."""
     if denominator.degree() < 0:
         return None
-    common = denominator.numer()
-    for row in numerators:
-        for entry in row:
-            common = common.gcd(entry.numer())
-    shared = fmpq_poly(common)
+    shared = common_factor([denominator, *(entry for row in numerators for entry in row)])
     return denominator // shared, [[entry // shared for entry in row] for row in numerators]
 
 
@@ -266,28 +265,18 @@ def leverrier(matrix: Matrix, one: Any) -> Leverrier:
             break
         product = multiplied(matrix, step) if k > 1 else matrix
         minors.append(_trace(product) * sign / k)
-        step = _less_on_diagonal(product, minors[-1] * sign)
+        less = minors[-1] * sign
+        step = [[x - less if i == j else x for j, x in enumerate(row)] for i, row in enumerate(product)]
     last = 1 if size % 2 else -1
     return Leverrier(minors, [[entry * last for entry in row] for row in step])
 
 
 def _trace(matrix: Matrix) -> Any:
-    total = matrix[0][0]
-    for i in range(1, len(matrix)):
-        total = total + matrix[i][i]
-    return total
+    return reduce(add, (row[i] for i, row in enumerate(matrix)))
 
 
 def _trace_of_product(a: Matrix, b: Matrix) -> Any:
-    terms = [_dotted(row, [other[i] for other in b]) for i, row in enumerate(a)]
-    total = terms[0]
-    for term in terms[1:]:
-        total = total + term
-    return total
-
-
-def _less_on_diagonal(matrix: Matrix, value: Any) -> list[list[Any]]:
-    return [[x - value if i == j else x for j, x in enumerate(row)] for i, row in enumerate(matrix)]
+    return reduce(add, (_dotted(row, column) for row, column in zip(a, zip(*b, strict=True), strict=True)))
 
 
 def multiplied(a: Matrix, b: Matrix) -> list[list[Any]]:
@@ -297,7 +286,4 @@ def multiplied(a: Matrix, b: Matrix) -> list[list[Any]]:
 
 
 def _dotted(row: Sequence[Any], column: Sequence[Any]) -> Any:
-    total = row[0] * column[0]
-    for x, y in zip(row[1:], column[1:], strict=True):
-        total = total + x * y
-    return total
+    return reduce(add, map(mul, row, column))

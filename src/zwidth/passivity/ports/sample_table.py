@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from flint import fmpq
+from flint import fmpq, fmpq_mat
 
 from zwidth.errors import InputError
 from zwidth.model.environment.system import number_of
@@ -28,9 +28,6 @@ CLEAR = 1e-9
 """Relative distance from a bound that the rounding of a singular value or an eigenvalue cannot reach."""
 
 _MOST_SHOWN = 8
-
-Pair = tuple[list[list[fmpq]], list[list[fmpq]]]
-"""Real and imaginary part of a matrix."""
 
 
 @dataclass(frozen=True)
@@ -235,18 +232,22 @@ def read_errors(error: Any, samples: int) -> list[Fraction]:
     return errors
 
 
-def exactly(sample: Any, key: str) -> Pair:
-    """The decimals of a matrix."""
-    x, y = ([[as_fmpq(number_of(v, key)) for v in row] for row in p] for p in (sample.real, sample.imag))
+def exactly(sample: Any, key: str) -> tuple[fmpq_mat, fmpq_mat]:
+    """The decimals of a matrix, real and imaginary part."""
+    parts = (sample.real, sample.imag)
+    x, y = (fmpq_mat([[as_fmpq(number_of(v, key)) for v in row] for row in part]) for part in parts)
     return x, y
 
 
-def has_negative_eigenvalue(hermitian: Pair) -> bool:
-    """Decided exactly, of the real symmetric matrix (Re −Im; Im Re)."""
-    real, imaginary = hermitian
-    upper = [[*r, *(-v for v in i)] for r, i in zip(real, imaginary, strict=True)]
-    lower = [[*i, *r] for r, i in zip(real, imaginary, strict=True)]
-    return negative_direction(upper + lower) is not None
+def has_negative_eigenvalue(real: fmpq_mat, imaginary: fmpq_mat) -> bool:
+    """Of a Hermitian matrix, decided exactly, of the real symmetric one (Re −Im; Im Re)."""
+    rows = list(zip(real.tolist(), imaginary.tolist(), strict=True))
+    upper = [[*r, *(-x for x in i)] for r, i in rows]
+    return negative_direction(upper + [[*i, *r] for r, i in rows]) is not None
+
+
+def _on_diagonal(value: Fraction, size: int) -> fmpq_mat:
+    return fmpq_mat([[as_fmpq(value) * int(i == j) for j in range(size)] for i in range(size)])
 
 
 def _runs(flags: Sequence[bool]) -> Iterator[tuple[int, int]]:
@@ -326,11 +327,9 @@ def _below(sample: Any, value: float, level: Fraction) -> bool:
     """λ_min < level, of the decimals of the table."""
     if abs(value - float(level)) > CLEAR * float(np.linalg.norm(sample)):
         return value < level
-    size = range(len(sample))
     x, y = exactly(sample, "values")
-    real = [[(x[i][j] + x[j][i]) / 2 - as_fmpq(level) * int(i == j) for j in size] for i in size]
-    imaginary = [[(y[i][j] - y[j][i]) / 2 for j in size] for i in size]
-    return has_negative_eigenvalue((real, imaginary))
+    real, imaginary = (x + x.transpose()) * fmpq(1, 2), (y - y.transpose()) * fmpq(1, 2)
+    return has_negative_eigenvalue(real - _on_diagonal(level, len(sample)), imaginary)
 
 
 #     power in at one frequency = aᴴ (1 − SᴴS) a,    ‖S(f_k)‖ ≤ 1 at every sample f_k
@@ -424,17 +423,9 @@ def _exceeds(sample: Any, gain: float, bound: Fraction) -> bool:
     """‖S‖ > bound, of the decimals of the table."""
     if abs(gain - float(bound)) > CLEAR:
         return gain > bound
-    size = range(len(sample))
     x, y = exactly(sample, "s")
-    square = as_fmpq(bound * bound)
-    real = [[square * int(i == j) for j in size] for i in size]
-    imaginary = [[fmpq(0) for _ in size] for _ in size]
-    for i in size:
-        for j in size:
-            for k in size:
-                real[i][j] -= x[k][i] * x[k][j] + y[k][i] * y[k][j]
-                imaginary[i][j] -= x[k][i] * y[k][j] - y[k][i] * x[k][j]
-    return has_negative_eigenvalue((real, imaginary))
+    back, turned = x.transpose() * x + y.transpose() * y, y.transpose() * x - x.transpose() * y
+    return has_negative_eigenvalue(_on_diagonal(bound * bound, len(sample)) - back, turned)
 
 
 def _size(gain: float) -> str:
