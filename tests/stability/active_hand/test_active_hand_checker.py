@@ -14,15 +14,14 @@ import zwidth as zw
 from zwidth import checker
 from zwidth.checker.bounded_hand.active_hand import _least_cosine
 from zwidth.passivity.stability.shaking_hand import band_of
+from zwidth.quantity.json_text import to_json
 
 PADDLE = zw.Device(mass=0.036, damping=0.15, rate=1000, coulomb_friction=0.12, resolution=22.4e-6)
 
 
 def proofs(wall: zw.Wall) -> tuple[dict[str, Any], dict[str, Any]]:
     """Contact kept, and contact broken, as they come out of a file."""
-    document = json.loads(
-        zw.passivity.document.to_json(zw.stability.tolerated_activity(PADDLE, wall).to_dict())
-    )
+    document = json.loads(to_json(zw.stability.tolerated_activity(PADDLE, wall).to_dict()))
     kept, broken = (document[key]["certificate"] for key in ("contact_kept", "contact_broken"))
     assert kept["kind"] == broken["kind"] == "active hand"
     return kept, broken

@@ -273,12 +273,9 @@ def _split(coefficients: list[fmpq_poly]) -> Spectrum:
         rest.pop()
     if not has_positive_sign(rest[-1]):
         rest = [-p for p in rest]
-    return Spectrum(_simple(constant), tuple(rest))
-
-
-def _simple(p: fmpq_poly) -> fmpq_poly:
-    """The same roots, each once."""
-    return p // common_factor((p, p.derivative())) if p.degree() > 0 else p
+    if constant.degree() > 0:  # each root once
+        constant = constant // common_factor((constant, constant.derivative()))
+    return Spectrum(constant, tuple(rest))
 
 
 def _transposed(rows: list[fmpq_poly]) -> list[fmpq_poly]:

@@ -260,23 +260,15 @@ def leverrier(matrix: Matrix, one: Any) -> Leverrier:
     for k in range(1, size + 1):
         sign = 1 if k % 2 else -1
         if k == size:
-            trace = _trace_of_product(matrix, step) if k > 1 else matrix[0][0]
+            trace = reduce(add, map(_dotted, matrix, zip(*step, strict=True))) if k > 1 else matrix[0][0]
             minors.append(trace * sign / k)
             break
         product = multiplied(matrix, step) if k > 1 else matrix
-        minors.append(_trace(product) * sign / k)
+        minors.append(reduce(add, (row[i] for i, row in enumerate(product))) * sign / k)
         less = minors[-1] * sign
         step = [[x - less if i == j else x for j, x in enumerate(row)] for i, row in enumerate(product)]
     last = 1 if size % 2 else -1
     return Leverrier(minors, [[entry * last for entry in row] for row in step])
-
-
-def _trace(matrix: Matrix) -> Any:
-    return reduce(add, (row[i] for i, row in enumerate(matrix)))
-
-
-def _trace_of_product(a: Matrix, b: Matrix) -> Any:
-    return reduce(add, (_dotted(row, column) for row, column in zip(a, zip(*b, strict=True), strict=True)))
 
 
 def multiplied(a: Matrix, b: Matrix) -> list[list[Any]]:

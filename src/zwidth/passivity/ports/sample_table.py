@@ -364,8 +364,9 @@ class ScatteringTable(SampleTable):
     def told_broken(self) -> str:
         """With the largest ‖S‖."""
         gain, at = self.largest
+        size = f"{gain:.9g}" if gain - 1 > CLEAR else "1 and less than 1e-9 more"
         return (
-            f"more comes back than goes in, most at {at:.6g} Hz: ‖S‖ = {_size(gain)}. No passive network has "
+            f"more comes back than goes in, most at {at:.6g} Hz: ‖S‖ = {size}. No passive network has "
             "these values."
         )
 
@@ -426,8 +427,3 @@ def _exceeds(sample: Any, gain: float, bound: Fraction) -> bool:
     x, y = exactly(sample, "s")
     back, turned = x.transpose() * x + y.transpose() * y, y.transpose() * x - x.transpose() * y
     return has_negative_eigenvalue(_on_diagonal(bound * bound, len(sample)) - back, turned)
-
-
-def _size(gain: float) -> str:
-    """A size that is above 1 is told as such."""
-    return f"{gain:.9g}" if gain - 1 > CLEAR else "1 and less than 1e-9 more"

@@ -192,14 +192,13 @@ def motion_of(device: Device, hand: HandImpedance) -> Motion:
             "stability with a known hand depends on the mass of the device, and it is unknown; give mass"
         )
     mass, damping = (
-        _sum(ends(own), ends(added))
-        for own, added in ((device.mass, hand.mass), (device.damping, hand.damping))
+        (low + more, high + most)
+        for (low, high), (more, most) in (
+            (ends(device.mass), ends(hand.mass)),
+            (ends(device.damping), ends(hand.damping)),
+        )
     )
     return Motion(mass, damping, ends(hand.stiffness), device.exact("sample_period"), device.exact("delay"))
-
-
-def _sum(a: tuple[Fraction, Fraction], b: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
-    return a[0] + b[0], a[1] + b[1]
 
 
 def _poles(corner: Motion, transfer: Any) -> complex:
@@ -291,19 +290,16 @@ def evidence(found: Found, motion: Motion, transfer: RationalFunction, units: st
     """A document of kind "stability", or of kind "instability" with the unstable_hand; None for undecided."""
     if found.outcome == "undecided":
         return None
-    kind = "stability" if found.outcome == "stable" else "instability"
-    return {
-        "format": FORMAT,
-        "kind": kind,
-        "loop": _loop(motion if found.unstable_hand is None else found.unstable_hand, transfer, units),
-    }
-
-
-def _loop(motion: Motion, transfer: RationalFunction, units: str) -> dict[str, Any]:
-    return {
-        **motion.told(units),
-        unit_key("sample_period", units): exact_text(motion.period),
-        unit_key("delay", units): exact_text(motion.delay),
+    told = motion if found.unstable_hand is None else found.unstable_hand
+    loop = {
+        **told.told(units),
+        unit_key("sample_period", units): exact_text(told.period),
+        unit_key("delay", units): exact_text(told.delay),
         "numerator": [exact_text(c) for c in transfer.numerator],
         "denominator": [exact_text(c) for c in transfer.denominator],
+    }
+    return {
+        "format": FORMAT,
+        "kind": "stability" if found.outcome == "stable" else "instability",
+        "loop": loop,
     }

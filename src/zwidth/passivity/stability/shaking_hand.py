@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import cos, log, pi, sin
+from math import cos, floor, log, pi, sin
 from typing import NamedTuple
 
 import flint
@@ -288,11 +288,7 @@ def band_of(below: Fraction, period: Fraction) -> Band:
         total += term
         if k + 2 < _TERMS:
             total, term = total + following, following
-    return Band(below, angle, max(Fraction(-1), _rounded_down(total)))
-
-
-def _rounded_down(value: Fraction) -> Fraction:
-    return Fraction(value.numerator * 10**15 // value.denominator, 10**15)
+    return Band(below, angle, max(Fraction(-1), Fraction(floor(total * 10**15), 10**15)))
 
 
 def damping_inside(damping: Fraction, activity: Fraction, band: Band) -> Fraction | None:

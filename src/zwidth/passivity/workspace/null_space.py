@@ -101,7 +101,10 @@ class NullSpace(PassivityAnswer):
     def claim(self) -> str:
         """What was found, of whom, and of what."""
         if self.outcome == "active":
-            return f"{' '.join(self._motions())} {self._by_whom()}"
+            return (
+                f"{' '.join(self._motions())} These are hands that hold the links, such as one at the elbow "
+                "and one at the end; of a hand at the end alone nothing is said."
+            )
         if self.within is not None and self.certificate is not None:
             steps = " Encoder steps are not counted." if any(self.question.arm.resolution) else ""
             return f"No motion of the hands takes energy out {self._near(self.within)}.{steps}"
@@ -130,12 +133,6 @@ class NullSpace(PassivityAnswer):
 
     def _taken(self, motion: ArmMotion) -> str:
         return shown(-motion.energy, "J")
-
-    def _by_whom(self) -> str:
-        return (
-            "These are hands that hold the links, such as one at the elbow and one at the end; of a hand at "
-            "the end alone nothing is said."
-        )
 
     @property
     def scope(self) -> Scope:

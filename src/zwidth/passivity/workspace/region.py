@@ -253,7 +253,8 @@ def evidence_for(
     certificate, words, encoder = None, "", "counted" if question.asked else "ideal"
     if account.reached.all() and (account.margins > 0).all():
         certificate, words, encoder = _proof(question, count)
-    joints, read = fine.joints[account.reached], _readings(question, count)
+    joints = fine.joints[account.reached]
+    read = (True, False) if count.limits else (bool(question.asked),)  # behind the encoders or not, in order
     motion = _motion_inside(question, joints, account.margins, read)
     if motion is None and steps is not None:
         motion = _across(steps.motion, question.forces, count.limits)
@@ -272,11 +273,6 @@ def _proof(question: Question, count: Counting) -> tuple[Certificate | None, str
     if certificate is not None or question.asked:
         return certificate, words, "counted"
     return (*arm_certificate(*loop), "ideal")
-
-
-def _readings(question: Question, count: Counting) -> tuple[bool, ...]:
-    """Whether motions are looked for behind the encoders, in order."""
-    return (True, False) if count.limits else (True,) if question.asked else (False,)
 
 
 def _across(motion: ArmMotion | None, asked: Forces, covered: Forces) -> ArmMotion | None:

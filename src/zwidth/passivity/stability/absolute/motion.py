@@ -279,16 +279,11 @@ def describing_guess(plant: Plant, slope: float, gap: float) -> Guess | None:
     share = linear_limit(plant).slope / slope
     if not share < 1:
         return None
-    beta = _angle(share)
+    beta = float(brentq(lambda b: (b - sin(b) * cos(b)) / pi - share, 0.0, pi))
     reach = _reach(plant, slope, beta)
     if gap == 0 or reach / gap <= 0:
         return None
     return Guess(1 / abs(reach), beta / pi)
-
-
-def _angle(share: float) -> float:
-    """β with (β − sin β cos β)/π = share."""
-    return float(brentq(lambda b: (b - sin(b) * cos(b)) / pi - share, 0.0, pi))
 
 
 def _reach(plant: Plant, slope: float, beta: float) -> float:
