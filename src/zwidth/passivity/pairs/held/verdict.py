@@ -26,11 +26,11 @@ from zwidth.passivity.pairs.evidence import PairCertificate
 from zwidth.passivity.pairs.held.evidence import HeldCertificate, HeldViolation, HeldWitness, gaining_wave
 from zwidth.passivity.pairs.held.law import ANY, HeldPair, felt_loop, held_pair
 from zwidth.passivity.pairs.limits import StiffnessAt, grain_of, is_passive, largest_stiffness
-from zwidth.passivity.pairs.verdict import check_pair
+from zwidth.passivity.pairs.verdict import check_pair, has_and_needs
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Hands, Scope
 from zwidth.quantity.exact import ends
-from zwidth.quantity.text import shown, shown_at_least, shown_at_most
+from zwidth.quantity.text import shown, shown_at_most
 
 
 def check_held_pair(pair: Pair, leader: Any = ANY, follower: Any = ANY) -> HeldVerdict:
@@ -237,7 +237,7 @@ class HeldVerdict(PassivityAnswer):
 
     def rows(self) -> Iterator[tuple[str, str]]:
         """The main numbers."""
-        unit = {name: self.pair.leader.unit(name) for name in ("stiffness", "damping", "coulomb_friction")}
+        unit = self.pair.leader.unit("stiffness")
         free = self.question.free
         yield "coupling", self.pair.describe()
         yield f"on the {self.question.held}", "nobody" if self.question.hand.is_nobody else self._hand
@@ -247,17 +247,14 @@ class HeldVerdict(PassivityAnswer):
             ("with anything that damps as much", self.largest_stiffness_of_any_such_hand),
             ("with two hands that do anything", self.largest_stiffness_of_two_hands),
         ):
-            yield name, "none is passive" if value is None else shown_at_most(value, unit["stiffness"])
+            yield name, "none is passive" if value is None else shown_at_most(value, unit)
         device = getattr(self.pair, free)
         for name, key, need in (
             (f"damping of the {free}", "damping", self.required_damping),
             (f"friction of the {free}", "coulomb_friction", self.required_friction),
         ):
             if need:
-                yield (
-                    name,
-                    f"{shown(getattr(device, key), unit[key])}, {shown_at_least(need, unit[key])} needed",
-                )
+                yield name, has_and_needs(device, key, need)
         if self.violation is not None:
             yield "violated", self.violation.describe()
         if self.witness is not None:
