@@ -24,8 +24,8 @@ import numpy as np
 import zwidth as zw
 from zwidth.passivity.linear.criterion import tightest
 from zwidth.passivity.pairs.held import HeldPair
-from zwidth.passivity.pairs.held.criterion import largest_held_stiffness
 from zwidth.passivity.pairs.held.law import felt_loop
+from zwidth.passivity.pairs.held.verdict import largest_held_stiffness
 
 MILLIONTH = Fraction(1, 10**6)
 LONGEST = 6_000

@@ -17,8 +17,7 @@ from functools import partial
 
 import numpy as np
 
-from zwidth.links.held_waves import HELD_WAVES
-from zwidth.links.kernel import End
+from zwidth.links.attack import Hand, try_hands
 from zwidth.links.memory import (
     COULOMB,
     DAMPING,
@@ -32,13 +31,10 @@ from zwidth.links.memory import (
     RESOLUTION,
     STATE_SIZE,
 )
-from zwidth.links.naive_waves import NAIVE_WAVES
-from zwidth.links.position_hold import POSITION_HOLD
-from zwidth.links.time_domain import TIME_DOMAIN
-from zwidth.links.two_hands import Hand, try_hands
-from zwidth.links.two_layer import TWO_LAYER
+from zwidth.links.simulation import End, Wire
+from zwidth.links.springs import POSITION_HOLD, TIME_DOMAIN, TWO_LAYER
 from zwidth.links.wave_port import WAVE_PORT
-from zwidth.links.wire import Wire
+from zwidth.links.waves import HELD_WAVES, NAIVE_WAVES
 from zwidth.native.compiled import Array
 
 SAMPLES = 200

@@ -10,7 +10,7 @@ import pytest
 import zwidth as zw
 from zwidth.model.arms import built_in, least_additions
 from zwidth.model.arms.joints import single_additions
-from zwidth.passivity.workspace.additions import Additions
+from zwidth.passivity.workspace.verdict import Additions
 
 Array = npt.NDArray[np.float64]
 

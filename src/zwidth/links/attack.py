@@ -7,17 +7,16 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import floor
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from zwidth.links.kernel import End
 from zwidth.links.memory import ACTING, COULOMB, DAMPING, LATE, PERIOD, RESOLUTION
-from zwidth.links.packet import Packet
-from zwidth.links.port import Port
+from zwidth.links.port import Packet, Port
 from zwidth.links.schedule import LOST, Schedule
-from zwidth.links.two_hands import Hand, try_hands
-from zwidth.links.wire import wire_of
+from zwidth.links.simulation import End, deliver, law_force, law_send, post, wire_of
+from zwidth.loop.law import measured
+from zwidth.native.compiled import Array, compiled
 from zwidth.passivity.result import Result
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import shown
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from zwidth.native.compiled import Array
+
 
 SPEEDS = (1e-3, 1e-2, 0.1, 1.0, 10.0)
 """Of the hands that are tried [m/s; rad/s]."""
@@ -142,7 +142,7 @@ def most_taken(
             for end, port in enumerate((leader, follower))
         ]
         positions, forces = np.zeros((2, count + 1)), np.zeros((2, count))
-        positions[:, 0] = [-_start(one), -_start(other)]
+        positions[:, 0] = [-one.size / 2, -other.size / 2]  # half a way before an edge
         out = try_hands(ends[0], one, ends[1], other, positions, forces)
         if out < least and np.isfinite(forces).all():
             best, least = _cut(positions, forces, leader, follower), out
@@ -150,11 +150,6 @@ def most_taken(
         return None
     witness = LinkWitness(leader, follower, schedule, best)
     return witness if witness.exact_energy > 0 else None
-
-
-def _start(hand: Hand) -> float:
-    """Half a way before an edge."""
-    return hand.size / 2
 
 
 def _cut(positions: Array, forces: Array, leader: Port, follower: Port) -> Array:
@@ -179,3 +174,85 @@ def _hands(port: Port, round_trip: int, seed: int, samples: int) -> Iterator[tup
                 hand = Hand(size, half, until, most, none)
                 yield from ((hand, still), (hand, hand), (hand, greedy))
         yield Hand(size, samples, samples // 2, most, draws), still
+
+
+# Two hands that try to take energy out: they hold each speed within a period, and no law can ask for more.
+#
+# In a period a hand that goes Δx puts in
+#
+#     b Δx²/T + f_c |Δx| − f Δx
+#
+# beside the kinetic energy, which comes back: no motion between two samples costs it less.  For the force f
+# most comes out at Δx = (|f| − f_c) T/(2b) sgn f, (|f| − f_c)² T/(4b).
+
+
+class Hand(NamedTuple):
+    """What one hand does.
+
+    Until sample `until` it goes `size` [m; rad] in each period, or `draws` times that where there are any,
+    and turns round after every `half` periods.  Then it takes what there is to take, at most `most` in a
+    period, and rests where the force is below friction.
+    """
+
+    size: float
+    half: int
+    until: int
+    most: float
+    draws: Array
+
+
+@compiled
+def displacement(hand: Hand, p: Array, k: int, force: float) -> float:
+    """Where a hand goes in period k."""
+    if k < hand.until:
+        way: float = hand.size * (hand.draws[k] if hand.draws.size > 0 else 1.0)
+        return way if (k // hand.half) % 2 == 0 else -way
+    more = abs(force) - p[COULOMB]
+    if more <= 0.0:
+        return 0.0
+    far = min(more * p[PERIOD] / (2.0 * p[DAMPING]), hand.most) if p[DAMPING] > 0.0 else hand.most
+    return far if force > 0.0 else -far
+
+
+@compiled
+def put_in(p: Array, force: float, moved: float) -> float:
+    """What a hand puts in over a period [J]."""
+    work: float = (p[DAMPING] * abs(moved) / p[PERIOD] + p[COULOMB]) * abs(moved) - force * moved
+    return work
+
+
+@compiled
+def reading(p: Array, x: float) -> float:
+    """Of an encoder whose edges are at whole counts."""
+    return measured(x, p[RESOLUTION], 0.0)
+
+
+@compiled
+def try_hands(near: End, leader: Hand, far: End, follower: Hand, positions: Array, forces: Array) -> float:
+    """The least that both hands have put in, over all samples [J]; below 0 it has come out of nothing.
+
+    Both arrays have a row for each end; positions starts with where each hand starts.
+    """
+    samples = forces.shape[1]
+    total, least = 0.0, 0.0
+    for k in range(samples):
+        total += one_end(near, leader, k, positions[0, :], forces[0, :])
+        total += one_end(far, follower, k, positions[1, :], forces[1, :])
+        post(far.hears, near.state)
+        post(near.hears, far.state)
+        least = min(least, total)
+    return least
+
+
+@compiled
+def one_end(end: End, hand: Hand, k: int, positions: Array, forces: Array) -> float:
+    """A period of one end: hear, push, move, and make a packet; returns what the hand puts in."""
+    deliver(end.hears, k, end.state)
+    p = end.numbers
+    law_force(end.code, p, end.state)
+    f = end.state[ACTING]
+    x = positions[k]
+    after = x + displacement(hand, p, k, f)
+    law_send(end.code, p, end.state, reading(p, after) - reading(p, x))
+    positions[k + 1], forces[k] = after, f
+    return put_in(p, f, after - x)

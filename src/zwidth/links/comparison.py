@@ -13,17 +13,13 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.links.attack import most_taken
-from zwidth.links.feel import felt_stiffness
-from zwidth.links.held_waves import HeldWaves
-from zwidth.links.naive_waves import NaiveWaves
 from zwidth.links.port import Port
-from zwidth.links.position_hold import PositionHold
 from zwidth.links.schedule import Schedule
 from zwidth.links.simulation import check_ends, simulated
-from zwidth.links.time_domain import TimeDomain
-from zwidth.links.two_layer import TwoLayer
+from zwidth.links.springs import PositionHold, TimeDomain, TwoLayer
 from zwidth.links.verdict import check
 from zwidth.links.wave_port import WavePort
+from zwidth.links.waves import HeldWaves, NaiveWaves, felt_stiffness
 from zwidth.loop.traces.scores import static_stiffness
 from zwidth.model.device import Device
 from zwidth.model.operator import PrescribedMotion, RecordedForce
@@ -118,10 +114,7 @@ class LinkComparison(Documented):
         """The scores by port, a unit in every key of a physical quantity."""
         keys = {key: f"{key}_{unit_suffix(about['units'])}" for key, about in self._about().items()}
         ports = {
-            name: {
-                "outcome": row["outcome"],
-                **{keyed: _known(row[key]) for key, keyed in keys.items()},
-            }
+            name: {"outcome": row["outcome"], **{keyed: _known(row[key]) for key, keyed in keys.items()}}
             for name, row in self.rows.items()
         }
         held = {"held_back_s": [float(time) for time in self.held_back]} if self.held_back else {}

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.links.kernel import End, run_link
+from zwidth.links import springs, wave_port, waves
+from zwidth.links.memory import ENERGY, NUMBER, POSITION, WAVE, hear
 from zwidth.links.port import Port
 from zwidth.links.schedule import Schedule
-from zwidth.links.wire import wire_of
+from zwidth.loop.kernel import R_COMMAND, R_READING, first_due
+from zwidth.loop.pair.kernel import Arm, read, through
 from zwidth.loop.pair.setup import Holder, prepare_pair
 from zwidth.loop.pair.trace import build_pair_trace
 from zwidth.loop.plant import FAULT, FORCE, GOAL
 from zwidth.loop.series import WORK
 from zwidth.loop.trace import Trace
 from zwidth.model.pairs import Pair
+from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:
@@ -68,17 +71,9 @@ def simulate(
     """
     import zwidth.loop.traces.accessor  # noqa: F401 - gives every trace its `.zwidth`
 
-    return simulated(
-        leader,
-        follower,
-        schedule,
-        leader_hand,
-        follower_hand,
-        duration,
-        encoder_phase=encoder_phase,
-        points_per_sample=points_per_sample,
-        progress=progress,
-    ).dataset()
+    given: dict[str, Any] = {"encoder_phase": encoder_phase, "points_per_sample": points_per_sample}
+    hands = (leader_hand, follower_hand)
+    return simulated(leader, follower, schedule, *hands, duration, progress=progress, **given).dataset()
 
 
 def simulated(
@@ -151,3 +146,130 @@ def _ends(leader: Port, follower: Port, schedule: Schedule, samples: int) -> tup
         for port, wire in zip((leader, follower), wires[::-1], strict=True)
     )
     return first, second
+
+
+class End(NamedTuple):
+    """One port: its law, what that knows, and the wire on which it hears."""
+
+    code: float
+    numbers: Array
+    state: Array
+    hears: Wire
+
+
+@compiled
+def run_link(
+    start: int, stop: int, points: int, h: float, leader: Arm, near: End, follower: Arm, far: End, work: Array
+) -> None:
+    """Run the samples `start` … `stop` − 1; can be called again."""
+    nothing = work[:0].reshape((2, 0))
+    due, its_due = first_due(start, leader.late, nothing), first_due(start, follower.late, nothing)
+    final = leader.commands.shape[0] - 1
+    for k in range(start, stop):
+        say(leader, near, far.hears, k)
+        say(follower, far, near.hears, k)
+        command(leader, near, k, points)
+        command(follower, far, k, points)
+        due = through(leader, due, k, points, h, k == final, work)
+        its_due = through(follower, its_due, k, points, h, k == final, work)
+
+
+@compiled
+def say(arm: Arm, end: End, wire: Wire, k: int) -> None:
+    """Read the arm, and send what the period that has ended makes of it."""
+    read(arm, k)
+    if k > 0:
+        law_send(end.code, end.numbers, end.state, arm.readings[k] - arm.readings[k - 1])
+        post(wire, end.state)
+
+
+@compiled
+def command(arm: Arm, end: End, k: int, points: int) -> None:
+    """Hear what has arrived, and ask the actuator for the port's force, which is positive along x."""
+    deliver(end.hears, k, end.state)
+    f = -law_force(end.code, end.numbers, end.state)
+    arm.commands[k] = f
+    for column in range(k * points, min((k + 1) * points, arm.record.shape[1])):
+        arm.record[R_READING, column] = arm.readings[k]
+        arm.record[R_COMMAND, column] = f
+
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Ticks = NDArray[np.int64]
+
+
+class Wire(NamedTuple):
+    """`when` and `again` of each packet are as of `Schedule.arrivals`; the rest is filled by and by.
+
+    `first` has for each sample the packet that is heard first, `following` for each packet the next one
+    that is heard at the same sample, duplicates counted on behind the packets; −1 for none.
+    """
+
+    when: Ticks
+    again: Ticks
+    first: Ticks
+    following: Ticks
+    told: Array
+
+
+def wire_of(when: Ticks, again: Ticks, samples: int) -> Wire:
+    """An empty one."""
+    count = when.size
+    return Wire(when, again, np.full(samples + 1, -1), np.full(2 * count, -1), np.zeros((count, 3)))
+
+
+@compiled
+def post(wire: Wire, s: Array) -> None:
+    """Put the packet that the state holds on the way."""
+    number = int(s[NUMBER])
+    count = wire.when.size
+    wire.told[number, 0], wire.told[number, 1], wire.told[number, 2] = s[WAVE], s[ENERGY], s[POSITION]
+    for due, node in ((wire.when[number], number), (wire.again[number], number + count)):
+        if 0 <= due < wire.first.size:
+            wire.following[node] = wire.first[due]
+            wire.first[due] = node
+
+
+@compiled
+def deliver(wire: Wire, k: int, s: Array) -> None:
+    """Let a port hear all that arrives at sample k."""
+    node = wire.first[k]
+    while node >= 0:
+        number = node % wire.when.size
+        hear(s, float(number), wire.told[number, 0], wire.told[number, 1], wire.told[number, 2])
+        node = wire.following[node]
+
+
+@compiled
+def law_force(code: float, p: Array, s: Array) -> float:
+    """The force of any port for the coming period: step functions call each other by name alone."""
+    if code == wave_port.WAVE_PORT:
+        return wave_port.force(p, s)
+    if code == waves.HELD_WAVES:
+        return waves.held_force(p, s)
+    if code == waves.NAIVE_WAVES:
+        return waves.naive_force(p, s)
+    if code == springs.POSITION_HOLD:
+        return springs.position_force(p, s)
+    if code == springs.TIME_DOMAIN:
+        return springs.damped_force(p, s)
+    return springs.tank_force(p, s)
+
+
+@compiled
+def law_send(code: float, p: Array, s: Array, moved: float) -> None:
+    """What any port does after the move."""
+    if code == wave_port.WAVE_PORT:
+        wave_port.send(p, s, moved)
+    elif code == waves.HELD_WAVES:
+        waves.held_send(p, s, moved)
+    elif code == waves.NAIVE_WAVES:
+        waves.naive_send(p, s, moved)
+    elif code == springs.POSITION_HOLD:
+        springs.position_send(p, s, moved)
+    elif code == springs.TIME_DOMAIN:
+        springs.damped_send(p, s, moved)
+    else:
+        springs.tank_send(p, s, moved)

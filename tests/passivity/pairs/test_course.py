@@ -8,8 +8,7 @@ from fractions import Fraction
 import pytest
 
 import zwidth as zw
-from zwidth.passivity.pairs.course import MOST, energy_in_time
-from zwidth.passivity.pairs.evidence import energy_of
+from zwidth.passivity.pairs.evidence import MOST, energy_in_time, energy_of
 
 ARM = zw.Device(damping="0.5", coulomb_friction="0.1", resolution="1e-4", delay=0, rate="1 kHz")
 LATE = ARM.replace(delay="0.4 ms", resolution=0)

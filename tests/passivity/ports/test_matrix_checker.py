@@ -17,7 +17,7 @@ import zwidth as zw
 from zwidth import checker
 from zwidth.checker.port.matrix import _principal_sums
 from zwidth.passivity.ports.circle import product
-from zwidth.passivity.ports.leverrier import leverrier, multiplied
+from zwidth.passivity.ports.port import leverrier, multiplied
 
 
 def proved():

@@ -10,7 +10,7 @@ import pytest
 import scipy.linalg
 
 import zwidth as zw
-from zwidth.passivity.stability.active_hand import ShakingHand
+from zwidth.passivity.stability.shaking_hand import ShakingHand
 
 B, T = 0.15, 1e-3
 

@@ -12,10 +12,16 @@ from scipy.linalg import expm
 import zwidth as zw
 from zwidth.model.operator import Dowel, Finger, PrescribedMotion
 from zwidth.model.operator.hand_impedance import as_hand
-from zwidth.passivity.linear.exact_algebra import is_schur
-from zwidth.passivity.stability.known_hand.characteristic import PRECISIONS, decays, family
-from zwidth.passivity.stability.known_hand.coupled import motion_of, plain_of
-from zwidth.passivity.stability.known_hand.crossing import _roots, last_stable, last_stable_of_each
+from zwidth.passivity.linear.schur import is_schur
+from zwidth.passivity.stability.characteristic import (
+    PRECISIONS,
+    _roots,
+    decays,
+    family,
+    last_stable,
+    last_stable_of_each,
+)
+from zwidth.passivity.stability.known_hand import motion_of, plain_of
 from zwidth.quantity.balls import precision
 
 MASS, PERIOD = Fraction("0.036"), Fraction("0.001")

@@ -14,10 +14,8 @@ import zwidth as zw
 from zwidth import checker
 from zwidth.cli.main import main
 from zwidth.model.operator import Finger
-from zwidth.passivity.stability.known_hand.characteristic import of_law
-from zwidth.passivity.stability.known_hand.coupled import motion_of
-from zwidth.passivity.stability.known_hand.decide import decided
-from zwidth.passivity.stability.known_hand.proof import evidence
+from zwidth.passivity.stability.characteristic import decided, of_law
+from zwidth.passivity.stability.known_hand import evidence, motion_of
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 BOX = zw.stability.HandImpedance(mass=(0, "0.02"), stiffness=(0, 1000), damping=(0, 3))
@@ -204,7 +202,7 @@ def test_what_is_no_loop(loop: dict, words: str) -> None:
 
 def test_what_the_checker_refuses_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
     """A prover that says the contrary is not believed."""
-    module = sys.modules["zwidth.passivity.stability.known_hand.coupled"]
+    module = sys.modules["zwidth.passivity.stability.known_hand"]
     monkeypatch.setattr(module, "evidence", lambda *rest: {**evidence(*rest), "kind": "stability"})
     assert zw.stability.coupled_stability(PADDLE, zw.Wall(100, 1)).outcome == "stable"
     found = zw.stability.coupled_stability(PADDLE, zw.Wall(99000, 1))

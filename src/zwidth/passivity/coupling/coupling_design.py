@@ -93,7 +93,8 @@ class CouplingDesign(Result):
     @property
     def felt_quickly(self) -> float:
         """|Z_c| at half the rate: K_c + 2 B_c/T [N/m; N·m/rad]."""
-        return float(abs(self.stiffness.fraction + 2 * self.damping.fraction / self._period))
+        period = self.device.exact("sample_period")
+        return float(abs(self.stiffness.fraction + 2 * self.damping.fraction / period))
 
     @property
     def margin(self) -> float:
@@ -101,10 +102,6 @@ class CouplingDesign(Result):
         b, need = self.device.exact("damping"), self.condition.required_damping
         assert need is not None, "a design has a need"
         return float((b - Fraction(repr(need))) / b)
-
-    @property
-    def _period(self) -> Fraction:
-        return self.device.exact("sample_period")
 
     def before(self, environment: Environment | Any) -> VirtualCoupling:
         """The coupling with an environment behind it."""

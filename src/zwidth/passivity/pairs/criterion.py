@@ -101,10 +101,7 @@ class PairCriterion:
             for k, row in ((here, mine), (1 - here, its)):
                 _add(own[k], ((abs(i - j), -loss * x * y) for i, x in row.items() for j, y in row.items()))
             sign = 1 if here else -1  # of the power of z that a reading of age n has beside one's own
-            _add(
-                crossed,
-                ((sign * (j - i), -loss * x * y) for i, x in mine.items() for j, y in its.items()),
-            )
+            _add(crossed, ((sign * (j - i), -loss * x * y) for i, x in mine.items() for j, y in its.items()))
         return own[0], own[1], crossed
 
     @cached_property

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
@@ -77,18 +78,7 @@ def _side(side: Side, motion: str) -> dict[str, Any]:
 class PairCertificate(Evidence):
     """A proof that no motion of two hands takes energy out of a pair.
 
-    Attributes
-    ----------
-    pair
-        What it is about.
-    signs
-        Why M_ll, M_ff and det M are nowhere negative.
-    tangents
-        r of the line above the compensation of friction of each arm.
-    any_mean
-        True where that may take any mean of past moves for the speed.
-    losses
-        β and γ of few digits of both drives, for which it is proved; None where it is for their own.
+    `signs` say why M_ll, M_ff and det M are nowhere negative; the rest is as of `PairCriterion`.
     """
 
     pair: Pair
@@ -131,14 +121,9 @@ def _positivity(sign: Positivity, more: int) -> dict[str, Any]:
 
 @dataclass(frozen=True, repr=False)
 class PairViolation(Evidence):
-    """A frequency at which some motion of two hands takes energy out in every round, or a drive that gains.
+    """A frequency, cos ωT, at which some motion of two hands takes energy out in every round.
 
-    Attributes
-    ----------
-    pair
-        What it is about.
-    cosine
-        cos ωT; None where the drive of an arm lets it gain between two samples, by itself.
+    None where the drive of an arm lets it gain between two samples, by itself.
     """
 
     pair: Pair
@@ -152,12 +137,7 @@ class PairViolation(Evidence):
     def to_dict(self) -> dict[str, Any]:
         """The violation as plain data."""
         proof = {} if self.cosine is None else {"proof": {"cosine": exact_text(self.cosine)}}
-        return {
-            "format": VIOLATION,
-            "kind": "pair violation",
-            "loop": pair_document(self.pair),
-            **proof,
-        }
+        return {"format": VIOLATION, "kind": "pair violation", "loop": pair_document(self.pair), **proof}
 
     def describe(self) -> str:
         """What is violated, in words."""
@@ -168,16 +148,9 @@ class PairViolation(Evidence):
 
 @dataclass(frozen=True, repr=False)
 class PairWitness(Evidence):
-    """A motion of both hands, from rest at 0, that takes energy out of the pair.
+    """A motion of both hands, from rest at 0 and repeated alike, that takes energy out of the pair.
 
-    Attributes
-    ----------
-    pair
-        What they hold.
-    leader, follower
-        The motion of each, with the same repeated parts.
-    exact_energy
-        What comes out [J]; of the follower's hand `pair.power_ratio` times as much.
+    `exact_energy` comes out [J]; of the follower's hand `pair.power_ratio` times as much.
     """
 
     pair: Pair
@@ -253,3 +226,50 @@ def motion_document(pair: Pair, leader: Motion, follower: Motion, energy: Fracti
 def energy_of(pair: Pair, leader: Motion, follower: Motion) -> Fraction | None:
     """What comes out by the checker's reckoning [J]; None if the motion is not admitted."""
     return verify(motion_document(pair, leader, follower, Fraction(0))).energy
+
+
+MOST, LEAST = 48, 6
+"""Beginnings of each part."""
+
+_EFFORT = 300_000
+"""Samples listed in all the beginnings together."""
+
+
+def energy_in_time(witness: PairWitness) -> tuple[list[Fraction], list[Fraction]]:
+    """Times [s] from 0 to the end, and what has come out by then [J], by the checker's reckoning."""
+    pair, step = witness.pair, witness.pair.sample_period / witness.pair.own_readings
+    most = max(LEAST, min(MOST, _EFFORT // len(witness.leader.positions)))
+    times, energies = [Fraction(0)], [Fraction(0)]
+    for last, rounds in _ends(witness.leader, most):
+        leader, follower = (_until(motion, last, rounds) for motion in (witness.leader, witness.follower))
+        energy = energy_of(pair, leader, follower)
+        if energy is not None:
+            times.append(leader.samples * step)
+            energies.append(energy)
+    return times, energies
+
+
+def _ends(motion: Motion, most: int) -> Iterator[tuple[int, int]]:
+    """Samples of the list at which a beginning ends, and how often the part that ends there was done."""
+    size, before = len(motion.positions) - 1, 0
+    for part in (*(p for p in motion.repeats if p.times > 1), Repeat(size, size, 0)):
+        yield from ((k, 1) for k in _some(before + 1, part.first, most))
+        yield from ((part.last, n) for n in _some(1, part.times, most))
+        before = part.last
+
+
+def _some(first: int, last: int, most: int) -> list[int]:
+    """Whole numbers from the first to the last, at about equal distances."""
+    count = min(most, last - first + 1)
+    return [] if count < 1 else sorted({round(v) for v in np.linspace(first, last, count).tolist()} | {last})
+
+
+def _until(motion: Motion, last: int, rounds: int) -> Motion:
+    """Its beginning; of the part that ends there so many rounds."""
+    parts = [part for part in motion.repeats if part.last <= last]
+    return replace(
+        motion,
+        positions=motion.positions[: last + 1],
+        switch_positions=motion.switch_positions[:last],
+        repeats=tuple(part._replace(times=rounds) if part.last == last else part for part in parts),
+    )

@@ -59,18 +59,22 @@ def _paths(criterion: PairCriterion) -> Iterator[tuple[Path, tuple[Repeat, ...]]
         return
     if any(p(1) < 0 for p in criterion.polynomials):
         for size in _SIZES:
-            yield _slow(criterion, size), (Repeat(often, 2 * often, 1), Repeat(3 * often, 4 * often, 1))
+            yield _slow(criterion, size), out_and_back(often)[1]
     for turn in _turns(criterion):
         samples = often * turn.denominator
         for size in _SIZES if samples <= LONGEST_ROUND else ():
             yield _round(criterion, turn, size), (Repeat(0, samples, 1),)
 
 
-def _slow(criterion: PairCriterion, bits: int) -> Path:
-    """Two samples out, two back: the second of each is done many times."""
-    often = criterion.pair.own_readings
-    speeds = [round(float(v) * 2**bits) for v in np.linalg.eigh(criterion.at(0.0).real)[1][:, 0]]
+def out_and_back(often: int) -> tuple[list[int], tuple[Repeat, Repeat]]:
+    """Two samples out, two back, a step from reading to reading; the second of each is done many times."""
     way = [*range(2 * often), *range(2 * often, -1, -1)]
+    return way, (Repeat(often, 2 * often, 1), Repeat(3 * often, 4 * often, 1))
+
+
+def _slow(criterion: PairCriterion, bits: int) -> Path:
+    speeds = [round(float(v) * 2**bits) for v in np.linalg.eigh(criterion.at(0.0).real)[1][:, 0]]
+    way, _ = out_and_back(criterion.pair.own_readings)
     leader, follower = ([speed * k for k in way] for speed in speeds)
     return leader, follower
 
@@ -86,9 +90,8 @@ def _inside_samples(criterion: PairCriterion) -> Iterator[tuple[Path, tuple[Repe
         step = often // arm.often
         fro = [step - abs(k % (2 * step) - step) for k in range(length + 1)]
         yield (fro, rest) if here == 0 else (rest, fro), (Repeat(0, length, 1),)
-        way = [*range(2 * often), *range(2 * often, -1, -1)]
+        way, parts = out_and_back(often)
         still = [0] * len(way)
-        parts = Repeat(often, 2 * often, 1), Repeat(3 * often, 4 * often, 1)
         yield (way, still) if here == 0 else (still, way), parts
 
 
@@ -336,11 +339,9 @@ def _over_an_edge(pair: Pair, here: int, missing: Fraction) -> PairWitness | Non
     arms = PairCriterion(pair).arms
     arm, other = arms[here], arms[1 - here]
     best = max(
-        (
-            (_won(arm, other, hold, phase), -hold, phase)
-            for hold in _holds(arm)
-            for phase in range(0, 2 * hold, arm.often)
-        ),
+        (_won(arm, other, hold, phase), -hold, phase)
+        for hold in _holds(arm)
+        for phase in range(0, 2 * hold, arm.often)
     )
     if best[0] <= arm.side.coulomb_friction:
         return None

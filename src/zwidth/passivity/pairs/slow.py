@@ -19,8 +19,8 @@ from zwidth.model.pairs import Pair
 from zwidth.passivity.pairs.arm import Arm
 from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.passivity.pairs.evidence import PairWitness, energy_of
-from zwidth.passivity.pairs.motions import often_enough, repeated, stored_at_start, with_turns
-from zwidth.passivity.witness.motion import Motion, Repeat
+from zwidth.passivity.pairs.motions import often_enough, out_and_back, repeated, stored_at_start, with_turns
+from zwidth.passivity.witness.motion import Motion
 
 Floats = NDArray[np.float64]
 
@@ -41,8 +41,7 @@ def refute_compensation(pair: Pair) -> PairWitness | None:
         _whole_counts(Fraction(f"{v:.{_DIGITS}g}") * period, arm.side.resolution) / often
         for v, arm in zip(speeds, criterion.arms, strict=True)
     ]
-    way = [*range(2 * often), *range(2 * often, -1, -1)]
-    parts = Repeat(often, 2 * often, 1), Repeat(3 * often, 4 * often, 1)
+    way, parts = out_and_back(often)
     one = [Motion(tuple(step * k for k in way), (), parts) for step in steps]
     one = with_turns(pair, one)
     stored = stored_at_start(pair)

@@ -11,17 +11,25 @@ from typing import Any, ClassVar
 from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
 from zwidth.passivity.advice import Advice
-from zwidth.passivity.pairs.advice import StiffnessAt, advise, stiffness_elsewhere
-from zwidth.passivity.pairs.assumed import assumed_of_arms, assumed_of_timing, friction_goes_on
-from zwidth.passivity.pairs.compensation import compensation_numbers, compensation_rows
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.pairs.assumed import (
+    assumed_of_arms,
+    assumed_of_timing,
+    compensation_numbers,
+    compensation_rows,
+    friction_goes_on,
+)
 from zwidth.passivity.pairs.criterion import PairCriterion, spending
 from zwidth.passivity.pairs.evidence import PairCertificate, PairViolation, PairWitness
 from zwidth.passivity.pairs.limits import (
+    StiffnessAt,
+    advise,
     is_passive,
     largest_compensation,
     largest_stiffness,
     required_damping,
     required_friction,
+    stiffness_elsewhere,
     with_share,
 )
 from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
@@ -98,6 +106,13 @@ def _certificate(criterion: PairCriterion) -> PairCertificate | None:
         if found.verify():
             return found
     return None
+
+
+def has_and_needs(device: Device, key: str, need: float | None) -> str:
+    """What an arm has of a number, and what it needs of it."""
+    unit = device.unit(key)
+    enough = "none is enough" if need is None else f"{shown_at_least(need, unit)} needed"
+    return f"{shown(getattr(device, key), unit)}, {enough}"
 
 
 @dataclass(frozen=True, repr=False)
@@ -235,7 +250,6 @@ class PairVerdict(PassivityAnswer):
     def rows(self) -> Iterator[tuple[str, str]]:
         """The main numbers."""
         pair = self.pair
-        unit = {name: pair.leader.unit(name) for name in ("stiffness", "damping", "coulomb_friction")}
         yield "coupling", pair.describe()
         yield "limit", self.limit
         largest, proved = self.largest_stiffness, "proved" if any(pair.compensations) else "passive"
@@ -243,23 +257,14 @@ class PairVerdict(PassivityAnswer):
             "largest stiffness",
             f"none is {proved}"
             if largest is None
-            else f"{shown_at_most(largest, unit['stiffness'])} with all else as it is",
+            else f"{shown_at_most(largest, pair.leader.unit('stiffness'))} with all else as it is",
         )
         needs = zip(("leader", "follower"), self.required_damping, self.required_friction, strict=True)
         for name, damping, friction in needs:
             device: Device = getattr(pair, name)
-            enough = (
-                "none is enough" if damping is None else f"{shown_at_least(damping, unit['damping'])} needed"
-            )
-            yield f"damping of the {name}", f"{shown(device.damping, unit['damping'])}, {enough}"
+            yield f"damping of the {name}", has_and_needs(device, "damping", damping)
             if friction != 0:
-                enough = (
-                    "none is enough"
-                    if friction is None
-                    else f"{shown_at_least(friction, unit['coulomb_friction'])} needed"
-                )
-                has = shown(device.coulomb_friction, unit["coulomb_friction"])
-                yield f"friction of the {name}", f"{has}, {enough}"
+                yield f"friction of the {name}", has_and_needs(device, "coulomb_friction", friction)
         yield from compensation_rows(self.criterion, self.largest_compensation)
         evidence = self.witness if self.outcome == "active" else None
         if self.violation is not None:

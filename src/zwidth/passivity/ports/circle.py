@@ -1,4 +1,4 @@
-"""Continuous and discrete time on one circle, and the numbers a(c) + j sin θ · b(c) on it.
+"""Continuous and discrete time on one circle: numbers on it, and where roots and signs lie.
 
     s = (1 − ζ)/(1 + ζ)   continuous: Re s > 0 is |ζ| < 1, ω = tan(θ/2)
     z = 1/ζ               discrete:   |z| > 1 is |ζ| < 1, ωT = θ
@@ -22,6 +22,9 @@ from typing import Literal
 from flint import fmpq, fmpq_poly, fmpz_poly
 
 from zwidth.passivity.linear.exact_algebra import from_cosines
+from zwidth.passivity.linear.cosines import from_cosines
+from zwidth.passivity.linear.positivity import prove_nonnegative
+from zwidth.passivity.linear.schur import is_schur
 
 Time = Literal["continuous", "discrete"]
 
@@ -93,3 +96,63 @@ def product(a: Sequence[int], b: Sequence[int]) -> OnCircle:
         if x != y:  # ζ^l = cos lθ − j sin lθ, and sin (l + 1)θ = sin θ U_l(c)
             imaginary += fmpq_poly(fmpz_poly.chebyshev_u(lag)) * fmpq(y - x)
     return OnCircle(real, imaginary)
+
+
+def decays(ascending: Sequence[int], time: Time) -> bool:
+    """True when every root lies in the open left half plane (inside the circle)."""
+    return all_outside(in_zeta(ascending, len(ascending) - 1, time))
+
+
+def all_outside(in_zeta: Sequence[int]) -> bool:
+    """Every root ζ has |ζ| > 1: from rigorous balls about them, or where these touch the circle exactly."""
+    if in_zeta[0] == 0:
+        return False
+    p = fmpz_poly(list(in_zeta))
+    sizes = [abs(root) for root, _ in p.complex_roots()] if p.degree() > 0 else []
+    if any(size < 1 for size in sizes):
+        return False
+    return all(size > 1 for size in sizes) or is_schur(in_zeta[::-1])
+
+
+def places_of(p: fmpz_poly) -> list[complex]:
+    """The roots, to rounding: for a message, or for where to look."""
+    return [complex(float(r.real), float(r.imag)) for r, _ in p.complex_roots()] if p.degree() > 0 else []
+
+
+def growing_place(places: Sequence[complex], time: Time) -> str | None:
+    """The one of these roots that grows fastest, in words; None if none grows."""
+    continuous = time == "continuous"
+    excess = [(r.real if continuous else abs(r) - 1, r) for r in places]
+    growing = [(e, r) for e, r in excess if e > 1e-9 * abs(r)]
+    if not growing:
+        return None
+    return f"{'s' if continuous else 'z'} = {_spoken(max(growing, key=lambda pair: pair[0])[1])}"
+
+
+def _spoken(pole: complex) -> str:
+    if abs(pole.imag) <= 1e-12 * abs(pole):
+        return f"{pole.real:.6g}"
+    return f"{pole.real:.6g} ± {abs(pole.imag):.6g}j"
+
+
+_TIGHT = Fraction(1, 1 << 80)
+_SMALLEST = Fraction(1, 10**30)
+
+
+def near(value: Fraction) -> Fraction:
+    """How far from a level another one counts as equal while the least is looked for."""
+    return _TIGHT * max(abs(value), _SMALLEST)
+
+
+def vanishes(w: fmpq_poly) -> bool:
+    """True when w has a zero on [−1, 1]: exactly, by the sign of its squarefree part."""
+    q = w.numer()
+    if q(1) == 0 or q(-1) == 0:
+        return True
+    simple = q // q.gcd(q.derivative()) if q.degree() > 0 else q
+    return all(isinstance(prove_nonnegative(side), Fraction) for side in (simple, -simple))
+
+
+def has_positive_sign(w: fmpq_poly) -> bool:
+    """True when w, which has one sign on [−1, 1], is positive where it is not zero."""
+    return bool(next(v for v in (w(fmpq(k, 997)) for k in range(w.degree() + 2)) if v != 0) > 0)

@@ -13,21 +13,24 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import inf, nextafter
+from math import inf
 from typing import Any, Literal
 
 from zwidth.errors import InputError
-from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.ports.bands import Band, bands
-from zwidth.passivity.ports.documents import motion_document, proof_document, system_document
-from zwidth.passivity.ports.extracting_input import ExtractingInput
+from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.ports.circle import places_of
+from zwidth.passivity.ports.evidence import (
+    ExtractingInput,
+    find_motion,
+    index_document,
+    motion_document,
+    proof_document,
+)
 from zwidth.passivity.ports.largest import Largest, NoLevel
 from zwidth.passivity.ports.motion import absorbed
-from zwidth.passivity.ports.poles import places_of
-from zwidth.passivity.ports.port import Port
-from zwidth.passivity.ports.positive_real import prove_level
-from zwidth.passivity.ports.search import find_motion
-from zwidth.passivity.scope import Outcome
+from zwidth.passivity.ports.port import Port, typed_at_most
+from zwidth.passivity.ports.positive_real import Band, bands, prove_level
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.showing import Part, Shown
 
@@ -59,10 +62,7 @@ class PassivityIndex(Shown):
             return inf
         if isinstance(self.found, NoLevel):
             return -inf
-        value = float(self.found.low)
-        while Fraction(repr(value)) > self.found.low:
-            value = nextafter(value, -inf)
-        return value
+        return typed_at_most(self.found.low)
 
     @property
     def exact(self) -> Fraction | None:
@@ -181,10 +181,8 @@ class PassivityIndex(Shown):
         yield f"{self.name} index {self.describe()}"
 
     def _document(self, evidence: dict[str, Any], level: Fraction) -> dict[str, Any]:
-        """`evidence`, a kind with a proof or a motion, as a document of its own."""
-        system = system_document(self.port if self.name == "input" else self.port.inverse())
-        claim = {"index": self.name, "level": str(level), "system": system}
-        return {"format": FORMAT, "kind": evidence["kind"], **claim, **evidence}
+        port = self.port if self.name == "input" else self.port.inverse()
+        return index_document(self.name, port, level, evidence)
 
 
 def evidenced(index: PassivityIndex) -> Outcome:

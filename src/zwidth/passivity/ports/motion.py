@@ -24,11 +24,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from math import comb, cos, pi, sin
-from typing import Literal
+from typing import Literal, NamedTuple
 
-from flint import fmpq, fmpq_poly, fmpz
+from flint import fmpq, fmpq_mat, fmpq_poly, fmpz
 
-from zwidth.passivity.ports.gaussian import Gaussian, absorbed_at, answer, to_float
 from zwidth.passivity.ports.port import Polynomials, Port
 from zwidth.quantity.balls import as_fmpq, as_fraction
 
@@ -38,16 +37,9 @@ Signals = list[fmpq_poly]
 
 @dataclass(frozen=True)
 class Motion:
-    """φ, see the module.
+    """φ, see the module; for each axis α_i, β_i, or a_i0, a_i1 …, or φ_i(0), φ_i(1) …
 
-    Parameters
-    ----------
-    kind
-        "burst", "polynomial" or "sequence".
-    numbers
-        burst: Ω [rad/s], m, k.  polynomial: τ [s], r.  sequence: none.
-    axes
-        For each axis: burst α_i, β_i; polynomial a_i0, a_i1 …; sequence φ_i(0), φ_i(1) …
+    `numbers` of a burst are Ω [rad/s], m, k; of a polynomial τ [s], r; of a sequence none.
     """
 
     kind: Literal["burst", "polynomial", "sequence"]
@@ -182,3 +174,77 @@ def _lines(power: int) -> Iterator[tuple[int, Fraction]]:
     """(j, b_j) of (1 − cos x)ᵏ = Σ b_j cos jx."""
     for j in range(-power, power + 1):
         yield j, (-1) ** (j % 2) * Fraction(comb(2 * power, power + j), 2**power)
+
+
+class Gaussian(NamedTuple):
+    """real + j imaginary, rationals."""
+
+    real: fmpq
+    imaginary: fmpq
+
+
+Vector = Sequence[Gaussian]
+ZERO = Gaussian(fmpq(0), fmpq(0))
+
+
+def place(port: Port, tangent: Fraction) -> Gaussian:
+    """s = jω, ω = tangent; or z = e^{jθ}, tan θ/2 = tangent: rational on the unit circle."""
+    t = as_fmpq(tangent)
+    if port.time == "continuous":
+        return Gaussian(fmpq(0), t)
+    return Gaussian((1 - t * t) / (1 + t * t), 2 * t / (1 + t * t))
+
+
+def answer(side: Polynomials, at: Gaussian, latent: Vector) -> list[Gaussian]:
+    """D φ or N φ of φ = latent · eˢᵗ."""
+    return [_dot([value(p, at) for p in row], latent) for row in side]
+
+
+def value(ascending: Sequence[int], at: Gaussian) -> Gaussian:
+    """A polynomial at a point."""
+    total = ZERO
+    for c in reversed(ascending):
+        total = _times(total, at)
+        total = Gaussian(total.real + c, total.imaginary)
+    return total
+
+
+def absorbed_at(port: Port, level: Fraction, at: Gaussian, latent: Vector) -> fmpq:
+    """φᴴ Π_σ φ: what a line of the latent φ absorbs above the level."""
+    u, y = (answer(side, at, latent) for side in (port.inputs, port.outputs))
+    sigma, total = as_fmpq(level), fmpq(0)
+    for a, b in zip(u, y, strict=True):
+        total += a.real * b.real + a.imaginary * b.imaginary - sigma * (a.real**2 + a.imaginary**2)
+    return total
+
+
+def form_at(port: Port, level: Fraction, at: Gaussian) -> tuple[fmpq_mat, fmpq_mat]:
+    """Π_σ at a point, its real and its imaginary part."""
+    (u, v), (y, z) = (_parts(side, at) for side in (port.inputs, port.outputs))
+    y, z = y - u * as_fmpq(level), z - v * as_fmpq(level)
+    real, imaginary = u.transpose() * y + v.transpose() * z, u.transpose() * z - v.transpose() * y
+    return (real + real.transpose()) * fmpq(1, 2), (imaginary - imaginary.transpose()) * fmpq(1, 2)
+
+
+def _parts(side: Polynomials, at: Gaussian) -> tuple[fmpq_mat, fmpq_mat]:
+    """Of D or N at a point."""
+    rows = [[value(p, at) for p in row] for row in side]
+    real, imaginary = (fmpq_mat([[x[part] for x in row] for row in rows]) for part in (0, 1))
+    return real, imaginary
+
+
+def to_float(value: fmpq) -> float:
+    """The nearest double."""
+    return float(as_fraction(value))
+
+
+def _dot(row: Vector, column: Vector) -> Gaussian:
+    total = ZERO
+    for a, b in zip(row, column, strict=True):
+        product = _times(a, b)
+        total = Gaussian(total.real + product.real, total.imaginary + product.imaginary)
+    return total
+
+
+def _times(a: Gaussian, b: Gaussian) -> Gaussian:
+    return Gaussian(a.real * b.real - a.imaginary * b.imaginary, a.real * b.imaginary + a.imaginary * b.real)

@@ -13,19 +13,19 @@ Of one axis that is Re(N D̄) − σ |D|², one polynomial in c.  Everything is 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
-from math import cos, inf, nan, pi
-from typing import Any
+from functools import cached_property, reduce
+from math import cos, inf, nan, nextafter, pi
+from operator import add, mul
+from typing import Any, NamedTuple
 
 import numpy as np
-from flint import fmpq, fmpq_poly
+from flint import fmpq, fmpq_poly, fmpz_poly
 
 from zwidth.passivity.linear.exact_algebra import real_product
 from zwidth.passivity.ports.circle import ONE, OnCircle, Time, frequency_of, in_zeta, product
-from zwidth.passivity.ports.leverrier import leverrier, multiplied
 from zwidth.quantity.balls import as_fmpq, as_fraction
 
 Polynomials = tuple[tuple[tuple[int, ...], ...], ...]
@@ -100,10 +100,7 @@ class Port:
 
         def pairing(a: Any, b: Any, i: int, j: int) -> OnCircle:
             """(Aᴴ B)_ij."""
-            total = product(b[0][j], a[0][i])
-            for k in size[1:]:
-                total = total + product(b[k][j], a[k][i])
-            return total
+            return reduce(add, (product(b[k][j], a[k][i]) for k in size))
 
         crossed = [[pairing(d, n, i, j) for j in size] for i in size]
         power = [[(crossed[i][j] + crossed[j][i].conjugate()) / 2 for j in size] for i in size]
@@ -141,16 +138,17 @@ class Port:
 
     def resolvent(self, gain: fmpq) -> tuple[fmpq_poly, list[list[fmpq_poly]]] | None:
         """(π, R) in lowest terms with D (N + gain·D)⁻¹ = R/π; None where nothing is inverse."""
-        n, d = (_as_polynomials(side) for side in (self.outputs, self.inputs))
+        n, d = (as_polynomials(side) for side in (self.outputs, self.inputs))
         total = [[x + gain * y for x, y in zip(*rows, strict=True)] for rows in zip(n, d, strict=True)]
-        found = leverrier(total, fmpq_poly([1]))
-        return in_lowest_terms(multiplied(d, found.adjugate), found.minors[-1])
+        return _quotient(d, total)
+
+    def fraction(self) -> tuple[fmpq_poly, list[list[fmpq_poly]]] | None:
+        """(π, R) in lowest terms with N D⁻¹ = R/π; None where D is not invertible."""
+        return _quotient(as_polynomials(self.outputs), as_polynomials(self.inputs))
 
     def poles(self) -> fmpq_poly | None:
         """The least common denominator of N D⁻¹; None where D is not invertible."""
-        n, d = (_as_polynomials(side) for side in (self.outputs, self.inputs))
-        found = leverrier(d, fmpq_poly([1]))
-        fraction = in_lowest_terms(multiplied(n, found.adjugate), found.minors[-1])
+        fraction = self.fraction()
         return None if fraction is None else fraction[0]
 
     def eigenvalues(self, frequencies: Sequence[float]) -> list[list[float]]:
@@ -195,23 +193,89 @@ class Port:
         return (1 - square) / (1 + square)
 
 
+def typed_at_most(value: Fraction) -> float:
+    """The largest double that is typed for a number of at most this value."""
+    double = float(value)
+    while Fraction(repr(double)) > value:
+        double = nextafter(double, -inf)
+    return double
+
+
+def common_factor(polynomials: Iterable[fmpq_poly]) -> fmpq_poly:
+    """The greatest, with whole coefficients."""
+    return fmpq_poly(reduce(fmpz_poly.gcd, (p.numer() for p in polynomials)))
+
+
 def in_lowest_terms(
     numerators: list[list[fmpq_poly]], denominator: fmpq_poly
 ) -> tuple[fmpq_poly, list[list[fmpq_poly]]] | None:
     """(π, R) with R/π the same matrix and no factor common to π and all of R; None over 0."""
     if denominator.degree() < 0:
         return None
-    common = denominator.numer()
-    for row in numerators:
-        for entry in row:
-            common = common.gcd(entry.numer())
-    shared = fmpq_poly(common)
+    shared = common_factor([denominator, *(entry for row in numerators for entry in row)])
     return denominator // shared, [[entry // shared for entry in row] for row in numerators]
 
 
-def _as_polynomials(side: Polynomials) -> list[list[fmpq_poly]]:
+def _quotient(
+    top: list[list[fmpq_poly]], bottom: list[list[fmpq_poly]]
+) -> tuple[fmpq_poly, list[list[fmpq_poly]]] | None:
+    """top·bottom⁻¹, as of `in_lowest_terms`."""
+    found = leverrier(bottom, fmpq_poly([1]))
+    return in_lowest_terms(multiplied(top, found.adjugate), found.minors[-1])
+
+
+def as_polynomials(side: Polynomials) -> list[list[fmpq_poly]]:
+    """N or D in flint's numbers."""
     return [[fmpq_poly(list(p)) for p in row] for row in side]
 
 
 def _at(side: Polynomials, point: complex) -> Any:
     return np.array([[np.polyval([float(c) for c in p[::-1]], point) for p in row] for row in side])
+
+
+# Determinant, principal minors and adjugate of a square matrix of polynomials (Leverrier & Faddeev).
+#
+#     det(λ + A) = Σ λ^{m−k} e_k,   M_1 = 1,  e_k = ± tr(A M_k)/k,  M_{k+1} = A M_k ∓ e_k
+#
+# needs sums, products and division by whole numbers only, so the entries may be of any ring
+# that has them.  e_k is the sum of the principal minors of size k; of a Hermitian A it is the
+# k-th elementary symmetric function of the eigenvalues.
+
+
+Matrix = Sequence[Sequence[Any]]
+
+
+class Leverrier(NamedTuple):
+    """e_1 … e_m of a matrix, the last its determinant, and its adjugate."""
+
+    minors: list[Any]
+    adjugate: list[list[Any]]
+
+
+def leverrier(matrix: Matrix, one: Any) -> Leverrier:
+    """The minors and the adjugate; `one` is the ring's 1."""
+    size, zero = len(matrix), one - one
+    step = [[one if i == j else zero for j in range(size)] for i in range(size)]
+    minors: list[Any] = []
+    for k in range(1, size + 1):
+        sign = 1 if k % 2 else -1
+        if k == size:
+            trace = reduce(add, map(_dotted, matrix, zip(*step, strict=True))) if k > 1 else matrix[0][0]
+            minors.append(trace * sign / k)
+            break
+        product = multiplied(matrix, step) if k > 1 else matrix
+        minors.append(reduce(add, (row[i] for i, row in enumerate(product))) * sign / k)
+        less = minors[-1] * sign
+        step = [[x - less if i == j else x for j, x in enumerate(row)] for i, row in enumerate(product)]
+    last = 1 if size % 2 else -1
+    return Leverrier(minors, [[entry * last for entry in row] for row in step])
+
+
+def multiplied(a: Matrix, b: Matrix) -> list[list[Any]]:
+    """A B."""
+    columns = list(zip(*b, strict=True))
+    return [[_dotted(row, column) for column in columns] for row in a]
+
+
+def _dotted(row: Sequence[Any], column: Sequence[Any]) -> Any:
+    return reduce(add, map(mul, row, column))

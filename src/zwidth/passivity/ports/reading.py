@@ -14,9 +14,8 @@ from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.matrix_system import MatrixSystem, hidden_modes, read_matrix_system, size_of
 from zwidth.model.environment.system import LinearSystem, Polynomial, is_system, read_system, time_of
 from zwidth.passivity.linear.loop import LARGEST_DEGREE
-from zwidth.passivity.ports.circle import Time
-from zwidth.passivity.ports.poles import decays
-from zwidth.passivity.ports.port import Port
+from zwidth.passivity.ports.circle import Time, decays
+from zwidth.passivity.ports.port import Port, common_factor
 
 MOST_AXES = 6
 LARGEST_SIZE = 120
@@ -94,7 +93,7 @@ def _of_several_axes(system: Any, period: Fraction | None) -> Port:
     common = fmpq_poly([1])
     for row in entries:
         for _, d in row:
-            common = common * (d // fmpq_poly(common.numer().gcd(d.numer())))
+            common = common * (d // common_factor((common, d)))
     numerators = [[n * (common // d) for n, d in row] for row in entries]
     decay = _hidden_modes_decay(read, common, time)
     port = from_polynomials(numerators, common, time, _period(read, period), decay)
@@ -141,7 +140,7 @@ def _fraction(numerator: Polynomial, denominator: Polynomial, time: Time) -> tup
         raise InputError("the denominator of an entry of the system is zero")
     if time == "discrete" and n.degree() > d.degree():
         raise InputError(_NOT_CAUSAL)
-    common = fmpq_poly(n.numer().gcd(d.numer()))
+    common = common_factor((n, d))
     return n // common, d // common
 
 
@@ -156,7 +155,7 @@ def _hidden_modes_decay(read: MatrixSystem, common: fmpq_poly, time: Time) -> bo
     for row in read.entries:
         for numerator, denominator in row:
             n, d = _polynomial(numerator), _polynomial(denominator)
-            if n.degree() >= 0 and not _decays(fmpq_poly(n.numer().gcd(d.numer())), time):
+            if n.degree() >= 0 and not _decays(common_factor((n, d)), time):
                 return False
     return True
 

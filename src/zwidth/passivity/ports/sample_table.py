@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from flint import fmpq
+from flint import fmpq, fmpq_mat
 
 from zwidth.errors import InputError
 from zwidth.model.environment.system import number_of
@@ -28,9 +28,6 @@ CLEAR = 1e-9
 """Relative distance from a bound that the rounding of a singular value or an eigenvalue cannot reach."""
 
 _MOST_SHOWN = 8
-
-Pair = tuple[list[list[fmpq]], list[list[fmpq]]]
-"""Real and imaginary part of a matrix."""
 
 
 @dataclass(frozen=True)
@@ -235,18 +232,22 @@ def read_errors(error: Any, samples: int) -> list[Fraction]:
     return errors
 
 
-def exactly(sample: Any, key: str) -> Pair:
-    """The decimals of a matrix."""
-    x, y = ([[as_fmpq(number_of(v, key)) for v in row] for row in p] for p in (sample.real, sample.imag))
+def exactly(sample: Any, key: str) -> tuple[fmpq_mat, fmpq_mat]:
+    """The decimals of a matrix, real and imaginary part."""
+    parts = (sample.real, sample.imag)
+    x, y = (fmpq_mat([[as_fmpq(number_of(v, key)) for v in row] for row in part]) for part in parts)
     return x, y
 
 
-def has_negative_eigenvalue(hermitian: Pair) -> bool:
-    """Decided exactly, of the real symmetric matrix (Re −Im; Im Re)."""
-    real, imaginary = hermitian
-    upper = [[*r, *(-v for v in i)] for r, i in zip(real, imaginary, strict=True)]
-    lower = [[*i, *r] for r, i in zip(real, imaginary, strict=True)]
-    return negative_direction(upper + lower) is not None
+def has_negative_eigenvalue(real: fmpq_mat, imaginary: fmpq_mat) -> bool:
+    """Of a Hermitian matrix, decided exactly, of the real symmetric one (Re −Im; Im Re)."""
+    rows = list(zip(real.tolist(), imaginary.tolist(), strict=True))
+    upper = [[*r, *(-x for x in i)] for r, i in rows]
+    return negative_direction(upper + [[*i, *r] for r, i in rows]) is not None
+
+
+def _on_diagonal(value: Fraction, size: int) -> fmpq_mat:
+    return fmpq_mat([[as_fmpq(value) * int(i == j) for j in range(size)] for i in range(size)])
 
 
 def _runs(flags: Sequence[bool]) -> Iterator[tuple[int, int]]:
@@ -258,3 +259,171 @@ def _runs(flags: Sequence[bool]) -> Iterator[tuple[int, int]]:
         elif not flag and first is not None:
             yield first, k - 1
             first = None
+
+
+#     power in at one frequency = ½ uᴴ ½(G + Gᴴ) u,    λ_min(½(G + Gᴴ)) ≥ 0 at every sample f_k
+#
+# λ_min moves by no more than G is wrong (Weyl): a sample with λ_min < −e, wrong by e at most, is of no
+# passive system.  Of one axis λ_min is Re G.
+
+
+@dataclass(frozen=True, repr=False)
+class ResponseTable(SampleTable):
+    """What the samples of a table show; `values` are λ_min(½(G + Gᴴ)), of one axis Re G."""
+
+    FORMAT = "zwidth response table 1"
+    HEAD: ClassVar[str] = "least Re G"
+    NAMES: ClassVar[tuple[str, str]] = ("Re G", "least eigenvalue of ½(G + Gᴴ)")
+    UNIT: ClassVar[str] = "unit of G"
+    WORST: ClassVar[str] = "least_real_part"
+    FOR_A_PROOF: ClassVar[str] = "For a proof fit a rational G(s) and ask passivity_indices of the fit."
+    BOUND: ClassVar[float] = 0.0
+    BEYOND: ClassVar[int] = -1
+
+    @property
+    def least(self) -> tuple[float, float]:
+        """(λ_min, f [Hz]) of the sample where it is least."""
+        return self.worst
+
+    def told_broken(self) -> str:
+        """With the least real part."""
+        return f"a sinusoid takes energy out; {self._least()}."
+
+    def told_kept(self) -> str:
+        """With the least real part."""
+        return f"is it shown that a sinusoid takes energy out; {self._least()}."
+
+    def _least(self) -> str:
+        value, at = self.least
+        return f"the least real part is {value:.9g}, at {at:.6g} Hz".replace("-", "−")
+
+
+def response_table(frequencies: Any, values: Any, error: Any = 0) -> ResponseTable:
+    """Which samples of a measured frequency response no passive system has.
+
+    Parameters
+    ----------
+    frequencies
+        f_k [Hz], ascending.
+    values
+        G(f_k), complex, of power: velocity → force or the reverse.  One number each, or shape (samples, axes,
+        axes).
+    error
+        By how much a sample may be wrong at most, ≥ 0, in the unit of G: of several axes the largest singular
+        value of what it differs by.  One number, or one for each sample.
+
+    Raises
+    ------
+    InputError
+        If they are no such table, or one that is empty or not finite; if an error is negative.
+    """
+    f, g = read_samples(frequencies, values, "values")
+    errors = read_errors(error, len(f))
+    least = [float(np.linalg.eigvalsh((sample + sample.conj().T) / 2)[0]) for sample in g]
+    return ResponseTable.judged(f, g, least, errors, lambda sample, value, e: _below(sample, value, -e))
+
+
+def _below(sample: Any, value: float, level: Fraction) -> bool:
+    """λ_min < level, of the decimals of the table."""
+    if abs(value - float(level)) > CLEAR * float(np.linalg.norm(sample)):
+        return value < level
+    x, y = exactly(sample, "values")
+    real, imaginary = (x + x.transpose()) * fmpq(1, 2), (y - y.transpose()) * fmpq(1, 2)
+    return has_negative_eigenvalue(real - _on_diagonal(level, len(sample)), imaginary)
+
+
+#     power in at one frequency = aᴴ (1 − SᴴS) a,    ‖S(f_k)‖ ≤ 1 at every sample f_k
+#
+# A sample with ‖S‖ > 1 + e, wrong by e at most, is of no passive network: a steady sinusoid of that frequency
+# brings back more than it carries.
+
+
+@dataclass(frozen=True, repr=False)
+class ScatteringTable(SampleTable):
+    """What the samples of a table show; `values` are ‖S(f_k)‖, the largest singular values."""
+
+    FORMAT = "zwidth scattering table 1"
+    HEAD: ClassVar[str] = "largest ‖S‖"
+    NAMES: ClassVar[tuple[str, str]] = ("|S|", "largest singular value of S")
+    UNIT: ClassVar[str] = "1"
+    WORST: ClassVar[str] = "largest_gain"
+    FOR_A_PROOF: ClassVar[str] = "For a proof fit a rational S(s) and ask scattering_passivity of the fit."
+    BOUND: ClassVar[float] = 1.0
+    BEYOND: ClassVar[int] = 1
+
+    @property
+    def gains(self) -> tuple[float, ...]:
+        """‖S(f_k)‖."""
+        return self.values
+
+    @property
+    def largest(self) -> tuple[float, float]:
+        """(‖S‖, f [Hz]) of the sample where most comes back."""
+        return self.worst
+
+    def told_broken(self) -> str:
+        """With the largest ‖S‖."""
+        gain, at = self.largest
+        size = f"{gain:.9g}" if gain - 1 > CLEAR else "1 and less than 1e-9 more"
+        return (
+            f"more comes back than goes in, most at {at:.6g} Hz: ‖S‖ = {size}. No passive network has "
+            "these values."
+        )
+
+    def told_kept(self) -> str:
+        """With the largest ‖S‖."""
+        gain, at = self.largest
+        return f"does more come back than goes in; the largest ‖S‖ is {gain:.9g}, at {at:.6g} Hz."
+
+
+def scattering_table(network: Any, error: Any = 0) -> ScatteringTable:
+    """Which samples of a table of scattering parameters no passive network has.
+
+    Parameters
+    ----------
+    network
+        A Network of scikit-rf, or anything with `f` [Hz], ascending, and `s` of shape (samples, ports,
+        ports); with `z0`, if there is one, positive and real, or complex if `s_def` is "power": of other
+        waves |a|² − |b|² is no power then (Kurokawa 1965).
+    error
+        By how much a sample may be wrong at most, ≥ 0: the largest singular value of what it differs by.
+        One number, or one for each sample.
+
+    Raises
+    ------
+    InputError
+        If it has no such table, one that is empty or not finite, or waves that do not tell power.
+    """
+    if not (hasattr(network, "f") and hasattr(network, "s")):
+        raise InputError(
+            f"a table of scattering parameters is a Network of scikit-rf, or has f [Hz] and s; "
+            f"got {network!r}"
+        )
+    f, s = read_samples(network.f, network.s, "s")
+    _refuse_waves_without_power(network)
+    errors = read_errors(error, len(f))
+    gains = [float(np.linalg.norm(sample, 2)) for sample in s]
+    return ScatteringTable.judged(
+        f, s, gains, errors, lambda sample, gain, e: e <= -1 or _exceeds(sample, gain, 1 + e)
+    )
+
+
+def _refuse_waves_without_power(network: Any) -> None:
+    z0 = np.asarray(getattr(network, "z0", 50.0), dtype=complex)
+    if not (z0.real > 0).all():
+        raise InputError("the reference z0 of every port has a positive real part: a wave carries power")
+    waves = getattr(network, "s_def", None)
+    if (z0.imag != 0).any() and waves != "power":
+        raise InputError(
+            f"z0 is complex and s_def is {waves!r}: for such waves |a|² − |b|² is not the power; renormalize "
+            "to a real z0, or to s_def = 'power'"
+        )
+
+
+def _exceeds(sample: Any, gain: float, bound: Fraction) -> bool:
+    """‖S‖ > bound, of the decimals of the table."""
+    if abs(gain - float(bound)) > CLEAR:
+        return gain > bound
+    x, y = exactly(sample, "s")
+    back, turned = x.transpose() * x + y.transpose() * y, y.transpose() * x - x.transpose() * y
+    return has_negative_eigenvalue(_on_diagonal(bound * bound, len(sample)) - back, turned)

@@ -64,11 +64,6 @@ def stable_virtual_masses(
     tuple or None
         Lightest and heaviest [kg], the heaviest usually inf: strictly between them no mode grows, outside one
         does.  None where one grows whatever the mass.
-
-    Raises
-    ------
-    InputError
-        If a number is outside its bound, or a word is not one of these.
     """
     t = positive("sample_period", sample_period, NO_CLOCK)
     eta = positive("stiffness", stiffness, "a hand without a spring is a force; nothing oscillates") * t * t

@@ -1,8 +1,9 @@
-"""What is mapped over a workspace, at the hand: margins, limits, directions, encoder steps, friction."""
+"""What is mapped over a workspace, at the hand, and what its cells show."""
 
 from __future__ import annotations
 
-from typing import Any
+from math import ceil
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +18,9 @@ from zwidth.model.arms.joints import (
     surplus,
 )
 from zwidth.model.arms.wall import MatrixWall, WallNeed, motion_at_hand, wall_matrices
+from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.need import WallNeed, wall_matrices
+from zwidth.model.arms.pose import loss_in_pose, motion_at_hand
 from zwidth.model.environment.wall import Wall
 
 Array = npt.NDArray[np.float64]
@@ -193,3 +197,71 @@ def dataset(arm: Arm, sites: Sites, reached: Truth, proved: Truth, columns: dict
             coordinates[f"hand_{name}"] = (dims, values, {"units": "m"})
     attributes = {"region": sites.region, "coordinates": sites.jacobians.shape[-2]}
     return xarray.Dataset(variables, coordinates, attributes)
+
+
+# What the cells of a workspace show: where the condition holds, and what is lacking where it does not.
+#
+# At each middle of a cell: does δ_m ⪰ Jᵀ R J hold, with what margin?  Between the middles J changes by
+# no more than η, so the smallest eigenvalue falls by no more than
+#
+#     ‖R‖ (2 ‖J‖ η + η²)
+#
+# and a cell with more margin than that is proved as a whole.
+
+
+_ROUNDING = 1e-12
+"""Of the damping: how far rounding may move an eigenvalue."""
+_FINE = 200
+"""Cells along each side on which the proof is made, at least, in one or two coordinates."""
+
+
+class Account(NamedTuple):
+    """What the cells of a fine grid show."""
+
+    reached: Truth
+    margins: Array
+    proved: Truth
+    points: Array  # δ_m − JᵀRJ at the middle of the cell
+    counted: Array  # the same, less what it may lose inside the cell
+
+
+def account_of(damping: Array, need: Array, sites: Sites, turns: int) -> Account:
+    """Decide every cell that the arm reaches; `need` is R, `turns` how many rows of J are rotations."""
+    reached = reached_cells(sites)
+    jacobians = sites.jacobians[reached]
+    lacking = surplus(jacobians, damping, need)
+    margins = np.asarray(np.linalg.eigvalsh(lacking)[:, 0], dtype=np.float64)
+    if sites.parts is None:
+        loss = _loss(need, jacobians, sites.change[reached])
+    else:
+        loss = loss_in_pose(need, jacobians, sites.parts[reached], turns)
+    rounding = _ROUNDING * (float(np.abs(damping).max()) + float(np.abs(lacking).max()))
+    taken = np.where(np.isfinite(loss), loss, 0.0)
+    taken = taken + 10 * rounding  # damping that is added adds to the rounding too
+    counted = np.asarray(lacking - taken[:, None, None] * np.eye(lacking.shape[-1]))
+    return Account(reached, margins, margins > loss + rounding, lacking, counted)
+
+
+def reached_cells(sites: Sites) -> Truth:
+    """Where the arm reaches the middle of the cell."""
+    return np.asarray(np.isfinite(sites.jacobians).all(axis=(-1, -2)))
+
+
+def refinement(sites: Sites, points: int) -> int:
+    """Into how many parts each side of a cell is cut for the proof."""
+    return max(1, ceil(_FINE / points)) if len(sites.axes) < 3 else 1
+
+
+def all_in_blocks(fine: Truth, shape: tuple[int, ...]) -> Truth:
+    """True where every part of a cell is."""
+    for axis, count in enumerate(shape):
+        split = (*fine.shape[:axis], count, -1, *fine.shape[axis + 1 :])
+        fine = np.asarray(fine.reshape(split).all(axis=axis + 1))
+    return fine
+
+
+def _loss(need: Array, jacobians: Array, change: Array) -> Array:
+    """How far the smallest eigenvalue may fall inside a cell."""
+    size = np.linalg.norm(jacobians, ord=2, axis=(-2, -1))
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.linalg.norm(need, 2) * (2 * size * change + change**2))

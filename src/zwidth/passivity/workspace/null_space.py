@@ -23,23 +23,18 @@ import numpy.typing as npt
 from zwidth.errors import InputError
 from zwidth.model.arms import Arm, ArmMotion, DescribedArm, PlanarChain
 from zwidth.model.arms.joints import as_matrix, largest_scale
-from zwidth.model.arms.null_space import (
-    Loop,
-    NullSpaceSpring,
-    fast_motion,
-    moving,
-    projector,
-    slow_loop,
-    task_jacobian,
-)
-from zwidth.model.arms.wall import MatrixWall, wall_need
+from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.null_space import NullSpaceSpring, fast_motion, moving, task_jacobian
+from zwidth.model.arms.null_space_loop import Loop, slow_loop
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.workspace.null_space_certificate import largest_certified, null_space_certificate
+from zwidth.passivity.scope import Scope
+from zwidth.passivity.workspace.certificate import largest_certified, needed_at_rest, null_space_certificate
 from zwidth.passivity.workspace.question import Question, asked_of
-from zwidth.passivity.workspace.report import arm_document, finite, motion_document, wall_document
+from zwidth.passivity.workspace.verdict import arm_document, finite, motion_document, wall_document
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
@@ -107,7 +102,10 @@ class NullSpace(PassivityAnswer):
     def claim(self) -> str:
         """What was found, of whom, and of what."""
         if self.outcome == "active":
-            return f"{' '.join(self._motions())} {self._by_whom()}"
+            return (
+                f"{' '.join(self._motions())} These are hands that hold the links, such as one at the elbow "
+                "and one at the end; of a hand at the end alone nothing is said."
+            )
         if self.within is not None and self.certificate is not None:
             steps = " Encoder steps are not counted." if any(self.question.arm.resolution) else ""
             return f"No motion of the hands takes energy out {self._near(self.within)}.{steps}"
@@ -136,12 +134,6 @@ class NullSpace(PassivityAnswer):
 
     def _taken(self, motion: ArmMotion) -> str:
         return shown(-motion.energy, "J")
-
-    def _by_whom(self) -> str:
-        return (
-            "These are hands that hold the links, such as one at the elbow and one at the end; of a hand at "
-            "the end alone nothing is said."
-        )
 
     @property
     def scope(self) -> Scope:
@@ -326,28 +318,17 @@ def _has_null_space(arm: Arm, spring: NullSpaceSpring) -> None:
         )
 
 
-def _needs(question: Question, spring: NullSpaceSpring) -> tuple[Array, Array, Array, Array]:
-    """R, J and P at the rest, and what wall and spring ask of the joints there."""
-    arm = question.arm
-    jacobian = task_jacobian(arm, spring.rest)
-    need = wall_need(question.wall, question.period, question.delay_samples, len(jacobian))
-    inside = projector(jacobian, spring.regularization)
-    share = (2 * question.delay_samples + 1) * question.period / 2 * spring.stiffness
-    hand = need.stiffness_share + need.bound
-    return hand, jacobian, inside, jacobian.T @ hand @ jacobian + share * inside
-
-
 def _factor(question: Question, spring: NullSpaceSpring) -> float:
     """How many times as stiff the wall alone may be at the rest."""
     jacobian = task_jacobian(question.arm, spring.rest)
-    need = wall_need(question.wall, question.period, question.delay_samples, len(jacobian))
+    need = question.need(len(jacobian))
     base = as_matrix(question.arm.damping) - jacobian.T @ need.bound @ jacobian
     free = np.ix_(moving(question.arm), moving(question.arm))
     return float(largest_scale(base[free], (jacobian.T @ need.stiffness_share @ jacobian)[free]))
 
 
 def _largest_damping(question: Question, spring: NullSpaceSpring) -> float:
-    _, _, inside, needed = _needs(question, spring)
+    inside, needed = needed_at_rest(question, spring)
     free = np.ix_(moving(question.arm), moving(question.arm))
     return float(largest_scale((as_matrix(question.arm.damping) - needed)[free], inside[free]))
 

@@ -23,6 +23,8 @@ from zwidth.errors import InputError
 from zwidth.model.arms import Arm, ArmMotion, DescribedArm
 from zwidth.model.arms.encoders import covered_factors
 from zwidth.model.arms.joints import largest_scale, surplus
+from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.need import wall_matrices
 from zwidth.model.arms.replay import refuting_motion
 from zwidth.model.arms.wall import MatrixWall, wall_matrices, wall_need
 from zwidth.model.environment.wall import Wall
@@ -30,7 +32,7 @@ from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.workspace.mapped import scaled_stiffness, stiffness_factors
 from zwidth.passivity.workspace.question import Question, asked_of
-from zwidth.passivity.workspace.report import arm_document, finite, motion_document, wall_document
+from zwidth.passivity.workspace.verdict import arm_document, finite, motion_document, wall_document
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import outward_decimal, shown, shown_at_most
 
@@ -131,10 +133,7 @@ class PostureMap(PassivityAnswer):
         """The main numbers as (name, text) for a report."""
         best = float(self.data["best_stiffness_factor"].max())
         if not self.stiffness_factor:
-            yield (
-                "stiffness",
-                "none: at some posture its virtual damping alone is too much for the joints",
-            )
+            yield ("stiffness", "none: at some posture its virtual damping alone is too much for the joints")
         elif self.largest_stiffness is None:
             yield "stiffness", f"{_down(self.stiffness_factor)} times everywhere, {_down(best)} times at best"
         else:
@@ -270,7 +269,7 @@ def _factors(question: Question, places: Array) -> tuple[Array, Array, Array]:
     arm = question.arm
     assert isinstance(arm, DescribedArm)
     size = 3 + arm.turns
-    need = wall_need(question.wall, question.period, question.delay_samples, size)
+    need = question.need(size)
     damping, found, covered = question.damping(size), list[Array](), list[Array]()
     positions, jacobians = arm.placed(places)
     for start in range(0, len(places), _AT_ONCE):
@@ -284,9 +283,7 @@ def _factors(question: Question, places: Array) -> tuple[Array, Array, Array]:
 
 def _least_damping_factor(question: Question, places: Array) -> float | None:
     """Of the places, and downhill from the worst of them; None without virtual damping."""
-    if not wall_need(
-        question.wall, question.period, question.delay_samples, 3 + question.arm.turns
-    ).bound.any():
+    if not question.need(3 + question.arm.turns).bound.any():
         return None
     factors = _damping_factors(question, places)
     worst = places[np.argsort(factors)[:_WORST]]
@@ -301,7 +298,7 @@ def _damping_factors(question: Question, places: Array) -> Array:
     arm = question.arm
     assert isinstance(arm, DescribedArm)
     size = 3 + arm.turns
-    need = wall_need(question.wall, question.period, question.delay_samples, size)
+    need = question.need(size)
     jacobians = arm.placed(places)[1]
     load = np.swapaxes(jacobians, -1, -2) @ need.bound @ jacobians
     base = surplus(jacobians, question.damping(size), need.stiffness_share)

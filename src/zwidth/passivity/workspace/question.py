@@ -1,9 +1,9 @@
-"""What is asked about an arm and a wall: the numbers of the loop, and up to which forces."""
+"""What is asked about an arm and a wall: the loop, and up to which forces encoder steps are counted."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -13,8 +13,14 @@ from zwidth.model.arms import Arm
 from zwidth.model.arms.encoders import forces_of, held_torque_damping
 from zwidth.model.arms.joints import as_matrix
 from zwidth.model.arms.wall import MatrixWall, fits, require_wall
+from zwidth.model.arms import Arm, Sites
+from zwidth.model.arms.edges import first_motion
+from zwidth.model.arms.encoders import EncoderSteps, encoder_steps, with_encoders
+from zwidth.model.arms.held import forces_of, held_torque_damping, in_words
+from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.need import WallNeed, require_wall, wall_need
+from zwidth.model.arms.pose import fits
 from zwidth.model.environment.wall import Wall
-from zwidth.passivity.workspace.counting import needs_encoders
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.units import parse_number
 
@@ -27,20 +33,10 @@ _MOST_DELAY = 100
 
 @dataclass(frozen=True, kw_only=True)
 class Question:
-    """The loop, and the forces that are asked about.
+    """The loop, `rate` [Hz] and d from reading to force, and the forces that are asked about.
 
-    Parameters
-    ----------
-    arm, wall
-        What meets.
-    rate
-        [Hz].
-    delay_samples
-        d, from reading to force.
-    held_to
-        Up to which the torque is held; empty where it follows the arm.
-    asked
-        Up to which encoder steps are to be counted; empty: as far as friction covers them.
+    `held_to`: up to which the torque is held; empty where it follows the arm.  `asked`: up to which encoder
+    steps are to be counted; empty: as far as friction covers them.
     """
 
     arm: Arm
@@ -64,6 +60,10 @@ class Question:
     def forces(self) -> Forces:
         """Those that are asked about, for one reason or the other."""
         return self.held_to or self.asked
+
+    def need(self, coordinates: int) -> WallNeed:
+        """What the wall asks for at the hand."""
+        return wall_need(self.wall, self.period, self.delay_samples, coordinates)
 
     def damping(self, coordinates: int) -> npt.NDArray[np.float64]:
         """What the joints have for the wall, m × m: less what held torques ask for."""
@@ -122,3 +122,73 @@ def _delay_samples(rate: float, delay: float) -> int:
             "round it up: that is safe for springs"
         )
     return samples
+
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Counting:
+    """What encoder steps before a wall ask of friction; None where there are none, or nothing is known.
+
+    `limits`: force [N], in pose and moment [N·m], up to which friction covers them: those asked for, or all
+    that it does; empty where it does not, `reason` says why.
+    """
+
+    steps: EncoderSteps | None
+    limits: tuple[float, ...]
+    reason: str
+
+
+def counting(
+    arm: Arm, wall: Wall | MatrixWall, period: float, sites: Sites, asked: tuple[float, ...]
+) -> Counting:
+    """Up to the forces that are `asked` for, or empty: as far as it goes."""
+    if not any(arm.resolution):
+        return Counting(steps=None, limits=(), reason="none are known")
+    steps = encoder_steps(arm, wall, period, sites)
+    if steps is None:
+        known = "how the Jacobian of such an arm changes over a step is not bounded"
+        return Counting(steps=None, limits=(), reason=known)
+    if not any(arm.coulomb_friction):
+        return Counting(steps=steps, limits=(), reason="they need Coulomb friction, and none is given")
+    if not asked:
+        reason = "" if steps.covered else "Coulomb friction is too small for them at any force"
+        return Counting(steps=steps, limits=steps.covered, reason=reason)
+    needed = steps.friction_up_to(*asked)
+    if all(own >= need for own, need in zip(arm.coulomb_friction, needed, strict=True)):
+        return Counting(steps=steps, limits=asked, reason="")
+    return Counting(steps=steps, limits=(), reason=_too_small(steps, asked))
+
+
+def needs_encoders(arm: Arm, asked: tuple[float, ...]) -> None:
+    """Refuse a largest force for steps that nobody knows."""
+    if asked and with_encoders(arm) is None:
+        raise InputError(
+            "largest_force bounds what encoder steps cost, and needs a chain or a description with the "
+            "resolution of its joints, as in --joint-resolution 0.001"
+        )
+
+
+def with_motion(
+    found: Counting,
+    arm: Arm,
+    wall: Wall | MatrixWall,
+    period: float,
+    delay_samples: int,
+    sites: Sites,
+    torque_held: bool,
+) -> EncoderSteps | None:
+    """The steps with the smallest force at which a motion across their edges is known to take energy out."""
+    chain, steps = with_encoders(arm), found.steps
+    if chain is None or steps is None or wall.clamped:
+        return steps  # a wall that never pulls has a normal, and the motion's forces may not be along it
+    motion = first_motion(chain, wall, period, delay_samples, sites.joints, torque_held)
+    return steps if motion is None else replace(steps, refuted=motion.largest_force, motion=motion)
+
+
+def _too_small(steps: EncoderSteps, asked: tuple[float, ...]) -> str:
+    if not steps.covered:
+        return "Coulomb friction is too small for them at any force"
+    up_to = f"Coulomb friction covers them up to {in_words(steps.covered)}"
+    return f"{up_to}, and not up to {in_words(asked)}"

@@ -7,23 +7,33 @@ not hold: in which direction, what would help, and a motion that takes energy ou
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from zwidth.errors import InputError
-from zwidth.model.arms import Arm
-from zwidth.model.arms.replay import steps_of
-from zwidth.model.arms.wall import MatrixWall, wall_need
+from zwidth.model.arms import Arm, ArmMotion, EncoderSteps, Sites
+from zwidth.model.arms.held import in_words
+from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.replay import refuting_motion, steps_of
 from zwidth.model.environment.wall import Wall
-from zwidth.passivity.scope import Outcome
-from zwidth.passivity.workspace.account import account_of, all_in_blocks, reached_cells, refinement
-from zwidth.passivity.workspace.additions import Additions
-from zwidth.passivity.workspace.claim import Covers, claim
-from zwidth.passivity.workspace.counting import counting
-from zwidth.passivity.workspace.evidence import Evidence, evidence_for
-from zwidth.passivity.workspace.mapped import columns_of, dataset, scaled_stiffness, stiffness_factors
-from zwidth.passivity.workspace.question import Question, asked_of
-from zwidth.passivity.workspace.verdict import Workspace
+from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.workspace.certificate import arm_certificate
+from zwidth.passivity.workspace.mapped import (
+    Account,
+    account_of,
+    all_in_blocks,
+    columns_of,
+    dataset,
+    reached_cells,
+    refinement,
+    scaled_stiffness,
+    stiffness_factors,
+)
+from zwidth.passivity.workspace.question import Counting, Forces, Question, asked_of, counting, with_motion
+from zwidth.passivity.workspace.verdict import Additions, Workspace
 from zwidth.quantity.exact import RealLike
 
 _OUTSIDE = "a reading may be outside the region, and one step around it nothing is proved"
@@ -75,8 +85,7 @@ def workspace(
     reached = reached_cells(sites)
     if not reached.any():
         raise InputError(f"{arm.name} reaches no point of its region, {sites.region}; choose another one")
-    need = wall_need(wall, period, question.delay_samples, n)
-    damping = question.damping(n)
+    need, damping = question.need(n), question.damping(n)
     parts = refinement(sites, points)
     fine = sites if parts == 1 else arm.sites(points * parts)
     account = account_of(damping, need.stiffness_share + need.bound, fine, arm.turns)
@@ -133,3 +142,165 @@ def _outcome(found: Evidence, question: Question, everywhere: bool) -> Outcome:
         stepped = found.encoder == "ideal" and bool(steps_of(question.arm).any())
         return "passive without encoder steps" if stepped else "passive"
     return "theorem" if everywhere and not question.asked else "undecided"
+
+
+class Covers(NamedTuple):
+    """What a verdict on an arm is about."""
+
+    region: str
+    torque: str
+    encoder: str
+    forces: tuple[float, ...]
+    why_ideal: str  # why the steps of an arm that has some are not counted
+    can_be_refuted: bool
+    has_friction: bool  # whether any Coulomb friction is given
+
+
+def claim(outcome: str, covers: Covers, account: Account, without: str, steps: EncoderSteps | None) -> str:
+    """One sentence on what holds, others on what is not counted."""
+    part = 100 * account.proved.mean()
+    where = f"{covers.region}{_up_to(covers)}"
+    if outcome == "passive":
+        text = f"No motion of the hand takes energy out with {where}, proved."
+    elif outcome == "passive without encoder steps":
+        text = f"Read without steps, no motion of the hand would take energy out with {where}, proved."
+    elif outcome == "theorem":
+        text = f"No motion of the hand takes energy out with {where}, by a proof on paper."
+    elif outcome == "active":
+        text = "At one point of this map a motion of the hand takes energy out."
+        if not covers.can_be_refuted:
+            text = (
+                "At one point of this map a motion of the joints takes energy out. It is made by hands that "
+                "hold the links, such as one at the elbow and one at the end; a hand at the end alone cannot "
+                "make every joint follow, and of it nothing is said."
+            )
+        if covers.encoder == "counted" and not covers.has_friction:
+            text += " Coulomb friction is not given and taken as 0."
+    elif covers.encoder == "counted" and without and (account.margins >= 0).all():
+        text = f"Whether a motion takes energy out behind these encoders is not known: {without}."
+        without = ""
+    elif (account.margins >= 0).all():
+        text = (
+            f"The condition holds at every point; between the points {part:.4g} % of the region are proved."
+        )
+    else:
+        text = (
+            f"{part:.4g} % of the region are proved; at other points the condition fails, and no motion was "
+            "found that takes energy out."
+        )
+    if outcome in ("theorem", "undecided") and without:
+        text += f" There is no certificate: {without}."
+    if not account.reached.all():
+        text += " Parts of the region are out of reach; a smaller region may be proved."
+    return f"{text} {_counted(covers, outcome)}{_beyond(covers, steps, outcome)}"
+
+
+def _counted(covers: Covers, outcome: str) -> str:
+    """How the arm is read, and what becomes of the torque within a period."""
+    up_to = _up_to(covers) if outcome == "undecided" else ""  # what is proved says it first
+    if covers.encoder == "counted":
+        torque = (
+            "is held over a period" if covers.torque == "held" else "follows the readings within a period"
+        )
+        read = "force and Jacobian are those of the readings"
+        return f"Encoder steps are counted{up_to}: {read}, and the torque {torque}."
+    torque = (
+        f"held over a period{up_to}" if covers.torque == "held" else "taken to follow the arm within a period"
+    )
+    steps = f" Encoder steps are not counted: {covers.why_ideal}." if covers.why_ideal else ""
+    return f"The arm is taken to be read without steps.{steps} The torque is {torque}."
+
+
+def _up_to(covers: Covers) -> str:
+    if not covers.forces or in_words(covers.forces) == "any":
+        return ""
+    return f", for wall forces up to {in_words(covers.forces)}"
+
+
+def _beyond(covers: Covers, steps: EncoderSteps | None, outcome: str) -> str:
+    """From which force on a motion across the edges of the encoders is known."""
+    if steps is None or steps.refuted is None or outcome == "active":
+        return ""
+    return f" From {steps.refuted:.4g} N on a motion across their edges takes energy out."
+
+
+Array = npt.NDArray[np.float64]
+
+_TRIES = 20
+"""Points from which a motion that takes energy out is sought, the worst first."""
+
+
+class Evidence(NamedTuple):
+    """What was found, and how far the encoders are in it."""
+
+    certificate: Certificate | None  # None beside a motion
+    motion: ArmMotion | None
+    steps: EncoderSteps | None
+    encoder: str  # "counted" or "ideal"
+    words: str  # why there is no certificate
+    nothing_missing: bool  # the condition was proved in all of the region
+
+
+def evidence_for(
+    question: Question, count: Counting, sites: Sites, fine: Sites, account: Account
+) -> Evidence:
+    """A certificate where every cell has a margin, and a motion where one is found; it counts for more.
+
+    Motions are looked for in the `fine` cells of the account; across the edges of encoders in `sites`.
+    """
+    loop = (question.arm, question.wall, question.period, question.delay_samples)
+    steps = with_motion(count, *loop, sites, question.torque_held)
+    certificate, words, encoder = None, "", "counted" if question.asked else "ideal"
+    if account.reached.all() and (account.margins > 0).all():
+        certificate, words, encoder = _proof(question, count)
+    joints = fine.joints[account.reached]
+    read = (True, False) if count.limits else (bool(question.asked),)  # behind the encoders or not, in order
+    motion = _motion_inside(question, joints, account.margins, read)
+    if motion is None and steps is not None:
+        motion = _across(steps.motion, question.forces, count.limits)
+    if motion is not None:
+        encoder = motion.encoder
+    left = certificate if motion is None else None
+    return Evidence(left, motion, steps, encoder, words, certificate is not None)
+
+
+def _proof(question: Question, count: Counting) -> tuple[Certificate | None, str, str]:
+    """A certificate or why there is none, and of which encoder: of the steps, if it can be or has to be."""
+    loop = (question.arm, question.wall, question.rate, question.delay_samples, question.held_to)
+    certificate, words = None, count.reason
+    if count.limits and count.steps is not None:
+        certificate, words = arm_certificate(*loop, count)
+    if certificate is not None or question.asked:
+        return certificate, words, "counted"
+    return (*arm_certificate(*loop), "ideal")
+
+
+def _across(motion: ArmMotion | None, asked: Forces, covered: Forces) -> ArmMotion | None:
+    """A motion across the edges, if it says something of the forces asked for; where none is covered, any."""
+    if asked:
+        return motion if _within(motion, asked) else None
+    return None if covered else motion
+
+
+def _within(motion: ArmMotion | None, asked: Forces) -> bool:
+    if motion is None or motion.encoder != "counted":
+        return False
+    return motion.largest_force <= asked[0] and motion.largest_moment <= (*asked, 0.0)[1]
+
+
+def _motion_inside(
+    question: Question,
+    joints: npt.NDArray[np.float64],
+    margins: npt.NDArray[np.float64],
+    read: tuple[bool, ...],
+) -> ArmMotion | None:
+    """Near the worst points, with the encoders counted or not, in the order of `read`."""
+    loop = (question.arm, question.wall, question.period, question.delay_samples)
+    failing = np.argsort(margins)[: int((margins < 0).sum())]
+    tried = failing[:: max(1, len(failing) // _TRIES)][:_TRIES]
+    for counted in read:
+        for k in tried:
+            motion = refuting_motion(*loop, joints[k], question.torque_held, counted=counted)
+            if motion is not None and (not question.asked or _within(motion, question.asked)):
+                return motion
+    return None

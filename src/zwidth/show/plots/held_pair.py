@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from zwidth.passivity.pairs.held import HeldVerdict
-from zwidth.passivity.pairs.held.criterion import HeldCriterion
+from zwidth.passivity.pairs.held.verdict import HeldCriterion
 from zwidth.quantity.text import quantity_unit
 from zwidth.show.plots.style import (
     BLUE,

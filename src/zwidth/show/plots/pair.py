@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 from zwidth.model.pairs import Pair
 from zwidth.passivity.linear.boundary import COARSER, smallest_holding
 from zwidth.passivity.pairs import PairVerdict
-from zwidth.passivity.pairs.advice import MOST_SAMPLES
 from zwidth.passivity.pairs.criterion import spending
-from zwidth.passivity.pairs.limits import largest_stiffness, samples_around
+from zwidth.passivity.pairs.limits import MOST_SAMPLES, largest_stiffness, samples_around
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import quantity_unit
 from zwidth.show.plots.pair_motion import draw_pair_energy, draw_pair_motion

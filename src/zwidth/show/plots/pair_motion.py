@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from zwidth.passivity.pairs import PairVerdict
-from zwidth.passivity.pairs.course import energy_in_time
+from zwidth.passivity.pairs.evidence import energy_in_time
 from zwidth.quantity.text import quantity_unit
 from zwidth.show.plots.style import BLUE, GREY, PURPLE, RED, heading, number, scale
 

@@ -19,9 +19,8 @@ from zwidth.model.device import Device
 from zwidth.model.environment import BackwardDifference
 from zwidth.model.environment.velocity import VelocityEstimator
 from zwidth.model.operator.hand_impedance import as_hand
-from zwidth.passivity.stability.known_hand.characteristic import PRECISIONS, family
-from zwidth.passivity.stability.known_hand.coupled import motion_of
-from zwidth.passivity.stability.known_hand.crossing import Curve, curve, line, plain
+from zwidth.passivity.stability.characteristic import PRECISIONS, Curve, curve, family, line, plain
+from zwidth.passivity.stability.known_hand import motion_of
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import RealLike
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.passivity.stability.known_hand.characteristic import family
-from zwidth.passivity.stability.known_hand.decide import decided
+from zwidth.passivity.stability.characteristic import decided, family
 from zwidth.quantity.exact import Exact
 from zwidth.study.chunks.layout import Layers, Place, cells
 from zwidth.study.maps.kernel import STABLE, UNKNOWN, decide_block

@@ -31,9 +31,15 @@ from zwidth.model.environment.environment import RationalFunction
 from zwidth.passivity.criterion_choice import decide
 from zwidth.passivity.formulas.colgate_schenkel import spring_stiffness
 from zwidth.passivity.linear.contact import damped_wall, root_above
-from zwidth.passivity.stability.known_hand.characteristic import Family, as_floats, bilinear, family
-from zwidth.passivity.stability.known_hand.coupled import motion_of
-from zwidth.passivity.stability.known_hand.crossing import last_stable_of_each, plain
+from zwidth.passivity.stability.characteristic import (
+    Family,
+    as_floats,
+    bilinear,
+    family,
+    last_stable_of_each,
+    plain,
+)
+from zwidth.passivity.stability.known_hand import motion_of
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact
 from zwidth.study.maps.request import Array, Request

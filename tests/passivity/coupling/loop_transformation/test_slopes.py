@@ -9,8 +9,13 @@ import pytest
 
 import zwidth as zw
 from zwidth.errors import InputError
-from zwidth.passivity.coupling.loop_transformation.forms import DIRECT, least_multiplier, slopes_form
-from zwidth.passivity.coupling.loop_transformation.least_damping import best_form, largest_need
+from zwidth.passivity.coupling.loop_forms import (
+    DIRECT,
+    best_form,
+    largest_need,
+    least_multiplier,
+    slopes_form,
+)
 
 T = Fraction(1, 1000)
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from zwidth.passivity.coupling.loop_transformation.two_signals import TwoSignalForm
+from zwidth.passivity.coupling.loop_forms import TwoSignalForm
 
 F = Fraction
 

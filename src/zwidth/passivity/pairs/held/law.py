@@ -24,6 +24,7 @@ from zwidth.model.pairs import Pair
 from zwidth.passivity.linear.loop import LinearLoop, loop_from
 from zwidth.passivity.pairs.arm import Arm
 from zwidth.passivity.pairs.criterion import PairCriterion
+from zwidth.passivity.stability.known_hand import motion_of
 from zwidth.quantity import balls
 from zwidth.quantity.exact import Exact, ends
 
@@ -42,14 +43,7 @@ Ascending = list[Fraction]
 class HeldPair:
     """A pair, one arm of which a known hand holds; the hand on the other is free.
 
-    Attributes
-    ----------
-    pair
-        The two arms.
-    held
-        Which of them is held.
-    hand
-        By what; its numbers may be intervals.
+    Numbers of the hand may be intervals.
     """
 
     pair: Pair
@@ -75,15 +69,8 @@ class HeldPair:
             raise InputError(
                 f"how the {self.held} moves in a hand depends on its mass, and that is unknown; give mass"
             )
-        mass, damping = (
-            (own[0] + added[0], own[1] + added[1])
-            for own, added in (
-                (ends(device.mass), ends(self.hand.mass)),
-                (ends(device.damping), ends(self.hand.damping)),
-            )
-        )
         delay = self.arms[1].side.delay
-        return Motion(mass, damping, ends(self.hand.stiffness), self.pair.sample_period, delay)
+        return motion_of(device, self.hand)._replace(period=self.pair.sample_period, delay=delay)
 
     @property
     def damped(self) -> Pair:

@@ -31,16 +31,9 @@ from zwidth.quantity.text import exact_text
 
 @dataclass(frozen=True)
 class Plant:
-    """G(z), rounded, and the exact data it comes from.
+    """G(z) in descending powers of z, rounded; its T [s], None where the coefficients do not say.
 
-    Attributes
-    ----------
-    numerator, denominator
-        In descending powers of z, float64.
-    source
-        What a certificate says of the plant: exact coefficients, or device and hand.
-    period
-        T [s]; None where the coefficients do not say.
+    `source` is what a certificate says of it: exact coefficients, or device and hand.
     """
 
     numerator: NDArray[np.float64]

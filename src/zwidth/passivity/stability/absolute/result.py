@@ -14,12 +14,16 @@ from zwidth.model.operator.operator import LinearHand, Operator
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.result import Result, evidence_of
 from zwidth.passivity.scope import Hands, Scope
-from zwidth.passivity.stability.absolute.linear_limit import LinearLimit, linear_limit
+from zwidth.passivity.stability.absolute.criteria import (
+    CRITERIA,
+    Criterion,
+    LinearLimit,
+    largest_slope,
+    linear_limit,
+    proved,
+)
 from zwidth.passivity.stability.absolute.motion import PeriodicMotion, smallest_motion
 from zwidth.passivity.stability.absolute.plant import Plant, given_plant, touched_plant
-from zwidth.passivity.stability.absolute.proof import proved
-from zwidth.passivity.stability.absolute.search import largest_slope
-from zwidth.passivity.stability.absolute.terms import CRITERIA, Criterion
 from zwidth.quantity.exact import Exact
 from zwidth.showing import Table
 

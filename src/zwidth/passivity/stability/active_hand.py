@@ -33,9 +33,15 @@ from zwidth.passivity.linear.boundary import largest_holding
 from zwidth.passivity.linear.criterion import LinearProof
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.result import Result
-from zwidth.passivity.scope import Contact, Hands, Scope, loop_document, scope_of
-from zwidth.passivity.stability.active_hand.band import Band, band_of, prove_inside
-from zwidth.passivity.stability.active_hand.shaking import ShakingHand, shaking_hand, tolerance
+from zwidth.passivity.scope import Contact, Hands, Scope, scope_of
+from zwidth.passivity.stability.shaking_hand import (
+    Band,
+    ShakingHand,
+    band_of,
+    prove_inside,
+    shaking_hand,
+    tolerance,
+)
 from zwidth.passivity.wording import if_friction_goes_on, lines
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix

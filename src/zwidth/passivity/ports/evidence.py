@@ -1,28 +1,126 @@
-"""The search for an input that takes more out of a port than a level allows.
-
-Where Π_σ has a negative eigenvalue, a burst at that frequency with the amplitudes and phases of its
-eigenvector does, if it is long enough.  Where it has none and a pole lies where it may not, energy
-comes out of what grows: the form W of polynomials (or short sequences) is then not ≥ 0, and
-elimination says where.
-"""
+"""An input by which a port gives out more than a level allows: the search for it, and documents."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from cmath import phase
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from math import acos, log10, pi, sin, sqrt
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from flint import fmpq, fmpq_mat, fmpz_poly
 
-from zwidth.passivity.linear.exact_algebra import negative_direction
-from zwidth.passivity.ports.gaussian import Gaussian, absorbed_at, form_at, place, to_float
-from zwidth.passivity.ports.motion import Motion, absorbed, absorbed_in_samples, answers
-from zwidth.passivity.ports.poles import places_of
+from zwidth.passivity.certificate import FORMAT, positivity_document
+from zwidth.passivity.linear.elimination import negative_direction
+from zwidth.passivity.ports.circle import places_of
+from zwidth.passivity.ports.motion import (
+    Gaussian,
+    Motion,
+    absorbed,
+    absorbed_at,
+    absorbed_in_samples,
+    answer,
+    answers,
+    form_at,
+    place,
+    played,
+    to_float,
+)
 from zwidth.passivity.ports.port import Port
-from zwidth.passivity.ports.positive_real import prove_minors
+from zwidth.passivity.ports.positive_real import OFFSET, Proof, prove_minors
+from zwidth.passivity.result import Evidence
 from zwidth.quantity.balls import as_fmpq, as_fraction
+
+
+@dataclass(frozen=True, repr=False)
+class ExtractingInput(Evidence):
+    """An input from rest by which a port gives out more than a level of its index allows.
+
+    Attributes
+    ----------
+    document
+        The system, the level and the motion, as the independent checker reads them.
+    share
+        What comes out above the level, per ∫ u² (∫ y² for the output index).
+    port, motion
+        F and φ, from which u and y follow.
+    """
+
+    document: dict[str, Any]
+    share: float
+    port: Port
+    motion: Motion
+
+    @property
+    def kind(self) -> str:
+        """ "burst", a sinusoid that fades in and out; "polynomial" or "sequence"."""
+        return self.motion.kind
+
+    @property
+    def frequency(self) -> float | None:
+        """Of a burst, its middle frequency [Hz]; None for another motion."""
+        return None if self.kind != "burst" else float(self._middle()) / (2 * pi)
+
+    @property
+    def phasors(self) -> list[tuple[float, float]]:
+        """Of a burst, each input's (amplitude, the largest 1; phase [rad]) at the middle frequency."""
+        if self.kind != "burst":
+            return []
+        side = self.port.inputs if self._is_of_input() else self.port.outputs
+        found = answer(side, place(self.port, self._middle()), self.motion.latent)
+        u = [complex(to_float(a.real), to_float(a.imaginary)) for a in found]
+        largest = max(u, key=abs)
+        return [(abs(a / largest), phase(a / largest)) for a in u]
+
+    def signals(self, points: int = 1000) -> tuple[list[float], Any, Any]:
+        """(t [s], u, y), u with a peak of 1; of a discrete port its samples, whatever `points`.
+
+        With several axes u and y are lists of one signal for each.
+        """
+        t, u, y = played(self.port, self.motion, points)
+        if not self._is_of_input():
+            u, y = y, u
+        peak = max(abs(a) for axis in u for a in axis) or 1.0
+        u, y = ([[a / peak for a in axis] for axis in side] for side in (u, y))
+        return (t, u[0], y[0]) if self.port.axes == 1 else (t, u, y)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The motion as plain data."""
+        return self.document
+
+    def describe(self) -> str:
+        """The motion in a sentence."""
+        of = "∫u²" if self._is_of_input() else "∫y²"
+        if self.port.time == "discrete":
+            of = of.replace("∫", "Σ")
+        axes = f" in {self.port.axes} axes" if self.port.axes > 1 else ""
+        return f"{self._form()}{axes}, from rest: {self.share:.4g} {of} comes out above the level"
+
+    def _form(self) -> str:
+        if self.kind == "burst":
+            return f"a burst of {self.frequency or 0:.6g} Hz"
+        if self.kind == "polynomial":
+            return f"a polynomial over {float(self.motion.numbers[0]):.4g} s"
+        return f"{len(self.motion.axes[0])} samples"
+
+    def _is_of_input(self) -> bool:
+        return bool(self.document["index"] == "input")
+
+    def _middle(self) -> Fraction:
+        """The middle frequency of a burst [rad/s]."""
+        step, cycles, _ = self.motion.numbers
+        return step * cycles
+
+
+# The search for an input that takes more out of a port than a level allows.
+#
+# Where Π_σ has a negative eigenvalue, a burst at that frequency with the amplitudes and phases of its
+# eigenvector does, if it is long enough.  Where it has none and a pole lies where it may not, energy
+# comes out of what grows: the form W of polynomials (or short sequences) is then not ≥ 0, and
+# elimination says where.
+
 
 _MOST_CYCLES = 1 << 22
 _LONGEST_SEQUENCE = 1 << 17
@@ -99,28 +197,26 @@ def _directions(port: Port, level: Fraction, tangent: Fraction) -> Iterator[Axes
             return
 
 
-def _candidates(form: list[list[Gaussian]]) -> Iterator[Axes]:
-    scale = max(max(abs(x.real), abs(x.imaginary)) for row in form for x in row)
+def _candidates(form: tuple[fmpq_mat, fmpq_mat]) -> Iterator[Axes]:
+    scale = max(abs(x) for part in form for x in part.entries())
     if scale == 0:
         return
-    shown = np.array(
-        [[complex(to_float(x.real / scale), to_float(x.imaginary / scale)) for x in row] for row in form]
-    )
-    vector = np.linalg.eigh(shown)[1][:, 0]
+    real, imaginary = (np.array([[to_float(x / scale) for x in row] for row in p.tolist()]) for p in form)
+    vector = np.linalg.eigh(real + 1j * imaginary)[1][:, 0]
     vector = vector / vector[np.argmax(np.abs(vector))]
     for digits in (4, 9, 15):
         yield tuple((_decimal(a.real, digits), _decimal(-a.imag, digits)) for a in vector)
     exact = negative_direction(_embedded(form))
     if exact is not None:
-        size = len(form)
+        size = form[0].nrows()
         values = [as_fraction(x) for x in exact]
         yield tuple((values[i], -values[size + i]) for i in range(size))
 
 
-def _embedded(form: list[list[Gaussian]]) -> list[list[fmpq]]:
+def _embedded(form: tuple[fmpq_mat, fmpq_mat]) -> list[list[fmpq]]:
     """The real symmetric matrix (Re −Im; Im Re) of twice the size with the same values."""
-    upper = [[x.real for x in row] + [-x.imaginary for x in row] for row in form]
-    return upper + [[x.imaginary for x in row] + [x.real for x in row] for row in form]
+    rows = list(zip(*(part.tolist() for part in form), strict=True))
+    return [[*r, *(-x for x in i)] for r, i in rows] + [[*i, *r] for r, i in rows]
 
 
 def _polynomial(port: Port, level: Fraction) -> Motion | None:
@@ -204,3 +300,58 @@ def _by_axis(values: Sequence[Fraction], axes: int) -> Axes:
 
 def _decimal(value: float, digits: int) -> Fraction:
     return Fraction(f"{value:.{digits}f}")
+
+
+def index_document(name: str, port: Port, level: Fraction, evidence: dict[str, Any]) -> dict[str, Any]:
+    """`evidence`, a kind with a proof or a motion, about an index of a port from inputs to outputs."""
+    claim = {"index": name, "level": str(level), "system": _system_document(port)}
+    return {"format": FORMAT, "kind": evidence["kind"], **claim, **evidence}
+
+
+def _system_document(port: Port) -> dict[str, Any]:
+    """G of a port from inputs to outputs."""
+    denominator = _text(reversed(port.denominator))
+    if port.axes == 1:
+        numerator = _text(reversed(port.outputs[0][0]))
+        return {"time": port.time, "numerator": numerator, "denominator": denominator}
+    numerators = [[_text(reversed(p)) for p in row] for row in port.outputs]
+    return {"time": port.time, "numerators": numerators, "denominator": denominator}
+
+
+def proof_document(proof: Proof) -> dict[str, Any]:
+    """The kind of a proof, and the proof."""
+    if proof.resolvent is None:
+        positivity = positivity_document(proof.minors[0].positivity)
+        return {"kind": "positive real", "proof": {"offset": str(OFFSET), "positivity": positivity}}
+    minors = [{"power": m.power, "positivity": positivity_document(m.positivity)} for m in proof.minors]
+    resolvent = {
+        "numerators": [[_text(reversed(p)) for p in row] for row in proof.resolvent.numerators],
+        "denominator": _text(reversed(proof.resolvent.denominator)),
+    }
+    told = {"offset": str(OFFSET), "minors": minors, "resolvent": resolvent}
+    return {"kind": "positive real matrix", "proof": told}
+
+
+def motion_document(motion: Motion) -> dict[str, Any]:
+    """The kind of a motion's document, and the motion."""
+    alone = len(motion.axes) == 1
+    told = {"kind": motion.kind, **_numbers(motion)}
+    return {"kind": "extraction" if alone else "matrix extraction", "motion": told}
+
+
+def _numbers(motion: Motion) -> dict[str, Any]:
+    rows = [_text(axis) for axis in motion.axes]
+    axes = rows[0] if len(rows) == 1 else rows
+    if motion.kind == "sequence":
+        return {"latent": axes}
+    numbers = _text(motion.numbers)
+    if motion.kind == "polynomial":
+        return {"duration_s": numbers[0], "lowest_power": numbers[1], "coefficients": axes}
+    burst = dict(zip(("step_rad_per_s", "cycles", "power"), numbers, strict=True))
+    if len(rows) == 1:  # a phase of its own would move all of the burst and no more
+        return burst
+    return {**burst, "cosine": [a for a, _ in rows], "sine": [b for _, b in rows]}
+
+
+def _text(values: Iterable[Fraction | int]) -> list[str]:
+    return [str(x) for x in values]

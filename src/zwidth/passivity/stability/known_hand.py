@@ -20,18 +20,27 @@ from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment, RationalFunction
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator.hand_impedance import HandImpedance, as_hand
-from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.certificate import FORMAT, Certificate
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.boundary import largest_holding
 from zwidth.passivity.result import Answer
-from zwidth.passivity.scope import Hands, Scope, scope_of, unit_key
-from zwidth.passivity.stability.known_hand.characteristic import PRECISIONS, as_floats, family, of_law
-from zwidth.passivity.stability.known_hand.crossing import Plain, last_stable, plain
-from zwidth.passivity.stability.known_hand.decide import Found, Outcome, decided
-from zwidth.passivity.stability.known_hand.proof import evidence
+from zwidth.passivity.scope import Hands, Scope, scope_of
+from zwidth.passivity.stability.characteristic import (
+    PRECISIONS,
+    Found,
+    Outcome,
+    Plain,
+    as_floats,
+    decided,
+    family,
+    last_stable,
+    of_law,
+    plain,
+)
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import in_unit
+from zwidth.quantity.text import exact_text, in_unit
 
 _HALVINGS = 8
 """Of the stiffness, in that search."""
@@ -177,20 +186,19 @@ def _checked(motion: Motion, transfer: RationalFunction, units: str) -> tuple[Fo
 
 
 def motion_of(device: Device, hand: HandImpedance) -> Motion:
-    """Device and hand together, as `plant` takes them."""
+    """Device and hand together."""
     if device.mass is None:
         raise InputError(
             "stability with a known hand depends on the mass of the device, and it is unknown; give mass"
         )
     mass, damping = (
-        _sum(ends(own), ends(added))
-        for own, added in ((device.mass, hand.mass), (device.damping, hand.damping))
+        (low + more, high + most)
+        for (low, high), (more, most) in (
+            (ends(device.mass), ends(hand.mass)),
+            (ends(device.damping), ends(hand.damping)),
+        )
     )
     return Motion(mass, damping, ends(hand.stiffness), device.exact("sample_period"), device.exact("delay"))
-
-
-def _sum(a: tuple[Fraction, Fraction], b: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
-    return a[0] + b[0], a[1] + b[1]
 
 
 def _poles(corner: Motion, transfer: Any) -> complex:
@@ -276,3 +284,22 @@ def _scope(device: Device, hand: HandImpedance, law: Environment) -> Scope:
         coulomb_friction=None,
         assumed=(),
     )
+
+
+def evidence(found: Found, motion: Motion, transfer: RationalFunction, units: str) -> dict[str, Any] | None:
+    """A document of kind "stability", or of kind "instability" with the unstable_hand; None for undecided."""
+    if found.outcome == "undecided":
+        return None
+    told = motion if found.unstable_hand is None else found.unstable_hand
+    loop = {
+        **told.told(units),
+        unit_key("sample_period", units): exact_text(told.period),
+        unit_key("delay", units): exact_text(told.delay),
+        "numerator": [exact_text(c) for c in transfer.numerator],
+        "denominator": [exact_text(c) for c in transfer.denominator],
+    }
+    return {
+        "format": FORMAT,
+        "kind": "stability" if found.outcome == "stable" else "instability",
+        "loop": loop,
+    }
