@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from zwidth.machine.firmware.arithmetic import applied, as_operand, converted, is_known, kind_of
 from zwidth.machine.firmware.program import (
     OPERATORS,
     Branch,
@@ -24,7 +23,18 @@ from zwidth.machine.firmware.program import (
     Table,
     Variable,
 )
-from zwidth.machine.firmware.values import Changing, Unknown, each, joined, record
+from zwidth.machine.firmware.values import (
+    Changing,
+    Unknown,
+    applied,
+    as_operand,
+    converted,
+    each,
+    is_known,
+    joined,
+    kind_of,
+    record,
+)
 from zwidth.native.names import Attributes, Defined, floor
 from zwidth.native.reader import SPELLED, Reader
 

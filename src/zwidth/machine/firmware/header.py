@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from zwidth.machine.firmware.c99 import C99, KEYWORDS, Real, real_text
-from zwidth.machine.firmware.fixed_text import NARROW, SHIFTS, FixedC99
+from zwidth.machine.firmware.c99 import C99, KEYWORDS, NARROW, SHIFTS, FixedC99, Real, real_text
 from zwidth.machine.firmware.law import LawProgram
 from zwidth.machine.firmware.machine import Machine, rest_numbers
 from zwidth.machine.firmware.printer import comment
 from zwidth.machine.firmware.program import Operation
-from zwidth.machine.firmware.tidy import tidied
+from zwidth.machine.firmware.simplified import tidied
 
 _ROUNDED = """\
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) \\

@@ -17,10 +17,7 @@ from functools import partial
 from typing import Any
 
 from zwidth.errors import InputError
-from zwidth.machine.firmware.apart import Apart
-from zwidth.machine.firmware.arithmetic import as_operand, converted, is_known, kind_of
 from zwidth.machine.firmware.expressions import Expressions
-from zwidth.machine.firmware.places import cut_tables
 from zwidth.machine.firmware.program import (
     Branch,
     Cells,
@@ -35,9 +32,30 @@ from zwidth.machine.firmware.program import (
     set_to,
     without_unused,
 )
-from zwidth.machine.firmware.source import source_of
-from zwidth.machine.firmware.syntax import EndOfLoop, NextPass, assigned, behind, counters, may_leave, returns
-from zwidth.machine.firmware.values import Changing, Unknown, each, flat, joined, set_all
+from zwidth.machine.firmware.simplified import cut_tables
+from zwidth.machine.firmware.source import (
+    EndOfLoop,
+    NextPass,
+    assigned,
+    behind,
+    counters,
+    may_leave,
+    returns,
+    source_of,
+)
+from zwidth.machine.firmware.values import (
+    Apart,
+    Changing,
+    Unknown,
+    as_operand,
+    converted,
+    each,
+    flat,
+    is_known,
+    joined,
+    kind_of,
+    set_all,
+)
 from zwidth.native.names import Defined, OutsideError
 from zwidth.native.reader import counted
 

@@ -29,7 +29,6 @@ from numpy.typing import NDArray
 from zwidth.loop.kernel import commanded
 from zwidth.loop.law import CHAIN, REMEMBERED
 from zwidth.machine.servo.connection import GOOD, MOST_TOLD, READING, TOLD
-from zwidth.machine.servo.judging import bad_in_a_row, judged_answer, judged_gap, judged_reading
 from zwidth.machine.servo.ring import (
     AT,
     ENDED,
@@ -51,9 +50,17 @@ from zwidth.machine.servo.ring import (
     TELLS,
     WAITING,
     WISHED,
+    count,
 )
-from zwidth.machine.servo.safety import HOST_GONE, NO_FORCE, RUNNING
-from zwidth.machine.servo.spread import count
+from zwidth.machine.servo.safety import (
+    HOST_GONE,
+    NO_FORCE,
+    RUNNING,
+    bad_in_a_row,
+    judged_answer,
+    judged_gap,
+    judged_reading,
+)
 from zwidth.native.compiled import Array, compiled
 
 Words = NDArray[np.int64]

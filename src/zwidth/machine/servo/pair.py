@@ -32,19 +32,10 @@ from zwidth.machine.servo.connection import (
     LibraryConnection,
     Placement,
 )
-from zwidth.machine.servo.judging import (
-    bad_in_a_row,
-    find_judging,
-    judged_answer,
-    judged_gap,
-    judged_reading,
-)
-from zwidth.machine.servo.measured import Measured, measured
-from zwidth.machine.servo.pace import ANSWERED, MARGIN, margin, most_awake, until
 from zwidth.machine.servo.pair_law import PairLaw
-from zwidth.machine.servo.posix import check_supported, now
+from zwidth.machine.servo.posix import ANSWERED, MARGIN, check_supported, margin, most_awake, now, until
 from zwidth.machine.servo.priority import Granted, RealTime
-from zwidth.machine.servo.proving import SERVED_OUTCOMES
+from zwidth.machine.servo.proving import SERVED_OUTCOMES, Measured, measured
 from zwidth.machine.servo.report import ending
 from zwidth.machine.servo.safety import (
     ASKED,
@@ -54,6 +45,11 @@ from zwidth.machine.servo.safety import (
     RUNNING,
     Limits,
     Safety,
+    bad_in_a_row,
+    find_judging,
+    judged_answer,
+    judged_gap,
+    judged_reading,
     limits_of,
 )
 from zwidth.model.pairs import Pair

@@ -34,15 +34,7 @@ from zwidth.machine.servo.connection import (
     LibraryConnection,
     Placement,
 )
-from zwidth.machine.servo.judging import (
-    bad_in_a_row,
-    find_judging,
-    judged_answer,
-    judged_gap,
-    judged_reading,
-)
-from zwidth.machine.servo.pace import ANSWERED
-from zwidth.machine.servo.posix import check_supported, now
+from zwidth.machine.servo.posix import ANSWERED, check_supported, now
 from zwidth.machine.servo.report import ending
 from zwidth.machine.servo.safety import (
     ASKED,
@@ -52,6 +44,11 @@ from zwidth.machine.servo.safety import (
     RUNNING,
     Limits,
     Safety,
+    bad_in_a_row,
+    find_judging,
+    judged_answer,
+    judged_gap,
+    judged_reading,
     limits_of,
 )
 from zwidth.quantity.exact import Exact, RealLike, ends

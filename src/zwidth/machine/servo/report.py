@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 from zwidth.machine.servo import cycle
 from zwidth.machine.servo.connection import STATUS, Connection
 from zwidth.machine.servo.loop import Shared
-from zwidth.machine.servo.measured import Measured
 from zwidth.machine.servo.priority import Granted
+from zwidth.machine.servo.proving import Measured
+from zwidth.machine.servo.ring import quantile
 from zwidth.machine.servo.safety import ASKED, BAD_ANSWER, DONE, REASONS, RUNNING
-from zwidth.machine.servo.spread import quantile
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.text import shown
 from zwidth.showing import Part, Shown, Table

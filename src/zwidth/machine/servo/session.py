@@ -12,14 +12,15 @@ The loop is a thread of its own.  What it is told, and what it tells, stands in 
 from __future__ import annotations
 
 import atexit
+from datetime import UTC, datetime
 from fractions import Fraction
 from math import inf
 from typing import Any, Literal, cast
 
 from zwidth.errors import InputError
 from zwidth.loop.plant import STATE_SIZE
+from zwidth.loop.trace import own_version
 from zwidth.machine.servo import cycle
-from zwidth.machine.servo.about import about, specification
 from zwidth.machine.servo.connection import (
     CompiledConnection,
     Connection,
@@ -29,19 +30,26 @@ from zwidth.machine.servo.connection import (
     blank,
 )
 from zwidth.machine.servo.cycle import HEARTBEAT, REASON, ROWS, SERVED, STOP, WANTED
-from zwidth.machine.servo.loop import Shared, shared
-from zwidth.machine.servo.measured import Measured, measured
+from zwidth.machine.servo.loop import LoopThread, Shared, shared
 from zwidth.machine.servo.packing import Packed, pack
 from zwidth.machine.servo.posix import check_supported, now
 from zwidth.machine.servo.priority import Granted, RealTime
-from zwidth.machine.servo.proving import Decide, check_kinds, judged, least_friction, refuse_not_proved
+from zwidth.machine.servo.proving import (
+    Decide,
+    Measured,
+    check_kinds,
+    judged,
+    least_friction,
+    measured,
+    refuse_not_proved,
+)
 from zwidth.machine.servo.report import ServoReport, report_of
 from zwidth.machine.servo.ring import MEASURING, Rows, ring
-from zwidth.machine.servo.running import LoopThread
 from zwidth.machine.servo.safety import ASKED, DONE, FAILED, RUNNING, Safety, limits_of
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
+from zwidth.model.specification.write import written
 from zwidth.passivity.check import check
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import RealLike, ends
@@ -387,3 +395,30 @@ class Servo:
             raise InputError("the device was let go: reach it again with another Servo")
         if self.running:
             raise InputError("the loop runs already: change the law, or stop it first")
+
+
+def about(
+    device: Device, environment: Environment, connection: Connection, placement: Placement, safety: Safety
+) -> dict[str, Any]:
+    """Texts and numbers, units in the keys."""
+    x = "rad" if device.motion == "rotary" else "m"
+    return {
+        "zwidth_version": own_version(),
+        "started": datetime.now(UTC).isoformat(timespec="seconds"),
+        "device": device.name,
+        "motion": device.motion,
+        "connection": connection.describe(),
+        "law": environment.describe(device.motion),
+        "specification": specification(device, environment),
+        f"origin_{x}": placement.origin,
+        "sense": placement.sense,
+        "safety": {name: None if value is None else float(value) for name, value in vars(safety).items()},
+    }
+
+
+def specification(device: Device, environment: Environment) -> str:
+    """The loop in TOML; "" where a specification has no words for it."""
+    try:
+        return written(device, environment)
+    except InputError:
+        return ""

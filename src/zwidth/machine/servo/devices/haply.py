@@ -50,8 +50,7 @@ from zwidth.machine.servo.connection import (
     exchanged,
 )
 from zwidth.machine.servo.devices import pantograph
-from zwidth.machine.servo.devices.arrivals import more_bytes, unwritten
-from zwidth.machine.servo.devices.frames import get_float32, put_float32
+from zwidth.machine.servo.devices.frames import get_float32, more_bytes, put_float32, unwritten
 from zwidth.machine.servo.devices.serial_port import open_port
 from zwidth.machine.servo.posix import Bytes, now, write_all
 from zwidth.native.compiled import Array, compiled

@@ -42,7 +42,7 @@ from zwidth.machine.servo.connection import (
     blank,
     exchanged,
 )
-from zwidth.machine.servo.devices.decimals import read_decimal, write_decimal
+from zwidth.machine.servo.devices.json_text import read_decimal, write_decimal
 from zwidth.machine.servo.devices.serial_port import open_port
 from zwidth.machine.servo.posix import Bytes, now, pause, read_some, write_all
 from zwidth.native.compiled import Array, compiled
@@ -156,7 +156,7 @@ def _send(memory: Array, outbox: Bytes, start: int, end: int) -> bool:
 def _wait(memory: Array, inbox: Bytes, flag: int) -> int:
     """Until the question of this flag has its answer: GOOD; or what went wrong."""
     while True:
-        over = now() >= memory[UNTIL]  # the last look is after the time, see `arrivals.more_bytes`
+        over = now() >= memory[UNTIL]  # the last look is after the time, see `frames.more_bytes`
         status = _take(memory, inbox)
         if status != GOOD or memory[flag] == 0:
             return status

@@ -11,14 +11,14 @@ import time
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from zwidth.data.logs.served.contents import ROWS_LOST, Head, as_json, from_json
 from zwidth.errors import InputError
+from zwidth.machine.servo.live.rows import Rows
 from zwidth.machine.servo.recording.mcap import McapFile
-from zwidth.machine.servo.recording.rows import LoopRows
 from zwidth.writing import check_target, first_line
 
 if TYPE_CHECKING:
@@ -191,3 +191,15 @@ def check_recording(path: Path, force: bool) -> None:
             "run.mcap -o run.nc makes a table, and in Python read_recording(path).dataset().to_dataframe()"
         )
     check_target(path, force)
+
+
+class LoopRows(Rows, Protocol):
+    """The rows of a loop, such as `servo.ring.Rows`, with what is known of it."""
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """What a file says of it, as JSON has it."""
+
+    @property
+    def events(self) -> list[dict[str, Any]]:
+        """What happened so far."""
