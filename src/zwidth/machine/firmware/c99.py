@@ -192,15 +192,7 @@ SHIFTS = """\
 
 @dataclass
 class FixedC99(C99):
-    """Writes whole numbers of 32 or 64 bits.
-
-    Parameters
-    ----------
-    word
-        Bits of a number.
-    narrow
-        Variables that 16 bits hold.
-    """
+    """Writes whole numbers of `word` bits, 32 or 64; 16 bits hold the variables that are `narrow`."""
 
     word: int = 32
     narrow: frozenset[Variable] = frozenset()

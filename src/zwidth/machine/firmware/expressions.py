@@ -60,18 +60,10 @@ MOST_BITS = 31
 
 @dataclass
 class Expressions(Reader, ABC):
-    """Reads the expressions of one call.
+    """Reads the expressions of one call of the function `of`, and writes statements into `block`.
 
-    Parameters
-    ----------
-    of
-        The function.
-    names
-        What each of its names stands for now.
-    block
-        Where statements are written.
-    calls
-        The functions that are being written out, this one last.
+    `names` has what each name stands for now, `calls` the functions that are being written out, this one
+    last.
     """
 
     of: Defined

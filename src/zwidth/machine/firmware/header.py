@@ -78,18 +78,9 @@ class _Body:
 def header(
     machine: Machine, *, name: str, about: Sequence[str], numbers: Iterable[tuple[str, str, str]]
 ) -> str:
-    """The text of the header.
+    """The text of the header, whose names all begin with `name`.
 
-    Parameters
-    ----------
-    machine
-        The law in the numbers of the target.
-    name
-        What every name begins with.
-    about
-        Lines of the comment at its head.
-    numbers
-        Name, value and meaning of each `#define`.
+    `about` are the lines at its head, `numbers` name, value and meaning of each ``#define``.
     """
     body = _binary(machine, name) if machine.fixed is None else _whole(machine, name)
     upper, seen = name.upper(), body.given.split()[1]

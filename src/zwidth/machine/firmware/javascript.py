@@ -102,18 +102,9 @@ def module(
     numbers: Iterable[tuple[str, str, str]],
     cuts_readings: bool = False,
 ) -> str:
-    """The text of the module.
+    """The text of the module: `about` at its head, `numbers` with name, value and meaning of what it exports.
 
-    Parameters
-    ----------
-    law
-        What is written.
-    about
-        Lines of the comment at its head.
-    numbers
-        Name, value and meaning of each constant that is exported.
-    cuts_readings
-        True where a reading beyond those that `numbers` names is taken as the nearest of them.
+    `cuts_readings` where a reading beyond those that `numbers` names is taken as the nearest of them.
     """
     js = JavaScript(law.program, KEYWORDS)
     seen = "counts" if law.resolution > 0 else "position"

@@ -41,24 +41,11 @@ _TRIES = 4
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """A law in the numbers of a machine.
+    """A law in the numbers of a machine, for readings from the lowest to the highest [counts; m; rad].
 
-    Parameters
-    ----------
-    law
-        What it computes.
-    number
-        "double", "float" or "fixed".
-    counts
-        The lowest and the highest reading: encoder counts, or a position [m; rad].
-    error
-        ε, with half a step of the converter in it [N; N·m]; None where no bound was found.
-    reason
-        Why none was found.
-    fixed
-        The program in whole numbers, where they are.
-    largest_force
-        The largest |f| that the machine can give [N; N·m]; None where it is not known.
+    `error` is ε with half a step of the converter in it, `largest_force` the largest |f| that the machine can
+    give [N; N·m]; None where no bound was found, for `reason`.  `fixed` is the program in whole numbers,
+    where they are.
     """
 
     law: LawProgram
@@ -94,18 +81,8 @@ def machine(
 ) -> Machine:
     """A law in the numbers of a machine, with the bound of their error.
 
-    Parameters
-    ----------
-    law
-        What it computes.
-    number
-        "double", "float" or "fixed".
-    counts
-        See `Machine`.
-    force_unit
-        In fixed point, where the device's converter has no known step: the unit of the force [N; N·m].
-    enough
-        In fixed point: a rounding that needs no wider numbers [N; N·m]; by default a 1000th of the force.
+    In fixed point `force_unit` is the unit of the force where the device's converter has no known step [N;
+    N·m], and a rounding that is `enough` needs no wider numbers [N; N·m]; by default a 1000th of the force.
     """
     if number != "double" and not law.pays:
         law = replace(law, program=simplified(law.program))
@@ -271,18 +248,10 @@ _TINY = 2.0**-40
 
 @dataclass(frozen=True)
 class Binary:
-    """The rounding of a format.
+    """The rounding of a format to the nearest of 53 or of 24 bits.
 
-    Parameters
-    ----------
-    unit
-        u: a result v is off by u |v| at most.
-    least
-        By which it is off at most where it is very small.
-    largest
-        Beyond it nothing is kept.
-    single
-        True where the law's numbers, which are double, are rounded again.
+    A result v is off by u |v| (`unit`) or by `least` at most, and beyond `largest` nothing is kept.  `single`
+    where the law's numbers, which are double, are rounded again.
     """
 
     unit: float

@@ -35,13 +35,7 @@ FOLDED = 2.0**-50
 
 
 def simplified(program: Program) -> Program:
-    """A program without operations that real numbers do not need.
-
-    Parameters
-    ----------
-    program
-        As it was specialised; it stays as it is.
-    """
+    """A program without operations that real numbers do not need; it stays as it is."""
     if not all(isinstance(s, Operation | Load | Store | Branch) for s in program.statements()):
         return program  # with loops, whose numbers change, it is left as it is
     reads = Counter(o for s in program.statements() for o in operands(s) if isinstance(o, Variable))
@@ -95,13 +89,7 @@ def _is(operand: Operand, value: float) -> bool:
 
 
 def tidied(program: Program) -> Program:
-    """The same numbers from fewer statements.
-
-    Parameters
-    ----------
-    program
-        On whole numbers, without loops, as `fixed.lowered` gives it; it stays as it is.
-    """
+    """The same whole numbers, without loops, from fewer statements; the program stays as it is."""
     same: dict[Variable, Operand] = {}
 
     def rule(s: Statement) -> list[Statement]:

@@ -66,17 +66,11 @@ MOST_WRITTEN_OUT = 32
 def specialised(
     function: Callable[..., Any], arguments: Sequence[Any], apart: Sequence[Callable[..., Any]] = ()
 ) -> Program:
-    """A program of one function.
+    """A program of one step function.
 
-    Parameters
-    ----------
-    function
-        A step function.
-    arguments
-        Of each argument: a number, an array or a tuple that is known; `Cells` for an array that is changed;
-        a `Variable` for a number that is given at every call.
-    apart
-        Functions whose calls stay calls: a program that would be too long without them.
+    An argument is a number, an array or a tuple that is known; `Cells` for an array that is changed; a
+    `Variable` for a number that is given at every call.  Calls of functions `apart` stay calls: else the
+    program would be too long.
     """
     source = source_of(function)
     body: list[Statement] = []

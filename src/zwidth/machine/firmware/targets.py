@@ -15,21 +15,7 @@ ALL = ("double", "float", "fixed")
 
 @dataclass(frozen=True)
 class Target:
-    """What a law is written for.
-
-    Parameters
-    ----------
-    name
-        As it is asked for.
-    language
-        "c99" or "javascript".
-    number
-        The numbers that it has by default.
-    numbers
-        All that it may have.
-    why_numbers
-        Why no others.
-    """
+    """What a law is written for: in which language, and in which numbers."""
 
     name: str
     language: str
@@ -73,17 +59,11 @@ _OF_THE_HEADER = re.compile(r"\blaw(?=\.h\b|_(?:state|force|init|step|reset)\b)|
 
 
 def main_files(target: str, *, prefix: str = "law", folder: str = "law") -> dict[str, str]:
-    """The main program of a target, files of C and C++ that take all they need to know from the header beside
-    them: each file's name, and its text, in which the prefix "law" is replaced.
+    """The main program of a target: each file's name, in one folder with the header, and its text.
 
-    Parameters
-    ----------
-    target
-        One that has a main program.
-    prefix
-        Of the names in the header, and the header's own name.
-    folder
-        Name of the folder: Arduino wants that of a sketch to be the same.
+    Files of C and C++ that take all they need to know from the header.  For another prefix than "law" its
+    names are replaced, ``law_step`` by ``wall_step`` and ``LAW_RATE_HZ`` by ``WALL_RATE_HZ``; Arduino wants a
+    sketch to be called as its folder.
     """
     if target not in MAINS:
         raise InputError(f'there is no main program for "{target}"; there is one for {", ".join(MAINS)}')

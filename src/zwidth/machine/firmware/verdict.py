@@ -47,21 +47,9 @@ _NUMBERS = {
 class Judged:
     """A law, a machine, and what is proved of both together.
 
-    Parameters
-    ----------
-    machine
-        The law in the machine's numbers.
-    ideal
-        On the law in real numbers.
-    verdict
-        On the law with what friction the machine's numbers leave; on the law itself where they are not
-        counted.
-    counted
-        Whether the machine's numbers are in the verdict.
-    reason
-        Why they are not, or why nothing is proved of them.
-    bounded
-        Whether force bounding at the end pays for the rounding.
+    `ideal` is of the law in real numbers; `verdict` of the law with what friction the machine's numbers
+    leave, or of the law itself where they are not `counted`, for `reason`.  `bounded` where force bounding at
+    the end pays for the rounding.
     """
 
     machine: Machine
@@ -127,17 +115,7 @@ class Judged:
 
 
 def judged(device: Device, environment: Environment, machine: Machine, decide: Decide = check) -> Judged:
-    """The verdict on a machine.
-
-    Parameters
-    ----------
-    device, environment
-        The loop.
-    machine
-        The law in the machine's numbers.
-    decide
-        In the place of `zwidth.check`.
-    """
+    """The verdict on a machine; `decide` in the place of `zwidth.check`."""
     bounded = _bounded(device, environment, machine)
     if bounded is not None:
         return bounded

@@ -25,17 +25,7 @@ from zwidth.machine.servo.safety import ZEROS
 
 
 class Axis:
-    """A device that is reached, until it is closed.
-
-    Parameters
-    ----------
-    connection
-        How it is reached.
-    placement
-        Where x = 0 is on its axis, and which way x goes.
-    sample_period
-        T [s].
-    """
+    """A device that is reached, at a period T [s], until it is closed."""
 
     def __init__(
         self, connection: CompiledConnection | LibraryConnection, placement: Placement, sample_period: float

@@ -243,16 +243,9 @@ class Moment:
 
 
 def findings(granted: Granted, before: Moment, root: Path = Path("/")) -> list[Finding]:
-    """What there is to say about this machine.
+    """What there is to say about this machine, from what a loop with real-time priority was granted.
 
-    Parameters
-    ----------
-    granted
-        What a loop with real-time priority was granted.
-    before
-        From before the measurement: the load then, and what the host took since, are told.
-    root
-        Where the files of the system are.
+    The load `before` the measurement, and what the host took since, are told.
     """
     return [
         _kernel(root),

@@ -99,26 +99,11 @@ def answer(
 ) -> float:
     """The force of sample k, positive out of the wall; the row of the sample but for its times.
 
-    Parameters
-    ----------
-    status
-        What became of the question for the position.
-    k, t
-        Number and time [s] of the sample.
-    beaten
-        The clock [ns], to compare with the heartbeat of the program around.
-    memory
-        Of the connection: the reading, and what it tells.
-    laws, memories
-        Two places for a packed law and what it remembers: one is served, the other may be waiting.
-    rests
-        For each place, what the law remembers at rest, see `loop.setup.resting_lines`.
-    control, n
-        See above; both are changed.
-    counts
-        Where the law counts its samples, a state of `loop.plant`.
-    row
-        Of the ring.
+    Parameters ---------- status What became of the question for the position. t, beaten Time of the sample
+    [s]; the clock, to compare with the heartbeat of the program around [ns]. memory Of the connection: the
+    reading, and what it tells. laws, memories, rests Two places for a packed law, what it remembers, and what
+    it does at rest, see `loop.setup.resting_lines`: one is served, the other may be waiting. control, n See
+    above; both are changed. counts Where the law counts its samples, a state of `loop.plant`.
     """
     x, wish, limited = n[X], 0.0, 0.0
     f = n[FORCE_BEFORE]

@@ -59,18 +59,9 @@ def run_turn(period: int, most: int, late: Nanoseconds, told: Nanoseconds) -> No
 
 @dataclass(frozen=True)
 class Lateness:
-    """How late the steps of a loop were.
+    """How late each step of a loop was [s], and samples that were not taken.
 
-    Attributes
-    ----------
-    late
-        Of each step [s].
-    missed
-        Samples that were not taken.
-    margin
-        How long before a deadline the loop awoke in the end [s].
-    granted
-        What the loop asked of the system.
+    `margin` is how long before a deadline the loop awoke in the end [s].
     """
 
     late: NDArray[np.float64]
@@ -118,16 +109,7 @@ def measure_lateness(
 ) -> Measured:
     """Ordinary and real-time turns in alternation; all ordinary where there is no real-time priority.
 
-    Parameters
-    ----------
-    sample_period
-        T [s].
-    duration
-        Of all turns together [s].
-    core
-        That the loop keeps to; None for any.
-    progress
-        Is told (seconds done, in all).
+    T, and the duration of all turns together [s]; `progress` is told (seconds done, in all).
     """
     check_supported()
     ordinary = RealTime(priority=0, memory=False, core=core)
@@ -236,14 +218,8 @@ class StiffnessCost:
 
 
 def stiffness_cost(device: Device, environment: Environment, lateness: float) -> StiffnessCost:
-    """The largest passive stiffness without and with a lateness.
-
-    Parameters
-    ----------
-    device, environment
-        As for `zwidth.check`.
-    lateness
-        L [s].
+    """The largest passive stiffness without and with a lateness L [s]; device and environment as of
+    `zwidth.check`.
     """
     if not has_stiffness(environment):
         raise InputError(

@@ -211,15 +211,7 @@ _BEAT = 0.02
 
 
 class LoopThread:
-    """One run after the other over a connection, each in a thread of its own.
-
-    Parameters
-    ----------
-    connection
-        That is open.
-    real_time
-        What the thread asks of the system.
-    """
+    """One run after the other over a connection that is open, each in a thread of its own."""
 
     def __init__(self, connection: Connection, real_time: RealTime) -> None:
         self.granted: Granted | None = None

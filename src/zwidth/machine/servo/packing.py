@@ -26,20 +26,10 @@ class Packed(NamedTuple):
 def pack(
     device: Device, environment: Environment, here: float, force: float, *, single: bool = False
 ) -> Packed:
-    """Lay out a law.
+    """Lay out a law for the encoder, the converter and the period of a device; its mass is not needed.
 
-    Parameters
-    ----------
-    device
-        Whose encoder, converter and period the law is made for; its mass is not needed.
-    environment
-        With the laws in its chain.
-    here
-        The reading now [m; rad].
-    force
-        Up to which it may begin [N; N·m].
-    single
-        True where the machine keeps numbers in 24 bits.
+    `here` is the reading now [m; rad], `force` up to which it may begin [N; N·m]; `single` where the machine
+    keeps numbers in 24 bits.
     """
     begins = unloaded_range(environment, force, here)
     if begins[0] > begins[1]:

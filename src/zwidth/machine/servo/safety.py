@@ -120,17 +120,7 @@ _FASTEST = {"linear": 10.0, "rotary": 300.0}
 
 
 def limits_of(safety: Safety, force_limit: float | None, motion: str, period: float) -> Limits:
-    """What the loop compares with.
-
-    Parameters
-    ----------
-    force_limit
-        Of the device [N; N·m], where it is known.
-    motion
-        "linear" or "rotary".
-    period
-        T [s].
-    """
+    """What the loop compares with; the force limit of the device [N; N·m] where it is known, T [s]."""
     asked = None if safety.force is None else float(safety.force)
     known = [f for f in (asked, force_limit) if f is not None]
     force = min(known) if known else 1e300
@@ -187,16 +177,10 @@ def judged_answer(status: int, bad: float, most: float) -> int:
 
 @compiled
 def judged_reading(x: float, before: float, farthest: float) -> int:
-    """RUNNING, or why the force has to end.
+    """RUNNING, or why the force has to end: at x [m; rad], farther from the one before than a hand may have
+    gone.
 
-    Parameters
-    ----------
-    x
-        The reading [m; rad].
-    before
-        The one before; not a number where there is none.
-    farthest
-        A hand may have moved it so far since [m; rad].
+    `before` is not a number where there is none.
     """
     if not isfinite(x):
         return NO_NUMBER

@@ -23,14 +23,7 @@ from zwidth.native.compiled import Array, compiled
 def locate(first: float, second: float, arms: Array, found: Array) -> bool:
     """Position of the tip and its change with the angles; False where the arms cannot meet.
 
-    Parameters
-    ----------
-    first, second
-        θ₁, θ₂ [rad].
-    arms
-        l, L and d [m].
-    found
-        Takes x, y [m], ∂x/∂θ₁, ∂y/∂θ₁, ∂x/∂θ₂, ∂y/∂θ₂ [m/rad].
+    Of θ₁, θ₂ [rad] and the arms l, L, d [m]; `found` takes x, y [m], ∂x/∂θ₁, ∂y/∂θ₁, ∂x/∂θ₂, ∂y/∂θ₂ [m/rad].
     """
     inner, outer, base = arms[0], arms[1], arms[2]
     ax, ay = inner * math.cos(first), inner * math.sin(first)

@@ -23,17 +23,7 @@ SIMULATED = "simulated"
 
 
 class Key(NamedTuple):
-    """A key of a connection.
-
-    Parameters
-    ----------
-    meaning
-        In a few words.
-    form
-        "text", "whole", "flag", or "number".
-    unit
-        Of a number, SI.
-    """
+    """A key of a connection, of the form "text", "whole", "flag", or "number", whose unit is SI."""
 
     meaning: str
     form: str = "text"

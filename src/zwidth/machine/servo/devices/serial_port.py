@@ -34,14 +34,8 @@ def open_port(port: str, baud: int) -> Any:
     """The port, open for this process alone; its `fileno()` neither blocks on reading nor on writing.
 
     What had come before is thrown away.  Where a USB adapter gathers bytes before it hands them on (FTDI: for
-    16 ms) and its driver can be told not to, it is told.
-
-    Parameters
-    ----------
-    port
-        "/dev/ttyACM0", "/dev/cu.usbmodem1"; a pseudo-terminal too, which has no baud rate.
-    baud
-        Bits per second on the wire [1/s]; USB devices that only look like serial ports ignore it.
+    16 ms) and its driver can be told not to, it is told.  A pseudo-terminal has no baud rate, and USB devices
+    that only look like serial ports ignore it [1/s].
     """
     check_supported()
     try:
@@ -217,15 +211,7 @@ class BusServo(CompiledConnection):
 
 
 def check_watchdog(watchdog: float, sample_period: float) -> None:
-    """Refuse a watchdog that one late sample would set off.
-
-    Parameters
-    ----------
-    watchdog
-        After so long without a force the device ends it [s].
-    sample_period
-        Of the loop [s].
-    """
+    """Refuse a watchdog [s], which ends a force by itself, that one late sample would set off."""
     if watchdog < 2 * sample_period:
         raise InputError(
             f"watchdog must be at least two sample periods, {2 * sample_period:g} s, or one late sample ends "

@@ -167,15 +167,7 @@ def _apply(s: Array, inbox: Bytes, outbox: Bytes) -> int:
 
 @dataclass(frozen=True, kw_only=True)
 class Scripted(Operator):
-    """A hand that does at sample k what another does at kT, whenever the sample is taken.
-
-    Parameters
-    ----------
-    operator
-        The other hand.
-    period
-        T [s].
-    """
+    """A hand that does at sample k what another does at kT [s], whenever the sample is taken."""
 
     operator: Operator
     period: float

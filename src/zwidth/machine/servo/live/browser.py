@@ -155,18 +155,9 @@ _HEARD = "const n = source.data.number; if (n.length) words.tags = [n[n.length -
 
 @dataclass(frozen=True)
 class Shown:
-    """What every viewer is shown.
+    """What every viewer is shown, at every frame [s]: another thread adds to envelope and tally.
 
-    Parameters
-    ----------
-    rows
-        Of the loop: its title, its motion, its period.
-    envelope, tally
-        What was seen of it; another thread adds to them.
-    surface
-        Where the wall begins [m; rad]; None where there is none.
-    frame
-        Between two pictures [s].
+    The wall begins at `surface` [m; rad]; None where there is none.
     """
 
     rows: Rows
@@ -340,16 +331,9 @@ def _band(figure: Any, source: Any, curve: int, colour: str, name: str | None = 
 
 
 class Reader:
-    """Rows, handed on as they come.
+    """A thread that asks a loop for its rows at every so many seconds, and hands on what is new.
 
-    Parameters
-    ----------
-    rows
-        Of the loop.
-    take
-        Is called with what is new; what it raises ends the thread, and is logged.
-    every
-        Between two looks [s].
+    What `take` raises ends it, and is logged; others, and the loop, stay as they are.
     """
 
     def __init__(self, rows: Rows, take: Callable[[News], None], every: float) -> None:

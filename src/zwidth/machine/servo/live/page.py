@@ -79,16 +79,8 @@ def guarded(application: Any, names: Collection[str], port: int, *, addresses: b
     """What Tornado is to serve in the place of `application`: a request to a foreign host meets no handler.
 
     A page of another site whose name comes to mean this machine is of the same origin for a browser, and for
-    Tornado; only its Host tells.  A WebSocket begins as such a request.
-
-    Parameters
-    ----------
-    names
-        Of this server.
-    port
-        Of this server; only port 80 may be left out of a Host.
-    addresses
-        Any address in numbers will do: it comes to mean nothing else.
+    Tornado; only its Host tells.  A WebSocket begins as such a request.  Only port 80 may be left out of a
+    Host. With `addresses` any address in numbers will do: it comes to mean nothing else.
     """
     routing, http = library("tornado.routing", "Tornado"), library("tornado.httputil", "Tornado")
     own = {*origins(names, port), *(names if port == 80 else ())}
@@ -120,15 +112,7 @@ def _is_address(host: str, port: int) -> bool:
 
 
 def library(module: str, name: str) -> Any:
-    """A module of a library that may be missing.
-
-    Parameters
-    ----------
-    module
-        To import.
-    name
-        As its makers write it.
-    """
+    """A module of the extra `serve` that may be missing; `name` as its makers write it."""
     try:
         return importlib.import_module(module)
     except ImportError:
@@ -149,16 +133,9 @@ def bound(port: int) -> tuple[list[Any], int]:
 
 
 class Serving:
-    """A thread that serves on sockets, until it is closed.
+    """A thread that serves on sockets that listen, until it is closed.
 
-    Parameters
-    ----------
-    sockets
-        That listen.
-    made
-        Makes, in the thread, the HTTP server, and what ends whatever is behind it.
-    name
-        Of the thread.
+    `made` makes, in the thread, the HTTP server, and what ends whatever is behind it.
     """
 
     def __init__(

@@ -65,13 +65,7 @@ class News(NamedTuple):
 
 
 class Watched:
-    """Rows, and how many of them were seen; for one who looks.
-
-    Parameters
-    ----------
-    rows
-        Of the loop.
-    """
+    """Rows, and how many of them were seen; for one who looks."""
 
     def __init__(self, rows: Rows) -> None:
         position, force = names_of(rows.motion)
@@ -121,15 +115,7 @@ class Band(NamedTuple):
 
 
 class Envelope:
-    """Lowest and highest of each curve in so many spans, the last `SPAN` seconds in all.
-
-    Parameters
-    ----------
-    curves
-        How many.
-    spans
-        How many.
-    """
+    """Lowest and highest of so many curves in so many spans, the last `SPAN` seconds in all."""
 
     def __init__(self, curves: int, spans: int) -> None:
         self._width = SPAN / spans
@@ -187,13 +173,7 @@ _WITHIN = 1.0
 
 
 class Tally:
-    """Counts what is seen of a loop.
-
-    Parameters
-    ----------
-    rows
-        Of the loop: it tells the names of the columns, and the motion.
-    """
+    """What is seen of a loop, in one line: its phase and law, its rate, the force now, how late it is."""
 
     def __init__(self, rows: Rows) -> None:
         self._at = {name: i for i, name in enumerate(rows.COLUMNS)}

@@ -194,14 +194,8 @@ Codes = NDArray[np.int64]
 def cells(low: Array, high: Array, lines: int, bottom: float, top: float) -> Codes:
     """The character codes of a curve, a row for each line of text, from above; 0x2800 where there is no dot.
 
-    Parameters
-    ----------
-    low, high
-        Lowest and highest of each column of dots, NaN where there is nothing.
-    lines
-        Lines of text.
-    bottom, top
-        What the lowest and the highest row of dots stand for.
+    Lowest and highest of each column of dots, NaN where there is nothing; bottom and top are what the lowest
+    and the highest row of dots stand for.
     """
     down = lines * DOTS_DOWN
     low, high = _joined(low, high)

@@ -59,16 +59,9 @@ def _table(values: dict[str, str]) -> bytes:
 
 
 class McapFile:
-    """A file that grows by chunks.
+    """A file that grows by chunks, made new; with `force` what is there is lost.
 
-    Parameters
-    ----------
-    path
-        Made new.
-    head
-        What is known before the first row.
-    force
-        What is there is lost; else there must be nothing, nor a link.
+    Else there must be nothing, nor a link.
     """
 
     def __init__(self, path: Path, head: Head, force: bool = False) -> None:
