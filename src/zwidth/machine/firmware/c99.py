@@ -8,6 +8,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
+from zwidth.machine.firmware.law import LawProgram
 from zwidth.machine.firmware.printer import AS_IN_C, Printer
 from zwidth.machine.firmware.program import Call, Cells, Constant, Load, Operand, Operation, Table, Variable
 
@@ -149,6 +150,17 @@ def real_text(value: float, real: Real) -> str:
             number = np.float32(value)
         return f"{_pointed(str(number))}f" if np.isfinite(number) else _endless(float(number), "f")
     return _pointed(repr(float(value))) if np.isfinite(value) else _endless(value, "")
+
+
+def rest_lines(law: LawProgram, real: Real, seen: str, counts: str, memory: str) -> list[str]:
+    """What a law remembers at rest, place by place, in C and in JavaScript; `counts` as a real number."""
+    x = f"({counts} * {real_text(law.resolution, real)})" if law.resolution > 0 else seen
+
+    def line(place: int, inside: bool) -> str:
+        at, per = law.line(place, inside)
+        return real_text(at, real) + (f" + {real_text(per, real)} * {x}" if per != 0.0 else "")
+
+    return [f"    {memory}[{k}] = {value};" for k, value in enumerate(law.rest_texts(seen, line))]
 
 
 def _pointed(text: str) -> str:

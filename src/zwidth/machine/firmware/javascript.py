@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from zwidth.machine.firmware.c99 import real_text
+from zwidth.machine.firmware.c99 import real_text, rest_lines
 from zwidth.machine.firmware.law import LawProgram
 from zwidth.machine.firmware.printer import AS_IN_C, Printer, comment
 from zwidth.machine.firmware.program import Call, Cells, Constant, Table, Variable
@@ -136,18 +136,8 @@ def module(
         "/* Forget what was, at rest where the handle was seen last. */",
         f"export function reset(s, {seen} = s.{seen}) {{",
         *near,
-        *_rest(law, seen),
+        *rest_lines(law, "double", seen, seen, "s.memory"),
         f"    s.{seen} = {seen};",
         "}",
     ]
     return "\n".join(lines) + "\n"
-
-
-def _rest(law: LawProgram, seen: str) -> list[str]:
-    x = f"({seen} * {real_text(law.resolution, 'double')})" if law.resolution > 0 else seen
-
-    def line(place: int, inside: bool) -> str:
-        at, per = law.line(place, inside)
-        return real_text(at, "double") + (f" + {real_text(per, 'double')} * {x}" if per != 0.0 else "")
-
-    return [f"    s.memory[{k}] = {value};" for k, value in enumerate(law.rest_texts(seen, line))]

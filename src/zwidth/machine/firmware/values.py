@@ -138,32 +138,15 @@ def _over(a: Number, b: Number) -> float:
 
 
 _KNOWN: dict[str, Callable[..., Any]] = {
-    "+": operator.add,
-    "-": operator.sub,
-    "*": operator.mul,
-    "/": _over,
-    "//": operator.floordiv,
-    "%": operator.mod,
-    "<": operator.lt,
-    "<=": operator.le,
-    "==": operator.eq,
-    "!=": operator.ne,
-    ">": operator.gt,
-    ">=": operator.ge,
-    "and": lambda a, b: a and b,
-    "or": lambda a, b: a or b,
-    "not": operator.not_,
-    "negate": operator.neg,
-    "abs": abs,
-    "floor": lambda a: float(np.floor(a)),
-    "ceil": lambda a: float(np.ceil(a)),
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "/": _over, "//": operator.floordiv,
+    "%": operator.mod, "<": operator.lt, "<=": operator.le, "==": operator.eq, "!=": operator.ne,
+    ">": operator.gt, ">=": operator.ge, "and": lambda a, b: a and b, "or": lambda a, b: a or b,
+    "not": operator.not_, "negate": operator.neg, "abs": abs, "real": float, "integer": int,
+    "floor": lambda a: float(np.floor(a)), "ceil": lambda a: float(np.ceil(a)),
     "sqrt": lambda a: math.sqrt(a) if a >= 0 else math.nan,
-    "min": lambda a, b: b if b < a else a,
-    "max": lambda a, b: b if b > a else a,
+    "min": lambda a, b: b if b < a else a, "max": lambda a, b: b if b > a else a,
     "select": lambda c, a, b: a if c else b,
-    "real": float,
-    "integer": int,
-}
+}  # fmt: skip
 
 
 def is_known(value: Any) -> bool:

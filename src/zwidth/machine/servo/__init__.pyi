@@ -7,8 +7,6 @@ from zwidth.machine.servo.connection import Connection as Connection
 from zwidth.machine.servo.connection import LibraryConnection as LibraryConnection
 from zwidth.machine.servo.connection import Placement as Placement
 from zwidth.machine.servo.pair import PairServo as PairServo
-from zwidth.machine.servo.pair import PairServoReport as PairServoReport
-from zwidth.machine.servo.port_run import PortReport as PortReport
 from zwidth.machine.servo.port_run import PortRun as PortRun
 from zwidth.machine.servo.priority import Granted as Granted
 from zwidth.machine.servo.priority import RealTime as RealTime
@@ -16,6 +14,8 @@ from zwidth.machine.servo.proving import Measured as Measured
 from zwidth.machine.servo.recording.recorder import Recorder as Recorder
 from zwidth.machine.servo.recording.recording import Recording as Recording
 from zwidth.machine.servo.recording.recording import read_recording as read_recording
+from zwidth.machine.servo.report import PairServoReport as PairServoReport
+from zwidth.machine.servo.report import PortReport as PortReport
 from zwidth.machine.servo.report import ServoReport as ServoReport
 from zwidth.machine.servo.ring import Rows as Rows
 from zwidth.machine.servo.safety import Safety as Safety

@@ -23,6 +23,7 @@ from zwidth.errors import InputError
 from zwidth.machine.servo.posix import Bytes
 from zwidth.model.specification.table import Table, located
 from zwidth.native.compiled import Array, compiled
+from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import plain, read_number
 
@@ -168,6 +169,14 @@ def give_library(connection: LibraryConnection, force: float) -> int:
         return connection.apply(force)
     except OSError:
         return CLOSED
+
+
+def seconds_of(duration: RealLike) -> Exact:
+    """How long a loop is to run, > 0 [s]."""
+    found: Exact = read_number(
+        duration, GLOSSARY["sample_period"], "duration", bound="> 0", why="0 has no sample"
+    )
+    return found
 
 
 @dataclass(frozen=True)

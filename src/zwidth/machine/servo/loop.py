@@ -160,12 +160,6 @@ def _run(
                 return
 
 
-def run_compiled(connection: CompiledConnection, opened: Opened, last: int, shared: Shared) -> None:
-    """Run the loop over a compiled connection, up to sample `last` or, below 0, until it ends."""
-    kind = type(connection)
-    _run(kind.measure, kind.apply, last, *opened, *shared)  # type: ignore[arg-type]  # arrays of three kinds
-
-
 def _find(memory: Array, shared: Shared) -> None:
     """Have what the loop in Python calls found in the library before the clock runs; on copies."""
     loop = deepcopy(shared)
@@ -175,35 +169,26 @@ def _find(memory: Array, shared: Shared) -> None:
     noted(loop.ring[0], 0.0, 0.0, loop.control, loop.numbers, loop.spread)
 
 
-def run_library(connection: LibraryConnection, opened: Opened, last: int, shared: Shared) -> None:
-    """The same over a library, in Python: whatever else runs in Python delays it."""
-    memory, n, control = opened.memory, shared.numbers, shared.control
-    ring, spread, step = shared.ring, shared.spread, float(n[PERIOD])
-    k = zeros = 0
-    _find(memory, shared)
-    most = int(n[AWAKE_MOST])
-    start, awake = now(), min(MARGIN, most)
-    while zeros < ZEROS:
-        taken, due, at, awake = await_sample(k, start, step * 1e9, awake, most)
-        if k == 0:
-            taken, due, start = 0, at, at
-        if control[REASON] == RUNNING:
-            if 0 <= last < taken:
-                control[REASON] = DONE
-            else:
-                control[MISSED] += taken - k
-        k = taken
-        late = lateness(at, due, step)
-        t = k * step + late
-        status, memory[READING] = ask_library(connection, int(at + ANSWERED * step * 1e9))
-        row = ring[control[ROWS] % ring.shape[0]]
-        force = answer(status, k, t, at, memory, *shared[:-2], row)
-        given = give_library(connection, -n[SENSE] * force)
-        if given in (CLOSED, REFUSED) and control[REASON] == RUNNING:
-            control[REASON] = BAD_ANSWER + given
-        noted(row, late, (now() - at) * 1e-9, control, n, spread)
-        k += 1
-        zeros += control[REASON] != RUNNING
+def run(connection: Connection, opened: Opened, last: int, shared: Shared) -> None:
+    """Run the loop up to sample `last` or, below 0, until it ends.
+
+    Over a library it is one in Python: whatever else runs in Python delays it.
+    """
+    if isinstance(connection, CompiledConnection):
+        kind = type(connection)
+        _run(kind.measure, kind.apply, last, *opened, *shared)  # type: ignore[arg-type]  # arrays of three kinds
+        return
+    library = cast(LibraryConnection, connection)
+
+    def measure(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
+        status, memory[READING] = ask_library(library, int(memory[UNTIL]))
+        return status
+
+    def apply(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
+        return give_library(library, memory[FORCE])
+
+    _find(opened.memory, shared)
+    _run.py_func(measure, apply, last, *opened, *shared)  # type: ignore[attr-defined]
 
 
 _BEAT = 0.02
@@ -262,10 +247,7 @@ class LoopThread:
             with self._real_time as self.granted:
                 has_priority = "priority" in self.granted
                 loop.numbers[AWAKE_MOST] = most_awake(1e9 * float(loop.numbers[PERIOD]), has_priority)
-                if isinstance(self._connection, CompiledConnection):
-                    run_compiled(self._connection, opened, last, loop)
-                else:
-                    run_library(cast(LibraryConnection, self._connection), opened, last, loop)
+                run(self._connection, opened, last, loop)
         except BaseException as error:  # a thread's exceptions are seen by nobody
             self._failure = error
             loop.control[REASON] = loop.control[REASON] or FAILED

@@ -17,21 +17,9 @@ from zwidth.machine.servo.connection import MOST_TOLD, Connection
 from zwidth.native.compiled import Array, compiled
 
 (
-    SAMPLE,
-    AT,
-    LATE,
-    POSITION,
-    WISHED,
-    GIVEN,
-    ENERGY_OUT,
-    FRICTION_LOSS,
-    STATUS,
-    PHASE,
-    LAW,
-    LIMITED,
-    EXCHANGE,
-    TELLS,
-) = range(14)
+    SAMPLE, AT, LATE, POSITION, WISHED, GIVEN, ENERGY_OUT, FRICTION_LOSS, STATUS, PHASE, LAW, LIMITED,
+    EXCHANGE, TELLS,
+) = range(14)  # fmt: skip
 WIDTH = TELLS + MOST_TOLD
 
 MEASURING, WAITING, SERVING, ENDED = range(4)

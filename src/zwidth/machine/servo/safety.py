@@ -22,9 +22,10 @@ from typing import NamedTuple
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.connection import CLOSED, GOOD, REFUSED
+from zwidth.model.device.device import Device
 from zwidth.model.specification.table import Table, located
 from zwidth.native.compiled import compiled
-from zwidth.quantity.exact import Exact
+from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.glossary import Quantity
 from zwidth.quantity.parameter import (
     Certain,
@@ -119,13 +120,14 @@ class Limits(NamedTuple):
 _FASTEST = {"linear": 10.0, "rotary": 300.0}
 
 
-def limits_of(safety: Safety, force_limit: float | None, motion: str, period: float) -> Limits:
-    """What the loop compares with; the force limit of the device [N; N·m] where it is known, T [s]."""
+def limits_of(safety: Safety, device: Device, period: float) -> Limits:
+    """What the loop compares with, at a period T [s]; of the device's force limit the least."""
+    limit = None if device.force_limit is None else float(ends(device.force_limit)[0])
     asked = None if safety.force is None else float(safety.force)
-    known = [f for f in (asked, force_limit) if f is not None]
+    known = [f for f in (asked, limit) if f is not None]
     force = min(known) if known else 1e300
     near = float(safety.start_force) if safety.start_force is not None else 0.01 * force if known else 0.0
-    speed = _FASTEST[motion] if safety.speed is None else float(safety.speed)
+    speed = _FASTEST[device.motion] if safety.speed is None else float(safety.speed)
     return Limits(
         force=force,
         change=1e300 if safety.slew is None else float(safety.slew) * period,

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import atexit
 from datetime import UTC, datetime
-from fractions import Fraction
 from math import inf
 from typing import Any, Literal, cast
 
@@ -28,6 +27,7 @@ from zwidth.machine.servo.connection import (
     Opened,
     Placement,
     blank,
+    seconds_of,
 )
 from zwidth.machine.servo.cycle import HEARTBEAT, REASON, ROWS, SERVED, STOP, WANTED
 from zwidth.machine.servo.loop import LoopThread, Shared, shared
@@ -53,8 +53,6 @@ from zwidth.model.specification.write import written
 from zwidth.passivity.check import check
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import RealLike, ends
-from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import read_number
 
 Contact = Literal["made and broken", "kept"]
 _ROOM, _REMEMBERED = 1 << 15, 1 << 11
@@ -121,9 +119,7 @@ class Servo:
         self._certain = least_friction(device)
         self._period = self._certain.exact("sample_period")
         self._thread = LoopThread(connection, real_time or RealTime())
-        limit = self._certain.force_limit
-        most = None if limit is None else float(ends(limit)[0])
-        self._limits = limits_of(self.safety, most, device.motion, float(self._period))
+        self._limits = limits_of(self.safety, self._certain, float(self._period))
         self._first = self._packed(self.environment, 0.0)  # refused before the device is reached
         self._laws: list[tuple[str, Verdict]] = []
         self._closed = False
@@ -167,10 +163,7 @@ class Servo:
             If the device does not answer to the end, or the loop runs, or the device was let go.
         """
         self._refuse_busy()
-        seconds = read_number(
-            duration, GLOSSARY["sample_period"], "duration", bound="> 0", why="0 has no sample"
-        )
-        last = min(max(1, int(seconds.fraction / self._period)), _LONGEST)
+        last = self._count(duration)
         opened = self._opened
         if self.connection.samples is not None:
             last = min(last, self.connection.samples)
@@ -384,10 +377,10 @@ class Servo:
     def _last(self, duration: RealLike | None) -> int:
         if duration is None:
             return -1 if self.connection.samples is None else self.connection.samples
-        seconds: Fraction = read_number(
-            duration, GLOSSARY["sample_period"], "duration", bound="> 0", why="0 has no sample"
-        ).fraction
-        return min(max(1, int(seconds / self._period)), _LONGEST)
+        return self._count(duration)
+
+    def _count(self, duration: RealLike) -> int:
+        return min(max(1, int(seconds_of(duration).fraction / self._period)), _LONGEST)
 
     def _refuse_busy(self) -> None:
         """One loop at a time speaks to a device, and none to a device that was let go."""

@@ -44,6 +44,7 @@ from zwidth.machine.servo.connection import (
     Opened,
     blank,
     exchanged,
+    seconds_of,
 )
 from zwidth.machine.servo.posix import Bytes
 from zwidth.model.device.amplifier import Amplifier
@@ -52,8 +53,6 @@ from zwidth.model.environment import Wall
 from zwidth.model.operator.operator import LinearHand, Operator, Signals
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import RealLike
-from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import read_number
 
 if TYPE_CHECKING:
     from zwidth.model.operator.operator import Signal
@@ -246,10 +245,7 @@ class Simulated(CompiledConnection):
         energies = ("hand_work", "actuator_work", "viscous_loss", "coulomb_loss", "hand_source_work")
         told = [f"{name}_J" for name in (*energies, "hand_damper_loss")]
         object.__setattr__(self, "tells", (f"true_position_{x}", f"true_velocity_{x}_per_s", *told))
-        seconds = read_number(
-            self.duration, GLOSSARY["sample_period"], "duration", bound="> 0", why="0 has no sample"
-        )
-        object.__setattr__(self, "duration", seconds)
+        object.__setattr__(self, "duration", seconds_of(self.duration))
         self.setup()
 
     def setup(self) -> Setup:

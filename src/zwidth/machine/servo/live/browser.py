@@ -45,6 +45,7 @@ from zwidth.machine.servo.live.rows import (
     Rows,
     Tally,
     Watched,
+    scales_of,
 )
 from zwidth.native.compiled import Array
 from zwidth.showing import printable
@@ -232,14 +233,9 @@ def _words(shown: Shown) -> str:
     return f"<b>{escape(printable(shown.rows.title))}</b><br>{escape(shown.tally.line)}"
 
 
-def _scales(rows: Rows) -> tuple[str, str, float]:
-    """Units of position and force, and how many of the latter are in one SI unit."""
-    return ("mrad", "mN·m", 1e3) if rows.motion == "rotary" else ("mm", "N", 1.0)
-
-
 def _columns(band: Band, rows: Rows) -> dict[str, Array]:
     """What Bokeh draws, in the units of the axes."""
-    scale = _scales(rows)[2]
+    scale = scales_of(rows.motion)[2]
     late = np.maximum(1e6 * band.high[:, LATENESS], _LEAST_LATENESS)
     columns = {"time": band.times, "late": late, "number": np.rint(band.times / SPAN * SPANS - 0.5)}
     columns["missed"] = np.where(late >= 1e6 * rows.period, late, math.nan)
@@ -254,7 +250,7 @@ def _figures(shown: Shown, source: Any) -> list[Any]:
     """Four graphs over one time."""
     models = library("bokeh.models", "Bokeh")
     time = models.DataRange1d(follow="end", follow_interval=SPAN, range_padding=0)
-    position, force, _ = _scales(shown.rows)
+    position, force, _ = scales_of(shown.rows.motion)
     make = _maker(time)
     x = make(f"position [{position}]")
     _band(x, source, POSITION, _BLUE)

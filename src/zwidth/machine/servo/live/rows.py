@@ -11,7 +11,9 @@ asked anything: who looks too seldom gets the rows that are still kept, and who 
 
 from __future__ import annotations
 
+import re
 from collections import deque
+from collections.abc import Sequence
 from threading import Lock
 from typing import NamedTuple, Protocol
 
@@ -90,6 +92,16 @@ class Watched:
         return News(rows, rows[:, self._time], curves, self._missed, skipped)
 
 
+def field_name(column: str) -> str:
+    """What ROS 2 and Foxglove accept as the name of a field: force_n for force_N."""
+    return re.sub("[^a-z0-9]+", "_", column.lower()).strip("_")
+
+
+def ros2_schema(columns: Sequence[str]) -> bytes:
+    """The definition of a row as a message of ROS 2."""
+    return "".join(f"float64 {field_name(name)}  # {name}\n" for name in columns).encode()
+
+
 def names_of(motion: str) -> tuple[str, str]:
     """Of the columns of position and force."""
     return ("position_rad", "force_N_m") if motion == "rotary" else ("position_m", "force_N")
@@ -101,6 +113,11 @@ def names_of(motion: str) -> tuple[str, str]:
 
 SPAN = 10.0
 """How long a graph goes back [s]."""
+
+
+def scales_of(motion: str) -> tuple[str, str, float]:
+    """Units of position and force in a graph, and how many of the latter are in one SI unit."""
+    return ("mrad", "mN·m", 1e3) if motion == "rotary" else ("mm", "N", 1.0)
 
 
 class Band(NamedTuple):
@@ -177,8 +194,7 @@ class Tally:
 
     def __init__(self, rows: Rows) -> None:
         self._at = {name: i for i, name in enumerate(rows.COLUMNS)}
-        self._units = ("mrad", "mN·m") if rows.motion == "rotary" else ("mm", "N")
-        self._force_scale = 1e3 if rows.motion == "rotary" else 1.0
+        *self._units, self._force_scale = scales_of(rows.motion)
         self._counted: deque[tuple[float, int]] = deque()
         self._seen = self._bad = self._missed = self._skipped = 0
         self._longest = 0.0

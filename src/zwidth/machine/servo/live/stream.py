@@ -14,7 +14,6 @@ import asyncio
 import json
 import logging
 import math
-import re
 import struct
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -29,7 +28,7 @@ from tornado.web import Application, HTTPError
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from zwidth.machine.servo.live.page import OWN, guarded
-from zwidth.machine.servo.live.rows import Rows
+from zwidth.machine.servo.live.rows import Rows, ros2_schema
 from zwidth.native.compiled import Array
 from zwidth.showing import printable
 
@@ -190,11 +189,6 @@ def json_messages(columns: Sequence[str], rows: Array) -> Iterator[bytes]:
         yield json.dumps(known).encode()
 
 
-def ros2_schema(columns: Sequence[str]) -> bytes:
-    """The definition of a row as a message of ROS 2."""
-    return "".join(f"float64 {_ros2_name(name)}  # {name}\n" for name in columns).encode()
-
-
 def ros2_messages(rows: Array) -> Iterator[bytes]:
     """Each row as ROS 2 serializes it."""
     count, width = rows.shape
@@ -202,8 +196,3 @@ def ros2_messages(rows: Array) -> Iterator[bytes]:
     octets[:, : len(_ENCAPSULATION)] = _ENCAPSULATION
     octets[:, len(_ENCAPSULATION) :] = np.ascontiguousarray(rows, "<f8").view(np.uint8).reshape(count, -1)
     return (row.tobytes() for row in octets)
-
-
-def _ros2_name(name: str) -> str:
-    """Small letters, digits, and single underscores between them."""
-    return re.sub("[^a-z0-9]+", "_", name.lower()).strip("_")

@@ -30,6 +30,7 @@ from zwidth.machine.servo.live.rows import (
     Rows,
     Tally,
     Watched,
+    scales_of,
 )
 from zwidth.native.compiled import Array
 from zwidth.showing import printable
@@ -108,7 +109,7 @@ def _watch_curves(rows: Rows, watched: Watched, tally: Tally, stop: Event, out: 
 
 def _graphs(motion: str) -> list[_Graph]:
     """Position, force, energy and lateness, in the order in which they are left out from the end."""
-    x, f, scale = ("mrad", "mN·m", 1e3) if motion == "rotary" else ("mm", "N", 1.0)
+    x, f, scale = scales_of(motion)
     return [
         _Graph("position", x, 1e3, [(POSITION, "", "cyan")]),
         _Graph("force", f, scale, [(WISHED_FORCE, "asked for", "yellow"), (FORCE, "given", "green")]),

@@ -11,7 +11,6 @@ than a microsecond.
 from __future__ import annotations
 
 import os
-import re
 from contextlib import suppress
 from pathlib import Path
 from struct import pack
@@ -24,6 +23,7 @@ import pyarrow as pa
 from zwidth.data.logs.served import mcap as layout
 from zwidth.data.logs.served.contents import Head, as_json
 from zwidth.loop.trace import own_version
+from zwidth.machine.servo.live.rows import ros2_schema
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -167,13 +167,8 @@ class McapFile:
         return body + pack("<I", crc32(body)) + layout.MAGIC
 
 
-def field_name(column: str) -> str:
-    """What ROS 2 and Foxglove accept as the name of a field: force_n for force_N."""
-    return re.sub("[^a-z0-9]+", "_", column.lower()).strip("_")
-
-
 def _schemas(head: Head) -> bytes:
-    row = "".join(f"float64 {field_name(name)}  # {name}\n" for name in head.columns).encode()
+    row = ros2_schema(head.columns)
     kinds = ((_OF_ROWS, "zwidth_msgs/msg/Sample", row), (_OF_EVENTS, "std_msgs/msg/String", b"string data\n"))
     return b"".join(
         record(layout.SCHEMA, pack("<H", n) + text(name) + text("ros2msg") + pack("<I", len(data)) + data)
