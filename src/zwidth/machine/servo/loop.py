@@ -26,6 +26,7 @@ from zwidth.machine.servo.connection import (
     REFUSED,
     TIME,
     UNTIL,
+    ZEROS,
     CompiledConnection,
     Connection,
     LibraryConnection,
@@ -53,7 +54,7 @@ from zwidth.machine.servo.cycle import (
 from zwidth.machine.servo.posix import ANSWERED, MARGIN, Bytes, margin, most_awake, now, until
 from zwidth.machine.servo.priority import Granted, RealTime
 from zwidth.machine.servo.ring import BINS
-from zwidth.machine.servo.safety import BAD_ANSWER, DONE, FAILED, RUNNING, ZEROS
+from zwidth.machine.servo.safety import BAD_ANSWER, DONE, FAILED, RUNNING
 from zwidth.native.compiled import Array, compiled
 
 

@@ -22,11 +22,11 @@ from typing import Any
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.machine.servo.axis import Axis
 from zwidth.machine.servo.connection import (
     CLOSED,
     GOOD,
     REFUSED,
+    Axis,
     CompiledConnection,
     LibraryConnection,
     Placement,

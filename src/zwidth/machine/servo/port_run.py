@@ -24,11 +24,11 @@ from math import nan
 from zwidth.errors import InputError
 from zwidth.links import Packet
 from zwidth.links.port import Port
-from zwidth.machine.servo.axis import Axis
 from zwidth.machine.servo.connection import (
     CLOSED,
     GOOD,
     REFUSED,
+    Axis,
     CompiledConnection,
     LibraryConnection,
     Placement,

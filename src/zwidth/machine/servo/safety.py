@@ -139,9 +139,6 @@ def limits_of(safety: Safety, device: Device, period: float) -> Limits:
     )
 
 
-ZEROS = 3
-"""How often force 0 is given after the end: a frame may be lost."""
-
 # Why the force ended.  From BAD_ANSWER on the status of the last answer is added.
 RUNNING, ASKED, DONE, NO_NUMBER, JUMPED, GAP, HOST_GONE, FAILED, NO_FORCE, BAD_ANSWER = range(10)
 
