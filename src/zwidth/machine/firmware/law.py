@@ -11,7 +11,7 @@ from zwidth.errors import InputError
 from zwidth.loop.law import LIMIT, STEP, sampled_force, sampled_force_at
 from zwidth.machine.firmware.program import Cells, Program, Variable
 from zwidth.machine.firmware.specialise import specialised
-from zwidth.machine.servo.packing import pack
+from zwidth.machine.servo.cycle import pack
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment

@@ -22,12 +22,16 @@ detent at whose top the force is 0 as well, begins around its lowest rest alone.
 from __future__ import annotations
 
 from math import isfinite, nan
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from zwidth.errors import InputError
 from zwidth.loop.kernel import commanded
 from zwidth.loop.law import CHAIN, REMEMBERED
+from zwidth.loop.setup import prepare, resting_lines
+from zwidth.loop.start import unloaded_range
 from zwidth.machine.servo.connection import GOOD, MOST_TOLD, READING, TOLD
 from zwidth.machine.servo.ring import (
     AT,
@@ -61,6 +65,9 @@ from zwidth.machine.servo.safety import (
     judged_gap,
     judged_reading,
 )
+from zwidth.model.device.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.model.operator import PrescribedMotion
 from zwidth.native.compiled import Array, compiled
 
 Words = NDArray[np.int64]
@@ -230,3 +237,32 @@ def _phase(control: Words) -> float:
     if control[SERVED] != NONE:
         return SERVING
     return MEASURING if control[WANTED] == NONE else WAITING
+
+
+class Packed(NamedTuple):
+    """A law for `cycle.answer`."""
+
+    law: Array
+    rest: Array
+    """What it remembers at rest, see `loop.setup.resting_lines`; 2 × 2 × n."""
+    begins: tuple[float, float]
+    """Between which positions it holds little where it pushes little, see `loop.start.unloaded_range`."""
+
+
+def pack(
+    device: Device, environment: Environment, here: float, force: float, *, single: bool = False
+) -> Packed:
+    """Lay out a law for the encoder, the converter and the period of a device; its mass is not needed.
+
+    `here` is the reading now [m; rad], `force` up to which it may begin [N; N·m]; `single` where the machine
+    keeps numbers in 24 bits.
+    """
+    begins = unloaded_range(environment, force, here)
+    if begins[0] > begins[1]:
+        raise InputError(
+            "this law pulls away at one of its ends and is at rest nowhere: a hand would be given all it "
+            "holds where it begins; let it push back at both ends"
+        )
+    still = PrescribedMotion([0.0, 0.0])
+    setup = prepare(device, environment, still, device.exact("sample_period"), single=single)
+    return Packed(setup.law, resting_lines(setup), begins)

@@ -29,9 +29,8 @@ from zwidth.machine.servo.connection import (
     blank,
     seconds_of,
 )
-from zwidth.machine.servo.cycle import HEARTBEAT, REASON, ROWS, SERVED, STOP, WANTED
+from zwidth.machine.servo.cycle import HEARTBEAT, REASON, ROWS, SERVED, STOP, WANTED, Packed, pack
 from zwidth.machine.servo.loop import LoopThread, Shared, shared
-from zwidth.machine.servo.packing import Packed, pack
 from zwidth.machine.servo.posix import check_supported, now
 from zwidth.machine.servo.priority import Granted, RealTime
 from zwidth.machine.servo.proving import (

@@ -30,6 +30,7 @@ from zwidth.model.operator.operator import Operator
 from zwidth.model.operator.prescribed_motion import PrescribedMotion
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.model.rendering.rendering_law import LoopContext, RenderingLaw
+from zwidth.native.compiled import Array
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import quantity_unit
 
@@ -40,8 +41,6 @@ if TYPE_CHECKING:
 if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 _MIDDLE = 0.5
 """Phase at which a reading of whole counts lies in the middle of its count, far from an edge."""
