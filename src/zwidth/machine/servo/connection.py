@@ -246,13 +246,11 @@ class Axis:
             connection.open(sample_period)
 
     def __enter__(self) -> Axis:
-        """Itself."""
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, raised: BaseException | None, where: TracebackType | None
     ) -> None:
-        """As `close`."""
         self.close()
 
     def begin(self) -> None:

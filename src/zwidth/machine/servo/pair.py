@@ -148,7 +148,6 @@ class PairServo:
         atexit.register(self.close)
 
     def __enter__(self) -> PairServo:
-        """Itself."""
         return self
 
     def __exit__(self, *_: object) -> None:

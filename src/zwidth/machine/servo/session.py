@@ -127,7 +127,6 @@ class Servo:
         atexit.register(self.close)
 
     def __enter__(self) -> Servo:
-        """Itself."""
         return self
 
     def __exit__(self, kind: object, error: object, trace: object) -> None:

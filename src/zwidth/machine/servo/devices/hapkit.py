@@ -234,7 +234,6 @@ class Hapkit(CompiledConnection):
             )
 
     def close(self) -> None:
-        """As of every connection."""
         if self._line is None or self._opened is None:
             return
         self._opened.memory[FORCE] = 0.0

@@ -325,7 +325,6 @@ class _Haply(CompiledConnection):
             self._line.write(frame)
 
     def close(self) -> None:
-        """As of every connection."""
         if self._line is None:
             return
         count = len(self.joints)

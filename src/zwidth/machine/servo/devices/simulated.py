@@ -173,34 +173,27 @@ class Scripted(Operator):
 
     @property
     def hand(self) -> LinearHand:
-        """Of the other."""
         return self.operator.hand
 
     @property
     def kinematic(self) -> bool:
-        """As the other."""
         return self.operator.kinematic
 
     @property
     def initial_position(self) -> float:
-        """Of the other."""
         return self.operator.initial_position
 
     @property
     def start_is_chosen(self) -> bool:
-        """As of the other."""
         return self.operator.start_is_chosen
 
     def starting_at(self, position: float) -> Operator:
-        """The other, starting there."""
         return replace(self, operator=self.operator.starting_at(position))
 
     def signals(self, times: Signal) -> Signals:
-        """Those of the other at whole periods."""
         return self.operator.signals(np.arange(len(times)) * np.float64(self.period))
 
     def describe(self, motion: str = "linear") -> str:
-        """As the other."""
         return self.operator.describe(motion)
 
 
