@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
 from firmware.adversary import attacked, random_loop
 
-from zwidth.machine.firmware.judged import PROVED
+from zwidth.machine.firmware.verdict import PROVED
 
 
 def main() -> int:

@@ -27,8 +27,8 @@ from moved_plants import CELLS, PERIOD, PLANTS, hand_and_law, plant_in_c, plant_
 from zwidth.loop.law import sampled_force, sampled_force_at
 from zwidth.loop.plant import STATE_SIZE
 from zwidth.loop.series import WORK
+from zwidth.machine.firmware.javascript import module
 from zwidth.machine.firmware.law import LawProgram, law_program
-from zwidth.machine.firmware.module import module
 from zwidth.machine.firmware.plant import one_period, plant_header, plant_module, plant_program
 
 OPTIONS = (("-std=c99", "-O2"), ("-std=gnu99", "-O3", "-march=native"))

@@ -35,10 +35,8 @@ from playwright.sync_api import Page, sync_playwright
 from websockets.sync.client import connect
 
 from zwidth.machine.servo.live import open_page, serve_foxglove
-from zwidth.machine.servo.live.document import SPANS, Shown, make_document
-from zwidth.machine.servo.live.envelope import Envelope
-from zwidth.machine.servo.live.rows import CURVES, Watched
-from zwidth.machine.servo.live.tally import Tally
+from zwidth.machine.servo.live.browser import SPANS, Shown, make_document
+from zwidth.machine.servo.live.rows import CURVES, Envelope, Tally, Watched
 
 RATE = 1000.0
 FRAME = 0.05

@@ -22,9 +22,9 @@ from firmware.emulated.host import HostLaw
 
 import zwidth as zw
 from zwidth.machine.firmware.header import header
-from zwidth.machine.firmware.judged import Judged, judged
 from zwidth.machine.firmware.law import law_program
 from zwidth.machine.firmware.machine import Machine, machine
+from zwidth.machine.firmware.verdict import Judged, judged
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.quantity.exact import Exact

@@ -31,9 +31,9 @@ import zwidth as zw
 from zwidth.loop.law import sampled_force, sampled_force_at
 from zwidth.loop.setup import prepare
 from zwidth.machine.firmware.header import header
+from zwidth.machine.firmware.javascript import module
 from zwidth.machine.firmware.law import LawProgram, law_program
 from zwidth.machine.firmware.machine import Machine, Number, machine
-from zwidth.machine.firmware.module import module
 from zwidth.machine.firmware.plant import plant_program
 from zwidth.model.environment.environment import Environment
 from zwidth.model.operator import PrescribedMotion

@@ -11,7 +11,6 @@ from random import Random
 import pytest
 from strategies import seeds
 
-from zwidth.machine.firmware.binary import FLOAT
 from zwidth.machine.firmware.bound import (
     Bound,
     absolute,
@@ -28,6 +27,7 @@ from zwidth.machine.firmware.bound import (
     scaled,
 )
 from zwidth.machine.firmware.evaluation import Evaluation, Exact
+from zwidth.machine.firmware.machine import FLOAT
 from zwidth.machine.firmware.program import (
     Branch,
     Cells,

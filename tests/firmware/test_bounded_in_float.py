@@ -13,7 +13,7 @@ from firmware.emulated.required import require
 
 import zwidth as zw
 from zwidth.errors import InputError
-from zwidth.machine.firmware.judged import judged
+from zwidth.machine.firmware.verdict import judged
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 STIFF = zw.render(zw.Wall(2000, 1), zw.rendering.SlewLimit(2000), zw.rendering.ForceBounding())

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from firmware.tools import DATA, run, tool, written
 
-from zwidth.machine.firmware.mains import files
+from zwidth.machine.firmware.targets import main_files
 from zwidth.machine.firmware.telemetry import read_telemetry
 
 NEWTONS = {1: 0.00672, 2: 0.00672, 3: 28 / 4096, 4: 0.01}
@@ -19,7 +19,7 @@ DAMPED = {1: 0.0448, 2: 0.0448, 3: 184 / 4096, 4: 0.04}
 
 def ended(folder: Path, kind: int, *options: str) -> int:
     """The status with which the program ends; its line is in `line.bin`."""
-    written(files("cortex-m"), folder)
+    written(main_files("cortex-m"), folder)
     flags = " ".join(["-O2", "-Werror", f"-DLAW_KIND={kind}", "-DSAMPLES=2000", *options])
     board = f"BOARD={DATA / 'mps2.c'}"
     run(tool("make"), f"CC={tool('arm-none-eabi-gcc')}", board, f"CFLAGS={flags} -I.", cwd=folder)

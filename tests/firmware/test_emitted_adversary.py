@@ -11,9 +11,9 @@ from firmware.adversary import HostLaw, Loop, attacked, gained, random_loop, tex
 from firmware.emulated.required import require
 
 import zwidth as zw
-from zwidth.machine.firmware.judged import judged
 from zwidth.machine.firmware.law import law_program
 from zwidth.machine.firmware.machine import machine
+from zwidth.machine.firmware.verdict import judged
 from zwidth.quantity.exact import Exact
 
 

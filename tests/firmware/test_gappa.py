@@ -14,11 +14,10 @@ from firmware.emulated.built import called
 from firmware.emulated.required import require
 from firmware.random_laws import PADDLE, laws
 
-from zwidth.machine.firmware.binary import DOUBLE, FLOAT
 from zwidth.machine.firmware.bound import plain
 from zwidth.machine.firmware.invariant import Rest, invariant
 from zwidth.machine.firmware.law import LawProgram, law_program
-from zwidth.machine.firmware.machine import rest_ends
+from zwidth.machine.firmware.machine import DOUBLE, FLOAT, rest_ends
 from zwidth.machine.firmware.program import Constant, Load, Operand, Operation, Store, Variable
 
 MOST = 3000

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from firmware.tools import DATA, STUBS, WARNINGS, needed_header, run, tool, written
 
-from zwidth.machine.firmware.mains import files
+from zwidth.machine.firmware.targets import main_files
 from zwidth.machine.firmware.telemetry import read_telemetry
 
 NEWTONS = {2: 0.00672, 3: 28 / 4096, 4: 0.01}
@@ -40,7 +40,7 @@ def simulator(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def sketch(folder: Path, kind: int) -> Path:
     """Compiled for the chip."""
-    written(files("arduino", folder="wall"), folder)
+    written(main_files("arduino", folder="wall"), folder)
     chip = ["-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Os", "-fno-exceptions", "-ffp-contract=off"]
     options = ["-std=gnu++11", *WARNINGS, f"-DLAW_KIND={kind}", "-I", STUBS / "arduino", "-I", folder]
     sources = ["-x", "c++", "-include", "Arduino.h", folder / "wall.ino", STUBS / "arduino" / "main.cpp"]

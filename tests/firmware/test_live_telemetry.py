@@ -11,9 +11,8 @@ import pytest
 from firmware.written_packets import FIRST, SERVING, TEXT, samples, text
 
 from zwidth.errors import InputError
-from zwidth.machine.firmware.live import LiveTelemetry
-from zwidth.machine.servo.live.rows import ENERGY_OUT, FRICTION_LOSS, POSITION, Watched
-from zwidth.machine.servo.live.tally import Tally
+from zwidth.machine.firmware.telemetry import LiveTelemetry
+from zwidth.machine.servo.live.rows import ENERGY_OUT, FRICTION_LOSS, POSITION, Tally, Watched
 
 COUNT, UNIT = 2.24e-5, 5 / 32767
 

@@ -13,7 +13,7 @@ import pytest
 from firmware.tools import run, tool, written
 from servo.emulators.moteus import MoteusEmulator
 
-from zwidth.machine.firmware.mains import files
+from zwidth.machine.firmware.targets import main_files
 from zwidth.machine.firmware.telemetry import read_telemetry
 
 pytestmark = pytest.mark.skipif(
@@ -26,7 +26,7 @@ SLOW = "-DTIMEOUT=60000000000 -DLONGEST_GAP=60000000000"
 
 def made(target: str, folder: Path, *changes: tuple[str, str, str], flags: str = SLOW) -> Path:
     """The program of a target, by its own Makefile; each change replaces a text of one of its files."""
-    written(files(target), folder)
+    written(main_files(target), folder)
     for name, old, new in changes:
         text = (folder / name).read_text(encoding="utf-8")
         assert old in text

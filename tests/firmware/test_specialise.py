@@ -222,7 +222,7 @@ import zwidth as zw
 from zwidth.machine.firmware.header import header
 from zwidth.machine.firmware.law import law_program
 from zwidth.machine.firmware.machine import Machine
-from zwidth.machine.firmware.module import module
+from zwidth.machine.firmware.javascript import module
 law = law_program(
     zw.catalogue.device("haptic-paddle"),
     zw.render(zw.Wall(300, "0.2"), zw.rendering.PassivityController(), zw.rendering.EventTransient()),

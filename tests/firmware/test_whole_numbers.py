@@ -15,10 +15,10 @@ from firmware.emulated.required import require
 
 import zwidth as zw
 from zwidth.machine.firmware.bound import plain
+from zwidth.machine.firmware.c99 import HELPERS, NARROW
 from zwidth.machine.firmware.emit import emit
 from zwidth.machine.firmware.evaluation import Evaluation, Exact
 from zwidth.machine.firmware.fixed import lowered
-from zwidth.machine.firmware.fixed_text import HELPERS, NARROW
 from zwidth.machine.firmware.program import (
     Branch,
     Cells,
@@ -30,7 +30,7 @@ from zwidth.machine.firmware.program import (
     Variable,
     set_to,
 )
-from zwidth.machine.firmware.tidy import tidied
+from zwidth.machine.firmware.simplified import tidied
 from zwidth.machine.firmware.units import Scale, Unit
 
 

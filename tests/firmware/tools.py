@@ -62,7 +62,7 @@ def written(files: dict[str, str], folder: Path) -> Path:
 
 def mains() -> Path:
     """Where the main programs are."""
-    return Path(str(resources("zwidth.machine.firmware.mains")))
+    return Path(str(resources("zwidth.machine.firmware") / "mains"))
 
 
 def library(source: Path, folder: Path, *options: str) -> ctypes.CDLL:

@@ -123,7 +123,7 @@ os._exit(9)
 @pytest.mark.skipif(os.name != "posix", reason="there are no such modes")
 def test_memory_that_others_may_have_laid_there_is_not_used(tmp_path, monkeypatch):
     """By either side: open to others, of two names, a link, a folder, of another user; it stays as it was."""
-    monkeypatch.setattr("zwidth.machine.network.shared_memory._place", tmp_path.joinpath)
+    monkeypatch.setattr("zwidth.machine.network.carriers._place", tmp_path.joinpath)
 
     def left(name, mode=0o600):
         (tmp_path / name).touch()

@@ -8,7 +8,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.links import WavePort
-from zwidth.machine.network.part_run import PartRun
+from zwidth.machine.network.runs import PartRun
 from zwidth.model.scene import Damper, LineEnd, Mass, Scene, Spring
 from zwidth.model.scene.parts import Part
 

@@ -9,7 +9,7 @@ import pytest
 
 from zwidth.links import Packet
 from zwidth.machine.network import Frame, Link
-from zwidth.machine.network.monitor import WINDOW
+from zwidth.machine.network.peer import WINDOW
 
 
 class Wire:

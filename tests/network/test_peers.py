@@ -9,9 +9,8 @@ import zwidth as zw
 from zwidth.errors import InputError
 from zwidth.links import Schedule, WavePort
 from zwidth.machine.network import Channel, Lossy
-from zwidth.machine.network.device_run import DeviceRun
-from zwidth.machine.network.part_run import PartRun
 from zwidth.machine.network.peer import Peer
+from zwidth.machine.network.runs import DeviceRun, PartRun
 from zwidth.model.scene import Contact, Damper, LineEnd, Mass, Scene, Spring
 from zwidth.model.scene.parts import Part
 

@@ -8,7 +8,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.errors import InputError
-from zwidth.machine.servo.cost import stiffness_cost
+from zwidth.machine.servo.lateness import stiffness_cost
 
 PLAIN = {"damping": "0.35", "rate": "2 kHz"}
 

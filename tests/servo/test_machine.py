@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from zwidth.machine.servo import machine
-from zwidth.machine.servo.machine import Moment, findings
+from zwidth.machine.servo import checkup
+from zwidth.machine.servo.checkup import Moment, findings
 from zwidth.machine.servo.priority import Answer, Granted
 
 ALL = Granted(
@@ -133,7 +133,7 @@ def test_the_time_that_a_host_took_is_that_between_two_looks(tmp_path):
 
 def test_memory_that_is_not_locked_matters_where_there_is_swap(tmp_path, monkeypatch):
     """What cannot be put aside stays in memory unlocked."""
-    monkeypatch.setattr(machine, "memory_limit", lambda: 8 * 2**20)
+    monkeypatch.setattr(checkup, "memory_limit", lambda: 8 * 2**20)
     swap = {"proc/meminfo": "SwapTotal:    2097152 kB\nSwapFree:     1048576 kB"}
     one = _told(tmp_path, swap, NONE)["memory"]
     assert "may lock 8 MiB" in one.seen

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from zwidth.machine.servo.pace import MARGIN, margin, most_awake, until
-from zwidth.machine.servo.posix import now
+from zwidth.machine.servo.posix import MARGIN, margin, most_awake, now, until
 
 SHARE = 1 / 256
 

@@ -10,7 +10,7 @@ import zwidth as zw
 from zwidth.errors import InputError
 from zwidth.links import Packet, WavePort
 from zwidth.machine.network import Channel, Peer
-from zwidth.machine.network.device_run import DeviceRun
+from zwidth.machine.network.runs import DeviceRun
 from zwidth.machine.servo import port_run
 from zwidth.machine.servo.connection import CLOSED, GARBLED, REFUSED, SILENT, Placement
 from zwidth.machine.servo.devices.simulated import Simulated

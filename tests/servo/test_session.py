@@ -12,7 +12,7 @@ import scipy.signal
 from played import Library, Played
 
 import zwidth as zw
-from zwidth.machine.servo import Placement, Safety, Servo, proving, running
+from zwidth.machine.servo import Placement, Safety, Servo, loop, proving
 from zwidth.machine.servo.connection import CLOSED, GARBLED, REFUSED, SILENT, STALE
 from zwidth.machine.servo.devices import Simulated
 
@@ -145,7 +145,7 @@ def test_a_short_hold_up_is_missed_samples_only() -> None:
 
 def test_program_that_hangs_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without its signs of life the force ends."""
-    monkeypatch.setattr(running, "_beat", lambda loop, ended: None)
+    monkeypatch.setattr(loop, "_beat", lambda loop, ended: None)
     device = Played(np.concatenate([INSIDE, np.full(2000, 5e-3)]))
     servo = served(device, safety=Safety(host_timeout="0.5 s"))
     assert device.forces.any()

@@ -27,12 +27,10 @@ from typing import TYPE_CHECKING, Any
 from zwidth.cli.simulation_tables import build_hand
 from zwidth.errors import InputError
 from zwidth.links import Schedule, WavePort, held_back
-from zwidth.machine.network.channel import Channel
-from zwidth.machine.network.device_run import DeviceRun
-from zwidth.machine.network.lossy import Lossy
-from zwidth.machine.network.open import open_channel
-from zwidth.machine.network.part_run import PartRun
+from zwidth.machine.network.carriers import open_channel
+from zwidth.machine.network.channel import Channel, Lossy
 from zwidth.machine.network.peer import Peer
+from zwidth.machine.network.runs import DeviceRun, PartRun
 from zwidth.model.device import Device
 from zwidth.model.operator.named import usual_kind
 from zwidth.model.operator.operator import Operator

@@ -5,7 +5,7 @@ from servo.drive import PATIENCE
 
 SECONDS = ("inverse._ANSWER_TIME", "odrive._ANSWER_TIME", "odrive._START_TIME", "moteus._START_TIME")
 NANOSECONDS = (
-    "bus_servo._WAIT",
+    "serial_port._WAIT",
     "hapkit._BOOT",
     "hapkit._ONE_TRY",
     "haply._FIRST_ANSWER",

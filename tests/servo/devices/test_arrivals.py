@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from zwidth.machine.servo.connection import GARBLED, SILENT, STALE
-from zwidth.machine.servo.devices.arrivals import dropped, more_bytes, unanswered, unwrapped
+from zwidth.machine.servo.devices.frames import dropped, more_bytes, unanswered, unwrapped
 from zwidth.machine.servo.posix import now
 
 

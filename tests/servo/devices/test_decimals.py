@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from zwidth.machine.servo.devices.decimals import read_decimal, write_decimal
+from zwidth.machine.servo.devices.json_text import read_decimal, write_decimal
 
 
 def read(text, start=0):

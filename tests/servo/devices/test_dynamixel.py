@@ -234,7 +234,7 @@ def test_a_dynamixel_that_is_not_to_be_served_is_left_alone():
 
 def test_nobody_on_a_dynamixel_bus(monkeypatch):
     """Said when it is opened."""
-    monkeypatch.setattr("zwidth.machine.servo.devices.bus_servo._WAIT", 100_000_000)
+    monkeypatch.setattr("zwidth.machine.servo.devices.serial_port._WAIT", 100_000_000)
     nobody = pytest.raises(InputError, match=r"Dynamixel servo 1 .* does not answer")
     with DynamixelEmulator(COUNTS, identifier=7) as other, nobody:
         servo(other).open(1e-3)

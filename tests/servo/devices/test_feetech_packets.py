@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from servo.emulators.feetech import FeetechEmulator, packet
 
 from zwidth.machine.servo.connection import CLOSED, GARBLED, GOOD, SILENT, STALE
-from zwidth.machine.servo.devices.feetech_packets import (
+from zwidth.machine.servo.devices.feetech import (
     magnitude,
     put_read,
     put_write,

@@ -144,7 +144,7 @@ def test_counts_that_are_no_4096th_of_a_turn_are_refused():
 
 def test_nobody_on_a_feetech_bus(monkeypatch):
     """Said when it is opened."""
-    monkeypatch.setattr("zwidth.machine.servo.devices.bus_servo._WAIT", 100_000_000)
+    monkeypatch.setattr("zwidth.machine.servo.devices.serial_port._WAIT", 100_000_000)
     nobody = pytest.raises(InputError, match=r"Feetech servo 1 .* does not answer")
     with FeetechEmulator(COUNTS, identifier=7) as other, nobody:
         servo(other).open(1e-3)

@@ -16,8 +16,7 @@ from servo.emulators.haply import BASE, INNER, OUTER, HaplyEmulator, angles_of
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.connection import CLOSED, GARBLED, GOOD, SILENT
-from zwidth.machine.servo.devices.haply import HaplyJoint, HaplyMotor, HaplyPantograph
-from zwidth.machine.servo.devices.pantograph import locate
+from zwidth.machine.servo.devices.haply import HaplyJoint, HaplyMotor, HaplyPantograph, locate
 
 ARMS = np.array([INNER, OUTER, BASE])
 

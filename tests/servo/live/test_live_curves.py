@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from live_rows import WrittenRows
 
-from zwidth.machine.servo.live.rows import CURVES, LATENESS, MARGIN, Watched
-from zwidth.machine.servo.live.tally import Tally
+from zwidth.machine.servo.live.rows import CURVES, LATENESS, MARGIN, Tally, Watched
 from zwidth.machine.servo.ring import AT, LATE, SAMPLE, WIDTH, Rows
 
 

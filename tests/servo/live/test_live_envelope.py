@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from zwidth.machine.servo.live.envelope import SPAN, Envelope
+from zwidth.machine.servo.live.rows import SPAN, Envelope
 
 SPANS = 20
 WIDTH = SPAN / SPANS

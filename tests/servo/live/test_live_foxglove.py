@@ -21,8 +21,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.live.foxglove import serve_foxglove
-from zwidth.machine.servo.live.messages import ros2_schema
-from zwidth.machine.servo.live.stream import JSON_TOPIC, ROS2_TOPIC
+from zwidth.machine.servo.live.stream import JSON_TOPIC, ROS2_TOPIC, ros2_schema
 
 HANGS = 60.0
 """Nothing comes any more [s]."""

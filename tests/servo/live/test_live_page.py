@@ -21,12 +21,9 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from zwidth.errors import InputError
-from zwidth.machine.servo.live.browser import open_page
-from zwidth.machine.servo.live.document import SPANS, Shown, make_document
-from zwidth.machine.servo.live.envelope import Envelope
+from zwidth.machine.servo.live.browser import SPANS, Shown, make_document, open_page
 from zwidth.machine.servo.live.page import HOST, Page
-from zwidth.machine.servo.live.rows import CURVES, Watched
-from zwidth.machine.servo.live.tally import Tally
+from zwidth.machine.servo.live.rows import CURVES, Envelope, Tally, Watched
 
 HANGS = 6000
 """So many looks without what was waited for: it does not come any more."""

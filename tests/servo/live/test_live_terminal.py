@@ -11,8 +11,7 @@ import pytest
 from live_rows import Array, WrittenRows
 from rich.console import Console
 
-from zwidth.machine.servo.live.braille import EMPTY, cells
-from zwidth.machine.servo.live.terminal import watch_in_terminal
+from zwidth.machine.servo.live.terminal import EMPTY, cells, watch_in_terminal
 
 DOT = {"1": (0, 0), "2": (1, 0), "3": (2, 0), "7": (3, 0), "4": (0, 1), "5": (1, 1), "6": (2, 1), "8": (3, 1)}
 

@@ -10,7 +10,7 @@ from written_rows import COLUMNS, drawn
 
 from zwidth import InputError
 from zwidth.data.logs.served.contents import Head
-from zwidth.machine.servo.recording.mcap import McapFile
+from zwidth.machine.servo.recording.recorder import McapFile
 from zwidth.machine.servo.recording.recording import read_recording
 
 EACH = 50

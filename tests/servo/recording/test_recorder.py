@@ -11,7 +11,7 @@ from full_disk import full_disk
 from written_rows import COLUMNS, WrittenRows, drawn
 
 from zwidth import InputError
-from zwidth.machine.servo.recording.mcap import field_name
+from zwidth.machine.servo.live.rows import field_name
 from zwidth.machine.servo.recording.recorder import Recorder
 from zwidth.machine.servo.recording.recording import Recording, read_recording
 

@@ -25,16 +25,8 @@ _LEAST = 2.0**-1060
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """A number of its own, in [low, high]: one that is no sum of others, a rounding, a place of the memory.
-
-    Parameters
-    ----------
-    low, high
-        Of the exact number.
-    place
-        In the memory; None elsewhere.
-    error
-        How far what is remembered there is off.
+    """A number of its own in [low, high]: no sum of others, a rounding, or a place of the memory, off by
+    `error`.
     """
 
     low: float
@@ -54,24 +46,9 @@ Sum = dict[Source, float]
 
 @dataclass(frozen=True)
 class Bound:
-    """See above.
+    """See above: c_i in `terms`, r in [rest_low, rest_high]; d_j in `noise`, δ in `own`.
 
-    Parameters
-    ----------
-    low, high
-        Of the exact number.
-    error
-        How far the computed one is from it, ≥ 0.
-    terms
-        c_i.
-    rest_low, rest_high
-        Of r.
-    noise
-        d_j.
-    own
-        Of δ.
-    signed
-        True where the computed number has the sign of the exact one, and is 0 where it is.
+    `signed` where the computed number has the sign of the exact one, and is 0 where it is.
     """
 
     low: float

@@ -11,12 +11,11 @@ from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.machine.firmware.header import header
-from zwidth.machine.firmware.judged import PROVED, Decide, Judged, judged
+from zwidth.machine.firmware.javascript import module
 from zwidth.machine.firmware.law import LawProgram, law_program
 from zwidth.machine.firmware.machine import Machine, Number, machine
-from zwidth.machine.firmware.module import module
-from zwidth.machine.firmware.preamble import about, claim, defines, digest
 from zwidth.machine.firmware.targets import TARGETS, Target
+from zwidth.machine.firmware.verdict import PROVED, Decide, Judged, about, claim, defines, digest, judged
 from zwidth.machine.servo.proving import least_friction
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment

@@ -98,16 +98,10 @@ _OPPOSITE = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
 
 @dataclass
 class Evaluation:
-    """Bounds of everything in a program.
+    """Bounds of everything in a program; `seen` has of every result the hull of what it was.
 
-    Parameters
-    ----------
-    arithmetic
-        The machine's.
-    converter
-        The floor that takes the nearest step of the converter: the exact law has none, so it is an error too.
-    seen
-        Of every result, the hull of what it was.
+    `converter` is the floor that takes the converter's nearest step: the exact law has none, so it is an
+    error too.
     """
 
     arithmetic: Arithmetic
@@ -119,14 +113,8 @@ class Evaluation:
     ) -> tuple[list[Bound], tuple[Bound, ...]]:
         """What is remembered after one call, and the results.
 
-        Parameters
-        ----------
-        program
-            Whose cells are one array.
-        given
-            Of its parameters.
-        memory
-            Low, high and error of every place before the call.
+        The cells of the program are one array; of the memory low, high and error of every place before the
+        call.
         """
         way = _Way(dict(given), [remembered(k, *m) for k, m in enumerate(memory)], {})
         self.block(program.body, way, keep=True)

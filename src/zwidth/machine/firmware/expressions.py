@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from zwidth.machine.firmware.arithmetic import applied, as_operand, converted, is_known, kind_of
 from zwidth.machine.firmware.program import (
     OPERATORS,
     Branch,
@@ -24,8 +23,20 @@ from zwidth.machine.firmware.program import (
     Table,
     Variable,
 )
-from zwidth.machine.firmware.values import Changing, Unknown, each, joined, record
-from zwidth.native.names import SPELLED, Attributes, Defined, Reader, floor
+from zwidth.machine.firmware.values import (
+    Changing,
+    Unknown,
+    applied,
+    as_operand,
+    converted,
+    each,
+    is_known,
+    joined,
+    kind_of,
+    record,
+)
+from zwidth.native.names import Attributes, Defined, floor
+from zwidth.native.reader import SPELLED, Reader
 
 _FUNCTIONS: dict[Any, str] = {
     abs: "abs",
@@ -49,18 +60,10 @@ MOST_BITS = 31
 
 @dataclass
 class Expressions(Reader, ABC):
-    """Reads the expressions of one call.
+    """Reads the expressions of one call of the function `of`, and writes statements into `block`.
 
-    Parameters
-    ----------
-    of
-        The function.
-    names
-        What each of its names stands for now.
-    block
-        Where statements are written.
-    calls
-        The functions that are being written out, this one last.
+    `names` has what each name stands for now, `calls` the functions that are being written out, this one
+    last.
     """
 
     of: Defined

@@ -38,22 +38,9 @@ class TooLarge(Exception):
 class Fixed:
     """A program in whole numbers: an `evaluation.Arithmetic` of the real one.
 
-    Parameters
-    ----------
-    program
-        The same statements on whole numbers.
-    units
-        Of what the real one has.
-    constants, roundings
-        By statement of the real one: how far its known numbers are off, and its result is rounded.
-    most
-        The size of each result for which it was written.
-    narrow
-        The whole numbers that 16 bits hold.
-    result
-        The unit of what it gives back.
-    to_zero
-        Products that may be rounded to 0.
+    By statement of the real one `constants` tells how far its known numbers are off, and `roundings` how far
+    its result is rounded; `most` is the size of each result for which it was written.  16 bits hold what is
+    `narrow`; products `to_zero` may be rounded to 0; `result` is the unit of what it gives back.
     """
 
     program: Program
@@ -81,19 +68,7 @@ class Fixed:
 
 
 def lowered(program: Program, scale: Scale, sizes: Mapping[Variable, Bound], cells: list[float]) -> Fixed:
-    """A program in whole numbers.
-
-    Parameters
-    ----------
-    program
-        In real numbers.
-    scale
-        Its units.
-    sizes
-        Of every result, how large it is.
-    cells
-        How large what it remembers is.
-    """
+    """A program of real numbers in whole ones, for results and remembered numbers of these sizes."""
     return _Lowering(units_of(program, scale), sizes, cells).whole(program)
 
 

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from zwidth.machine.firmware.c99 import C99, KEYWORDS, Real, real_text
-from zwidth.machine.firmware.fixed_text import NARROW, SHIFTS, FixedC99
-from zwidth.machine.firmware.law import LawProgram
+from zwidth.machine.firmware.c99 import C99, KEYWORDS, NARROW, SHIFTS, FixedC99, Real, rest_lines
 from zwidth.machine.firmware.machine import Machine, rest_numbers
 from zwidth.machine.firmware.printer import comment
 from zwidth.machine.firmware.program import Operation
-from zwidth.machine.firmware.tidy import tidied
+from zwidth.machine.firmware.simplified import tidied
 
 _ROUNDED = """\
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) \\
@@ -79,18 +77,9 @@ class _Body:
 def header(
     machine: Machine, *, name: str, about: Sequence[str], numbers: Iterable[tuple[str, str, str]]
 ) -> str:
-    """The text of the header.
+    """The text of the header, whose names all begin with `name`.
 
-    Parameters
-    ----------
-    machine
-        The law in the numbers of the target.
-    name
-        What every name begins with.
-    about
-        Lines of the comment at its head.
-    numbers
-        Name, value and meaning of each `#define`.
+    `about` are the lines at its head, `numbers` name, value and meaning of each ``#define``.
     """
     body = _binary(machine, name) if machine.fixed is None else _whole(machine, name)
     upper, seen = name.upper(), body.given.split()[1]
@@ -174,7 +163,8 @@ def _binary(machine: Machine, name: str) -> _Body:
     c = C99(law.program, KEYWORDS | {name}, real=real, prefix=name)
     step = c.lines()
     result = c.read(law.program.results[0], alone=True)
-    given = "int32_t counts" if law.resolution > 0 else f"{real} position"
+    seen = "counts" if law.resolution > 0 else "position"
+    given = f"int32_t {seen}" if law.resolution > 0 else f"{real} {seen}"
     library = any(isinstance(s, Operation) and s.operator in _OF_MATH for s in law.program.statements())
     return _Body(
         guards=[rounded(real), *([DOUBLE] if real == "double" else [])],
@@ -183,21 +173,10 @@ def _binary(machine: Machine, name: str) -> _Body:
         given=given,
         memory=real,
         before=[*c.table_lines(), *c.helper_lines()],
-        rest=_rest(law, real, given.split()[1]),
+        rest=rest_lines(law, real, seen, f"({real}){seen}", "s->memory"),
         step=step,
         result=result,
     )
-
-
-def _rest(law: LawProgram, real: Real, seen: str) -> list[str]:
-    """What it remembers at rest, place by place."""
-    x = f"(({real}){seen} * {real_text(law.resolution, real)})" if law.resolution > 0 else seen
-
-    def line(place: int, inside: bool) -> str:
-        at, per = law.line(place, inside)
-        return real_text(at, real) + (f" + {real_text(per, real)} * {x}" if per != 0.0 else "")
-
-    return [f"    s->memory[{k}] = {value};" for k, value in enumerate(law.rest_texts(seen, line))]
 
 
 def _whole(machine: Machine, name: str) -> _Body:

@@ -39,14 +39,9 @@ Places = list[tuple[float, float, float]]
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """What a program remembers at first: anything on a straight line between some of its ends.
+    """What a program remembers at first: anything on a straight line between some of its ends, m × n.
 
-    Parameters
-    ----------
-    ends
-        m × n.
-    error
-        By how much the computed one is off, place by place.
+    Place by place the computed one is off by `error`.
     """
 
     ends: Array
@@ -61,17 +56,7 @@ class Rest:
 
 @dataclass(frozen=True, eq=False)
 class Invariant:
-    """Bounds that hold at every call.
-
-    Parameters
-    ----------
-    memory
-        Of every place: low, high, error.
-    values
-        Of every result in the program.
-    results
-        Of what it gives back.
-    """
+    """Bounds that hold at every call: of the memory, of every result, and of what the program gives back."""
 
     memory: Places
     values: dict[Variable, Bound]
@@ -85,21 +70,7 @@ def invariant(
     arithmetic: Arithmetic,
     converter: Operation | None = None,
 ) -> Invariant:
-    """Bounds of everything in a program that is called for ever.
-
-    Parameters
-    ----------
-    program
-        With one array of memory.
-    given
-        Of its parameters, at every call.
-    rest
-        What it remembers at first.
-    arithmetic
-        Of the machine.
-    converter
-        See `Evaluation`.
-    """
+    """Bounds of everything in a program with one array of memory, called for ever; see `Evaluation`."""
     memory = rest.places
     for _ in range(_MOST_PASSES):
         evaluation = Evaluation(arithmetic, converter)

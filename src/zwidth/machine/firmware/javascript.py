@@ -1,13 +1,14 @@
-"""A program as JavaScript, whose numbers are all double."""
+"""A program as JavaScript, whose numbers are all double; a law as one ES module: `init`, `step`, `reset`."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from zwidth.machine.firmware.c99 import real_text
-from zwidth.machine.firmware.printer import AS_IN_C, Printer
+from zwidth.machine.firmware.c99 import real_text, rest_lines
+from zwidth.machine.firmware.law import LawProgram
+from zwidth.machine.firmware.printer import AS_IN_C, Printer, comment
 from zwidth.machine.firmware.program import Call, Cells, Constant, Table, Variable
 
 _OWN = (
@@ -89,3 +90,54 @@ class JavaScript(Printer):
 
 def _one_or_list(texts: list[str]) -> str:
     return texts[0] if len(texts) == 1 else f"[{', '.join(texts)}]"
+
+
+_NEAREST = "    {seen} = Math.min(Math.max({seen}, {upper}_MIN), {upper}_MAX);"
+
+
+def module(
+    law: LawProgram,
+    *,
+    about: Sequence[str],
+    numbers: Iterable[tuple[str, str, str]],
+    cuts_readings: bool = False,
+) -> str:
+    """The text of the module: `about` at its head, `numbers` with name, value and meaning of what it exports.
+
+    `cuts_readings` where a reading beyond those that `numbers` names is taken as the nearest of them.
+    """
+    js = JavaScript(law.program, KEYWORDS)
+    seen = "counts" if law.resolution > 0 else "position"
+    near = [_NEAREST.format(seen=seen, upper=seen.upper())] if cuts_readings else []
+    body = js.lines()
+    result = js.read(law.program.results[0], alone=True)
+    lines = [
+        *comment(about),
+        *(f"export const {key} = {value}; // {meaning}" for key, value, meaning in numbers),
+        "",
+        *js.table_lines(),
+        *js.helper_lines(),
+        "",
+        f"/* What the law remembers, at rest at this {seen}, as if it had been there for ever. */",
+        f"export function init({seen}) {{",
+        f"    const s = {{ memory: new Float64Array({max(law.remembers, 1)}), {seen} }};",
+        f"    reset(s, {seen});",
+        "    return s;",
+        "}",
+        "",
+        "/* One sample: the force to be given from now on [N; N*m], out of a wall is positive. */",
+        f"export function step(s, {seen}) {{",
+        *near,
+        f"    s.{seen} = {seen};",
+        *body,
+        f"    return {result};",
+        "}",
+        "",
+        "/* Forget what was, at rest where the handle was seen last. */",
+        f"export function reset(s, {seen} = s.{seen}) {{",
+        *near,
+        *rest_lines(law, "double", seen, seen, "s.memory"),
+        f"    s.{seen} = {seen};",
+        "}",
+    ]
+    return "\n".join(lines) + "\n"

@@ -11,7 +11,7 @@ from zwidth.errors import InputError
 from zwidth.loop.law import LIMIT, STEP, sampled_force, sampled_force_at
 from zwidth.machine.firmware.program import Cells, Program, Variable
 from zwidth.machine.firmware.specialise import specialised
-from zwidth.machine.servo.packing import pack
+from zwidth.machine.servo.cycle import pack
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
@@ -28,20 +28,12 @@ _SMALL = 1e100
 
 @dataclass(frozen=True, eq=False)
 class LawProgram:
-    """A law and how it begins.
+    """A law, from counts, or from a position where the device has no counts, to the force; and how it begins.
 
-    Parameters
-    ----------
-    program
-        From counts, or from a position where the device has no counts, to the force.
-    law
-        The packed numbers that it was made of, see `loop.law`.
-    rest
-        What it remembers at rest, see `loop.setup.resting_lines`; 2 × 2 × n.
-    resolution
-        Δ, metres or radians per count; 0 where the position is given.
-    pays
-        Whether force bounding at its end pays for the roundings of its operations as they stand.
+    `law` are the packed numbers that it was made of, see `loop.law`, `rest` what it remembers at rest, 2 × 2
+    × n, see `loop.setup.resting_lines`.  The resolution is Δ, metres or radians per count, 0 where the
+    position is given. It `pays` where force bounding at its end pays for the roundings of its operations as
+    they stand.
     """
 
     program: Program
@@ -79,13 +71,8 @@ class LawProgram:
 def law_program(device: Device, environment: Environment | object, *, single: bool = False) -> LawProgram:
     """The program of a law.
 
-    Parameters
-    ----------
-    device, environment
-        The loop.
-    single
-        True where the machine keeps numbers in 24 bits: a law that reckons with its own rounding then
-        sets more aside.
+    `single` where the machine keeps numbers in 24 bits: a law that reckons with its own rounding then sets
+    more aside.
     """
     if not device.is_certain:
         keys = (f.name for f in fields(device))

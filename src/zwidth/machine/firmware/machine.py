@@ -11,20 +11,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import floor, isfinite, log2
+from math import floor, inf, isfinite, log2
 from typing import Literal
 
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.machine.firmware.binary import DOUBLE, FLOAT, Binary
 from zwidth.machine.firmware.bound import Bound, plain
-from zwidth.machine.firmware.evaluation import Arithmetic, Exact, NoBound
+from zwidth.machine.firmware.evaluation import Arithmetic, Exact, NoBound, Rounded
 from zwidth.machine.firmware.fixed import Fixed, TooLarge, lowered
 from zwidth.machine.firmware.invariant import Invariant, Rest, invariant
 from zwidth.machine.firmware.law import LawProgram
-from zwidth.machine.firmware.program import Operation, Variable
-from zwidth.machine.firmware.simplified import simplified
+from zwidth.machine.firmware.program import Constant, Operation, Statement, Variable
+from zwidth.machine.firmware.simplified import FOLDED, simplified
 from zwidth.machine.firmware.units import Scale, Unit
 from zwidth.native.compiled import Array
 
@@ -42,24 +41,11 @@ _TRIES = 4
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """A law in the numbers of a machine.
+    """A law in the numbers of a machine, for readings from the lowest to the highest [counts; m; rad].
 
-    Parameters
-    ----------
-    law
-        What it computes.
-    number
-        "double", "float" or "fixed".
-    counts
-        The lowest and the highest reading: encoder counts, or a position [m; rad].
-    error
-        ε, with half a step of the converter in it [N; N·m]; None where no bound was found.
-    reason
-        Why none was found.
-    fixed
-        The program in whole numbers, where they are.
-    largest_force
-        The largest |f| that the machine can give [N; N·m]; None where it is not known.
+    `error` is ε with half a step of the converter in it, `largest_force` the largest |f| that the machine can
+    give [N; N·m]; None where no bound was found, for `reason`.  `fixed` is the program in whole numbers,
+    where they are.
     """
 
     law: LawProgram
@@ -95,18 +81,8 @@ def machine(
 ) -> Machine:
     """A law in the numbers of a machine, with the bound of their error.
 
-    Parameters
-    ----------
-    law
-        What it computes.
-    number
-        "double", "float" or "fixed".
-    counts
-        See `Machine`.
-    force_unit
-        In fixed point, where the device's converter has no known step: the unit of the force [N; N·m].
-    enough
-        In fixed point: a rounding that needs no wider numbers [N; N·m]; by default a 1000th of the force.
+    In fixed point `force_unit` is the unit of the force where the device's converter has no known step [N;
+    N·m], and a rounding that is `enough` needs no wider numbers [N; N·m]; by default a 1000th of the force.
     """
     if number != "double" and not law.pays:
         law = replace(law, program=simplified(law.program))
@@ -262,3 +238,62 @@ def fixed_rest_error(law: LawProgram, fixed: Fixed, place: int, inside: bool, mo
 def cell_unit(fixed: Fixed, place: int) -> Unit:
     """The unit of what is remembered in a place."""
     return fixed.units.cells.get(place, fixed.units.scale.force)
+
+
+_ROUNDED = {"+", "-", "*", "/", "sqrt", "real"}
+_DOUBLE = 2.0**-53
+_TINY = 2.0**-40
+"""Three factors of this size leave a count far above the least float."""
+
+
+@dataclass(frozen=True)
+class Binary:
+    """The rounding of a format to the nearest of 53 or of 24 bits.
+
+    A result v is off by u |v| (`unit`) or by `least` at most, and beyond `largest` nothing is kept.  `single`
+    where the law's numbers, which are double, are rounded again.
+    """
+
+    unit: float
+    least: float
+    largest: float
+    single: bool
+
+    def constant(self, value: float, statement: Statement | None) -> float:
+        """A number of the law is the double nearest to the exact one."""
+        own = (FOLDED if self.single else _DOUBLE) * abs(value)
+        if not self.single:
+            return own
+        if abs(value) > self.largest:  # endless: it can be compared with, no more
+            computes = isinstance(statement, Operation) and statement.operator in _ROUNDED
+            return inf if computes else own
+        return own + max(abs(float(np.float32(value)) - value), min(abs(value), self.least))
+
+    def rounding(self, statement: Rounded, of: tuple[Bound, ...], result: Bound) -> float:
+        """u of the computed result, where there is a rounding."""
+        if not isinstance(statement, Operation) or statement.operator not in _ROUNDED:
+            return 0.0
+        if statement.result.kind != "real":
+            return 0.0
+        size = result.computed_size
+        if not size < self.largest:
+            return inf
+        if statement.operator == "real" and size * self.unit <= 0.5:
+            return 0.0
+        if size == 0.0:
+            return 0.0
+        return self.unit * size * (1 + 2 * self.unit) + self.least
+
+    def keeps_sign(self, statement: Rounded) -> bool:
+        """Of products with known numbers that are not tiny."""
+        if not isinstance(statement, Operation) or statement.operator not in ("*", "/", "real"):
+            return False
+        known = [abs(float(o.value)) for o in statement.operands if isinstance(o, Constant)]
+        if statement.operator == "/":  # the divisor
+            return isinstance(statement.operands[1], Constant) and 0.0 < known[-1] < 1 / _TINY
+        return statement.operator == "real" or any(k == 0.0 or k > _TINY for k in known)
+
+
+DOUBLE = Binary(_DOUBLE, 2.0**-1074, 1.7e308, False)
+FLOAT = Binary(2.0**-24, 2.0**-126, 3.4e38, True)
+"""Numbers below 2⁻¹²⁶ may be taken for 0 by a machine."""

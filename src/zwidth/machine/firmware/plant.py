@@ -59,22 +59,10 @@ def one_period(
     anchor_speed: float,
     period: float,
 ) -> None:
-    """The command of this sample acts from now on, then the plant moves by a period.
+    """The command of this sample acts from now on, then the plant moves by a period T [s].
 
-    Parameters
-    ----------
-    state, work
-        As `loop.step.advance` has them.
-    plant
-        Its numbers.
-    force
-        f, of the law [N; N·m]; the actuator goes to it.
-    push
-        F, of the hand [N; N·m].
-    anchor, anchor_speed
-        x_a at the beginning [m; rad] and ẋ_a [m/s; rad/s].
-    period
-        T [s].
+    `force` f of the law and `push` F of the hand [N; N·m]; `anchor` x_a at the beginning [m; rad], its speed
+    ẋ_a [m/s; rad/s]; state and work as `loop.step.advance` has them.
     """
     state[GOAL] = force
     if plant.lag == 0.0 and plant.slew == 0.0:
@@ -91,14 +79,8 @@ def given_plant(*, amplified: bool) -> Plant:
 def plant_program(plant: Plant | None, period: float | None, hand: Hand) -> Program:
     """The program of one period.
 
-    Parameters
-    ----------
-    plant
-        Its numbers, some of which may be a `given_plant`'s; None for numbers that are given at every call.
-    period
-        T > 0 [s]; None for one that is given at every call, last.
-    hand
-        "free" or "anchored".
+    Some numbers of the plant may be a `given_plant`'s; without it, or without a period T > 0 [s], they are
+    given at every call, the period last.
     """
     if period is not None and not period > 0.0:
         raise InputError(f"the plant is moved from sample to sample: a period is > 0 s, got {period!r}")

@@ -49,15 +49,7 @@ LONGEST_LINE = 110
 
 @dataclass
 class Printer(ABC):
-    """Writes one program; a language fills in how it says things.
-
-    Parameters
-    ----------
-    program
-        What is written.
-    reserved
-        Names that are taken.
-    """
+    """Writes one program; a language fills in how it says things.  `reserved` names are taken."""
 
     program: Program
     reserved: frozenset[str] = frozenset()

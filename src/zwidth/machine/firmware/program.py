@@ -142,16 +142,7 @@ Statement = Operation | Load | Store | Branch | Count | While | Leave | Call
 class Program:
     """What a machine does at one call.
 
-    Parameters
-    ----------
-    parameters
-        What it is given, in order.
-    cells
-        What it remembers, or is given to change.
-    body
-        Its statements.
-    results
-        What it gives back.
+    It is given parameters, in order, and cells, which it remembers or changes; it gives back results.
     """
 
     parameters: tuple[Variable, ...]
@@ -228,14 +219,7 @@ def rewritten(
 ) -> list[Statement]:
     """What a rule puts in the place of each statement, from the inner ones to the outer ones.
 
-    Parameters
-    ----------
-    block
-        It stays as it is.
-    rule
-        Given a statement whose blocks are rewritten.
-    now
-        What is read in the place of an operand; by default that itself.
+    The rule is given a statement whose blocks are rewritten; `now` says what is read for an operand.
     """
     out: list[Statement] = []
     for s in block:

@@ -17,10 +17,7 @@ from functools import partial
 from typing import Any
 
 from zwidth.errors import InputError
-from zwidth.machine.firmware.apart import Apart
-from zwidth.machine.firmware.arithmetic import as_operand, converted, is_known, kind_of
 from zwidth.machine.firmware.expressions import Expressions
-from zwidth.machine.firmware.places import cut_tables
 from zwidth.machine.firmware.program import (
     Branch,
     Cells,
@@ -35,10 +32,32 @@ from zwidth.machine.firmware.program import (
     set_to,
     without_unused,
 )
-from zwidth.machine.firmware.source import source_of
-from zwidth.machine.firmware.syntax import EndOfLoop, NextPass, assigned, behind, counters, may_leave, returns
-from zwidth.machine.firmware.values import Changing, Unknown, each, flat, joined, set_all
-from zwidth.native.names import Defined, OutsideError, counted
+from zwidth.machine.firmware.simplified import cut_tables
+from zwidth.machine.firmware.source import (
+    EndOfLoop,
+    NextPass,
+    assigned,
+    behind,
+    counters,
+    may_leave,
+    returns,
+    source_of,
+)
+from zwidth.machine.firmware.values import (
+    Apart,
+    Changing,
+    Unknown,
+    as_operand,
+    converted,
+    each,
+    flat,
+    is_known,
+    joined,
+    kind_of,
+    set_all,
+)
+from zwidth.native.names import Defined, OutsideError
+from zwidth.native.reader import counted
 
 MOST_WRITTEN_OUT = 32
 """Passes of a loop that are written one after the other; a longer one stays a loop."""
@@ -47,17 +66,11 @@ MOST_WRITTEN_OUT = 32
 def specialised(
     function: Callable[..., Any], arguments: Sequence[Any], apart: Sequence[Callable[..., Any]] = ()
 ) -> Program:
-    """A program of one function.
+    """A program of one step function.
 
-    Parameters
-    ----------
-    function
-        A step function.
-    arguments
-        Of each argument: a number, an array or a tuple that is known; `Cells` for an array that is changed;
-        a `Variable` for a number that is given at every call.
-    apart
-        Functions whose calls stay calls: a program that would be too long without them.
+    An argument is a number, an array or a tuple that is known; `Cells` for an array that is changed; a
+    `Variable` for a number that is given at every call.  Calls of functions `apart` stay calls: else the
+    program would be too long.
     """
     source = source_of(function)
     body: list[Statement] = []

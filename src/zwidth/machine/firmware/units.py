@@ -49,19 +49,7 @@ class Unit:
 
 @dataclass(frozen=True)
 class Scale:
-    """What the units of a law are.
-
-    Parameters
-    ----------
-    count
-        Δ [m; rad].
-    step
-        U [N; N·m].
-    fraction
-        g.
-    word
-        Bits of a number, 32 or 64.
-    """
+    """What the units of a law are: Δ [m; rad], U [N; N·m], g, and the bits of a number, 32 or 64."""
 
     count: float
     step: float
@@ -94,15 +82,7 @@ class Scale:
 
 @dataclass
 class Units:
-    """The unit of everything in a program; what none can be told of is kept as a force.
-
-    Parameters
-    ----------
-    scale
-        The units that there are.
-    values, cells
-        Those of results and of places of the memory.
-    """
+    """The unit of every result and place of the memory; what none can be told of is kept as a force."""
 
     scale: Scale
     values: dict[Variable, Unit] = field(default_factory=dict)

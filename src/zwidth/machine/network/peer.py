@@ -7,18 +7,20 @@ not come is a wave of zero: a peer that is gone is felt as a line that fell sile
 
 from __future__ import annotations
 
+import math
 import time
+from collections import deque
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from typing import Any, Protocol
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Protocol
 
 from zwidth.errors import InputError
 from zwidth.links import Packet
-from zwidth.machine.network.channel import Channel
-from zwidth.machine.network.monitor import Link, LinkReport
+from zwidth.machine.network.channel import Channel, Frame
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import read_number
+from zwidth.quantity.text import shown
 from zwidth.showing import Part, Shown, Table
 
 _CALL = 0.02
@@ -185,3 +187,215 @@ class Peer:
         """Close all channels."""
         for link in self.links.values():
             link.channel.close()
+
+
+# A link's packets tell all the energy that their side has sent so far to the run that they are meant for:
+# what one side has heard of is never more than what the other has sent, or the link is no link.
+
+
+_REMEMBERED = 4096
+"""Round trips kept for the shares of the report."""
+
+_SILENT = 0.5
+"""What is worth a word [s]."""
+
+_OTHER_VERSION = "another version of zwidth, which is not read: install one at both ends"
+
+WINDOW = 4096
+"""A frame this much older than the newest is dropped: that it was not used yet can no longer be known."""
+
+
+@dataclass(frozen=True, repr=False)
+class LinkReport(Shown):
+    """What was seen of a link from one side."""
+
+    sent: int
+    """Packets sent."""
+    received: int
+    """Packets received, each counted once."""
+    lost: int
+    """Numbers between the first and the newest received that did not come."""
+    doubled: int
+    late: int
+    """Packets that came after a younger one."""
+    foreign: int
+    """Datagrams that were none of a port."""
+    other_version: int
+    """Of those, from another version of zwidth."""
+    rate: float
+    """Packets received per second since the first."""
+    round_trip: tuple[float, float, float]
+    """Median, 99 % and longest round trip [s]; NaN before the first echo."""
+    energy_sent: float
+    """That this side has sent in all [J]."""
+    energy_received: float
+    """That the other side has sent to this run in all, as far as this one has heard [J]."""
+    silent: float
+    """Since the last packet came [s]; infinite before the first."""
+
+    def report(self) -> Iterable[Part]:
+        """Six lines."""
+        yield Table(rows=self.rows())
+
+    HEADS: ClassVar = ["line", "sent", "received", "lost", "there and back, 99 %", "energy out", "energy in"]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same with a unit in every key; null where there is none yet."""
+        p50, p99, most = (t if math.isfinite(t) else None for t in self.round_trip)
+        return {
+            "sent": self.sent,
+            "received": self.received,
+            "lost": self.lost,
+            "doubled": self.doubled,
+            "late": self.late,
+            "foreign": self.foreign,
+            "of_another_version": self.other_version,
+            "rate_Hz": self.rate,
+            "round_trip_s": {"median": p50, "of_99_percent": p99, "longest": most},
+            "energy_sent_J": self.energy_sent,
+            "energy_received_J": self.energy_received,
+            "silent_s": self.silent if math.isfinite(self.silent) else None,
+        }
+
+    def row(self, name: str) -> list[str]:
+        """One row of a table of links."""
+        energies = (shown(e, "J") for e in (self.energy_sent, self.energy_received))
+        return [name, str(self.sent), str(self.received), self._share, self._trips, *energies]
+
+    @property
+    def _share(self) -> str:
+        return f"{100 * self.lost / max(self.lost + self.received, 1):.2g} %"
+
+    @property
+    def _trips(self) -> str:
+        if math.isnan(self.round_trip[0]):
+            return "—"
+        return ", ".join(f"{1e3 * t:.3g}" for t in self.round_trip[:2]) + " ms"
+
+    @property
+    def brief(self) -> str:
+        """In a few words."""
+        if not self.received:
+            return f"what comes is of {_OTHER_VERSION}" if self.other_version else "nothing has come"
+        waiting = f", silent for {self.silent:.2g} s" if self.silent > _SILENT else ""
+        echoed = math.isfinite(self.round_trip[0])
+        trip = f", {1e3 * self.round_trip[0]:.3g} ms there and back" if echoed else ""
+        return f"{self.rate:.4g} per second, {self._share} lost{trip}{waiting}"
+
+    def rows(self) -> list[list[str]]:
+        more = f", {self.other_version} of {_OTHER_VERSION}" if self.other_version else ""
+        return [
+            ["packets", f"{self.sent} sent, {self.received} received, {self.rate:.4g} per second"],
+            ["lost", f"{self.lost} ({self._share}), {self.doubled} twice, {self.late} late"],
+            ["foreign", f"{self.foreign} datagrams{more}"],
+            ["there and back", f"{self._trips}: median, 99 %"],
+            ["energy", f"{shown(self.energy_sent, 'J')} sent, {shown(self.energy_received, 'J')} received"],
+            ["silent", f"for {self.silent:.3g} s" if self.received else "from the start"],
+        ]
+
+
+@dataclass
+class _Run:
+    """Of one run of the other side: first and newest number, those seen, and the energy for this side."""
+
+    first: int
+    newest: int = -1
+    received: int = 0
+    energy: float = 0.0
+    seen: set[int] = field(default_factory=set)
+
+
+class Link:
+    """Packets over a channel: dated, each taken once, and counted.
+
+    Parameters
+    ----------
+    channel
+        What carries them.
+    clock
+        What tells the time [s].
+    """
+
+    def __init__(self, channel: Channel, clock: Callable[[], float] = time.monotonic) -> None:
+        self.channel, self._clock = channel, clock
+        self._run = self._sent = 0
+        self._called = False
+        self._runs: dict[int, _Run] = {}
+        self._came: tuple[float, float] | None = None
+        self._began = math.nan
+        self._doubled = self._late = self._foreign = self._other_version = 0
+        self._out: dict[int, float] = {}
+        self._trips: deque[float] = deque(maxlen=_REMEMBERED)
+
+    def send(self, packet: Packet) -> None:
+        """Send a packet of a port."""
+        now = self._clock()
+        echo, held = (self._came[0], now - self._came[1]) if self._came else (math.nan, 0.0)
+        self.channel.send(Frame(packet, now, echo, held).to_bytes())
+        self._sent += 1
+        self._run = packet.run
+        self._out[packet.to] = packet.energy
+
+    def call(self) -> bool:
+        """Call the other side, with a frame that holds nothing; True once it was heard of."""
+        if self.receive():
+            self._called = True
+        self.channel.send(Frame(None, self._clock()).to_bytes())
+        return self._called
+
+    def receive(self) -> list[Packet]:
+        """The packets that have come since the last call, none a second time, in the order of arrival."""
+        now = self._clock()
+        return [packet for datagram in self.channel.receive() if (packet := self._taken(datagram, now))]
+
+    def _taken(self, datagram: bytes, now: float) -> Packet | None:
+        frame = Frame.from_bytes(datagram)
+        if frame is None:
+            self._foreign += 1
+            self._other_version += Frame.is_of_another_version(datagram)
+            return None
+        packet = frame.packet
+        if packet is None:
+            self._called = True
+            return None
+        run = self._runs.setdefault(packet.run, _Run(packet.number))
+        if packet.number in run.seen or packet.number <= run.newest - WINDOW:
+            self._doubled += 1
+            return None
+        run.seen.add(packet.number)
+        run.received += 1
+        if packet.number < run.newest:
+            self._late += 1
+        else:
+            run.newest = packet.number
+            if len(run.seen) > 2 * WINDOW:
+                run.seen = {n for n in run.seen if n > packet.number - WINDOW}
+            self._came = (frame.sent, now)
+            if packet.to == self._run and math.isfinite(frame.echo):
+                self._trips.append(now - frame.echo - frame.held)
+        if math.isnan(self._began):
+            self._began = now
+        if packet.to == self._run:
+            run.energy = max(run.energy, packet.energy)
+        return packet
+
+    def report(self) -> LinkReport:
+        """What was seen so far."""
+        now = self._clock()
+        trips = sorted(self._trips)
+        at = [trips[min(int(q * len(trips)), len(trips) - 1)] if trips else math.nan for q in (0.5, 0.99, 1)]
+        received = sum(run.received for run in self._runs.values())
+        return LinkReport(
+            sent=self._sent,
+            received=received,
+            lost=sum(max(run.newest - run.first + 1 - run.received, 0) for run in self._runs.values()),
+            doubled=self._doubled,
+            late=self._late,
+            foreign=self._foreign,
+            other_version=self._other_version,
+            rate=received / (now - self._began) if now > self._began else 0.0,
+            round_trip=(at[0], at[1], at[2]),
+            energy_sent=sum(self._out.values()),
+            energy_received=sum(run.energy for run in self._runs.values()),
+            silent=now - self._came[1] if self._came else math.inf,
+        )

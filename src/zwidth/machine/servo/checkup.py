@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import os
+import platform
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, ClassVar
 
 from zwidth.errors import InputError
-from zwidth.machine.servo.cost import StiffnessCost, stiffness_cost
-from zwidth.machine.servo.lateness import Lateness, measure_lateness
-from zwidth.machine.servo.machine import Finding, Moment, findings
-from zwidth.machine.servo.priority import Granted
+from zwidth.machine.servo.lateness import Lateness, StiffnessCost, measure_lateness, stiffness_cost
+from zwidth.machine.servo.priority import PRIORITY, Granted, memory_limit
 from zwidth.model.device import Device
 from zwidth.model.environment import Wall
 from zwidth.model.environment.environment import Environment
@@ -178,3 +179,232 @@ def _period(given: RealLike | None, device: Device | None) -> Exact:
             "read the clock takes a good part of a shorter one"
         )
     return period
+
+
+# What the system itself tells: each finding is read from Linux, from the file that it names; what cannot be
+# read is said to be unknown, and nothing is inferred.  Sources: the manual pages proc(5), limits.conf(5)
+# and the kernel's documentation of cpufreq, cpuidle and the clocksource; the latency timer of FTDI's USB
+# ports is that of its application note 232B-04.
+
+
+_DEEP = 50
+"""A core whose deepest sleep takes longer to end makes a loop late [µs]."""
+
+_BUSY = 0.5
+"""Runnable tasks for each core from which on a loop has to wait its turn."""
+
+_STOLEN = 0.001
+"""Share of the time from which on the host is worth a word."""
+
+_FAST_CLOCKS = ("tsc", "arch_sys_counter", "kvm-clock", "hyperv_clocksource_tsc_page", "riscv_clocksource")
+"""Those that are read without a call into the kernel."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that makes a loop late, or does not."""
+
+    about: str
+    seen: str | None
+    """What was read; None where it cannot be read here."""
+    advice: str | None = None
+    """What to change; None where it is well, or unknown."""
+
+    @property
+    def told(self) -> str:
+        """What was seen, or that it cannot be."""
+        return "cannot be read here" if self.seen is None else self.seen
+
+    def to_dict(self) -> dict[str, str | None]:
+        """What was seen, and what to change."""
+        return {"about": self.about, "seen": self.seen, "advice": self.advice}
+
+
+@dataclass(frozen=True)
+class Moment:
+    """What the system tells of a moment, in proc(5) /proc/stat and /proc/loadavg; None where it does not."""
+
+    total: int | None
+    """Ticks that have passed, of all cores."""
+    stolen: int | None
+    """Those that the host took."""
+    load: float | None
+    """Tasks that ran or waited for a core, over the last minute."""
+
+    @classmethod
+    def now(cls, root: Path = Path("/")) -> Moment:
+        """As of now."""
+        words = (_read(root / "proc/stat") or "").partition("\n")[0].split()
+        ticks = [int(word) for word in words[1:9]] if words[:1] == ["cpu"] and len(words) > 8 else []
+        load = (_read(root / "proc/loadavg") or "").split()
+        return cls(
+            sum(ticks) if ticks else None, ticks[7] if ticks else None, float(load[0]) if load else None
+        )
+
+
+def findings(granted: Granted, before: Moment, root: Path = Path("/")) -> list[Finding]:
+    """What there is to say about this machine, from what a loop with real-time priority was granted.
+
+    The load `before` the measurement, and what the host took since, are told.
+    """
+    return [
+        _kernel(root),
+        _priority(granted),
+        _memory(granted, root),
+        _governor(root),
+        _sleep(granted, root),
+        _usb(root),
+        _virtual(root, before),
+        _load(root, before),
+        _clock(root),
+    ]
+
+
+def _read(path: Path) -> str | None:
+    try:
+        return path.read_text(encoding="utf-8", errors="replace").strip()
+    except OSError:
+        return None
+
+
+def _all(root: Path, pattern: str) -> Iterator[tuple[Path, str]]:
+    """Every file of a pattern that can be read, and its text."""
+    for path in sorted(root.glob(pattern)):
+        text = _read(path)
+        if text is not None:
+            yield path, text
+
+
+def _kernel(root: Path) -> Finding:
+    about, version = "kernel", _read(root / "proc/version")
+    if version is None:
+        return Finding(about, None)
+    release = version.split()[2] if len(version.split()) > 2 else platform.release()
+    if _read(root / "sys/kernel/realtime") == "1" or "PREEMPT_RT" in version:
+        return Finding(about, f"{release}, PREEMPT_RT")
+    return Finding(
+        about,
+        f"{release}, without PREEMPT_RT",
+        "its own work may hold the loop up for milliseconds: install a PREEMPT_RT kernel, such as "
+        "linux-image-rt-amd64 of Debian",
+    )
+
+
+def _priority(granted: Granted) -> Finding:
+    about = "real-time priority"
+    if "priority" in granted:
+        return Finding(about, granted["priority"].told)
+    advice = None
+    if hasattr(os, "sched_setscheduler"):
+        advice = (
+            f'add "@realtime - rtprio {PRIORITY}" to /etc/security/limits.conf, your user to the group '
+            "realtime, and log in again"
+        )
+    return Finding(about, f"not granted: {granted['priority'].told}", advice)
+
+
+def _memory(granted: Granted, root: Path) -> Finding:
+    about, told = "memory", _read(root / "proc/meminfo")
+    if told is None:
+        return Finding(about, None)
+    kib = {line.split(":")[0]: int(line.split()[1]) for line in told.splitlines() if len(line.split()) > 1}
+    total, free = kib.get("SwapTotal"), kib.get("SwapFree")
+    if total is None or free is None:
+        return Finding(about, None)
+    swap = f"swap {_mib(total - free)} of {_mib(total)} used" if total else "no swap"
+    if "memory" in granted:
+        return Finding(about, f"locked while the loop runs; {swap}")
+    limit = memory_limit()
+    reason = granted["memory"].told if limit is None else f"this user may lock {_mib(limit // 1024)}"
+    advice = 'add "@realtime - memlock unlimited" to /etc/security/limits.conf'
+    return Finding(about, f"not locked: {reason}; {swap}", advice if total else None)
+
+
+def _mib(kib: int) -> str:
+    return f"{kib / 1024:.0f} MiB"
+
+
+def _governor(root: Path) -> Finding:
+    about = "frequency of the cores"
+    told = [text for _, text in _all(root, "sys/devices/system/cpu/cpu[0-9]*/cpufreq/scaling_governor")]
+    if not told:
+        return Finding(about, None)
+    slow = [text for text in told if text != "performance"]
+    seen = ", ".join(f"{told.count(name)} × {name}" for name in sorted(set(told)))
+    advice = "a slow core takes longer for each step: sudo cpupower frequency-set -g performance"
+    return Finding(about, f"governor {seen}", advice if slow else None)
+
+
+def _sleep(granted: Granted, root: Path) -> Finding:
+    """The longest time that a core takes to come back from a sleep that it may go into."""
+    about, longest = "sleep of the cores", -1
+    for path, text in _all(root, "sys/devices/system/cpu/cpu[0-9]*/cpuidle/state[0-9]*/latency"):
+        if _read(path.with_name("disable")) in (None, "0") and text.isdigit():
+            longest = max(longest, int(text))
+    if longest < 0:
+        return Finding(about, None)
+    seen = f"the deepest takes {longest} µs to end"
+    if "awake cores" in granted:
+        return Finding(about, f"{seen}, and is forbidden while the loop runs")
+    advice = "sudo chmod o+w /dev/cpu_dma_latency, and the loop keeps the cores awake while it runs"
+    return Finding(about, seen, advice if longest > _DEEP else None)
+
+
+def _usb(root: Path) -> Finding:
+    about = "USB serial ports"
+    if not (root / "sys/bus").is_dir():
+        return Finding(about, None)
+    ports = [
+        (path.parent.name, int(text), path)
+        for path, text in _all(root, "sys/bus/usb-serial/devices/*/latency_timer")
+        if text.isdigit()
+    ]
+    if not ports:
+        return Finding(about, "none that holds bytes back by a latency timer")
+    seen = ", ".join(f"{name} holds bytes back for {timer} ms" for name, timer, _ in ports)
+    slow = next((path for _, timer, path in ports if timer > 1), None)
+    where = "" if slow is None else "/" + str(slow.relative_to(root))
+    return Finding(about, seen, f"echo 1 | sudo tee {where}" if slow else None)
+
+
+def _virtual(root: Path, before: Moment) -> Finding:
+    about, told = "virtual machine", _read(root / "proc/cpuinfo")
+    if told is None:
+        return Finding(about, None)
+    flags = next((line for line in told.splitlines() if line.startswith("flags")), None)
+    if flags is None:  # other processors than those of the x86 family do not tell
+        return Finding(about, None)
+    if "hypervisor" not in flags.split():
+        return Finding(about, "no")
+    share = _stolen(before, Moment.now(root))
+    if share is None:
+        return Finding(about, "yes; how much time the host takes is not told")
+    advice = "the host runs others in that time: serve on a machine of your own, or pin its virtual cores"
+    seen = f"yes; its host took {100 * share:.2g} % of the time meanwhile, as the kernel counts"
+    return Finding(about, seen, advice if share > _STOLEN else None)
+
+
+def _stolen(before: Moment, after: Moment) -> float | None:
+    if before.total is None or before.stolen is None or after.total is None or after.stolen is None:
+        return None
+    passed = after.total - before.total
+    return (after.stolen - before.stolen) / passed if passed > 0 else None
+
+
+def _load(root: Path, before: Moment) -> Finding:
+    about = "load"
+    cores = len(list(root.glob("sys/devices/system/cpu/cpu[0-9]*")))
+    if before.load is None or not cores:
+        return Finding(about, None)
+    seen = f"{before.load:g} tasks ran or waited in the minute before, on {cores} core{'s' * (cores > 1)}"
+    advice = "end what else runs, or keep a core free (isolcpus= on the kernel's command line)"
+    return Finding(about, seen, advice if before.load > _BUSY * cores else None)
+
+
+def _clock(root: Path) -> Finding:
+    about = "clock"
+    told = _read(root / "sys/devices/system/clocksource/clocksource0/current_clocksource")
+    if told is None:
+        return Finding(about, None)
+    advice = f"each look at {told} is a call into the kernel, up to microseconds; see why tsc was given up"
+    return Finding(about, told, None if told in _FAST_CLOCKS else advice)

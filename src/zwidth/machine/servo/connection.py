@@ -14,6 +14,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite, nan
+from types import TracebackType
 from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
@@ -23,6 +24,7 @@ from zwidth.errors import InputError
 from zwidth.machine.servo.posix import Bytes
 from zwidth.model.specification.table import Table, located
 from zwidth.native.compiled import Array, compiled
+from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import plain, read_number
 
@@ -57,6 +59,9 @@ and line, or page, in the version that `Connection.maker` names.
 """
 
 REFUSES, TELLS, RESTORES, SETS, LEAVES = DONE = "read; refused", "read; told", "set; put back", "set", "left"
+
+ZEROS = 3
+"""How often force 0 is given after the end: a frame may be lost."""
 
 exchanged = compiled
 """Of ``f(memory, inbox, outbox) -> status``, which the loop is given."""
@@ -170,6 +175,14 @@ def give_library(connection: LibraryConnection, force: float) -> int:
         return CLOSED
 
 
+def seconds_of(duration: RealLike) -> Exact:
+    """How long a loop is to run, > 0 [s]."""
+    found: Exact = read_number(
+        duration, GLOSSARY["sample_period"], "duration", bound="> 0", why="0 has no sample"
+    )
+    return found
+
+
 @dataclass(frozen=True)
 class Placement:
     """Where on the device's axis the wall is: ``x = sense (reading − origin)``.
@@ -211,3 +224,71 @@ class Placement:
                     found[key] = number
         with located(table.label):
             return cls(found.get("origin", 0.0), int(found.get("sense", 1)))
+
+
+class Axis:
+    """One axis of a device that is reached, at a period T [s], until it is closed; asked from Python.
+
+    Sample by sample positions and forces along the x of a placement, of a compiled connection and of one of a
+    library in the same way.  The interpreter's lock is held between the questions: what else runs in Python
+    makes the loop later.
+    """
+
+    def __init__(
+        self, connection: CompiledConnection | LibraryConnection, placement: Placement, sample_period: float
+    ) -> None:
+        self.connection, self.placement, self.period = connection, placement, sample_period
+        self._opened: Opened | None = None
+        if isinstance(connection, CompiledConnection):
+            self._opened = connection.open(sample_period)
+            self._at_first = self._opened.memory.copy()
+        else:
+            connection.open(sample_period)
+
+    def __enter__(self) -> Axis:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, raised: BaseException | None, where: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def begin(self) -> None:
+        """The next sample is number 0: of a simulated device the script begins anew."""
+        if self._opened is not None and self.connection.samples is not None:
+            self._opened.memory[:] = self._at_first
+
+    def measure(self, k: int, until: int, late: float = 0.0) -> tuple[int, float]:
+        """(what became of sample k, x [m; rad]), where the loop is `late` [s], less than T.
+
+        Waits until the clock `posix.now` reads `until` at most.
+        """
+        if self._opened is None:
+            assert isinstance(self.connection, LibraryConnection)
+            status, reading = ask_library(self.connection, until)
+        else:
+            assert isinstance(self.connection, CompiledConnection)
+            memory = self._opened.memory
+            memory[TIME], memory[INDEX], memory[UNTIL] = k * self.period + late, k, until
+            status = type(self.connection).measure(*self._opened)
+            reading = float(memory[READING])
+        return status, self.placement.sense * (reading - self.placement.origin)
+
+    def give(self, force: float) -> int:
+        """Give a force, positive along x [N; N·m]; what became of it."""
+        along = self.placement.sense * force
+        if self._opened is None:
+            assert isinstance(self.connection, LibraryConnection)
+            return give_library(self.connection, along)
+        assert isinstance(self.connection, CompiledConnection)
+        self._opened.memory[FORCE] = along
+        return type(self.connection).apply(*self._opened)
+
+    def let_go(self) -> None:
+        """Force 0, said more than once."""
+        for _ in range(ZEROS):
+            self.give(0.0)
+
+    def close(self) -> None:
+        """Force 0, then the device is let go; may be called again."""
+        self.connection.close()

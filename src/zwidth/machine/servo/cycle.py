@@ -22,14 +22,17 @@ detent at whose top the force is 0 as well, begins around its lowest rest alone.
 from __future__ import annotations
 
 from math import isfinite, nan
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from zwidth.errors import InputError
 from zwidth.loop.kernel import commanded
 from zwidth.loop.law import CHAIN, REMEMBERED
+from zwidth.loop.setup import prepare, resting_lines
+from zwidth.loop.start import unloaded_range
 from zwidth.machine.servo.connection import GOOD, MOST_TOLD, READING, TOLD
-from zwidth.machine.servo.judging import bad_in_a_row, judged_answer, judged_gap, judged_reading
 from zwidth.machine.servo.ring import (
     AT,
     ENDED,
@@ -51,9 +54,20 @@ from zwidth.machine.servo.ring import (
     TELLS,
     WAITING,
     WISHED,
+    count,
 )
-from zwidth.machine.servo.safety import HOST_GONE, NO_FORCE, RUNNING
-from zwidth.machine.servo.spread import count
+from zwidth.machine.servo.safety import (
+    HOST_GONE,
+    NO_FORCE,
+    RUNNING,
+    bad_in_a_row,
+    judged_answer,
+    judged_gap,
+    judged_reading,
+)
+from zwidth.model.device.device import Device
+from zwidth.model.environment.environment import Environment
+from zwidth.model.operator import PrescribedMotion
 from zwidth.native.compiled import Array, compiled
 
 Words = NDArray[np.int64]
@@ -92,26 +106,11 @@ def answer(
 ) -> float:
     """The force of sample k, positive out of the wall; the row of the sample but for its times.
 
-    Parameters
-    ----------
-    status
-        What became of the question for the position.
-    k, t
-        Number and time [s] of the sample.
-    beaten
-        The clock [ns], to compare with the heartbeat of the program around.
-    memory
-        Of the connection: the reading, and what it tells.
-    laws, memories
-        Two places for a packed law and what it remembers: one is served, the other may be waiting.
-    rests
-        For each place, what the law remembers at rest, see `loop.setup.resting_lines`.
-    control, n
-        See above; both are changed.
-    counts
-        Where the law counts its samples, a state of `loop.plant`.
-    row
-        Of the ring.
+    Parameters ---------- status What became of the question for the position. t, beaten Time of the sample
+    [s]; the clock, to compare with the heartbeat of the program around [ns]. memory Of the connection: the
+    reading, and what it tells. laws, memories, rests Two places for a packed law, what it remembers, and what
+    it does at rest, see `loop.setup.resting_lines`: one is served, the other may be waiting. control, n See
+    above; both are changed. counts Where the law counts its samples, a state of `loop.plant`.
     """
     x, wish, limited = n[X], 0.0, 0.0
     f = n[FORCE_BEFORE]
@@ -238,3 +237,32 @@ def _phase(control: Words) -> float:
     if control[SERVED] != NONE:
         return SERVING
     return MEASURING if control[WANTED] == NONE else WAITING
+
+
+class Packed(NamedTuple):
+    """A law for `cycle.answer`."""
+
+    law: Array
+    rest: Array
+    """What it remembers at rest, see `loop.setup.resting_lines`; 2 × 2 × n."""
+    begins: tuple[float, float]
+    """Between which positions it holds little where it pushes little, see `loop.start.unloaded_range`."""
+
+
+def pack(
+    device: Device, environment: Environment, here: float, force: float, *, single: bool = False
+) -> Packed:
+    """Lay out a law for the encoder, the converter and the period of a device; its mass is not needed.
+
+    `here` is the reading now [m; rad], `force` up to which it may begin [N; N·m]; `single` where the machine
+    keeps numbers in 24 bits.
+    """
+    begins = unloaded_range(environment, force, here)
+    if begins[0] > begins[1]:
+        raise InputError(
+            "this law pulls away at one of its ends and is at rest nowhere: a hand would be given all it "
+            "holds where it begins; let it push back at both ends"
+        )
+    still = PrescribedMotion([0.0, 0.0])
+    setup = prepare(device, environment, still, device.exact("sample_period"), single=single)
+    return Packed(setup.law, resting_lines(setup), begins)

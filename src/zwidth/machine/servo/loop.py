@@ -9,9 +9,11 @@ Of a compiled connection all of this is compiled, and runs without the interpret
 
 from __future__ import annotations
 
+import threading
+import time
 from collections.abc import Callable
 from copy import deepcopy
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
@@ -24,7 +26,9 @@ from zwidth.machine.servo.connection import (
     REFUSED,
     TIME,
     UNTIL,
+    ZEROS,
     CompiledConnection,
+    Connection,
     LibraryConnection,
     Opened,
     ask_library,
@@ -33,6 +37,7 @@ from zwidth.machine.servo.connection import (
 from zwidth.machine.servo.cycle import (
     AWAKE_MOST,
     CONTROL,
+    HEARTBEAT,
     MISSED,
     NONE,
     NUMBERS,
@@ -46,10 +51,10 @@ from zwidth.machine.servo.cycle import (
     answer,
     noted,
 )
-from zwidth.machine.servo.pace import ANSWERED, MARGIN, margin, until
-from zwidth.machine.servo.posix import Bytes, now
-from zwidth.machine.servo.safety import BAD_ANSWER, DONE, RUNNING, ZEROS
-from zwidth.machine.servo.spread import BINS
+from zwidth.machine.servo.posix import ANSWERED, MARGIN, Bytes, margin, most_awake, now, until
+from zwidth.machine.servo.priority import Granted, RealTime
+from zwidth.machine.servo.ring import BINS
+from zwidth.machine.servo.safety import BAD_ANSWER, DONE, FAILED, RUNNING
 from zwidth.native.compiled import Array, compiled
 
 
@@ -87,7 +92,7 @@ def await_sample(k: int, start: int, period: float, awake: int, most: int) -> tu
     """Wait for sample k, or the next one that can still be taken.
 
     Returns its number, when it was due, the time now, and the `awake` of the next one: how long before a
-    deadline the clock is watched [ns], `most` at most, see `pace.margin`.
+    deadline the clock is watched [ns], `most` at most, see `posix.margin`.
     """
     due = start + int(k * period)
     awake = margin(awake, until(due, awake), most)
@@ -156,12 +161,6 @@ def _run(
                 return
 
 
-def run_compiled(connection: CompiledConnection, opened: Opened, last: int, shared: Shared) -> None:
-    """Run the loop over a compiled connection, up to sample `last` or, below 0, until it ends."""
-    kind = type(connection)
-    _run(kind.measure, kind.apply, last, *opened, *shared)  # type: ignore[arg-type]  # arrays of three kinds
-
-
 def _find(memory: Array, shared: Shared) -> None:
     """Have what the loop in Python calls found in the library before the clock runs; on copies."""
     loop = deepcopy(shared)
@@ -171,32 +170,102 @@ def _find(memory: Array, shared: Shared) -> None:
     noted(loop.ring[0], 0.0, 0.0, loop.control, loop.numbers, loop.spread)
 
 
-def run_library(connection: LibraryConnection, opened: Opened, last: int, shared: Shared) -> None:
-    """The same over a library, in Python: whatever else runs in Python delays it."""
-    memory, n, control = opened.memory, shared.numbers, shared.control
-    ring, spread, step = shared.ring, shared.spread, float(n[PERIOD])
-    k = zeros = 0
-    _find(memory, shared)
-    most = int(n[AWAKE_MOST])
-    start, awake = now(), min(MARGIN, most)
-    while zeros < ZEROS:
-        taken, due, at, awake = await_sample(k, start, step * 1e9, awake, most)
-        if k == 0:
-            taken, due, start = 0, at, at
-        if control[REASON] == RUNNING:
-            if 0 <= last < taken:
-                control[REASON] = DONE
-            else:
-                control[MISSED] += taken - k
-        k = taken
-        late = lateness(at, due, step)
-        t = k * step + late
-        status, memory[READING] = ask_library(connection, int(at + ANSWERED * step * 1e9))
-        row = ring[control[ROWS] % ring.shape[0]]
-        force = answer(status, k, t, at, memory, *shared[:-2], row)
-        given = give_library(connection, -n[SENSE] * force)
-        if given in (CLOSED, REFUSED) and control[REASON] == RUNNING:
-            control[REASON] = BAD_ANSWER + given
-        noted(row, late, (now() - at) * 1e-9, control, n, spread)
-        k += 1
-        zeros += control[REASON] != RUNNING
+def run(connection: Connection, opened: Opened, last: int, shared: Shared) -> None:
+    """Run the loop up to sample `last` or, below 0, until it ends.
+
+    Over a library it is one in Python: whatever else runs in Python delays it.
+    """
+    if isinstance(connection, CompiledConnection):
+        kind = type(connection)
+        _run(kind.measure, kind.apply, last, *opened, *shared)  # type: ignore[arg-type]  # arrays of three kinds
+        return
+    library = cast(LibraryConnection, connection)
+
+    def measure(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
+        status, memory[READING] = ask_library(library, int(memory[UNTIL]))
+        return status
+
+    def apply(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
+        return give_library(library, memory[FORCE])
+
+    _find(opened.memory, shared)
+    _run.py_func(measure, apply, last, *opened, *shared)  # type: ignore[attr-defined]
+
+
+_BEAT = 0.02
+"""Between two signs of life of this program to the loop [s]."""
+
+
+class LoopThread:
+    """One run after the other over a connection that is open, each in a thread of its own."""
+
+    def __init__(self, connection: Connection, real_time: RealTime) -> None:
+        self.granted: Granted | None = None
+        self._connection, self._real_time = connection, real_time
+        self._failure: BaseException | None = None
+        self._over = threading.Event()
+        self._over.set()
+
+    @property
+    def running(self) -> bool:
+        """True while the loop has not ended."""
+        return not self._over.is_set()
+
+    def run(self, loop: Shared, opened: Opened, last: int) -> None:
+        """Begin; samples 0 to `last`, without end where that is negative."""
+        over = self._over = threading.Event()
+        loop.control[HEARTBEAT] = now()
+        work = threading.Thread(
+            target=self._loop, args=(loop, opened, last, over), name="zwidth loop", daemon=True
+        )
+        beat = threading.Thread(target=_beat, args=(loop, over), name="zwidth heartbeat", daemon=True)
+        beat.start()
+        work.start()
+
+    def join(self) -> None:
+        """Wait until the loop has ended."""
+        self._over.wait()  # not Thread.join: Ctrl-C in it makes Python 3.11 take the thread for ended
+
+    def wait(self, timeout: float | None = None) -> bool:
+        """Wait until the loop has ended; False if it has not within so long [s]."""
+        until = None if timeout is None else time.monotonic() + timeout
+        while self.running:
+            left = 0.1 if until is None else min(0.1, until - time.monotonic())
+            if left <= 0:
+                return False
+            self._over.wait(left)  # in pieces: Ctrl-C is heard between them
+        self.raise_failure()
+        return True
+
+    def raise_failure(self) -> None:
+        """What was raised in the loop, once."""
+        failure, self._failure = self._failure, None
+        if failure is not None:
+            raise failure
+
+    def _loop(self, loop: Shared, opened: Opened, last: int, over: threading.Event) -> None:
+        try:
+            with self._real_time as self.granted:
+                has_priority = "priority" in self.granted
+                loop.numbers[AWAKE_MOST] = most_awake(1e9 * float(loop.numbers[PERIOD]), has_priority)
+                run(self._connection, opened, last, loop)
+        except BaseException as error:  # a thread's exceptions are seen by nobody
+            self._failure = error
+            loop.control[REASON] = loop.control[REASON] or FAILED
+            self._give_nothing()
+        finally:
+            over.set()
+
+    def _give_nothing(self) -> None:
+        """Force 0 once more, after a connection in Python raised something."""
+        try:
+            give_library(cast(LibraryConnection, self._connection), 0.0)
+        except BaseException:
+            self._connection.close()
+
+
+def _beat(loop: Shared, over: threading.Event) -> None:
+    """Signs of life, as long as the program around the loop has a main thread."""
+    while not over.wait(_BEAT):
+        if threading.main_thread().is_alive():
+            loop.control[HEARTBEAT] = now()

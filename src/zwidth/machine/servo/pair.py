@@ -13,39 +13,30 @@ from __future__ import annotations
 
 import atexit
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
-from fractions import Fraction
 from math import nan
 from typing import Any
 
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.machine.servo.axis import Axis
 from zwidth.machine.servo.connection import (
     CLOSED,
     GOOD,
     REFUSED,
+    Axis,
     CompiledConnection,
     LibraryConnection,
     Placement,
+    seconds_of,
 )
-from zwidth.machine.servo.judging import (
-    bad_in_a_row,
-    find_judging,
-    judged_answer,
-    judged_gap,
-    judged_reading,
-)
-from zwidth.machine.servo.measured import Measured, measured
-from zwidth.machine.servo.pace import ANSWERED, MARGIN, margin, most_awake, until
 from zwidth.machine.servo.pair_law import PairLaw
-from zwidth.machine.servo.posix import check_supported, now
+from zwidth.machine.servo.posix import ANSWERED, MARGIN, check_supported, margin, most_awake, now, until
 from zwidth.machine.servo.priority import Granted, RealTime
-from zwidth.machine.servo.proving import SERVED_OUTCOMES
-from zwidth.machine.servo.report import ending
+from zwidth.machine.servo.proving import SERVED_OUTCOMES, Measured, measured
+from zwidth.machine.servo.report import PairServoReport, ending
 from zwidth.machine.servo.safety import (
     ASKED,
     BAD_ANSWER,
@@ -54,15 +45,17 @@ from zwidth.machine.servo.safety import (
     RUNNING,
     Limits,
     Safety,
+    bad_in_a_row,
+    find_judging,
+    judged_answer,
+    judged_gap,
+    judged_reading,
     limits_of,
 )
 from zwidth.model.pairs import Pair
 from zwidth.passivity.check import check
 from zwidth.passivity.pairs import PairVerdict
 from zwidth.quantity.exact import Exact, RealLike, ends
-from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import read_number
-from zwidth.showing import Part, Shown, Table
 
 Law = Callable[[float, float], tuple[float, float]]
 """Of both readings, the force of each side."""
@@ -76,79 +69,6 @@ class PairNotProved(InputError):
     def __init__(self, verdict: PairVerdict, message: str) -> None:
         super().__init__(message)
         self.verdict = verdict
-
-
-@dataclass(frozen=True, repr=False)
-class PairServoReport(Shown):
-    """What a served pair did; of two numbers the first is the leader's."""
-
-    title: str
-    verdict: PairVerdict | None
-    measured: Measured | None
-    granted: Granted | None
-    ended: str
-    """Why the force of both ended; "" before that."""
-    samples: int
-    missed: int
-    held: int
-    """Samples at which an arm gave no good answer, the force of both held."""
-    cut: int
-    """Samples at which the safety cut a force, of which no verdict speaks."""
-    lateness: tuple[float, float, float]
-    """Median, 99 % and largest [s]."""
-    energy_out: tuple[float, float]
-    """Given to the handles by the actuators, as the encoders saw it [J]."""
-    friction_loss: tuple[float, float]
-    """What the friction of each took of it at least [J]."""
-    met_hardware: bool
-
-    @property
-    def failed(self) -> bool:
-        """True where the force ended by itself, before its time."""
-        return bool(self.ended) and self.ended not in (ending(ASKED), ending(DONE))
-
-    def to_dict(self) -> dict[str, Any]:
-        """The same with a unit in every key."""
-        arms = ("leader", "follower")
-        late = ("median", "of_99_percent", "largest")
-        return {
-            "format": "zwidth served pair 1",
-            "title": self.title,
-            "outcome": None if self.verdict is None else self.verdict.outcome,
-            "verdict": None if self.verdict is None else self.verdict.claim,
-            "measured": None if self.measured is None else self.measured.to_dict(),
-            "granted": None if self.granted is None else self.granted.to_dict(),
-            "ended": self.ended,
-            "samples": self.samples,
-            "missed_samples": self.missed,
-            "held_samples": self.held,
-            "cut_samples": self.cut,
-            "lateness_s": dict(zip(late, self.lateness, strict=True)),
-            "energy_out_J": dict(zip(arms, self.energy_out, strict=True)),
-            "friction_loss_at_least_J": dict(zip(arms, self.friction_loss, strict=True)),
-        }
-
-    def report(self) -> Iterable[Part]:
-        """The answer first."""
-        yield f"{self.title}: {self.ended or 'not served yet'}"
-        if self.verdict is not None:
-            yield self.verdict.claim
-        p50, p99, most = (f"{1e6 * t:.3g} µs" for t in self.lateness)
-        rows = [
-            ("samples taken, missed", f"{self.samples}, {self.missed}"),
-            ("without a good answer, forces held", f"{self.held}"),
-            ("a force cut by the safety, not in the verdict", f"{self.cut}"),
-            ("late by: half of them, 99 %, at most", f"{p50}, {p99}, {most}"),
-            ("the actuators gave leader, follower", _two(self.energy_out)),
-            ("friction took at least, leader, follower", _two(self.friction_loss)),
-        ]
-        yield Table(rows=rows, lefts=1)
-        if not self.met_hardware:
-            yield "Tried against emulators or simulations of these devices only, not against the devices."
-
-
-def _two(energies: tuple[float, float]) -> str:
-    return ", ".join(f"{energy:.4g} J" for energy in energies)
 
 
 @dataclass
@@ -228,7 +148,6 @@ class PairServo:
         atexit.register(self.close)
 
     def __enter__(self) -> PairServo:
-        """Itself."""
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -336,11 +255,9 @@ class PairServo:
         return f"{one} and {other}, {self.pair.describe()}"
 
     def _count(self, duration: RealLike) -> int:
-        seconds: Fraction = read_number(
-            duration, GLOSSARY["sample_period"], "duration", bound="> 0", why="0 has no sample"
-        ).fraction
         scripts = (side.axis.connection.samples for side in self._sides)
-        return min([max(1, int(seconds / self._period)), *(n for n in scripts if n is not None)])
+        count = max(1, int(seconds_of(duration).fraction / self._period))
+        return min([count, *(n for n in scripts if n is not None)])
 
     def _loop(self, last: int, law: Law | None = None) -> None:
         """Samples 0 to `last`, without a law with force 0; whatever ends it, the force is 0 afterwards."""
@@ -463,10 +380,9 @@ class PairServo:
 
 
 def _side(axis: Axis, device: Any, safety: Safety) -> _Side:
-    limit = None if device.force_limit is None else float(ends(device.force_limit)[0])
     return _Side(
         axis,
-        limits_of(safety, limit, device.motion, axis.period),
+        limits_of(safety, device, axis.period),
         float(ends(device.damping)[0]),
         float(ends(device.coulomb_friction)[0]),
     )

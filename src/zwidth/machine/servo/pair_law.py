@@ -41,10 +41,7 @@ def _moved_to_the_front(kept: Array, count: int) -> None:
 class PairLaw:
     """The forces of both sides, sample by sample; before the first both arms had always been where they are.
 
-    Parameters
-    ----------
-    pair
-        Both arms of one rate, at which everything is computed.
+    Of a pair of one rate, at which everything is computed.
     """
 
     def __init__(self, pair: Pair) -> None:

@@ -18,32 +18,23 @@ from __future__ import annotations
 import atexit
 from collections import deque
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import nan
-from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.links import Packet
 from zwidth.links.port import Port
-from zwidth.machine.servo.axis import Axis
 from zwidth.machine.servo.connection import (
     CLOSED,
     GOOD,
     REFUSED,
+    Axis,
     CompiledConnection,
     LibraryConnection,
     Placement,
 )
-from zwidth.machine.servo.judging import (
-    bad_in_a_row,
-    find_judging,
-    judged_answer,
-    judged_gap,
-    judged_reading,
-)
-from zwidth.machine.servo.pace import ANSWERED
-from zwidth.machine.servo.posix import check_supported, now
-from zwidth.machine.servo.report import ending
+from zwidth.machine.servo.posix import ANSWERED, check_supported, now
+from zwidth.machine.servo.report import PortReport, ending
 from zwidth.machine.servo.safety import (
     ASKED,
     BAD_ANSWER,
@@ -52,54 +43,23 @@ from zwidth.machine.servo.safety import (
     RUNNING,
     Limits,
     Safety,
+    bad_in_a_row,
+    find_judging,
+    judged_answer,
+    judged_gap,
+    judged_reading,
     limits_of,
 )
-from zwidth.quantity.exact import Exact, RealLike, ends
+from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import read_number
 from zwidth.quantity.text import shown
-from zwidth.showing import Part, Shown
 
 _LONGER = Exact("1.2")
 """By default a period may be longer than T so many times."""
 
 _NO_LIMIT = 1e300
 """Of `Limits`."""
-
-
-@dataclass(frozen=True, repr=False)
-class PortReport(Shown):
-    """What a device at the end of a line did."""
-
-    device: str
-    ended: str
-    """Why the force ended; "" while it has not."""
-    samples: int
-    held: int
-    """Samples without a good answer, the force held."""
-    later: int
-    """Periods that were longer than the port supposes: in them its promise does not hold."""
-    met_hardware: bool
-
-    def to_dict(self) -> dict[str, Any]:
-        """The same as plain data."""
-        return {
-            "device": self.device,
-            "ended": self.ended,
-            "samples": self.samples,
-            "held_samples": self.held,
-            "later_than_supposed_samples": self.later,
-        }
-
-    def report(self) -> Iterable[Part]:
-        """Two lines, three of a device that was never met."""
-        yield f"{self.device}: {self.ended or 'runs'}"
-        yield (
-            f"{self.samples} samples, {self.held} without a good answer, {self.later} later than the port "
-            "supposes"
-        )
-        if not self.met_hardware:
-            yield "Tried against an emulator or a simulation of this device only, not against the device."
 
 
 class PortRun:
@@ -159,7 +119,7 @@ class PortRun:
                 "a port's force has no limit of its change: it books the force that it asks for; leave out "
                 "slew, and give the port smoothing"
             )
-        limits = limits_of(self.safety, _least_limit(port), device.motion, float(period))
+        limits = limits_of(self.safety, device, float(period))
         supposed = device.replace(
             sample_period=longest,
             delay=waits * longest.fraction,
@@ -306,11 +266,6 @@ class PortRun:
 def _samples_late(port: Port) -> int:
     """Whole periods from reading to force; that they are whole the port has seen to."""
     return int(port.device.exact("delay") / port.device.exact("sample_period"))
-
-
-def _least_limit(port: Port) -> float | None:
-    limit = port.device.force_limit
-    return None if limit is None else float(ends(limit)[0])
 
 
 def _longest(given: RealLike | None, period: Exact) -> Exact:

@@ -1,4 +1,4 @@
-"""What a served loop did."""
+"""What was served: a loop, a pair, a device at the end of a line; and why the force ended."""
 
 from __future__ import annotations
 
@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING, Any
 from zwidth.machine.servo import cycle
 from zwidth.machine.servo.connection import STATUS, Connection
 from zwidth.machine.servo.loop import Shared
-from zwidth.machine.servo.measured import Measured
 from zwidth.machine.servo.priority import Granted
+from zwidth.machine.servo.proving import Measured
+from zwidth.machine.servo.ring import quantile
 from zwidth.machine.servo.safety import ASKED, BAD_ANSWER, DONE, REASONS, RUNNING
-from zwidth.machine.servo.spread import quantile
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.text import shown
 from zwidth.showing import Part, Shown, Table
 
 if TYPE_CHECKING:
     from zwidth.machine.servo.recording.recorder import Recorded
+    from zwidth.passivity.pairs import PairVerdict
 
 
 @dataclass(frozen=True, repr=False)
@@ -177,3 +178,111 @@ def ending(reason: int) -> str:
     if reason >= BAD_ANSWER:
         return f"ended, since of the device there was {STATUS[reason - BAD_ANSWER]}"
     return f"ended, since {REASONS[reason]}"
+
+
+@dataclass(frozen=True, repr=False)
+class PairServoReport(Shown):
+    """What a served pair did; of two numbers the first is the leader's."""
+
+    title: str
+    verdict: PairVerdict | None
+    measured: Measured | None
+    granted: Granted | None
+    ended: str
+    """Why the force of both ended; "" before that."""
+    samples: int
+    missed: int
+    held: int
+    """Samples at which an arm gave no good answer, the force of both held."""
+    cut: int
+    """Samples at which the safety cut a force, of which no verdict speaks."""
+    lateness: tuple[float, float, float]
+    """Median, 99 % and largest [s]."""
+    energy_out: tuple[float, float]
+    """Given to the handles by the actuators, as the encoders saw it [J]."""
+    friction_loss: tuple[float, float]
+    """What the friction of each took of it at least [J]."""
+    met_hardware: bool
+
+    @property
+    def failed(self) -> bool:
+        """True where the force ended by itself, before its time."""
+        return bool(self.ended) and self.ended not in (ending(ASKED), ending(DONE))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same with a unit in every key."""
+        arms = ("leader", "follower")
+        late = ("median", "of_99_percent", "largest")
+        return {
+            "format": "zwidth served pair 1",
+            "title": self.title,
+            "outcome": None if self.verdict is None else self.verdict.outcome,
+            "verdict": None if self.verdict is None else self.verdict.claim,
+            "measured": None if self.measured is None else self.measured.to_dict(),
+            "granted": None if self.granted is None else self.granted.to_dict(),
+            "ended": self.ended,
+            "samples": self.samples,
+            "missed_samples": self.missed,
+            "held_samples": self.held,
+            "cut_samples": self.cut,
+            "lateness_s": dict(zip(late, self.lateness, strict=True)),
+            "energy_out_J": dict(zip(arms, self.energy_out, strict=True)),
+            "friction_loss_at_least_J": dict(zip(arms, self.friction_loss, strict=True)),
+        }
+
+    def report(self) -> Iterable[Part]:
+        """The answer first."""
+        yield f"{self.title}: {self.ended or 'not served yet'}"
+        if self.verdict is not None:
+            yield self.verdict.claim
+        p50, p99, most = (f"{1e6 * t:.3g} µs" for t in self.lateness)
+        rows = [
+            ("samples taken, missed", f"{self.samples}, {self.missed}"),
+            ("without a good answer, forces held", f"{self.held}"),
+            ("a force cut by the safety, not in the verdict", f"{self.cut}"),
+            ("late by: half of them, 99 %, at most", f"{p50}, {p99}, {most}"),
+            ("the actuators gave leader, follower", _two(self.energy_out)),
+            ("friction took at least, leader, follower", _two(self.friction_loss)),
+        ]
+        yield Table(rows=rows, lefts=1)
+        if not self.met_hardware:
+            yield "Tried against emulators or simulations of these devices only, not against the devices."
+
+
+def _two(energies: tuple[float, float]) -> str:
+    return ", ".join(f"{energy:.4g} J" for energy in energies)
+
+
+@dataclass(frozen=True, repr=False)
+class PortReport(Shown):
+    """What a device at the end of a line did."""
+
+    device: str
+    ended: str
+    """Why the force ended; "" while it has not."""
+    samples: int
+    held: int
+    """Samples without a good answer, the force held."""
+    later: int
+    """Periods that were longer than the port supposes: in them its promise does not hold."""
+    met_hardware: bool
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as plain data."""
+        return {
+            "device": self.device,
+            "ended": self.ended,
+            "samples": self.samples,
+            "held_samples": self.held,
+            "later_than_supposed_samples": self.later,
+        }
+
+    def report(self) -> Iterable[Part]:
+        """Two lines, three of a device that was never met."""
+        yield f"{self.device}: {self.ended or 'runs'}"
+        yield (
+            f"{self.samples} samples, {self.held} without a good answer, {self.later} later than the port "
+            "supposes"
+        )
+        if not self.met_hardware:
+            yield "Tried against an emulator or a simulation of this device only, not against the device."

@@ -17,11 +17,15 @@ to a hand that has moved on.  So nothing that has ended begins again by itself.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isfinite, nan
 from typing import NamedTuple
 
 from zwidth.errors import InputError
+from zwidth.machine.servo.connection import CLOSED, GOOD, REFUSED
+from zwidth.model.device.device import Device
 from zwidth.model.specification.table import Table, located
-from zwidth.quantity.exact import Exact
+from zwidth.native.compiled import compiled
+from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.glossary import Quantity
 from zwidth.quantity.parameter import (
     Certain,
@@ -116,23 +120,14 @@ class Limits(NamedTuple):
 _FASTEST = {"linear": 10.0, "rotary": 300.0}
 
 
-def limits_of(safety: Safety, force_limit: float | None, motion: str, period: float) -> Limits:
-    """What the loop compares with.
-
-    Parameters
-    ----------
-    force_limit
-        Of the device [N; N·m], where it is known.
-    motion
-        "linear" or "rotary".
-    period
-        T [s].
-    """
+def limits_of(safety: Safety, device: Device, period: float) -> Limits:
+    """What the loop compares with, at a period T [s]; of the device's force limit the least."""
+    limit = None if device.force_limit is None else float(ends(device.force_limit)[0])
     asked = None if safety.force is None else float(safety.force)
-    known = [f for f in (asked, force_limit) if f is not None]
+    known = [f for f in (asked, limit) if f is not None]
     force = min(known) if known else 1e300
     near = float(safety.start_force) if safety.start_force is not None else 0.01 * force if known else 0.0
-    speed = _FASTEST[motion] if safety.speed is None else float(safety.speed)
+    speed = _FASTEST[device.motion] if safety.speed is None else float(safety.speed)
     return Limits(
         force=force,
         change=1e300 if safety.slew is None else float(safety.slew) * period,
@@ -143,9 +138,6 @@ def limits_of(safety: Safety, force_limit: float | None, motion: str, period: fl
         host_timeout=float(safety.host_timeout),
     )
 
-
-ZEROS = 3
-"""How often force 0 is given after the end: a frame may be lost."""
 
 # Why the force ended.  From BAD_ANSWER on the status of the last answer is added.
 RUNNING, ASKED, DONE, NO_NUMBER, JUMPED, GAP, HOST_GONE, FAILED, NO_FORCE, BAD_ANSWER = range(10)
@@ -160,3 +152,48 @@ REASONS = {
     FAILED: "the program around the loop failed",
     NO_FORCE: "the force of the law was no finite number",
 }
+
+
+# Judged, the same of a loop, a pair and a port, are an answer that is not good (at once where the device
+# failed or the line closed, else after several in a row), a reading that is no number or lies farther from
+# the one before than a hand goes, and a gap: for too long no good reading while a law is served, whatever
+# force it gave.
+
+
+@compiled
+def bad_in_a_row(status: int, before: float) -> float:
+    """Answers in a row that were not good, with this one, from those before it."""
+    return 0.0 if status == GOOD else before + 1.0
+
+
+@compiled
+def judged_answer(status: int, bad: float, most: float) -> int:
+    """RUNNING, or why the force has to end: `bad` in a row were not good, and so many may be."""
+    if status in (CLOSED, REFUSED) or bad > most:
+        return BAD_ANSWER + status
+    return RUNNING
+
+
+@compiled
+def judged_reading(x: float, before: float, farthest: float) -> int:
+    """RUNNING, or why the force has to end: at x [m; rad], farther from the one before than a hand may have
+    gone.
+
+    `before` is not a number where there is none.
+    """
+    if not isfinite(x):
+        return NO_NUMBER
+    return JUMPED if abs(x - before) > farthest else RUNNING
+
+
+@compiled
+def judged_gap(since: float, longest: float) -> int:
+    """RUNNING, or GAP where the last good reading lies so far back [s] and a law is served."""
+    return GAP if since > longest else RUNNING
+
+
+def find_judging() -> None:
+    """Have what a loop in Python calls found in its library before the clock runs."""
+    judged_answer(GOOD, bad_in_a_row(GOOD, 0.0), 0.0)
+    judged_reading(0.0, nan, 0.0)
+    judged_gap(0.0, 0.0)

@@ -12,14 +12,14 @@ The loop is a thread of its own.  What it is told, and what it tells, stands in 
 from __future__ import annotations
 
 import atexit
-from fractions import Fraction
+from datetime import UTC, datetime
 from math import inf
 from typing import Any, Literal, cast
 
 from zwidth.errors import InputError
 from zwidth.loop.plant import STATE_SIZE
+from zwidth.loop.trace import own_version
 from zwidth.machine.servo import cycle
-from zwidth.machine.servo.about import about, specification
 from zwidth.machine.servo.connection import (
     CompiledConnection,
     Connection,
@@ -27,26 +27,31 @@ from zwidth.machine.servo.connection import (
     Opened,
     Placement,
     blank,
+    seconds_of,
 )
-from zwidth.machine.servo.cycle import HEARTBEAT, REASON, ROWS, SERVED, STOP, WANTED
-from zwidth.machine.servo.loop import Shared, shared
-from zwidth.machine.servo.measured import Measured, measured
-from zwidth.machine.servo.packing import Packed, pack
+from zwidth.machine.servo.cycle import HEARTBEAT, REASON, ROWS, SERVED, STOP, WANTED, Packed, pack
+from zwidth.machine.servo.loop import LoopThread, Shared, shared
 from zwidth.machine.servo.posix import check_supported, now
 from zwidth.machine.servo.priority import Granted, RealTime
-from zwidth.machine.servo.proving import Decide, check_kinds, judged, least_friction, refuse_not_proved
+from zwidth.machine.servo.proving import (
+    Decide,
+    Measured,
+    check_kinds,
+    judged,
+    least_friction,
+    measured,
+    refuse_not_proved,
+)
 from zwidth.machine.servo.report import ServoReport, report_of
 from zwidth.machine.servo.ring import MEASURING, Rows, ring
-from zwidth.machine.servo.running import LoopThread
 from zwidth.machine.servo.safety import ASKED, DONE, FAILED, RUNNING, Safety, limits_of
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
+from zwidth.model.specification.write import written
 from zwidth.passivity.check import check
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import RealLike, ends
-from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import read_number
 
 Contact = Literal["made and broken", "kept"]
 _ROOM, _REMEMBERED = 1 << 15, 1 << 11
@@ -113,9 +118,7 @@ class Servo:
         self._certain = least_friction(device)
         self._period = self._certain.exact("sample_period")
         self._thread = LoopThread(connection, real_time or RealTime())
-        limit = self._certain.force_limit
-        most = None if limit is None else float(ends(limit)[0])
-        self._limits = limits_of(self.safety, most, device.motion, float(self._period))
+        self._limits = limits_of(self.safety, self._certain, float(self._period))
         self._first = self._packed(self.environment, 0.0)  # refused before the device is reached
         self._laws: list[tuple[str, Verdict]] = []
         self._closed = False
@@ -124,7 +127,6 @@ class Servo:
         atexit.register(self.close)
 
     def __enter__(self) -> Servo:
-        """Itself."""
         return self
 
     def __exit__(self, kind: object, error: object, trace: object) -> None:
@@ -159,10 +161,7 @@ class Servo:
             If the device does not answer to the end, or the loop runs, or the device was let go.
         """
         self._refuse_busy()
-        seconds = read_number(
-            duration, GLOSSARY["sample_period"], "duration", bound="> 0", why="0 has no sample"
-        )
-        last = min(max(1, int(seconds.fraction / self._period)), _LONGEST)
+        last = self._count(duration)
         opened = self._opened
         if self.connection.samples is not None:
             last = min(last, self.connection.samples)
@@ -376,10 +375,10 @@ class Servo:
     def _last(self, duration: RealLike | None) -> int:
         if duration is None:
             return -1 if self.connection.samples is None else self.connection.samples
-        seconds: Fraction = read_number(
-            duration, GLOSSARY["sample_period"], "duration", bound="> 0", why="0 has no sample"
-        ).fraction
-        return min(max(1, int(seconds / self._period)), _LONGEST)
+        return self._count(duration)
+
+    def _count(self, duration: RealLike) -> int:
+        return min(max(1, int(seconds_of(duration).fraction / self._period)), _LONGEST)
 
     def _refuse_busy(self) -> None:
         """One loop at a time speaks to a device, and none to a device that was let go."""
@@ -387,3 +386,30 @@ class Servo:
             raise InputError("the device was let go: reach it again with another Servo")
         if self.running:
             raise InputError("the loop runs already: change the law, or stop it first")
+
+
+def about(
+    device: Device, environment: Environment, connection: Connection, placement: Placement, safety: Safety
+) -> dict[str, Any]:
+    """Texts and numbers, units in the keys."""
+    x = "rad" if device.motion == "rotary" else "m"
+    return {
+        "zwidth_version": own_version(),
+        "started": datetime.now(UTC).isoformat(timespec="seconds"),
+        "device": device.name,
+        "motion": device.motion,
+        "connection": connection.describe(),
+        "law": environment.describe(device.motion),
+        "specification": specification(device, environment),
+        f"origin_{x}": placement.origin,
+        "sense": placement.sense,
+        "safety": {name: None if value is None else float(value) for name, value in vars(safety).items()},
+    }
+
+
+def specification(device: Device, environment: Environment) -> str:
+    """The loop in TOML; "" where a specification has no words for it."""
+    try:
+        return written(device, environment)
+    except InputError:
+        return ""

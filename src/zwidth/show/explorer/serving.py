@@ -23,8 +23,7 @@ from tornado.httpserver import HTTPServer
 from tornado.ioloop import IOLoop
 
 from zwidth.errors import InputError
-from zwidth.machine.servo.live.page import HOST, Page, checked_port, guarded, origins
-from zwidth.machine.servo.live.serving import Serving
+from zwidth.machine.servo.live.page import HOST, Page, Serving, checked_port, guarded, origins
 from zwidth.show.explorer.access import ANY, TOKEN, TokenAccess, hosts, token_for
 from zwidth.show.explorer.page import full_page, page_of
 from zwidth.show.explorer.session import Session

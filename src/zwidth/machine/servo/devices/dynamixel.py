@@ -37,11 +37,9 @@ from zwidth.machine.servo.connection import (
     Setting,
     exchanged,
 )
-from zwidth.machine.servo.devices.arrivals import unwrapped, unwritten
-from zwidth.machine.servo.devices.bus_servo import BusServo
 from zwidth.machine.servo.devices.dynamixel_packets import ALERT, put_read, put_write, receive
-from zwidth.machine.servo.devices.frames import get_signed
-from zwidth.machine.servo.devices.watchdog import check_watchdog
+from zwidth.machine.servo.devices.frames import get_signed, unwrapped, unwritten
+from zwidth.machine.servo.devices.serial_port import BusServo, check_watchdog
 from zwidth.machine.servo.posix import Bytes, discard, write_all
 from zwidth.native.compiled import Array
 

@@ -13,8 +13,15 @@ Source: ROBOTIS e-Manual, "DYNAMIXEL Protocol 2.0" and "CRC calculation".
 from __future__ import annotations
 
 from zwidth.machine.servo.connection import CLOSED, GARBLED, GOOD, REFUSED
-from zwidth.machine.servo.devices.arrivals import MOST_READS, dropped, more_bytes, unanswered
-from zwidth.machine.servo.devices.frames import crc16, get_unsigned, put
+from zwidth.machine.servo.devices.frames import (
+    MOST_READS,
+    crc16,
+    dropped,
+    get_unsigned,
+    more_bytes,
+    put,
+    unanswered,
+)
 from zwidth.machine.servo.posix import Bytes
 from zwidth.native.compiled import compiled
 

@@ -106,7 +106,6 @@ class ForceDimension(LibraryConnection):
         return cut if self._watched else "holds the last force: its firmware has no watchdog"
 
     def open(self, sample_period: float) -> None:
-        """As of every connection."""
         if 2 * sample_period >= WATCHDOG:
             raise InputError(
                 f"the sample period must be below {1e3 * WATCHDOG / 2:g} ms, got {1e3 * sample_period:g} ms: "
@@ -174,7 +173,6 @@ class ForceDimension(LibraryConnection):
             self._dhd.enableForce(True, self._device)
 
     def close(self) -> None:
-        """As of every connection."""
         if self._dhd is None:
             return
         self.apply(0.0)

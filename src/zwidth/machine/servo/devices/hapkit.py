@@ -41,8 +41,16 @@ from zwidth.machine.servo.connection import (
     blank,
     exchanged,
 )
-from zwidth.machine.servo.devices.arrivals import more_bytes, unanswered, unwritten
-from zwidth.machine.servo.devices.frames import CCITT, crc16, get_signed, get_unsigned, put
+from zwidth.machine.servo.devices.frames import (
+    CCITT,
+    crc16,
+    get_signed,
+    get_unsigned,
+    more_bytes,
+    put,
+    unanswered,
+    unwritten,
+)
 from zwidth.machine.servo.devices.serial_port import open_port
 from zwidth.machine.servo.posix import Bytes, discard, now, write_all
 from zwidth.native.compiled import Array, compiled
@@ -226,7 +234,6 @@ class Hapkit(CompiledConnection):
             )
 
     def close(self) -> None:
-        """As of every connection."""
         if self._line is None or self._opened is None:
             return
         self._opened.memory[FORCE] = 0.0

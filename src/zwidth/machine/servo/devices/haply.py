@@ -49,9 +49,7 @@ from zwidth.machine.servo.connection import (
     blank,
     exchanged,
 )
-from zwidth.machine.servo.devices import pantograph
-from zwidth.machine.servo.devices.arrivals import more_bytes, unwritten
-from zwidth.machine.servo.devices.frames import get_float32, put_float32
+from zwidth.machine.servo.devices.frames import get_float32, more_bytes, put_float32, unwritten
 from zwidth.machine.servo.devices.serial_port import open_port
 from zwidth.machine.servo.posix import Bytes, now, write_all
 from zwidth.native.compiled import Array, compiled
@@ -61,7 +59,7 @@ RESET, SETUP, EXCHANGE = 0, 1, 2
 
 # What is remembered, from OWN on: the device's number and its count of motors; answers that are on their way,
 # and bytes that are in the inbox; which axis; the place in a frame of joint 1 and of joint 2; the lengths of
-# the arms; the torques last given, in the order of a frame; what `pantograph.locate` found.
+# the arms; the torques last given, in the order of a frame; what `locate` found.
 DEVICE, MOTORS, OWED, HELD, AXIS, FIRST, SECOND = range(OWN, OWN + 7)
 ARMS = SECOND + 1
 TORQUES = ARMS + 3
@@ -108,21 +106,57 @@ class HaplyJoint:
 
 _VERSIONS = {
     2: (
-        (
-            HaplyJoint(2, "ccw", math.radians(241.0), 10752.0),
-            HaplyJoint(1, "cw", math.radians(-61.0), 10752.0),
-        ),
+        (HaplyJoint(2, "ccw", math.radians(241.0), 10752.0),
+         HaplyJoint(1, "cw", math.radians(-61.0), 10752.0)),
         (0.07, 0.09, 0.0),
     ),
     3: (
-        (
-            HaplyJoint(2, "ccw", math.radians(168.0), 4880.0),
-            HaplyJoint(1, "ccw", math.radians(12.0), 4880.0),
-        ),
+        (HaplyJoint(2, "ccw", math.radians(168.0), 4880.0), HaplyJoint(1, "ccw", math.radians(12.0), 4880.0)),
         (0.07, 0.09, 0.038),
     ),
-}
+}  # fmt: skip
 """Joints 1 and 2, and the lengths l, L and d [m], by the hardware version: of HaplyHAPI 1.0.1."""
+
+
+# Where the tip of a pantograph is, and which torques give it a force: five bars, two motors side by side.
+#
+#     A = l (cos θ₁, sin θ₁),   B = (d, 0) + l (cos θ₂, sin θ₂)
+#     |P − A| = |P − B| = L,    P the one of the two points that lies to the left of A → B
+#     τᵢ = F · ∂P/∂θᵢ           (the power of the torques is that of the force)
+#
+# with u = P − A and w = P − B, and D = u_x w_y − u_y w_x, the constraints give
+#
+#     ∂P/∂θ₁ = (u · ∂A/∂θ₁)/D (w_y, −w_x),   ∂P/∂θ₂ = (w · ∂B/∂θ₂)/D (−u_y, u_x).
+#
+# The origin is the axis of the first motor, x points from it to the second, y away from the base to the hand.
+# Campion, Wang and Hayward 2005 (the Pantograph Mk-II), with the axes and the signs of Haply's hAPI.
+
+
+@compiled
+def locate(first: float, second: float, arms: Array, found: Array) -> bool:
+    """Position of the tip and its change with the angles; False where the arms cannot meet.
+
+    Of θ₁, θ₂ [rad] and the arms l, L, d [m]; `found` takes x, y [m], ∂x/∂θ₁, ∂y/∂θ₁, ∂x/∂θ₂, ∂y/∂θ₂ [m/rad].
+    """
+    inner, outer, base = arms[0], arms[1], arms[2]
+    ax, ay = inner * math.cos(first), inner * math.sin(first)
+    bx, by = base + inner * math.cos(second), inner * math.sin(second)
+    hx, hy = bx - ax, by - ay
+    apart = math.sqrt(hx * hx + hy * hy)
+    if not 0.0 < apart < 2.0 * outer:  # no number is in no interval either
+        return False
+    height = math.sqrt(outer * outer - 0.25 * apart * apart) / apart
+    ux, uy = 0.5 * hx - height * hy, 0.5 * hy + height * hx
+    wx, wy = ux - hx, uy - hy
+    area = ux * wy - uy * wx
+    if area == 0.0:
+        return False
+    along_first = (uy * ax - ux * ay) / area
+    along_second = (wy * (bx - base) - wx * by) / area
+    found[0], found[1] = ax + ux, ay + uy
+    found[2], found[3] = along_first * wy, -along_first * wx
+    found[4], found[5] = -along_second * uy, along_second * ux
+    return True
 
 
 @compiled
@@ -170,7 +204,7 @@ def _read(memory: Array, inbox: Bytes) -> int:
     # the arms cannot turn round: a greater angle is none that was measured
     if not (abs(first) <= 2 * math.pi and abs(second) <= 2 * math.pi):
         return GARBLED
-    if not pantograph.locate(first, second, memory[ARMS : ARMS + 3], memory[FOUND : FOUND + 6]):
+    if not locate(first, second, memory[ARMS : ARMS + 3], memory[FOUND : FOUND + 6]):
         return GARBLED
     memory[READING] = memory[FOUND + int(memory[AXIS])]
     return GOOD
@@ -291,7 +325,6 @@ class _Haply(CompiledConnection):
             self._line.write(frame)
 
     def close(self) -> None:
-        """As of every connection."""
         if self._line is None:
             return
         count = len(self.joints)

@@ -48,14 +48,15 @@ from zwidth.machine.servo.connection import (
     exchanged,
 )
 from zwidth.machine.servo.devices import websocket
-from zwidth.machine.servo.devices.decimals import read_decimal, write_decimal
 from zwidth.machine.servo.devices.json_text import (
     ABSENT,
     first_element,
     is_string,
     member,
     next_element,
+    read_decimal,
     skip_space,
+    write_decimal,
 )
 from zwidth.machine.servo.posix import Bytes, check_supported, now, pause, read_some, write_all
 from zwidth.native.compiled import Array, compiled
@@ -217,7 +218,7 @@ def _measure(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
     memory[LAST] = memory[INDEX]
     before = memory[ANSWERS]
     while True:
-        over = now() >= memory[UNTIL]  # the last look is after the time, see `arrivals.more_bytes`
+        over = now() >= memory[UNTIL]  # the last look is after the time, see `frames.more_bytes`
         status = _take(memory, inbox, outbox)
         if status != GOOD:
             return status

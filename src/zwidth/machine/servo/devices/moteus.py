@@ -40,7 +40,7 @@ from zwidth.machine.servo.connection import (
     blank,
     exchanged,
 )
-from zwidth.machine.servo.devices.arrivals import (
+from zwidth.machine.servo.devices.frames import (
     MOST_READS,
     dropped,
     more_bytes,
@@ -67,8 +67,7 @@ from zwidth.machine.servo.devices.moteus_frames import (
     put_torque,
     understood,
 )
-from zwidth.machine.servo.devices.serial_port import open_port
-from zwidth.machine.servo.devices.watchdog import check_watchdog
+from zwidth.machine.servo.devices.serial_port import check_watchdog, open_port
 from zwidth.machine.servo.posix import Bytes, now, write_all
 from zwidth.native.compiled import Array, compiled
 

@@ -23,17 +23,7 @@ SIMULATED = "simulated"
 
 
 class Key(NamedTuple):
-    """A key of a connection.
-
-    Parameters
-    ----------
-    meaning
-        In a few words.
-    form
-        "text", "whole", "flag", or "number".
-    unit
-        Of a number, SI.
-    """
+    """A key of a connection, of the form "text", "whole", "flag", or "number", whose unit is SI."""
 
     meaning: str
     form: str = "text"
@@ -65,105 +55,45 @@ _NUMBER = Key("number of the device on its bus", "whole")
 _REVERSE = Key("true: a positive command turns it towards smaller readings", "flag")
 _WATCHDOG = Key("after so long without a command the device gives no force", "number", "s")
 
-CONNECTIONS: Mapping[str, Way] = MappingProxyType(
-    {
-        "inverse": Way(
-            "Inverse",
-            "inverse",
-            "the Haply Inverse service",
-            {
-                "axis": _AXIS,
-                "device": Key("its identifier, where the service has several"),
-                "address": Key("host and port of the service"),
-            },
-        ),
-        "haply": Way(
-            "HaplyPantograph",
-            "haply",
-            "a Haply 2DIY",
-            {"port": _PORT, "axis": _AXIS, "version": Key("of the 2DIY: 3 or 2", "whole")},
-            ("port",),
-        ),
-        "haply-motor": Way(
-            "HaplyMotor",
-            "haply",
-            "one motor at a Haply board",
-            {
-                "port": _PORT,
-                "counts": Key("of its encoder in one turn", "number", "1"),
-                "offset": Key("angle at which it stands when it is opened", "number", "rad"),
-                "rotation": Key("ccw or cw, as the angle grows"),
-                "motor": Key("the same for its torque"),
-            },
-            ("port", "counts"),
-        ),
-        "hapkit": Way(
-            "Hapkit",
-            "hapkit",
-            "a Hapkit with the sketch of examples/hapkit",
-            {"port": _PORT, "baud": _BAUD, "count": Key("way of the handle in one count", "number", "m")},
-            ("port", "count"),
-        ),
-        "force-dimension": Way(
-            "ForceDimension",
-            "force_dimension",
-            "omega, delta, sigma through the maker's library",
-            {
-                "axis": _AXIS,
-                "index": Key("number of the device, from 0", "whole"),
-                "simulator": Key("true: the maker's simulator", "flag"),
-            },
-        ),
-        "moteus": Way(
-            "Moteus",
-            "moteus",
-            "a moteus behind a CAN adapter, or at its own UART",
-            {
-                "port": _PORT,
-                "identifier": _NUMBER,
-                "watchdog": _WATCHDOG,
-                "checksums": Key("true: frames carry a checksum", "flag"),
-                "baud": _BAUD,
-            },
-            ("port",),
-        ),
-        "odrive": Way(
-            "ODrive",
-            "odrive",
-            "an ODrive by its text protocol",
-            {"port": _PORT, "axis": Key("0 or 1", "whole"), "baud": _BAUD, "watchdog": _WATCHDOG},
-            ("port",),
-        ),
-        "dynamixel": Way(
-            "Dynamixel",
-            "dynamixel",
-            "a Dynamixel servo, X series",
-            {
-                "port": _PORT,
-                "identifier": _NUMBER,
-                "baud": _BAUD,
-                "watchdog": _WATCHDOG,
-                "torque_per_current": Key("torque of one ampere", "number", "N*m/A"),
-                "current_unit": Key("current of one unit, where the model is unknown", "number", "A"),
-                "reverse": _REVERSE,
-            },
-            ("port", "torque_per_current"),
-        ),
-        "feetech": Way(
-            "Feetech",
-            "feetech",
-            "a Feetech STS servo",
-            {
-                "port": _PORT,
-                "identifier": _NUMBER,
-                "baud": _BAUD,
-                "full_duty_torque": Key("torque at full duty and standstill", "number", "N*m"),
-                "reverse": _REVERSE,
-            },
-            ("port", "full_duty_torque"),
-        ),
-    }
-)
+CONNECTIONS: Mapping[str, Way] = MappingProxyType({
+    "inverse": Way("Inverse", "inverse", "the Haply Inverse service", {
+        "axis": _AXIS, "device": Key("its identifier, where the service has several"),
+        "address": Key("host and port of the service"),
+    }),
+    "haply": Way("HaplyPantograph", "haply", "a Haply 2DIY", {
+        "port": _PORT, "axis": _AXIS, "version": Key("of the 2DIY: 3 or 2", "whole"),
+    }, ("port",)),
+    "haply-motor": Way("HaplyMotor", "haply", "one motor at a Haply board", {
+        "port": _PORT, "counts": Key("of its encoder in one turn", "number", "1"),
+        "offset": Key("angle at which it stands when it is opened", "number", "rad"),
+        "rotation": Key("ccw or cw, as the angle grows"), "motor": Key("the same for its torque"),
+    }, ("port", "counts")),
+    "hapkit": Way("Hapkit", "hapkit", "a Hapkit with the sketch of examples/hapkit", {
+        "port": _PORT, "baud": _BAUD, "count": Key("way of the handle in one count", "number", "m"),
+    }, ("port", "count")),
+    "force-dimension": Way("ForceDimension", "force_dimension",
+                           "omega, delta, sigma through the maker's library", {
+        "axis": _AXIS, "index": Key("number of the device, from 0", "whole"),
+        "simulator": Key("true: the maker's simulator", "flag"),
+    }),
+    "moteus": Way("Moteus", "moteus", "a moteus behind a CAN adapter, or at its own UART", {
+        "port": _PORT, "identifier": _NUMBER, "watchdog": _WATCHDOG,
+        "checksums": Key("true: frames carry a checksum", "flag"), "baud": _BAUD,
+    }, ("port",)),
+    "odrive": Way("ODrive", "odrive", "an ODrive by its text protocol", {
+        "port": _PORT, "axis": Key("0 or 1", "whole"), "baud": _BAUD, "watchdog": _WATCHDOG,
+    }, ("port",)),
+    "dynamixel": Way("Dynamixel", "dynamixel", "a Dynamixel servo, X series", {
+        "port": _PORT, "identifier": _NUMBER, "baud": _BAUD, "watchdog": _WATCHDOG,
+        "torque_per_current": Key("torque of one ampere", "number", "N*m/A"),
+        "current_unit": Key("current of one unit, where the model is unknown", "number", "A"),
+        "reverse": _REVERSE,
+    }, ("port", "torque_per_current")),
+    "feetech": Way("Feetech", "feetech", "a Feetech STS servo", {
+        "port": _PORT, "identifier": _NUMBER, "baud": _BAUD,
+        "full_duty_torque": Key("torque at full duty and standstill", "number", "N*m"), "reverse": _REVERSE,
+    }, ("port", "full_duty_torque")),
+})  # fmt: skip
 
 
 def keys() -> dict[str, tuple[Key, list[str]]]:

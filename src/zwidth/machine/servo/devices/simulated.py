@@ -44,6 +44,7 @@ from zwidth.machine.servo.connection import (
     Opened,
     blank,
     exchanged,
+    seconds_of,
 )
 from zwidth.machine.servo.posix import Bytes
 from zwidth.model.device.amplifier import Amplifier
@@ -52,8 +53,6 @@ from zwidth.model.environment import Wall
 from zwidth.model.operator.operator import LinearHand, Operator, Signals
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import RealLike
-from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import read_number
 
 if TYPE_CHECKING:
     from zwidth.model.operator.operator import Signal
@@ -167,49 +166,34 @@ def _apply(s: Array, inbox: Bytes, outbox: Bytes) -> int:
 
 @dataclass(frozen=True, kw_only=True)
 class Scripted(Operator):
-    """A hand that does at sample k what another does at kT, whenever the sample is taken.
-
-    Parameters
-    ----------
-    operator
-        The other hand.
-    period
-        T [s].
-    """
+    """A hand that does at sample k what another does at kT [s], whenever the sample is taken."""
 
     operator: Operator
     period: float
 
     @property
     def hand(self) -> LinearHand:
-        """Of the other."""
         return self.operator.hand
 
     @property
     def kinematic(self) -> bool:
-        """As the other."""
         return self.operator.kinematic
 
     @property
     def initial_position(self) -> float:
-        """Of the other."""
         return self.operator.initial_position
 
     @property
     def start_is_chosen(self) -> bool:
-        """As of the other."""
         return self.operator.start_is_chosen
 
     def starting_at(self, position: float) -> Operator:
-        """The other, starting there."""
         return replace(self, operator=self.operator.starting_at(position))
 
     def signals(self, times: Signal) -> Signals:
-        """Those of the other at whole periods."""
         return self.operator.signals(np.arange(len(times)) * np.float64(self.period))
 
     def describe(self, motion: str = "linear") -> str:
-        """As the other."""
         return self.operator.describe(motion)
 
 
@@ -254,10 +238,7 @@ class Simulated(CompiledConnection):
         energies = ("hand_work", "actuator_work", "viscous_loss", "coulomb_loss", "hand_source_work")
         told = [f"{name}_J" for name in (*energies, "hand_damper_loss")]
         object.__setattr__(self, "tells", (f"true_position_{x}", f"true_velocity_{x}_per_s", *told))
-        seconds = read_number(
-            self.duration, GLOSSARY["sample_period"], "duration", bound="> 0", why="0 has no sample"
-        )
-        object.__setattr__(self, "duration", seconds)
+        object.__setattr__(self, "duration", seconds_of(self.duration))
         self.setup()
 
     def setup(self) -> Setup:

@@ -9,9 +9,8 @@ from __future__ import annotations
 import socket
 from functools import partial
 
-from zwidth.machine.servo.live.page import HOST, Page, checked_origin, checked_port
+from zwidth.machine.servo.live.page import HOST, Page, Serving, bound, checked_origin, checked_port
 from zwidth.machine.servo.live.rows import Rows
-from zwidth.machine.servo.live.serving import Serving, bound
 
 PORT = 8765
 """Where Foxglove, Lichtblick and PlotJuggler look first."""

@@ -1,15 +1,17 @@
-"""Something that is served on this machine while a loop runs, and ends."""
+"""Something that is served on this machine while a loop runs, in a thread of its own, and ends."""
 
 from __future__ import annotations
 
+import asyncio
+import importlib
 import re
 from collections.abc import Callable, Collection
 from ipaddress import ip_address
+from threading import Event, Thread
 from types import SimpleNamespace, TracebackType
 from typing import Any
 
 from zwidth.errors import InputError
-from zwidth.machine.servo.live.library import library
 
 HOST = "127.0.0.1"
 """Nobody on another machine is answered."""
@@ -77,16 +79,8 @@ def guarded(application: Any, names: Collection[str], port: int, *, addresses: b
     """What Tornado is to serve in the place of `application`: a request to a foreign host meets no handler.
 
     A page of another site whose name comes to mean this machine is of the same origin for a browser, and for
-    Tornado; only its Host tells.  A WebSocket begins as such a request.
-
-    Parameters
-    ----------
-    names
-        Of this server.
-    port
-        Of this server; only port 80 may be left out of a Host.
-    addresses
-        Any address in numbers will do: it comes to mean nothing else.
+    Tornado; only its Host tells.  A WebSocket begins as such a request.  Only port 80 may be left out of a
+    Host. With `addresses` any address in numbers will do: it comes to mean nothing else.
     """
     routing, http = library("tornado.routing", "Tornado"), library("tornado.httputil", "Tornado")
     own = {*origins(names, port), *(names if port == 80 else ())}
@@ -115,3 +109,67 @@ def _is_address(host: str, port: int) -> bool:
         return host in origins([str(ip_address(name))], port)
     except ValueError:
         return False
+
+
+def library(module: str, name: str) -> Any:
+    """A module of the extra `serve` that may be missing; `name` as its makers write it."""
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        raise InputError(
+            f"{name} is not installed; pip install 'zwidth[serve]', or watch in the terminal without it"
+        ) from None
+
+
+def bound(port: int) -> tuple[list[Any], int]:
+    """Sockets that listen on this machine alone, and their port."""
+    try:
+        sockets = library("tornado.netutil", "Tornado").bind_sockets(port, HOST)
+    except OSError as error:
+        raise InputError(
+            f"port {port} cannot be served here: {error.strerror}; give another one, or 0 for a free one"
+        ) from None
+    return sockets, sockets[0].getsockname()[1]
+
+
+class Serving:
+    """A thread that serves on sockets that listen, until it is closed.
+
+    `made` makes, in the thread, the HTTP server, and what ends whatever is behind it.
+    """
+
+    def __init__(
+        self, sockets: list[Any], made: Callable[[], tuple[Any, Callable[[], None]]], name: str
+    ) -> None:
+        self._sockets, self._made = sockets, made
+        self._ready = Event()
+        self._failure: BaseException | None = None
+        self._thread = Thread(target=self._run, name=name, daemon=True)
+        self._thread.start()
+        self._ready.wait()
+        if self._failure is not None:
+            raise self._failure
+
+    def _run(self) -> None:
+        try:
+            asyncio.run(self._serve())
+        except BaseException as error:
+            self._failure = error
+        finally:
+            self._ready.set()
+
+    async def _serve(self) -> None:
+        self._loop, self._ended = asyncio.get_running_loop(), asyncio.Event()
+        http, end = self._made()
+        http.add_sockets(self._sockets)
+        self._ready.set()
+        await self._ended.wait()
+        http.stop()
+        end()
+        await http.close_all_connections()
+
+    def close(self) -> None:
+        """End it."""
+        if self._thread.is_alive():
+            self._loop.call_soon_threadsafe(self._ended.set)
+        self._thread.join()

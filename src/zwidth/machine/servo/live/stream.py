@@ -13,21 +13,22 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
+import math
 import struct
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from typing import Any
 from urllib.parse import urlsplit
 
+import numpy as np
 from tornado.httpserver import HTTPServer
 from tornado.web import Application, HTTPError
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
-from zwidth.machine.servo.live.messages import json_messages, json_schema, ros2_messages, ros2_schema
 from zwidth.machine.servo.live.page import OWN, guarded
-from zwidth.machine.servo.live.rows import Rows
+from zwidth.machine.servo.live.rows import Rows, ros2_schema
 from zwidth.native.compiled import Array
 from zwidth.showing import printable
 
@@ -160,3 +161,38 @@ class _Reader(WebSocketHandler):
 
     def on_close(self) -> None:
         self._stream.readers.discard(self)
+
+
+# A row as a message: JSON keeps the names of the columns, units in them; what is no number is left out.  In a
+# message of ROS 2 names have small letters alone: ``force_N`` is ``force_n`` there, and stands as it is in a
+# comment.  Numbers of 8 bytes follow each other without a gap, after four bytes that say so, 00 01 00 00:
+# little-endian CDR (OMG, DDS Interoperability Wire Protocol 2.2, 10.2).
+
+
+_ENCAPSULATION = (0, 1, 0, 0)
+
+
+def json_schema(columns: Sequence[str]) -> bytes:
+    """The JSON schema of a row."""
+    schema: dict[str, Any] = {
+        "title": "zwidth row",
+        "type": "object",
+        "properties": {name: {"type": "number"} for name in columns},
+    }
+    return json.dumps(schema).encode()
+
+
+def json_messages(columns: Sequence[str], rows: Array) -> Iterator[bytes]:
+    """Each row as JSON."""
+    for row in rows.tolist():
+        known = {name: value for name, value in zip(columns, row, strict=True) if math.isfinite(value)}
+        yield json.dumps(known).encode()
+
+
+def ros2_messages(rows: Array) -> Iterator[bytes]:
+    """Each row as ROS 2 serializes it."""
+    count, width = rows.shape
+    octets = np.empty((count, len(_ENCAPSULATION) + 8 * width), np.uint8)
+    octets[:, : len(_ENCAPSULATION)] = _ENCAPSULATION
+    octets[:, len(_ENCAPSULATION) :] = np.ascontiguousarray(rows, "<f8").view(np.uint8).reshape(count, -1)
+    return (row.tobytes() for row in octets)

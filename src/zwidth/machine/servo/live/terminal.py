@@ -11,12 +11,11 @@ from threading import Event
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console, Group
 from rich.live import Live
 from rich.text import Text
 
-from zwidth.machine.servo.live.braille import DOTS_ACROSS, EMPTY, Codes, cells
-from zwidth.machine.servo.live.envelope import SPAN, Envelope
 from zwidth.machine.servo.live.rows import (
     CURVES,
     ENERGY_OUT,
@@ -25,11 +24,14 @@ from zwidth.machine.servo.live.rows import (
     LATENESS,
     MARGIN,
     POSITION,
+    SPAN,
     WISHED_FORCE,
+    Envelope,
     Rows,
+    Tally,
     Watched,
+    scales_of,
 )
-from zwidth.machine.servo.live.tally import Tally
 from zwidth.native.compiled import Array
 from zwidth.showing import printable
 
@@ -107,7 +109,7 @@ def _watch_curves(rows: Rows, watched: Watched, tally: Tally, stop: Event, out: 
 
 def _graphs(motion: str) -> list[_Graph]:
     """Position, force, energy and lateness, in the order in which they are left out from the end."""
-    x, f, scale = ("mrad", "mN·m", 1e3) if motion == "rotary" else ("mm", "N", 1.0)
+    x, f, scale = scales_of(motion)
     return [
         _Graph("position", x, 1e3, [(POSITION, "", "cyan")]),
         _Graph("force", f, scale, [(WISHED_FORCE, "asked for", "yellow"), (FORCE, "given", "green")]),
@@ -175,3 +177,43 @@ def _range(low: Array, high: Array) -> tuple[float, float]:
     step = 0.2 * 10.0 ** math.floor(math.log10(max(top - bottom, abs(top) * 1e-6, 1e-6)))
     bottom, top = math.floor(bottom / step) * step, math.ceil(top / step) * step
     return (bottom, top) if top > bottom else (bottom, bottom + step)
+
+
+# Curves as text: each character has two dots across and four down, a braille pattern of Unicode.  From
+# above the dots are worth 1, 2, 4, 64 on the left and 8, 16, 32, 128 on the right, added to U+2800 (The
+# Unicode Standard, block U+2800 to U+28FF).
+
+
+DOTS_ACROSS, DOTS_DOWN = 2, 4
+
+_WORTH = np.array([[1, 8], [2, 16], [4, 32], [64, 128]])
+EMPTY = 0x2800
+
+Codes = NDArray[np.int64]
+
+
+def cells(low: Array, high: Array, lines: int, bottom: float, top: float) -> Codes:
+    """The character codes of a curve, a row for each line of text, from above; 0x2800 where there is no dot.
+
+    Lowest and highest of each column of dots, NaN where there is nothing; bottom and top are what the lowest
+    and the highest row of dots stand for.
+    """
+    down = lines * DOTS_DOWN
+    low, high = _joined(low, high)
+    scale = (down - 1) / (top - bottom)
+    with np.errstate(invalid="ignore"):
+        first = np.rint((top - high) * scale)
+        last = np.rint((top - low) * scale)
+        row = np.arange(down)[:, None]
+        dots = (row >= first) & (row <= last)  # False where NaN
+    blocks = dots.reshape(lines, DOTS_DOWN, -1, DOTS_ACROSS)
+    return EMPTY + np.einsum("ldwa,da->lw", blocks, _WORTH)
+
+
+def _joined(low: Array, high: Array) -> tuple[Array, Array]:
+    """Each column reaches to where the one before ended, so that a steep curve has no holes."""
+    before_low, before_high = np.append(np.nan, low[:-1]), np.append(np.nan, high[:-1])
+    with np.errstate(invalid="ignore"):
+        low = np.where(before_high < low, before_high, low)
+        high = np.where(before_low > high, before_low, high)
+    return low, high

@@ -6,4 +6,4 @@ from zwidth.machine.servo.recording.replayed import Replay as Replay
 from zwidth.machine.servo.recording.replayed import Touch as Touch
 from zwidth.machine.servo.recording.replayed import replay as replay
 from zwidth.machine.servo.recording.replayed import touch_of as touch_of
-from zwidth.machine.servo.recording.simulated import trace_of as trace_of
+from zwidth.machine.servo.recording.replayed import trace_of as trace_of

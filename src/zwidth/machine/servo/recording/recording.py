@@ -20,13 +20,11 @@ from zwidth.machine.servo.ring import ENDED, SERVING
 from zwidth.missing import did_you_mean
 from zwidth.model.specification.read import Specification
 from zwidth.model.specification.write import parsed
+from zwidth.native.compiled import Array
 from zwidth.showing import Lines, Part, Shown, Table, printable
 
 if TYPE_CHECKING:
     import xarray as xr
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 _NAMED = {
     "position": "measured_position",

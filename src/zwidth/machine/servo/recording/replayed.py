@@ -19,7 +19,7 @@ import numpy as np
 
 from zwidth.data.logs.served.contents import COLUMNS, ROWS_LOST
 from zwidth.errors import InputError
-from zwidth.loop.simulate import simulated
+from zwidth.loop.simulate import simulate, simulated
 from zwidth.loop.timing import Timing
 from zwidth.machine.servo.recording.recording import Recording
 from zwidth.machine.servo.ring import SERVING
@@ -27,9 +27,11 @@ from zwidth.model.device import Device
 from zwidth.model.device.amplifier import Amplifier
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
+from zwidth.model.operator.operator import Operator
 from zwidth.model.operator.prescribed_motion import PrescribedMotion
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.model.rendering.rendering_law import LoopContext, RenderingLaw
+from zwidth.native.compiled import Array
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import quantity_unit
 
@@ -38,8 +40,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from zwidth.loop.trace import Trace
-
-    Array = NDArray[np.float64]
 
 _MIDDLE = 0.5
 """Phase at which a reading of whole counts lies in the middle of its count, far from an edge."""
@@ -295,3 +295,70 @@ def _compared(recording: Recording, touch: Touch) -> NDArray[np.bool_]:
     if cut.any() and laws_of(touch.environment):
         compared[int(np.argmax(cut)) :] = False
     return compared & ~cut
+
+
+# The whole trace of a touch that was served on a simulated device, which is moved on by the lateness that
+# the loop really had.  So `zwidth.simulate`, given that lateness, computes the same touch, and with it what
+# no column has: the forces of the hand, the energy that it holds, and what `plots`, `energy` and `traces`
+# make of a trace.
+
+
+def trace_of(
+    recording: Recording,
+    hand: Operator,
+    device: Device | None = None,
+    environment: object = None,
+    *,
+    encoder_phase: float = 0.0,
+    amplifier: Amplifier | None = None,
+) -> xr.Dataset:
+    """The trace of the touch, equal to the recording in every sample, to the last bit.
+
+    Parameters
+    ----------
+    recording
+        Of a simulated device, whose first law was served from sample 0 on.
+    hand
+        That held it.
+    device, environment
+        As they were served; by default as the recording says.
+    encoder_phase, amplifier
+        Of the simulated device.
+
+    Raises
+    ------
+    InputError
+        If it is no such recording, or the simulation gives another position or force: then it was another
+        hand, or the safety cut the force.
+    """
+    position, force = COLUMNS[recording.motion]
+    if f"true_{position}" not in recording.columns:
+        raise InputError(
+            f"{recording.path} is of a real device: nobody knows where it was between two counts, and what "
+            "its hand did; its columns are in dataset()"
+        )
+    touch = touch_of(recording, device, environment)
+    numbers = recording.columns["sample"][touch.rows].astype(np.int64)
+    if numbers[0] != 0:
+        raise InputError(
+            f"{recording.path}: the law was served from sample {numbers[0]} on, and the hand had moved the "
+            "device before; a trace begins with law and hand together"
+        )
+    trace = simulate(
+        recording.specification().device if device is None else device,
+        touch.environment,
+        hand,
+        touch.duration,
+        encoder_phase=encoder_phase,
+        amplifier=amplifier,
+        timing=touch.timing,
+    )
+    for name, column in (("position", f"true_{position}"), ("commanded_force", force)):
+        other = trace[name].values[numbers] != recording.columns[column][touch.rows]
+        if other.any():
+            raise InputError(
+                f"{recording.path}: with this hand the {name.replace('_', ' ')} is another one from sample "
+                f"{numbers[int(np.argmax(other))]} on: give the hand, device and amplifier that were served; "
+                "a force that the safety cut is not simulated"
+            )
+    return trace

@@ -14,8 +14,8 @@ from zwidth.errors import InputError
 from zwidth.loop.pair.setup import prepare_pair
 from zwidth.loop.plant import Plant
 from zwidth.loop.setup import frame_of
+from zwidth.machine.firmware.javascript import module
 from zwidth.machine.firmware.law import law_program
-from zwidth.machine.firmware.module import module
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
