@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from zwidth.data.diagnosis import drive, law, vibration
-from zwidth.data.diagnosis.doubts import doubt
+from zwidth.data.diagnosis.diagnose import doubt
 from zwidth.data.diagnosis.evidence import Evidence, gather
 from zwidth.data.diagnosis.recording import Recording, read_of_table
 from zwidth.data.logs.table import Table, in_pieces

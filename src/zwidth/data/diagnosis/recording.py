@@ -18,10 +18,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.data.logs import Log
-from zwidth.data.logs.block import Block, Motion, whole_runs
-from zwidth.data.logs.names import role_of_force
+from zwidth.data.logs.columns import role_of_force
 from zwidth.data.logs.read import log_of, opened
-from zwidth.data.logs.table import Table
+from zwidth.data.logs.table import Block, Motion, Table, whole_runs
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:

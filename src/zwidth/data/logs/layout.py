@@ -22,7 +22,7 @@ from zwidth.data.logs.cells import (
     is_nothing,
     is_number,
 )
-from zwidth.data.logs.scales import is_unit
+from zwidth.data.logs.columns import is_unit
 from zwidth.errors import InputError
 
 _DELIMITERS = (",", ";", "\t", "|", " ")

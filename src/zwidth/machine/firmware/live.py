@@ -15,9 +15,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.data.logs.served.contents import COLUMNS
-from zwidth.data.logs.telemetry.about import About
-from zwidth.data.logs.telemetry.decoder import Decoder, Samples
+from zwidth.data.logs.contents import COLUMNS
+from zwidth.data.logs.telemetry import About, Decoder, Samples
 from zwidth.errors import InputError
 from zwidth.machine.firmware.telemetry import CUT, status_parts
 

@@ -14,9 +14,7 @@ import numpy as np
 import xarray as xr
 
 from zwidth.data.logs.table import readable
-from zwidth.data.logs.telemetry.about import FORMAT, About
-from zwidth.data.logs.telemetry.decoder import Decoder, Samples
-from zwidth.data.logs.telemetry.table import samples_of
+from zwidth.data.logs.telemetry import FORMAT, About, Decoder, Samples, samples_of
 from zwidth.errors import InputError
 from zwidth.loop.trace import UNITS
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from statistics import fmean
 
-from zwidth.data.diagnosis.lowered import PASSIVE, Lowered, largest, lowered_to, text_of, with_margin
+from zwidth.data.diagnosis.change import PASSIVE, Lowered, largest, lowered_to, text_of, with_margin
 from zwidth.data.diagnosis.pairs.energy import PairEvidence
 from zwidth.errors import InputError
 from zwidth.model.pairs.pair import Pair

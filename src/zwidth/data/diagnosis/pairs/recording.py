@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.data.diagnosis.recording import Recording, read_of_table
-from zwidth.data.logs.names import recognise
+from zwidth.data.logs.columns import recognise
 from zwidth.data.logs.read import opened
 from zwidth.data.logs.table import Table, Values, in_pieces
 from zwidth.errors import InputError

@@ -15,10 +15,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from zwidth.data.identification.device.moments import Moments
-from zwidth.data.identification.device.pieces import Piece, pieces
+from zwidth.data.identification.device.estimate import Regression, regress
+from zwidth.data.identification.device.moments import Moments, Piece, pieces
 from zwidth.data.identification.device.pulses import pulse
-from zwidth.data.identification.device.regression import Regression, regress
 from zwidth.data.logs import Log
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array

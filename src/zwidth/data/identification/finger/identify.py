@@ -29,11 +29,13 @@ import numpy as np
 
 from zwidth.data.identification.device.choice import LENGTHS, LONGER, SAFETY
 from zwidth.data.identification.device.estimate import Estimate, perhaps_none, unit_of
-from zwidth.data.identification.device.impossible import refuse_impossible
+from zwidth.data.identification.device.findings import refuse_impossible
 from zwidth.data.identification.device.pulses import PIECES
-from zwidth.data.identification.finger.doubts import (
+from zwidth.data.identification.finger.fit import TERMS, Fit, fitted, lag_of, lag_without_actuator
+from zwidth.data.identification.finger.identified import (
     BY_ACTUATOR,
     FINGER,
+    IdentifiedFinger,
     LoadCellError,
     apart,
     at_the_stop,
@@ -43,11 +45,15 @@ from zwidth.data.identification.finger.doubts import (
     refuse_scale,
     widened,
 )
-from zwidth.data.identification.finger.fit import TERMS, Fit, fitted
-from zwidth.data.identification.finger.identified import IdentifiedFinger
-from zwidth.data.identification.finger.lag import lag_of, lag_without_actuator
-from zwidth.data.identification.finger.means import Means, Pieces, means, pieces_of, response
-from zwidth.data.identification.finger.weights import Weights, weights
+from zwidth.data.identification.finger.means import (
+    Means,
+    Pieces,
+    Weights,
+    means,
+    pieces_of,
+    response,
+    weights,
+)
 from zwidth.data.logs import Finding, Log
 from zwidth.errors import InputError
 from zwidth.model.device.device import Device

@@ -21,8 +21,8 @@ from zlib import crc32
 import numpy as np
 import pyarrow as pa
 
-from zwidth.data.logs.served import mcap as layout
-from zwidth.data.logs.served.contents import Head, as_json
+from zwidth.data.logs import served as layout
+from zwidth.data.logs.contents import Head, as_json
 from zwidth.loop.trace import own_version
 
 if TYPE_CHECKING:

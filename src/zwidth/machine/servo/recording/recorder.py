@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from zwidth.data.logs.served.contents import ROWS_LOST, Head, as_json, from_json
+from zwidth.data.logs.contents import ROWS_LOST, Head, as_json, from_json
 from zwidth.errors import InputError
 from zwidth.machine.servo.recording.mcap import McapFile
 from zwidth.machine.servo.recording.rows import LoopRows

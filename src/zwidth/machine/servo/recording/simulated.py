@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from zwidth.data.logs.served.contents import COLUMNS
+from zwidth.data.logs.contents import COLUMNS
 from zwidth.errors import InputError
 from zwidth.loop.simulate import simulate
 from zwidth.machine.servo.recording.recording import Recording
