@@ -44,7 +44,7 @@ class Plant:
 
 
 def plant_of(joints: Sequence[JointGains], family: Family, given: GivenPlant) -> Plant:
-    """The plant that was given: a file, a published name, a device for all joints or for each; the family's."""
+    """What was given, a file, a published name, a device for all joints or for each; else the family's."""
     if isinstance(given, Device):
         given = [given] * len(joints)
     if given is not None and not isinstance(given, (str, Path)):
