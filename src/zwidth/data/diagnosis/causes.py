@@ -45,27 +45,18 @@ _FURTHEST = 4.0
 
 @dataclass(frozen=True)
 class Cause:
-    """One reason for a vibration.
-
-    Parameters
-    ----------
-    name
-        In a few words.
-    because
-        What happens, for people.
-    shown
-        Whether this recording can show it at all.
-    evidence
-        The numbers that speak for it.
-    record
-        What to record where it is likely and not shown.
-    """
+    """One reason for a vibration."""
 
     name: str
+    """In a few words."""
     because: str
+    """What happens, for people."""
     shown: Callable[[Evidence], bool]
+    """Whether this recording can show it at all."""
     evidence: Callable[[Evidence], Iterator[str]]
+    """The numbers that speak for it."""
     record: str
+    """What to record where it is likely and not shown."""
 
 
 def is_named(cause: str, p: float, seen: Evidence) -> bool:

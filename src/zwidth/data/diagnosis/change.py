@@ -48,28 +48,19 @@ class Judged(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Lowered:
-    """One number, from where it is to where it may be.
-
-    Parameters
-    ----------
-    parameter
-        Its key, such as "stiffness".
-    current, to
-        In `unit`.
-    unit
-        SI.
-    text
-        In words.
-    verdict
-        What `check` says to what has the number changed.
-    """
+    """One number, from where it is to where it may be."""
 
     parameter: str
+    """Its key, such as "stiffness"."""
     current: float
     to: float
+    """In `unit`."""
     unit: str
+    """SI."""
     text: str
+    """In words."""
     verdict: Judged
+    """What `check` says to what has the number changed."""
 
     def to_dict(self) -> dict[str, object]:
         """As plain data."""

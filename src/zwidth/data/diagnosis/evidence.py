@@ -89,83 +89,57 @@ def _middle(number: object) -> float | None:
 
 @dataclass(frozen=True, kw_only=True)
 class Evidence:
-    """Everything that was measured in a recording of a vibration.
-
-    Parameters
-    ----------
-    vibration
-        Where, how fast, how far.
-    loop_period
-        [s] T of the loop.
-    resolution
-        [m; rad] Δ; 0 where none is seen.
-    law
-        What the force was computed from; None where it does not follow the motion.
-    drive
-        What lies between the two forces; None where one was recorded.
-    amplitude
-        [m; rad] |X|.
-    delay
-        [s] from a sample to its force, as far as it is seen or stated.
-    supplied
-        [J] that each term gives in a cycle, negative where it takes.
-    total
-        [J] that the actuator gives in a cycle in all, by the phasors.
-    energy
-        [J] the same by the held force along each move, where every sample of the loop is in the file; else
-        the total.
-    lost
-        [J] that the device's friction takes in a cycle; None without a device.
-    apparent_mass
-        [kg; kg·m²] Re(F/X)/ω²: the mass that would move so under the force.
-    standing
-        Share of the time in which it stands, where a sine does so for a sixteenth.
-    distortion
-        Harmonics of the motion against its frequency.
-    roles
-        Which forces the file holds: "commanded", "applied", or both.
-    known
-        The device's numbers.
-    rotary
-        Of a wheel, a knob, a joint.
-    moves_as
-        The force that a rigid device of these numbers would take to move so, over the force in the file, as
-        amplitude and phase at ω: 1 where nothing else acts.  None where nobody said the mass.
-    bend, force_bend
-        Third harmonic of the force that the motion takes, and of the one in the file, F₃ (F₁*)³/|F₁|⁴: 1/9 of
-        a triangle, −1/3 of a square.
-    by_inside
-        Share of the motor's force that a spring and a damper inside the drive leave over, where the command
-        is not in the file.
-    ramps
-        Share of the time in which the motor's force changes about as fast as it ever does; None without it.
-    stated
-        The law as somebody stated it, beside the force; None where nobody did.
-    """
+    """Everything that was measured in a recording of a vibration."""
 
     vibration: Vibration
+    """Where, how fast, how far."""
     loop_period: float
+    """[s] T of the loop."""
     resolution: float
+    """[m; rad] Δ; 0 where none is seen."""
     law: Law | None
+    """What the force was computed from; None where it does not follow the motion."""
     drive: Drive | None
+    """What lies between the two forces; None where one was recorded."""
     amplitude: float
+    """[m; rad] |X|."""
     delay: float
+    """[s] from a sample to its force, as far as it is seen or stated."""
     supplied: Mapping[str, float]
+    """[J] that each term gives in a cycle, negative where it takes."""
     total: float
+    """[J] that the actuator gives in a cycle in all, by the phasors."""
     energy: float
+    """[J] the same by the held force along each move, where every sample of the loop is in the file; else
+    the total."""
     lost: float | None
+    """[J] that the device's friction takes in a cycle; None without a device."""
     apparent_mass: float
+    """[kg; kg·m²] Re(F/X)/ω²: the mass that would move so under the force."""
     standing: float
+    """Share of the time in which it stands, where a sine does so for a sixteenth."""
     distortion: float
+    """Harmonics of the motion against its frequency."""
     roles: tuple[str, ...]
+    """Which forces the file holds: "commanded", "applied", or both."""
     known: Known
+    """The device's numbers."""
     rotary: bool
+    """Of a wheel, a knob, a joint."""
     moves_as: complex | None
+    """The force that a rigid device of these numbers would take to move so, over the force in the file, as
+    amplitude and phase at ω: 1 where nothing else acts.  None where nobody said the mass."""
     bend: complex
     force_bend: complex
+    """Third harmonic of the force that the motion takes, and of the one in the file, F₃ (F₁*)³/|F₁|⁴: 1/9
+    of a triangle, −1/3 of a square."""
     by_inside: float | None
+    """Share of the motor's force that a spring and a damper inside the drive leave over, where the command
+    is not in the file."""
     ramps: float | None
+    """Share of the time in which the motor's force changes about as fast as it ever does; None without it."""
     stated: Stated | None = None
+    """The law as somebody stated it, beside the force; None where nobody did."""
 
     @property
     def recorded(self) -> str:

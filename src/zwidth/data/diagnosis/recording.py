@@ -38,35 +38,25 @@ MOST_SAMPLES = 400_000
 
 @dataclass(frozen=True, kw_only=True)
 class Recording:
-    """One run without a gap, in SI units.
-
-    Parameters
-    ----------
-    source
-        Name of the file, or "arrays".
-    motion
-        "linear" or "rotary".
-    period
-        [s] between two rows; the loop's own sample period may be another.
-    resolution
-        [m; rad] step of the encoder, 0 where none is seen.
-    time, position
-        [s], [m; rad].
-    commanded, applied
-        [N; N·m] positive against increasing position, as a spring pushes; None where there is no such column.
-    findings
-        What was odd in the file, and what was supposed.
-    """
+    """One run without a gap, in SI units."""
 
     source: str
+    """Name of the file, or "arrays"."""
     motion: Motion
+    """"linear" or "rotary"."""
     period: float
+    """[s] between two rows; the loop's own sample period may be another."""
     resolution: float
+    """[m; rad] step of the encoder, 0 where none is seen."""
     time: Array
     position: Array
+    """[s], [m; rad]."""
     commanded: Array | None
     applied: Array | None
+    """[N; N·m] positive against increasing position, as a spring pushes; None where there is no such
+    column."""
     findings: tuple[str, ...]
+    """What was odd in the file, and what was supposed."""
 
 
 def read(

@@ -49,35 +49,24 @@ _DRIFT = 0.7
 
 @dataclass(frozen=True, kw_only=True)
 class Vibration:
-    """A stretch of a recording that vibrates.
-
-    Parameters
-    ----------
-    rows
-        Which of its rows: those in which the frequency stays.
-    around
-        Those in which it vibrates, these and more: a law is found where more happens.
-    frequency, frequency_spread
-        [Hz] and how far it is known, one standard deviation.
-    swing
-        [m; rad] from end to end of the motion, 5th to 95th percentile stretched to a sine's.
-    regular
-        Share of the motion's variance in the frequency and its harmonics, 0 to 1.
-    regular_by_chance
-        The same with what as many free numbers would explain of noise taken off.
-    growth
-        Logarithm of the amplitude in the last quarter of `around` over that in the first, or twice that of
-        its second half where it is more: what dies out goes on to, after a start it stays.
-    """
+    """A stretch of a recording that vibrates."""
 
     rows: slice
+    """Which of its rows: those in which the frequency stays."""
     around: slice
+    """Those in which it vibrates, these and more: a law is found where more happens."""
     frequency: float
     frequency_spread: float
+    """[Hz] and how far it is known, one standard deviation."""
     swing: float
+    """[m; rad] from end to end of the motion, 5th to 95th percentile stretched to a sine's."""
     regular: float
+    """Share of the motion's variance in the frequency and its harmonics, 0 to 1."""
     regular_by_chance: float
+    """The same with what as many free numbers would explain of noise taken off."""
     growth: float
+    """Logarithm of the amplitude in the last quarter of `around` over that in the first, or twice that of
+    its second half where it is more: what dies out goes on to, after a start it stays."""
 
     @property
     def angular(self) -> float:

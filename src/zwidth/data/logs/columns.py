@@ -27,24 +27,16 @@ _COUNTS = ("count", "counts", "cnt", "cts", "ticks", "tick", "lsb", "LSB", "digi
 
 @dataclass(frozen=True, kw_only=True)
 class Meaning:
-    """What the columns of a table are.
-
-    Parameters
-    ----------
-    columns
-        The column of each quantity that there is.
-    factors
-        SI per number in the column, of each.
-    motion
-        "linear" or "rotary".
-    resolution
-        [m; rad] stated step of the encoder; None if nobody stated it.
-    """
+    """What the columns of a table are."""
 
     columns: Mapping[str, str]
+    """The column of each quantity that there is."""
     factors: Mapping[str, float]
+    """SI per number in the column, of each."""
     motion: Motion
+    """"linear" or "rotary"."""
     resolution: float | None
+    """[m; rad] stated step of the encoder; None if nobody stated it."""
 
 
 def meaning_of(

@@ -173,21 +173,14 @@ GAP, REPEATED, BACK = 1, 2, 3
 
 @dataclass(frozen=True, kw_only=True)
 class Clock:
-    """What the first stamps say.
-
-    Parameters
-    ----------
-    period
-        [s] roughly T.
-    group
-        Most samples between two stamps that differ; 1 where every sample has its own.
-    noisy
-        Intervals vary by a tenth of T or more.
-    """
+    """What the first stamps say."""
 
     period: float
+    """[s] roughly T."""
     group: int
+    """Most samples between two stamps that differ; 1 where every sample has its own."""
     noisy: bool = False
+    """Intervals vary by a tenth of T or more."""
 
     @property
     def reach(self) -> int:

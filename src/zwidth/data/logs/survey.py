@@ -29,28 +29,19 @@ _LONG = 4096
 
 
 class Intervals(NamedTuple):
-    """Sums over the intervals between stamps.
-
-    Parameters
-    ----------
-    number
-        How many.
-    elapsed
-        [s] of all together.
-    squares
-        [s²] of how much each is longer than T.
-    shortest, longest
-        [s] of them.
-    latest
-        [s] stamp that is farthest from 0.
-    """
+    """Sums over the intervals between stamps."""
 
     number: int = 0
+    """How many."""
     elapsed: float = 0.0
+    """[s] of all together."""
     squares: float = 0.0
+    """[s²] of how much each is longer than T."""
     shortest: float = inf
     longest: float = -inf
+    """[s] of them."""
     latest: float = 0.0
+    """[s] stamp that is farthest from 0."""
 
     def and_those(self, time: Array, before: float, period: float) -> Intervals:
         """With those of a stretch, which begins after the stamp `before`; NaN where it begins a run."""

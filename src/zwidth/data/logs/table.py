@@ -30,36 +30,25 @@ Values = NDArray[Any]
 
 @dataclass(kw_only=True)
 class Table:
-    """Columns of a file.
-
-    Parameters
-    ----------
-    source
-        Name of the file, for messages.
-    units
-        Every column with the unit that the file states; None if it states none.
-    read
-        Gives the columns named, piece by piece: the same number of rows in each.
-    attributes
-        What the file says of itself.
-    notes
-        What was odd in the file; complete after `read` came to its end.
-    means
-        The column of each quantity, None where there is none, if the format says which: nobody guesses then.
-    sheet
-        Name of the sheet of a workbook; else "".
-    sheets
-        Of a workbook with several tables all of them, this one too: the longest; else empty.
-    """
+    """Columns of a file."""
 
     source: str
+    """Name of the file, for messages."""
     units: Mapping[str, str | None]
+    """Every column with the unit that the file states; None if it states none."""
     read: Callable[[tuple[str, ...]], Iterator[tuple[Values, ...]]]
+    """Gives the columns named, piece by piece: the same number of rows in each."""
     attributes: Mapping[str, Any] = field(default_factory=dict)
+    """What the file says of itself."""
     notes: dict[str, Finding] = field(default_factory=dict)
+    """What was odd in the file; complete after `read` came to its end."""
     means: Mapping[str, str | None] = field(default_factory=dict)
+    """The column of each quantity, None where there is none, if the format says which: nobody guesses
+    then."""
     sheet: str = ""
+    """Name of the sheet of a workbook; else ""."""
     sheets: tuple[Table, ...] = ()
+    """Of a workbook with several tables all of them, this one too: the longest; else empty."""
 
 
 def understood_sheets(table: Table, understood: Callable[[Table], Any]) -> list[Table]:

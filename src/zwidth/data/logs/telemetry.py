@@ -298,30 +298,20 @@ _NUMBERS = ("period_s", "resolution", "force_per_unit", "force_most")
 
 @dataclass(frozen=True, kw_only=True)
 class About:
-    """What telemetry says of its law.
-
-    Parameters
-    ----------
-    motion
-        "linear" or "rotary".
-    period
-        T [s].
-    resolution
-        Of a count [m; rad].
-    force_unit
-        Of a force that is sent [N; N·m].
-    force_most
-        Largest force that can be sent [N; N·m].
-    certificate
-        SHA-256 of the law's certificate.
-    """
+    """What telemetry says of its law."""
 
     motion: Literal["linear", "rotary"]
+    """"linear" or "rotary"."""
     period: float
+    """T [s]."""
     resolution: float
+    """Of a count [m; rad]."""
     force_unit: float
+    """Of a force that is sent [N; N·m]."""
     force_most: float
+    """Largest force that can be sent [N; N·m]."""
     certificate: str
+    """SHA-256 of the law's certificate."""
 
 
 def about_in(content: bytes) -> About:

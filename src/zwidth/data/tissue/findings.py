@@ -172,19 +172,13 @@ LEAST = 1e-9
 
 
 class Faults(NamedTuple):
-    """What is fitted beside the tissue.
-
-    Parameters
-    ----------
-    offset, drift
-        A constant; and that it wanders.
-    late
-        "", "delay" or "filter".
-    """
+    """What is fitted beside the tissue."""
 
     offset: bool = False
     drift: bool = False
+    """A constant; and that it wanders."""
     late: str = ""
+    """"", "delay" or "filter"."""
 
     def zero(self, time: Array) -> Array:
         """The columns that a zero may be made of, each from 0 to 1."""

@@ -35,15 +35,10 @@ _SLOWEST = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class PairChange(Lowered):
-    """One number of the coupling, from where it is to where it may be.
-
-    Parameters
-    ----------
-    pair
-        With that number changed.
-    """
+    """One number of the coupling, from where it is to where it may be."""
 
     pair: Pair
+    """With that number changed."""
     verdict: PairVerdict
 
 

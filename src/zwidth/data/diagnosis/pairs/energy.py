@@ -76,52 +76,35 @@ _MOST_LAGS = 16
 
 @dataclass(frozen=True, kw_only=True)
 class PairEvidence:
-    """Everything that was measured in a vibration of two arms.
-
-    Parameters
-    ----------
-    vibration
-        Of the arm that swings further.
-    leading
-        Which arm that is, 0 the leader, 1 the follower.
-    loop_period
-        [s] T.
-    laws
-        Of leader and follower; None where a force does not follow the arms.
-    amplitudes
-        [m; rad] |X| of both.
-    counts
-        End to end, of both, in counts of their encoders; infinite where none is seen.
-    delays
-        [s] from an arm's reading to its force, where the file shows the motor's force; else None.
-    rates
-        [N/s; N·m/s] no faster than which the motor's force of each arm changes; None where it follows.
-    behind
-        Share of the motors' forces that neither a delay nor a limit of rate accounts for, the larger of both;
-        1 where a force changes at one rate and its command is not in the file.
-    supplied
-        [J] that each term gives in a cycle, negative where it takes.
-    energy
-        [J] that the forces of the file give in a cycle in both arms.
-    rubs
-        [J] that viscous and Coulomb friction take in a cycle in both arms; None without their devices.
-    rotary
-        Of joints.
-    """
+    """Everything that was measured in a vibration of two arms."""
 
     vibration: Vibration
+    """Of the arm that swings further."""
     leading: int
+    """Which arm that is, 0 the leader, 1 the follower."""
     loop_period: float
+    """[s] T."""
     laws: tuple[ArmLaw | None, ArmLaw | None]
+    """Of leader and follower; None where a force does not follow the arms."""
     amplitudes: tuple[float, float]
+    """[m; rad] |X| of both."""
     counts: tuple[float, float]
+    """End to end, of both, in counts of their encoders; infinite where none is seen."""
     delays: tuple[float | None, float | None]
+    """[s] from an arm's reading to its force, where the file shows the motor's force; else None."""
     rates: tuple[float | None, float | None]
+    """[N/s; N·m/s] no faster than which the motor's force of each arm changes; None where it follows."""
     behind: float
+    """Share of the motors' forces that neither a delay nor a limit of rate accounts for, the larger of
+    both; 1 where a force changes at one rate and its command is not in the file."""
     supplied: Mapping[str, float]
+    """[J] that each term gives in a cycle, negative where it takes."""
     energy: float
+    """[J] that the forces of the file give in a cycle in both arms."""
     rubs: tuple[float, float] | None
+    """[J] that viscous and Coulomb friction take in a cycle in both arms; None without their devices."""
     rotary: bool
+    """Of joints."""
 
     @property
     def lost(self) -> float | None:
@@ -295,32 +278,22 @@ _MODELS = ((0,), (0, 1), (0, 2), (0, 3), (0, 1, 2), (0, 1, 3), (0, 2, 3), (0, 1,
 
 @dataclass(frozen=True, kw_only=True)
 class ArmLaw:
-    """What an arm's force was computed from.
-
-    Parameters
-    ----------
-    stiffness, damping, local_damping
-        K [N/m; N·m/rad], B and D [N·s/m; N·m·s/rad].
-    compensation
-        F [N; N·m] along the motion; 0 for none.
-    lag
-        [s] s, from the arm's own position to its force.
-    link_delay
-        [s] d, by how much the other's reading is older.
-    unexplained
-        Share of the force's variance that is left over.
-    helped
-        [N; N·m] the force of F in each row.
-    """
+    """What an arm's force was computed from."""
 
     stiffness: float
     damping: float
     local_damping: float
+    """K [N/m; N·m/rad], B and D [N·s/m; N·m·s/rad]."""
     compensation: float
+    """F [N; N·m] along the motion; 0 for none."""
     lag: float
+    """[s] s, from the arm's own position to its force."""
     link_delay: float
+    """[s] d, by how much the other's reading is older."""
     unexplained: float
+    """Share of the force's variance that is left over."""
     helped: Array = field(repr=False)
+    """[N; N·m] the force of F in each row."""
 
 
 def arm_law(

@@ -37,16 +37,11 @@ _OF = {
 
 @dataclass(frozen=True, kw_only=True)
 class PairRecording:
-    """The same rows of both arms.
-
-    Parameters
-    ----------
-    leader, follower
-        Each as a recording of its own.
-    """
+    """The same rows of both arms."""
 
     leader: Recording
     follower: Recording
+    """Each as a recording of its own."""
 
     @property
     def source(self) -> str:

@@ -48,21 +48,14 @@ DIRECTIONS = ("inward", "outward")
 
 
 class Side(NamedTuple):
-    """The pulses of one direction, slow ones first.
-
-    Parameters
-    ----------
-    speed
-        |v| of each [m/s; rad/s].
-    friction
-        Against the motion [N; N·m].
-    stroke
-        To which each belongs.
-    """
+    """The pulses of one direction, slow ones first."""
 
     speed: Array
+    """|v| of each [m/s; rad/s]."""
     friction: Array
+    """Against the motion [N; N·m]."""
     stroke: Array
+    """To which each belongs."""
 
     def parts(self, bins: int) -> list[Side]:
         """The same in bins of speed, each with as many pulses."""

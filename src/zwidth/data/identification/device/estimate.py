@@ -101,19 +101,13 @@ class Directions(NamedTuple):
 
     A wall takes back no more than friction takes out in the direction in which there is less of it: a hand
     may be quick that way and slow the other.  Of Coulomb friction only the mean of both directions counts,
-    what it differs by does no work to and fro.
-
-    Parameters
-    ----------
-    inward, outward
-        b of motion into the wall, and out of it [N·s/m; N·m·s/rad].
-    difference
-        Half of what the first has more.
-    """
+    what it differs by does no work to and fro."""
 
     inward: Estimate
     outward: Estimate
+    """b of motion into the wall, and out of it [N·s/m; N·m·s/rad]."""
     difference: Estimate
+    """Half of what the first has more."""
 
     @property
     def weaker(self) -> Estimate:
@@ -139,30 +133,20 @@ FEWEST = 6
 
 @dataclass(frozen=True)
 class Regression:
-    """Parameters by least squares.
-
-    Parameters
-    ----------
-    names
-        Which of `REGRESSORS` were fitted.
-    values
-        θ, SI units.
-    covariance
-        V.
-    degrees
-        Degrees of freedom that the scatter of the strokes leaves.
-    residual
-        Mean square of what is left of the pulses' force [N²; (N·m)²].
-    explained
-        r², part of the force's variance that is explained.
-    """
+    """Parameters by least squares."""
 
     names: tuple[str, ...]
+    """Which of `REGRESSORS` were fitted."""
     values: Array
+    """θ, SI units."""
     covariance: Array
+    """V."""
     degrees: int
+    """Degrees of freedom that the scatter of the strokes leaves."""
     residual: float
+    """Mean square of what is left of the pulses' force [N²; (N·m)²]."""
     explained: float
+    """r², part of the force's variance that is explained."""
 
     def value(self, name: str) -> float:
         """One parameter."""

@@ -104,24 +104,16 @@ Estimates = Mapping[str, Estimate]
 
 
 class Bounds(NamedTuple):
-    """What cannot be below 0.
-
-    Parameters
-    ----------
-    whose
-        "device" or "finger".
-    above
-        The names that are > 0 in every one.
-    sure
-        Of these, those that a log must show to be > 0 for its signs to be the right ones.
-    causes
-        What else may be wrong, where no sign helps.
-    """
+    """What cannot be below 0."""
 
     whose: str
+    """"device" or "finger"."""
     above: tuple[str, ...]
+    """The names that are > 0 in every one."""
     sure: tuple[str, ...]
+    """Of these, those that a log must show to be > 0 for its signs to be the right ones."""
     causes: str
+    """What else may be wrong, where no sign helps."""
 
 
 DEVICE = Bounds(

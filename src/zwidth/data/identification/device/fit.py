@@ -28,34 +28,23 @@ HINT = 0.8
 
 
 class Found(NamedTuple):
-    """The sums.
-
-    Parameters
-    ----------
-    shape
-        The pulse.
-    late
-        By which the forces were recorded late [s].
-    shares
-        See `Choice`.
-    moments, longer
-        Of the pulses, and of those twice as long.
-    points
-        Some pulses, for pictures.
-    mass
-        Where it is given, and not fitted [kg; kg·m²].
-    motion
-        "linear" or "rotary".
-    """
+    """The sums."""
 
     shape: Pulse
+    """The pulse."""
     late: float
+    """By which the forces were recorded late [s]."""
     shares: tuple[float, float]
+    """See `Choice`."""
     moments: Moments
     longer: Moments
+    """Of the pulses, and of those twice as long."""
     points: Points
+    """Some pulses, for pictures."""
     mass: float | None
+    """Where it is given, and not fitted [kg; kg·m²]."""
     motion: str
+    """"linear" or "rotary"."""
 
     def regression(self, names: tuple[str, ...]) -> Regression | None:
         """The named parameters by the pulses."""

@@ -61,34 +61,23 @@ PAIRS.T[_UPPER] = PAIRS[_UPPER]
 
 @dataclass
 class Moments:
-    """The sums.
-
-    Parameters
-    ----------
-    knee
-        v_s [m/s; rad/s].
-    sum
-        G.
-    square
-        Σ_s G_s ⊗ G_s, as a matrix over the `PAIRS` of columns.
-    strokes, pulses
-        How many there were.
-    lines
-        Numbers that were fitted to take the lines out.
-    means
-        Sum over the pieces of the means of the columns.
-    pieces
-        How many pieces.
-    """
+    """The sums."""
 
     knee: float
+    """v_s [m/s; rad/s]."""
     sum: Array = field(default_factory=lambda: np.zeros((COLUMNS, COLUMNS)))
+    """G."""
     square: Array = field(default_factory=lambda: np.zeros((_UPPER[0].size, _UPPER[0].size)))
+    """Σ_s G_s ⊗ G_s, as a matrix over the `PAIRS` of columns."""
     strokes: int = 0
     pulses: int = 0
+    """How many there were."""
     lines: int = 0
+    """Numbers that were fitted to take the lines out."""
     means: Array = field(default_factory=lambda: np.zeros(COLUMNS))
+    """Sum over the pieces of the means of the columns."""
     pieces: int = 0
+    """How many pieces."""
 
     def add(self, rows: Array, zero: str) -> None:
         """Count in the pulses of one piece, its zero taken out."""
@@ -161,21 +150,14 @@ SECONDS = 10.0
 
 
 class Piece(NamedTuple):
-    """A stretch of a run.
-
-    Parameters
-    ----------
-    position
-        Inside the strokes, between ticks by a cubic [m; rad].
-    strokes
-        Where the device surely moves.
-    block
-        What was recorded.
-    """
+    """A stretch of a run."""
 
     position: Array
+    """Inside the strokes, between ticks by a cubic [m; rad]."""
     strokes: Strokes
+    """Where the device surely moves."""
     block: Block
+    """What was recorded."""
 
     def pulses(self, shape: Pulse, period: float) -> Array:
         """A row for each pulse, see `pulses`."""

@@ -48,31 +48,22 @@ ROWS = 10
 
 
 class Pulse(NamedTuple):
-    """A pulse as weights of the samples, and of the forces that go with them.
-
-    Parameters
-    ----------
-    piece
-        h, even: samples of each of its four pieces.
-    value, slope, bend
-        h φ, h² φ′, h³ φ″ at the samples from −2h − 1 to 2h + 1, the last with its correction.
-    hand, hand_slope
-        h φ and h² φ′ for a force at the samples, `pad` more of them to either side.
-    held, held_slope
-        The same for a force that is held, in the mean over the time from one to the next.
-    pad
-        Samples by which the forces reach farther than the positions.
-    """
+    """A pulse as weights of the samples, and of the forces that go with them."""
 
     piece: int
+    """h, even: samples of each of its four pieces."""
     value: Array
     slope: Array
     bend: Array
+    """h φ, h² φ′, h³ φ″ at the samples from −2h − 1 to 2h + 1, the last with its correction."""
     hand: Array
     hand_slope: Array
+    """h φ and h² φ′ for a force at the samples, `pad` more of them to either side."""
     held: Array
     held_slope: Array
+    """The same for a force that is held, in the mean over the time from one to the next."""
     pad: int
+    """Samples by which the forces reach farther than the positions."""
 
 
 def pulse(piece: int, delay: float = 0.0, late: float = 0.0) -> Pulse:
@@ -261,22 +252,15 @@ HYSTERESIS = 0.5
 
 
 class Strokes(NamedTuple):
-    """Rows of ticks in one direction.
-
-    Parameters
-    ----------
-    first, last
-        Sample of the first and of the last tick of each.
-    side
-        +1 into the wall, −1 out of it.
-    ticks
-        Every tick, as samples.
-    """
+    """Rows of ticks in one direction."""
 
     first: NDArray[np.int64]
     last: NDArray[np.int64]
+    """Sample of the first and of the last tick of each."""
     side: Array
+    """+1 into the wall, −1 out of it."""
     ticks: NDArray[np.int64]
+    """Every tick, as samples."""
 
 
 def find_strokes(counts: Array) -> Strokes:

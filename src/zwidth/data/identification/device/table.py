@@ -290,30 +290,20 @@ NARROW = 3.0
 
 
 class Limit(NamedTuple):
-    """A bound of the stiffness, from one parameter.
-
-    Parameters
-    ----------
-    parameter
-        "damping" or "coulomb_friction".
-    symbol
-        2b/T or 2f_c/Δ.
-    factor
-        By which the parameter becomes a stiffness; inf where Δ is 0.
-    estimate
-        Of the parameter.
-    best
-        The best guess of what counts of it [N·s/m, N; N·m·s/rad, N·m].
-    least
-        What it is at least, with a confidence.
-    """
+    """A bound of the stiffness, from one parameter."""
 
     parameter: str
+    """"damping" or "coulomb_friction"."""
     symbol: str
+    """2b/T or 2f_c/Δ."""
     factor: float
+    """By which the parameter becomes a stiffness; inf where Δ is 0."""
     estimate: Estimate
+    """Of the parameter."""
     best: float
+    """The best guess of what counts of it [N·s/m, N; N·m·s/rad, N·m]."""
     least: Callable[[float], float]
+    """What it is at least, with a confidence."""
 
     @property
     def value(self) -> float:

@@ -49,24 +49,16 @@ SURELY = 2.0
 
 
 class Lag(NamedTuple):
-    """Where τ is, with 99.9 % [s].
-
-    Parameters
-    ----------
-    least
-        If the force was read at the later of the two moments that a sample may be.
-    most
-        If at the earlier one.
-    seen
-        True where τ = 0 is outside for the later moment, and for the earlier too where `sure`.
-    sure
-        See there.
-    """
+    """Where τ is, with 99.9 % [s]."""
 
     least: float
+    """If the force was read at the later of the two moments that a sample may be."""
     most: float
+    """If at the earlier one."""
     seen: bool
+    """True where τ = 0 is outside for the later moment, and for the earlier too where `sure`."""
     sure: bool
+    """See there."""
 
 
 def lag_of(pieces: Pieces, shape: Weights, total: Fit, delay: float, period: float) -> Lag | None:
@@ -179,29 +171,20 @@ FEWEST = 10
 
 
 class Fit(NamedTuple):
-    """θ.
-
-    Parameters
-    ----------
-    values
-        Mass, damping, stiffness.
-    covariance
-        V.
-    pieces, pulses
-        How many they rest on.
-    explained
-        r².
-    further, further_error
-        What was fitted besides, and its standard error; 0 where nothing was.
-    """
+    """θ."""
 
     values: Array
+    """Mass, damping, stiffness."""
     covariance: Array
+    """V."""
     pieces: int
     pulses: int
+    """How many they rest on."""
     explained: float
+    """r²."""
     further: float = 0.0
     further_error: float = 0.0
+    """What was fitted besides, and its standard error; 0 where nothing was."""
 
     @property
     def errors(self) -> Array:

@@ -26,60 +26,42 @@ if TYPE_CHECKING:
 
 
 class Pieces(NamedTuple):
-    """What was recorded, a row for each piece.
-
-    Parameters
-    ----------
-    position, expected
-        [m; rad] as read, and as the perturbation alone would have it.
-    hand, actuator
-        [N; N·m]; None where there is none.
-    side
-        sgn ẋ inside strokes; 0 between, where the device turns or rests.
-    runs
-        How many pieces of each run follow each other.
-    clear
-        Of which pieces the means are taken.
-    """
+    """What was recorded, a row for each piece."""
 
     position: Array
     expected: Array | None
+    """[m; rad] as read, and as the perturbation alone would have it."""
     hand: Array | None
     actuator: Array | None
+    """[N; N·m]; None where there is none."""
     side: Array
+    """sgn ẋ inside strokes; 0 between, where the device turns or rests."""
     runs: tuple[int, ...]
+    """How many pieces of each run follow each other."""
     clear: NDArray[np.bool_]
+    """Of which pieces the means are taken."""
 
 
 class Means(NamedTuple):
-    """Means over pulses, a row for each.
-
-    Parameters
-    ----------
-    even, odd
-        ẍ, ẋ, x by the even and by the odd samples.
-    expected
-        The same as the perturbation alone would have it; None where it is not known.
-    hand
-        f_h.
-    actuator, actuator_slope
-        f_a as it was held, and its rate.
-    side, turning, moving
-        sgn ẋ, 0 in turns; the same with a change of sign in the middle of turns; and the part inside strokes.
-    piece
-        Which piece it is of.
-    """
+    """Means over pulses, a row for each."""
 
     even: Array
     odd: Array
+    """ẍ, ẋ, x by the even and by the odd samples."""
     expected: Array | None
+    """The same as the perturbation alone would have it; None where it is not known."""
     hand: Array | None
+    """f_h."""
     actuator: Array | None
     actuator_slope: Array | None
+    """f_a as it was held, and its rate."""
     side: Array
     turning: Array
     moving: Array
+    """sgn ẋ, 0 in turns; the same with a change of sign in the middle of turns; and the part inside
+    strokes."""
     piece: NDArray[np.int64]
+    """Which piece it is of."""
 
 
 def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
@@ -228,31 +210,21 @@ _SPLINE = BSpline.basis_element(np.arange(-2.0, 3.0), extrapolate=False)
 
 
 class Weights(NamedTuple):
-    """A pulse as weights of samples, in the mean over it.
-
-    Parameters
-    ----------
-    piece
-        h, even: samples of each of its four pieces.
-    reach
-        2h + 1: samples from the middle to the first and to the last weight.
-    motion
-        Weights that make ẍ T², ẋ T and x.
-    force
-        Of a force that was measured at the samples.
-    held, steps
-        Of a held force, and of its rate times T, from −reach − lag on.
-    lag
-        Samples by which these begin earlier, for the force that was held comes later than its sample.
-    """
+    """A pulse as weights of samples, in the mean over it."""
 
     piece: int
+    """h, even: samples of each of its four pieces."""
     reach: int
+    """2h + 1: samples from the middle to the first and to the last weight."""
     motion: tuple[Array, Array, Array]
+    """Weights that make ẍ T², ẋ T and x."""
     force: Array
+    """Of a force that was measured at the samples."""
     held: Array
     steps: Array
+    """Of a held force, and of its rate times T, from −reach − lag on."""
     lag: int
+    """Samples by which these begin earlier, for the force that was held comes later than its sample."""
 
 
 def weights(piece: int, delay: float) -> Weights:

@@ -30,33 +30,22 @@ SMALL = 0.02
 
 
 class History(NamedTuple):
-    """A test as it is fitted.
-
-    Parameters
-    ----------
-    time
-        From 0 [s].
-    depth
-        From where the probe starts, positive inward [m].
-    force
-        Less its zero before the load, positive out of the tissue [N].
-    kind
-        Which test it is.
-    starts_loaded
-        The step came before the first sample.
-    surface
-        Depth at which the probe may touch [m]; None where it touches from the start.
-    begins
-        Samples after a hole across which the probe moved.
-    """
+    """A test as it is fitted."""
 
     time: Array
+    """From 0 [s]."""
     depth: Array
+    """From where the probe starts, positive inward [m]."""
     force: Array
+    """Less its zero before the load, positive out of the tissue [N]."""
     kind: Kind
+    """Which test it is."""
     starts_loaded: bool
+    """The step came before the first sample."""
     surface: float | None
+    """Depth at which the probe may touch [m]; None where it touches from the start."""
     begins: tuple[int, ...]
+    """Samples after a hole across which the probe moved."""
     findings: tuple[Finding, ...]
 
 
