@@ -343,9 +343,6 @@ CAUSES: Mapping[str, Cause] = {
 """The registry of causes."""
 
 
-# The evidence as numbers that can be compared between a wheel and a paddle: shares, ratios, logarithms.
-
-
 def features(seen: Evidence) -> dict[str, float]:
     """Every number on which a cause may be weighed, as far as the recording says them."""
     v, k, T = seen.vibration, seen.known, seen.loop_period

@@ -1,4 +1,4 @@
-"""The one number to change, handed to `check`: four fifths of the largest value that is proved passive.
+"""The one number to change, of a loop or a pair: four fifths of the largest value that is proved passive.
 
 The loop is what was found in the recording: the stated device, the identified law, the delay that is seen.
 Every value that is given was itself decided, all else as it was.  A damper inside the drive, B_d v(t −

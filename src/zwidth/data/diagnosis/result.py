@@ -25,9 +25,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-# What every diagnosis says: the cause, how sure, its numbers, what to do; as text, JSON, TOML, a picture.
-
-
 Changed = TypeVar("Changed", bound=Lowered)
 Seen = TypeVar("Seen")
 Recorded = TypeVar("Recorded")

@@ -224,9 +224,6 @@ def _near(value: float) -> Fraction:
     return Fraction(f"{value:.{DIGITS}g}")
 
 
-# Where a concave function is largest, by a golden section.
-
-
 _STEPS = 14
 """Of the golden section: a thousandth of its range."""
 

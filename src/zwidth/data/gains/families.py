@@ -1,10 +1,4 @@
-"""LeRobot with Damiao motors (openarm_follower): lists position_kp, position_kd.
-
-    τ = kp (q_des − q) − kd q̇
-
-v_des is 0: kd is of the follower's own speed.  The leader is limp: there is no law of both arms.  Source:
-huggingface/lerobot, robots/openarm_follower.
-"""
+"""Gain files of arms, family by family: what recognises one, what its numbers mean, and its law."""
 
 from __future__ import annotations
 
@@ -18,6 +12,14 @@ from zwidth.data.gains.plant import family, servo
 from zwidth.errors import InputError
 from zwidth.model.pairs import FrictionCompensation
 from zwidth.quantity.exact import Exact
+
+# LeRobot with Damiao motors (openarm_follower): lists position_kp, position_kd.
+#
+#     τ = kp (q_des − q) − kd q̇
+#
+# v_des is 0: kd is of the follower's own speed.  The leader is limp: there is no law of both arms.  Source:
+# huggingface/lerobot, robots/openarm_follower.
+
 
 LEROBOT = "lerobot-damiao"
 

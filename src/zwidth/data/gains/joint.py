@@ -1,4 +1,4 @@
-"""The gains of one joint, on both sides, in the units of the joint."""
+"""The gains of one joint, on both sides, in the units of the joint; and the joint of both arms as a pair."""
 
 from __future__ import annotations
 

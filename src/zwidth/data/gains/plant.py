@@ -131,9 +131,6 @@ def _rows(table: GainTable, joints: int) -> tuple[dict[str, Any], ...]:
     return tuple({key: column[n] for key, column in columns.items()} for n in range(joints))
 
 
-# What is published about arms whose gain files are read: `families.toml`, each value with its source.
-
-
 @dataclass(frozen=True)
 class Value:
     """A number [SI] and where it is from."""

@@ -1,8 +1,8 @@
 """ROS bags, sqlite or MCAP: the numbers in the messages of each topic, by path, "/joint_states.position[0]".
 
-A sample's stamp is that of its message's header, or else when it was recorded.
-A column of another topic is taken from the message nearest in time, at most
-half a period away.  Messages are unpacked one by one, and their numbers held in memory.
+A sample's stamp is that of its message's header, or else when it was recorded.  A column of another topic is
+taken from the message nearest in time, at most half a period away.  Messages are unpacked one by one, and
+their numbers held in memory.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a cell of a spreadsheet says: a number, a time of day, a date, or nothing.
+"""The bytes of a text as UTF-8; and what a cell says: a number, a time of day, a date, or nothing.
 
 A point or comma between digits is the decimal sign or groups thousands.  A cell says which where it has
 both (the last is the decimal sign), the same one twice (it groups), or other than three digits after it, or
@@ -156,9 +156,6 @@ def past_midnight(seconds: np.ndarray, last: float) -> np.ndarray:
     """Times of day that go on after midnight; `last` is the time before the first, NaN if there is none."""
     falls = np.diff(seconds, prepend=last) < -_DAY / 2
     return np.asarray(seconds + _DAY * np.cumsum(falls))
-
-
-# A text file as UTF-8 with lines that end in a line feed, whatever its bytes were.
 
 
 SNIFFED = 2**16

@@ -1,4 +1,4 @@
-"""From the numbers in a column to SI: by its unit, a factor such as "2 N/V", or a step such as "22.4 um".
+"""Which column is which, and its numbers in SI: by a unit, a factor, "2 N/V", or a step, "22.4 um".
 
 No unit, no number: a column whose unit nobody states is refused.
 """
@@ -268,11 +268,9 @@ def _scale(text: str, what: str) -> tuple[float, Unit, Unit | None]:
         ) from None
 
 
-# Which column is which: "position_mm", "enc (counts)" and "force [N]" are recognised, or named by the user.
-#
-# A unit stands at the end of a name, in brackets, after a slash or an underscore.  What
-# is left is compared with the words below, the last part of a path alone
-# ("log/left/position" is "position").  Two candidates are never chosen between.
+# "position_mm", "enc (counts)" and "force [N]" are recognised: a unit stands at the end of a name, in
+# brackets, after a slash or an underscore.  What is left is compared with the words below, the last part of a
+# path alone ("log/left/position" is "position").  Two candidates are never chosen between.
 
 
 QUANTITIES = ("time", "position", "hand_force", "actuator_force")
@@ -413,9 +411,6 @@ def _checked(columns: Mapping[str, Any], chosen: Mapping[str, str | None], sourc
             hint = f'; did you mean "{near[0]}"?' if near else ""
             raise InputError(f'{source} has no column "{column}"{hint}; there are {listed(columns)}')
     return {quantity: column for quantity, column in chosen.items() if column is not None}
-
-
-# Units outside the SI in which spreadsheets and load cells speak.
 
 
 WEIGHT = Fraction("9.80665")

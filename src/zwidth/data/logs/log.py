@@ -2,8 +2,9 @@
 
     t(k) = t₀ + k T        x(k) = n(k) q        for every k of a run
 
-within a run no sample is missing.  A log is read in blocks, as often as wanted,
-so that it may be longer than the memory.
+within a run no sample is missing.  A log is read in blocks, as often as wanted, so that it may be longer than
+the memory.  A table is gone through once for the numbers of its log, and again for each reading of the
+blocks.
 """
 
 from __future__ import annotations
@@ -18,9 +19,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.data.logs.columns import Meaning, meaning_of, recognise
-from zwidth.data.logs.position import Grid, Unwrapper
 from zwidth.data.logs.rows import Recording
 from zwidth.data.logs.runs import Clock, Cutter, Segment, clock_of
+from zwidth.data.logs.sensors import Grid, Unwrapper
 from zwidth.data.logs.survey import (
     Survey,
     clock_findings,
@@ -215,9 +216,6 @@ def _same(first: Log, log: Log) -> None:
             )
 
 
-# From a table to a log: the first pass through it, and every later one.
-
-
 _START = 4096
 """Samples whose stamps say when a run began, where stamps vary."""
 
@@ -324,9 +322,6 @@ def _on(grid: Grid | None, position: Array) -> Array:
     np.rint(counts, out=counts)
     counts *= grid.step
     return counts
-
-
-# The table of arrays in SI units, or of an xarray.Dataset such as a trace of `zwidth.simulate`.
 
 
 def table_of(

@@ -1,9 +1,8 @@
 """Rows of a table in SI units, without those that hold no number.
 
-A row that is not finite in a column that is used is left out; the clock then
-sees a gap there.  Without a time column the row's number is the clock.  Stamps
-that are dates are counted from the first one, since a double has no room for
-microseconds in a year's worth of seconds.
+A row that is not finite in a column that is used is left out; the clock then sees a gap there.  Without a
+time column the row's number is the clock.  Stamps that are dates are counted from the first one, since a
+double has no room for microseconds in a year's worth of seconds.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Rows cut into runs: a new one after lost samples and where time starts again; no row twice."""
+"""The clock of a log; and rows cut into runs: a new one after lost samples and where time starts again."""
 
 from __future__ import annotations
 
@@ -153,10 +153,9 @@ def _same_as_before(rows: Rows, places: NDArray[np.intp]) -> NDArray[np.bool_]:
 #
 #     t(k) = k T + r(k)
 #
-# Where r jumps and stays, samples are lost (up) or written twice (down); where it
-# comes back, the stamp alone was late.  Levels are compared by the median of a
-# few samples on each side; where stamps come in groups (a coarse clock, packets),
-# by their lowest, since a stamp in a packet is late and never early.
+# Where r jumps and stays, samples are lost (up) or written twice (down); where it comes back, the stamp alone
+# was late.  Levels are compared by the median of a few samples on each side; where stamps come in groups (a
+# coarse clock, packets), by their lowest, since a stamp in a packet is late and never early.
 
 
 _SIDE, _NOISY_SIDE = 7, 31

@@ -124,9 +124,6 @@ def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-# MATLAB files: 7.3 is HDF5; older ones are read whole, so there is a limit to their size.
-
-
 LARGEST = 2**30
 """[bytes] Largest file that is read whole; MATLAB's own limit for a variable in it is 2 GiB."""
 

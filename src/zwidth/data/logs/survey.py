@@ -1,4 +1,4 @@
-"""The first look at a log, once through: how many samples, how even their stamps, what range, which step."""
+"""The first look at a log, once through: samples, stamps, range, step; what was odd is said or refused."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from zwidth.data.logs.position import FEWEST, Grid, Jumps, Stops, at_ends, grid_of, offset_on, on_grid
 from zwidth.data.logs.runs import Cutter, Segment, settled
+from zwidth.data.logs.sensors import FEWEST, Grid, Jumps, Stops, at_ends, grid_of, offset_on, on_grid
 from zwidth.data.logs.table import Finding
 from zwidth.errors import InputError
 from zwidth.quantity.text import told
@@ -161,9 +161,6 @@ def _refuse_other_rate(time: Array, period: float, source: str) -> None:
             f"{source}: the sample period changes: roughly {period:.6g} s, but {means[other[0]]:.6g} s after "
             f"t = {time[other[0] * _LONG]:.6g} s; cut the file where it changes"
         )
-
-
-# What a survey found, in sentences; and what no estimate could be made from, refused.
 
 
 _LITTLE, _LOT = 1e-4, 0.02

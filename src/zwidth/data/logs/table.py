@@ -1,4 +1,4 @@
-"""What every format of file gives: named columns, the units it states, and their values piece by piece."""
+"""What every format gives: named columns, their units and values, piece by piece; what a log is made of."""
 
 from __future__ import annotations
 
@@ -99,9 +99,6 @@ def listed(names: Mapping[str, Any] | list[str]) -> str:
     shown = [f'"{name}"' for name in list(names)[:30]]
     more = len(names) - len(shown)
     return ", ".join(shown) + (f" and {more} more" if more > 0 else "")
-
-
-# What a log is made of: blocks of samples, and what was odd in it.
 
 
 BLOCK_SIZE = 2**18

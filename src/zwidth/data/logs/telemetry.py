@@ -1,4 +1,4 @@
-"""From the bytes of a line to samples: time and sequence go on where their counters begin anew.
+"""Telemetry of a law, from the bytes of a line to samples and to the table of a log.
 
     t_k = t_0 + k T         within a packet, t_0 its stamp
     x_k = (n_0 + d_k) q     n_0 the counts of the first sample, d_k how many more there are
@@ -341,9 +341,6 @@ def about_in(content: bytes) -> About:
         force_most=most,
         certificate=said.get("certificate", ""),
     )
-
-
-# A file of telemetry as the table of a log: times of the samples, positions as read, forces given.
 
 
 PIECE = 2**17

@@ -13,7 +13,7 @@ from scipy.signal import lfilter
 
 from zwidth.data.identification.device.choice import SURE
 from zwidth.data.logs import Finding
-from zwidth.data.logs.position import Stops, at_ends, beyond, grid_of
+from zwidth.data.logs.sensors import Stops, at_ends, beyond, grid_of
 from zwidth.data.tissue.model import Model, Record
 from zwidth.errors import InputError
 from zwidth.model.environment.modes import decaying, samples
@@ -328,9 +328,6 @@ def covariance(jacobian: Array, noise: Noise) -> tuple[Array, float]:
     scale = noise.variance * noise.samples / max(noise.samples - k, 1.0)
     half = coloured / kept @ vt
     return scale * half.T @ half, float(largest / s[-1]) if s[-1] > 0.0 else float("inf")
-
-
-# The samples of a record that teach a tracker nothing: at an end of the sensor's range, and after a hole.
 
 
 AGAINST = -0.5

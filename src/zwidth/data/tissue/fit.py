@@ -173,9 +173,6 @@ def _from_dataset(data: Any, position: Any, force: Any) -> tuple[Any, Any, Any]:
     return data["time"].values, data[names[0]].values, data[names[1]].values
 
 
-# Several models fitted to one record, beside each other.
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class TissueComparison(Shown):
     """Several models fitted to one record, that of the smallest BIC first.

@@ -1,4 +1,4 @@
-"""From a recording of two arms that shake to the reason.
+"""From a recording of two arms that shake to the reason, how sure it is, and what to change.
 
 recording → the stretch that vibrates → both laws → energy of a cycle → how likely each cause → one change
 """
@@ -27,9 +27,6 @@ from zwidth.quantity.text import shown
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
-
-
-# Why two arms shook: the cause, how sure, the numbers it rests on, and what to change.
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

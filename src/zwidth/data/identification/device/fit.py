@@ -137,9 +137,6 @@ def gather(
     return found
 
 
-# What the friction was at which speed, for pictures and for curves: a bounded sample of the pulses.
-
-
 MOST = 50_000
 """Pulses that are kept."""
 

@@ -2,10 +2,10 @@
 
     m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a
 
-in means over smooth pulses inside strokes (`pulses`), by least squares with the two halves of
-the samples as each other's instruments (`moments`), with the scatter of the strokes as the
-measure of uncertainty (`regression`).  Abbott & Okamura (2005, section IV-B) fit the same
-equation to smoothed and differentiated positions.
+in means over smooth pulses inside strokes (`pulses`), by least squares with the two halves of the samples as
+each other's instruments (`moments`), with the scatter of the strokes as the measure of uncertainty
+(`estimate`).  Abbott & Okamura (2005, section IV-B) fit the same equation to smoothed and differentiated
+positions.
 """
 
 from __future__ import annotations
@@ -126,9 +126,6 @@ def _checked(log: Log, mass: float | None, delay: float, zero: Zero | None, mode
     return zero
 
 
-# From whatever holds a recording to the device: a file, a Dataset, a log.
-
-
 def identify(
     recording: Log | str | PathLike[str] | xr.Dataset,
     *,
@@ -184,9 +181,6 @@ def log_from(recording: Log | str | PathLike[str] | xr.Dataset, **reading: Any) 
     if isinstance(recording, str | PathLike):
         return read_log(recording, **reading)
     return Log.from_arrays(recording, **reading)
-
-
-# What `zwidth.identify` returns: the numbers of a device, and how to see, print and keep them.
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

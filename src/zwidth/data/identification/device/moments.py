@@ -2,10 +2,9 @@
 
     G_s = ½ Σ (A_even A_oddᵀ + A_odd A_evenᵀ)   over the pulses of stroke s,   A = (a, v, sgn v, …, f)
 
-G = Σ_s G_s gives the parameters, and Σ_s G_s ⊗ G_s how much the strokes differ among themselves,
-which is what their uncertainty is taken from.  The zero of a load cell drifts: from each piece
-of some seconds a straight line is taken out of every column first, so that a line in the
-force means nothing.
+G = Σ_s G_s gives the parameters, and Σ_s G_s ⊗ G_s how much the strokes differ among themselves, which is
+what their uncertainty is taken from.  The zero of a load cell drifts: from each piece of some seconds a
+straight line is taken out of every column first, so that a line in the force means nothing.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ from zwidth.data.identification.device.pulses import (
     weighed,
 )
 from zwidth.data.logs import Block, Log
-from zwidth.data.logs.position import beyond
+from zwidth.data.logs.sensors import beyond
 from zwidth.data.logs.table import joined
 from zwidth.native.compiled import Array, compiled
 
@@ -140,9 +139,6 @@ def _products(parts: Array, even: Array, odd: Array, stroke: NDArray[np.int64]) 
         for i in range(even.shape[1]):
             for j in range(even.shape[1]):
                 part[i, j] += 0.5 * (even[n, i] * odd[n, j] + odd[n, i] * even[n, j])
-
-
-# A log cut into pieces of some seconds, each turned into pulses; never more than that in memory.
 
 
 SECONDS = 10.0

@@ -2,9 +2,9 @@
 
     K ≤ min(2b/T, 2f_c/Δ)
 
-(Abbott & Okamura 2005): of b and f_c only the one that sets the limit must be known well, and
-the plan gives the time to the speeds that tell it (`design`).  Its guess of m, b, f_c and of the
-noise may be poor: after each run the data decide, `MeasurementPlan.reached`.
+(Abbott & Okamura 2005): of b and f_c only the one that sets the limit must be known well, and the plan gives
+the time to the speeds that tell it.  Its guess of m, b, f_c and of the noise may be poor: after each run the
+data decide, `MeasurementPlan.reached`.
 """
 
 from __future__ import annotations
@@ -261,15 +261,13 @@ def _limiting(device: Device) -> Literal["damping", "coulomb_friction"]:
 #     I = (1/(σ² T)) Σ_i w_i M_i,      M = mean of a aᵀ over strokes of one kind,   a = (ẍ, ẋ, sgn ẋ)
 #     V(t) = γ² I⁻¹/t
 #
-# is the covariance of m, b, f_c after t seconds, a share w_i of them spent on strokes of kind i:
-# as for any least squares, the guesses of m, b, f_c do not enter, the noise σ of the force and
-# the motion do.  Strokes go to and fro, each x = −½L cos(πt/D); the line that the zero of a load
-# cell drifts along in ten seconds is taken out of a first, as `identify` does.
-#
-# γ is what `identify` loses against that, its allowance for the method included: `INEFFICIENCY`.
-#
-# The shares are those with the least cᵀVc, c for the parameter that limits the wall (c-optimal;
-# Elfving 1952).  One speed alone does: along a stroke it varies; a slow and a fast one do better.
+# is the covariance of m, b, f_c after t seconds, a share w_i of them spent on strokes of kind i: as for any
+# least squares, the guesses of m, b, f_c do not enter, the noise σ of the force and the motion do.  Strokes
+# go to and fro, each x = −½L cos(πt/D); the line that the zero of a load cell drifts along in ten seconds is
+# taken out of a first, as `identify` does.  γ is what `identify` loses against that, its allowance for the
+# method included: `INEFFICIENCY`.  The shares are those with the least cᵀVc, c for the parameter that limits
+# the wall (c-optimal; Elfving 1952).  One speed alone does: along a stroke it varies; a slow and a fast one
+# do better.
 
 
 PARAMETERS = ("mass", "damping", "coulomb_friction")

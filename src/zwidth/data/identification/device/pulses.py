@@ -2,15 +2,14 @@
 
     m ∫φ″ x dt − b ∫φ′ x dt + f_c ∫φ sgn v dt = ∫φ (f_h − f_a) dt
 
-holds for every smooth pulse φ that is zero outside a stroke: integrate m ẍ + b ẋ + f_c sgn ẋ =
-f_h − f_a by parts.  The derivatives fall on the pulse, which is known, and not on encoder
-counts.  Pulses are cubic B-splines four pieces of h samples long, one every h samples.  Sums
-over samples stand for the integrals: to T⁴ and better for φ and φ′, which are smooth enough; for
-φ″, which has bends at the ends of the pieces, after the first term of Euler and Maclaurin
-has been taken out.
+holds for every smooth pulse φ that is zero outside a stroke: integrate m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a by
+parts.  The derivatives fall on the pulse, which is known, and not on encoder counts.  Pulses are cubic
+B-splines four pieces of h samples long, one every h samples.  Sums over samples stand for the integrals: to
+T⁴ and better for φ and φ′, which are smooth enough; for φ″, which has bends at the ends of the pieces, after
+the first term of Euler and Maclaurin has been taken out.
 
-Each mean of the position is taken twice, over the even and over the odd samples.  The error of
-the counts is not the same in both, so that products of the two are free of its bias.
+Each mean of the position is taken twice, over the even and over the odd samples.  The error of the counts is
+not the same in both, so that products of the two are free of its bias.
 """
 
 from __future__ import annotations
@@ -224,10 +223,10 @@ def _weigh(
 
 # Strokes: where the device surely moves, and which way.
 #
-# A tick is a sample at which the encoder reads another count than before.  From the first to the
-# last tick of a row in one direction the device moves, and its friction is f_c + b |v| against it.
-# Between a row and the next it turns; there, and wherever ticks come late, it may stick: friction
-# is then whatever holds it, anything up to f_c, and nothing is concluded from such samples.
+# A tick is a sample at which the encoder reads another count than before.  From the first to the last tick of
+# a row in one direction the device moves, and its friction is f_c + b |v| against it.  Between a row and the
+# next it turns; there, and wherever ticks come late, it may stick: friction is then whatever holds it,
+# anything up to f_c, and nothing is concluded from such samples.
 
 
 SLOWEST = 0.05

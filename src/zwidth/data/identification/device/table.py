@@ -1,4 +1,4 @@
-"""An identified device as a table: in a terminal, and in a notebook."""
+"""An identified device written down: a table, a document, a [device] of a specification, what it allows."""
 
 from __future__ import annotations
 
@@ -133,9 +133,6 @@ def _row(symbol: str, name: str, value: float, low: float, high: float, unit: st
     return Row(symbol, name, in_a_table(factor * value), interval, unit_text(told))
 
 
-# An identified device as a document: every number with its unit in the key.
-
-
 FORMAT = "zwidth identification 1"
 
 _QUANTITY = {"spring": "stiffness", "force_lag": "delay", "slow": "coulomb_friction"}
@@ -204,8 +201,8 @@ def _estimate(estimate: Estimate, confidence: float) -> dict[str, Any]:
 #
 #     damping = [0.147324, 0.154487]  # N·s/m: 0.1509 identified, 99 % interval
 #
-# Ends of intervals are rounded outwards, to six digits: what is proved for the file is proved for
-# the interval.  Numbers of the log itself are written in full.
+# Ends of intervals are rounded outwards, to six digits: what is proved for the file is proved for the
+# interval.  Numbers of the log itself are written in full.
 
 
 DIGITS = 6
@@ -279,10 +276,9 @@ def _plain(number: float) -> str:
     return repr(number + 0.0)
 
 
-# What identified numbers allow a spring wall: K ≤ 2 b/T, and at rest K ≤ 2 f_c/Δ.
-#
-# Abbott & Okamura (2005), equations 21 and 25.  Both are linear in what was identified, so that
-# their intervals are those of b and f_c, times 2/T and 2/Δ.
+# What identified numbers allow a spring wall: K ≤ 2 b/T, and at rest K ≤ 2 f_c/Δ (Abbott & Okamura 2005,
+# equations 21 and 25).  Both are linear in what was identified: their intervals are those of b and f_c, times
+# 2/T and 2/Δ.
 
 
 NARROW = 3.0

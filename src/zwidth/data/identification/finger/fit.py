@@ -1,4 +1,4 @@
-"""How late the force of the hand was recorded, beside the position and the actuator's force.
+"""The fit of a finger; and how late the force of the hand was recorded, beside position and actuator force.
 
 A force that is read τ late is f_h − τ ḟ_h, and takes c τ of mass and k τ of damping from the finger.  What is
 left tells τ: by ẍ of the equation of motion of device and finger, M = m + m_h in all,

@@ -1,4 +1,4 @@
-"""What a recording of a finger cannot be, and the likeliest reason: signs, units, forces that do not agree.
+"""What a log says about a finger; and what it cannot be: signs, units, forces that do not agree.
 
 A finger is a mass on a spring and a damper, all three > 0.  Numbers below 0 are of no finger, and neither
 is a stiffness a thousand times that of one: fingers and wrists have some hundred newtons per metre (500 N/m,
@@ -155,9 +155,6 @@ def apart(log: Log, hand: Estimate, actuator: Estimate) -> tuple[float, Finding]
         "little late, or the device is not as it is said to be; the intervals hold both",
     )
     return abs(hand.value - actuator.value), finding
-
-
-# What a log says about a finger, and what takes it: a hand to simulate, laws that look ahead.
 
 
 @dataclass(frozen=True, kw_only=True)

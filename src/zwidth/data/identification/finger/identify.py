@@ -3,11 +3,10 @@
     m_h ẍ + c ẋ + k (x − x_a(t)) = −f_h                           force of the hand measured
     (m + m_h) ẍ + (b + c) ẋ + f_c sgn ẋ + k (x − x_a(t)) = −f_a        device known
 
-in means over smooth pulses, as `identify` has them for the device.  What the finger wants, x_a, is
-slow: within a short piece it is a cubic of time, and so is the zero of a load cell; both are
-taken out.  A finger may be taken for a mass on a spring and a damper for some 30 ms (Gillespie &
-Cutkosky 1996, as told by others); later it answers on purpose.  So pieces are short, and what is slower
-than they are does not count.
+in means over smooth pulses, as `identify` has them for the device.  What the finger wants, x_a, is slow:
+within a short piece it is a cubic of time, and so is the zero of a load cell; both are taken out.  A finger
+may be taken for a mass on a spring and a damper for some 30 ms (Gillespie & Cutkosky 1996, as told by
+others); later it answers on purpose.  So pieces are short, and what is slower than they are does not count.
 
 The finger also pushes on its own account, it trembles, and this moves x: least squares would take
 it for an answer.  The perturbation does not know of it: it is sent through the fitted model, and

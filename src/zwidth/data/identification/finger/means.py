@@ -16,7 +16,7 @@ from scipy.signal import cont2discrete, lfilter
 
 from zwidth.data.identification.device.pulses import count_without_steps, find_strokes
 from zwidth.data.logs import Log
-from zwidth.data.logs.position import beyond
+from zwidth.data.logs.sensors import beyond
 from zwidth.data.logs.table import whole_runs
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array

@@ -272,9 +272,6 @@ def _guessed(
             yield Finding(kind="unit", text=f"a force in {unit} is taken as the weight of so much")
 
 
-# The three columns of a test from a file, in SI units as they stand in it.
-
-
 MOST_ROWS = 10**6
 """Of a test; more are a log of something else."""
 

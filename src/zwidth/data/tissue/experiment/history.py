@@ -281,9 +281,6 @@ def changes(values: Array) -> bool:
     return bool(np.ptp(values) > NOISES * noise_of_differences(values) and np.ptp(values) > 0)
 
 
-# One trial of a spreadsheet, in order, without rows that lack a number and stamps that come twice.
-
-
 FEWEST = 12
 """Samples below which nothing is fitted."""
 

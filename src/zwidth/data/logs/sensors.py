@@ -1,10 +1,11 @@
-"""The step of the encoder, from the positions it gave: x = x₀ + n q.
+"""What the sensors did: the step of an encoder, a counter that overflows, a force at the end of its range.
 
-The spacings between the values that occur are whole multiples of q, up to the
-rounding of the numbers.  Their common divisor is found by Euclid's algorithm
-with that rounding as its zero, then fitted over the whole range.  Decimals are
-a grid too, 0.001 mm in a text: behind it the coarser grid of an encoder is
-looked for, with half a decimal as rounding.
+    x = x₀ + n q
+
+The spacings between the values that occur are whole multiples of q, up to the rounding of the numbers.  Their
+common divisor is found by Euclid's algorithm with that rounding as its zero, then fitted over the whole
+range.  Decimals are a grid too, 0.001 mm in a text: behind it the coarser grid of an encoder is looked for,
+with half a decimal as rounding.
 """
 
 from __future__ import annotations
@@ -135,10 +136,9 @@ def _is_decimal(value: float) -> bool:
     return abs(exponent - round(exponent)) < 1e-6 and exponent < 0.5
 
 
-# Counters that overflow: 65535 is followed by 0, and the device did not jump.
-#
-# A position wraps with period P if every large jump is nearly P, and the
-# positions fill nearly all of P:  x = y + P w(k)  with w the jumps so far.
+# Counters that overflow: 65535 is followed by 0, and the device did not jump.  A position wraps with period P
+# if every large jump is nearly P, and the positions fill nearly all of P:  x = y + P w(k)  with w the jumps
+# so far.
 
 
 _BITS = range(8, 33)
