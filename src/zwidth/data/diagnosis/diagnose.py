@@ -93,7 +93,7 @@ def diagnose(
             f"{taken.source} holds a {taken.motion} motion and the device is {device.motion}: "
             "which one is meant?"
         )
-    vibration = find(taken.time, taken.position, taken.period)
+    vibration = find(taken.position, taken.period)
     if vibration is None:
         return _still(taken)
     found = _named(taken, gather(taken, vibration, device, law), device)

@@ -74,7 +74,7 @@ class Vibration:
         return 2 * np.pi * self.frequency
 
 
-def find(time: Array, position: Array, period: float) -> Vibration | None:
+def find(position: Array, period: float) -> Vibration | None:
     """The stretch that vibrates; None where nothing goes to and fro often enough.
 
     A slow one, a wheel that wobbles, is looked for where no faster one is found that is regular, and must
@@ -205,19 +205,19 @@ def peak(values: Array, period: float, lowest: float = LOWEST) -> float:
 def _drift(position: Array, period: float, seconds: float) -> Array:
     """A mean over so long."""
     half = max(1, min(int(0.5 * seconds / period), position.size // 4))
-    padded = np.pad(position, half, mode="edge")
-    total = np.concatenate([[0.0], np.cumsum(padded)])
-    mean: Array = (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)
-    return mean
+    return _mean(np.pad(position, half, mode="edge"), half)
 
 
 def _slow(y: Array, frequency: float, period: float) -> Array:
     """A mean over about two cycles."""
     half = max(1, min(int(1 / frequency / period), y.size // 4))
-    padded = np.pad(y, half, mode="reflect")
+    return _mean(np.pad(y, half, mode="reflect"), half)
+
+
+def _mean(padded: Array, half: int) -> Array:
+    """Over `half` values on either side."""
     total = np.concatenate([[0.0], np.cumsum(padded)])
-    mean: Array = (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)
-    return mean
+    return np.asarray((total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1))
 
 
 def _stretch(moving: Array, period: float, block: float) -> slice:

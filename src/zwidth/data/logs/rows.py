@@ -52,15 +52,7 @@ def joined(first: Rows, second: Rows) -> Rows:
 
 
 class Recording:
-    """The rows of a table, as often as wanted.
-
-    Parameters
-    ----------
-    table, meaning
-        The columns, and what they are.
-    period
-        [s] between rows where there is no time column; None where there is.
-    """
+    """The rows of a table, as often as wanted; `period` [s] apart where there is no time column, else None."""
 
     def __init__(self, table: Table, meaning: Meaning, period: float | None) -> None:
         self.table, self.meaning, self.period = table, meaning, period

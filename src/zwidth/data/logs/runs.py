@@ -34,17 +34,7 @@ class Segment(NamedTuple):
 
 
 class Cutter:
-    """Cuts a stream of rows.
-
-    Parameters
-    ----------
-    clock
-        What the stamps should look like.
-    source
-        For messages.
-    tally
-        Counts gaps, lost samples, restarts and repeated samples.
-    """
+    """Cuts a stream of rows; the tally counts gaps, lost samples, restarts and repeated samples."""
 
     def __init__(self, clock: Clock, source: str, tally: Counter[str]) -> None:
         self.clock, self.source, self.tally = clock, source, tally

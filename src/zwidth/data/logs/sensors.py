@@ -37,14 +37,9 @@ class Grid(NamedTuple):
 
 
 def grid_of(positions: Array, unit: float = 1.0) -> Grid | None:
-    """The coarsest grid that the positions lie on; None if they lie on none, or too few differ.
+    """The coarsest grid that the positions [m; rad] lie on; None if they lie on none, or too few differ.
 
-    Parameters
-    ----------
-    positions
-        [m; rad] some of the log.
-    unit
-        [m; rad] of the numbers in the file: decimals are decimals in it.
+    Decimals are decimals in the `unit` [m; rad] of the numbers in the file.
     """
     levels = np.unique(positions)
     if levels.size < FEWEST:
@@ -79,7 +74,7 @@ def _fitted(levels: Array, noise: float) -> Grid | None:
     step = _divisor(spacings, noise) if spacings.size else 0.0
     if step < 8 * noise or step == 0.0:
         return None
-    step = _refined(levels, step, noise)
+    step = _refined(levels, step)
     grid = Grid(_short(step, 2 * noise / max(1.0, (levels[-1] - levels[0]) / step)), 0.0)
     grid = Grid(grid.step, offset_on(levels, grid.step))
     turns = (levels - grid.offset) / grid.step
@@ -106,7 +101,7 @@ def _divisor(spacings: Array, noise: float) -> float:
     return 0.0
 
 
-def _refined(levels: Array, step: float, noise: float) -> float:
+def _refined(levels: Array, step: float) -> float:
     """The step fitted over wider and wider ranges, each so wide that no count is in doubt."""
     away = np.abs(levels - levels[0])
     reach = 16.0 * step

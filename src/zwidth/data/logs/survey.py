@@ -64,18 +64,8 @@ class Intervals(NamedTuple):
 
 
 class Survey:
-    """What the segments of a log have in common.
-
-    Parameters
-    ----------
-    period
-        [s] roughly T.
-    resolution
-        [m; rad] as stated, or None.
-    unit
-        [m; rad] of the numbers in the file.
-    source
-        For messages.
+    """What the segments of a log have in common: `period` [s] is roughly T, `resolution` [m; rad] as stated,
+    `unit` [m; rad] that of the numbers in the file.
     """
 
     def __init__(self, period: float, resolution: float | None, unit: float, source: str) -> None:

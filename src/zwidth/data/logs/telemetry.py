@@ -80,15 +80,7 @@ class Decoder:
         self._before: tuple[int, int, int, int] | None = None
 
     def take(self, data: bytes, *, last: bool = False) -> Samples:
-        """The samples of all packets that are whole by now.
-
-        Parameters
-        ----------
-        data
-            What has come since.
-        last
-            Nothing more comes.
-        """
+        """The samples of all packets that are whole by now; `last` says that nothing more comes."""
         held = np.frombuffer(self._held + data, dtype=np.uint8)
         found = find(held, last=last)
         self._count_damage(found.starts, found.starts + found.sizes)
@@ -209,15 +201,7 @@ class Found(NamedTuple):
 
 
 def find(data: Bytes, *, last: bool) -> Found:
-    """Every whole packet, in order.
-
-    Parameters
-    ----------
-    data
-        Bytes as they came.
-    last
-        Nothing more comes: what has no end is no packet.
-    """
+    """Every whole packet, in order; `last` says that nothing more comes: what has no end is no packet."""
     syncs = np.flatnonzero((data[:-1] == SYNC[0]) & (data[1:] == SYNC[1]))
     begun = syncs[syncs + HEAD > data.size]
     syncs = syncs[syncs + HEAD <= data.size]

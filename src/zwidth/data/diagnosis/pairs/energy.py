@@ -114,7 +114,7 @@ class PairEvidence:
 
 def vibrates(recording: PairRecording) -> tuple[Vibration, int] | None:
     """The vibration of the arm that swings further, and which arm; None where neither vibrates."""
-    found = [find(arm.time, arm.position, arm.period) for arm in recording.arms]
+    found = [find(arm.position, arm.period) for arm in recording.arms]
     swings = [0.0 if one is None else one.swing for one in found]
     arm = int(np.argmax(swings))
     seen = found[arm]

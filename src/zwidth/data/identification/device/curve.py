@@ -94,18 +94,8 @@ def _fastest(side: Side) -> float:
 def friction_bins(points: xr.Dataset, bins: int) -> xr.Dataset:
     """Mean speed and mean friction by direction and speed, each bin with as many pulses of its direction.
 
-    Parameters
-    ----------
-    points
-        Of an `Identified`.
-    bins
-        How many each way; fewer where a bin would have less than eight strokes.
-
-    Returns
-    -------
-    xarray.Dataset
-        Along `direction`, "inward" and "outward", and `bin`: speed, friction, its standard error, and
-        the strokes in it.
+    So many bins each way, fewer where one would have less than eight strokes; along `direction`, "inward" and
+    "outward", and `bin`: speed, friction, its standard error, and the strokes in it.
     """
     import xarray as xr
 

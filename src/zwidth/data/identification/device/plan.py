@@ -319,21 +319,7 @@ class Stroke(NamedTuple):
 def covariance(
     strokes: tuple[Stroke, ...], shares: tuple[float, ...], noise: float, period: float, seconds: float
 ) -> Array:
-    """V of m, b, f_c.
-
-    Parameters
-    ----------
-    strokes
-        Their kinds.
-    shares
-        Of the time, ≥ 0, of each.
-    noise
-        σ of the force, per sample [N; N·m].
-    period
-        T [s].
-    seconds
-        t of recorded motion.
-    """
+    """V of m, b, f_c after t = `seconds` with these shares of each kind; σ = `noise` per sample [N; N·m]."""
     mean = sum(w * s.information() for w, s in zip(shares, strokes, strict=True))
     scale = (INEFFICIENCY * noise) ** 2 * period / seconds
     return np.asarray(scale * np.linalg.inv(mean), dtype=np.float64)

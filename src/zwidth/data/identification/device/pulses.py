@@ -66,16 +66,10 @@ class Pulse(NamedTuple):
 
 
 def pulse(piece: int, delay: float = 0.0, late: float = 0.0) -> Pulse:
-    """The pulse of pieces of so many samples.
+    """The pulse of pieces of h samples, h ≥ 2 and even, so that even and odd samples see the same pulse.
 
-    Parameters
-    ----------
-    piece
-        h ≥ 2, even, so that even and odd samples see the same pulse.
-    delay
-        From a sample to its actuator force [samples], ≥ 0.
-    late
-        By which forces were recorded later than positions [samples], either sign.
+    `delay` ≥ 0 is from a sample to its actuator force, `late` of either sign how much later than positions
+    forces were recorded [samples].
     """
     reach = _reach(piece)
     at = np.arange(-reach, reach + 1) / piece

@@ -72,8 +72,8 @@ def lag_of(pieces: Pieces, shape: Weights, total: Fit, delay: float, period: flo
         return None
     tried = [round(seconds / period) for seconds in LATER]
     best = max(tried, key=lambda samples: _explained(later(rows, pieces, shape, samples)))
-    here = _apparent(later(rows, pieces, shape, best), total, period)
-    there = _apparent(later(longer, pieces, other, best), total, period)
+    here = _apparent(later(rows, pieces, shape, best), total)
+    there = _apparent(later(longer, pieces, other, best), total)
     if here is None or there is None:
         return None
     apart = SAFETY * abs(here[0] - there[0])
@@ -90,7 +90,7 @@ def _explained(rows: Means) -> float:
     return -np.inf if fit is None else fit.explained
 
 
-def _apparent(rows: Means, total: Fit, period: float) -> tuple[float, float, int] | None:
+def _apparent(rows: Means, total: Fit) -> tuple[float, float, int] | None:
     """τ as the actuator's steps have it, its standard error, and of how many pieces."""
     fit = fitted(rows, True, 0.0)
     if fit is None:

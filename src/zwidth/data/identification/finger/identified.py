@@ -49,13 +49,13 @@ def refuse_scale(log: Log, pieces: Pieces, stiffness: Estimate) -> None:
         return
     raise InputError(
         f"{log.source}: stiffness comes out as {stiffness}, and no finger, hand or arm has that "
-        f"({SOFTEST:g} to {STIFFEST:g} N/m at the most): {_ranges(log, pieces)}; most likely a unit "
+        f"({SOFTEST:g} to {STIFFEST:g} N/m at the most): {_ranges(pieces)}; most likely a unit "
         f"is off by 1000, "
         'such as mm read as m or mN as N: state it with units={"position": "mm"}, or with scale'
     )
 
 
-def _ranges(log: Log, pieces: Pieces) -> str:
+def _ranges(pieces: Pieces) -> str:
     """How far each column goes, the unlikely ones named."""
     columns = {
         "position": pieces.position,
@@ -144,7 +144,7 @@ def widened(fit: Fit, lag: Lag | None) -> np.ndarray:
     return np.array([(damping + stiffness * lag.most) * lag.most, stiffness * lag.most, 0.0])
 
 
-def apart(log: Log, hand: Estimate, actuator: Estimate) -> tuple[float, Finding] | None:
+def apart(hand: Estimate, actuator: Estimate) -> tuple[float, Finding] | None:
     """By how much two dampings of one finger surely differ, and the finding; None where they may not."""
     (low, high), (least, most) = hand.interval(0.999), actuator.interval(0.999)
     if low <= most and least <= high:

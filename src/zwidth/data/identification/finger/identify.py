@@ -274,7 +274,7 @@ def _against_the_other_force(task: _Task, road: _Road) -> tuple[Array, list[Find
     other = _estimates(
         road.total.fit, _shift(by_actuator, road._replace(ways=road.total)), task.known, log.motion
     )
-    found = apart(log, hand, other["damping"])
+    found = apart(hand, other["damping"])
     if found is not None:
         shift, said = shift + np.array([0.0, found[0], 0.0]), [*said, found[1]]
     return shift, said
