@@ -26,9 +26,7 @@ from zwidth.data.diagnosis.evidence import TERMS, Evidence
 from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
 
 
 SURE = 0.6

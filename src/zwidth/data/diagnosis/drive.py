@@ -15,12 +15,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from zwidth.native.compiled import compiled
+from zwidth.native.compiled import Array, compiled
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 STRAIGHT = 0.42
 """Share of the time in which a force changes as fast as it ever does, ± 15 %; a sine does so for 0.37."""

@@ -35,10 +35,9 @@ from zwidth.data.diagnosis.stated import Stated, compare
 from zwidth.data.diagnosis.vibration import Vibration, phasors
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
+from zwidth.native.compiled import Array
 from zwidth.quantity.exact import ends
 from zwidth.quantity.glossary import GLOSSARY
-
-Array = NDArray[np.float64]
 
 TERMS = (
     "sampling",

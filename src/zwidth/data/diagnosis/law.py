@@ -18,7 +18,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
+
     Rows = NDArray[np.bool_]
 
 WINDOWS = (1, 2, 3, 5, 8, 10, 15, 20)

@@ -25,9 +25,8 @@ from zwidth.errors import InputError
 
 if TYPE_CHECKING:
     import xarray as xr
-    from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
 
 COMMANDED = "commanded_force"
 """The key of the law's own force among `columns`, `units` and `scale`."""

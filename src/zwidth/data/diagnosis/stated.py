@@ -30,7 +30,7 @@ from zwidth.quantity.text import shown
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
 
 FOLLOWED = 0.02
 """Share of a command's variance that its own law may leave over."""

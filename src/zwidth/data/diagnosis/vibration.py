@@ -17,7 +17,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
+
     Phasors = NDArray[np.complex128]
 
 LOWEST = 1.5

@@ -15,10 +15,7 @@ from zwidth.errors import InputError
 from zwidth.showing import one_line
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
 
 FORMAT = "zwidth recording 1"
 

@@ -38,9 +38,9 @@ from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
     import xarray as xr
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
 
 
 SAME = 1e-3

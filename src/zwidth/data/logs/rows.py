@@ -20,7 +20,7 @@ from zwidth.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
 
 
 DATE = 1e8
@@ -52,7 +52,7 @@ def joined(first: Rows, second: Rows) -> Rows:
 
 
 class Recording:
-    """The rows of a table, as often as wanted; `period` [s] apart where there is no time column, else None."""
+    """The rows of a table, as often as wanted; `period` [s] apart where no time column says it, else None."""
 
     def __init__(self, table: Table, meaning: Meaning, period: float | None) -> None:
         self.table, self.meaning, self.period = table, meaning, period

@@ -17,7 +17,8 @@ from zwidth.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
+
     Indices = NDArray[np.intp]
 
 

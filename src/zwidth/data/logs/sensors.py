@@ -18,7 +18,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
 
 
 _DOUBLE, _SINGLE = 4 * 2.0**-52, 2.0**-23

@@ -16,9 +16,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.text import told
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
 
 
 _LEVELS = 64

@@ -14,9 +14,7 @@ from numpy.typing import NDArray
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
 
 
 PIECE = 2**18

@@ -20,8 +20,7 @@ from numpy.typing import NDArray
 from zwidth.data.logs.contents import COLUMNS
 from zwidth.data.logs.table import Finding, Table, Values
 from zwidth.errors import InputError
-
-Array = NDArray[np.float64]
+from zwidth.native.compiled import Array
 
 FIRST = 0x80
 """In the status: the first packet since the machine was started."""

@@ -23,7 +23,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,12 +34,8 @@ from zwidth.data.diagnosis.pairs.recording import PairRecording
 from zwidth.data.diagnosis.recording import Recording
 from zwidth.data.diagnosis.vibration import HARMONICS, Vibration, find, phasors
 from zwidth.model.device import Device
+from zwidth.native.compiled import Array
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-
-Array = NDArray[np.float64]
 Phasors = NDArray[np.complex128]
 
 TERMS = (

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import NDArray
 
-    from zwidth.data.identification.device.estimate import Regression
-
 
 HINT = 0.8
 """Confidence above which a bend that differs by direction is fitted, not only believed: it costs width."""

@@ -228,7 +228,7 @@ class Weights(NamedTuple):
 
 
 def weights(piece: int, delay: float) -> Weights:
-    """The pulse of pieces of h samples, h ≥ 2 and even; `delay` ≥ 0 from one to its actuator force [samples]."""
+    """The pulse of pieces of h samples, h ≥ 2 and even; `delay` from one to its actuator force [samples]."""
     reach = 2 * piece + 1
     value = np.nan_to_num(_SPLINE(np.arange(-reach, reach + 1) / piece)) / piece
     bend = np.convolve(value, (1, -2, 1), "same")
