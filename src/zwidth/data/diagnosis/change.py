@@ -81,8 +81,7 @@ def lowered_to(name: str, current: float, to: float, unit: str) -> str:
 
 def largest(decided: Callable[[float], Judged | None], current: float) -> float | None:
     """The largest value up to the current one that is passive, of a few digits; None where only 0 is, or
-    none.
-    """
+    none."""
 
     def passive(value: float) -> bool:
         verdict = decided(value)

@@ -30,8 +30,7 @@ _STEEP = (50, 70, 85, 90, 93, 95, 97, 99, 99.8)
 @dataclass(frozen=True, kw_only=True)
 class Drive:
     """What the drive does to a command; `by_…` is the share of the applied force's variance that is left over
-    by each account of it, 0 by a full one.
-    """
+    by each account of it, 0 by a full one."""
 
     delay: float
     """[s] τ of the best pure delay, of some forty in three quarters of a cycle."""

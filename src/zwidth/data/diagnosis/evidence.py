@@ -306,8 +306,7 @@ class _Motion(NamedTuple):
 
     def needed(self, known: Known) -> NDArray[np.complex128]:
         """The force under which a rigid device alone would move so, −m ẍ − b ẋ − f_c sgn ẋ; of any mass,
-        where nobody said which.
-        """
+        where nobody said which."""
         n = self.orders * self.omega
         ahead = 1j * self.xs[0] / abs(self.xs[0])
         square = np.zeros_like(self.xs)

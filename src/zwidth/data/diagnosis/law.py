@@ -246,8 +246,7 @@ def _away(force: Array) -> Rows:
 
 def _at_ends(force: Array) -> Rows:
     """Rows where the force stands still at its largest: exactly, or in noise for more of the time than a
-    sine.
-    """
+    sine."""
     size = np.abs(force)
     top = float(np.percentile(size, 99.5))
     exact = _beside(size >= 0.9995 * size.max())

@@ -223,8 +223,7 @@ def _mean(padded: Array, half: int) -> Array:
 
 def _stretch(moving: Array, period: float, block: float) -> slice:
     """The longest stretch whose blocks stay above a third of the size of the large ones; the later of
-    equals.
-    """
+    equals."""
     size = max(8, round(block / period))
     blocks = moving.size // size
     if blocks < 3:

@@ -63,8 +63,7 @@ class Intervals(NamedTuple):
 
 class Survey:
     """What the segments of a log have in common: `period` [s] is roughly T, `resolution` [m; rad] as stated,
-    `unit` [m; rad] that of the numbers in the file.
-    """
+    `unit` [m; rad] that of the numbers in the file."""
 
     def __init__(self, period: float, resolution: float | None, unit: float, source: str) -> None:
         self.period, self.stated, self.unit, self.source = period, resolution, unit, source

@@ -40,8 +40,7 @@ _SLOWEST = 1e5
 
 class Track(NamedTuple):
     """The solid after each sample, ε the error of prediction, the trace of P (see `RecursiveSolid`), and what
-    was found in the record: samples that were passed over.
-    """
+    was found in the record: samples that were passed over."""
 
     stiffness: Array
     branch_stiffness: Array

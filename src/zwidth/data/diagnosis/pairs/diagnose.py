@@ -32,9 +32,8 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, kw_only=True, repr=False)
 class PairDiagnosis(Answer[PairChange, PairEvidence, PairRecording]):
     """Why two arms shook that follow each other: `cause` is one of `zwidth.data.diagnosis.PAIR_CAUSES`, or
-    None where the data do not say, and `confidence` how often such a finding is right, among simulated
-    pairs that shake for one reason.
-    """
+    None where the data do not say, and `confidence` how often such a finding is right, among simulated pairs
+    that shake for one reason."""
 
     @property
     def claim(self) -> str:
@@ -158,8 +157,7 @@ MOST_BEHIND = 0.1
 
 def is_named(cause: str, p: float, seen: PairEvidence) -> bool:
     """Whether a cause is likely enough and the file shows it.  Where a motor cannot follow, how much that
-    gives depends on how far the arms swing: what else gives more at this swing is not named then.
-    """
+    gives depends on how far the arms swing: what else gives more at this swing is not named then."""
     limited = any(rate is not None for rate in seen.rates)
     alone = not limited or cause == "actuator limit"
     return p >= SURE and alone and seen.behind < MOST_BEHIND and followed(seen)
@@ -167,16 +165,14 @@ def is_named(cause: str, p: float, seen: PairEvidence) -> bool:
 
 def followed(seen: PairEvidence) -> bool:
     """Whether both forces are known as laws of both arms, and nothing unseen need feed the motion: the forces
-    of the motors are in the file, or at least it is known what friction takes.
-    """
+    of the motors are in the file, or at least it is known what friction takes."""
     known = all(law is not None and law.unexplained < MOST_UNEXPLAINED for law in seen.laws)
     return known and (seen.rubs is not None or None not in seen.delays)
 
 
 def _beyond(seen: PairEvidence, viscous_share: float, dry_share: float) -> dict[str, float]:
     """[J] of each term beyond what pays for it: viscous friction, and the terms that take, for all that grow
-    with the motion's square; Coulomb friction for the force along the motion.
-    """
+    with the motion's square; Coulomb friction for the force along the motion."""
     viscous, dry = seen.rubs or (0.0, 0.0)
     gives = {name: work for name, work in seen.supplied.items() if work > 0 and name != _DRY}
     pays = viscous_share * viscous - sum(

@@ -102,8 +102,7 @@ def recognised(
     number: int = 1,
 ) -> Columns:
     """The columns of a test: first what was chosen, then by name, then by unit; of several side by side that
-    of a number from 1.
-    """
+    of a number from 1."""
     chosen, units = dict(chosen or {}), dict(units or {})
     for what, given in (("column", chosen), ("unit", units)):
         for key in given:
@@ -296,8 +295,7 @@ def read_tests(
     sheet: str | None = None,
 ) -> list[Raw]:
     """Every test in a file that stands beside the others, or on another sheet of a workbook; one after the
-    other they are still together.
-    """
+    other they are still together."""
     with readable(str(path)):
         table = table_of_file(Path(path), sheet)
         found = []
