@@ -4,8 +4,8 @@
     python benchmarks/diagnosis_pairs.py FOLDER --faults 180 --seed 300 --learn
 
 Pairs are drawn by `shaken_pairs.py`, which knows nothing of the diagnosis.  FOLDER keeps the logs.  `--learn`
-prints the exponent γ of `zwidth.data.diagnosis.pairs.causes` that makes the drawn causes likeliest; its seed
-must be another than that of the count.  A change is put into the arms themselves, not into what was
+prints the exponent γ of `zwidth.data.diagnosis.pairs.diagnose` that makes the drawn causes likeliest; its
+seed must be another than that of the count.  A change is put into the arms themselves, not into what was
 identified.
 """
 
@@ -22,7 +22,7 @@ from scipy.optimize import minimize_scalar
 from shaken_pairs import CAUSES, Arms, Logged, draw, quiet, run, write_log
 
 from zwidth.data.diagnosis import PairDiagnosis, diagnose_pair
-from zwidth.data.diagnosis.pairs.causes import STEEPNESS
+from zwidth.data.diagnosis.pairs.diagnose import STEEPNESS
 
 CANNOT_TELL = "cannot tell"
 _FIELDS = ("stiffness", "damping", "local_damping", "compensation")

@@ -23,7 +23,7 @@ from scipy.optimize import minimize
 from shaken import CAUSES
 from shaken_logs import Logged
 
-from zwidth.data.diagnosis import evidence, features, recording, vibration
+from zwidth.data.diagnosis import causes, evidence, recording, vibration
 
 PENALTY = 0.3
 FOLDS = 5
@@ -58,7 +58,7 @@ def main() -> None:
 def _learnt(looked: list[tuple[str, dict[str, float]]]) -> list[str]:
     """Lines of the table of one kind of file."""
     names = tuple(sorted({name for _, numbers in looked for name in numbers}))
-    table = np.array([features.vector(numbers, names) for _, numbers in looked])
+    table = np.array([causes.vector(numbers, names) for _, numbers in looked])
     truth = np.array([CAUSES.index(cause) for cause, _ in looked])
     middle, spread = np.nanmean(table, axis=0), np.nanstd(table, axis=0) + 1e-9
     z = np.clip(np.nan_to_num((table - middle) / spread), -FURTHEST, FURTHEST)
@@ -85,7 +85,7 @@ def _looked(folder: Path, seed: int, k: int) -> Iterator[tuple[str, str, dict[st
 def look(logged: Logged) -> Iterator[tuple[str, dict[str, float]]]:
     """The features of a log; none where it does not vibrate."""
     read = recording.read(logged.path)
-    shaking = vibration.find(read.time, read.position, read.period)
+    shaking = vibration.find(read.position, read.period)
     if shaking is None:
         return
     files = [read]
@@ -93,7 +93,7 @@ def look(logged: Logged) -> Iterator[tuple[str, dict[str, float]]]:
         files += [replace(read, applied=None), replace(read, commanded=None)]
     for one in files:
         seen = evidence.gather(one, shaking, logged.device)
-        yield seen.recorded, features.features(seen)
+        yield seen.recorded, causes.features(seen)
 
 
 def learn(z: np.ndarray, truth: np.ndarray) -> np.ndarray:

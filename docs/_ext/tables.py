@@ -17,7 +17,7 @@ from zwidth.cli.options import (
     device_parameters,
     environment_parameters,
 )
-from zwidth.data.gains import published
+from zwidth.data.gains.plant import plants as published_plants
 from zwidth.model.kind import Kind
 from zwidth.model.rendering import ESTIMATORS, LAWS
 from zwidth.model.specification import load as pairs
@@ -225,12 +225,12 @@ def _ranges(entry: catalogue.Entry) -> str:
 def plants() -> str:
     """Published damping and friction of arms whose gain files are read."""
     rows = []
-    for name, plant in published.plants().items():
+    for name, plant in published_plants().items():
         numbers = [(f"joint {n + 1}", *values) for n, values in enumerate(plant.joints)]
         numbers += [(motor, *values) for motor, values in plant.motors.items()]
         for place, damping, friction in numbers:
             rows.append((f"`{name}`", place, f"{float(damping):.4g}", f"{float(friction):.4g}"))
-    sources = "\n".join(f"- `{name}`: {plant.source}" for name, plant in published.plants().items())
+    sources = "\n".join(f"- `{name}`: {plant.source}" for name, plant in published_plants().items())
     table = markdown(("plant", "of", "damping [N·m·s/rad]", "Coulomb friction [N·m]"), rows)
     return f"{table}\n{sources}\n"
 

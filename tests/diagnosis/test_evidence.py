@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from zwidth.data.diagnosis import drive, law, vibration
-from zwidth.data.diagnosis.doubts import doubt
 from zwidth.data.diagnosis.evidence import Evidence, gather
+from zwidth.data.diagnosis.reason import doubt
 from zwidth.data.diagnosis.recording import Recording, read_of_table
 from zwidth.data.logs.table import Table, in_pieces
 from zwidth.model.device import Device
@@ -48,7 +48,7 @@ def test_frequency_and_swing_of_a_vibration_after_a_rest() -> None:
     """It is found behind a second of slow motion, within its own spread; the swing is that of the sine."""
     slow = 0.003 * np.sin(2 * np.pi * 0.4 * np.arange(800) * PERIOD)
     position = np.concatenate([slow, slow[-1] + shaken()])
-    found = vibration.find(np.arange(position.size) * PERIOD, position, PERIOD)
+    found = vibration.find(position, PERIOD)
     assert found is not None
     assert found.rows.start >= 600
     assert abs(found.frequency - FREQUENCY) < max(3 * found.frequency_spread, 0.02)
@@ -60,7 +60,7 @@ def test_a_hand_that_moves_slowly_does_not_vibrate() -> None:
     """Half a hertz is no vibration, nor is a single stroke."""
     t = np.arange(2000) * PERIOD
     for position in (0.02 * np.sin(np.pi * t), np.where(t < 1, 0, 0.01) * np.minimum(t, 1.2), np.zeros(2000)):
-        assert vibration.find(t, position, PERIOD) is None
+        assert vibration.find(position, PERIOD) is None
 
 
 @pytest.mark.parametrize(
@@ -131,7 +131,7 @@ def test_the_energy_of_a_cycle_is_that_of_the_held_force_along_the_motion(late: 
     position = shaken(2.5, drift=0.0)
     command = 640 * position + 0.4 * np.concatenate([[0.0], np.diff(position)]) / PERIOD
     applied = held(command, late)
-    whole = vibration.find(np.arange(position.size) * PERIOD, position, PERIOD)
+    whole = vibration.find(position, PERIOD)
     assert whole is not None
     seen = gather(recorded(position, commanded=command, applied=applied), whole, None)
     cycles = 49  # 1654.008 rows
@@ -148,7 +148,7 @@ def test_the_energy_that_friction_takes() -> None:
     """π ω b X² + 4 f_c X of the device's numbers, and the mass that would move so: K/ω² without a hand."""
     position = shaken(drift=0.0)
     device = Device(mass=0.03, damping=0.3, coulomb_friction=0.05, sample_period=PERIOD)
-    whole = vibration.find(np.arange(position.size) * PERIOD, position, PERIOD)
+    whole = vibration.find(position, PERIOD)
     assert whole is not None
     seen = gather(recorded(position, applied=640 * position), whole, device)
     w = 2 * np.pi * FREQUENCY
@@ -163,7 +163,7 @@ def test_the_energy_that_friction_takes() -> None:
 def test_a_force_counted_the_other_way_is_turned_round() -> None:
     """A spring pushes back, whatever the file counts."""
     position = shaken()
-    whole = vibration.find(np.arange(position.size) * PERIOD, position, PERIOD)
+    whole = vibration.find(position, PERIOD)
     assert whole is not None
     one, other = (gather(recorded(position, commanded=s * 640 * position), whole, None) for s in (1, -1))
     assert one.law is not None
@@ -178,17 +178,17 @@ def test_a_wheel_that_wobbles_slowly_vibrates() -> None:
     wobble = (
         np.round((0.4 * np.sin(2 * np.pi * 0.8 * t) + 0.03 * np.sin(2 * np.pi * 2.4 * t + 1)) / 1e-3) * 1e-3
     )
-    found = vibration.find(t, wobble, PERIOD)
+    found = vibration.find(wobble, PERIOD)
     assert found is not None
     assert found.frequency == pytest.approx(0.8, rel=0.02)
     hand = sum(0.1 * np.sin(2 * np.pi * f * t + p) for f, p in ((0.31, 0), (0.52, 1), (0.83, 2), (1.21, 3)))
-    assert vibration.find(t, np.asarray(hand), PERIOD) is None
+    assert vibration.find(np.asarray(hand), PERIOD) is None
 
 
 def test_a_frequency_that_drifts_is_looked_at_where_it_stays() -> None:
     """From 20 to 26 Hz in a second: the stretch is shortened until harmonics describe it."""
     t = np.arange(800) * PERIOD
-    found = vibration.find(t, np.sin(2 * np.pi * (20 * t + 3 * t**2)), PERIOD)
+    found = vibration.find(np.sin(2 * np.pi * (20 * t + 3 * t**2)), PERIOD)
     assert found is not None
     assert found.regular > 0.9
     assert found.rows.stop - found.rows.start < 500
@@ -204,7 +204,7 @@ def test_the_motion_shows_the_force_behind_a_command(factor: float, late: int) -
     w = 2 * np.pi * FREQUENCY
     acts = 640 * np.sinc(w * PERIOD / 2 / np.pi)  # through the hold
     device = Device(mass=factor * acts / w**2, damping=0, coulomb_friction=0, sample_period=PERIOD)
-    whole = vibration.find(np.arange(position.size) * PERIOD, position, PERIOD)
+    whole = vibration.find(position, PERIOD)
     assert whole is not None
     early = np.interp(np.arange(position.size) + late + 0.5, np.arange(position.size), position)
     seen = gather(recorded(position, commanded=640 * early), whole, device)
@@ -218,7 +218,7 @@ def test_corners_of_a_force() -> None:
     """Third harmonic against the first: a triangle has a ninth, a square minus a third."""
     position = shaken(drift=0.0)
     phase = 2 * np.pi * FREQUENCY * np.arange(position.size) * PERIOD + 0.4
-    whole = vibration.find(np.arange(position.size) * PERIOD, position, PERIOD)
+    whole = vibration.find(position, PERIOD)
     assert whole is not None
     held = np.sinc(3 * FREQUENCY * PERIOD) / np.sinc(FREQUENCY * PERIOD)
     for wave, bend in ((np.arcsin(np.sin(phase)), 1 / 9), (np.sign(np.sin(phase)), -1 / 3)):
@@ -229,7 +229,7 @@ def test_corners_of_a_force() -> None:
 def seen_in(position: np.ndarray, **forces: np.ndarray) -> Evidence:
     """What is seen of a device of 80 g in arrays."""
     record = recorded(position, **forces)
-    found = vibration.find(record.time, position, PERIOD)
+    found = vibration.find(position, PERIOD)
     assert found is not None
     device = Device(mass=0.08, damping=0.1, coulomb_friction=0, sample_period=PERIOD)
     return gather(record, found, device)

@@ -13,7 +13,7 @@ from two_arms import PERIOD, arms, moved, written
 
 import zwidth as zw
 from zwidth.data.diagnosis import PAIR_CAUSES
-from zwidth.data.diagnosis.pairs import law
+from zwidth.data.diagnosis.pairs.energy import arm_law
 from zwidth.data.diagnosis.pairs.recording import holds_two_arms, read_pair
 from zwidth.model.specification.load import load_pair
 from zwidth.model.specification.write import written_pair
@@ -202,7 +202,7 @@ def test_the_law_of_an_arm() -> None:
     v, its = (back[0] - back[1]) / PERIOD, (back[2] - back[3]) / PERIOD
     force = 31.0 * (back[0] - back[2]) + 0.2 * (v - its) + 0.05 * v - 0.3 * np.sign(v)
     lags = [k * PERIOD for k in range(4)]
-    found = law.fit(own, other, force, PERIOD, PERIOD, lags, [k * PERIOD for k in range(6)])
+    found = arm_law(own, other, force, PERIOD, PERIOD, lags, [k * PERIOD for k in range(6)])
     assert found is not None
     assert (found.lag, found.link_delay) == pytest.approx((PERIOD, 3 * PERIOD))
     gains = found.stiffness, found.damping, found.local_damping, found.compensation

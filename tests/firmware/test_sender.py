@@ -11,7 +11,7 @@ from firmware.tools import DATA, library
 from firmware.written_packets import FIRST, SERVING, TEXT, unpacked
 from strategies import seeds
 
-from zwidth.data.logs.telemetry.decoder import Decoder
+from zwidth.data.logs.telemetry import Decoder
 
 UNIT = {1: 1.0, 2: 1.0, 3: 2**-12, 4: 0.01}
 """Of the laws of data/law.h [N]."""

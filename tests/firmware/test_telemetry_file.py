@@ -10,7 +10,7 @@ from firmware.written_packets import FIRST, SERVING, TEXT, packet, samples, text
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.data.logs.telemetry.decoder import Decoder
+from zwidth.data.logs.telemetry import Decoder
 from zwidth.errors import InputError
 from zwidth.machine.firmware.telemetry import REASONS, read_telemetry
 

@@ -27,7 +27,7 @@ from hypothesis import strategies as st
 from strategies import texts
 
 import zwidth as zw
-from zwidth.data.gains.published import family, plants
+from zwidth.data.gains.plant import family, plants
 from zwidth.data.gains.read import FAMILIES
 
 

@@ -12,7 +12,7 @@ from gain_files import DAMIAO, PIPER, SERVOS, YAM, openarm, written
 
 import zwidth as zw
 from zwidth.data.gains import ArmGains
-from zwidth.data.gains.coupled import CoupledJoint
+from zwidth.data.gains.joint import CoupledJoint
 from zwidth.passivity.pairs.limits import is_passive
 
 

@@ -12,8 +12,7 @@ from zwidth.cli.description import environment_line
 from zwidth.cli.identification_result import Result
 from zwidth.cli.page import below, grid, headline, items, more_with_all, page, section
 from zwidth.data.identification.device.estimate import MOST_CONFIDENCE
-from zwidth.data.identification.device.limits import advice, percent
-from zwidth.data.identification.device.table import BOTH_SIDES, rows, source_name
+from zwidth.data.identification.device.table import BOTH_SIDES, advice, percent, rows, source_name
 from zwidth.model.environment import Wall
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.scope import TOLD

@@ -105,7 +105,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _found(arguments: argparse.Namespace, confidence: float) -> Result:
-    from zwidth.data.identification.recording import identify, log_from
+    from zwidth.data.identification.device.identify import identify, log_from
     from zwidth.data.logs import Log
     from zwidth.progress import progress_bar
 

@@ -14,7 +14,7 @@ from recorded_strokes import recorded as recorded_strokes
 from recordings import paddle
 
 import zwidth as zw
-from zwidth.data.logs.block import Finding
+from zwidth.data.logs.table import Finding
 from zwidth.model.specification.read import load_device
 from zwidth.quantity.exact import ends
 

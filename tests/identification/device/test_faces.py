@@ -17,8 +17,7 @@ from scipy import stats
 import zwidth as zw
 from zwidth.data.identification.device.curve import friction_bins, lower_bounds
 from zwidth.data.identification.device.estimate import Estimate
-from zwidth.data.identification.device.limits import advice, limits, percent
-from zwidth.data.identification.device.table import rows
+from zwidth.data.identification.device.table import advice, limits, percent, rows
 from zwidth.model.specification.read import load
 
 

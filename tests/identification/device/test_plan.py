@@ -8,8 +8,8 @@ from recorded_strokes import TRUE, recorded
 from recordings import paddle
 
 import zwidth as zw
-from zwidth.data.identification.device.design import PARAMETERS, Stroke, best_shares, covariance
 from zwidth.data.identification.device.identify import identify
+from zwidth.data.identification.device.plan import PARAMETERS, Stroke, best_shares, covariance
 
 
 def _kinds(plan, seconds):

@@ -8,8 +8,7 @@ from scipy.integrate import quad
 from scipy.interpolate import BSpline
 
 from zwidth.data.identification.device import pulses
-from zwidth.data.identification.device.pulses import pulse, weighed
-from zwidth.data.identification.device.strokes import Strokes
+from zwidth.data.identification.device.pulses import Strokes, pulse, weighed
 
 PERIOD = 1e-3
 

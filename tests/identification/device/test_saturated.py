@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from recordings import hand_moves, paddle
 
 import zwidth as zw
-from zwidth.data.logs.stops import Stops
+from zwidth.data.logs.sensors import Stops
 
 Array = NDArray[np.float64]
 Way = Literal["cut off", "steps of a converter", "noise behind the stop"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zwidth.data.identification.device.strokes import (
+from zwidth.data.identification.device.pulses import (
     count_without_steps,
     counted,
     find_strokes,

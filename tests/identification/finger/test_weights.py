@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from zwidth.data.identification.finger.weights import weights
+from zwidth.data.identification.finger.means import weights
 
 
 def _motion(rng, samples, fine):

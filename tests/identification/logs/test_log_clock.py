@@ -7,7 +7,7 @@ import pytest
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.data.logs.block import BLOCK_SIZE
+from zwidth.data.logs.table import BLOCK_SIZE
 
 
 def kinds(log: zw.Log) -> set[str]:

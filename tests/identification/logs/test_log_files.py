@@ -15,7 +15,7 @@ import pytest
 import scipy.io
 
 import zwidth as zw
-from zwidth.data.logs.names import name_and_unit
+from zwidth.data.logs.columns import name_and_unit
 from zwidth.data.logs.text import text_table
 
 HEADER = ("time_s", "position_mm", "force_N")

@@ -9,7 +9,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.data.logs.cells import clock, decimal_of, number
-from zwidth.data.tissue.experiment.reading import read_tests
+from zwidth.data.tissue.experiment.columns import read_tests
 
 TIME = 0.25 * np.arange(40)
 DEPTH = 0.004 * np.clip(TIME, 0, 1)

@@ -12,7 +12,7 @@ import pytest
 from openpyxl import Workbook
 
 import zwidth as zw
-from zwidth.data.tissue.experiment.reading import read_tests
+from zwidth.data.tissue.experiment.columns import read_tests
 
 TIME = 0.25 * np.arange(40)
 DEPTH = 0.004 * np.clip(TIME, 0, 1)

@@ -10,13 +10,16 @@ from scipy.stats import binom
 
 import zwidth as zw
 from zwidth.data.tissue.experiment.choice import Tried, not_told_apart, taken
-from zwidth.data.tissue.experiment.estimate import covariance, solved
-from zwidth.data.tissue.experiment.history import history_of
-from zwidth.data.tissue.experiment.kind import kind_of
-from zwidth.data.tissue.experiment.noise import likelihood, noise_of, with_memory
+from zwidth.data.tissue.experiment.estimate import (
+    bends,
+    covariance,
+    likelihood,
+    noise_of,
+    solved,
+    with_memory,
+)
+from zwidth.data.tissue.experiment.history import Trial, history_of, kind_of
 from zwidth.data.tissue.experiment.prediction import Task, derivatives, fines_of, predicted
-from zwidth.data.tissue.experiment.profile import bends
-from zwidth.data.tissue.experiment.tidy import Trial
 from zwidth.data.tissue.model import as_model
 
 SOLID = zw.StandardLinearSolid(420, 260, 90)

@@ -10,7 +10,7 @@ from scipy.stats import binom
 
 import zwidth as zw
 from zwidth.data.tissue import compare_tissues, fit_tissue, force_response, position_response
-from zwidth.data.tissue.uncertainty import covariance, noise_of
+from zwidth.data.tissue.findings import covariance, noise_of
 
 SOLID = zw.StandardLinearSolid(310, 145, 11)
 TRUE = {"stiffness": 310, "branch_stiffness": 145, "branch_damping": 11}

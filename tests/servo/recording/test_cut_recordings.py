@@ -11,6 +11,8 @@ from written_rows import COLUMNS, drawn
 from zwidth import InputError
 from zwidth.data.logs.served.contents import Head
 from zwidth.machine.servo.recording.recorder import McapFile
+from zwidth.data.logs.contents import Head
+from zwidth.machine.servo.recording.mcap import McapFile
 from zwidth.machine.servo.recording.recording import read_recording
 
 EACH = 50
@@ -132,7 +134,7 @@ def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
 def test_a_recording_of_another_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Rather than read wrongly."""
     with monkeypatch.context() as patch:
-        patch.setattr("zwidth.data.logs.served.contents.FORMAT", "zwidth recording 2")
+        patch.setattr("zwidth.data.logs.contents.FORMAT", "zwidth recording 2")
         McapFile(tmp_path / "run.mcap", HEAD).close()
     with pytest.raises(InputError, match="zwidth recording 2"):
         read_recording(tmp_path / "run.mcap")

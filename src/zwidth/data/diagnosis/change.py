@@ -1,4 +1,4 @@
-"""The one number to change, handed to `check`: four fifths of the largest value that is proved passive.
+"""The one number to change, of a loop or a pair: four fifths of the largest value that is proved passive.
 
 The loop is what was found in the recording: the stated device, the identified law, the delay that is seen.
 Every value that is given was itself decided, all else as it was.  A damper inside the drive, B_d v(t −
@@ -8,11 +8,12 @@ the device.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from math import floor, log10
+from typing import Protocol
 
 from zwidth.data.diagnosis.evidence import Evidence
-from zwidth.data.diagnosis.lowered import Lowered, largest, lowered_to, rounded, text_of
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.environment import BackwardDifference, Wall, Window
@@ -22,6 +23,98 @@ from zwidth.passivity.check import check, check_by_closed_forms
 from zwidth.passivity.covering_wall import covering
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import ends
+from zwidth.quantity.text import shown
+
+# One number that is lowered until the verdict is passive, with a margin: of a loop as of a pair.
+
+
+PASSIVE = ("passive", "passive in contact")
+"""Outcomes that a change may have."""
+
+_HALVINGS = 14
+_MARGIN = 0.8
+"""Of the largest value that is passive: at that itself a motion that is there need not die out."""
+
+_DIGITS = 3
+
+
+class Judged(Protocol):
+    """A verdict of any kind of loop."""
+
+    @property
+    def outcome(self) -> str:
+        """As of `check`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lowered:
+    """One number, from where it is to where it may be."""
+
+    parameter: str
+    """Its key, such as "stiffness"."""
+    current: float
+    to: float
+    """In `unit`."""
+    unit: str
+    """SI."""
+    text: str
+    """In words."""
+    verdict: Judged
+    """What `check` says to what has the number changed."""
+
+    def to_dict(self) -> dict[str, object]:
+        """As plain data."""
+        return {
+            "parameter": self.parameter,
+            "from": self.current,
+            "to": self.to,
+            "unit": self.unit,
+            "text": self.text,
+            "outcome": self.verdict.outcome,
+        }
+
+
+def lowered_to(name: str, current: float, to: float, unit: str) -> str:
+    """What to do, in words."""
+    return f"lower the {name} from {shown(current, unit, 3)} to {shown(to, unit, 3)}"
+
+
+def largest(decided: Callable[[float], Judged | None], current: float) -> float | None:
+    """The largest value up to the current one that is passive, of a few digits; None where only 0 is, or
+    none."""
+
+    def passive(value: float) -> bool:
+        verdict = decided(value)
+        return verdict is not None and verdict.outcome in PASSIVE
+
+    low, high = 0.0, current
+    if not passive(0.0) and not passive(1e-3 * current):
+        return None
+    if passive(current):
+        low = current
+    for _ in range(_HALVINGS if low < high else 0):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if passive(middle) else (low, middle)
+    to = with_margin(low)
+    return to if to > 1e-3 * current and passive(to) else None
+
+
+def with_margin(limit: float) -> float:
+    """Four fifths of a limit, of a few digits."""
+    return rounded(_MARGIN * limit)
+
+
+def rounded(value: float) -> float:
+    """Down to three digits."""
+    if value <= 0:
+        return 0.0
+    step = 10.0 ** (floor(log10(value)) - _DIGITS + 1)
+    return float(f"{floor(value / step * (1 + 1e-12)) * step:.{_DIGITS}g}")
+
+
+def text_of(value: float) -> str:
+    """The decimal that is meant."""
+    return f"{value:.6g}"
 
 
 @dataclass(frozen=True, kw_only=True)

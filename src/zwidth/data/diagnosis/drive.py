@@ -15,12 +15,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from zwidth.native.compiled import compiled
+from zwidth.native.compiled import Array, compiled
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 STRAIGHT = 0.42
 """Share of the time in which a force changes as fast as it ever does, ± 15 %; a sine does so for 0.37."""
@@ -31,38 +29,28 @@ _STEEP = (50, 70, 85, 90, 93, 95, 97, 99, 99.8)
 
 @dataclass(frozen=True, kw_only=True)
 class Drive:
-    """What the drive does to a command.
-
-    Parameters
-    ----------
-    delay
-        [s] τ of the best pure delay, of some forty in three quarters of a cycle.
-    delay_to_a_sample
-        [s] the best one near that, to a sample of the loop.
-    gain, by_gain
-        How many times the delayed command the applied force is, and the share that this leaves over.
-    by_delay, by_damper, by_rate, by_nothing
-        Share of the applied force's variance that is left over by each; 0 is a full account.
-    damping, damping_lag
-        B_d [N·s/m; N·m·s/rad], positive where it brakes, and τ_d [s].
-    rate
-        [N/s; N·m/s] R.
-    applied
-        [N; N·m] the applied force in each row.
-    """
+    """What the drive does to a command; `by_…` is the share of the applied force's variance that is left over
+    by each account of it, 0 by a full one."""
 
     delay: float
+    """[s] τ of the best pure delay, of some forty in three quarters of a cycle."""
     delay_to_a_sample: float
+    """[s] the best one near that, to a sample of the loop."""
     gain: float
+    """How many times the delayed command the applied force is."""
     by_gain: float
     by_nothing: float
     by_delay: float
     by_damper: float
     by_rate: float
     damping: float
+    """B_d [N·s/m; N·m·s/rad], positive where it brakes."""
     damping_lag: float
+    """τ_d [s]."""
     rate: float
+    """[N/s; N·m/s] R."""
     applied: Array = field(repr=False)
+    """[N; N·m] the applied force in each row."""
 
 
 def account(

@@ -35,10 +35,9 @@ from zwidth.data.diagnosis.stated import Stated, compare
 from zwidth.data.diagnosis.vibration import Vibration, phasors
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
+from zwidth.native.compiled import Array
 from zwidth.quantity.exact import ends
 from zwidth.quantity.glossary import GLOSSARY
-
-Array = NDArray[np.float64]
 
 TERMS = (
     "sampling",
@@ -89,83 +88,57 @@ def _middle(number: object) -> float | None:
 
 @dataclass(frozen=True, kw_only=True)
 class Evidence:
-    """Everything that was measured in a recording of a vibration.
-
-    Parameters
-    ----------
-    vibration
-        Where, how fast, how far.
-    loop_period
-        [s] T of the loop.
-    resolution
-        [m; rad] Δ; 0 where none is seen.
-    law
-        What the force was computed from; None where it does not follow the motion.
-    drive
-        What lies between the two forces; None where one was recorded.
-    amplitude
-        [m; rad] |X|.
-    delay
-        [s] from a sample to its force, as far as it is seen or stated.
-    supplied
-        [J] that each term gives in a cycle, negative where it takes.
-    total
-        [J] that the actuator gives in a cycle in all, by the phasors.
-    energy
-        [J] the same by the held force along each move, where every sample of the loop is in the file; else
-        the total.
-    lost
-        [J] that the device's friction takes in a cycle; None without a device.
-    apparent_mass
-        [kg; kg·m²] Re(F/X)/ω²: the mass that would move so under the force.
-    standing
-        Share of the time in which it stands, where a sine does so for a sixteenth.
-    distortion
-        Harmonics of the motion against its frequency.
-    roles
-        Which forces the file holds: "commanded", "applied", or both.
-    known
-        The device's numbers.
-    rotary
-        Of a wheel, a knob, a joint.
-    moves_as
-        The force that a rigid device of these numbers would take to move so, over the force in the file, as
-        amplitude and phase at ω: 1 where nothing else acts.  None where nobody said the mass.
-    bend, force_bend
-        Third harmonic of the force that the motion takes, and of the one in the file, F₃ (F₁*)³/|F₁|⁴: 1/9 of
-        a triangle, −1/3 of a square.
-    by_inside
-        Share of the motor's force that a spring and a damper inside the drive leave over, where the command
-        is not in the file.
-    ramps
-        Share of the time in which the motor's force changes about as fast as it ever does; None without it.
-    stated
-        The law as somebody stated it, beside the force; None where nobody did.
-    """
+    """Everything that was measured in a recording of a vibration."""
 
     vibration: Vibration
+    """Where, how fast, how far."""
     loop_period: float
+    """[s] T of the loop."""
     resolution: float
+    """[m; rad] Δ; 0 where none is seen."""
     law: Law | None
+    """What the force was computed from; None where it does not follow the motion."""
     drive: Drive | None
+    """What lies between the two forces; None where one was recorded."""
     amplitude: float
+    """[m; rad] |X|."""
     delay: float
+    """[s] from a sample to its force, as far as it is seen or stated."""
     supplied: Mapping[str, float]
+    """[J] that each term gives in a cycle, negative where it takes."""
     total: float
+    """[J] that the actuator gives in a cycle in all, by the phasors."""
     energy: float
+    """[J] the same by the held force along each move, where every sample of the loop is in the file; else
+    the total."""
     lost: float | None
+    """[J] that the device's friction takes in a cycle; None without a device."""
     apparent_mass: float
+    """[kg; kg·m²] Re(F/X)/ω²: the mass that would move so under the force."""
     standing: float
+    """Share of the time in which it stands, where a sine does so for a sixteenth."""
     distortion: float
+    """Harmonics of the motion against its frequency."""
     roles: tuple[str, ...]
+    """Which forces the file holds: "commanded", "applied", or both."""
     known: Known
+    """The device's numbers."""
     rotary: bool
+    """Of a wheel, a knob, a joint."""
     moves_as: complex | None
+    """The force that a rigid device of these numbers would take to move so, over the force in the file, as
+    amplitude and phase at ω: 1 where nothing else acts.  None where nobody said the mass."""
     bend: complex
     force_bend: complex
+    """Third harmonic of the force that the motion takes, and of the one in the file, F₃ (F₁*)³/|F₁|⁴: 1/9
+    of a triangle, −1/3 of a square."""
     by_inside: float | None
+    """Share of the motor's force that a spring and a damper inside the drive leave over, where the command
+    is not in the file."""
     ramps: float | None
+    """Share of the time in which the motor's force changes about as fast as it ever does; None without it."""
     stated: Stated | None = None
+    """The law as somebody stated it, beside the force; None where nobody did."""
 
     @property
     def recorded(self) -> str:
@@ -187,89 +160,118 @@ class Evidence:
         return self.vibration.swing / self.resolution if self.resolution else np.inf
 
 
+class _Aligned(NamedTuple):
+    """The file around the vibration, forces positive against the motion; `steady` is the vibration in it."""
+
+    x: Array
+    commanded: Array | None
+    applied: Array | None
+    period: float
+    loop_period: float
+    cycle: float
+    steady: slice
+
+
+class _Fitted(NamedTuple):
+    """What the forces follow, and what lies between them."""
+
+    law: Law | None
+    stated: Stated | None
+    commanded: Array | None
+    """As recorded, else as the stated law asks for."""
+    drive: Drive | None
+    by_inside: float | None
+
+
 def gather(
     recording: Recording, vibration: Vibration, device: Device | None, stated: Environment | None = None
 ) -> Evidence:
     """Measure everything; where the law is stated and the force follows it, by its own numbers."""
     known = Known.of(device)
-    around, period = vibration.around, recording.period
-    steady = slice(vibration.rows.start - around.start, vibration.rows.stop - around.start)
-    x = recording.position[around]
-    commanded = None if recording.commanded is None else recording.commanded[around]
-    applied = None if recording.applied is None else recording.applied[around]
-    loop_period = known.period or _loop_period(commanded, period)
-    seen = commanded if commanded is not None else applied
-    assert seen is not None
-    sign = _sign(x[steady], seen[steady])
-    commanded, applied = (None if f is None else sign * f for f in (commanded, applied))
-    cycle = 1 / vibration.frequency
-    found = None
-    told = None
-    if np.ptp(seen):
-        lags = _lags(commanded is not None, cycle, loop_period)
-        found = law.fit(x, sign * seen, period, loop_period, lags)
-        if stated is not None:
-            told = compare(stated, x, sign * seen, period, loop_period, lags, commanded is not None)
-            if commanded is None and applied is not None:
-                told = replace(told, accounted=_accounted(told.asked, applied, x, period, loop_period, cycle))
-    if told is not None and told.holds:
-        commanded = told.asked if commanded is None else commanded
-        found = told.as_law(commanded, loop_period)
-    if found is not None:
-        found = replace(found, compensated=found.compensated[steady])
-    between = None
-    if commanded is not None and applied is not None:
-        between = drive.account(commanded, applied, x, period, loop_period, cycle)
-        between = replace(between, applied=between.applied[steady])
-    alone = commanded is None and applied is not None
-    by_inside = drive.inside(applied, x, period, cycle) if alone and applied is not None else None
-    x = x[steady]
-    commanded, applied = (None if f is None else f[steady] for f in (commanded, applied))
-    omega = vibration.angular
+    file = _aligned(recording, vibration, known)
+    fitted = _fitted(file, stated)
+    x, period = file.x[file.steady], file.period
+    commanded, applied = (None if f is None else f[file.steady] for f in (fitted.commanded, file.applied))
+    force = applied if applied is not None else commanded
+    assert force is not None
     xs = phasors(x, vibration.frequency, period)
     xs[0] = xs[0] or np.finfo(float).tiny
     X = complex(xs[0])
-    delay = _delay(known, found, between, commanded is not None)
-    force = applied if applied is not None else commanded
-    assert force is not None
-    motion = _Motion(xs, omega, loop_period, vibration.frequency, period)
-    F = motion.phasors(force) * (1 if applied is not None else motion.late(delay))
-    asked = commanded if commanded is not None else force
-    supplied = _terms(found, between, motion, delay, asked)
-    needed = motion.needed(known)
+    delay = _delay(known, fitted, commanded is not None)
+    motion = _Motion(xs, vibration.angular, file.loop_period, vibration.frequency, period)
+    held, needed = motion.phasors(force), motion.needed(known)
+    F = held * (1 if applied is not None else motion.late(delay))
     lost = None
     if known.damping is not None:
-        viscous = np.pi * omega * known.damping * float((np.abs(motion.orders * xs) ** 2).sum())
+        viscous = np.pi * motion.omega * known.damping * float((np.abs(motion.orders * xs) ** 2).sum())
         lost = viscous + 4 * (known.coulomb or 0.0) * abs(X)
     return Evidence(
         vibration=vibration,
-        loop_period=loop_period,
+        loop_period=file.loop_period,
         resolution=known.resolution or recording.resolution,
-        law=found,
-        drive=between,
+        law=fitted.law,
+        drive=fitted.drive,
         amplitude=float(abs(X)),
         delay=delay,
-        supplied=supplied,
+        supplied=_terms(fitted, motion, delay, force if commanded is None else commanded),
         total=motion.work(F),
         energy=_along(x, force, 0 if applied is not None else round(delay / period))
-        if abs(period - loop_period) < 0.01 * period
+        if abs(period - file.loop_period) < 0.01 * period
         else motion.work(F),
         lost=lost,
-        apparent_mass=float(np.real(F[0] / X)) / omega**2,
-        standing=_standing(x, period, cycle),
+        apparent_mass=float(np.real(F[0] / X)) / motion.omega**2,
+        standing=_standing(x, period, file.cycle),
         distortion=float(np.sqrt((np.abs(xs[1:]) ** 2).sum()) / abs(X)),
         roles=tuple(
             name for name, values in (("commanded", commanded), ("applied", applied)) if values is not None
         ),
         known=known,
         rotary=recording.motion == "rotary",
-        moves_as=_moves_as(needed, motion.phasors(force), known),
+        moves_as=None if known.mass is None or not abs(held[0]) else complex(needed[0] / held[0]),
         bend=_bend(needed),
-        force_bend=_bend(motion.phasors(force)),
-        by_inside=by_inside,
+        force_bend=_bend(held),
+        by_inside=fitted.by_inside,
         ramps=None if applied is None else drive.ramps(applied),
-        stated=told,
+        stated=fitted.stated,
     )
+
+
+def _aligned(recording: Recording, vibration: Vibration, known: Known) -> _Aligned:
+    around, period = vibration.around, recording.period
+    steady = slice(vibration.rows.start - around.start, vibration.rows.stop - around.start)
+    x = recording.position[around]
+    forces = [None if f is None else f[around] for f in (recording.commanded, recording.applied)]
+    seen = next(f for f in forces if f is not None)
+    sign = _sign(x[steady], seen[steady])
+    commanded, applied = (None if f is None else sign * f for f in forces)
+    loop_period = known.period or _loop_period(commanded, period)
+    return _Aligned(x, commanded, applied, period, loop_period, 1 / vibration.frequency, steady)
+
+
+def _fitted(file: _Aligned, stated: Environment | None) -> _Fitted:
+    """Over all of the file; what an Evidence keeps of it is of the vibration alone."""
+    x, commanded, applied, period, loop_period, cycle, steady = file
+    seen = applied if commanded is None else commanded
+    assert seen is not None
+    found = told = between = by_inside = None
+    if np.ptp(seen):
+        lags = _lags(commanded is not None, cycle, loop_period)
+        found = law.fit(x, seen, period, loop_period, lags)
+        if stated is not None:
+            told = compare(stated, x, seen, period, loop_period, lags, commanded is not None)
+            if commanded is None:
+                told = replace(told, accounted=_accounted(told.asked, seen, x, period, loop_period, cycle))
+    if told is not None and told.holds:
+        commanded = told.asked if commanded is None else commanded
+        found = told.as_law(commanded, loop_period)
+    if found is not None:
+        found = replace(found, compensated=found.compensated[steady])
+    if applied is not None and commanded is not None:
+        between = drive.account(commanded, applied, x, period, loop_period, cycle)
+        between = replace(between, applied=between.applied[steady])
+    elif applied is not None:
+        by_inside = drive.inside(applied, x, period, cycle)
+    return _Fitted(found, told, commanded, between, by_inside)
 
 
 def _accounted(
@@ -300,14 +302,11 @@ class _Motion(NamedTuple):
 
     def phasors(self, force: Array) -> NDArray[np.complex128]:
         """Of a sampled force that is held."""
-        half = 0.5 * self.orders * self.omega * self.loop_period
-        held = phasors(force, self.frequency, self.period) * np.sinc(half / np.pi) * np.exp(-1j * half)
-        return np.asarray(held)
+        return self.held(phasors(force, self.frequency, self.period))
 
     def needed(self, known: Known) -> NDArray[np.complex128]:
         """The force under which a rigid device alone would move so, −m ẍ − b ẋ − f_c sgn ẋ; of any mass,
-        where nobody said which.
-        """
+        where nobody said which."""
         n = self.orders * self.omega
         ahead = 1j * self.xs[0] / abs(self.xs[0])
         square = np.zeros_like(self.xs)
@@ -324,13 +323,6 @@ class _Motion(NamedTuple):
         """The same through the hold."""
         half = 0.5 * self.orders * self.omega * self.loop_period
         return np.asarray(asked * np.sinc(half / np.pi) * np.exp(-1j * half))
-
-
-def _moves_as(needed: NDArray[np.complex128], given: NDArray[np.complex128], known: Known) -> complex | None:
-    """Force that the motion takes, over the force in the file; None where the mass is not known."""
-    if known.mass is None or not abs(given[0]):
-        return None
-    return complex(needed[0] / given[0])
 
 
 def _bend(force: NDArray[np.complex128]) -> complex:
@@ -381,18 +373,17 @@ def _lags(commanded: bool, cycle: float, loop_period: float) -> list[float]:
     return [float(k) * loop_period for k in np.unique(np.linspace(0, most, min(most + 1, 25)).round())]
 
 
-def _delay(known: Known, found: Law | None, between: Drive | None, commanded: bool) -> float:
-    if between is not None:
-        return between.delay_to_a_sample
-    if not commanded and found is not None:
-        return found.lag
+def _delay(known: Known, fitted: _Fitted, commanded: bool) -> float:
+    if fitted.drive is not None:
+        return fitted.drive.delay_to_a_sample
+    if not commanded and fitted.law is not None:
+        return fitted.law.lag
     return known.delay
 
 
-def _terms(
-    found: Law | None, between: Drive | None, motion: _Motion, delay: float, seen: Array
-) -> dict[str, float]:
+def _terms(fitted: _Fitted, motion: _Motion, delay: float, seen: Array) -> dict[str, float]:
     """[J] in a cycle by each term."""
+    found, between = fitted.law, fitted.drive
     supplied = dict.fromkeys(TERMS, 0.0)
     if found is None:
         return supplied

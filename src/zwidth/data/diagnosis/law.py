@@ -18,7 +18,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
+
     Rows = NDArray[np.bool_]
 
 WINDOWS = (1, 2, 3, 5, 8, 10, 15, 20)
@@ -47,44 +48,30 @@ _COMBINATIONS = (
 
 @dataclass(frozen=True, kw_only=True)
 class Law:
-    """What the force was computed from.
-
-    Parameters
-    ----------
-    stiffness, damping
-        K [N/m; N·m/rad] and B [N·s/m; N·m·s/rad].
-    window
-        N, samples of the velocity estimate.
-    compensation, compensation_speed
-        F [N; N·m] along the motion, 0 for none; v_s [m/s; rad/s].
-    lag
-        [s] s, from the position in a row to the force in it.
-    unexplained
-        Share of the force's variance that the law leaves over.
-    limited
-        Share of the time for which the force stands at its limit.
-    limit
-        [N; N·m] where it stands then; 0 if it never does.
-    away
-        Share of the time for which there is no force.
-    compensated
-        [N; N·m] the force of F in each row.
-    transfer
-        H(z) of a law that was stated, numerator and denominator; None of one that was found.
-    """
+    """What the force was computed from."""
 
     stiffness: float
     damping: float
+    """K [N/m; N·m/rad] and B [N·s/m; N·m·s/rad]."""
     window: int
+    """N, samples of the velocity estimate."""
     compensation: float
     compensation_speed: float
+    """F [N; N·m] along the motion, 0 for none; v_s [m/s; rad/s]."""
     lag: float
+    """[s] s, from the position in a row to the force in it."""
     unexplained: float
+    """Share of the force's variance that the law leaves over."""
     limited: float
+    """Share of the time for which the force stands at its limit."""
     limit: float
+    """[N; N·m] where it stands then; 0 if it never does."""
     away: float
+    """Share of the time for which there is no force."""
     compensated: Array = field(repr=False)
+    """[N; N·m] the force of F in each row."""
     transfer: tuple[Array, Array] | None = field(default=None, repr=False)
+    """H(z) of a law that was stated, numerator and denominator; None of one that was found."""
 
     def damper(self, omegas: Array, period: float) -> NDArray[np.complex128]:
         """What the law asks for besides its spring, over the position, at some ω [rad/s]."""
@@ -259,8 +246,7 @@ def _away(force: Array) -> Rows:
 
 def _at_ends(force: Array) -> Rows:
     """Rows where the force stands still at its largest: exactly, or in noise for more of the time than a
-    sine.
-    """
+    sine."""
     size = np.abs(force)
     top = float(np.percentile(size, 99.5))
     exact = _beside(size >= 0.9995 * size.max())

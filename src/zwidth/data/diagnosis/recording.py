@@ -18,17 +18,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.data.logs import Log
-from zwidth.data.logs.block import Block, Motion, whole_runs
-from zwidth.data.logs.names import role_of_force
+from zwidth.data.logs.columns import role_of_force
 from zwidth.data.logs.read import log_of, opened
-from zwidth.data.logs.table import Table
+from zwidth.data.logs.table import Block, Motion, Table, whole_runs
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
     import xarray as xr
-    from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
 
 COMMANDED = "commanded_force"
 """The key of the law's own force among `columns`, `units` and `scale`."""
@@ -39,35 +37,25 @@ MOST_SAMPLES = 400_000
 
 @dataclass(frozen=True, kw_only=True)
 class Recording:
-    """One run without a gap, in SI units.
-
-    Parameters
-    ----------
-    source
-        Name of the file, or "arrays".
-    motion
-        "linear" or "rotary".
-    period
-        [s] between two rows; the loop's own sample period may be another.
-    resolution
-        [m; rad] step of the encoder, 0 where none is seen.
-    time, position
-        [s], [m; rad].
-    commanded, applied
-        [N; N·m] positive against increasing position, as a spring pushes; None where there is no such column.
-    findings
-        What was odd in the file, and what was supposed.
-    """
+    """One run without a gap, in SI units."""
 
     source: str
+    """Name of the file, or "arrays"."""
     motion: Motion
+    """"linear" or "rotary"."""
     period: float
+    """[s] between two rows; the loop's own sample period may be another."""
     resolution: float
+    """[m; rad] step of the encoder, 0 where none is seen."""
     time: Array
     position: Array
+    """[s], [m; rad]."""
     commanded: Array | None
     applied: Array | None
+    """[N; N·m] positive against increasing position, as a spring pushes; None where there is no such
+    column."""
     findings: tuple[str, ...]
+    """What was odd in the file, and what was supposed."""
 
 
 def read(

@@ -29,7 +29,7 @@ from zwidth.quantity.text import shown
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
 
 FOLLOWED = 0.02
 """Share of a command's variance that its own law may leave over."""
@@ -49,44 +49,31 @@ _OFFSETS = 48
 
 @dataclass(frozen=True, kw_only=True)
 class Stated:
-    """A law as it was stated, beside a force.
-
-    Parameters
-    ----------
-    environment
-        The law, without its compensation of friction.
-    compensation, compensation_speed
-        F [N; N·m], 0 for none; v_s [m/s; rad/s].
-    stiffness, damping
-        K and B that it has by these names [N/m; N·m/rad], [N·s/m; N·m·s/rad]; 0 where it has none.
-    of_command
-        True where the force is the command, False where it is the motor's.
-    gain
-        g, 1 where the force is the law's own.
-    lag
-        [s] s.
-    unexplained
-        Share of the force's variance that the law with this gain leaves over.
-    asked
-        [N; N·m] what the law as stated asks for in each row.
-    helped
-        [N; N·m] what its compensation of friction is of that.
-    accounted
-        Share of the motor's force that is left over by the best account of what lies between it and `asked`.
-    """
+    """A law as it was stated, beside a force."""
 
     environment: Environment
+    """The law, without its compensation of friction."""
     compensation: float
     compensation_speed: float
+    """F [N; N·m], 0 for none; v_s [m/s; rad/s]."""
     stiffness: float
     damping: float
+    """K and B that it has by these names [N/m; N·m/rad], [N·s/m; N·m·s/rad]; 0 where it has none."""
     of_command: bool
+    """True where the force is the command, False where it is the motor's."""
     gain: float
+    """g, 1 where the force is the law's own."""
     lag: float
+    """[s] s."""
     unexplained: float
+    """Share of the force's variance that the law with this gain leaves over."""
     asked: Array = field(repr=False)
+    """[N; N·m] what the law as stated asks for in each row."""
     helped: Array = field(repr=False)
+    """[N; N·m] what its compensation of friction is of that."""
     accounted: float = 1.0
+    """Share of the motor's force that is left over by the best account of what lies between it and
+    `asked`."""
 
     @property
     def holds(self) -> bool:

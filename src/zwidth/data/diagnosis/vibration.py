@@ -17,7 +17,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
+
     Phasors = NDArray[np.complex128]
 
 LOWEST = 1.5
@@ -49,35 +50,24 @@ _DRIFT = 0.7
 
 @dataclass(frozen=True, kw_only=True)
 class Vibration:
-    """A stretch of a recording that vibrates.
-
-    Parameters
-    ----------
-    rows
-        Which of its rows: those in which the frequency stays.
-    around
-        Those in which it vibrates, these and more: a law is found where more happens.
-    frequency, frequency_spread
-        [Hz] and how far it is known, one standard deviation.
-    swing
-        [m; rad] from end to end of the motion, 5th to 95th percentile stretched to a sine's.
-    regular
-        Share of the motion's variance in the frequency and its harmonics, 0 to 1.
-    regular_by_chance
-        The same with what as many free numbers would explain of noise taken off.
-    growth
-        Logarithm of the amplitude in the last quarter of `around` over that in the first, or twice that of
-        its second half where it is more: what dies out goes on to, after a start it stays.
-    """
+    """A stretch of a recording that vibrates."""
 
     rows: slice
+    """Which of its rows: those in which the frequency stays."""
     around: slice
+    """Those in which it vibrates, these and more: a law is found where more happens."""
     frequency: float
     frequency_spread: float
+    """[Hz] and how far it is known, one standard deviation."""
     swing: float
+    """[m; rad] from end to end of the motion, 5th to 95th percentile stretched to a sine's."""
     regular: float
+    """Share of the motion's variance in the frequency and its harmonics, 0 to 1."""
     regular_by_chance: float
+    """The same with what as many free numbers would explain of noise taken off."""
     growth: float
+    """Logarithm of the amplitude in the last quarter of `around` over that in the first, or twice that of
+    its second half where it is more: what dies out goes on to, after a start it stays."""
 
     @property
     def angular(self) -> float:
@@ -85,7 +75,7 @@ class Vibration:
         return 2 * np.pi * self.frequency
 
 
-def find(time: Array, position: Array, period: float) -> Vibration | None:
+def find(position: Array, period: float) -> Vibration | None:
     """The stretch that vibrates; None where nothing goes to and fro often enough.
 
     A slow one, a wheel that wobbles, is looked for where no faster one is found that is regular, and must
@@ -216,25 +206,24 @@ def peak(values: Array, period: float, lowest: float = LOWEST) -> float:
 def _drift(position: Array, period: float, seconds: float) -> Array:
     """A mean over so long."""
     half = max(1, min(int(0.5 * seconds / period), position.size // 4))
-    padded = np.pad(position, half, mode="edge")
-    total = np.concatenate([[0.0], np.cumsum(padded)])
-    mean: Array = (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)
-    return mean
+    return _mean(np.pad(position, half, mode="edge"), half)
 
 
 def _slow(y: Array, frequency: float, period: float) -> Array:
     """A mean over about two cycles."""
     half = max(1, min(int(1 / frequency / period), y.size // 4))
-    padded = np.pad(y, half, mode="reflect")
+    return _mean(np.pad(y, half, mode="reflect"), half)
+
+
+def _mean(padded: Array, half: int) -> Array:
+    """Over `half` values on either side."""
     total = np.concatenate([[0.0], np.cumsum(padded)])
-    mean: Array = (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)
-    return mean
+    return np.asarray((total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1))
 
 
 def _stretch(moving: Array, period: float, block: float) -> slice:
     """The longest stretch whose blocks stay above a third of the size of the large ones; the later of
-    equals.
-    """
+    equals."""
     size = max(8, round(block / period))
     blocks = moving.size // size
     if blocks < 3:

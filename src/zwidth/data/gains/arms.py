@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from zwidth.data.gains.coupled import CoupledJoint, coupled
-from zwidth.data.gains.joint import JointGains
-from zwidth.data.gains.plant import GivenPlant, plant_of
-from zwidth.data.gains.published import Family, Value, family
+from zwidth.data.gains.joint import CoupledJoint, JointGains, coupled
+from zwidth.data.gains.plant import Family, GivenPlant, Value, family, plant_of
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.pairs import Pair

@@ -8,13 +8,12 @@ section finds its top.  What is found is rounded inward and proved by itself: no
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from math import floor, log10
+from math import floor, log10, sqrt
 
-from zwidth.data.gains.coupled import CoupledJoint
-from zwidth.data.gains.joint import Gains
-from zwidth.data.gains.peak import peak
+from zwidth.data.gains.joint import CoupledJoint, Gains
 from zwidth.errors import InputError
 from zwidth.passivity.linear.boundary import COARSER, asked_seldom, largest_holding, smallest_holding
 from zwidth.passivity.pairs import check_pair
@@ -223,3 +222,26 @@ def _rounded(value: float | Fraction, up: bool = False) -> Fraction:
 def _near(value: float) -> Fraction:
     """To the digits that are told."""
     return Fraction(f"{value:.{DIGITS}g}")
+
+
+_STEPS = 14
+"""Of the golden section: a thousandth of its range."""
+
+
+def peak(value: Callable[[float], float], high: float, start: float) -> float:
+    """Where a function on [0, high] is largest that is concave around `start` and 0 elsewhere."""
+
+    def at(x: float) -> tuple[float, float, float]:
+        return value(x), -abs(x - start), x
+
+    golden = (sqrt(5) - 1) / 2
+    low = 0.0
+    left, right = at(high - golden * (high - low)), at(low + golden * (high - low))
+    for _ in range(_STEPS):
+        if left[:2] >= right[:2]:
+            high, right = right[2], left
+            left = at(high - golden * (high - low))
+        else:
+            low, left = left[2], right
+            right = at(low + golden * (high - low))
+    return max(left, right)[2]

@@ -1,11 +1,15 @@
-"""The gains of one joint, on both sides, in the units of the joint."""
+"""The gains of one joint, on both sides, in the units of the joint; and the joint of both arms as a pair."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
 
 from zwidth.model.rendering.friction_compensation import FrictionCompensation
+from zwidth.model.device import Device
+from zwidth.model.pairs import FrictionCompensation, Pair
+from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import exact_text
 
 NONE = FrictionCompensation()
@@ -84,3 +88,108 @@ class JointGains:
             "leader": None if self.leader is None else self.leader.to_dict(),
             "follower": self.follower.to_dict(),
         }
+
+
+# One joint of both arms as a pair: its gains, its two devices, the link and the drives.
+#
+# A drive that takes the difference of its own position at its rate gains by itself where kd exceeds b, at
+# half that rate: at thousands of hertz, where no arm moves and drives filter.  With an ideal drive its kd is
+# a damper of the joint instead, at once and without steps; b is then b + B + D, and of the coupling stays
+#
+#     −B v'  of the other's speed as received, held: B on the pair, and −B of its own speed.
+
+
+@dataclass(frozen=True)
+class CoupledJoint:
+    """A joint with all that its verdict needs.
+
+    Attributes
+    ----------
+    name
+        Of the joint.
+    gains
+        Of leader and follower.
+    devices
+        The joint of leader and follower, without any controller.
+    delay
+        Of the link, there and back [s].
+    drive_rate
+        Of the loop in each drive [Hz]; None where there is none.
+    ideal_drive
+        True: what a drive does with its own speed is a damper.
+    compensation
+        How much of the compensation of friction in the gains there is: 1 for all, 0 for none.
+    largest_stiffness, largest_damping
+        What a drive takes [N·m/rad, N·m·s/rad]; None where that is not known.
+    """
+
+    name: str
+    gains: tuple[Gains, Gains]
+    devices: tuple[Device, Device]
+    delay: tuple[Exact, Exact]
+    drive_rate: Exact | None
+    ideal_drive: bool = False
+    compensation: Fraction = Fraction(1)
+    largest_stiffness: Fraction | None = None
+    largest_damping: Fraction | None = None
+
+    @property
+    def is_ideal(self) -> bool:
+        """True where there is a drive, and it is ideal."""
+        return self.ideal_drive and self.drive_rate is not None
+
+    @property
+    def is_compensated(self) -> bool:
+        """True where there is compensation of friction on a side, and it is not left out."""
+        return bool(self.compensation) and any(gains.compensation for gains in self.gains)
+
+    @property
+    def damping(self) -> tuple[Fraction, Fraction]:
+        """b of both arms, without the drives [N·m·s/rad]."""
+        leader, follower = (device.exact("damping") for device in self.devices)
+        return leader, follower
+
+    def with_damping(self, leader: Fraction, follower: Fraction) -> CoupledJoint:
+        """The same with other b."""
+        pairs = zip(self.devices, (leader, follower), strict=True)
+        first, second = (device.replace(damping=Exact(b)) for device, b in pairs)
+        return replace(self, devices=(first, second))
+
+    def pair(self) -> Pair:
+        """The pair to decide."""
+        (leader, its_damping), (follower, damping) = map(self._side, self.devices, self.gains)
+        mine, other = self.gains
+        laws: dict[str, Any] = {}
+        if self.is_compensated:
+            first, second = (gains.compensation.scaled(self.compensation) for gains in self.gains)
+            laws = {"compensation": first, "follower_compensation": second}
+        return Pair(
+            leader,
+            follower,
+            stiffness=Exact(mine.stiffness),
+            damping=Exact(mine.damping),
+            local_damping=Exact(its_damping),
+            follower_stiffness=_other(other.stiffness, mine.stiffness),
+            follower_damping=_other(other.damping, mine.damping),
+            follower_local_damping=_other(damping, its_damping),
+            delay=self.delay,
+            drive_rate=self.drive_rate,
+            **laws,
+        )
+
+    def _side(self, device: Device, gains: Gains) -> tuple[Device, Fraction]:
+        """The device, and D of its controller."""
+        if not self.is_ideal:
+            return device, gains.local_damping
+        braked = device.exact("damping") + gains.damping + gains.local_damping
+        return device.replace(damping=Exact(braked)), -gains.damping
+
+
+def coupled(gains: JointGains, devices: tuple[Device, Device], **others: Any) -> CoupledJoint:
+    """A joint whose leader feels the follower."""
+    assert gains.leader is not None, "asked before"
+    return CoupledJoint(gains.name, (gains.leader, gains.follower), devices, **others)
+
+
+def _other(value: Fraction, leaders: Fraction) -> Exact | None:
+    return None if value == leaders else Exact(value)

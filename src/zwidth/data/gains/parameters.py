@@ -39,18 +39,10 @@ def parameter_file(
     manager: tuple[str, ...],
     head: Sequence[str],
 ) -> str:
-    """The text of a file with these joints.
+    """The text of a file with these joints, each with remarks on its "p", "i" and "d", below comments.
 
-    Parameters
-    ----------
-    laws
-        Each joint, and remarks on its "p", "i" and "d".
-    rate
-        Of the controller manager [Hz]; one that is no whole number is said in the head alone.
-    manager
-        The keys that lead to its parameters.
-    head
-        Comments before everything, line by line.
+    `rate` [Hz] is of the controller manager, below the keys `manager`; one that is no whole number is said in
+    the head alone.
     """
     tree: Tree = {}
     if rate.denominator == 1:

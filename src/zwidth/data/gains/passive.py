@@ -18,10 +18,10 @@ from math import floor, inf, log10
 from pathlib import Path
 from typing import Any
 
+from zwidth.data.gains.best import peak
 from zwidth.data.gains.controllers import Controllers, JointLaw
 from zwidth.data.gains.held_joints import HeldJoint, Loops, loops_of, wall
 from zwidth.data.gains.parameters import parameter_file
-from zwidth.data.gains.peak import peak
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.passivity.check import check

@@ -6,8 +6,24 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 
-from zwidth.data.gains import feetech, i2rt, lerobot, openarm, piper
 from zwidth.data.gains.arms import ArmGains
+from zwidth.data.gains.families import (
+    FEETECH,
+    I2RT,
+    LEROBOT,
+    OPENARM,
+    PIPER,
+    fits_feetech,
+    fits_i2rt,
+    fits_lerobot,
+    fits_openarm,
+    fits_piper,
+    read_feetech,
+    read_i2rt,
+    read_lerobot,
+    read_openarm,
+    read_piper,
+)
 from zwidth.data.gains.file import GainTable, read_table
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted, suggestion
@@ -18,7 +34,13 @@ BILATERAL_KP = "0.2"
 """How much softer the leader's spring is than the follower's where nothing is given: of i2rt alone."""
 
 FAMILIES: Mapping[str, Callable[[GainTable], bool]] = MappingProxyType(
-    {module.NAME: module.fits for module in (openarm, i2rt, feetech, lerobot, piper)}
+    {
+        OPENARM: fits_openarm,
+        I2RT: fits_i2rt,
+        FEETECH: fits_feetech,
+        LEROBOT: fits_lerobot,
+        PIPER: fits_piper,
+    }
 )
 """By name, what recognises a file."""
 
@@ -61,13 +83,11 @@ def read_gains(
         )
     tables = [read_table(path) for path in paths]
     name = _recognised(tables) if family is None else _known(family)
-    if bilateral_kp is not None and name != i2rt.NAME:
-        raise InputError(f"--bilateral-kp belongs to gains of {i2rt.NAME}, these are of {name}; leave it out")
-    if supply_voltage is not None and name != feetech.NAME:
-        raise InputError(
-            f"--supply-voltage belongs to gains of {feetech.NAME}, these are of {name}; leave it out"
-        )
-    if both and name in (openarm.NAME, i2rt.NAME):
+    if bilateral_kp is not None and name != I2RT:
+        raise InputError(f"--bilateral-kp belongs to gains of {I2RT}, these are of {name}; leave it out")
+    if supply_voltage is not None and name != FEETECH:
+        raise InputError(f"--supply-voltage belongs to gains of {FEETECH}, these are of {name}; leave it out")
+    if both and name in (OPENARM, I2RT):
         raise InputError("--both is for gains of a follower alone; these are of both arms: leave it out")
     return _read(name, tables, bilateral_kp, supply_voltage, both)
 
@@ -79,19 +99,19 @@ def _read(
     supply_voltage: RealLike | None,
     both: bool,
 ) -> ArmGains:
-    if name == i2rt.NAME:
+    if name == I2RT:
         share = parse_number(BILATERAL_KP if bilateral_kp is None else bilateral_kp, "1", "bilateral_kp")
         if share < 0:
             raise InputError(f"bilateral_kp must be ≥ 0, got {float(share):g}: a spring pulls back")
-        return i2rt.read(tables, share.fraction)
-    if name == feetech.NAME:
+        return read_i2rt(tables, share.fraction)
+    if name == FEETECH:
         volts = None if supply_voltage is None else parse_number(supply_voltage, "V", "supply_voltage")
-        return feetech.read(tables, None if volts is None else volts.fraction, both)
-    if name == lerobot.NAME:
-        return lerobot.read(tables, both)
-    if name == piper.NAME:
-        return piper.read(tables, both)
-    return openarm.read(tables)
+        return read_feetech(tables, None if volts is None else volts.fraction, both)
+    if name == LEROBOT:
+        return read_lerobot(tables, both)
+    if name == PIPER:
+        return read_piper(tables, both)
+    return read_openarm(tables)
 
 
 def _recognised(tables: list[GainTable]) -> str:

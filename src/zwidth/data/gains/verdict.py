@@ -10,8 +10,7 @@ from typing import Any, ClassVar
 
 from zwidth.data.gains.arms import MOST_READINGS, ArmGains, Delay
 from zwidth.data.gains.best import best, passive_compensation, required_damping, stiffest
-from zwidth.data.gains.coupled import CoupledJoint
-from zwidth.data.gains.joint import JointGains
+from zwidth.data.gains.joint import CoupledJoint, JointGains
 from zwidth.data.gains.plant import GivenPlant
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted, suggestion

@@ -1,4 +1,4 @@
-from zwidth.data.identification.device.identified import Identified as Identified
+from zwidth.data.identification.device.identify import Identified as Identified
 from zwidth.data.identification.device.plan import MeasurementPlan as MeasurementPlan
 from zwidth.data.identification.device.published import PublishedFit as PublishedFit
 from zwidth.data.identification.device.published import identify_published as identify_published

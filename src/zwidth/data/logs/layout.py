@@ -22,7 +22,7 @@ from zwidth.data.logs.cells import (
     is_nothing,
     is_number,
 )
-from zwidth.data.logs.scales import is_unit
+from zwidth.data.logs.columns import is_unit
 from zwidth.errors import InputError
 
 _DELIMITERS = (",", ";", "\t", "|", " ")
@@ -42,36 +42,24 @@ Kind = Literal["float", "int", "date", "calendar", "clock", "text"]
 
 @dataclass(frozen=True, kw_only=True)
 class Layout:
-    """The layout of a text.
-
-    Parameters
-    ----------
-    delimiter
-        One character; a space stands for any white space.
-    decimal
-        The decimal sign of columns that do not say it themselves.
-    names
-        Of the columns; "column 1" … where there is no header.
-    units
-        The unit of each column that a line below the header states.
-    skipped
-        Lines before the first numbers.
-    header
-        The line with the names, as it stands, or "".
-    sample
-        The first rows, split.
-    comments
-        Lines before the numbers that are comments.
-    """
+    """The layout of a text."""
 
     delimiter: str
+    """One character; a space stands for any white space."""
     decimal: str
+    """The decimal sign of columns that do not say it themselves."""
     names: tuple[str, ...]
+    """Of the columns; "column 1" … where there is no header."""
     units: Mapping[str, str]
+    """The unit of each column that a line below the header states."""
     skipped: int
+    """Lines before the first numbers."""
     header: str
+    """The line with the names, as it stands, or ""."""
     sample: Sample
+    """The first rows, split."""
     comments: tuple[str, ...]
+    """Lines before the numbers that are comments."""
 
     def kind(self, column: str) -> Kind:
         """What the first rows of a column hold; "int" is too long for a float, a "date" in ISO 8601."""

@@ -2,26 +2,46 @@
 
     t(k) = t₀ + k T        x(k) = n(k) q        for every k of a run
 
-within a run no sample is missing.  A log is read in blocks, as often as wanted,
-so that it may be longer than the memory.
+within a run no sample is missing.  A log is read in blocks, as often as wanted, so that it may be longer than
+the memory.  A table is gone through once for the numbers of its log, and again for each reading of the
+blocks.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from math import inf, isclose
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from zwidth.data.logs.arrays import table_of
-from zwidth.data.logs.block import Block, Finding, Motion
-from zwidth.data.logs.build import contents, stated_period
-from zwidth.data.logs.scales import meaning_of
+import numpy as np
+
+from zwidth.data.logs.columns import Meaning, meaning_of, recognise
+from zwidth.data.logs.rows import Recording
+from zwidth.data.logs.runs import Clock, Cutter, Segment, clock_of
+from zwidth.data.logs.sensors import Grid, Unwrapper
+from zwidth.data.logs.survey import (
+    Survey,
+    clock_findings,
+    force_findings,
+    period_found,
+    position_findings,
+    refuse_survey,
+)
+from zwidth.data.logs.table import Block, Finding, Motion, Table, Values, listed
 from zwidth.errors import InputError
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike
+
+    from zwidth.native.compiled import Array
+
 
 SAME = 1e-3
 """Relative difference below which two sample periods, or two resolutions, are one that was measured twice."""
@@ -194,3 +214,175 @@ def _same(first: Log, log: Log) -> None:
                 f"{first.source} and {log.source} differ in their {what}, {one!r} and {other!r}: "
                 "only logs of one device, recorded alike, can be joined"
             )
+
+
+_START = 4096
+"""Samples whose stamps say when a run began, where stamps vary."""
+
+
+def stated_period(sample_rate: object, sample_period: object) -> float | None:
+    """[s] T as stated by a rate or a period, or None."""
+    if sample_rate is not None and sample_period is not None:
+        raise InputError("sample_rate and sample_period say the same; give one of them")
+    given, unit, name = (
+        (sample_rate, "Hz", "sample_rate") if sample_period is None else (sample_period, "s", "sample_period")
+    )
+    if given is None:
+        return None
+    value = parse_number(given, unit, name)
+    if value <= 0:
+        raise InputError(f"{name} must be > 0 {unit}, got {float(value):g}")
+    return float(1 / value.fraction) if unit == "Hz" else float(value)
+
+
+def contents(table: Table, meaning: Meaning, stated: float | None) -> dict[str, Any]:
+    """Go through a table once: the fields of its `Log`."""
+    timed = "time" in meaning.columns
+    if not timed and stated is None:
+        raise InputError(
+            f'{table.source}: no column is known to be the time; say which with columns={{"time": …}}, '
+            f"or state sample_rate or sample_period; there are {listed(table.units)}"
+        )
+    recording = Recording(table, meaning, None if timed else stated)
+    tally: Counter[str] = Counter()
+    rows = recording.rows(tally)
+    start = next(rows, None)
+    if start is None or start.time.size < 2:
+        raise InputError(
+            f"{table.source} holds fewer than two rows with numbers in the columns that are used"
+        )
+    clock = clock_of(start.time, table.source) if timed else Clock(period=stated or 0.0, group=1)
+    cutter = Cutter(clock, table.source, tally)
+    survey = Survey(clock.period, meaning.resolution, meaning.factors["position"], table.source)
+    survey.look(cutter.segments(chain([start], rows)))
+    refuse_survey(survey, tally, table.source)
+    return _contents(recording, cutter, survey, tally, stated)
+
+
+def _contents(
+    recording: Recording, cutter: Cutter, survey: Survey, tally: Counter[str], stated: float | None
+) -> dict[str, Any]:
+    source, meaning = recording.table.source, recording.meaning
+    timed = recording.period is None
+    length, force = (quantity_unit(name, meaning.motion) for name in ("position", "force"))
+    period, about_period = period_found(survey, stated, timed, source)
+    snapped = survey.grid if survey.off_grid <= 0.01 * survey.samples else None
+    step = survey.grid.step if survey.grid is not None else (meaning.resolution or 0.0)
+    wrap = survey.jumps.period(step, meaning.motion == "rotary")
+    said = (
+        *recording.table.notes.values(),
+        about_period,
+        *clock_findings(survey, cutter, tally),
+        *position_findings(survey, wrap, length),
+        *force_findings(survey, force),
+    )
+    varying = cutter.clock.group > 1 or survey.deviation > 1e-6 * period
+
+    def blocks() -> Iterator[Block]:
+        again = Cutter(cutter.clock, source, Counter())
+        return _blocks(again.segments(recording.rows()), period, varying, snapped, Unwrapper(wrap))
+
+    return {
+        "source": source,
+        "motion": meaning.motion,
+        "sample_period": period,
+        "resolution": step,
+        "samples": survey.samples,
+        "runs": survey.runs,
+        "channels": tuple(survey.ranges),
+        "findings": said,
+        "stops": survey.stops.found()[0],
+        "_blocks": blocks,
+    }
+
+
+def _blocks(
+    segments: Iterator[Segment], period: float, varying: bool, grid: Grid | None, unwrapper: Unwrapper
+) -> Iterator[Block]:
+    start, done = 0.0, 0
+    for run, begins, rows in segments:
+        if begins:
+            done = 0
+            start = float(rows.time[0])
+            if varying:
+                stamps = rows.time[:_START]
+                start = float(np.median(stamps - period * np.arange(stamps.size)))
+        time = start + period * np.arange(done, done + rows.time.size, dtype=np.float64)
+        done += rows.time.size
+        position = unwrapper.take(_on(grid, rows.position))
+        yield Block(run, time, position, rows.hand_force, rows.actuator_force)
+
+
+def _on(grid: Grid | None, position: Array) -> Array:
+    """Whole multiples of the step."""
+    if grid is None:
+        return position
+    counts = position - grid.offset if grid.offset else position.copy()
+    counts /= grid.step
+    np.rint(counts, out=counts)
+    counts *= grid.step
+    return counts
+
+
+def table_of(
+    data: xr.Dataset | None,
+    arrays: Mapping[str, Any],
+    columns: Mapping[str, str | None] | None,
+    units: Mapping[str, str] | None,
+    motion: str,
+) -> tuple[Table, dict[str, str]]:
+    """The table of a Dataset, or of the arrays of each quantity; and the column of each quantity."""
+    if data is not None:
+        if arrays:
+            raise InputError("give a Dataset or arrays, not both")
+        table = _of_dataset(data)
+        return table, recognise(table.units, columns, table.source)
+    if columns is not None or units is not None:
+        raise InputError(
+            "columns and units are for a Dataset; arrays are in SI units, scale={…} changes them"
+        )
+    if "position" not in arrays:
+        raise InputError("a log needs positions; give position=…")
+    length, force = (GLOSSARY[name].unit_for(motion) for name in ("position", "force"))
+    si = {"time": "s", "position": length, "hand_force": force, "actuator_force": force}
+    return _table({name: _vector(name, values) for name, values in arrays.items()}, si, {}), {
+        name: name for name in arrays
+    }
+
+
+def _vector(name: str, values: Any) -> Values:
+    array = np.asarray(values)
+    if array.ndim != 1 or array.dtype.kind not in "fiuM":
+        raise InputError(
+            f"{name} is a list of numbers, got an array of {array.ndim} dimensions of {array.dtype}"
+        )
+    return array
+
+
+def _table(
+    arrays: dict[str, Values], units: Mapping[str, str | None], attributes: Mapping[str, Any]
+) -> Table:
+    sizes = {name: values.size for name, values in arrays.items()}
+    if len(set(sizes.values())) > 1:
+        said = ", ".join(f"{name} {size}" for name, size in sizes.items())
+        raise InputError(f"every column needs as many samples, got {said}")
+
+    def read(names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
+        yield tuple(arrays[name] for name in names)
+
+    stated = {name: units.get(name) for name in arrays}
+    return Table(source="arrays", units=stated, read=read, attributes=attributes)
+
+
+def _of_dataset(data: xr.Dataset) -> Table:
+    dimension = next(iter(data.dims), None)
+    variables = {
+        str(name): variable
+        for name, variable in data.variables.items()
+        if variable.dims == (dimension,) and variable.dtype.kind in "fiubM"
+    }
+    if not variables:
+        raise InputError("the Dataset has no variable of numbers along one dimension")
+    units = {n: "ns" if v.dtype.kind == "M" else v.attrs.get("units") for n, v in variables.items()}
+    arrays = {name: np.asarray(variable.values) for name, variable in variables.items()}
+    return _table(arrays, units, dict(data.attrs))

@@ -7,12 +7,9 @@ from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 
-from zwidth.data.logs.block import Motion
-from zwidth.data.logs.build import contents, stated_period
-from zwidth.data.logs.log import Log
-from zwidth.data.logs.names import QUANTITIES, recognise
-from zwidth.data.logs.scales import meaning_of
-from zwidth.data.logs.table import Table, listed, readable, understood_sheets
+from zwidth.data.logs.columns import QUANTITIES, meaning_of, recognise
+from zwidth.data.logs.log import Log, contents, stated_period
+from zwidth.data.logs.table import Motion, Table, listed, readable, understood_sheets
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean
 
@@ -159,11 +156,11 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
 
         return parquet_table(path)
     if start[:8] == b"\x89HDF\r\n\x1a\n" or start[512:520] == b"\x89HDF\r\n\x1a\n":
-        from zwidth.data.logs.hdf5 import hdf5_table
+        from zwidth.data.logs.scientific import hdf5_table
 
         return hdf5_table(path)
     if start[:6] == b"MATLAB" or path.suffix.lower() == ".mat":
-        from zwidth.data.logs.matlab import matlab_table
+        from zwidth.data.logs.scientific import matlab_table
 
         return matlab_table(path)
     if start.startswith(b"\x89MCAP") and (table := _recorded(path)) is not None:
@@ -175,7 +172,7 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
     if start[:3] == b"CDF":
         raise InputError(f"{path} is NetCDF 3; write it as NetCDF 4, for example with nccopy -k nc4")
     if b"zW" in start:
-        from zwidth.data.logs.telemetry.table import is_telemetry, telemetry_table
+        from zwidth.data.logs.telemetry import is_telemetry, telemetry_table
 
         if is_telemetry(start):
             return telemetry_table(path)
@@ -186,7 +183,7 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
 
 def _in_archive(path: Path, sheet: str | None) -> Table:
     """The table of a zip archive, if it is a workbook."""
-    from zwidth.data.logs.archive import kind_of_archive
+    from zwidth.data.logs.workbook import kind_of_archive
 
     kind = kind_of_archive(path)
     if kind == "workbook":
@@ -213,8 +210,7 @@ def _old_office(path: Path) -> str:
 
 def _recorded(path: Path) -> Table | None:
     """The table of a recording of a served loop; None if it is none."""
-    from zwidth.data.logs.served.mcap import mcap_head
-    from zwidth.data.logs.served.table import served_table
+    from zwidth.data.logs.served import mcap_head, served_table
 
     head = mcap_head(path)
     return None if head is None else served_table(path, head)

@@ -1,21 +1,25 @@
-"""Rows cut into runs: a new one after lost samples and where time starts again; no row twice."""
+"""The clock of a log; and rows cut into runs: a new one after lost samples and where time starts again."""
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from zwidth.data.logs.rows import Rows, joined
-from zwidth.data.logs.stamps import BACK, GAP, REPEATED, Clock, jumps
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
+
+    Indices = NDArray[np.intp]
 
 
 MOST_SCRAPS = 64
@@ -31,17 +35,7 @@ class Segment(NamedTuple):
 
 
 class Cutter:
-    """Cuts a stream of rows.
-
-    Parameters
-    ----------
-    clock
-        What the stamps should look like.
-    source
-        For messages.
-    tally
-        Counts gaps, lost samples, restarts and repeated samples.
-    """
+    """Cuts a stream of rows; the tally counts gaps, lost samples, restarts and repeated samples."""
 
     def __init__(self, clock: Clock, source: str, tally: Counter[str]) -> None:
         self.clock, self.source, self.tally = clock, source, tally
@@ -142,3 +136,166 @@ def _same_as_before(rows: Rows, places: NDArray[np.intp]) -> NDArray[np.bool_]:
         if column is not None:
             same &= column[places] == column[places - 1]
     return same
+
+
+# The clock of a log: the sample period from its stamps, and where the samples do not follow each other.
+#
+# A stamp says when a sample was written down, T says when it was taken:
+#
+#     t(k) = k T + r(k)
+#
+# Where r jumps and stays, samples are lost (up) or written twice (down); where it comes back, the stamp alone
+# was late.  Levels are compared by the median of a few samples on each side; where stamps come in groups (a
+# coarse clock, packets), by their lowest, since a stamp in a packet is late and never early.
+
+
+_SIDE, _NOISY_SIDE = 7, 31
+"""Samples on each side of a jump that say where r was and is; more where stamps vary by a tenth of T."""
+
+_REPEATS = 0.005
+"""Share of stamps that come twice beyond which the clock is a coarse one."""
+
+_WIDEST = 4096
+"""Samples over which stamps in groups are averaged."""
+
+GAP, REPEATED, BACK = 1, 2, 3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Clock:
+    """What the first stamps say."""
+
+    period: float
+    """[s] roughly T."""
+    group: int
+    """Most samples between two stamps that differ; 1 where every sample has its own."""
+    noisy: bool = False
+    """Intervals vary by a tenth of T or more."""
+
+    @property
+    def reach(self) -> int:
+        """How many samples on each side a decision needs."""
+        if self.group > 1:
+            return 8 * self.group
+        return _NOISY_SIDE if self.noisy else _SIDE
+
+
+def clock_of(time: Array, source: str) -> Clock:
+    """The period that most of the intervals between stamps have, or have on average."""
+    steps = np.diff(time)
+    if steps.size == 0 or not (steps > 0).any():
+        raise InputError(
+            f"{source}: time stands still or goes backwards in every row; which column is the time?"
+        )
+    usual = float(np.median(steps))
+    width = max(1, min(steps.size // 2, _WIDEST))
+    period = float(np.median(time[width:] - time[:-width])) / width
+    single = period < 2.5 * usual and np.mean(np.abs(steps) < 0.25 * usual) <= _REPEATS
+    if usual > 0 and single and np.mean(np.abs(steps - usual) < 0.25 * usual) > 0.5:
+        low, high = np.quantile(steps, (0.25, 0.75))
+        return Clock(period=usual, group=1, noisy=bool(high - low > 0.1 * usual))
+    group = _longest_group(steps, period)
+    if period <= 0 or group > width // 4 or _wanders(time, period, width):
+        raise InputError(
+            f"{source}: the stamps have no common period; the intervals lie between {steps.min():.3g} and "
+            f"{steps.max():.3g} s; a log needs samples at a fixed rate"
+        )
+    return Clock(period=period, group=group)
+
+
+def _wanders(time: Array, period: float, width: int) -> bool:
+    """True where r(k) goes farther the longer one waits, as it does if the samples have no clock."""
+
+    def spread(apart: int) -> float:
+        low, high = np.quantile(time[apart:] - time[:-apart], (0.25, 0.75))
+        return float(high - low)
+
+    return width >= 64 and spread(width) > max(period, 2 * spread(width // 16))
+
+
+def _longest_group(steps: Array, period: float) -> int:
+    """Of the stretches between steps longer than T/2, the length below which nearly all lie."""
+    ends = np.flatnonzero(steps > 0.5 * period)
+    if ends.size < 2:
+        return max(2, steps.size)
+    return max(2, int(np.quantile(np.diff(ends), 0.99)))
+
+
+def jumps(time: Array, first: int, clock: Clock) -> tuple[Indices, Indices]:
+    """Where a sample k + 1 does not follow k, from k = `first` on: k, and GAP, REPEATED or BACK."""
+    steps = np.diff(time)
+    period = clock.period
+    if steps.size == 0 or (steps.min() > 0.5 * period and steps.max() < 1.5 * period):
+        none = np.empty(0, dtype=np.intp)
+        return none, none
+    odd = (steps > 1.5 * period) | (steps < (0.5 if clock.group == 1 else -0.5) * period)
+    where = np.flatnonzero(odd)
+    where = where[where >= first]
+    residual = time - period * np.arange(time.size)
+    shift = _shift(residual, where, clock) / period
+    kind = np.zeros(where.size, dtype=np.intp)
+    least = 0.5 if clock.group == 1 else max(0.6, clock.group / 8)
+    kind[(steps[where] > 1.5 * period) & (shift > least)] = GAP
+    if clock.group == 1:
+        kind[(steps[where] < 0.5 * period) & (shift < -0.5)] = REPEATED
+    kind[(steps[where] < -0.5 * period) & (shift < -least)] = BACK
+    real = kind > 0
+    if clock.group > 1:
+        real = _widest_of_each(where, real, steps, clock.reach)
+    elif clock.noisy:
+        real = _told_apart(where, real, steps, residual, clock)
+    return where[real], kind[real]
+
+
+def _shift(residual: Array, where: Indices, clock: Clock) -> Array:
+    """How much r(k) differs after each place from before it."""
+    reach = clock.reach
+    if clock.group == 1:
+        before = sliding_window_view(np.concatenate((np.full(reach - 1, np.nan), residual)), reach)
+        after = sliding_window_view(np.concatenate((residual[1:], np.full(reach, np.nan))), reach)
+        return np.asarray(np.nanmedian(after[where], axis=1) - np.nanmedian(before[where], axis=1))
+    total = np.concatenate(([0.0], np.cumsum(residual)))
+    low, high = np.maximum(where + 1 - reach, 0), np.minimum(where + 1 + reach, residual.size)
+    left = (total[where + 1] - total[low]) / (where + 1 - low)
+    right = (total[high] - total[where + 1]) / (high - where - 1)
+    known = np.minimum(where + 1 - low, high - where - 1) >= 2 * clock.group
+    return np.where(known, right - left, 0.0)
+
+
+def _widest_of_each(where: Indices, real: NDArray[np.bool_], steps: Array, reach: int) -> NDArray[np.bool_]:
+    """Of marks so near each other that they see the same jump, the one with the widest step."""
+    kept = np.zeros_like(real)
+    marked = np.flatnonzero(real)
+    for near in np.split(marked, np.flatnonzero(np.diff(where[marked]) > reach) + 1):
+        if near.size:
+            kept[near[np.argmax(np.abs(steps[where[near]]))]] = True
+    return kept
+
+
+def _told_apart(
+    where: Indices, real: NDArray[np.bool_], steps: Array, residual: Array, clock: Clock
+) -> NDArray[np.bool_]:
+    """Of marks near each other, those that still jump when no level reaches across a wider jump."""
+    kept = np.zeros_like(real)
+    accepted: list[int] = []
+    marked = np.flatnonzero(real)
+    for mark in marked[np.argsort(-np.abs(steps[where[marked]]), kind="stable")]:
+        k = int(where[mark])
+        place = bisect(accepted, k)
+        low = max(k + 1 - clock.reach, 0, accepted[place - 1] + 1 if place else 0)
+        high = min(k + 1 + clock.reach, residual.size)
+        if place < len(accepted):
+            high = min(high, accepted[place] + 1)
+        shift = float(np.median(residual[k + 1 : high]) - np.median(residual[low : k + 1]))
+        if abs(shift) > 0.5 * clock.period:
+            accepted.insert(place, k)
+            kept[mark] = True
+    return kept
+
+
+def settled(period: float, uncertainty: float) -> float:
+    """T as a whole rate [Hz] or a whole number of ns if one lies within the uncertainty, else as it is."""
+    for candidate in (1 / max(1, round(1 / period)), round(period * 1e6) / 1e6, round(period * 1e9) / 1e9):
+        if candidate > 0 and abs(candidate - period) <= uncertainty:
+            return float(candidate)
+    return period

@@ -1,16 +1,21 @@
-"""What every format of file gives: named columns, the units it states, and their values piece by piece."""
+"""What every format gives: named columns, their units and values, piece by piece; what a log is made of."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any
+from itertools import groupby
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
+import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.data.logs.block import Finding
 from zwidth.errors import InputError
+
+if TYPE_CHECKING:
+    from zwidth.native.compiled import Array
+
 
 PIECE = 2**18
 """Rows that are read at once, where the format lets us choose."""
@@ -23,36 +28,25 @@ Values = NDArray[Any]
 
 @dataclass(kw_only=True)
 class Table:
-    """Columns of a file.
-
-    Parameters
-    ----------
-    source
-        Name of the file, for messages.
-    units
-        Every column with the unit that the file states; None if it states none.
-    read
-        Gives the columns named, piece by piece: the same number of rows in each.
-    attributes
-        What the file says of itself.
-    notes
-        What was odd in the file; complete after `read` came to its end.
-    means
-        The column of each quantity, None where there is none, if the format says which: nobody guesses then.
-    sheet
-        Name of the sheet of a workbook; else "".
-    sheets
-        Of a workbook with several tables all of them, this one too: the longest; else empty.
-    """
+    """Columns of a file."""
 
     source: str
+    """Name of the file, for messages."""
     units: Mapping[str, str | None]
+    """Every column with the unit that the file states; None if it states none."""
     read: Callable[[tuple[str, ...]], Iterator[tuple[Values, ...]]]
+    """Gives the columns named, piece by piece: the same number of rows in each."""
     attributes: Mapping[str, Any] = field(default_factory=dict)
+    """What the file says of itself."""
     notes: dict[str, Finding] = field(default_factory=dict)
+    """What was odd in the file; complete after `read` came to its end."""
     means: Mapping[str, str | None] = field(default_factory=dict)
+    """The column of each quantity, None where there is none, if the format says which: nobody guesses
+    then."""
     sheet: str = ""
+    """Name of the sheet of a workbook; else ""."""
     sheets: tuple[Table, ...] = ()
+    """Of a workbook with several tables all of them, this one too: the longest; else empty."""
 
 
 def understood_sheets(table: Table, understood: Callable[[Table], Any]) -> list[Table]:
@@ -103,3 +97,79 @@ def listed(names: Mapping[str, Any] | list[str]) -> str:
     shown = [f'"{name}"' for name in list(names)[:30]]
     more = len(names) - len(shown)
     return ", ".join(shown) + (f" and {more} more" if more > 0 else "")
+
+
+BLOCK_SIZE = 2**18
+"""Most samples in a block."""
+
+Motion = Literal["linear", "rotary"]
+
+
+class Block(NamedTuple):
+    """A stretch without a gap, at most `BLOCK_SIZE` samples.
+
+    Parameters
+    ----------
+    run
+        Which uninterrupted run it belongs to, from 0; consecutive blocks of one run follow each other
+        without a gap.
+    time
+        [s] of each sample.
+    position
+        [m; rad] as the encoder read it, positive into the wall; whole multiples of the resolution if one is
+        known.
+    hand_force
+        [N; N·m] of the hand on the device, positive into the wall; None if the log has none.
+    actuator_force
+        [N; N·m] of the actuator, positive out of the wall; None if the log has none.
+    """
+
+    run: int
+    time: Array
+    position: Array
+    hand_force: Array | None
+    actuator_force: Array | None
+
+    def part(self, where: slice) -> Block:
+        """Some of its samples."""
+        columns = (None if column is None else column[where] for column in self[1:])
+        return Block(self.run, *columns)  # type: ignore[arg-type]
+
+
+def joined(blocks: list[Block]) -> Block:
+    """Blocks of one run that follow each other, as one."""
+    if len(blocks) == 1:
+        return blocks[0]
+    columns = (
+        None if column[0] is None else np.concatenate(column)
+        for column in zip(*(block[1:] for block in blocks), strict=True)
+    )
+    return Block(blocks[0].run, *columns)  # type: ignore[arg-type]
+
+
+def whole_runs(blocks: Iterable[Block]) -> Iterator[Block]:
+    """A block for each run, however long it is."""
+    for _, run in groupby(blocks, key=lambda block: block.run):
+        yield joined(list(run))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """Something odd in a log, and what was done about it.
+
+    Parameters
+    ----------
+    kind
+        A word for programs, such as "gap" or "jitter".
+    text
+        A sentence for people, with numbers.
+    samples
+        How many samples it concerns; 0 if it concerns all.
+    """
+
+    kind: str
+    text: str
+    samples: int = 0
+
+    def __str__(self) -> str:
+        return self.text

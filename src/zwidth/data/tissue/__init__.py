@@ -1,7 +1,6 @@
 """Soft tissue from measurements: how it relaxes and creeps, fits, tracking, and a wall that follows it."""
 
 from zwidth.data.tissue.adaptive import AdaptiveSolid, Rendered, required_damping
-from zwidth.data.tissue.comparison import TissueComparison
 from zwidth.data.tissue.experiment.fit import fit_test, read_test
 from zwidth.data.tissue.experiment.result import TissueTest
 from zwidth.data.tissue.first_order import (
@@ -11,9 +10,8 @@ from zwidth.data.tissue.first_order import (
     solid_of,
     solid_of_five,
 )
-from zwidth.data.tissue.fit import compare_tissues, fit_tissue
-from zwidth.data.tissue.published import track_five_parameters
-from zwidth.data.tissue.recursive import RecursiveSolid, Track, Tracker
+from zwidth.data.tissue.fit import TissueComparison, compare_tissues, fit_tissue
+from zwidth.data.tissue.recursive import RecursiveSolid, Track, Tracker, track_five_parameters
 from zwidth.data.tissue.result import TissueFit
 from zwidth.model.environment.relaxing import creep, force_response, position_response, relaxation
 

@@ -2,11 +2,10 @@
 
     f = μ0 u + μ1 e  inside, 0 outside,    u = max(x, 0),    e ← a (e + Δu),    a = τ/(τ + T), τ = η1/μ1
 
-is the standard linear solid by backward Euler.  It holds V = ½ μ0 u² + ½ (μ1/a) e², and while its
-parameters stay, with b ≥ b_req = μ0 T/2 + μ1 η1 T/(2 η1 + μ1 T), what hand and damping put in is never less
-than what V rises by. Parameters that change under the hand are another matter: a stiffer spring at the same
-depth holds more than was put in, ½ Δμ0 u² of it, and gives it out on the way back, each frozen wall being
-passive.  So
+is the standard linear solid by backward Euler.  It holds V = ½ μ0 u² + ½ (μ1/a) e², and while its parameters
+stay, with b ≥ b_req = μ0 T/2 + μ1 η1 T/(2 η1 + μ1 T), what hand and damping put in is never less than what V
+rises by. Parameters that change under the hand are another matter: a stiffer spring at the same depth holds
+more than was put in, ½ Δμ0 u² of it, and gives it out on the way back, each frozen wall being passive.  So
 
     E ← E + f Δx + (b/T) Δx² − ΔV                      what was put in and is not stored: never falls
     μ ← μ + s (μ* − μ),  s ≤ 1 the largest with V(μ) ≤ V + E     a rise is paid for from E

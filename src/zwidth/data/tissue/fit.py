@@ -13,21 +13,24 @@ matter.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from zwidth.data.tissue.comparison import TissueComparison
-from zwidth.data.tissue.faults import hole_places
+from zwidth.data.tissue.findings import hole_places
 from zwidth.data.tissue.model import Record, Response, as_model
 from zwidth.data.tissue.result import TissueFit
 from zwidth.data.tissue.search import fitted
 from zwidth.errors import InputError
 from zwidth.model.environment.modes import samples
+from zwidth.showing import Part, Shown, Table
 
 if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike
+
 
 STANDARD_MODELS = ("kelvin-voigt", "maxwell", "standard-linear-solid", "generalized-maxwell")
 
@@ -168,3 +171,39 @@ def _from_dataset(data: Any, position: Any, force: Any) -> tuple[Any, Any, Any]:
                 f"the Dataset has no variable {name!r}; it has {', '.join(map(str, data.data_vars))}"
             )
     return data["time"].values, data[names[0]].values, data[names[1]].values
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TissueComparison(Shown):
+    """Several models fitted to one record, that of the smallest BIC first.
+
+    Parameters
+    ----------
+    fits
+        In the order of their BIC.
+    """
+
+    fits: tuple[TissueFit, ...]
+
+    @property
+    def best(self) -> TissueFit:
+        """The fit of the smallest BIC."""
+        return self.fits[0]
+
+    def __getitem__(self, name: str) -> TissueFit:
+        return {fit.model.name: fit for fit in self.fits}[name]
+
+    def table(self) -> list[list[str]]:
+        """Headings, then one line of text per model; AIC and BIC above the smallest."""
+        aic, bic = (min(getattr(fit, key) for fit in self.fits) for key in ("aic", "bic"))
+        lines = [["model", "parameters", "r²", "RMS", "AIC above", "BIC above", "identifiable"]]
+        for fit in self.fits:
+            numbers = f"{fit.r_squared:.6f}", f"{fit.rms:.3g}", f"{fit.aic - aic:.1f}", f"{fit.bic - bic:.1f}"
+            known = "yes" if fit.identifiable else "no"
+            lines.append([fit.model.name, str(fit.estimates.size), *numbers, known])
+        return lines
+
+    def report(self) -> Iterable[Part]:
+        """The table."""
+        head, *rows = self.table()
+        yield Table(heads=[head], rows=rows)

@@ -13,12 +13,22 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from zwidth.data.tissue.faults import HELD, THRESHOLD, Faults, stops_of, sudden, unlikely
-from zwidth.data.tissue.findings import findings, refuse_sign
-from zwidth.data.tissue.model import Model, Record
+from zwidth.data.tissue.findings import (
+    HELD,
+    LARGEST_ORDER,
+    THRESHOLD,
+    Faults,
+    Noise,
+    covariance,
+    findings,
+    noise_of,
+    refuse_sign,
+    stops_of,
+    sudden,
+    unlikely,
+)
+from zwidth.data.tissue.model import Model, Record, starting_points
 from zwidth.data.tissue.result import TissueFit
-from zwidth.data.tissue.start import starting_points
-from zwidth.data.tissue.uncertainty import LARGEST_ORDER, Noise, covariance, noise_of
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
 

@@ -18,9 +18,7 @@ from numpy.typing import NDArray
 
 from zwidth.data.logs.served.contents import COLUMNS
 from zwidth.data.logs.table import readable
-from zwidth.data.logs.telemetry.about import FORMAT, About
-from zwidth.data.logs.telemetry.decoder import Decoder, Samples
-from zwidth.data.logs.telemetry.table import samples_of
+from zwidth.data.logs.telemetry import FORMAT, About, Decoder, Samples, samples_of
 from zwidth.errors import InputError
 from zwidth.loop.trace import UNITS
 

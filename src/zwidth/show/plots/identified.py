@@ -12,10 +12,9 @@ from matplotlib.figure import Figure
 
 from zwidth.data.identification.device.curve import DIRECTIONS, friction_bins, lower_bounds
 from zwidth.data.identification.device.estimate import Estimate
-from zwidth.data.identification.device.limits import percent
 from zwidth.data.identification.device.numbers import BINS, IdentifiedNumbers
 from zwidth.data.identification.device.pulses import PIECES, pulse
-from zwidth.data.identification.device.table import rows, title
+from zwidth.data.identification.device.table import percent, rows, title
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import quantity_unit
 from zwidth.show.plots.style import BLACK, BLUE, GREY, LOOK, ORANGE, RED, low_index, new_figure, page_heading

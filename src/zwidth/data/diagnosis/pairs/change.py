@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from statistics import fmean
 
-from zwidth.data.diagnosis.lowered import PASSIVE, Lowered, largest, lowered_to, text_of, with_margin
+from zwidth.data.diagnosis.change import PASSIVE, Lowered, largest, lowered_to, text_of, with_margin
 from zwidth.data.diagnosis.pairs.energy import PairEvidence
 from zwidth.errors import InputError
 from zwidth.model.pairs import Pair
@@ -35,15 +35,10 @@ _SLOWEST = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class PairChange(Lowered):
-    """One number of the coupling, from where it is to where it may be.
-
-    Parameters
-    ----------
-    pair
-        With that number changed.
-    """
+    """One number of the coupling, from where it is to where it may be."""
 
     pair: Pair
+    """With that number changed."""
     verdict: PairVerdict
 
 

@@ -1,4 +1,4 @@
-"""From a recording of two arms that shake to the reason.
+"""From a recording of two arms that shake to the reason, how sure it is, and what to change.
 
 recording → the stretch that vibrates → both laws → energy of a cycle → how likely each cause → one change
 """
@@ -6,23 +6,184 @@ recording → the stretch that vibrates → both laws → energy of a cycle → 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from zwidth.data.diagnosis.pairs.causes import PAIR_CAUSES, is_named, likelihoods
-from zwidth.data.diagnosis.pairs.change import change_for
+from zwidth.data.diagnosis.causes import SURE
+from zwidth.data.diagnosis.pairs.change import PairChange, change_for
 from zwidth.data.diagnosis.pairs.energy import PairEvidence, gather, vibrates
 from zwidth.data.diagnosis.pairs.recording import ARMS, PairRecording, read_pair
-from zwidth.data.diagnosis.pairs.result import PairDiagnosis
+from zwidth.data.diagnosis.result import Answer, key_with_unit, rows_of_energy, rows_of_likely
+from zwidth.data.diagnosis.vibration import nothing
 from zwidth.errors import InputError
 from zwidth.model.pairs import Pair
+from zwidth.lazy import above
+from zwidth.model.pairs.pair import Pair
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class PairDiagnosis(Answer[PairChange, PairEvidence, PairRecording]):
+    """Why two arms shook that follow each other: `cause` is one of `zwidth.data.diagnosis.PAIR_CAUSES`, or
+    None where the data do not say, and `confidence` how often such a finding is right, among simulated pairs
+    that shake for one reason."""
+
+    @property
+    def claim(self) -> str:
+        """The answer in one sentence."""
+        if self.seen is None:
+            return nothing(self.recording.follower.time)
+        at = f"{shown(self.frequency, 'Hz', 3)}"
+        if self.cause is None:
+            return f"Both arms shake at {at}; the data do not say why."
+        return f"Both arms shake at {at} because {PAIR_CAUSES[self.cause]}."
+
+    def rows(self) -> Iterator[tuple[str, str]]:
+        """Every number that was measured, with its name."""
+        if (seen := self.seen) is None:
+            return
+        v = seen.vibration
+        length = "rad" if seen.rotary else "m"
+        yield "frequency", f"{shown(v.frequency, 'Hz', 4)} ± {shown(v.frequency_spread, 'Hz', 2)}"
+        for arm, size in zip(ARMS, seen.amplitudes, strict=True):
+            yield f"{arm} swings", f"± {shown(size, length, 3)}"
+        yield from rows_of_energy(seen.energy, seen.supplied, seen.lost)
+        for arm, law in zip(ARMS, seen.laws, strict=True):
+            if law is not None:
+                yield f"{arm}: stiffness", shown(law.stiffness, _unit("stiffness", seen), 4)
+                yield f"{arm}: link delay", shown(law.link_delay, "s", 3)
+                yield f"{arm}: explained", f"{100 * (1 - law.unexplained):.4g} %"
+        yield from rows_of_likely(self.likely)
+
+    def _measured(self, seen: PairEvidence) -> dict[str, Any]:
+        document: dict[str, Any] = {
+            "sample_period_s": seen.loop_period,
+            "supplied_J": dict(seen.supplied),
+            "friction_takes_J": seen.lost,
+        }
+        stiffness, damping = (
+            key_with_unit(name, _unit(name, seen)) for name in ("stiffness", "virtual_damping")
+        )
+        for k, (arm, law) in enumerate(zip(ARMS, seen.laws, strict=True)):
+            document[arm] = {
+                f"amplitude_{'rad' if seen.rotary else 'm'}": seen.amplitudes[k],
+                "delay_s": seen.delays[k],
+                "law": None
+                if law is None
+                else {
+                    stiffness: law.stiffness,
+                    damping: law.damping,
+                    f"local_{damping}": law.local_damping,
+                    key_with_unit("compensation", "N*m" if seen.rotary else "N"): law.compensation,
+                    "link_delay_s": law.link_delay,
+                    "unexplained": law.unexplained,
+                },
+            }
+        return document
+
+    def _written(self, change: PairChange) -> str:
+        from zwidth.model.specification.write_pair import written_pair
+
+        return written_pair(change.pair)
+
+    def _figure(self) -> Figure:
+        figure: Figure = above("plots").pair_figure(self.recording, self.seen, self.claim)
+        return figure
+
+
+def _unit(name: str, seen: PairEvidence) -> str:
+    return GLOSSARY[name].unit_for("rotary" if seen.rotary else "linear")
+
+
+# Why two arms may shake: each reason with what happens, and how likely it is.
+#
+# The energy of a cycle comes apart into terms W_i (`energy`), and
+#
+#     p_i = W_i^γ / Σ_j W_j^γ        over what they give beyond what pays for them
+#
+# with γ fitted to simulated pairs that shake for one reason (`benchmarks/diagnosis_pairs.py`).  Viscous
+# friction and terms that take pay for what grows with the square of the motion, Coulomb friction pays for its
+# compensation, as far as the devices are known; p is the mean over what an owner may be wrong by.  Where
+# nothing is left over, something that is not in the file feeds the motion, and nothing is named.
+
+
+PAIR_CAUSES: Mapping[str, str] = {
+    "link delay": "each arm is pulled to where the other one was when its reading was sent",
+    "sampling": "the spring is held from sample to sample and so pushes out harder than it was pressed in",
+    "delay": "the forces come late after the arms' own readings",
+    "damping": "damping against the other arm's speed comes so late that it drives the motion",
+    "local damping": "damping of each arm's own speed comes so late, or has such a sign, that it drives",
+    "friction compensation": "more friction is compensated than there is: the compensation drives the motion",
+    "actuator limit": "a motor cannot follow: its force comes late because it changes no faster",
+}
+"""The terms of `energy`, in words."""
+
+STEEPNESS = 6.1
+"""γ."""
+
+STATED = (0.85, 1.0, 1.15)
+"""What friction takes, over what the stated numbers say: owners may be wrong by so much."""
+
+MOST_UNEXPLAINED = 0.01
+"""Share of a force's variance that its law may leave over."""
+
+_DRY = "friction compensation"
+
+
+def likelihoods(seen: PairEvidence) -> dict[str, float]:
+    """p of each cause, the mean over what friction may take; empty where no term ever gives more."""
+    mean = dict.fromkeys(PAIR_CAUSES, 0.0)
+    for viscous in STATED:
+        for dry in STATED:
+            gives = _beyond(seen, viscous, dry)
+            most = max(gives.values())
+            if most > 0:
+                odds = {name: (max(0.0, work) / most) ** STEEPNESS for name, work in gives.items()}
+                for name, p in odds.items():
+                    mean[name] += p / sum(odds.values()) / len(STATED) ** 2
+    return mean if any(mean.values()) else {}
+
+
+MOST_BEHIND = 0.1
+"""Share of a motor's force that a delay or a limit of rate behind its command may leave over."""
+
+
+def is_named(cause: str, p: float, seen: PairEvidence) -> bool:
+    """Whether a cause is likely enough and the file shows it.  Where a motor cannot follow, how much that
+    gives depends on how far the arms swing: what else gives more at this swing is not named then."""
+    limited = any(rate is not None for rate in seen.rates)
+    alone = not limited or cause == "actuator limit"
+    return p >= SURE and alone and seen.behind < MOST_BEHIND and followed(seen)
+
+
+def followed(seen: PairEvidence) -> bool:
+    """Whether both forces are known as laws of both arms, and nothing unseen need feed the motion: the forces
+    of the motors are in the file, or at least it is known what friction takes."""
+    known = all(law is not None and law.unexplained < MOST_UNEXPLAINED for law in seen.laws)
+    return known and (seen.rubs is not None or None not in seen.delays)
+
+
+def _beyond(seen: PairEvidence, viscous_share: float, dry_share: float) -> dict[str, float]:
+    """[J] of each term beyond what pays for it: viscous friction, and the terms that take, for all that grow
+    with the motion's square; Coulomb friction for the force along the motion."""
+    viscous, dry = seen.rubs or (0.0, 0.0)
+    gives = {name: work for name, work in seen.supplied.items() if work > 0 and name != _DRY}
+    pays = viscous_share * viscous - sum(
+        work for name, work in seen.supplied.items() if work < 0 and name != _DRY
+    )
+    share = max(0.0, 1 - pays / sum(gives.values())) if gives else 0.0
+    return {name: share * work for name, work in gives.items()} | {
+        _DRY: seen.supplied[_DRY] - dry_share * dry
+    }
+
 
 _REGULAR = "a stretch of ten cycles or more in which both arms shake, the hands as they were"
 _DEVICE = "the numbers of both arms (damping, Coulomb friction, rate) beside the file: DEVICE"

@@ -22,7 +22,7 @@ summed over both arms; where the springs differ, the follower's joules count K_l
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,14 +30,12 @@ from numpy.typing import NDArray
 from zwidth.data.diagnosis import drive
 from zwidth.data.diagnosis.drive import STRAIGHT
 from zwidth.data.diagnosis.evidence import Known
-from zwidth.data.diagnosis.pairs import law
-from zwidth.data.diagnosis.pairs.law import ArmLaw
 from zwidth.data.diagnosis.pairs.recording import PairRecording
 from zwidth.data.diagnosis.recording import Recording
 from zwidth.data.diagnosis.vibration import HARMONICS, Vibration, find, phasors
 from zwidth.model.device import Device
+from zwidth.native.compiled import Array
 
-Array = NDArray[np.float64]
 Phasors = NDArray[np.complex128]
 
 TERMS = (
@@ -73,52 +71,35 @@ _MOST_LAGS = 16
 
 @dataclass(frozen=True, kw_only=True)
 class PairEvidence:
-    """Everything that was measured in a vibration of two arms.
-
-    Parameters
-    ----------
-    vibration
-        Of the arm that swings further.
-    leading
-        Which arm that is, 0 the leader, 1 the follower.
-    loop_period
-        [s] T.
-    laws
-        Of leader and follower; None where a force does not follow the arms.
-    amplitudes
-        [m; rad] |X| of both.
-    counts
-        End to end, of both, in counts of their encoders; infinite where none is seen.
-    delays
-        [s] from an arm's reading to its force, where the file shows the motor's force; else None.
-    rates
-        [N/s; N·m/s] no faster than which the motor's force of each arm changes; None where it follows.
-    behind
-        Share of the motors' forces that neither a delay nor a limit of rate accounts for, the larger of both;
-        1 where a force changes at one rate and its command is not in the file.
-    supplied
-        [J] that each term gives in a cycle, negative where it takes.
-    energy
-        [J] that the forces of the file give in a cycle in both arms.
-    rubs
-        [J] that viscous and Coulomb friction take in a cycle in both arms; None without their devices.
-    rotary
-        Of joints.
-    """
+    """Everything that was measured in a vibration of two arms."""
 
     vibration: Vibration
+    """Of the arm that swings further."""
     leading: int
+    """Which arm that is, 0 the leader, 1 the follower."""
     loop_period: float
+    """[s] T."""
     laws: tuple[ArmLaw | None, ArmLaw | None]
+    """Of leader and follower; None where a force does not follow the arms."""
     amplitudes: tuple[float, float]
+    """[m; rad] |X| of both."""
     counts: tuple[float, float]
+    """End to end, of both, in counts of their encoders; infinite where none is seen."""
     delays: tuple[float | None, float | None]
+    """[s] from an arm's reading to its force, where the file shows the motor's force; else None."""
     rates: tuple[float | None, float | None]
+    """[N/s; N·m/s] no faster than which the motor's force of each arm changes; None where it follows."""
     behind: float
+    """Share of the motors' forces that neither a delay nor a limit of rate accounts for, the larger of
+    both; 1 where a force changes at one rate and its command is not in the file."""
     supplied: Mapping[str, float]
+    """[J] that each term gives in a cycle, negative where it takes."""
     energy: float
+    """[J] that the forces of the file give in a cycle in both arms."""
     rubs: tuple[float, float] | None
+    """[J] that viscous and Coulomb friction take in a cycle in both arms; None without their devices."""
     rotary: bool
+    """Of joints."""
 
     @property
     def lost(self) -> float | None:
@@ -128,7 +109,7 @@ class PairEvidence:
 
 def vibrates(recording: PairRecording) -> tuple[Vibration, int] | None:
     """The vibration of the arm that swings further, and which arm; None where neither vibrates."""
-    found = [find(arm.time, arm.position, arm.period) for arm in recording.arms]
+    found = [find(arm.position, arm.period) for arm in recording.arms]
     swings = [0.0 if one is None else one.swing for one in found]
     arm = int(np.argmax(swings))
     seen = found[arm]
@@ -213,7 +194,7 @@ def _arm(
     fits = []
     for part in (whole, rows):
         told = arm.position[part], other.position[part], sign * seen[part]
-        fitted = law.fit(*told, arm.period, loop_period, lags, links)
+        fitted = arm_law(*told, arm.period, loop_period, lags, links)
         if fitted is not None:
             fits.append(replace(fitted, helped=fitted.helped[rows.start - part.start :]))
             if fitted.unexplained < _EXPLAINED:
@@ -270,3 +251,107 @@ def _terms(
 
 def _work(force: Phasors, x: Phasors, orders: Array) -> float:
     return float(-np.pi * (orders * np.imag(force * np.conj(x))).sum())
+
+
+# Which law an arm of a pair was moved by: stiffness, damping, how old its own reading was and the other's.
+#
+#     f(t) = a + K (x(t − s) − x'(t − s − d)) + B (v(t − s) − v'(t − s − d)) + D v(t − s) − F sgn v(t − s)
+#
+# x is the arm's own position, x' the other's, v the difference of the last two readings.  Every pair of lags
+# of a list is tried, the terms are fitted by least squares, and the law is the one of least BIC.
+
+
+_MOST_FITTED = 2000
+_FEWEST_ROWS = 30
+_EXACT = 1e-9
+_FREE = 0.8
+"""Of the largest force: what is larger may have been cut off."""
+
+_MODELS = ((0,), (0, 1), (0, 2), (0, 3), (0, 1, 2), (0, 1, 3), (0, 2, 3), (0, 1, 2, 3))
+"""Terms that are tried together: K, B, D, F."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArmLaw:
+    """What an arm's force was computed from."""
+
+    stiffness: float
+    damping: float
+    local_damping: float
+    """K [N/m; N·m/rad], B and D [N·s/m; N·m·s/rad]."""
+    compensation: float
+    """F [N; N·m] along the motion; 0 for none."""
+    lag: float
+    """[s] s, from the arm's own position to its force."""
+    link_delay: float
+    """[s] d, by how much the other's reading is older."""
+    unexplained: float
+    """Share of the force's variance that is left over."""
+    helped: Array = field(repr=False)
+    """[N; N·m] the force of F in each row."""
+
+
+def arm_law(
+    own: Array,
+    other: Array,
+    force: Array,
+    row_period: float,
+    loop_period: float,
+    lags: Sequence[float],
+    links: Sequence[float],
+) -> ArmLaw | None:
+    """The law of one arm in a stretch; None where its force does not follow the arms."""
+    times = np.arange(own.size, dtype=np.float64) * row_period
+    first = int(np.ceil((max(lags) + max(links) + loop_period) / row_period)) + 1
+    rows = np.flatnonzero(np.abs(force) < _FREE * np.abs(force).max())
+    rows = rows[rows >= min(first, own.size // 2)]
+    if rows.size < _FEWEST_ROWS or not np.ptp(force[rows]):
+        return None
+    rows = rows[:: max(1, rows.size // _MOST_FITTED)]
+    y = force[rows]
+    best: tuple[float, tuple[int, ...], Array, float, float] | None = None
+    for lag in lags:
+        x, v = _read(own, times, times[rows] - lag, loop_period)
+        for link in links:
+            there, going = _read(other, times, times[rows] - lag - link, loop_period)
+            table = np.stack([x - there, v - going, v, -np.sign(v)], axis=1)
+            for model, terms, left in _fitted(table, y):
+                bic = y.size * np.log(left + _EXACT) + len(model) * np.log(y.size)
+                if best is None or bic < best[0] - 1e-9:
+                    best = (bic, model, terms, lag, link)
+    if best is None:
+        return None
+    _, model, terms, lag, link = best
+    gains = dict(zip(model, map(float, terms), strict=True))
+    _, moved = _read(own, times, times - lag, loop_period)
+    left = float(np.exp((best[0] - len(model) * np.log(y.size)) / y.size) - _EXACT)
+    return ArmLaw(
+        stiffness=gains[0], damping=gains.get(1, 0.0), local_damping=gains.get(2, 0.0),
+        compensation=gains.get(3, 0.0), lag=lag, link_delay=link, unexplained=max(left, 0.0),
+        helped=-gains.get(3, 0.0) * np.sign(moved),
+    )  # fmt: skip
+
+
+def _read(position: Array, times: Array, at: Array, loop_period: float) -> tuple[Array, Array]:
+    """x and the difference of the last two readings, at some instants."""
+    x = np.interp(at, times, position)
+    return x, (x - np.interp(at - loop_period, times, position)) / loop_period
+
+
+def _fitted(table: Array, y: Array) -> list[tuple[tuple[int, ...], Array, float]]:
+    """Each model with K, B and F > 0: its terms, and what they leave over."""
+    centred, wanted = table - table.mean(axis=0), y - y.mean()
+    size = float(wanted @ wanted)
+    norm = np.sqrt((centred**2).sum(axis=0))
+    norm[norm == 0] = 1.0
+    unit = centred / norm
+    gram, answer = unit.T @ unit, unit.T @ wanted
+    found: list[tuple[tuple[int, ...], Array, float]] = []
+    for model in _MODELS:
+        index = list(model)
+        system = gram[np.ix_(index, index)] + 1e-12 * np.eye(len(index))
+        terms = np.linalg.solve(system, answer[index])
+        if all(value > 0 for term, value in zip(model, terms, strict=True) if term != 2):
+            left = max(size - float(terms @ answer[index]), 0.0) / size
+            found.append((model, terms / norm[index], left))
+    return found

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.data.diagnosis.recording import Recording, read_of_table
-from zwidth.data.logs.names import recognise
+from zwidth.data.logs.columns import recognise
 from zwidth.data.logs.read import opened
 from zwidth.data.logs.table import Table, Values, in_pieces
 from zwidth.errors import InputError
@@ -37,16 +37,11 @@ _OF = {
 
 @dataclass(frozen=True, kw_only=True)
 class PairRecording:
-    """The same rows of both arms.
-
-    Parameters
-    ----------
-    leader, follower
-        Each as a recording of its own.
-    """
+    """The same rows of both arms."""
 
     leader: Recording
     follower: Recording
+    """Each as a recording of its own."""
 
     @property
     def source(self) -> str:

@@ -15,10 +15,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from zwidth.data.identification.device.moments import Moments
-from zwidth.data.identification.device.pieces import Piece, pieces
+from zwidth.data.identification.device.estimate import Regression, regress
+from zwidth.data.identification.device.moments import Moments, Piece, pieces
 from zwidth.data.identification.device.pulses import pulse
-from zwidth.data.identification.device.regression import Regression, regress
 from zwidth.data.logs import Log
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
@@ -55,25 +54,17 @@ Zero = Literal["drifts", "constant", "exact"]
 
 
 class Choice(NamedTuple):
-    """What was decided.
-
-    Parameters
-    ----------
-    piece
-        h, samples of a piece of a pulse.
-    late
-        Samples by which forces were recorded late.
-    knee
-        Speed below which friction may be larger than its curve [m/s; rad/s].
-    shares
-        Of these pulses and of the longer ones, the part of the variance of df/dt that is motion; the rest
-        is noise, which makes the coefficient of −df/dt too small.
-    """
+    """What was decided."""
 
     piece: int
+    """h, samples of a piece of a pulse."""
     late: float
+    """Samples by which forces were recorded late."""
     knee: float
+    """Speed below which friction may be larger than its curve [m/s; rad/s]."""
     shares: tuple[float, float] = (1.0, 1.0)
+    """Of these pulses and of the longer ones, the part of the variance of df/dt that is motion; the rest
+    is noise, which makes the coefficient of −df/dt too small."""
 
 
 def choose(log: Log, names: tuple[str, ...], mass: float | None, delay: float, zero: Zero) -> Choice:

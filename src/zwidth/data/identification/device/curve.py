@@ -49,21 +49,14 @@ DIRECTIONS = ("inward", "outward")
 
 
 class Side(NamedTuple):
-    """The pulses of one direction, slow ones first.
-
-    Parameters
-    ----------
-    speed
-        |v| of each [m/s; rad/s].
-    friction
-        Against the motion [N; N·m].
-    stroke
-        To which each belongs.
-    """
+    """The pulses of one direction, slow ones first."""
 
     speed: Array
+    """|v| of each [m/s; rad/s]."""
     friction: Array
+    """Against the motion [N; N·m]."""
     stroke: Array
+    """To which each belongs."""
 
     def parts(self, bins: int) -> list[Side]:
         """The same in bins of speed, each with as many pulses."""
@@ -102,18 +95,8 @@ def _fastest(side: Side) -> float:
 def friction_bins(points: AnyTrace, bins: int) -> xr.Dataset:
     """Mean speed and mean friction by direction and speed, each bin with as many pulses of its direction.
 
-    Parameters
-    ----------
-    points
-        Of an `Identified`.
-    bins
-        How many each way; fewer where a bin would have less than eight strokes.
-
-    Returns
-    -------
-    xarray.Dataset
-        Along `direction`, "inward" and "outward", and `bin`: speed, friction, its standard error, and
-        the strokes in it.
+    So many bins each way, fewer where one would have less than eight strokes; along `direction`, "inward" and
+    "outward", and `bin`: speed, friction, its standard error, and the strokes in it.
     """
     import xarray as xr
 

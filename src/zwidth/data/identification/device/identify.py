@@ -2,35 +2,48 @@
 
     m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a
 
-in means over smooth pulses inside strokes (`pulses`), by least squares with the two halves of
-the samples as each other's instruments (`moments`), with the scatter of the strokes as the
-measure of uncertainty (`regression`).  Abbott & Okamura (2005, section IV-B) fit the same
-equation to smoothed and differentiated positions.
+in means over smooth pulses inside strokes (`pulses`), by least squares with the two halves of the samples as
+each other's instruments (`moments`), with the scatter of the strokes as the measure of uncertainty
+(`estimate`).  Abbott & Okamura (2005, section IV-B) fit the same equation to smoothed and differentiated
+positions.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from math import inf
-from typing import Literal
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from zwidth.data.identification.device.choice import Zero, choose, too_little
 from zwidth.data.identification.device.curve import fastest
-from zwidth.data.identification.device.findings import findings
+from zwidth.data.identification.device.estimate import offset
+from zwidth.data.identification.device.findings import findings, refuse_impossible
 from zwidth.data.identification.device.fit import Found, gather
-from zwidth.data.identification.device.identified import Identified
-from zwidth.data.identification.device.impossible import refuse_impossible
+from zwidth.data.identification.device.numbers import IdentifiedNumbers
 from zwidth.data.identification.device.pulses import PIECES
-from zwidth.data.identification.device.regression import offset
-from zwidth.data.logs import Log
+from zwidth.data.identification.device.table import report, source_name
+from zwidth.data.logs import Log, read_log
 from zwidth.errors import InputError
+from zwidth.lazy import above
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.units import parse_number
+from zwidth.showing import Part, Shown
+from zwidth.writing import check_target, writing_whole
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
 
 Model = Literal["Coulomb and viscous", "viscous"]
 
 
-def identify(
+def identify_log(
     log: Log,
     *,
     mass: float | None = None,
@@ -111,3 +124,132 @@ def _checked(log: Log, mass: float | None, delay: float, zero: Zero | None, mode
     if zero not in ("drifts", "constant", "exact"):
         raise InputError(f'zero is "drifts", "constant" or "exact", got {zero!r}')
     return zero
+
+
+def identify(
+    recording: Log | str | PathLike[str] | xr.Dataset,
+    *,
+    mass: object = None,
+    delay: object = 0,
+    zero: Zero | None = None,
+    model: Model = "Coulomb and viscous",
+    progress: Callable[[int, int], None] | None = None,
+    **reading: Any,
+) -> Identified:
+    """Identify a device from its log: ``m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a``.
+
+    Parameters
+    ----------
+    recording
+        A log, a file as `read_log` reads it, or a Dataset such as a trace: the position, and the force of the
+        hand, of the actuator, or both. Without any force the mass must be given: a free motion shows b/m and
+        f_c/m only.
+    mass
+        m > 0 where it is known [kg; kg·m²], or a text with a unit, "36 g".
+    delay
+        From a sample to the actuator force computed from it, ≥ 0 [s].
+    zero
+        Of the force: "drifts" along straight lines of some seconds (a load cell; the default where there is
+        a hand force), "constant" (gravity; the default otherwise), or "exact".
+    model
+        "Coulomb and viscous", or "viscous": a mass and a damper; where Coulomb friction is seen, it says so.
+    progress
+        Told (samples done, samples in all).
+    reading
+        Further arguments of `read_log` or `Log.from_arrays`, such as columns={…}, units={…},
+        resolution="22.4 um".
+
+    Raises
+    ------
+    InputError
+        If the recording cannot be read or shows too little: too few strokes, or no force and no mass.
+    """
+    log = log_from(recording, **reading)
+    known = None if mass is None else float(parse_number(mass, GLOSSARY["mass"].unit_for(log.motion), "mass"))
+    late = float(parse_number(delay, "s", "delay"))
+    return identify_log(log, mass=known, delay=late, zero=zero, model=model, progress=progress)
+
+
+def log_from(recording: Log | str | PathLike[str] | xr.Dataset, **reading: Any) -> Log:
+    """The log that something holds; `reading` says how, where it is not a log already."""
+    if isinstance(recording, Log):
+        if reading:
+            raise InputError(
+                f"a log has been read already; {', '.join(reading)} is for read_log; or give the file instead"
+            )
+        return recording
+    if isinstance(recording, str | PathLike):
+        return read_log(recording, **reading)
+    return Log.from_arrays(recording, **reading)
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Identified(Shown, IdentifiedNumbers):
+    __doc__ = IdentifiedNumbers.__doc__  # its arguments are the numbers
+
+    def to_toml(self, confidence: float | None = 0.99, **others: Any) -> str:
+        """The device as a specification that `zwidth check` reads; comments say where numbers come from.
+
+        Parameters
+        ----------
+        confidence, others
+            As for `device`.
+        """
+        from zwidth.data.identification.device.table import to_toml
+
+        given = {"name": f"identified from {source_name(self)}", **others}
+        return to_toml(self, self.device(confidence, **given), confidence)
+
+    def save(
+        self,
+        path: str | PathLike[str],
+        confidence: float | None = 0.99,
+        *,
+        force: bool = False,
+        **others: Any,
+    ) -> None:
+        """Save `to_toml`, whole or not at all.
+
+        Parameters
+        ----------
+        path
+            The file, my-device.toml.
+        confidence, others
+            As for `device`.
+        force
+            Replace a file that exists.
+
+        Raises
+        ------
+        InputError
+            If the file exists, or cannot be written.
+        """
+        text, target = self.to_toml(confidence, **others), Path(path)
+        check_target(target, force)
+        with writing_whole(target) as file:
+            file.write(text.encode())
+
+    def plot(self, path: str | PathLike[str] | None = None, *, force: bool = False) -> Figure:
+        """Friction against speed, what is left over, data against model; saved where a path is given.
+
+        Parameters
+        ----------
+        path
+            Ends in .png, .svg or .pdf.
+        force
+            Replace a file that exists.
+        """
+        figure: Figure = above("plots").identification_figure(self)
+        if path is not None:
+            above("plots").save_figure(lambda: figure, Path(path), overwrite=force)
+        return figure
+
+    def to_dict(self, confidence: float = 0.99) -> dict[str, Any]:
+        """Everything but the points, units in the keys, as `zwidth identify --json` prints it."""
+        from zwidth.data.identification.device.table import to_dict
+
+        return to_dict(self, confidence)
+
+    def report(self) -> Iterable[Part]:
+        """The table, what it rests on, and what was found besides."""
+        return report(self)

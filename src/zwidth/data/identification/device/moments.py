@@ -2,20 +2,34 @@
 
     G_s = ½ Σ (A_even A_oddᵀ + A_odd A_evenᵀ)   over the pulses of stroke s,   A = (a, v, sgn v, …, f)
 
-G = Σ_s G_s gives the parameters, and Σ_s G_s ⊗ G_s how much the strokes differ among themselves,
-which is what their uncertainty is taken from.  The zero of a load cell drifts: from each piece
-of some seconds a straight line is taken out of every column first, so that a line in the
-force means nothing.
+G = Σ_s G_s gives the parameters, and Σ_s G_s ⊗ G_s how much the strokes differ among themselves, which is
+what their uncertainty is taken from.  The zero of a load cell drifts: from each piece of some seconds a
+straight line is taken out of every column first, so that a line in the force means nothing.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from zwidth.data.identification.device import pulses
+from zwidth.data.identification.device.pulses import (
+    Pulse,
+    Strokes,
+    count_without_steps,
+    counted,
+    find_strokes,
+    positions,
+    weighed,
+)
+from zwidth.data.logs import Block, Log
+from zwidth.data.logs.sensors import beyond
+from zwidth.data.logs.table import joined
 from zwidth.native.compiled import Array, compiled
 
 REGRESSORS = (
@@ -46,34 +60,23 @@ PAIRS.T[_UPPER] = PAIRS[_UPPER]
 
 @dataclass
 class Moments:
-    """The sums.
-
-    Parameters
-    ----------
-    knee
-        v_s [m/s; rad/s].
-    sum
-        G.
-    square
-        Σ_s G_s ⊗ G_s, as a matrix over the `PAIRS` of columns.
-    strokes, pulses
-        How many there were.
-    lines
-        Numbers that were fitted to take the lines out.
-    means
-        Sum over the pieces of the means of the columns.
-    pieces
-        How many pieces.
-    """
+    """The sums."""
 
     knee: float
+    """v_s [m/s; rad/s]."""
     sum: Array = field(default_factory=lambda: np.zeros((COLUMNS, COLUMNS)))
+    """G."""
     square: Array = field(default_factory=lambda: np.zeros((_UPPER[0].size, _UPPER[0].size)))
+    """Σ_s G_s ⊗ G_s, as a matrix over the `PAIRS` of columns."""
     strokes: int = 0
     pulses: int = 0
+    """How many there were."""
     lines: int = 0
+    """Numbers that were fitted to take the lines out."""
     means: Array = field(default_factory=lambda: np.zeros(COLUMNS))
+    """Sum over the pieces of the means of the columns."""
     pieces: int = 0
+    """How many pieces."""
 
     def add(self, rows: Array, zero: str) -> None:
         """Count in the pulses of one piece, its zero taken out."""
@@ -136,3 +139,78 @@ def _products(parts: Array, even: Array, odd: Array, stroke: NDArray[np.int64]) 
         for i in range(even.shape[1]):
             for j in range(even.shape[1]):
                 part[i, j] += 0.5 * (even[n, i] * odd[n, j] + odd[n, i] * even[n, j])
+
+
+SECONDS = 10.0
+"""Length of a piece: within it the zero of the load cell may drift along a straight line [s]."""
+
+
+class Piece(NamedTuple):
+    """A stretch of a run."""
+
+    position: Array
+    """Inside the strokes, between ticks by a cubic [m; rad]."""
+    strokes: Strokes
+    """Where the device surely moves."""
+    block: Block
+    """What was recorded."""
+
+    def pulses(self, shape: Pulse, period: float) -> Array:
+        """A row for each pulse, see `pulses`."""
+        return weighed(
+            shape, self.position, self.strokes, period, self.block.hand_force, self.block.actuator_force
+        )
+
+
+def pieces(log: Log) -> Iterator[Piece]:
+    """The log in pieces of `SECONDS`, shorter at the end of a run."""
+    size = max(round(SECONDS / log.sample_period), 1)
+    count = log.resolution
+    for block in _cut(log.blocks(), size):
+        if not count:
+            count = count_without_steps(block.position)
+        yield _piece(block, log.resolution, count, log.stops)
+
+
+def _piece(block: Block, resolution: float, count: float, stops: tuple[float, float]) -> Piece:
+    if count == 0:  # it does not move
+        return Piece(block.position, find_strokes(np.zeros(block.position.size)), block)
+    origin = block.position[0]
+    if resolution == 0:
+        strokes = find_strokes(counted(block.position - origin, count))
+        return Piece(block.position, _within_range(strokes, block, stops), block)
+    counts = np.rint((block.position - origin) / resolution)
+    strokes = _within_range(find_strokes(counts), block, stops)
+    return Piece(positions(counts, strokes) * resolution + origin, strokes, block)
+
+
+def _within_range(strokes: Strokes, block: Block, stops: tuple[float, float]) -> Strokes:
+    """The strokes in which the sensor of the hand's force is never at the end of its range.
+
+    A stroke goes as a whole: which of its pulses stay must not depend on the force that they show.
+    """
+    if block.hand_force is None or not np.isfinite(stops).any():
+        return strokes
+    so_far = np.cumsum(beyond(block.hand_force, stops))
+    clear = so_far[strokes.last] == np.where(strokes.first > 0, so_far[strokes.first - 1], 0)
+    return strokes._replace(first=strokes.first[clear], last=strokes.last[clear], side=strokes.side[clear])
+
+
+def _cut(blocks: Iterator[Block], size: int) -> Iterator[Block]:
+    """The same samples in stretches of `size`, each within a run."""
+    kept: list[Block] = []
+    held = 0
+    for block in chain(blocks, [None]):
+        if kept and (block is None or block.run != kept[0].run):
+            yield joined(kept)
+            kept, held = [], 0
+        if block is None:
+            return
+        while held + block.time.size >= size:
+            at = size - held
+            taken, block = block.part(slice(None, at)), block.part(slice(at, None))
+            yield joined([*kept, taken])
+            kept, held = [], 0
+        if block.time.size:
+            kept.append(block)
+            held += block.time.size

@@ -22,7 +22,7 @@ from typing import Literal
 import numpy as np
 
 from zwidth.data.logs import Block, Log
-from zwidth.data.logs.block import whole_runs
+from zwidth.data.logs.table import whole_runs
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
 

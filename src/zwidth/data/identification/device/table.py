@@ -1,19 +1,28 @@
-"""An identified device as a table: in a terminal, and in a notebook."""
+"""An identified device written down: a table, a document, a [device] of a specification, what it allows."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context
+from fractions import Fraction
+from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from zwidth.data.identification.device.limits import limits, percent
-from zwidth.quantity.glossary import GLOSSARY
+import numpy as np
+
+from zwidth.model.device.device import Device
+from zwidth.model.specification.write import toml
+from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import in_a_table, quantity_unit, told_quantity, unit_text
+from zwidth.quantity.text import as_decimal, in_a_table, quantity_unit, told_quantity, unit_text
 from zwidth.showing import Lines, Part, Table, one_line
 
 if TYPE_CHECKING:
+    from zwidth.data.identification.device.estimate import Estimate
     from zwidth.data.identification.device.numbers import IdentifiedNumbers
+
 
 SYMBOLS = {
     "mass": "m",
@@ -122,3 +131,246 @@ def _row(symbol: str, name: str, value: float, low: float, high: float, unit: st
     factor, told = spoken(unit.replace(" ", "*"))
     interval = f"{in_a_table(factor * low)} … {in_a_table(factor * high)}"
     return Row(symbol, name, in_a_table(factor * value), interval, unit_text(told))
+
+
+FORMAT = "zwidth identification 1"
+
+_QUANTITY = {"spring": "stiffness", "force_lag": "delay", "slow": "coulomb_friction"}
+"""Whose unit is meant, where the name is not in the glossary."""
+
+
+def to_dict(identified: IdentifiedNumbers, confidence: float) -> dict[str, Any]:
+    """See `Identified.to_dict`."""
+
+    def key(name: str, quantity: str | None = None) -> str:
+        unit = GLOSSARY[quantity or _QUANTITY.get(name, name)].unit_for(identified.motion)
+        return f"{name}_{unit_suffix(unit)}"
+
+    document: dict[str, Any] = {
+        "format": FORMAT,
+        "source": identified.source,
+        "motion": identified.motion,
+        key("sample_period"): identified.sample_period,
+        key("resolution"): identified.resolution,
+        "confidence": confidence,
+    }
+    if identified.mass is not None:
+        document[key("given_mass", "mass")] = identified.mass
+    for name, estimate in identified.estimates.items():
+        document[key(name)] = _estimate(estimate, confidence)
+    for name in ("inward", "outward"):
+        estimate = getattr(identified.directions, name)
+        document[key(f"damping_{name}", "damping")] = _estimate(estimate, confidence)
+    for name, speed in zip(("inward", "outward"), identified.fastest, strict=True):
+        document[key(f"seen_{name}", "friction_speed")] = speed
+    for name in ("inward", "outward"):
+        estimate = getattr(identified.slopes, name)
+        document[key(f"slope_{name}", "damping")] = _estimate(estimate, confidence)
+    for limit in limits(identified):
+        low, high = limit.interval(confidence)
+        document[key(f"stiffest_by_{limit.parameter}", "stiffness")] = {
+            "value": limit.value,
+            "interval": [low, high],
+        }
+    return {
+        **document,
+        "explained": identified.explained,
+        key("force_noise", "force"): identified.force_noise,
+        key("offset", "force"): identified.offset,
+        key("viscous_alone", "damping"): identified.viscous_alone,
+        "pulse_length_s": identified.pulse_length,
+        "strokes": identified.strokes,
+        "pulses": identified.pulses,
+        "findings": [{"kind": f.kind, "text": f.text} for f in identified.findings],
+        "advice": list(advice(identified, confidence)),
+        "assumptions": [BOTH_SIDES],
+    }
+
+
+def _estimate(estimate: Estimate, confidence: float) -> dict[str, Any]:
+    return {
+        "value": estimate.value,
+        "standard_error": estimate.error,
+        "shift": estimate.shift,
+        "degrees_of_freedom": estimate.degrees,
+        "interval": list(estimate.interval(confidence)),
+    }
+
+
+# An identified device as the [device] table of a specification, each number with where it comes from.
+#
+#     damping = [0.147324, 0.154487]  # N·s/m: 0.1509 identified, 99 % interval
+#
+# Ends of intervals are rounded outwards, to six digits: what is proved for the file is proved for the
+# interval.  Numbers of the log itself are written in full.
+
+
+DIGITS = 6
+"""Significant digits of an identified number."""
+
+
+def to_toml(identified: IdentifiedNumbers, device: Device, confidence: float | None) -> str:
+    """The text of the file, see `Identified.to_toml`."""
+    lines = [f"# {line}" for line in _story(identified, confidence)]
+    lines += ["", "[device]", f"name = {toml(device.name)}", f'motion = "{device.motion}"']
+    for key, value in device.parameters().items():
+        if key not in device.assumed:
+            name = "inertia" if key == "mass" and device.motion == "rotary" else key
+            shown = _value(value, key in identified.estimates)
+            if key == "friction_speed":
+                shown = _rounded(ends(value)[0], ROUND_FLOOR)  # no farther than was seen
+            lines.append(f"{name} = {shown}  # {_origin(identified, key, device.motion, confidence)}")
+    return "\n".join(lines) + "\n"
+
+
+def _story(identified: IdentifiedNumbers, confidence: float | None) -> list[str]:
+    milliseconds = 1e3 * identified.pulse_length
+    story = [
+        f"Identified from {source_name(identified)}: {identified.strokes} strokes, {identified.pulses} means "
+        f"over {milliseconds:.3g} ms, r² = {identified.explained:.4f}.",
+        "m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a, in means over smooth pulses inside strokes.",
+        f"{BOTH_SIDES}.",
+    ]
+    story += [
+        f"{finding}" for finding in identified.findings if finding.kind in ("wrong model", "bent friction")
+    ]
+    if confidence is None:
+        return [*story, "Best guesses: what is proved of them is not proved of the device."]
+    return [
+        *story,
+        f"Lower ends of damping and Coulomb friction: both together with {percent(confidence)} confidence.",
+    ]
+
+
+def _origin(identified: IdentifiedNumbers, key: str, motion: str, confidence: float | None) -> str:
+    unit = quantity_unit(key, motion)
+    if key in identified.estimates:
+        best = f"{unit}: {identified.estimates[key].value:.4g} identified"
+        return best if confidence is None else f"{best}, {percent(confidence)} interval"
+    if key in ("sample_period", "resolution"):
+        return f"{unit}: of the log"
+    if key == "friction_speed":
+        return f"{unit}: the fastest motion seen in both directions; beyond it b and f_c are assumed"
+    return f"{unit}: as given"
+
+
+def _value(value: Exact | Interval, identified: bool) -> str:
+    if isinstance(value, Interval):
+        low = _rounded(value.low.fraction, ROUND_FLOOR)
+        return f"[{low}, {_rounded(value.high.fraction, ROUND_CEILING)}]"
+    if identified:
+        return _rounded(value.fraction, ROUND_HALF_EVEN)
+    written = as_decimal(value.fraction)
+    if written is None:
+        return toml(f"{value.fraction.numerator}/{value.fraction.denominator}")
+    return _plain(float(written))
+
+
+def _rounded(value: Fraction, rounding: str) -> str:
+    number = Context(prec=DIGITS, rounding=rounding)
+    return _plain(float(number.divide(value.numerator, value.denominator)))
+
+
+def _plain(number: float) -> str:
+    """As TOML writes a float: with a point, or an exponent."""
+    return repr(number + 0.0)
+
+
+# What identified numbers allow a spring wall: K ≤ 2 b/T, and at rest K ≤ 2 f_c/Δ (Abbott & Okamura 2005,
+# equations 21 and 25).  Both are linear in what was identified: their intervals are those of b and f_c, times
+# 2/T and 2/Δ.
+
+
+NARROW = 3.0
+"""Ratio of quick to slow speeds (upper to lower tenth) below which b and f_c are hard to tell apart."""
+
+
+class Limit(NamedTuple):
+    """A bound of the stiffness, from one parameter."""
+
+    parameter: str
+    """"damping" or "coulomb_friction"."""
+    symbol: str
+    """2b/T or 2f_c/Δ."""
+    factor: float
+    """By which the parameter becomes a stiffness; inf where Δ is 0."""
+    estimate: Estimate
+    """Of the parameter."""
+    best: float
+    """The best guess of what counts of it [N·s/m, N; N·m·s/rad, N·m]."""
+    least: Callable[[float], float]
+    """What it is at least, with a confidence."""
+
+    @property
+    def value(self) -> float:
+        """The best guess [N/m; N·m/rad]."""
+        return self.factor * self.best
+
+    def interval(self, confidence: float) -> tuple[float, float]:
+        """Where the truth is, this often; what is negative allows no stiffness [N/m; N·m/rad]."""
+        low, high = self.least(confidence), self.estimate.interval(confidence)[1]
+        return self.factor * low, self.factor * max(high, low)
+
+
+def limits(identified: IdentifiedNumbers) -> tuple[Limit, ...]:
+    """Both bounds, where the parameters were identified and the encoder has a step."""
+    found = []
+    if "damping" in identified.estimates:
+        factor = 2 / identified.sample_period
+        estimate, best = identified.estimates["damping"], identified.best_damping()
+        found.append(Limit("damping", "2b/T", factor, estimate, best, identified.least_damping))
+    if "coulomb_friction" in identified.estimates and identified.resolution > 0:
+        factor = 2 / identified.resolution
+        estimate, least = identified.estimates["coulomb_friction"], identified.least_coulomb_friction
+        found.append(Limit("coulomb_friction", "2f_c/Δ", factor, estimate, estimate.value, least))
+    return tuple(found)
+
+
+def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
+    """Which number limits the stiffest wall, and how to know it better."""
+    if identified.shows("wrong model"):
+        return ("fit Coulomb friction too: these numbers are of another model than the device",)
+    found = limits(identified)
+    binding = min(found, key=lambda limit: limit.interval(confidence)[0])
+    name = {"damping": "damping", "coulomb_friction": "Coulomb friction"}[binding.parameter]
+    least = told_quantity(binding.interval(confidence)[0], "stiffness", identified.motion, 4)
+    lines = [f"{name} limits the wall: {binding.symbol} ≥ {least} at {percent(confidence)}"]
+    longer = _times_longer(binding.estimate, confidence)
+    if longer < inf:
+        lines.append(
+            f"a log {longer:.2g} times as long would halve the interval of {name}, "
+            "which narrows as 1/√duration"
+        )
+    else:
+        lines.append(
+            f"a longer log would not halve the interval of {name}: half of it and more is what means over "
+            f"{1e3 * identified.pulse_length:.3g} ms may be off; smoother, longer strokes allow longer ones"
+        )
+    factor, speed = spoken(GLOSSARY["friction_speed"].unit_for(identified.motion))
+    inward, outward = (factor * fast for fast in identified.fastest)
+    lines.append(
+        f"friction was seen up to {inward:.3g} {speed} into the wall and {outward:.3g} out of it; at "
+        "higher speeds it is not known: "
+        "log quicker strokes, zwidth plan --speed says which"
+    )
+    slow, quick = np.quantile(np.abs(identified.points["speed"].values), [0.1, 0.9])
+    if quick < NARROW * slow:
+        lines.append(
+            f"most of the motion is between {factor * slow:.2g} and {factor * quick:.2g} {speed}: slower and "
+            "quicker strokes "
+            "tell damping and Coulomb friction apart"
+        )
+    return tuple(lines)
+
+
+def percent(confidence: float) -> str:
+    """0.99 as "99 %", never more than it is."""
+    return f"{int(confidence * 1e6 + 1e-6) / 1e4:.6g} %"
+
+
+def _times_longer(estimate: Estimate, confidence: float) -> float:
+    """n for which reach/√n + shift is half of what reach + shift is."""
+    _, high = estimate.interval(confidence)
+    whole = high - estimate.value
+    rest = whole / 2 - estimate.shift
+    return float(((whole - estimate.shift) / rest) ** 2) if rest > 0 else inf

@@ -1,15 +1,160 @@
-"""What a log says about a finger, and what takes it: a hand to simulate, laws that look ahead."""
+"""What a log says about a finger; and what it cannot be: signs, units, forces that do not agree.
+
+A finger is a mass on a spring and a damper, all three > 0.  Numbers below 0 are of no finger, and neither
+is a stiffness a thousand times that of one: fingers and wrists have some hundred newtons per metre (500 N/m,
+Gillespie & Cutkosky 1996, as told by others), a whole arm some thousands at the most.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+import numpy as np
+
 from zwidth.data.identification.device.estimate import Estimate
-from zwidth.data.logs import Finding
+from zwidth.data.identification.device.findings import Bounds
+from zwidth.data.identification.finger.fit import TERMS, Fit, Lag
+from zwidth.data.identification.finger.means import Pieces
+from zwidth.data.logs import Finding, Log
 from zwidth.errors import InputError
 from zwidth.model.operator.fingers import Finger
+
+BY_ACTUATOR = "stiffness by the actuator"
+
+FINGER = Bounds(
+    "finger",
+    (*TERMS, BY_ACTUATOR),
+    ("stiffness", BY_ACTUATOR),
+    "no sign that is turned round makes a finger of it: was the force of the hand recorded late, as a load "
+    "cell's filter makes it (k times the lateness is taken from the damping), is the device heavier or more "
+    "damped than it is said to be, or is another force at work that is not in the log?",
+)
+
+SOFTEST, STIFFEST = 2.0, 5e4
+"""Between them lies the stiffness of every finger, hand and arm [N/m]."""
+
+APART = 2.0
+"""Times by which two stiffnesses of one finger may differ while the device's friction is not known."""
+
+USUAL = {"position": (1e-5, 0.05), "hand_force": (0.01, 100.0), "actuator_force": (0.01, 100.0)}
+"""How far it goes about while a finger is shaken [m], [N]."""
+
+
+def refuse_scale(log: Log, pieces: Pieces, stiffness: Estimate) -> None:
+    """Refuse a stiffness that is no finger's, unless the device turns."""
+    low, high = stiffness.interval()
+    if log.motion == "rotary" or (high >= SOFTEST and low <= STIFFEST):
+        return
+    raise InputError(
+        f"{log.source}: stiffness comes out as {stiffness}, and no finger, hand or arm has that "
+        f"({SOFTEST:g} to {STIFFEST:g} N/m at the most): {_ranges(pieces)}; most likely a unit "
+        f"is off by 1000, "
+        'such as mm read as m or mN as N: state it with units={"position": "mm"}, or with scale'
+    )
+
+
+def _ranges(pieces: Pieces) -> str:
+    """How far each column goes, the unlikely ones named."""
+    columns = {
+        "position": pieces.position,
+        "hand_force": pieces.hand,
+        "actuator_force": pieces.actuator,
+    }
+    said = []
+    for name, values in columns.items():
+        if values is None:
+            continue
+        size = float(np.median(np.ptp(values, axis=1)))
+        least, most = USUAL[name]
+        odd = "" if least <= size <= most else ", which is unlikely"
+        unit = "m" if name == "position" else "N"
+        said.append(f"the {name.replace('_', ' ')} goes over {size:.3g} {unit} in a piece{odd}")
+    return ", ".join(said)
+
+
+def refuse_disagreement(log: Log, hand: Estimate, actuator: Estimate, friction_known: bool) -> None:
+    """Refuse two forces that are not of one finger, by its stiffness by each.
+
+    Where the device's Coulomb friction is not known, it was left out of the second.
+    """
+    apart = 1.0 if friction_known else APART
+    (low, high), (least, most) = hand.interval(0.999), actuator.interval(0.999)
+    if low <= apart * most and least <= apart * high:
+        return
+    raise InputError(
+        f"{log.source}: the two forces are not of one finger: its stiffness is {hand} by the hand's "
+        f"force and "
+        f"{actuator} by the actuator's, {hand.value / actuator.value:.3g} times as much; most likely "
+        f"one of them has "
+        "another unit or scale than was stated, the load cell is at the end of its range, or more "
+        "than the actuator "
+        "and the finger act on the device; check both with a known weight, or leave one out with "
+        'columns={"hand_force": None} and the device given'
+    )
+
+
+class LoadCellError(InputError):
+    """The load cell is not to be believed; the actuator's force may still tell the finger."""
+
+
+def late(log: Log, lag: Lag) -> LoadCellError:
+    """What is said of a load cell that is late."""
+    return LoadCellError(
+        f"{log.source}: the force of the hand is recorded late, by {1e3 * lag.least:.2g} to "
+        f"{1e3 * lag.most:.2g} ms: each millisecond takes as much damping from the finger as its spring "
+        "gives in it, and mass too; give the device and log the actuator's force, which tell the finger "
+        "without the load cell; or take the filter of the load cell away, or shift its samples by what it is "
+        "late"
+    )
+
+
+def at_the_stop(log: Log) -> LoadCellError | None:
+    """What is said where too little is left without what a load cell at its end stop says."""
+    for finding in log.findings:
+        if finding.kind == "saturated":
+            return LoadCellError(
+                f"{log.source}: {finding.text}, and what is left shows too little: shake less strongly, take "
+                "a larger load cell, or give the device and log the actuator's force, which tell the finger "
+                "without it"
+            )
+    return None
+
+
+def doubts(lag: Lag) -> Iterator[Finding]:
+    """What the lag that may be there makes of the intervals."""
+    yield Finding(
+        kind="late, or read before the step",
+        text="the force of the hand shows the actuator's steps late: either it is read before them, and in "
+        f"time, or it is recorded up to {1e3 * lag.most:.2g} ms late; nothing in the log tells which, and "
+        "the intervals of mass and damping hold both; give the device or the actuator's delay, and they will "
+        "not have to",
+    )
+
+
+def widened(fit: Fit, lag: Lag | None) -> np.ndarray:
+    """What a lag that may be there takes from mass, damping and stiffness.
+
+    c τ of mass and k τ of damping, c being larger by as much: (c + k τ) τ and k τ.
+    """
+    if lag is None or not lag.seen:
+        return np.zeros(len(TERMS))
+    _, damping, stiffness = np.abs(fit.values)
+    return np.array([(damping + stiffness * lag.most) * lag.most, stiffness * lag.most, 0.0])
+
+
+def apart(hand: Estimate, actuator: Estimate) -> tuple[float, Finding] | None:
+    """By how much two dampings of one finger surely differ, and the finding; None where they may not."""
+    (low, high), (least, most) = hand.interval(0.999), actuator.interval(0.999)
+    if low <= most and least <= high:
+        return None
+    finding = Finding(
+        kind="dampings apart",
+        text=f"damping is {hand} by the hand's force and {actuator} by the actuator's: the load cell is a "
+        "little late, or the device is not as it is said to be; the intervals hold both",
+    )
+    return abs(hand.value - actuator.value), finding
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,11 +3,10 @@
     m_h ẍ + c ẋ + k (x − x_a(t)) = −f_h                           force of the hand measured
     (m + m_h) ẍ + (b + c) ẋ + f_c sgn ẋ + k (x − x_a(t)) = −f_a        device known
 
-in means over smooth pulses, as `identify` has them for the device.  What the finger wants, x_a, is
-slow: within a short piece it is a cubic of time, and so is the zero of a load cell; both are
-taken out.  A finger may be taken for a mass on a spring and a damper for some 30 ms (Gillespie &
-Cutkosky 1996, as told by others); later it answers on purpose.  So pieces are short, and what is slower
-than they are does not count.
+in means over smooth pulses, as `identify` has them for the device.  What the finger wants, x_a, is slow:
+within a short piece it is a cubic of time, and so is the zero of a load cell; both are taken out.  A finger
+may be taken for a mass on a spring and a damper for some 30 ms (Gillespie & Cutkosky 1996, as told by
+others); later it answers on purpose.  So pieces are short, and what is slower than they are does not count.
 
 The finger also pushes on its own account, it trembles, and this moves x: least squares would take
 it for an answer.  The perturbation does not know of it: it is sent through the fitted model, and
@@ -29,11 +28,13 @@ import numpy as np
 
 from zwidth.data.identification.device.choice import LENGTHS, LONGER, SAFETY
 from zwidth.data.identification.device.estimate import Estimate, perhaps_none, unit_of
-from zwidth.data.identification.device.impossible import refuse_impossible
+from zwidth.data.identification.device.findings import refuse_impossible
 from zwidth.data.identification.device.pulses import PIECES
-from zwidth.data.identification.finger.doubts import (
+from zwidth.data.identification.finger.fit import TERMS, Fit, fitted, lag_of, lag_without_actuator
+from zwidth.data.identification.finger.identified import (
     BY_ACTUATOR,
     FINGER,
+    IdentifiedFinger,
     LoadCellError,
     apart,
     at_the_stop,
@@ -43,11 +44,15 @@ from zwidth.data.identification.finger.doubts import (
     refuse_scale,
     widened,
 )
-from zwidth.data.identification.finger.fit import TERMS, Fit, fitted
-from zwidth.data.identification.finger.identified import IdentifiedFinger
-from zwidth.data.identification.finger.lag import lag_of, lag_without_actuator
-from zwidth.data.identification.finger.means import Means, Pieces, means, pieces_of, response
-from zwidth.data.identification.finger.weights import Weights, weights
+from zwidth.data.identification.finger.means import (
+    Means,
+    Pieces,
+    Weights,
+    means,
+    pieces_of,
+    response,
+    weights,
+)
 from zwidth.data.logs import Finding, Log
 from zwidth.errors import InputError
 from zwidth.model.device.device import Device
@@ -269,7 +274,7 @@ def _against_the_other_force(task: _Task, road: _Road) -> tuple[Array, list[Find
     other = _estimates(
         road.total.fit, _shift(by_actuator, road._replace(ways=road.total)), task.known, log.motion
     )
-    found = apart(log, hand, other["damping"])
+    found = apart(hand, other["damping"])
     if found is not None:
         shift, said = shift + np.array([0.0, found[0], 0.0]), [*said, found[1]]
     return shift, said

@@ -7,17 +7,17 @@ wants to be, the zero of the load cell, gravity.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
+from scipy.interpolate import BSpline
 from scipy.signal import cont2discrete, lfilter
 
-from zwidth.data.identification.device.strokes import count_without_steps, find_strokes
-from zwidth.data.identification.finger.weights import Weights
+from zwidth.data.identification.device.pulses import count_without_steps, find_strokes
 from zwidth.data.logs import Log
-from zwidth.data.logs.block import whole_runs
-from zwidth.data.logs.stops import beyond
+from zwidth.data.logs.sensors import beyond
+from zwidth.data.logs.table import whole_runs
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
 
@@ -26,60 +26,42 @@ if TYPE_CHECKING:
 
 
 class Pieces(NamedTuple):
-    """What was recorded, a row for each piece.
-
-    Parameters
-    ----------
-    position, expected
-        [m; rad] as read, and as the perturbation alone would have it.
-    hand, actuator
-        [N; N·m]; None where there is none.
-    side
-        sgn ẋ inside strokes; 0 between, where the device turns or rests.
-    runs
-        How many pieces of each run follow each other.
-    clear
-        Of which pieces the means are taken.
-    """
+    """What was recorded, a row for each piece."""
 
     position: Array
     expected: Array | None
+    """[m; rad] as read, and as the perturbation alone would have it."""
     hand: Array | None
     actuator: Array | None
+    """[N; N·m]; None where there is none."""
     side: Array
+    """sgn ẋ inside strokes; 0 between, where the device turns or rests."""
     runs: tuple[int, ...]
+    """How many pieces of each run follow each other."""
     clear: NDArray[np.bool_]
+    """Of which pieces the means are taken."""
 
 
 class Means(NamedTuple):
-    """Means over pulses, a row for each.
-
-    Parameters
-    ----------
-    even, odd
-        ẍ, ẋ, x by the even and by the odd samples.
-    expected
-        The same as the perturbation alone would have it; None where it is not known.
-    hand
-        f_h.
-    actuator, actuator_slope
-        f_a as it was held, and its rate.
-    side, turning, moving
-        sgn ẋ, 0 in turns; the same with a change of sign in the middle of turns; and the part inside strokes.
-    piece
-        Which piece it is of.
-    """
+    """Means over pulses, a row for each."""
 
     even: Array
     odd: Array
+    """ẍ, ẋ, x by the even and by the odd samples."""
     expected: Array | None
+    """The same as the perturbation alone would have it; None where it is not known."""
     hand: Array | None
+    """f_h."""
     actuator: Array | None
     actuator_slope: Array | None
+    """f_a as it was held, and its rate."""
     side: Array
     turning: Array
     moving: Array
+    """sgn ẋ, 0 in turns; the same with a change of sign in the middle of turns; and the part inside
+    strokes."""
     piece: NDArray[np.int64]
+    """Which piece it is of."""
 
 
 def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
@@ -210,4 +192,61 @@ def _turning(side: Array) -> Array:
     found: Array = np.where(
         at - before < after - at, early, np.where(at - before > after - at, late, (early + late) / 2)
     )
+    return found
+
+
+# Pulses for a shaken finger: straight between samples, so that sums are integrals.
+#
+#     φ_k of a cubic B-spline, φ(t) straight between:
+#     ∫ φ ẍ = Σ φ_k (x_{k+1} − 2x_k + x_{k−1})/T         whatever x does between
+#     ∫ φ x = T Σ φ_k (x_{k−1} + 10 x_k + x_{k+1})/12     where ẍ is constant between, as under a held force
+#     ∫ φ ẋ = Σ ½(φ_{k−1} − φ_{k+1}) (14 x_k − x_{k−1} − x_{k+1})/12     the same, ẍ smooth enough
+#
+# A hand that moves a device in strokes of some hertz does not tell such sums from those of smooth pulses, as
+# `pulses` has them; a perturbation of 50 Hz at 1 kHz does, by (ωT)²/12, a per cent of the finger's mass.
+
+
+_SPLINE = BSpline.basis_element(np.arange(-2.0, 3.0), extrapolate=False)
+
+
+class Weights(NamedTuple):
+    """A pulse as weights of samples, in the mean over it."""
+
+    piece: int
+    """h, even: samples of each of its four pieces."""
+    reach: int
+    """2h + 1: samples from the middle to the first and to the last weight."""
+    motion: tuple[Array, Array, Array]
+    """Weights that make ẍ T², ẋ T and x."""
+    force: Array
+    """Of a force that was measured at the samples."""
+    held: Array
+    steps: Array
+    """Of a held force, and of its rate times T, from −reach − lag on."""
+    lag: int
+    """Samples by which these begin earlier, for the force that was held comes later than its sample."""
+
+
+def weights(piece: int, delay: float) -> Weights:
+    """The pulse of pieces of h samples, h ≥ 2 and even; `delay` from one to its actuator force [samples]."""
+    reach = 2 * piece + 1
+    value = np.nan_to_num(_SPLINE(np.arange(-reach, reach + 1) / piece)) / piece
+    bend = np.convolve(value, (1, -2, 1), "same")
+    slope = np.convolve(np.convolve(value, (-0.5, 0, 0.5), "same"), (-1 / 12, 14 / 12, -1 / 12), "same")
+    lag = int(np.ceil(delay)) + 1
+    begins = np.arange(-reach - lag, reach + 2) + delay
+    steps = -np.diff(np.interp(begins, np.arange(-reach, reach + 1), value))
+    place = value + bend / 12
+    return Weights(
+        piece, reach, (bend, slope, place), place, np.diff(_integral(value, begins + reach)), steps, lag
+    )
+
+
+def _integral(value: Array, at: NDArray[np.floating[Any]]) -> Array:
+    """Of the pulse from its first sample on, straight between samples."""
+    whole = np.append(0.0, np.cumsum((value[1:] + value[:-1]) / 2))
+    inside = np.clip(at, 0.0, value.size - 1.0)
+    k = np.minimum(inside.astype(np.int64), value.size - 2)
+    u = inside - k
+    found: Array = whole[k] + value[k] * u + (value[k + 1] - value[k]) * u * u / 2
     return found

@@ -19,13 +19,10 @@ from zwidth.data.tissue.experiment.choice import (
     tried,
     understood,
 )
-from zwidth.data.tissue.experiment.estimate import covariance
-from zwidth.data.tissue.experiment.history import history_of
-from zwidth.data.tissue.experiment.kind import KINDS, Kind, kind_of
-from zwidth.data.tissue.experiment.profile import bends
-from zwidth.data.tissue.experiment.reading import Raw, read_tests
+from zwidth.data.tissue.experiment.columns import Raw, read_tests
+from zwidth.data.tissue.experiment.estimate import bends, covariance
+from zwidth.data.tissue.experiment.history import KINDS, Kind, history_of, kind_of, one_trial, places
 from zwidth.data.tissue.experiment.result import TissueTest
-from zwidth.data.tissue.experiment.tidy import one_trial, places
 from zwidth.data.tissue.model import as_model
 from zwidth.data.tissue.result import TissueFit
 from zwidth.errors import InputError

@@ -7,14 +7,14 @@ before, as the file counts.  The whole history is kept: a ramp is a ramp, and no
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Iterator
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from zwidth.data.logs.block import Finding
-from zwidth.data.tissue.experiment.kind import Kind, changes, noise_of_differences
-from zwidth.data.tissue.experiment.tidy import FEWEST, Trial
-from zwidth.data.tissue.faults import MOST_HOLES
+from zwidth.data.logs.table import Finding
+from zwidth.data.tissue.experiment.columns import Raw
+from zwidth.data.tissue.findings import MOST_HOLES
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
 from zwidth.quantity.text import shown
@@ -30,33 +30,22 @@ SMALL = 0.02
 
 
 class History(NamedTuple):
-    """A test as it is fitted.
-
-    Parameters
-    ----------
-    time
-        From 0 [s].
-    depth
-        From where the probe starts, positive inward [m].
-    force
-        Less its zero before the load, positive out of the tissue [N].
-    kind
-        Which test it is.
-    starts_loaded
-        The step came before the first sample.
-    surface
-        Depth at which the probe may touch [m]; None where it touches from the start.
-    begins
-        Samples after a hole across which the probe moved.
-    """
+    """A test as it is fitted."""
 
     time: Array
+    """From 0 [s]."""
     depth: Array
+    """From where the probe starts, positive inward [m]."""
     force: Array
+    """Less its zero before the load, positive out of the tissue [N]."""
     kind: Kind
+    """Which test it is."""
     starts_loaded: bool
+    """The step came before the first sample."""
     surface: float | None
+    """Depth at which the probe may touch [m]; None where it touches from the start."""
     begins: tuple[int, ...]
+    """Samples after a hole across which the probe moved."""
     findings: tuple[Finding, ...]
 
 
@@ -220,3 +209,152 @@ def about_surface(surface: float) -> Finding:
     """That it is fitted."""
     text = f"the probe comes from outside and touches after {shown(surface, 'm', 3)}: that depth is fitted"
     return Finding(kind="surface", text=text)
+
+
+# Which test it is, from the data: what is held.
+#
+# relaxation   the probe is held, and the force fades
+# creep        the force is held, and the probe sinks in
+# loading      neither is: the probe goes in, or in and out
+#
+# Held is what stays in a narrow band for most of the time.  Where both do, it is what stays there longer;
+# where they do for nearly as long, as a force that has faded quickly does, it is the quieter: what a machine
+# holds it holds by what it measures well.
+
+
+Kind = Literal["relaxation", "creep", "loading"]
+KINDS: tuple[Kind, ...] = ("relaxation", "creep", "loading")
+
+BAND = 0.03
+"""Of the range of a quantity, within which it is held."""
+
+MOST = 0.45
+"""Of the time, for which something is held in a relaxation or creep test."""
+
+ALIKE = 0.05
+"""Of the time; what is held for so little longer is not told apart by it."""
+
+NOISES = 6.0
+"""Times its noise, within which a quantity never changes."""
+
+
+def kind_of(time: Array, indentation: Array, force: Array) -> Kind:
+    """The kind of a test."""
+    probe, push = held_for(time, indentation), held_for(time, force)
+    if max(probe, push) < MOST:
+        return "loading"
+    if abs(probe - push) < ALIKE:
+        return "relaxation" if _noise(indentation) <= _noise(force) else "creep"
+    return "relaxation" if probe >= push else "creep"
+
+
+def held_for(time: Array, values: Array) -> float:
+    """The share of the time for which a quantity stays within `BAND` of its range about one value."""
+    span = float(np.ptp(values))
+    noise = noise_of_differences(values)
+    if span <= NOISES * noise or span == 0.0:
+        return 1.0
+    width = max(BAND * span, NOISES * noise)
+    weight = np.gradient(time)
+    order = np.argsort(values)
+    ordered, total = values[order], np.concatenate([[0.0], np.cumsum(weight[order])])
+    ends = np.searchsorted(ordered, ordered + width, side="right")
+    return float((total[ends] - total[: ordered.size]).max() / total[-1])
+
+
+def _noise(values: Array) -> float:
+    """Of a quantity, as a share of its range."""
+    span = float(np.ptp(values))
+    return noise_of_differences(values) / span if span else 0.0
+
+
+def noise_of_differences(values: Array) -> float:
+    """The standard deviation of white noise on a smooth quantity, by its second differences."""
+    if values.size < 4:
+        return 0.0
+    second = np.diff(values, 2)
+    return float(np.median(np.abs(second - np.median(second)))) / 0.6745 / np.sqrt(6.0)
+
+
+def changes(values: Array) -> bool:
+    """True where a quantity goes further than its noise does."""
+    return bool(np.ptp(values) > NOISES * noise_of_differences(values) and np.ptp(values) > 0)
+
+
+FEWEST = 12
+"""Samples below which nothing is fitted."""
+
+BACK = 0.5
+"""Of the time of a trial by which a stamp falls back where the next trial begins."""
+
+
+class Trial(NamedTuple):
+    """Times that increase from 0, indentation and force as they stand in the file [s], [m], [N]."""
+
+    time: Array
+    indentation: Array
+    force: Array
+    findings: tuple[Finding, ...]
+
+
+def one_trial(raw: Raw, number: int = 1) -> Trial:
+    """The trial of a number from 1, of those that come one after the other."""
+    said = list(raw.findings)
+    parts, gone = _parts(raw)
+    if gone:
+        text = f"{gone} of {raw.time.size} rows lack a number and are left out"
+        said.append(Finding(kind="missing", text=text, samples=gone))
+    part, more = _in_order(parts[number - 1])
+    said.extend(more)
+    if part.shape[1] < FEWEST:
+        raise InputError(
+            f"{raw.source}: {part.shape[1]} samples are left; a fit of a tissue needs {FEWEST} at the least"
+        )
+    return Trial(part[0] - part[0, 0], part[1], part[2], tuple(said))
+
+
+def places(raws: list[Raw]) -> list[tuple[Raw, int]]:
+    """Every trial: where it stands, and its number there."""
+    return [(raw, k + 1) for raw in raws for k in range(len(_parts(raw)[0]))]
+
+
+def _parts(raw: Raw) -> tuple[list[Array], int]:
+    """The rows of each trial, and how many rows lack a number."""
+    table = np.stack([raw.time, raw.indentation, raw.force])
+    finite = np.isfinite(table).all(axis=0)
+    label = None if raw.trial is None else raw.trial[finite]
+    return _trials(table[:, finite], label), int(np.count_nonzero(~finite))
+
+
+def _trials(table: Array, label: Array | None) -> list[Array]:
+    """Cut where the label changes, or where the time falls back by much of a trial."""
+    if not table.shape[1]:
+        return [table]
+    if label is not None and np.unique(label).size > 1:
+        cuts = np.flatnonzero(np.diff(label) != 0) + 1
+    else:
+        time = table[0]
+        cuts_list, begin = [], 0
+        for k in (np.flatnonzero(np.diff(time) < 0) + 1).tolist():
+            if time[k - 1] - time[k] > BACK * (time[k - 1] - time[begin]):
+                cuts_list.append(k)
+                begin = k
+        cuts = np.array(cuts_list, dtype=int)
+    return [part for part in np.split(table, cuts, axis=1) if part.shape[1]]
+
+
+def _in_order(part: Array) -> tuple[Array, Iterator[Finding]]:
+    """Sorted by time, and of samples with one stamp the mean."""
+    said = []
+    if (np.diff(part[0]) < 0).any():
+        out = int(np.count_nonzero(np.diff(part[0]) < 0))
+        said.append(Finding(kind="order", text=f"{out} stamps go back: the rows are sorted", samples=out))
+        part = part[:, np.argsort(part[0], kind="stable")]
+    stamps, where, counts = np.unique(part[0], return_inverse=True, return_counts=True)
+    if stamps.size < part.shape[1]:
+        same = part.shape[1] - stamps.size
+        text = f"{same} rows repeat the stamp before: of such samples the mean is taken"
+        said.append(Finding(kind="repeated", text=text, samples=same))
+        means = [np.bincount(where.ravel(), weights=column) / counts for column in part[1:]]
+        part = np.stack([stamps, *means])
+    return part, iter(said)

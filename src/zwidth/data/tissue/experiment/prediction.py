@@ -124,20 +124,21 @@ def derivatives(task: Task, point: Array) -> Array:
         if k == task.own and task.zero:
             table[:, k] = 1.0
             continue
-        up, down = point.copy(), point.copy()
-        up[k] += STEP
-        down[k] -= STEP
+        up, down = _beside(point, k)
         table[:, k] = (predicted(task, up) - predicted(task, down)) / (2 * STEP)
     if quick and task.held:  # what fades, fades with the branch
-        without = point.copy()
-        without[point.size - task.held :] = 0.0
         for k in range(task.own):
-            up, down = point.copy(), point.copy()
-            up[k] += STEP
-            down[k] -= STEP
-            faded = [_fading(task, _values(task, at)) @ point[point.size - task.held :] for at in (up, down)]
-            table[:, k] += (faded[0] - faded[1]) / (2 * STEP)
+            up, down = (_fading(task, _values(task, at)) @ point[-task.held :] for at in _beside(point, k))
+            table[:, k] += (up - down) / (2 * STEP)
     return table
+
+
+def _beside(point: Array, k: int) -> tuple[Array, Array]:
+    """A step up and a step down along one of its numbers."""
+    up, down = point.copy(), point.copy()
+    up[k] += STEP
+    down[k] -= STEP
+    return up, down
 
 
 def _values(task: Task, point: Array) -> list[float]:

@@ -10,10 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from zwidth.data.tissue.experiment.choice import UNLIKELY, Tried, label, leftover
-from zwidth.data.tissue.experiment.history import History
-from zwidth.data.tissue.experiment.kind import Kind
-from zwidth.data.tissue.experiment.slowest import Slowest, slowest_of
+from zwidth.data.tissue.experiment.choice import UNLIKELY, Slowest, Tried, label, leftover, slowest_of
+from zwidth.data.tissue.experiment.history import History, Kind
 from zwidth.data.tissue.result import TissueFit
 from zwidth.data.tissue.uncertainty import by_chance
 from zwidth.errors import InputError

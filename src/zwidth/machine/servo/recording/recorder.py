@@ -22,6 +22,7 @@ import pyarrow as pa
 
 from zwidth.data.logs.served import mcap as layout
 from zwidth.data.logs.served.contents import ROWS_LOST, Head, as_json, from_json
+from zwidth.data.logs.contents import ROWS_LOST, Head, as_json, from_json
 from zwidth.errors import InputError
 from zwidth.loop.trace import own_version
 from zwidth.machine.servo.live.rows import Rows, ros2_schema

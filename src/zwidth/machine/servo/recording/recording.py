@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.data.logs import Log, read_log
-from zwidth.data.logs.served.contents import FORMAT, name_and_unit, rows_lost
-from zwidth.data.logs.served.mcap import mcap_head, mcap_parts
+from zwidth.data.logs.contents import FORMAT, name_and_unit, rows_lost
+from zwidth.data.logs.served import mcap_head, mcap_parts
 from zwidth.errors import InputError
 from zwidth.lazy import above
 from zwidth.machine.servo.ring import ENDED, SERVING

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from zwidth.data.logs.served.contents import COLUMNS, ROWS_LOST
+from zwidth.data.logs.contents import COLUMNS, ROWS_LOST
 from zwidth.errors import InputError
 from zwidth.loop.simulate import simulate, simulated
 from zwidth.loop.timing import Timing

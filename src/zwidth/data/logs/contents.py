@@ -15,10 +15,7 @@ from zwidth.errors import InputError
 from zwidth.showing import one_line
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from zwidth.native.compiled import Array
 
 FORMAT = "zwidth recording 1"
 
@@ -49,27 +46,18 @@ _UNITS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Head:
-    """What is known before the first row.
-
-    Parameters
-    ----------
-    columns
-        Names, units in them.
-    motion
-        "linear" or "rotary".
-    period
-        T [s].
-    title
-        What was served, in words.
-    about
-        Whatever else was told: device, environment, laws, safety, versions; as JSON has it.
-    """
+    """What is known before the first row."""
 
     columns: tuple[str, ...]
+    """Names, units in them."""
     motion: str
+    """"linear" or "rotary"."""
     period: float
+    """T [s]."""
     title: str
+    """What was served, in words."""
     about: dict[str, Any]
+    """Whatever else was told: device, environment, laws, safety, versions; as JSON has it."""
 
     def text(self, **more: Any) -> str:
         """All of it as JSON, and what is said more."""
