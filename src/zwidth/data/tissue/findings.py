@@ -7,9 +7,6 @@ from math import log, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy import stats
-from scipy.interpolate import CubicHermiteSpline
-from scipy.signal import lfilter
 
 from zwidth.data.identification.device.choice import SURE
 from zwidth.data.logs import Finding
@@ -17,7 +14,7 @@ from zwidth.data.logs.sensors import Stops, at_ends, beyond, grid_of
 from zwidth.data.tissue.model import Model, Record
 from zwidth.errors import InputError
 from zwidth.model.environment.modes import decaying, samples
-from zwidth.native.compiled import Array
+from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.text import quantity_unit
 
 if TYPE_CHECKING:
@@ -193,6 +190,8 @@ class Faults(NamedTuple):
         """A prediction as it is recorded late by so much [s]; smooth between its samples."""
         if not self.late:
             return predicted
+        from scipy.interpolate import CubicHermiteSpline  # scipy takes its time
+
         smooth = CubicHermiteSpline(time, predicted, np.gradient(predicted, time))
         if self.late == "delay" or late < LEAST:
             return np.asarray(smooth(time - late))
@@ -242,11 +241,11 @@ def unlikely(jacobian: Array, left: Array, columns: Array, noise: Noise) -> floa
     beside = columns - basis @ (basis.T @ columns)
     if not (np.linalg.norm(beside, axis=0) > 1e-6 * np.linalg.norm(columns, axis=0)).all():
         return 1.0
-    coloured = lfilter([1.0], noise.coefficients, beside[::-1], axis=0)
+    back = coloured(noise.coefficients, beside[::-1])
     score = beside.T @ left
-    spread = noise.variance * coloured.T @ coloured
+    spread = noise.variance * back.T @ back
     value = float(score @ np.linalg.lstsq(spread, score, rcond=None)[0])
-    return float(stats.chi2.sf(value, columns.shape[1]))
+    return by_chance(value, columns.shape[1])
 
 
 def sudden(model: Model, p: list[float], record: Record, left: Array) -> int | None:
@@ -258,8 +257,8 @@ def sudden(model: Model, p: list[float], record: Record, left: Array) -> int | N
         return None
     mu, eta = max(model.elements(p).branches, key=lambda pair: pair[1])
     keep = float(np.exp(-np.median(np.diff(record.time)) * mu / eta))
-    ahead = lfilter([1.0], [1.0, -keep], left[::-1])[::-1]
-    weight = lfilter([1.0], [1.0, -keep * keep], np.ones(left.size))[::-1]
+    ahead = coloured(np.array([1.0, -keep]), left[::-1, None])[::-1, 0]
+    weight = coloured(np.array([1.0, -keep * keep]), np.ones((left.size, 1)))[::-1, 0]
     score = np.abs(ahead) / np.sqrt(weight)
     score[:2] = score[-8:] = 0.0
     return int(np.argmax(score))
@@ -318,15 +317,39 @@ def noise_of(residuals: Array, largest_order: int = LARGEST_ORDER) -> Noise:
     return best
 
 
+def coloured(coefficients: Array, white: Array) -> Array:
+    """Noise of white noise, column by column: y(k) = w(k) − Σ a_i y(k − i)."""
+    found = np.empty(white.shape)
+    _colour(coefficients, np.ascontiguousarray(white), found)
+    return found
+
+
+@compiled
+def _colour(coefficients: Array, white: Array, found: Array) -> None:
+    for k in range(white.shape[0]):
+        for column in range(white.shape[1]):
+            before = 0.0
+            for i in range(min(k, coefficients.shape[0] - 1), 0, -1):
+                before -= coefficients[i] * found[k - i, column]
+            found[k, column] = before + white[k, column]
+
+
+def by_chance(value: float, degrees: int) -> float:
+    """How seldom a sum of so many squares of white noise, each of variance 1, is larger."""
+    from scipy.special import chdtrc  # scipy.stats, which has it too, takes four times as long to load
+
+    return float(chdtrc(degrees, max(value, 0.0))) if degrees > 0 else float("nan")
+
+
 def covariance(jacobian: Array, noise: Noise) -> tuple[Array, float]:
     """The covariance of the parameters, and the condition number of the Jacobian."""
     u, s, vt = np.linalg.svd(jacobian, full_matrices=False)
     largest = s[0] if s.size and s[0] > 0.0 else 1.0
     kept = np.maximum(s, _SMALLEST * largest)
-    coloured = lfilter([1.0], noise.coefficients, u[::-1], axis=0)
+    back = coloured(noise.coefficients, u[::-1])
     k = jacobian.shape[1]
     scale = noise.variance * noise.samples / max(noise.samples - k, 1.0)
-    half = coloured / kept @ vt
+    half = back / kept @ vt
     return scale * half.T @ half, float(largest / s[-1]) if s[-1] > 0.0 else float("inf")
 
 

@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 from scipy.special import stdtrit
 import numpy as np
-from scipy import stats
 
 from zwidth.data.identification.device.moments import COLUMNS, PAIRS, REGRESSORS, Moments
 from zwidth.data.logs import Finding

@@ -14,10 +14,10 @@ from zwidth.data.identification.device.moments import REGRESSORS, Moments, halve
 from zwidth.data.identification.device.pulses import Pulse, pulse
 from zwidth.data.logs import Log
 from zwidth.native.compiled import Array
+from zwidth.loop.trace import Labelled, Trace
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
-    import xarray as xr
     from numpy.typing import NDArray
 
 
@@ -167,10 +167,8 @@ class Points:
                 self._stride *= 2
         self._seen += 1
 
-    def dataset(self, fit: Regression, mass: float | None, motion: str) -> xr.Dataset:
+    def labelled(self, fit: Regression, mass: float | None, motion: str) -> Trace:
         """Force, friction and what the fit leaves, along `pulse`; with speed, time, stroke and piece."""
-        import xarray as xr
-
         found: dict[str, list[NDArray[Any]]] = {key: [] for key in _ABOUT}
         strokes = 0
         for piece, (rows, basis) in enumerate(self._kept):
@@ -198,11 +196,12 @@ class Points:
             "speed": GLOSSARY["friction_speed"].unit_for(motion),
         }
         data = {
-            key: (
-                "pulse",
+            key: Labelled(
+                ("pulse",),
                 np.concatenate(parts),
                 {"units": units.get(_ABOUT[key][0], _ABOUT[key][0]), "long_name": _ABOUT[key][1]},
             )
             for key, parts in found.items()
         }
-        return xr.Dataset(data).set_coords(["speed", "time", "stroke", "piece"])
+        along = {key: data.pop(key) for key in ("speed", "time", "stroke", "piece")}
+        return Trace(data, along, {})

@@ -353,7 +353,7 @@ def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
         "higher speeds it is not known: "
         "log quicker strokes, zwidth plan --speed says which"
     )
-    slow, quick = np.quantile(np.abs(identified.points["speed"].values), [0.1, 0.9])
+    slow, quick = np.quantile(np.abs(identified.seen["speed"].values), [0.1, 0.9])
     if quick < NARROW * slow:
         lines.append(
             f"most of the motion is between {factor * slow:.2g} and {factor * quick:.2g} {speed}: slower and "

@@ -17,8 +17,7 @@ from math import exp, log
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from zwidth.data.tissue.experiment.estimate import Solved, solved
 from zwidth.data.tissue.experiment.history import History, about_surface
@@ -185,7 +184,7 @@ def leftover(found: Solved) -> float:
         return 1.0
     r = np.array([float(left[k:] @ left[:-k]) / size for k in range(1, lags + 1)])
     value = n * (n + 2) * float((r**2 / (n - np.arange(1, lags + 1))).sum())
-    return float(stats.chi2.sf(value, lags - bool(found.noise.memory)))
+    return by_chance(value, lags - bool(found.noise.memory))
 
 
 # A relaxation time longer than the test: what it is at least.
@@ -233,7 +232,7 @@ def slowest_of(task: Task, found: Solved) -> Slowest | None:
     own = float(found.point[branch + 1] - found.point[branch])
     left, jacobian = found.whitened
     variance = float(left @ left) / max(left.size - jacobian.shape[1], 1)
-    most = float(student.ppf(SURE, max(found.noise.independent - jacobian.shape[1], 1.0))) ** 2
+    most = float(stdtrit(max(found.noise.independent - jacobian.shape[1], 1.0), SURE)) ** 2
 
     def missed(at: float) -> float:
         return (_least(task, found, branch, at) - float(left @ left)) / variance - most

@@ -286,11 +286,11 @@ _TRIES, _MOST = 8, 30
 
 def bends(task: Task, found: Solved) -> list[tuple[float, float]]:
     """c below and above, of each parameter of the model."""
-    from scipy.stats import t
+    from scipy.special import stdtrit
 
     spread = covariance(found)[0]
     free = max(found.noise.independent - found.jacobian.shape[1], 1.0)
-    least = float(t.ppf(0.975, free))
+    least = float(stdtrit(free, 0.975))
     return [
         (_bend(task, found, spread, place, -least), _bend(task, found, spread, place, least))
         for place in range(task.own)
