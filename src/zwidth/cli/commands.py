@@ -82,17 +82,17 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth check --damping 0.2 --rate '2 kHz' --stiffness 500 --virtual-damping 0.05",
         ),
         "report": Command(
-            "the verdict as one file to hand on: HTML or PDF",
+            "the verdict as one page to hand on",
             "Decide as zwidth check does, and write verdict, scope, proof, figures, what to change, and\n"
             "where each number comes from into one file that needs nothing else. The same input gives the\n"
             "same bytes.",
-            "A file that ends in .html is a page without script and without addresses abroad; one that ends\n"
-            "in .pdf takes ReportLab: pip install 'zwidth[report]'.\n\n"
+            "The file ends in .html: a page without script and without addresses abroad. For a PDF print it\n"
+            "from the browser.\n\n"
             "exit status: as of zwidth check: 0 passive, 1 active, 2 bad input, 3 undecided, 4 passive\n"
             "while contact is kept\n\n"
             "examples:\n"
             "  zwidth report haptic-paddle --stiffness 300 -o report.html\n"
-            "  zwidth report my-wheel.toml my-bumpstop.toml -o report.pdf",
+            "  zwidth report my-wheel.toml my-bumpstop.toml -o wheel.html",
             file="write_report",
         ),
         "limit": Command(

@@ -42,9 +42,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_law_option(parser)
     add_contact_option(parser)
     output = parser.add_argument_group("output")
-    output.add_argument(
-        "-o", "--save", metavar="FILE", action=Once, required=True, help="the report: .html or .pdf"
-    )
+    output.add_argument("-o", "--save", metavar="FILE", action=Once, required=True, help="the report: .html")
     output.add_argument("--force", action="store_true", help="replace a file that exists")
     add_parameters(parser)
 
@@ -94,8 +92,7 @@ def _pair(tables: Mapping[str, Table], arguments: argparse.Namespace) -> tuple[A
     """The verdict on two arms, and where their numbers come from."""
     from zwidth.model.specification.pairs import pair_of
     from zwidth.passivity.check import check
-    from zwidth.show.report.pair_provenance import of_pair
-    from zwidth.show.report.provenance import Provenance
+    from zwidth.show.report.provenance import Provenance, of_pair
 
     if overrides(arguments) or arguments.law or arguments.contact:
         raise InputError(
@@ -118,4 +115,4 @@ def _command(arguments: argparse.Namespace) -> str:
             f"--{key.replace('_', '-')}={value}" if value.startswith("-") else f"--{key.replace('_', '-')}"
         )
         words += [] if value.startswith("-") else [value]
-    return shlex.join([*words, "-o", f"report{Path(arguments.save).suffix.lower()}"])
+    return shlex.join([*words, "-o", "report.html"])

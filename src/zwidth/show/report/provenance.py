@@ -12,7 +12,9 @@ from zwidth.model.device import Device, catalogue
 from zwidth.model.device.rotary import ROTARY
 from zwidth.model.environment.environment import Environment
 from zwidth.model.kind import name_of
+from zwidth.model.pairs import Pair
 from zwidth.model.specification.environments import TYPES
+from zwidth.model.specification.pairs import KEYS
 from zwidth.model.specification.table import COMMAND_LINE, Table
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
@@ -205,3 +207,15 @@ def of_file(label: str) -> str:
     """A table of a file, which is called by its name alone."""
     file, found, name = label.rpartition(": [")
     return f"{PurePath(file.removesuffix(': [')).name}, [{name}" if found else label
+
+
+def of_pair(tables: Mapping[str, Table], pair: Pair) -> Iterator[Row]:
+    """Of two arms made of the tables of one file, as they were read; of one [device] both are made."""
+    arms = [("leader", pair.leader), ("follower", pair.follower)]
+    for name, device in arms if "leader" in tables else [("device", pair.leader)]:
+        for what, value, where in of_device(tables[name], device):
+            yield f"{name}: {what}", value, where
+    coupling = tables["coupling"]
+    for key, given in coupling.values.items():
+        unit = KEYS[key].unit_for(pair.motion) if KEYS[key].is_number else ""
+        yield f"coupling: {in_words(key)}", as_written(given, unit), of_file(coupling.label)
