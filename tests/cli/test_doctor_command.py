@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.cli.doctor import configure, run
+from zwidth.cli.machine.doctor import configure, run
 from zwidth.errors import InputError
 from zwidth.machine.servo import checkup
 from zwidth.machine.servo.lateness import Lateness, Measured

@@ -46,7 +46,7 @@ def test_ctrl_c_is_heard_by_whichever_thread_takes_it() -> None:
     """The system may hand a signal to any thread of the process; the main one waits, and hears of it."""
     program = (
         "import signal, threading, time\n"
-        "from zwidth.cli.explore import until_ctrl_c\n"
+        "from zwidth.cli.start.explore import until_ctrl_c\n"
         "def pressed():\n"
         "    time.sleep(0.5)\n"
         "    signal.pthread_kill(threading.get_ident(), signal.SIGINT)\n"

@@ -14,7 +14,7 @@ from written_rows import COLUMNS, WrittenRows, drawn
 
 import zwidth as zw
 from zwidth import InputError
-from zwidth.cli import replay
+from zwidth.cli.machine import replay
 from zwidth.machine.servo.recording import Recorder, read_recording
 from zwidth.model.specification.write import written
 from zwidth.show.plots.recording import recording_figure
