@@ -14,6 +14,7 @@ from written_rows import COLUMNS, WrittenRows, drawn
 
 import zwidth as zw
 from zwidth import InputError
+from zwidth.cli.commands import configure
 from zwidth.cli.machine import replay
 from zwidth.machine.servo.recording import Recorder, read_recording
 from zwidth.model.specification.write import written
@@ -40,7 +41,7 @@ def recorded(tmp_path: Path) -> Path:
 def command(*argv: object) -> int:
     """The command with these arguments."""
     parser = argparse.ArgumentParser()
-    replay.configure(parser)
+    configure("replay", parser)
     return replay.run(parser.parse_args([str(word) for word in argv]))
 
 
