@@ -83,7 +83,7 @@ def test_without_its_libraries_it_says_what_to_install(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """One line that names the extra."""
-    monkeypatch.setattr("zwidth.show.explorer.library.find_spec", lambda _: None)
+    monkeypatch.setattr("zwidth.show.explorer.notebook.find_spec", lambda _: None)
     assert main(["explore", "--no-browser"]) == 2
     error = capsys.readouterr().err
     assert "pip install 'zwidth[explore]'" in error

@@ -18,7 +18,7 @@ from zwidth.cli.commands import configure
 from zwidth.cli.machine import replay
 from zwidth.machine.servo.recording import Recorder, read_recording
 from zwidth.model.specification.write import written
-from zwidth.show.plots.recording import recording_figure
+from zwidth.show.plots.recordings import recording_figure
 
 WALL = zw.Wall(stiffness=300)
 

@@ -72,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
         _refuse_without_stiffness(loop)
     parameter = named(arguments.parameter or "stiffness")
     options = _options(arguments, loop.device.motion)
-    from zwidth.show.with_bar.passive_limit import passive_limit
+    from zwidth.show.with_bar import passive_limit
 
     bracket = passive_limit(loop.device, loop.environment, parameter, told=_announce, **options)
     if save is not None:

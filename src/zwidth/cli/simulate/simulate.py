@@ -118,7 +118,7 @@ def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tu
         simulation_parameters,
     )
     from zwidth.loop.simulate import simulated
-    from zwidth.show.with_bar import with_bar
+    from zwidth.progress import with_bar
 
     if FOLLOWER in tables or given(arguments, [p.key for p in follower_parameters()]):
         raise InputError(
@@ -224,7 +224,7 @@ def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -
         simulation_parameters,
     )
     from zwidth.loop.simulate import simulated
-    from zwidth.show.with_bar import with_bar
+    from zwidth.progress import with_bar
 
     pair = pair_with_options(arguments, tables)
     typed = given(arguments, [p.key for p in (*operator_parameters(), *simulation_parameters())])

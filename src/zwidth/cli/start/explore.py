@@ -44,7 +44,7 @@ OPTIONS = (
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth explore`: until Ctrl-C."""
-    from zwidth.show.explorer.library import need_libraries
+    from zwidth.show.explorer.notebook import need_libraries
 
     port = _port(arguments.port)
     need_libraries()

@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
         return _pairs(arguments, tables, save)
     loop, radius = _touched(tables, overrides(arguments))
     own = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
-    from zwidth.show.with_bar.compare import compare
+    from zwidth.show.with_bar import compare
     from zwidth.study.bench.laws import standard_laws
 
     yours = {} if own is loop.environment else {YOURS: own}
@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _touched(tables: Mapping[str, Table], typed: Mapping[str, str]) -> tuple[Specification, Exact | None]:
     """The loop, and of a device that turns the radius at which it is touched."""
     from zwidth.model.specification.read import specified
-    from zwidth.study.bench.at_rim import radius_of
+    from zwidth.study.bench.laws import radius_of
 
     table = tables.get("device")
     beside = {key: value for key, value in typed.items() if key != "handle_radius"}
@@ -98,9 +98,8 @@ def _of_a_rim(
     loop: Specification, radius: Exact, typed: str | None, yours: Mapping[str, Environment], fastest: float
 ) -> LawComparison:
     """The comparison at the rim, told about the axis."""
-    from zwidth.show.with_bar.compare import compare
-    from zwidth.study.bench.at_rim import at_rim
-    from zwidth.study.bench.laws import standard_laws, wall_to_render
+    from zwidth.show.with_bar import compare
+    from zwidth.study.bench.laws import at_rim, standard_laws, wall_to_render
 
     if yours:
         raise InputError(
@@ -124,7 +123,7 @@ def _few(found: LawComparison) -> Iterator[Part]:
 def _pairs(arguments: argparse.Namespace, tables: Mapping[str, Table], save: Path | None) -> int:
     """Two arms joined in each of the ways that there are, the stiffness in all the same."""
     from zwidth.cli.simulate.simulate import pair_with_options
-    from zwidth.show.with_bar.compare import compare
+    from zwidth.show.with_bar import compare
     from zwidth.study.bench.pairs import schemes
 
     given = {"--laws": arguments.laws, "--fastest": arguments.fastest, "--plot": arguments.plot}

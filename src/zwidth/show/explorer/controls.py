@@ -26,8 +26,7 @@ from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.parameter import Parameter, parameters_of
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import in_words, readable, shown, unit_text
-from zwidth.show.explorer.scale import Scale, scale_of, usual
-from zwidth.show.explorer.state import State, Values
+from zwidth.show.explorer.state import Scale, State, Values, scale_of, usual
 
 Sort = Literal["number", "word", "flag", "text"]
 

@@ -28,8 +28,7 @@ from zwidth.model.specification.read import (
 from zwidth.model.specification.table import Table
 from zwidth.quantity.parameter import Parameter
 from zwidth.quantity.spoken import angles_typed
-from zwidth.show.explorer.scale import usual
-from zwidth.show.explorer.state import State, Values, catalogued, completed
+from zwidth.show.explorer.state import State, Values, catalogued, completed, usual
 
 FIRST = "haptic-paddle"
 """The device that an empty page begins with."""

@@ -133,8 +133,8 @@ def pictures(verdict: Answer) -> list[Picture]:
 
 
 def _pictures(verdict: Answer) -> Iterator[Picture]:
-    from zwidth.show.plots.files import encoded
     from zwidth.show.plots.report import panel_figure, panels_of
+    from zwidth.show.plots.style import encoded
 
     if isinstance(verdict, Verdict):
         for name, draw in panels_of(verdict).items():

@@ -21,7 +21,7 @@ from zwidth.passivity.pairs.verdict import LIMITS as LIMITS_OF_A_PAIR
 from zwidth.passivity.scope import Contact, Encoder, FedWith, Law, Scope
 from zwidth.passivity.stability.known_hand.decide import Outcome as Rests
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.study.sweeps.columns import Column, Columns
+from zwidth.study.sweeps.axes import Column, Columns
 from zwidth.study.sweeps.loops import Loop
 
 Answer = Mapping[str, Any]

@@ -17,12 +17,10 @@ from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted, suggestion
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.study.chunks.layout import Layout, Place, cells
-from zwidth.study.sweeps.axes import Axis, axis
-from zwidth.study.sweeps.columns import OF_EVERY_SWEEP, Columns
+from zwidth.study.sweeps.axes import OF_EVERY_SWEEP, Axis, Columns, axis
 from zwidth.study.sweeps.loops import Loop, Parameter, changed, parameter
 from zwidth.study.sweeps.questions import HANDS, QUESTIONS, Question
-from zwidth.study.sweeps.springs import Springs, springs
-from zwidth.study.sweeps.walls import is_of_walls
+from zwidth.study.sweeps.springs import Springs, is_of_walls, springs
 
 FORMAT = "zwidth sweep 1"
 
