@@ -176,11 +176,7 @@ def say_written(*paths: Path | None) -> None:
 
 
 def give_out(
-    found: Any,
-    save: Path | None,
-    plot: Path | None,
-    as_json: bool,
-    in_short: Iterable[Part] | None = None,
+    found: Any, save: Path | None, plot: Path | None, as_json: bool, in_short: Iterable[Part] | None = None
 ) -> None:
     """Save a result and its picture where that was asked for, print it, and say what was written.
 

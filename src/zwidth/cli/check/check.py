@@ -7,15 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from zwidth.cli.decision import NAMES, asked, decided, exit_status, with_hands
-from zwidth.cli.options import (
-    CONTACT,
-    IN_FULL,
-    LAW,
-    LOOP,
-    PARAMETERS,
-    contact,
-    output,
-)
+from zwidth.cli.options import CONTACT, IN_FULL, LAW, LOOP, PARAMETERS, contact, output
 from zwidth.cli.output import print_json, say_written, targets
 from zwidth.errors import InputError
 

@@ -283,10 +283,6 @@ class EachDevice(Documented):
         return shown_at_most(stiffness, unit)
 
 
-def _short(number: float | None) -> str:
-    return "–" if number is None else "any" if number == inf else f"{number:.4g}"
-
-
 def _plain(number: float | None) -> str:
     return "" if number is None else f"{number:.6g}"
 

@@ -7,14 +7,7 @@ from dataclasses import fields
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.options import (
-    IN_FULL,
-    LAW,
-    LOOP,
-    PARAMETERS,
-    output,
-    overrides,
-)
+from zwidth.cli.options import IN_FULL, LAW, LOOP, PARAMETERS, output, overrides
 from zwidth.cli.output import print_json, print_message, say_written, targets
 from zwidth.errors import InputError
 from zwidth.model.device.catalogue import PROPERTIES

@@ -8,14 +8,7 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from zwidth.cli.decision import asked, decided, exit_status
-from zwidth.cli.options import (
-    CONTACT,
-    LAW,
-    LOOP,
-    PARAMETERS,
-    contact,
-    overrides,
-)
+from zwidth.cli.options import CONTACT, LAW, LOOP, PARAMETERS, contact, overrides
 from zwidth.cli.output import check_new, print_text, say_written
 from zwidth.errors import InputError
 

@@ -6,14 +6,7 @@ import argparse
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.cli.decision import decided, exit_status
-from zwidth.cli.options import (
-    IN_FULL,
-    as_options,
-    device_parameters,
-    given,
-    output,
-    pairs_of,
-)
+from zwidth.cli.options import IN_FULL, as_options, device_parameters, given, output, pairs_of
 from zwidth.cli.output import print_json, say_written, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted, suggestion

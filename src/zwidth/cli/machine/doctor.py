@@ -6,14 +6,7 @@ import argparse
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from zwidth.cli.options import (
-    IN_FULL,
-    LAW,
-    LOOP,
-    PARAMETERS,
-    output,
-    overrides,
-)
+from zwidth.cli.options import IN_FULL, LAW, LOOP, PARAMETERS, output, overrides
 from zwidth.cli.output import give_out, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted

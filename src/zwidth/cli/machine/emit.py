@@ -9,15 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from zwidth.cli.decision import decided, exit_status
-from zwidth.cli.options import (
-    CONTACT,
-    FORCE,
-    LAW,
-    LOOP,
-    PARAMETERS,
-    contact,
-    overrides,
-)
+from zwidth.cli.options import CONTACT, FORCE, LAW, LOOP, PARAMETERS, contact, overrides
 from zwidth.cli.output import print_json, print_message, say_written
 from zwidth.cli.page import Row, below, grid, headline, items, page, section
 from zwidth.errors import InputError

@@ -232,11 +232,7 @@ def _rows(table: Table, kind: str) -> Iterator[Table]:
 
 
 def _number(
-    table: Table,
-    key: str,
-    quantity: str,
-    why: str = "a step takes time",
-    motion: str = "linear",
+    table: Table, key: str, quantity: str, why: str = "a step takes time", motion: str = "linear"
 ) -> Exact:
     with located(table.where(key)):
         found: Exact = read_number(

@@ -10,15 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.options import (
-    CONTACT,
-    FORCE,
-    LAW,
-    PARAMETERS,
-    contact,
-    given,
-    overrides,
-)
+from zwidth.cli.options import CONTACT, FORCE, LAW, PARAMETERS, contact, given, overrides
 from zwidth.cli.output import print_json, print_message, print_report, quiet_pipe, say_written
 from zwidth.cli.parsing import Parameter
 from zwidth.cli.simulate.tables import operator_parameters
@@ -90,11 +82,7 @@ OPTIONS = (
         "'stop'",
     },
     "output",
-    {
-        "--json": "print the report as JSON, units in the keys",
-        "-o FILE": "record it: .mcap",
-        **FORCE,
-    },
+    {"--json": "print the report as JSON, units in the keys", "-o FILE": "record it: .mcap", **FORCE},
     "how the device is reached",
     connection_parameters,
     "limits of what a hand is given",

@@ -158,11 +158,7 @@ def _harder(hardening: str | None) -> str:
     return f" + ({hardening}) u^3" if hardening else ""
 
 
-_FILES: dict[str, Callable[[_Asked], str]] = {
-    "wall": _wall,
-    "detents": _detents,
-    "bump-stop": _bump_stop,
-}
+_FILES: dict[str, Callable[[_Asked], str]] = {"wall": _wall, "detents": _detents, "bump-stop": _bump_stop}
 
 
 def _spring(spring: NonlinearSpring, remark: str, motion: str) -> str:
@@ -243,22 +239,14 @@ def questions_of(motion: str) -> dict[str, Question]:
         ),
         ("count", "How many detents? such as 3", "Beyond the first and the last the handle is free."),
         ("pitch", f"How far from one to the next? such as {many}", "Its slope is 4 peak/pitch."),
-        (
-            "peak",
-            f"What leads over the edge of one? such as 0.02 {force}",
-            "Its slope is 4 peak/pitch.",
-        ),
+        ("peak", f"What leads over the edge of one? such as 0.02 {force}", "Its slope is 4 peak/pitch."),
         ("start", f"Where does the stop begin? such as {many}", "Up to there the handle is free."),
         (
             "hardening",
             f"How does it harden, f = K u + H u^3? such as 1000 {hard}; Enter for not at all",
             "A stop that hardens is as steep as K + 3 H u^2.",
         ),
-        (
-            "depth",
-            f"How deep? such as {many}, or largest force/stiffness",
-            "Deeper the force is constant.",
-        ),
+        ("depth", f"How deep? such as {many}, or largest force/stiffness", "Deeper the force is constant."),
     )
     optional = ("virtual_damping", "hardening")
     return {

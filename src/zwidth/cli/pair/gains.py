@@ -115,14 +115,7 @@ def _held(arguments: argparse.Namespace) -> int:
     from zwidth.data.gains import check_controllers, passive_gains, read_controllers
     from zwidth.quantity.json_text import to_json
 
-    for option in (
-        "joint",
-        "plot",
-        "drive_rate",
-        "bilateral_kp",
-        "supply_voltage",
-        "link_delay_back",
-    ):
+    for option in ("joint", "plot", "drive_rate", "bilateral_kp", "supply_voltage", "link_delay_back"):
         if getattr(arguments, option) is not None:
             name = option.replace("_", "-")
             raise InputError(f"--{name} is of two arms; these are the gains of one arm: leave it out")

@@ -5,11 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 
-from zwidth.cli.options import (
-    ANGLES_TOLD,
-    given,
-    output,
-)
+from zwidth.cli.options import ANGLES_TOLD, given, output
 from zwidth.cli.output import give_out, targets
 from zwidth.cli.parsing import Parameter, heed_angles
 from zwidth.errors import InputError

@@ -6,12 +6,7 @@ import argparse
 from collections.abc import Iterator, Mapping
 
 from zwidth.cli.decision import exit_status
-from zwidth.cli.options import (
-    IN_FULL,
-    coupling_parameters,
-    given,
-    output,
-)
+from zwidth.cli.options import IN_FULL, coupling_parameters, given, output
 from zwidth.cli.output import print_json, say_written, targets
 from zwidth.cli.parsing import Parameter
 from zwidth.cli.simulate.tables import FOLLOWER, OPERATOR

@@ -9,14 +9,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.options import (
-    IN_FULL,
-    LAW,
-    PARAMETERS,
-    given,
-    output,
-    overrides,
-)
+from zwidth.cli.options import IN_FULL, LAW, PARAMETERS, given, output, overrides
 from zwidth.cli.output import PICTURES, print_json, say_written, target
 from zwidth.cli.simulate.tables import follower_parameters, operator_parameters, simulation_parameters
 from zwidth.errors import InputError

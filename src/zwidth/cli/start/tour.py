@@ -126,11 +126,7 @@ STEPS = (
         f"zwidth check haptic-paddle --stiffness {_STIFF}",
         _advice,
     ),
-    Step(
-        "Take the rate.",
-        f'zwidth check haptic-paddle --stiffness {_STIFF} --rate "{_QUICK}"',
-        _mended,
-    ),
+    Step("Take the rate.", f'zwidth check haptic-paddle --stiffness {_STIFF} --rate "{_QUICK}"', _mended),
 )
 
 THEN = """\

@@ -7,13 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.options import (
-    IN_FULL,
-    LAW,
-    PARAMETERS,
-    output,
-    overrides,
-)
+from zwidth.cli.options import IN_FULL, LAW, PARAMETERS, output, overrides
 from zwidth.cli.output import give_out, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.laws import with_laws

@@ -171,10 +171,7 @@ WALL = {
 _CONTROLLERS = (".yaml", ".yml")
 _ROWS = 2
 """Of a matrix that is shown whole even where it is diagonal."""
-_WALL_UNITS = {
-    "stiffness": ("N/m", "N/rad", "N*m/rad"),
-    "damping": ("N*s/m", "N*s/rad", "N*m*s/rad"),
-}
+_WALL_UNITS = {"stiffness": ("N/m", "N/rad", "N*m/rad"), "damping": ("N*s/m", "N*s/rad", "N*m*s/rad")}
 """Of translations, between the two, of rotations."""
 
 

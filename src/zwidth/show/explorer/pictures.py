@@ -86,11 +86,6 @@ def legend_above(made: Any, columns: int = 2) -> None:
     made.add_layout(legend, "above")
 
 
-def own_range() -> DataRange1d:
-    """A range of what is seen, with a little room."""
-    return DataRange1d(only_visible=True, default_span=1e-6, range_padding=0.08)
-
-
 CRITERION = "Criterion"
 
 

@@ -185,11 +185,7 @@ def note(axes: Axes, text: str) -> None:
 
 ENDINGS = ("png", "svg", "pdf")
 
-_METADATA: dict[str, dict[str, Any]] = {
-    "png": {},
-    "svg": {"Date": None},
-    "pdf": {"CreationDate": None},
-}
+_METADATA: dict[str, dict[str, Any]] = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 """No date in a file."""
 
 

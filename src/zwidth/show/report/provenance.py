@@ -79,10 +79,7 @@ def of_device(table: Table, device: Device) -> Iterator[Row]:
         written = next((k for k in _WRITTEN_AS.get(key, (key,)) if k in table.values), None)
         asked = "inertia" if _is_inertia(key, device.motion) else key
         where = _place(table, written, asked) if written else _of_the_catalogue(key, value, known, ranges)
-        yield (
-            *_named(key, value, device.motion),
-            where or _unless_assumed(key, device.assumed, "not given"),
-        )
+        yield (*_named(key, value, device.motion), where or _unless_assumed(key, device.assumed, "not given"))
     for key, own in ROTARY.items():
         if key in table.values and not (key == "inertia" and device.motion == "rotary"):  # it is told above
             yield in_words(key), as_written(table.values[key], own.unit), _place(table, key, key)

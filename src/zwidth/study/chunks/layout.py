@@ -99,10 +99,7 @@ class Worker:
         command = [sys.executable, "-c", "from zwidth.study.chunks.layout import serve; serve()"]
         path = os.pathsep.join(filter(None, sys.path))
         self.process = subprocess.Popen(
-            command,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env={**os.environ, "PYTHONPATH": path},
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env={**os.environ, "PYTHONPATH": path}
         )
         self._say((compute, ready))
 

@@ -122,10 +122,7 @@ def z_width(
 
 def _dataset(asked: Request, ready: Plan, layers: Layers, speed: float) -> xr.Dataset:
     motion = asked.device.motion
-    axes = {
-        "stiffness": asked.stiffness.values,
-        "virtual_damping": asked.virtual_damping.values,
-    }
+    axes = {"stiffness": asked.stiffness.values, "virtual_damping": asked.virtual_damping.values}
     coordinates = {
         name: (name, values, {"units": GLOSSARY[name].unit_for(motion), "long_name": GLOSSARY[name].meaning})
         for name, values in axes.items()

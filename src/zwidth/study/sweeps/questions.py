@@ -54,12 +54,7 @@ _ENCODER = Column("whether the encoder's steps are in it", words=get_args(Encode
 
 
 def _scope(scope: Scope) -> Answer:
-    return {
-        "contact": scope.contact,
-        "encoder": scope.encoder,
-        "fed_with": scope.fed_with,
-        "law": scope.law,
-    }
+    return {"contact": scope.contact, "encoder": scope.encoder, "fed_with": scope.fed_with, "law": scope.law}
 
 
 _OF_A_SCOPE = {
