@@ -20,14 +20,9 @@ if TYPE_CHECKING:
 class Asked(NamedTuple):
     """What a command was asked about.
 
-    Parameters
-    ----------
-    loop
-        The device, and the environment behind its laws.
-    device_table, environment_table
-        Of which it was made, the parameters of the command line in them.
-    law_table
-        The laws of a file; None where it has none.
+    `loop`: the device, and the environment behind its laws.
+    `device_table`, `environment_table`: of which it was made, the parameters of the command line in them.
+    `law_table`: the laws of a file; None where it has none.
     """
 
     loop: Specification
@@ -39,12 +34,8 @@ class Asked(NamedTuple):
 def asked(arguments: argparse.Namespace, in_range: bool = False) -> Asked:
     """The loop of the sources, the parameters and the laws of a command line.
 
-    Parameters
-    ----------
-    arguments
-        Of the command line.
-    in_range
-        True where a device of the catalogue may have its stated ranges in the place of what nobody published.
+    `in_range`: True where a device of the catalogue may have its stated ranges in the place of what nobody
+        published.
     """
     from zwidth.model.specification.laws import with_laws
     from zwidth.model.specification.read import WITH_LAWS, Specification, built, merged, read_tables

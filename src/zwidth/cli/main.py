@@ -34,17 +34,9 @@ class Parser(argparse.ArgumentParser):
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command line.
+    """Run one command line; its exit status, of `check` 0 passive, 1 active, 3 undecided; 2 for bad input.
 
-    Parameters
-    ----------
-    argv
-        The arguments after the program's name; by default those of the process.
-
-    Returns
-    -------
-    int
-        The exit status: of `check` 0 passive, 1 active, 3 undecided; 2 for bad input.
+    `argv`: the arguments after the program's name; by default those of the process.
     """
     tolerate_encoding()
     if argv is None and "_ARGCOMPLETE" in os.environ:  # the shell asks how its line may go on

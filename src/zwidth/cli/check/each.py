@@ -146,12 +146,8 @@ _UNIT = re.compile(r"\[([^]]*)\]")
 class EachDevice(Documented):
     """What is proved of each device.
 
-    Attributes
-    ----------
-    verdicts
-        By the name of the device, all of one motion.
-    measured
-        From which stiffness on it was seen to shake, where that was measured [N/m; N·m/rad].
+    `verdicts`: by the name of the device, all of one motion.
+    `measured`: from which stiffness on it was seen to shake, where that was measured [N/m; N·m/rad].
     """
 
     FORMAT: ClassVar[str] = "zwidth each 1"

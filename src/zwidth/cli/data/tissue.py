@@ -206,14 +206,8 @@ def _json(found: Result) -> str:
 class OnDevice(NamedTuple):
     """The tissue on a device.
 
-    Parameters
-    ----------
-    verdict
-        Of the estimates.
-    bracket
-        Of the factor on every force; None where nothing decides it, and then `reason` says why.
-    box
-        Of all that the intervals allow; None where they are not to be trusted.
+    `bracket`: of the factor on every force; None where nothing decides it, and then `reason` says why.
+    `box`: of all that the intervals allow; None where they are not to be trusted.
     """
 
     device: Device

@@ -35,14 +35,9 @@ _POINTS = 26
 def described(ask: Asker, path: Path, named: str | None = None) -> Written:
     """Ask about an environment; its file, and what to do next.
 
-    Parameters
-    ----------
-    ask
-        Whoever answers.
-    path
-        Where the file will be.
-    named
-        The device that is to render it, a file or a name in the catalogue; None: `DEVICE`, where it is there.
+    `path`: where the file will be.
+    `named`: the device that is to render it, a file or a name in the catalogue; None: `DEVICE`, where it is
+        there.
     """
     kind = kind_of(ask.sure(TYPE))
     whose = DEVICE if named is None else named

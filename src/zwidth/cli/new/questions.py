@@ -58,12 +58,8 @@ class Question(NamedTuple):
 class Asker:
     """Asks, and remembers what was answered, and what nobody answered.
 
-    Parameters
-    ----------
-    given
-        Answers of the command line, by key.
-    asks
-        False where nobody is asked, and the options are all there is.
+    `given`: answers of the command line, by key.
+    `asks`: False where nobody is asked, and the options are all there is.
     """
 
     def __init__(self, given: Mapping[str, str], asks: bool) -> None:

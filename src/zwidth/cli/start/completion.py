@@ -68,10 +68,7 @@ _WHERE: Mapping[str, str] = MappingProxyType(
 def answer(parser_of: Callable[[Sequence[str]], argparse.ArgumentParser]) -> None:
     """Answer the shell, and end the process.
 
-    Parameters
-    ----------
-    parser_of
-        Makes the parser of a command line; of its words the command is asked for alone.
+    `parser_of`: makes the parser of a command line; of its words the command is asked for alone.
     """
     import argcomplete
 

@@ -264,14 +264,8 @@ LARGEST = 24
 class Judged(NamedTuple):
     """What is known of a loop at once.
 
-    Parameters
-    ----------
-    loop
-        Which.
-    verdict
-        None where there is none at once.
-    final
-        False where `judged_in_full` may say more.
+    `verdict`: None where there is none at once.
+    `final`: False where `judged_in_full` may say more.
     """
 
     loop: Specification

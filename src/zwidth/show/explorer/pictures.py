@@ -47,14 +47,7 @@ HEIGHT = 330
 def new_figure(x: str, y: str, *, height: int = HEIGHT, **options: Any) -> Any:
     """An empty picture as wide as there is room.
 
-    Parameters
-    ----------
-    x, y
-        What the axes say, with units.
-    height
-        In pixels.
-    options
-        Of Bokeh's `figure`.
+    `x`, `y`: what the axes say, with units.
     """
     made = figure(
         x_axis_label=x, y_axis_label=y, height=height, min_width=200, sizing_mode="stretch_width",

@@ -224,12 +224,7 @@ def hosts(address: str) -> list[str]:
 class TokenAccess(AuthProvider):  # type: ignore[misc]  # Bokeh's has no types
     """Asks for a token.
 
-    Parameters
-    ----------
-    token
-        Which.
-    cookie
-        The name of what stands for it.
+    `cookie`: the name of what stands for it.
     """
 
     def __init__(self, token: str, cookie: str) -> None:

@@ -40,18 +40,11 @@ _MORE = "The closed forms leave a gap: more is being worked out …"
 class Session:
     """A page.
 
-    Parameters
-    ----------
-    state
-        The loop that it begins with.
-    workers
-        Who computes what takes longer.
-    soon
-        Has something done in the thread of the page.
-    message
-        Said at the top, such as what of the address could not be used.
-    in_page
-        True where the page has an address that holds the loop, and tabs of its own.
+    `state`: the loop that it begins with.
+    `workers`: who computes what takes longer.
+    `soon`: has something done in the thread of the page.
+    `message`: said at the top, such as what of the address could not be used.
+    `in_page`: True where the page has an address that holds the loop, and tabs of its own.
     """
 
     def __init__(

@@ -118,14 +118,7 @@ def own_device(kind: str) -> Device:
 def with_device(state: State, device: Device, begun: Mapping[str, str] = MappingProxyType({})) -> State:
     """The same environment on another device; of one that moves otherwise, a wall.
 
-    Parameters
-    ----------
-    state
-        The loop before.
-    device
-        The other device.
-    begun
-        What nobody gave of it, as it begins.
+    `begun`: what nobody gave of it, as it begins.
     """
     before = state.loop()
     if device.motion == before.device.motion:

@@ -54,12 +54,9 @@ Values = Mapping[str, object]
 class State:
     """A loop in tables, each quantity a text with its unit.
 
-    Parameters
-    ----------
-    device, environment, laws
-        As of a specification; the laws in a chain from the environment to the actuator.
-    extras
-        What the page is asked beside the loop, by the name of its table: one of `EXTRAS`.
+    `device`, `environment`, `laws`: as of a specification; the laws in a chain from the environment to the
+        actuator.
+    `extras`: what the page is asked beside the loop, by the name of its table: one of `EXTRAS`.
     """
 
     device: Values
@@ -120,12 +117,8 @@ class State:
     def changed(self, path: str, value: object) -> State:
         """With one value in the place of another; None takes it out.
 
-        Parameters
-        ----------
-        path
-            "device.damping", "environment.environment.stiffness", "law.1.samples", "coupling.link_delay".
-        value
-            As a specification has it: a text with its unit, a flag, a list or a table.
+        `path`: "device.damping", "environment.environment.stiffness", "law.1.samples", "coupling.link_delay".
+        `value`: as a specification has it: a text with its unit, a flag, a list or a table.
         """
         kind, *keys = path.split(".")
         if kind == "device":
@@ -186,10 +179,7 @@ def _place(keys: Sequence[str], count: int) -> int:
 def from_query(query: Sequence[tuple[str, str]]) -> State:
     """The state that a URL holds.
 
-    Parameters
-    ----------
-    query
-        Its keys and values, decoded, in order.
+    `query`: its keys and values, decoded, in order.
     """
     if sum(len(key) + len(value) for key, value in query) > LONGEST_QUERY:
         raise InputError(f"the address is longer than {LONGEST_QUERY} characters; give the loop as a file")
@@ -245,14 +235,8 @@ def _value(key: str, text: str) -> object:
 class Given(NamedTuple):
     """What is in a file.
 
-    Parameters
-    ----------
-    state
-        The loop; None where there is no environment.
-    device
-        Its device.
-    begun
-        Numbers of the device that the file does not give, as they begin.
+    `state`: the loop; None where there is no environment.
+    `begun`: numbers of the device that the file does not give, as they begin.
     """
 
     state: State | None
@@ -265,14 +249,8 @@ def from_file(text: str, name: str, shown: State) -> Given:
 
     What the device lacks begins with a usual number; an environment alone is put on the device that is shown.
 
-    Parameters
-    ----------
-    text
-        What is in the file.
-    name
-        Of the file, for messages.
-    shown
-        The loop before.
+    `text`: what is in the file.
+    `name`: of the file, for messages.
     """
     if len(text.encode("utf-8", "replace")) > LARGEST_FILE:
         raise InputError(
@@ -371,14 +349,9 @@ _ELSE = (1e-3, 1.0, 1e3)
 class Scale(NamedTuple):
     """What a slider's length stands for.
 
-    Parameters
-    ----------
-    low, high
-        > 0, of the share 0 and 1 of its length.
-    has_zero
-        True where the very left is nothing.
-    whole
-        True for a count.
+    `low`, `high`: > 0, of the share 0 and 1 of its length.
+    `has_zero`: True where the very left is nothing.
+    `whole`: True for a count.
     """
 
     low: float

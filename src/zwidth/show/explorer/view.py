@@ -39,16 +39,9 @@ class Asked(Protocol):
 class View(NamedTuple):
     """A picture under a tab.
 
-    Parameters
-    ----------
-    key, name
-        In the address, and on the tab.
-    parts
-        From above.
-    moved
-        Draws what follows a move.
-    released
-        Has what takes longer computed.
+    `key`, `name`: in the address, and on the tab.
+    `moved`: draws what follows a move.
+    `released`: has what takes longer computed.
     """
 
     key: str
@@ -107,14 +100,8 @@ def not_measured(begun: Mapping[str, str]) -> list[str]:
 def head(verdict: Verdict | None, note: str = "", begun: Mapping[str, str] = MappingProxyType({})) -> Html:
     """Outcome and claim; None while it is being worked out.
 
-    Parameters
-    ----------
-    verdict
-        What `zwidth.check` said.
-    note
-        A line below, such as that more is being worked out.
-    begun
-        Numbers of the device that nobody gave.
+    `note`: a line below, such as that more is being worked out.
+    `begun`: numbers of the device that nobody gave.
     """
     marks = join(*(element("p", line, **{"class": "bad"}) for line in not_measured(begun)))
     quiet = element("p", note, **{"class": "quiet"}) if note else join()

@@ -40,20 +40,12 @@ class Section:
 class Contents:
     """A report before it is printed.
 
-    Parameters
-    ----------
-    title
-        The device and what it renders.
-    verdict
-        The outcome, its colour, and the claim.
-    sections
-        The rest, from the top down; the pictures come behind those of `before_pictures`.
-    answer
-        Whose pictures they are.
-    document
-        The verdict with its evidence as a JSON file, as `zwidth check -o` writes it.
-    command
-        What makes the report again; "" where it was made in Python.
+    `title`: the device and what it renders.
+    `verdict`: the outcome, its colour, and the claim.
+    `sections`: the rest, from the top down; the pictures come behind those of `before_pictures`.
+    `answer`: whose pictures they are.
+    `document`: the verdict with its evidence as a JSON file, as `zwidth check -o` writes it.
+    `command`: what makes the report again; "" where it was made in Python.
     """
 
     title: str

@@ -90,16 +90,11 @@ def of_environment(
 ) -> Iterator[Row]:
     """Of an environment made of a table.
 
-    Parameters
-    ----------
-    table
-        With the parameters of the command line in it, as it was read.
-    environment
-        What was made of it; it may stand behind laws in a chain.
-    motion
-        "linear" or "rotary".
-    laws, typed
-        The [[law]] tables of a file, and what stood behind each `--law`, which takes their place.
+    `table`: with the parameters of the command line in it, as it was read.
+    `environment`: what was made of it; it may stand behind laws in a chain.
+    `motion`: "linear" or "rotary".
+    `laws`, `typed`: the [[law]] tables of a file, and what stood behind each `--law`, which takes their
+        place.
     """
     chain = getattr(environment, "laws", ())
     inner: Any = environment.environment if chain else environment  # type: ignore[attr-defined]

@@ -33,14 +33,9 @@ def advice(scores: xr.Dataset, device: Device, wall: Wall) -> str:
 def answer(scores: xr.Dataset, device: Device, wall: Wall) -> str:
     """What the wall needs, which law is safest and which feels stiffest.
 
-    Parameters
-    ----------
-    scores
-        Of the laws, those of a `LawComparison`.
-    device
-        What they were simulated on.
-    wall
-        What was to be rendered, of one stiffness; its damping is left out.
+    `scores`: of the laws, those of a `LawComparison`.
+    `device`: what they were simulated on.
+    `wall`: what was to be rendered, of one stiffness; its damping is left out.
     """
     wanted = float(wall.stiffness)  # type: ignore[arg-type]
     alone = check_by_closed_forms(device, Wall(wall.stiffness))

@@ -91,15 +91,9 @@ def fixed_motions(
 ) -> dict[str, Floats]:
     """One round of each motion of the fixed set, by what it does.
 
-    Parameters
-    ----------
-    device
-        Every number certain.
-    fastest
-        Speed that is not exceeded [m/s].
-    environment
-        What is rendered, laws in a chain included: how deep a step of the converter and the force limit
-        are; None: motions in counts only.
+    `fastest`: speed that is not exceeded [m/s].
+    `environment`: what is rendered, laws in a chain included: how deep a step of the converter and the force
+        limit are; None: motions in counts only.
     """
     stiffnesses = () if environment is None else _stiffnesses(device, environment)
     return dict(_fixed(device, Exact(fastest).fraction, stiffnesses))

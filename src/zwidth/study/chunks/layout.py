@@ -31,20 +31,14 @@ Layers = dict[str, NDArray[Any]]
 class Layout:
     """What arrays there are, over which axes, and what they are of.
 
-    Parameters
-    ----------
-    what, format
-        What the arrays are together, in a word for messages; the name and version of how they are kept.
-    digest, request
-        A name for what was asked, another for whatever has other numbers; the same as JSON holds it.
-    axes
-        The values along each axis, by its name.
-    chunk
-        Cells along each axis that are computed and kept at a time.
-    types
-        The arrays and the type of their numbers.
-    about
-        What is said of an array or an axis beside its numbers, such as its unit.
+    `what`, `format`: what the arrays are together, in a word for messages; the name and version of how they
+        are kept.
+    `digest`, `request`: a name for what was asked, another for whatever has other numbers; the same as JSON
+        holds it.
+    `axes`: the values along each axis, by its name.
+    `chunk`: cells along each axis that are computed and kept at a time.
+    `types`: the arrays and the type of their numbers.
+    `about`: what is said of an array or an axis beside its numbers, such as its unit.
     """
 
     what: str
@@ -87,12 +81,8 @@ def cells(place: Place, chunk: tuple[int, ...]) -> tuple[slice, ...]:
 class Worker:
     """The process, as it is seen from the one that asks.
 
-    Parameters
-    ----------
-    compute
-        A function of a module: from what was made ready, and a place, to layers.
-    ready
-        What was made ready.
+    `compute`: a function of a module: from what was made ready, and a place, to layers.
+    `ready`: what was made ready.
     """
 
     def __init__(self, compute: Callable[[Any, Place], Layers], ready: Any) -> None:

@@ -33,12 +33,8 @@ _WRITTEN = "100:3000:50, 1:1000:20 log, or a list 0, 1 ms, 2 ms"
 class Axis:
     """One parameter and its values.
 
-    Parameters
-    ----------
-    name, unit
-        Of the parameter; SI.
-    values
-        In this order, no two the same.
+    `name`, `unit`: of the parameter; SI.
+    `values`: in this order, no two the same.
     """
 
     name: str
@@ -58,12 +54,8 @@ class Axis:
 def axis(name: str, given: object, unit: str) -> Axis:
     """Read the values of a parameter.
 
-    Parameters
-    ----------
-    name, unit
-        Of the parameter; what has no unit of its own is in this one.
-    given
-        A text as above, (start, stop, count), (start, stop, count, "log"), or a list of values.
+    `name`, `unit`: of the parameter; what has no unit of its own is in this one.
+    `given`: a text as above, (start, stop, count), (start, stop, count, "log"), or a list of values.
     """
     values = _values(name, given, unit)
     if not values:
@@ -186,16 +178,11 @@ def _ratios(low: Fraction, high: Fraction, count: int) -> list[Any]:
 class Column(NamedTuple):
     """One entry of every answer.
 
-    Parameters
-    ----------
-    meaning
-        In a few words.
-    unit
-        Of a number; "" of words, and of what is true or false.
-    words
-        Those that it may be; () of a number.  A word is kept as its place among them, from 1 on: 0 is none.
-    several
-        Whether several of the words may hold at once: each is then a bit.
+    `meaning`: in a few words.
+    `unit`: of a number; "" of words, and of what is true or false.
+    `words`: those that it may be; () of a number.  A word is kept as its place among them, from 1 on: 0 is
+        none.
+    `several`: whether several of the words may hold at once: each is then a bit.
     """
 
     meaning: str

@@ -34,16 +34,10 @@ from zwidth.quantity.parameter import parameters_of
 class Loop:
     """One loop, and how it is asked.
 
-    Parameters
-    ----------
-    subject
-        A device, or two arms that follow each other.
-    environment
-        What a device renders; of a pair None.
-    operator
-        The hand of a simulation.
-    options
-        Further arguments of the question.
+    `subject`: a device, or two arms that follow each other.
+    `environment`: what a device renders; of a pair None.
+    `operator`: the hand of a simulation.
+    `options`: further arguments of the question.
     """
 
     subject: Device | Pair
@@ -72,14 +66,9 @@ Changes = dict[str, Exact]
 class Part(NamedTuple):
     """A part of a loop.
 
-    Parameters
-    ----------
-    before
-        What stands before its keys.
-    units
-        The unit of each of its numbers by its key; empty where the loop has no such part.
-    change
-        The loop with other numbers in this part.
+    `before`: what stands before its keys.
+    `units`: the unit of each of its numbers by its key; empty where the loop has no such part.
+    `change`: the loop with other numbers in this part.
     """
 
     before: str

@@ -33,14 +33,9 @@ Line = dict[Any, Any]
 class Question(NamedTuple):
     """What is asked of each loop.
 
-    Parameters
-    ----------
-    columns
-        What is kept of an answer.
-    answer
-        The answer of one loop, given what is known of its line: a value for each column.
-    needs
-        What the loop must have; raises InputError if it has not.
+    `columns`: what is kept of an answer.
+    `answer`: the answer of one loop, given what is known of its line: a value for each column.
+    `needs`: what the loop must have; raises InputError if it has not.
     """
 
     columns: Callable[[Loop], Columns]

@@ -40,16 +40,10 @@ _SLOW = ("limit", "simulate", "pair")
 class Request:
     """All that the bits of a sweep depend on.
 
-    Parameters
-    ----------
-    of
-        The question, by the command that answers it.
-    loop
-        With its numbers before they are varied.
-    parameters, axes
-        What is varied, and its values.
-    at_once
-        Loops that are computed and kept at a time, at most.
+    `of`: the question, by the command that answers it.
+    `loop`: with its numbers before they are varied.
+    `parameters`, `axes`: what is varied, and its values.
+    `at_once`: loops that are computed and kept at a time, at most.
     """
 
     of: str

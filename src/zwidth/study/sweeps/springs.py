@@ -47,12 +47,9 @@ _SURELY_FOUND = 0.05
 class Springs:
     """Springs on a grid.
 
-    Parameters
-    ----------
-    numbers
-        By name the values of each number, exact: as many as its axis has, or one where it is not varied.
-    along
-        By name the axis along which it varies; None where it does not.
+    `numbers`: by name the values of each number, exact: as many as its axis has, or one where it is not
+        varied.
+    `along`: by name the axis along which it varies; None where it does not.
     """
 
     numbers: Mapping[str, Sequence[Fraction]]
@@ -241,14 +238,8 @@ _APART = 1e-2
 class Part(NamedTuple):
     """Loops of a line that have one answer, but for what binds.
 
-    Parameters
-    ----------
-    places
-        In the line.
-    about
-        Of the entries of an answer those that make the part.
-    binding
-        What binds: its place in `LIMITS`, from 1 on; 0 where it must be asked.
+    `about`: of the entries of an answer those that make the part.
+    `binding`: what binds: its place in `LIMITS`, from 1 on; 0 where it must be asked.
     """
 
     places: NDArray[np.intp]
@@ -269,12 +260,7 @@ def is_of_walls(loop: Loop, parameters: Sequence[Parameter]) -> bool:
 def parts(loop: Loop, stiffnesses: Floats) -> list[Part]:
     """What is known of a line, as conjectured before one loop of each part is asked; [] where nothing is.
 
-    Parameters
-    ----------
-    loop
-        One of them.
-    stiffnesses
-        Of all of them [N/m; N·m/rad].
+    `stiffnesses`: of all of them [N/m; N·m/rad].
     """
     device, wall = loop.subject, loop.environment
     assert isinstance(device, Device)
