@@ -430,7 +430,7 @@ def test_the_closed_forms_are_worked_out_once(monkeypatch: pytest.MonkeyPatch) -
     assert asked == ["made and broken"]
 
 
-@pytest.mark.parametrize("module", ["zwidth.cli.main", "zwidth.cli.options", "zwidth.servo.serving"])
+@pytest.mark.parametrize("module", ["zwidth.cli.main", "zwidth.cli.options", "zwidth.machine.servo.serving"])
 def test_ctrl_c_during_an_import_ends_quietly(module: str) -> None:
     """Status 130 and one line, whichever import it comes in: of the face itself or of a command."""
     code = f"""

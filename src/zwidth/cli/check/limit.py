@@ -7,12 +7,12 @@ from dataclasses import fields
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.options import IN_FULL, LAW, LOOP, PARAMETERS, output, overrides
+from zwidth.cli.decision import asked
+from zwidth.cli.options import IN_FULL, LAW, LOOP, PARAMETERS, output
 from zwidth.cli.output import print_json, print_message, say_written, targets
 from zwidth.errors import InputError
 from zwidth.model.device.catalogue import PROPERTIES
 from zwidth.model.specification.environments import option_keys
-from zwidth.model.specification.laws import with_laws
 from zwidth.model.specification.table import quoted, suggestion
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
@@ -54,13 +54,8 @@ OPTIONS = (
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth limit`: 0 if both sides of the limit were found, else 3."""
-    from zwidth.model.specification.read import WITH_LAWS, Specification, read_tables, specified
-
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
-    tables = read_tables(arguments.sources, WITH_LAWS)
-    given = specified(tables, overrides(arguments))
-    rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
-    loop = Specification(given.device, rendered)
+    loop = asked(arguments).loop
     if arguments.parameter is None:
         _refuse_without_stiffness(loop)
     parameter = named(arguments.parameter or "stiffness")

@@ -8,8 +8,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from zwidth.cli.decision import decided, exit_status
-from zwidth.cli.options import CONTACT, FORCE, LAW, LOOP, PARAMETERS, contact, overrides
+from zwidth.cli.decision import asked, decided, exit_status
+from zwidth.cli.options import CONTACT, FORCE, LAW, LOOP, PARAMETERS, contact
 from zwidth.cli.output import print_json, print_message, say_written
 from zwidth.cli.page import Row, below, grid, headline, items, page, section
 from zwidth.errors import InputError
@@ -61,18 +61,14 @@ OPTIONS = (
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth emit`: 0 where the files are written, else as `check`."""
     from zwidth.machine.firmware.emit import NotEmitted, emit
-    from zwidth.model.specification.laws import with_laws
-    from zwidth.model.specification.read import WITH_LAWS, read_tables, specified
 
     if arguments.save is None:
         raise InputError("say where the files go: -o DIRECTORY")
-    tables = read_tables(arguments.sources, WITH_LAWS)
-    loop = specified(tables, overrides(arguments))
-    law = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
+    loop = asked(arguments).loop
     try:
         found = emit(
             loop.device,
-            law,
+            loop.environment,
             target=arguments.target or "c99",
             number=arguments.number,
             travel=arguments.travel,
@@ -88,10 +84,10 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _decided(asked: str, device: Device, environment: Environment) -> Verdict:
+def _decided(contact: str, device: Device, environment: Environment) -> Verdict:
     from zwidth.model.specification.read import Specification
 
-    return decided(Specification(device, environment), asked)
+    return decided(Specification(device, environment), contact)
 
 
 def _give_out(found: Emitted, written: list[Path], as_json: bool) -> None:

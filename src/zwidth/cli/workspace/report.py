@@ -13,7 +13,7 @@ from zwidth.quantity.text import outward_decimal, shown, shown_at_least, shown_a
 if TYPE_CHECKING:
     from zwidth.data.gains import BorneImpedance
     from zwidth.model.arms import ArmMotion, EncoderSteps
-    from zwidth.passivity.workspace import PostureMap, Workspace
+    from zwidth.passivity.workspace import NullSpace, PostureMap, Workspace
 
 
 _FIRST = ("motion", "largest stiffness", "stiffness", "encoder steps")
@@ -172,22 +172,44 @@ def print_postures(
     without: Sequence[str] = (),
     better: BorneImpedance | None = None,
 ) -> None:
-    """Print the verdict, the numbers, what was written and what is assumed on standard output."""
+    """Print what is found of all postures, and what was written."""
+    _print(found, in_full, without, [] if better is None else [("written", _written(better))])
+
+
+def print_null_space(found: NullSpace, in_full: bool, without: Sequence[str]) -> None:
+    """Print what is found of a wall and a null-space spring together."""
+    spring = found.spring
+    rest = ", ".join(f"{value:.3g}" for value in spring.rest)
+    told = (
+        f"{shown(spring.stiffness, 'N*m/rad')}, {shown(spring.damping, 'N*m*s/rad')}, at rest at {rest}; "
+        f"λ = {spring.regularization:g}; its torque is computed once a sample and held"
+    )
+    _print(found, in_full, without, [], ("null space", told))
+
+
+def _print(
+    found: PostureMap | NullSpace,
+    in_full: bool,
+    without: Sequence[str],
+    last: Sequence[tuple[str, str]],
+    *asked: tuple[str, str],
+) -> None:
+    """The verdict, the numbers, what was asked and what is assumed, on standard output."""
     from zwidth.cli.page import blocks, headline, items, more_with_all, page, section, small_print
     from zwidth.passivity.in_short import in_short
     from zwidth.passivity.outcome import TOLD
 
-    asked = found.question
+    question = found.question
+    about = [
+        ("arm", arm_in_words(question.arm, question.rate)),
+        ("joint damping", damping_in_words(question.arm)),
+        ("wall", wall_in_words(question.wall)),
+        *asked,
+        *(("left out", text) for text in without),
+        *last,
+    ]
     with page() as out:
         out.print(headline(found.outcome, TOLD[found.outcome].terminal, found.claim))
-        about = [
-            ("arm", arm_in_words(asked.arm, asked.rate)),
-            ("joint damping", damping_in_words(asked.arm)),
-            ("wall", wall_in_words(asked.wall)),
-            *(("left out", text) for text in without),
-        ]
-        if better is not None:
-            about.append(("written", _written(better)))
         if in_full:
             blocks(out, list(found.rows()), about)
             section(out, "assumes", items(found.assumptions, "dim"))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,19 +12,15 @@ from zwidth.cli.output import print_json, say_written, targets
 from zwidth.cli.workspace.arm import (
     JOINTS,
     WALL,
-    arm_in_words,
     arm_of,
     by_name,
     cartesian_of,
-    damping_in_words,
     is_of_controllers,
     left_out,
-    wall_in_words,
     wall_of,
 )
-from zwidth.cli.workspace.report import print_workspace
+from zwidth.cli.workspace.report import print_null_space, print_postures, print_workspace
 from zwidth.errors import InputError
-from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
@@ -128,17 +123,22 @@ def _verdict(arguments: argparse.Namespace) -> Workspace:
     return workspace(
         arm,
         wall_of(arguments, arm.turns),
-        rate=float(parse_number(arguments.rate or _RATE, "Hz", "rate")),
-        delay=float(parse_number(arguments.delay or "0", "s", "delay")),
+        **_timing(arguments),
         points=_whole(arguments.points or "100", "points"),
         torque_held_up_to=_largest(arguments.torque_held_up_to, "torque-held-up-to"),
         largest_force=_largest(arguments.largest_force, "largest-force"),
     )
 
 
+def _timing(arguments: argparse.Namespace) -> dict[str, Any]:
+    return {
+        "rate": float(parse_number(arguments.rate or _RATE, "Hz", "rate")),
+        "delay": float(parse_number(arguments.delay or "0", "s", "delay")),
+    }
+
+
 def _postures(arguments: argparse.Namespace, plot: Path | None, save: Path | None) -> int:
     """All joints over their ranges: no region is proved, and the report says so."""
-    from zwidth.cli.workspace.report import print_postures
     from zwidth.passivity.outcome import TOLD
     from zwidth.passivity.workspace import stiffness_over_postures
     from zwidth.quantity.json_text import to_json
@@ -151,8 +151,7 @@ def _postures(arguments: argparse.Namespace, plot: Path | None, save: Path | Non
     found = stiffness_over_postures(
         arm,
         wall_of(arguments, arm.turns),
-        rate=float(parse_number(arguments.rate or _RATE, "Hz", "rate")),
-        delay=float(parse_number(arguments.delay or "0", "s", "delay")),
+        **_timing(arguments),
         postures=_whole(arguments.postures, "postures"),
     )
     better = None
@@ -197,8 +196,7 @@ def _borne(arguments: argparse.Namespace, arm: Arm) -> BorneImpedance:
     return borne_impedance(
         cartesian_of(Path(arguments.wall)),
         arm,
-        rate=float(parse_number(arguments.rate or _RATE, "Hz", "rate")),
-        delay=float(parse_number(arguments.delay or "0", "s", "delay")),
+        **_timing(arguments),
         postures=_whole(arguments.postures, "postures"),
         **({} if arguments.share is None else {"share": arguments.share}),
     )
@@ -211,7 +209,7 @@ def _null_space(arguments: argparse.Namespace, plot: Path | None, save: Path | N
 
     if save is not None and save.suffix.lower() != ".json":
         raise InputError(f"of a null-space spring there is no map: save as .json, got {save.name!r}")
-    found = null_space_of(arguments, float(parse_number(arguments.rate or _RATE, "Hz", "rate")))
+    found = null_space_of(arguments)
     without = left_out(arguments, found.question.arm.turns)
     if save is not None:
         found.save(save)
@@ -266,7 +264,7 @@ def refuse_without(arguments: argparse.Namespace) -> None:
             raise InputError(f"{option} is of a null-space spring; give its --null-stiffness")
 
 
-def null_space_of(arguments: argparse.Namespace, rate: float) -> NullSpace:
+def null_space_of(arguments: argparse.Namespace) -> NullSpace:
     """The answer that is asked for."""
     from zwidth.passivity.workspace import null_space
 
@@ -278,12 +276,11 @@ def null_space_of(arguments: argparse.Namespace, rate: float) -> NullSpace:
     return null_space(
         arm,
         wall_of(arguments, arm.turns),
-        rate=rate,
         stiffness=stiffness,
         damping=damping,
         rest=by_name(arguments.null_rest, "null-rest"),
         regularization=float(parse_number(arguments.regularization or "0", "1", "regularization")),
-        delay=float(parse_number(arguments.delay or "0", "s", "delay")),
+        **_timing(arguments),
         within=arguments.within,
     )
 
@@ -300,33 +297,3 @@ def _gains(arguments: argparse.Namespace) -> tuple[Any, Any]:
     if not one.nullspace:
         raise InputError(f"--wall {Path(arguments.wall).name}: it has no null-space stiffness")
     return one.nullspace, one.nullspace_damping
-
-
-def print_null_space(found: NullSpace, in_full: bool, without: Sequence[str]) -> None:
-    """Print the verdict, the numbers and what is assumed on standard output."""
-    from zwidth.cli.page import blocks, headline, items, more_with_all, page, section, small_print
-    from zwidth.passivity.in_short import in_short
-    from zwidth.passivity.outcome import TOLD
-
-    asked, spring = found.question, found.spring
-    rest = ", ".join(f"{value:.3g}" for value in spring.rest)
-    about = [
-        ("arm", arm_in_words(asked.arm, asked.rate)),
-        ("joint damping", damping_in_words(asked.arm)),
-        ("wall", wall_in_words(asked.wall)),
-        (
-            "null space",
-            f"{shown(spring.stiffness, 'N*m/rad')}, {shown(spring.damping, 'N*m*s/rad')}, at rest at {rest}; "
-            f"λ = {spring.regularization:g}; its torque is computed once a sample and held",
-        ),
-        *(("left out", text) for text in without),
-    ]
-    with page() as out:
-        out.print(headline(found.outcome, TOLD[found.outcome].terminal, found.claim))
-        if in_full:
-            blocks(out, list(found.rows()), about)
-            section(out, "assumes", items(found.assumptions, "dim"))
-            return
-        assumed = ("assumes", small_print(in_short(found.scope, found.outcome)))
-        blocks(out, list(found.rows()), [*about, assumed])
-        more_with_all(out, "assumptions in full")
