@@ -70,7 +70,7 @@ def follower_options() -> str:
 
 def connection_options() -> str:
     """How a device is reached, as options of the command line."""
-    from zwidth.cli.machine.serve import connection_parameters
+    from zwidth.cli.machine.serve_tables import connection_parameters
 
     return _options(connection_parameters())
 
@@ -107,7 +107,7 @@ def settings(name: str) -> str:
 
 def safety_options() -> str:
     """The limits of what a hand is given, as options of the command line."""
-    from zwidth.cli.machine.serve import safety_parameters
+    from zwidth.cli.machine.serve_tables import safety_parameters
 
     return _options(safety_parameters())
 

@@ -18,7 +18,6 @@ from zwidth.cli.output import print_json, print_report, say_written, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.table import plain, quoted
 from zwidth.passivity.document import unit_key
-from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import angles_in, spoken
@@ -30,6 +29,7 @@ from zwidth.writing import csv_cell, csv_text, writing_whole
 if TYPE_CHECKING:
     from zwidth.model.specification.read import Specification
     from zwidth.model.specification.table import Table as Given
+    from zwidth.passivity.verdict import Verdict
 
 
 _STATUS = ("active", "undecided", "passive in contact", "passive")

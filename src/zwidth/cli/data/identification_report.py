@@ -8,7 +8,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from zwidth.cli.data.identify import Result
+from zwidth.cli.data.results import Identification
 from zwidth.cli.loop_lines import environment_line
 from zwidth.cli.page import below, grid, headline, items, more_with_all, page, section
 from zwidth.data.identification.device.estimate import MOST_CONFIDENCE
@@ -31,7 +31,7 @@ _FEW = 2
 """Ways to know it better in a short report."""
 
 
-def print_identified(found: Result, in_full: bool = False) -> None:
+def print_identified(found: Identification, in_full: bool = False) -> None:
     """Print the report on standard output."""
     own = found.identified.findings[len(found.log.findings) :]
     better = advice(found.identified, found.confidence)
@@ -54,14 +54,14 @@ def print_identified(found: Result, in_full: bool = False) -> None:
         section(out, "the log", items(str(finding) for finding in found.log.findings))
 
 
-def _headline(found: Result) -> Padding:
+def _headline(found: Identification) -> Padding:
     badge, colour = "IDENTIFIED", "green"
     if found.identified.shows("wrong model"):
         badge, colour = "WRONG MODEL", "yellow"
     return headline(badge, colour, _claim(found))
 
 
-def _claim(found: Result) -> str:
+def _claim(found: Identification) -> str:
     if found.identified.shows("wrong model"):
         return "Coulomb friction is seen and was not fitted: these numbers allow no wall."
     device = found.identified.device(found.confidence, **found.others)
@@ -77,7 +77,7 @@ def _claim(found: Result) -> str:
     )
 
 
-def _log(found: Result) -> Padding:
+def _log(found: Identification) -> Padding:
     log = found.log
     length = "rad" if log.motion == "rotary" else "m"
     runs = "" if log.runs == 1 else f" in {log.runs} runs"
@@ -91,12 +91,12 @@ def _log(found: Result) -> Padding:
     return below(grid(rows))
 
 
-def _basis(found: Result) -> str:
+def _basis(found: Identification) -> str:
     one = found.identified
     return f"{one.strokes} strokes, {one.pulses} means over {shown(one.pulse_length, 's', 3)}"
 
 
-def _numbers(found: Result) -> Iterator[Table | Text]:
+def _numbers(found: Identification) -> Iterator[Table | Text]:
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim", pad_edge=False)
     for heading in ("", "", "best guess", f"{percent(_SHOWN)} interval", ""):
         table.add_column(heading)
@@ -126,7 +126,7 @@ def _findings(findings: Sequence[object]) -> Iterator[Text]:
         yield Text(f"· {finding}", style="yellow" if kind in _WARNINGS else "")
 
 
-def _checked(found: Result, verdict: Verdict) -> Iterator[Text]:
+def _checked(found: Identification, verdict: Verdict) -> Iterator[Text]:
     assert found.environment is not None
     yield Text(environment_line(found.environment, found.identified.motion))
     yield Text(_for_how_much(found.passive_for), style="bold")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
+from zwidth.cli.data.results import Identification
 from zwidth.cli.decision import decided, exit_status
 from zwidth.cli.options import (
     BEHIND,
@@ -24,10 +24,7 @@ from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted
 
 if TYPE_CHECKING:
-    from zwidth.data.identification.device.identified import Identified
-    from zwidth.data.logs import Log
-    from zwidth.model.environment import Environment
-    from zwidth.passivity.verdict import Verdict
+    pass
 
 
 QUANTITIES = ("time", "position", "hand_force", "actuator_force")
@@ -98,7 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
     return exit_status("undecided" if found.verdict is None else found.verdict.outcome)
 
 
-def _found(arguments: argparse.Namespace, confidence: float) -> Result:
+def _found(arguments: argparse.Namespace, confidence: float) -> Identification:
     from zwidth.data.identification.recording import identify, log_from
     from zwidth.data.logs import Log
     from zwidth.progress import progress_bar
@@ -114,14 +111,14 @@ def _found(arguments: argparse.Namespace, confidence: float) -> Result:
             identified = identify(log, **options, progress=progress)
     others = {"delay": options["delay"]} if "delay" in options else {}
     if environment is None:
-        return Result(log, identified, confidence, others, None, None, None)
+        return Identification(log, identified, confidence, others, None, None, None)
     if identified.shows("wrong model"):
-        return Result(log, identified, confidence, others, environment, None, None)
+        return Identification(log, identified, confidence, others, environment, None, None)
     from zwidth.model.specification.read import Specification
 
     verdict = decided(Specification(identified.device(confidence, **others), environment))
     passive_for = identified.confidence(environment, **others)
-    return Result(log, identified, confidence, others, environment, passive_for, verdict)
+    return Identification(log, identified, confidence, others, environment, passive_for, verdict)
 
 
 def _further_logs(arguments: argparse.Namespace) -> list[str]:
@@ -197,7 +194,7 @@ def _environment(arguments: argparse.Namespace) -> Any:
     return lambda motion: build_environment(table, motion)
 
 
-def _json(found: Result) -> str:
+def _json(found: Identification) -> str:
     from zwidth.quantity.json_text import to_json
 
     document = {
@@ -213,15 +210,3 @@ def _json(found: Result) -> str:
         document["passive_for"] = found.passive_for
         document["check"] = found.verdict.to_dict()
     return to_json(document)
-
-
-class Result(NamedTuple):
-    """What a log says, and of one environment."""
-
-    log: Log
-    identified: Identified
-    confidence: float
-    others: Mapping[str, Any]
-    environment: Environment | None
-    passive_for: float | None
-    verdict: Verdict | None

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
+from zwidth.cli.data.results import FittedTissue, OnDevice
 from zwidth.cli.decision import decided, exit_status
 from zwidth.cli.options import IN_FULL, as_options, device_parameters, given, output, pairs_of
 from zwidth.cli.output import print_json, say_written, targets
@@ -16,9 +17,6 @@ if TYPE_CHECKING:
 
     from zwidth.data.tissue import TissueTest
     from zwidth.model.device import Device
-    from zwidth.model.environment.discretization import Discretization
-    from zwidth.passivity.bracket import Bracket
-    from zwidth.passivity.verdict import Verdict
 
 
 QUANTITIES = ("time", "indentation", "force")
@@ -101,7 +99,7 @@ def _check(arguments: argparse.Namespace, save: Path | None) -> None:
         raise InputError("--scaled is of a file and a device: give DEVICE, and -o FILE")
 
 
-def _found(arguments: argparse.Namespace) -> Result:
+def _found(arguments: argparse.Namespace) -> FittedTissue:
     from zwidth.data.tissue import read_test
 
     device = _device(arguments) if _names_device(arguments) else None
@@ -120,7 +118,7 @@ def _found(arguments: argparse.Namespace) -> Result:
             sheet=arguments.sheet,
         )
     rule: Any = arguments.discretization or DISCRETIZATIONS[0]
-    return Result(test, rule, None if device is None else _wall(test, device, rule))
+    return FittedTissue(test, rule, None if device is None else _wall(test, device, rule))
 
 
 def _names_device(arguments: argparse.Namespace) -> bool:
@@ -168,7 +166,7 @@ def _wall(test: TissueTest, device: Device, rule: Any) -> OnDevice:
     return OnDevice(device, verdict, bracket, "", decided(Specification(device, box)))
 
 
-def _save(found: Result, path: Path, scaled: bool) -> None:
+def _save(found: FittedTissue, path: Path, scaled: bool) -> None:
     """The environment with its intervals above it, as comments."""
     from zwidth.model.specification.write import written_environment
     from zwidth.writing import writing_whole
@@ -188,7 +186,7 @@ def _save(found: Result, path: Path, scaled: bool) -> None:
         file.write(("\n".join(head) + "\n" + remark + written_environment(law)).encode())
 
 
-def _json(found: Result) -> str:
+def _json(found: FittedTissue) -> str:
     from zwidth.quantity.json_text import to_json
 
     document = found.test.to_dict()
@@ -201,25 +199,3 @@ def _json(found: Result) -> str:
         }
         document["check_of_intervals"] = None if wall.box is None else wall.box.outcome
     return to_json(document)
-
-
-class OnDevice(NamedTuple):
-    """The tissue on a device.
-
-    `bracket`: of the factor on every force; None where nothing decides it, and then `reason` says why.
-    `box`: of all that the intervals allow; None where they are not to be trusted.
-    """
-
-    device: Device
-    verdict: Verdict
-    bracket: Bracket | None
-    reason: str
-    box: Verdict | None
-
-
-class Result(NamedTuple):
-    """A test, how its tissue is discretized, and what a device makes of it."""
-
-    test: TissueTest
-    rule: Discretization
-    wall: OnDevice | None

@@ -8,7 +8,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from zwidth.cli.data.tissue import OnDevice, Result
+from zwidth.cli.data.results import FittedTissue, OnDevice
 from zwidth.cli.page import Row, blocks, headline, items, more_with_all, page, section
 from zwidth.data.logs import Finding
 from zwidth.data.tissue import TissueTest
@@ -36,7 +36,7 @@ _SPOKEN = {
 }
 
 
-def print_tissue(found: Result, in_full: bool = False) -> None:
+def print_tissue(found: FittedTissue, in_full: bool = False) -> None:
     """Print the report on standard output."""
     test = found.test
     with page() as out:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,9 +10,7 @@ from typing import TYPE_CHECKING
 from zwidth.cli.decision import asked, decided, exit_status
 from zwidth.cli.options import CONTACT, FORCE, LAW, LOOP, PARAMETERS, contact
 from zwidth.cli.output import print_json, print_message, say_written
-from zwidth.cli.page import Row, below, grid, headline, items, page, section
 from zwidth.errors import InputError
-from zwidth.passivity.outcome import TOLD
 
 if TYPE_CHECKING:
     from zwidth.machine.firmware.emit import Emitted
@@ -94,19 +91,12 @@ def _give_out(found: Emitted, written: list[Path], as_json: bool) -> None:
     if as_json:
         print_json(found.to_json())
         return
+    from zwidth.cli.page import below, grid, headline, items, page, section
+    from zwidth.passivity.outcome import TOLD
 
-    print_emitted(found, written)
-
-
-def print_emitted(found: Emitted, written: Sequence[Path]) -> None:
-    """Print the report on standard output, and where its files are."""
+    law = ("law", found.environment.describe(found.device.motion))
     with page() as out:
         out.print(headline(found.judged.outcome, TOLD[found.judged.outcome].terminal, found.claim))
-        out.print(below(grid(_rows(found))))
+        out.print(below(grid([law, *found.numbers])))
         section(out, "assumes", items(found.beside, "dim"))
     say_written(*written)
-
-
-def _rows(found: Emitted) -> Iterator[Row]:
-    yield "law", found.environment.describe(found.device.motion)
-    yield from found.numbers

@@ -14,7 +14,7 @@ import argparse
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.machine.serve import (
+from zwidth.cli.machine.serve_tables import (
     CONNECTION,
     OPERATOR,
     SAFETY,
