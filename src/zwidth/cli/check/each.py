@@ -17,7 +17,6 @@ from zwidth.cli.options import PARAMETERS, overrides
 from zwidth.cli.output import print_json, print_report, say_written, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.table import plain, quoted
-from zwidth.passivity.document import unit_key
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import angles_in, spoken
@@ -166,6 +165,8 @@ class EachDevice(Documented):
 
     def to_dict(self) -> dict[str, Any]:
         """The verdict on each, with its name and what was measured."""
+        from zwidth.passivity.document import unit_key
+
         key = f"measured_{unit_key('stiffness', self.motion)}"
         devices = [
             {
