@@ -11,7 +11,7 @@ from papers.row import Row, close, drawn, row
 from zwidth.loop.traces.perceived import noticeable_differences
 from zwidth.model.rendering import CrossingCorrection, HalfSamplePrediction, PassivityController
 from zwidth.passivity.formulas.quantization import admissible_speed, edge_crossing, plane_point
-from zwidth.show.plots.plane import has_plane
+from zwidth.show.plots.planes import has_plane
 
 TITLE = "Lecture 10 of ME 327, Design and Control of Haptic Systems (Stanford University, spring 2020)"
 

@@ -28,7 +28,7 @@ from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_unit
 from zwidth.show.explorer.computing import Region, Touch
 from zwidth.show.plots.linear import damping_range, refined_curve
-from zwidth.show.plots.plane import (
+from zwidth.show.plots.planes import (
     complete_devices,
     ends_around,
     has_plane,

@@ -25,8 +25,8 @@ from zwidth.show.plots.pair import draw_pair_link as draw_pair_link
 from zwidth.show.plots.pair import draw_pair_motion as draw_pair_motion
 from zwidth.show.plots.pair import plot_held_pair as plot_held_pair
 from zwidth.show.plots.pair import plot_pair as plot_pair
-from zwidth.show.plots.plane import draw_plane as draw_plane
-from zwidth.show.plots.plane import plane as plane
+from zwidth.show.plots.planes import draw_plane as draw_plane
+from zwidth.show.plots.planes import plane as plane
 from zwidth.show.plots.recordings import diagnosis_figure as diagnosis_figure
 from zwidth.show.plots.recordings import draw_lateness as draw_lateness
 from zwidth.show.plots.recordings import pair_figure as pair_figure
@@ -41,10 +41,10 @@ from zwidth.show.plots.scores import draw_links as draw_links
 from zwidth.show.plots.scores import indices as indices
 from zwidth.show.plots.scores import laws_figure as laws_figure
 from zwidth.show.plots.scores import plot_links as plot_links
-from zwidth.show.plots.storage import draw_sample_table as draw_sample_table
-from zwidth.show.plots.storage import draw_storage as draw_storage
-from zwidth.show.plots.storage import sample_table_figure as sample_table_figure
-from zwidth.show.plots.storage import storage as storage
+from zwidth.show.plots.storages import draw_sample_table as draw_sample_table
+from zwidth.show.plots.storages import draw_storage as draw_storage
+from zwidth.show.plots.storages import sample_table_figure as sample_table_figure
+from zwidth.show.plots.storages import storage as storage
 from zwidth.show.plots.style import LOOK as LOOK
 from zwidth.show.plots.style import encoded as encoded
 from zwidth.show.plots.style import save_figure as save_figure

@@ -16,9 +16,9 @@ from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.verdict import Verdict
 from zwidth.show.plots.linear import draw_criterion, draw_damping, draw_friction, has_friction
 from zwidth.show.plots.motions import draw_motion, draw_witness
-from zwidth.show.plots.plane import draw_plane, has_plane
+from zwidth.show.plots.planes import draw_plane, has_plane
 from zwidth.show.plots.scene import draw_scene
-from zwidth.show.plots.storage import draw_storage
+from zwidth.show.plots.storages import draw_storage
 from zwidth.show.plots.style import (
     LOOK,
     OUTCOME,
