@@ -20,11 +20,11 @@ import numpy as np
 
 import zwidth as zw
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.study.sweeps.compute import compute
 from zwidth.study.sweeps.loops import Loop
 from zwidth.study.sweeps.questions import Line, checked
 from zwidth.study.sweeps.request import Request, request
-from zwidth.study.sweeps.walls import FEWEST
+from zwidth.study.sweeps.run import compute
+from zwidth.study.sweeps.springs import FEWEST
 
 
 def main() -> None:

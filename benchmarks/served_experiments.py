@@ -75,7 +75,7 @@ def watched(servo: Servo, face: str) -> Iterator[None]:
     if face == "none":
         yield
         return
-    from zwidth.cli.serve import begin_watching
+    from zwidth.cli.machine.serve import begin_watching
 
     end = begin_watching(face, 0 if face == "browser" else None, servo)
     try:

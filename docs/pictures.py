@@ -28,7 +28,7 @@ import zwidth as zw
 from zwidth.machine.servo.live.rows import CURVES
 from zwidth.show import plots
 from zwidth.show.plots.identified import identification_figure
-from zwidth.show.plots.laws import laws_figure
+from zwidth.show.plots.scores import laws_figure
 
 STATIC = Path(__file__).parent / "_static"
 sys.path.insert(0, str(STATIC.parents[1] / "examples"))

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 
 import zwidth as zw
 from zwidth.show import plots
-from zwidth.show.plots.pair_trace import draw_both, draw_pair_energies
+from zwidth.show.plots.traces import draw_both, draw_pair_energies
 
 plt.rcParams.update(plots.LOOK)
 joint = zw.Device(

@@ -275,7 +275,7 @@ def test_the_quickstart_example_says_what_comes_out(tmp_path: Path, monkeypatch:
 )
 def test_the_specifications_of_a_page_can_be_read(page: str, tmp_path: Path) -> None:
     """Every TOML block with tables in the docs is a valid specification; one without is a velocity filter."""
-    from zwidth.cli.simulation_tables import build_touch
+    from zwidth.cli.simulate.tables import build_touch
     from zwidth.model.specification.laws import with_laws
     from zwidth.model.specification.read import TABLES, read_tables, specified
 

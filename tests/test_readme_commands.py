@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from zwidth.cli.main import _parser, main
-from zwidth.cli.typed import joined
+from zwidth.cli.parsing import joined
 
 ROOT = Path(__file__).resolve().parent.parent
 

@@ -12,12 +12,13 @@ import trust
 
 from zwidth import catalogue
 from zwidth.cli.options import (
-    Parameter,
     coupling_parameters,
     device_parameters,
     environment_parameters,
 )
 from zwidth.data.gains.plant import plants as published_plants
+from zwidth.cli.parsing import Parameter
+from zwidth.data.gains import published
 from zwidth.model.kind import Kind
 from zwidth.model.rendering import ESTIMATORS, LAWS
 from zwidth.model.specification import load as pairs
@@ -56,21 +57,21 @@ def environment_options() -> str:
 
 def operator_options() -> str:
     """The hands and their numbers, as options of the command line."""
-    from zwidth.cli.simulation_tables import operator_parameters
+    from zwidth.cli.simulate.tables import operator_parameters
 
     return _options(operator_parameters())
 
 
 def follower_options() -> str:
     """What holds the follower of a pair, as options of the command line."""
-    from zwidth.cli.simulation_tables import follower_parameters
+    from zwidth.cli.simulate.tables import follower_parameters
 
     return _options(follower_parameters())
 
 
 def connection_options() -> str:
     """How a device is reached, as options of the command line."""
-    from zwidth.cli.serve_tables import connection_parameters
+    from zwidth.cli.machine.serve_tables import connection_parameters
 
     return _options(connection_parameters())
 
@@ -107,14 +108,14 @@ def settings(name: str) -> str:
 
 def safety_options() -> str:
     """The limits of what a hand is given, as options of the command line."""
-    from zwidth.cli.serve_tables import safety_parameters
+    from zwidth.cli.machine.serve_tables import safety_parameters
 
     return _options(safety_parameters())
 
 
 def simulation_options() -> str:
     """How a simulation is run, as options of the command line."""
-    from zwidth.cli.simulation_tables import simulation_parameters
+    from zwidth.cli.simulate.tables import simulation_parameters
 
     return _options(simulation_parameters())
 
@@ -139,7 +140,7 @@ def coupling_options() -> str:
 
 def link_options() -> str:
     """What a link does to packets, as options of the command line."""
-    from zwidth.cli.links import link_parameters
+    from zwidth.cli.pair.links import link_parameters
 
     rows = [(f"`{p.option}`", _pretty(p.help)) for p in link_parameters()]
     return markdown(("option", "meaning"), rows)

@@ -59,11 +59,11 @@ from zwidth.show import plots as plots
 from zwidth.show import report as report
 from zwidth.show import simulation as simulation
 from zwidth.show.explorer.notebook import explore as explore
-from zwidth.show.with_bar.available_storage import available_storage as available_storage
-from zwidth.show.with_bar.compare import compare as compare
-from zwidth.show.with_bar.identify import identify as identify
-from zwidth.show.with_bar.passive_limit import passive_limit as limit
-from zwidth.show.with_bar.simulate import simulate as simulate
+from zwidth.show.with_bar import available_storage as available_storage
+from zwidth.show.with_bar import compare as compare
+from zwidth.show.with_bar import identify as identify
+from zwidth.show.with_bar import passive_limit as limit
+from zwidth.show.with_bar import simulate as simulate
 from zwidth.study import maps as maps
 from zwidth.study.maps import z_width as z_width
 from zwidth.study.sweeps.files import load_sweep as load_sweep

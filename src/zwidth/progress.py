@@ -6,10 +6,14 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from functools import wraps
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
 if TYPE_CHECKING:
     from rich.progress import Progress
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 SHOWN_AFTER = 1.0
 """Seconds before the bar appears."""
@@ -44,6 +48,30 @@ def falling(progress: Callable[[int, int], None]) -> Callable[[int], None]:
         progress(most - left, most)
 
     return report
+
+
+def with_bar(function: Callable[P, R], what: str, falls: bool = False) -> Callable[P, R]:
+    """The same function, with a bar of what is counted where nobody else asks to be told of its progress.
+
+    Parameters
+    ----------
+    function
+        It takes `progress`.
+    what
+        What is counted.
+    falls
+        True where it is told a number that falls to 0.
+    """
+
+    @wraps(function)
+    def run(*args: P.args, **kwargs: P.kwargs) -> R:
+        if "progress" in kwargs:
+            return function(*args, **kwargs)
+        with progress_bar(what) as progress:
+            kwargs["progress"] = falling(progress) if falls else progress
+            return function(*args, **kwargs)
+
+    return run
 
 
 class _Bar:

@@ -8,7 +8,7 @@ import zwidth as zw
 from zwidth.loop.traces import scores
 from zwidth.model.operator import TypicalTouch
 from zwidth.quantity.exact import Exact
-from zwidth.study.bench.at_rim import at_rim, radius_of
+from zwidth.study.bench.laws import at_rim, radius_of
 
 RADIUS = Exact("0.13")
 KNOB = zw.rotary(

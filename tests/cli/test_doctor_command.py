@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.cli.doctor import configure, run
+from zwidth.cli.commands import configure
+from zwidth.cli.machine.doctor import run
 from zwidth.errors import InputError
 from zwidth.machine.servo import checkup
 from zwidth.machine.servo.lateness import Lateness, Measured
@@ -31,7 +32,7 @@ def doctor(monkeypatch, capsys):
 
     def command(*argv):
         parser = argparse.ArgumentParser()
-        configure(parser)
+        configure("doctor", parser)
         assert run(parser.parse_args(argv)) == 0
         return dict(measured), capsys.readouterr().out
 

@@ -46,7 +46,7 @@ def test_ctrl_c_is_heard_by_whichever_thread_takes_it() -> None:
     """The system may hand a signal to any thread of the process; the main one waits, and hears of it."""
     program = (
         "import signal, threading, time\n"
-        "from zwidth.cli.explore import until_ctrl_c\n"
+        "from zwidth.cli.start.explore import until_ctrl_c\n"
         "def pressed():\n"
         "    time.sleep(0.5)\n"
         "    signal.pthread_kill(threading.get_ident(), signal.SIGINT)\n"
@@ -83,7 +83,7 @@ def test_without_its_libraries_it_says_what_to_install(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """One line that names the extra."""
-    monkeypatch.setattr("zwidth.show.explorer.library.find_spec", lambda _: None)
+    monkeypatch.setattr("zwidth.show.explorer.notebook.find_spec", lambda _: None)
     assert main(["explore", "--no-browser"]) == 2
     error = capsys.readouterr().err
     assert "pip install 'zwidth[explore]'" in error

@@ -13,7 +13,7 @@ import pytest
 
 from zwidth.cli.commands import COMMANDS
 from zwidth.cli.main import main
-from zwidth.cli.width import width_of, wrapped
+from zwidth.cli.output import width_of, wrapped
 
 
 @pytest.mark.parametrize("width", [60, 80, 100])

@@ -13,11 +13,11 @@ import pytest
 from matplotlib.figure import Figure
 
 import zwidth as zw
-from zwidth.cli.bars import bar, levels
 from zwidth.cli.decision import decided
 from zwidth.cli.main import main
 from zwidth.cli.options import device_parameters, environment_parameters
-from zwidth.cli.typed import joined
+from zwidth.cli.page import bar, levels
+from zwidth.cli.parsing import joined
 from zwidth.model.device import catalogue
 from zwidth.model.specification.read import Specification
 from zwidth.passivity.check import check_by_closed_forms

@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 from free_channels import free_ports
 
+from zwidth.cli.machine.network import _Watch
+from zwidth.cli.machine.network_plan import load_plan
 from zwidth.cli.main import main
-from zwidth.cli.network import _Watch
-from zwidth.cli.network_plan import load_plan
 from zwidth.errors import InputError
 from zwidth.machine.network import Peer, SharedMemory
 from zwidth.machine.network.channel import Channel

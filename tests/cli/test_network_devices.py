@@ -14,8 +14,8 @@ from free_channels import udp, zenoh
 from servo.emulators.faults import Fault
 from servo.emulators.hapkit import HapkitEmulator
 
+from zwidth.cli.machine.network_plan import load_plan
 from zwidth.cli.main import main
-from zwidth.cli.network_plan import load_plan
 from zwidth.machine.servo.port_run import PortRun
 from zwidth.quantity.exact import Exact
 
@@ -138,7 +138,7 @@ def test_a_board_feels_the_scene_and_no_force_once_the_scene_is_killed(tmp_path,
 @pytest.mark.real_time
 def test_a_board_that_fails_ends_its_process_with_force_0_and_status_1(tmp_path, capsys, monkeypatch):
     """Two bad answers in a row; nobody is at the other end, and nothing was felt."""
-    monkeypatch.setattr("zwidth.cli.network._MEETING", 0.0)
+    monkeypatch.setattr("zwidth.cli.machine.network._MEETING", 0.0)
     line = f'\n[[network.line]]\nname = "paddle"\nchannel = "{udp()}"\n'
     with HapkitEmulator(lambda exchange: exchange, Fault.GARBAGE, at=20) as board:
         path = file(tmp_path, KIT + 'safety = { longest_gap = "30 s" }\n', board.port, line)
@@ -151,7 +151,7 @@ def test_a_board_that_fails_ends_its_process_with_force_0_and_status_1(tmp_path,
 
 def test_a_plan_says_how_a_device_is_reached_and_reaches_none(tmp_path, capsys, monkeypatch):
     """No such port is there; the delay that was not given is the shortest that a port can have."""
-    monkeypatch.setattr("zwidth.cli.network._MEETING", 0.0)
+    monkeypatch.setattr("zwidth.cli.machine.network._MEETING", 0.0)
     line = f'\n[[network.line]]\nname = "paddle"\nchannel = "{udp()}"\n'
     path = file(tmp_path, KIT + SLOW, "/dev/no-such-port", line)
     assert main(["network", str(path), "--plan"]) == 0

@@ -14,10 +14,11 @@ from written_rows import COLUMNS, WrittenRows, drawn
 
 import zwidth as zw
 from zwidth import InputError
-from zwidth.cli import replay
+from zwidth.cli.commands import configure
+from zwidth.cli.machine import replay
 from zwidth.machine.servo.recording import Recorder, read_recording
 from zwidth.model.specification.write import written
-from zwidth.show.plots.recording import recording_figure
+from zwidth.show.plots.recordings import recording_figure
 
 WALL = zw.Wall(stiffness=300)
 
@@ -40,7 +41,7 @@ def recorded(tmp_path: Path) -> Path:
 def command(*argv: object) -> int:
     """The command with these arguments."""
     parser = argparse.ArgumentParser()
-    replay.configure(parser)
+    configure("replay", parser)
     return replay.run(parser.parse_args([str(word) for word in argv]))
 
 

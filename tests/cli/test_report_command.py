@@ -65,7 +65,8 @@ def test_the_proof_of_a_page_is_verified(tmp_path: Path, capsys: pytest.CaptureF
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["-o", "report.txt"], "written as .html or .pdf"),
+        (["-o", "report.txt"], "written as .html"),
+        (["-o", "report.pdf"], "print it to PDF from the browser"),
         (["-o", "there.html"], "exists"),
         (["-o", "nowhere/report.html"], "no directory"),
         ([], "-o/--save"),

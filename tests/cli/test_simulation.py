@@ -15,7 +15,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.cli.simulation_tables import KEYS, follower_parameters, operator_parameters, simulation_parameters
+from zwidth.cli.simulate.tables import KEYS, follower_parameters, operator_parameters, simulation_parameters
 from zwidth.model import operator as operators
 
 DOWEL = ("simulate", "haptic-paddle", "--stiffness", "770", "--operator", "dowel", "--duration", "0.2")

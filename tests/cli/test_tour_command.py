@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from zwidth.cli import tour
 from zwidth.cli.commands import COMMANDS
 from zwidth.cli.main import main
+from zwidth.cli.start import tour
 
 
 def test_zwidth_alone_says_what_to_type(capsys: pytest.CaptureFixture[str]) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from zwidth.cli.main import main
-from zwidth.cli.typed import as_typed
+from zwidth.cli.parsing import as_typed
 
 LOOP = ["check", "haptic-paddle", "--stiffness", "3"]
 

@@ -11,8 +11,16 @@ from hypothesis import strategies as st
 from rich.cells import cell_len
 
 from zwidth.cli import output
-from zwidth.cli.output import print_report, print_text, spelled, tolerate_encoding
-from zwidth.cli.width import columns, fitted, width_of, wrapped
+from zwidth.cli.output import (
+    columns,
+    fitted,
+    print_report,
+    print_text,
+    spelled,
+    tolerate_encoding,
+    width_of,
+    wrapped,
+)
 from zwidth.showing import Lines, Table
 
 words = st.text(st.sampled_from("ab·é力µ→ "), max_size=120)

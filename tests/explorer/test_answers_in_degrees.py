@@ -83,6 +83,6 @@ def test_what_takes_longer_speaks_it_too(tmp_path: Path) -> None:
 
 
 def _advised(state: State) -> str:
-    from zwidth.show.explorer.judging import judged_in_full
+    from zwidth.show.explorer.computing import judged_in_full
 
     return " ".join(advice.text for advice in judged_in_full(state).advice)

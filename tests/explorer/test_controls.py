@@ -21,8 +21,7 @@ from zwidth.show.explorer.controls import (
     law_controls,
     read_entry,
 )
-from zwidth.show.explorer.scale import scale_of
-from zwidth.show.explorer.state import State, catalogued
+from zwidth.show.explorer.state import State, catalogued, scale_of
 
 
 def answers(state: State, control: Control) -> None:

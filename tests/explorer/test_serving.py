@@ -15,8 +15,7 @@ from bokeh.models import ImportedStyleSheet
 from bokeh.util.token import generate_session_id
 
 from zwidth.errors import InputError
-from zwidth.show.explorer import access
-from zwidth.show.explorer.serving import serve_explorer
+from zwidth.show.explorer.serving import SHORTEST, serve_explorer, token_for
 
 TOKEN = "a-token-of-a-test-0123456789"
 
@@ -151,19 +150,19 @@ def test_a_form_takes_the_token() -> None:
 
 def test_over_the_network_there_is_always_a_token() -> None:
     """Where none is given one is made; on this machine none is needed."""
-    assert access.token_for("127.0.0.1", None) is None
-    assert access.token_for("::1", None) is None
-    made = access.token_for("0.0.0.0", None)
+    assert token_for("127.0.0.1", None) is None
+    assert token_for("::1", None) is None
+    made = token_for("0.0.0.0", None)
     assert made is not None
-    assert len(made) >= access.SHORTEST
-    assert made != access.token_for("0.0.0.0", None)
+    assert len(made) >= SHORTEST
+    assert made != token_for("0.0.0.0", None)
 
 
 @pytest.mark.parametrize("token", ["short", "with a blank in it, long", "späte-umlaute-0123456789", ""])
 def test_a_token_that_can_be_guessed_is_refused(token: str) -> None:
     """Or one that an address does not carry."""
     with pytest.raises(InputError, match="16 characters"):
-        access.token_for("127.0.0.1", token)
+        token_for("127.0.0.1", token)
 
 
 def test_a_port_in_use_is_said() -> None:

@@ -16,7 +16,7 @@ from zwidth.model import rendering
 from zwidth.model.specification.environments import TYPES
 from zwidth.show.explorer import starts
 from zwidth.show.explorer.controls import read_entry
-from zwidth.show.explorer.form_of_loop import controls_of
+from zwidth.show.explorer.form import controls_of
 from zwidth.show.explorer.state import LARGEST_FILE, LONGEST_QUERY, State, from_file, from_query
 
 THIRD = zw.Exact(Fraction(1, 3))

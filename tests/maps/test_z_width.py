@@ -23,10 +23,12 @@ from zwidth.passivity.criterion_choice import decide
 from zwidth.passivity.storage.hand_bounds import slow_hands
 from zwidth.study.maps.chunk import compute
 from zwidth.study.maps.kernel import STABLE, UNKNOWN, UNSTABLE
+from zwidth.passivity.decision import decide
+from zwidth.passivity.storage.slow_hands import slow_hands
+from zwidth.study.maps.kernel import STABLE, UNKNOWN, UNSTABLE, compute
 from zwidth.study.maps.kernel import decide as decide_cell
-from zwidth.study.maps.plan import plan
+from zwidth.study.maps.plan import _exactly, plan
 from zwidth.study.maps.request import CHUNK, FORMAT, request
-from zwidth.study.maps.sustained import _exactly
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 WIDE = ((0, 30000), (0, 90))
@@ -381,7 +383,7 @@ def test_a_cluster_gives_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two workers, each a process of its own, against the threads of this one."""
     import distributed
 
-    monkeypatch.setattr("zwidth.study.chunks.workers._TIMEOUT", "600 s")  # they may start slowly
+    monkeypatch.setattr("zwidth.study.chunks.layout._TIMEOUT", "600 s")  # they may start slowly
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, scheduler_port=0
     ) as cluster:

@@ -11,7 +11,7 @@ from strategies import seeds
 from test_advice import drawn
 
 import zwidth as zw
-from zwidth.cli.limit_report import _claim
+from zwidth.cli.check.limit_report import _claim
 from zwidth.passivity.bracket import Bracket, passive_limit
 from zwidth.passivity.bracket.bracket import parameter_of
 from zwidth.quantity.exact import Exact

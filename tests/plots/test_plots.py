@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 
 import zwidth as zw
 import zwidth.show.plots as plots
-from zwidth.show.plots.criterion import refined_curve
-from zwidth.show.plots.files import save_figure
+from zwidth.show.plots.linear import refined_curve
 from zwidth.show.plots.replay import ROUNDS, replay
+from zwidth.show.plots.style import save_figure
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 IDEAL = PADDLE.replace(resolution=0)

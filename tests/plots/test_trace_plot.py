@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.show.plots.trace import comparison_figure, thinned, trace_figure
+from zwidth.show.plots.traces import comparison_figure, thinned, trace_figure
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 

@@ -8,8 +8,7 @@ import zwidth as zw
 from zwidth.model.specification.laws import with_laws
 from zwidth.model.specification.load import pair_of
 from zwidth.model.specification.read import PAIR_TABLES, WITH_LAWS, built, merged, tables_of
-from zwidth.show.report.pair_provenance import of_pair
-from zwidth.show.report.provenance import of_device, of_environment, of_verdict
+from zwidth.show.report.provenance import of_device, of_environment, of_pair, of_verdict
 
 WHEEL = """
 [device]

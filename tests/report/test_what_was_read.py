@@ -11,7 +11,7 @@ import pytest
 import zwidth as zw
 from zwidth.cli.main import main
 from zwidth.passivity.verdict import Verdict
-from zwidth.show.report.what_was_read import as_read
+from zwidth.show.report.contents import as_read
 
 STOP = """
 [environment]

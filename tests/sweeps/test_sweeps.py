@@ -16,13 +16,13 @@ from strategies import seeds
 
 import zwidth as zw
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.study.chunks.worker import Worker
+from zwidth.study.chunks.layout import Worker
 from zwidth.study.sweeps import request as requests
 from zwidth.study.sweeps.axes import axis
-from zwidth.study.sweeps.compute import compute
 from zwidth.study.sweeps.loops import Loop, changed, parameter
 from zwidth.study.sweeps.questions import Line, checked
 from zwidth.study.sweeps.request import request
+from zwidth.study.sweeps.run import compute
 from zwidth.study.sweeps.springs import largest_spring
 
 PADDLE = zw.catalogue.device("haptic-paddle")

@@ -1,6 +1,6 @@
 """The subcommands.  `COMMANDS` is the registry: a new command is one row here, and a file of its name.
 
-The file has two functions: `configure` sets up the arguments, `run` does what the command does.
+In the file `OPTIONS` are what it takes, `USAGE` says it in a line, `run` does what the command does.
 """
 
 from __future__ import annotations
@@ -11,10 +11,13 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from zwidth.cli.parsing import add_options
+
 
 class Command(NamedTuple):
-    """A subcommand: what it does, and the name of its file where that is another one."""
+    """A subcommand: the folder of its file, what it does; the name of the file where that is another one."""
 
+    folder: str
     meaning: str
     description: str
     epilog: str
@@ -23,7 +26,10 @@ class Command(NamedTuple):
 
 def configure(name: str, parser: argparse.ArgumentParser) -> None:
     """Set up the arguments of a command."""
-    _module(name).configure(parser)
+    module = _module(name)
+    if hasattr(module, "USAGE"):
+        parser.usage = f"%(prog)s {module.USAGE}"
+    add_options(parser, module.OPTIONS)
 
 
 def run(name: str, arguments: argparse.Namespace) -> int:
@@ -33,12 +39,14 @@ def run(name: str, arguments: argparse.Namespace) -> int:
 
 
 def _module(name: str) -> Any:
-    return import_module(f"zwidth.cli.{COMMANDS[name].file or name}")
+    own = COMMANDS[name]
+    return import_module(f"zwidth.cli.{own.folder}.{own.file or name}")
 
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(
     {
         "tour": Command(
+            "start",
             "a wall that gives out energy, why, and what mends it: in a minute",
             "Go through the questions of this program on one device, a paddle: the commands that ask\n"
             "them are run, and what they find is shown in short. Nothing is written.",
@@ -48,6 +56,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth tour --no-pause",
         ),
         "examples": Command(
+            "start",
             "sample files for every command, and lessons for a class",
             "List the sample files with a command for each, or copy them into a folder.",
             "exit status: 0, or 2 where a file exists or cannot be written\n\n"
@@ -57,6 +66,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth examples my-first-walls",
         ),
         "new": Command(
+            "new",
             "write the file of your device, question by question",
             "Ask what you know of a device or of what it renders, say why it matters, and write it as TOML.",
             "In a terminal, and from a pipe, what no option gives is asked, line by line: a value with its\n"
@@ -69,6 +79,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "--no-questions",
         ),
         "check": Command(
+            "check",
             "is this device, rendering this environment, passive?",
             "Prove that the sampled loop is passive, or find the hand motion that takes energy out of it;\n"
             "say what limits it, by how much, and what to change.",
@@ -82,20 +93,22 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth check --damping 0.2 --rate '2 kHz' --stiffness 500 --virtual-damping 0.05",
         ),
         "report": Command(
-            "the verdict as one file to hand on: HTML or PDF",
+            "check",
+            "the verdict as one page to hand on",
             "Decide as zwidth check does, and write verdict, scope, proof, figures, what to change, and\n"
             "where each number comes from into one file that needs nothing else. The same input gives the\n"
             "same bytes.",
-            "A file that ends in .html is a page without script and without addresses abroad; one that ends\n"
-            "in .pdf takes ReportLab: pip install 'zwidth[report]'.\n\n"
+            "The file ends in .html: a page without script and without addresses abroad. For a PDF print it\n"
+            "from the browser.\n\n"
             "exit status: as of zwidth check: 0 passive, 1 active, 2 bad input, 3 undecided, 4 passive\n"
             "while contact is kept\n\n"
             "examples:\n"
             "  zwidth report haptic-paddle --stiffness 300 -o report.html\n"
-            "  zwidth report my-wheel.toml my-bumpstop.toml -o report.pdf",
-            file="write_report",
+            "  zwidth report my-wheel.toml my-bumpstop.toml -o wheel.html",
+            file="report_file",
         ),
         "limit": Command(
+            "check",
             "how far may a parameter go?",
             "Bracket a limit: the last value that is proved passive, and the first at which a motion of the\n"
             "hand takes energy out, contact made and broken at will.",
@@ -108,6 +121,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth limit my-wheel.toml my-wall.toml --parameter rate -o limit.json",
         ),
         "explore": Command(
+            "start",
             "move every parameter on a page, and see the verdict follow",
             "Open a page in the browser: the device and the wall on sliders, the verdict beside them, and\n"
             "pictures of both. The address keeps the loop. It answers this machine alone, unless --address\n"
@@ -118,6 +132,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth explore my-wheel.toml my-bumpstop.toml --no-browser --port 5100",
         ),
         "pair": Command(
+            "pair",
             "are two arms that follow each other passive?",
             "Two arms, leader and follower, joined by a spring and a damper over a link: prove that no two\n"
             "hands take energy out, or find the motion of both that does; say what limits it, and what to\n"
@@ -131,6 +146,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth pair my-pair.toml --link-delay '5 ms' -o pair.json",
         ),
         "gains": Command(
+            "pair",
             "are two arms passive with the gains of these files?",
             "Read the gain files of two arms (OpenArm, i2rt YAM, LeRobot, Piper), joint by joint: which are\n"
             "passive, how stiff each may be, and which gains would be passive. Of one arm in ROS 2\n"
@@ -146,6 +162,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth gains controllers.yaml --plant my-arm.toml",
         ),
         "each": Command(
+            "check",
             "the same question of each of several devices, in a table",
             "Check one wall, or another law, on each of several devices: a class, a batch, one device as\n"
             "several people measured it. On how many it is passive, up to where on each and on all of\n"
@@ -158,6 +175,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth each paddle.toml hapkit.toml haptic-paddle --stiffness 150 -o class.csv",
         ),
         "map": Command(
+            "study",
             "which walls can this device render?",
             "Map the Z-width: over stiffness and virtual damping, which walls are passive with every hand,\n"
             "which are so up to a speed of the hand, and which are stable with hands that are known.",
@@ -172,6 +190,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "--address tcp://cluster:8786",
         ),
         "sweep": Command(
+            "study",
             "the same question of a thousand loops",
             "Vary parameters over a grid, and ask of each loop what check, limit, simulate or pair answers.\n"
             "The results are a table of Parquet, or a zarr store that opens as labelled xarray.",
@@ -188,6 +207,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "-o big.zarr --dask tcp://cluster:8786",
         ),
         "play": Command(
+            "start",
             "a page on which a loop is held, pushed and heard",
             "Write a page of HTML on which a person holds the handle and pushes into the wall: device, hand\n"
             "and law run in it sample by sample, force is drawn and heard, energy is counted.",
@@ -199,6 +219,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth play my-wheel.toml my-bumpstop.toml -o play.html",
         ),
         "simulate": Command(
+            "simulate",
             "what happens when a hand touches the wall?",
             "Simulate a hand on the device, without time-step error: positions, forces, every joule.",
             "A plain number is SI; others carry a unit, as in --duration '2 s' or --operator.force '4 N'.\n\n"
@@ -213,6 +234,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "--follower-operator.stiffness '2 kN/m' --duration 1",
         ),
         "serve": Command(
+            "machine",
             "render a wall on a device, in real time",
             "Reach the device, measure this machine and the link with force 0, prove the wall passive with\n"
             "what was measured, and render it until the time is over, Ctrl-C, or a fault. The force is 0\n"
@@ -229,6 +251,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth serve my-inverse.toml --connection inverse --stiffness 200 --watch browser",
         ),
         "emit": Command(
+            "machine",
             "a law that was proved, as C99 or JavaScript",
             "Write the law as text for the machine that will run it: a C99 header or an ES module with\n"
             "init, step and reset, a main program for the target, and the certificate. How much the\n"
@@ -242,6 +265,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth emit haptic-paddle --stiffness 250 --target javascript -o page",
         ),
         "replay": Command(
+            "machine",
             "what a recording of a served loop holds, and whether its law gives those forces again",
             "Read a recording, whole or cut off; compute its laws again from the readings, and compare the\n"
             "forces with those that were given, bit by bit.",
@@ -251,6 +275,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth replay session.mcap -o session.nc",
         ),
         "doctor": Command(
+            "machine",
             "is this machine fit to run the loop?",
             "Run an empty loop at the device's rate, and say how late it comes, what that costs the device\n"
             "in stiffness, and what of this machine to change.",
@@ -260,6 +285,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth doctor haptic-paddle --stiffness 250 --duration '10 s' --plot lateness.png",
         ),
         "network": Command(
+            "machine",
             "run a scene in several processes, with the devices that hold it",
             "Start a process for each part of a scene and for each device, join them by lines over shared\n"
             "memory, UDP or Zenoh, and say what each saw: pace, delay, losses, energy.",
@@ -272,11 +298,13 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth network room.toml --plan",
         ),
         "traces": Command(
+            "simulate",
             "compare saved touches",
             "Read traces that zwidth simulate saved, and set their numbers beside each other.",
             "example:\n  zwidth traces finger.nc dowel.nc --plot both.png",
         ),
         "compare": Command(
+            "study",
             "which rendering law suits this wall on this device?",
             "Put rendering laws on one bench: the same touches, the same hand that tries to take energy\n"
             "out; what is felt, what is given out, and what is proved.",
@@ -289,6 +317,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth compare my-arms.toml",
         ),
         "links": Command(
+            "pair",
             "which port joins two devices over a link that loses packets?",
             "Join two devices over one link by each kind of port: which is passive whatever the link does,\n"
             "what two hands take out of the others, how the follower follows, what the leader feels.",
@@ -299,6 +328,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "--plot links.png",
         ),
         "workspace": Command(
+            "workspace",
             "where does an arm of several joints render a wall passively?",
             "Map over the workspace of an arm whether the damping of its joints pays for a wall; prove it\n"
             "between the points too, or show a motion that takes energy out; say which joint to damp.",
@@ -310,6 +340,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth workspace my-arm.urdf --pose --stiffness 500 --rotational-stiffness '20 N*m/rad'",
         ),
         "identify": Command(
+            "data",
             "mass, damping and friction of a device, from a log of its motion",
             "Identify a device from a log of position and force: numbers with intervals, the stiffest wall\n"
             "they allow, and for how much of what the data allow an environment is passive.",
@@ -324,6 +355,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth identify swing.csv --mass '36 g'",
         ),
         "tissue": Command(
+            "data",
             "which tissue was it, and how much of it may a device render?",
             "Read a relaxation, creep or loading test of a probe in tissue from a spreadsheet: the model,\n"
             "its numbers with intervals, and the largest scale of it that is proved passive on a device.",
@@ -337,6 +369,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth tissue creep.csv --column indentation=z --unit indentation=um --kind creep",
         ),
         "diagnose": Command(
+            "data",
             "why did it shake? One recording of a vibration, its cause, what to change",
             "Find in a log of a vibrating wall, wheel or joint what keeps it going: sampling, a delay, the\n"
             "velocity estimate, the encoder, the drive, friction, the motor's limits or a springy part;\n"
@@ -350,6 +383,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth diagnose log.csv --column commanded_force=cmd --unit commanded_force=N",
         ),
         "plan": Command(
+            "data",
             "how to move a device by hand so that its limit becomes known",
             "Plan the experiment for zwidth identify: which strokes, how many, how long, and when to stop.",
             "The guess of the device may be rough: after each run the data decide.\n\n"
@@ -359,11 +393,13 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth plan my-device.toml --force-noise '0.02 N' --length '10 cm' --precision 0.02",
         ),
         "devices": Command(
+            "start",
             "the catalogue of real devices, each value with its source",
             "The catalogue of real devices, each value with its source; what none gives is unknown.",
             "",
         ),
         "completion": Command(
+            "start",
             "let the shell complete commands, options, devices and files",
             "Print what makes bash, zsh or fish complete the words of zwidth.",
             "Put the line into the file that your shell reads when it starts:\n"
@@ -372,6 +408,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  fish  zwidth completion fish | source",
         ),
         "verify": Command(
+            "check",
             "re-check a saved proof or motion, independently of what made it",
             "Re-prove a saved certificate, or recompute the energy of a saved motion, in exact arithmetic,\n"
             "by a checker that shares no code with the prover.",

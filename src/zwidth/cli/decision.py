@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.cli.options import overrides
+from zwidth.errors import InputError
+from zwidth.model.specification.table import quoted, suggestion
 
 if TYPE_CHECKING:
     from zwidth.model.specification.read import Specification
     from zwidth.model.specification.table import Table
+    from zwidth.passivity.stability import Stability
     from zwidth.passivity.verdict import Verdict
 
 
 class Asked(NamedTuple):
     """What a command was asked about.
 
-    Parameters
-    ----------
-    loop
-        The device, and the environment behind its laws.
-    device_table, environment_table
-        Of which it was made, the parameters of the command line in them.
-    law_table
-        The laws of a file; None where it has none.
+    `loop`: the device, and the environment behind its laws.
+    `device_table`, `environment_table`: of which it was made, the parameters of the command line in them.
+    `law_table`: the laws of a file; None where it has none.
     """
 
     loop: Specification
@@ -35,12 +34,8 @@ class Asked(NamedTuple):
 def asked(arguments: argparse.Namespace, in_range: bool = False) -> Asked:
     """The loop of the sources, the parameters and the laws of a command line.
 
-    Parameters
-    ----------
-    arguments
-        Of the command line.
-    in_range
-        True where a device of the catalogue may have its stated ranges in the place of what nobody published.
+    `in_range`: True where a device of the catalogue may have its stated ranges in the place of what nobody
+        published.
     """
     from zwidth.model.specification.laws import with_laws
     from zwidth.model.specification.read import WITH_LAWS, Specification, built, merged, read_tables
@@ -76,3 +71,52 @@ def decided(loop: Specification, contact: str = "made and broken") -> Verdict:
         if closed is not None:
             return with_value_iteration(device, law, closed, falling(progress))
         return check(device, law, contact=contact, progress=falling(progress))
+
+
+NAMES = "none, finger, dowel; of a rotary device none, hands-on"
+"""Of the hands, for a help."""
+
+ABOUT = "of each hand alone, as long as it keeps contact; dry friction and encoder steps left out"
+
+
+def named_hands(typed: str, motion: str) -> dict[str, Any]:
+    """The hands of a list of names."""
+    from zwidth.study.maps.request import standard_hands
+
+    known, names = standard_hands(motion), [name.strip() for name in typed.split(",")]
+    for name in names:
+        if name not in known:
+            raise InputError(f"there is no hand {quoted(name)}; {suggestion(name, list(known))}")
+    return {name: known[name] for name in names}
+
+
+def with_hands(loop: Specification, typed: str | None) -> dict[str, Stability]:
+    """Of each hand whether it comes to rest against what is rendered; nothing where none is named."""
+    if typed is None:
+        return {}
+    from zwidth.passivity.stability import coupled_stability
+
+    hands = named_hands(typed, loop.device.motion)
+    return {name: coupled_stability(loop.device, loop.environment, hand) for name, hand in hands.items()}
+
+
+def hand_rows(found: Mapping[str, Stability]) -> Iterator[tuple[str, str]]:
+    """What is said of each, and of what it is said."""
+    for name, of_one in found.items():
+        yield name, _said(of_one)
+    yield "", ABOUT
+
+
+def _said(found: Stability) -> str:
+    from zwidth.quantity.text import told_quantity
+
+    most = found.max_stiffness
+    up_to = f"up to {told_quantity(most, 'stiffness', found.scope.motion, 4)}" if most else ""
+    if found.outcome == "stable":
+        return f"comes to rest{', ' if up_to else ''}{up_to}"
+    rest = f"; comes to rest {up_to}" if up_to else ""
+    if found.outcome == "undecided":
+        return f"not decided{rest}"
+    return (
+        f"is shaken, at {found.frequency:.4g} Hz{rest}" if found.frequency else f"does not come to rest{rest}"
+    )

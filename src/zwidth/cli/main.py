@@ -14,10 +14,8 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from zwidth.cli.commands import COMMANDS, configure, run
-from zwidth.cli.help import Help
 from zwidth.cli.output import print_message, quiet_pipe, tolerate_encoding
-from zwidth.cli.typed import as_typed, joined
-from zwidth.cli.welcome import WELCOME
+from zwidth.cli.parsing import Help, as_typed, joined
 from zwidth.errors import InputError
 from zwidth.model.specification.table import plain, quoted, suggestion
 from zwidth.quantity.spoken import answers_as_typed
@@ -36,21 +34,13 @@ class Parser(argparse.ArgumentParser):
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command line.
+    """Run one command line; its exit status, of `check` 0 passive, 1 active, 3 undecided; 2 for bad input.
 
-    Parameters
-    ----------
-    argv
-        The arguments after the program's name; by default those of the process.
-
-    Returns
-    -------
-    int
-        The exit status: of `check` 0 passive, 1 active, 3 undecided; 2 for bad input.
+    `argv`: the arguments after the program's name; by default those of the process.
     """
     tolerate_encoding()
     if argv is None and "_ARGCOMPLETE" in os.environ:  # the shell asks how its line may go on
-        from zwidth.cli.completion import answer
+        from zwidth.cli.start.completion import answer
 
         answer(_parser)
     typed = list(sys.argv[1:] if argv is None else argv)
@@ -150,3 +140,15 @@ def _unknown(unknown: Sequence[str], parser: argparse.ArgumentParser, arguments:
     hint = suggestion(name, options).replace('"', "") if len(name) > 2 else "see --help"
     short = hint if hint.startswith("did") else f"see {child.prog} --help"
     return f"there is no option {plain(name)}; {short}"
+
+
+WELCOME = """\
+zwidth says which virtual walls your device can render without giving energy
+to the hand: with a proof, or with the motion that takes energy out.
+
+  zwidth tour                                   the story, in a minute
+  zwidth check haptic-paddle --stiffness 300    a first proof
+  zwidth new device                             the file of your own device
+  zwidth examples .                             sample files, put here
+
+zwidth --help lists all commands."""

@@ -7,18 +7,18 @@ as `--coulomb-friction`; nothing about a parameter is written twice.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Iterator
-from typing import Any, NamedTuple
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 
-from zwidth.cli.typed import Once as Once
-from zwidth.cli.typed import heed_angles as heed_angles
+from zwidth.cli.parsing import Parameter, dest_of
 from zwidth.errors import InputError
 from zwidth.model.device.rotary import ROTARY
 from zwidth.model.rendering import LAWS
 from zwidth.model.specification import load as pairs
 from zwidth.model.specification.environments import TYPES, option_keys
 from zwidth.model.specification.read import DEVICE_KEYS
-from zwidth.model.specification.table import quoted
+from zwidth.model.specification.table import quoted, suggestion
 from zwidth.quantity.glossary import GLOSSARY, Quantity
 
 BEHIND = "environment."
@@ -30,19 +30,6 @@ _MEANINGS = {
     "catalogue": "device of the catalogue that fills in what is not given",
 }
 """Keys of a device that are no quantities."""
-
-
-class Parameter(NamedTuple):
-    """One parameter as an option: its key, what stands for its value, its help."""
-
-    key: str
-    metavar: str
-    help: str
-
-    @property
-    def option(self) -> str:
-        """The option's name, `--coulomb-friction`."""
-        return "--" + self.key.replace("_", "-")
 
 
 def device_parameters() -> Iterator[Parameter]:
@@ -70,55 +57,44 @@ def coupling_parameters() -> Iterator[Parameter]:
         yield Parameter(key, own.quantity.symbol or _word(key), own.meaning + _bracket(_units(own.quantity)))
 
 
-def add_output(
-    parser: argparse.ArgumentParser, printed: str, drawn: str, saved: str
-) -> argparse._ArgumentGroup:
-    """The options of what comes out: as JSON, as a picture, in a file."""
-    output = parser.add_argument_group("output")
-    output.add_argument("--json", action="store_true", help=f"print {printed} as JSON, units in the keys")
-    output.add_argument("--plot", metavar="FILE", action=Once, help=f"save {drawn}: .png, .svg or .pdf")
-    output.add_argument("-o", "--save", metavar="FILE", action=Once, help=f"save {saved}")
-    output.add_argument("--force", action="store_true", help="replace files that exist")
-    return output
-
-
-def add_in_full(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
-    """The option --all of a command whose report is short without it."""
-    parser.add_argument(
-        "--all", action="store_true", dest="in_full", help="print the report in full, not the short one"
-    )
-
-
-def add_angles(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
-    """The option --angles of a command to which nobody types an angle."""
-    parser.add_argument(
-        "--angles",
-        metavar="UNIT",
-        action=Once,
-        help="tell angles in deg, turn or rad, speeds with rpm too (default: as the files have them)",
-    )
-
-
-def add_parameters(parser: argparse.ArgumentParser) -> None:
-    """Give a command every parameter of a device and of an environment."""
-    device = parser.add_argument_group("device", "override what SOURCE says, or replace it")
-    environment = parser.add_argument_group(
-        "environment", f"a key of the environment behind a coupling is written --{BEHIND}stiffness, …"
-    )
-    add_all(device, device_parameters())
+def both_environments() -> Iterator[Parameter]:
+    """Each key of an environment, and unseen in the help that of one behind a coupling."""
     for parameter in environment_parameters():
-        inner = parameter._replace(key=BEHIND + parameter.key, help=argparse.SUPPRESS)
-        add_all(environment, (parameter, inner))
+        yield parameter
+        yield parameter._replace(key=BEHIND + parameter.key, help=argparse.SUPPRESS)
 
 
-def add_contact_option(parser: argparse.ArgumentParser) -> None:
-    """The option that says which contact is asked about."""
-    parser.add_argument(
-        "--contact",
-        metavar="KIND",
-        action=Once,
-        help="made-and-broken, as a hand does (default), or kept: the hand never leaves the wall",
-    )
+DEVICE = ("device: override what SOURCE says, or replace it", device_parameters)
+PARAMETERS = (
+    *DEVICE,
+    f"environment: a key of the environment behind a coupling is written --{BEHIND}stiffness, …",
+    both_environments,
+)
+"""Every parameter of a device, and of an environment."""
+
+LOOP = "device of the catalogue, or TOML file with a [device] table, an [environment] table or both"
+"""The sources of most commands, to which some add."""
+
+LAW = {"--law NAMES...": f"laws in a chain behind the environment, with their defaults: {', '.join(LAWS)}"}
+CONTACT = {
+    "--contact KIND": "made-and-broken, as a hand does (default), or kept: the hand never leaves the wall"
+}
+ANGLES_TOLD = {
+    "--angles UNIT": "tell angles in deg, turn or rad, speeds with rpm too (default: as the files have them)"
+}
+IN_FULL = {"--all > in_full": "print the report in full, not the short one"}
+FORCE = {"--force": "replace files that exist"}
+PLOT = {"--plot FILE": "save the plot: .png, .svg or .pdf"}
+
+
+def output(printed: str, drawn: str, saved: str) -> dict[str, str]:
+    """What comes out: as JSON, as a picture, in a file."""
+    return {
+        "--json": f"print {printed} as JSON, units in the keys",
+        "--plot FILE": f"save {drawn}: .png, .svg or .pdf",
+        "-o FILE": f"save {saved}",
+        **FORCE,
+    }
 
 
 def contact(arguments: argparse.Namespace) -> str:
@@ -133,16 +109,6 @@ def contact(arguments: argparse.Namespace) -> str:
     )
 
 
-def add_law_option(parser: argparse.ArgumentParser) -> None:
-    """Give a command the option `--law`."""
-    parser.add_argument(
-        "--law",
-        metavar="NAMES",
-        action="append",
-        help=f"laws in a chain behind the environment, with their defaults: {', '.join(LAWS)}",
-    )
-
-
 def overrides(arguments: argparse.Namespace) -> dict[str, str]:
     """The parameters that were given, by key, as typed."""
     keys = [p.key for p in (*device_parameters(), *environment_parameters())]
@@ -152,23 +118,7 @@ def overrides(arguments: argparse.Namespace) -> dict[str, str]:
 def given(arguments: argparse.Namespace, keys: Iterable[str]) -> dict[str, str]:
     """Those of the keys that were given, with their values as typed."""
     values = vars(arguments)
-    return {key: values[_dest(key)] for key in keys if values.get(_dest(key)) is not None}
-
-
-def add_all(group: Any, parameters: Iterable[Parameter]) -> None:
-    """Give a group of options these parameters."""
-    for parameter in parameters:
-        group.add_argument(
-            parameter.option,
-            dest=_dest(parameter.key),
-            metavar=parameter.metavar,
-            action=Once,
-            help=parameter.help.replace("%", "%%"),
-        )
-
-
-def _dest(key: str) -> str:
-    return f"parameter {key}"  # a blank keeps it apart from every other argument
+    return {key: values[dest_of(key)] for key in keys if values.get(dest_of(key)) is not None}
 
 
 def _quantity(key: str) -> Parameter:
@@ -188,3 +138,55 @@ def _word(key: str) -> str:
 
 def _bracket(unit: str) -> str:
     return f" [{unit}]" if unit not in ("", "1") else ""
+
+
+SHEET = {"--sheet NAME": "of a workbook, where several hold a recording"}
+
+
+def pairs_of(option: str, typed: Sequence[str] | None, quantities: Sequence[str]) -> dict[str, str]:
+    """What an option that may come several times says of each quantity."""
+    pairs = dict(_pair(option, text, quantities) for text in typed or ())
+    if len(pairs) < len(typed or ()):
+        raise InputError(f"{option} names a quantity twice; which one is meant?")
+    return pairs
+
+
+def _pair(option: str, typed: str, quantities: Sequence[str]) -> tuple[str, str]:
+    key, sign, value = typed.partition("=")
+    name = key.strip().replace("-", "_")
+    if not sign or not value:
+        raise InputError(f"{option} is written {option} {quantities[1]}=VALUE, got {quoted(typed)}")
+    if name not in quantities:
+        raise InputError(f"{option}: there is no quantity {quoted(key)}; {suggestion(name, quantities)}")
+    return name, value
+
+
+_PYTHON = re.compile(r"(columns|units|scale)=\{[\"'](\w+)[\"']: (?:\"([^\"]*)\"|(None|…))\}")
+_OPTION_NAMES = {"columns": "--column", "units": "--unit", "scale": "--scale"}
+
+
+@contextmanager
+def as_options() -> Iterator[None]:
+    """What to try, in messages, as it is typed here."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(_PYTHON.sub(_as_option, _plain_options(sheet_option(str(error))))) from None
+
+
+def sheet_option(text: str) -> str:
+    """The name of a sheet, in a message, as it is typed here."""
+    return re.sub(r'\bsheet=("[^"]*")', r"--sheet \1", text)
+
+
+def _as_option(found: re.Match[str]) -> str:
+    name, quantity, value, other = found.groups()
+    value = value if value is not None else {"None": "none"}.get(other, "…")
+    written = f"'{quantity}={value}'" if " " in value else f"{quantity}={value}"
+    return f"{_OPTION_NAMES[name]} {written}"
+
+
+def _plain_options(text: str) -> str:
+    text = text.replace("sample_rate or sample_period", "--rate or --sample-period")
+    text = re.sub(r'\bresolution=("[^"]*")', r"--resolution \1", text)
+    return re.sub(r"\bcounts_per_turn=(\d+)", r"--counts-per-turn \1", text)

@@ -6,9 +6,11 @@ Everything a person typed is printed as text, never read as markup.
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from io import StringIO
+from math import inf, isfinite
+from typing import TYPE_CHECKING
 
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.padding import Padding
@@ -16,9 +18,14 @@ from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
 
-from zwidth.cli.output import quiet_pipe, spelled
-from zwidth.cli.width import GLUE, columns
+from zwidth.cli.output import GLUE, columns, quiet_pipe, spelled
+from zwidth.quantity.text import shown
 from zwidth.showing import printable
+
+if TYPE_CHECKING:
+    from zwidth.passivity.storage.evidence.gain import Gain
+    from zwidth.passivity.witness.witness import Witness
+
 
 Row = tuple[str, str | Text]
 """A name, and what stands beside it."""
@@ -140,3 +147,70 @@ def _folding(count: int, padding: tuple[int, int] = (0, 0)) -> Table:
     for _ in range(count):
         table.add_column(overflow="fold")
     return table
+
+
+_EIGHTHS = " ▏▎▍▌▋▊▉█"
+_LEVELS = "▁▂▃▄▅▆▇█"
+_ASCII_LEVELS = "_.-=+*%#"
+
+PICTURE = _EIGHTHS + _LEVELS
+"""Every character that the Unicode form uses."""
+
+
+def bar(start: float, end: float, scale: float, width: int, fancy: bool) -> str:
+    """A bar from `start` to `end` on an axis from 0 to `scale`, `width` cells long."""
+    low, high = sorted((_cells(start, scale, width), _cells(end, scale, width)))
+    if high - low <= 0:
+        return ""
+    first = int(low)
+    if not fancy:
+        return " " * first + "#" * max(1, round(high) - first)
+    whole, part = divmod(high - first, 1)
+    tail = _EIGHTHS[round(8 * part)].strip()
+    return " " * first + "█" * int(whole) + (tail or ("" if whole else _EIGHTHS[1]))
+
+
+def _cells(value: float, scale: float, width: int) -> float:
+    if not scale or not isfinite(value):
+        return float(width) if value == inf else 0.0
+    return min(max(value / scale, 0.0), 1.0) * width
+
+
+def levels(values: Sequence[float], fancy: bool) -> str:
+    """Each value as a character of its height, the smallest to the largest."""
+    marks = _LEVELS if fancy else _ASCII_LEVELS
+    low, high = min(values), max(values)
+    span = (high - low) or 1.0
+    return "".join(marks[round((v - low) / span * (len(marks) - 1))] for v in values)
+
+
+_SAMPLES_SHOWN = 48
+
+
+def joules(witness: Witness | Gain) -> str:
+    """What comes out, and what one round of a cycle gives."""
+    total = shown(witness.energy, "J")
+    if witness.motion.rounds > 1 and len(witness.motion.repeats) == 1:
+        return f"{total} ({shown(witness.energy_per_cycle, 'J')} per cycle)"
+    return total
+
+
+def motion_in_short(witness: Witness | Gain) -> str:
+    """How long, how deep and how fast it is."""
+    return (
+        f"{witness.motion.samples:.6g} samples in "
+        f"{shown(witness.motion.samples * witness.sample_period, 's')}, to "
+        f"{shown(witness.depth, witness.unit)} at up to {shown(witness.peak_speed, witness.unit + '/s')}"
+    )
+
+
+def motion_lines(witness: Witness | Gain, fancy: bool) -> Iterator[Text]:
+    """The motion, line by line."""
+    yield Text(motion_in_short(witness))
+    for part in witness.motion.repeats:
+        if part.times > 1:
+            yield Text(f"samples {part.first} to {part.last} are a cycle, done {part.times:.6g} times")
+    yield Text(f"extracts {joules(witness)}", style="bold")
+    first = witness.positions[:_SAMPLES_SHOWN]
+    more = " …" if len(witness.positions) > len(first) else ""
+    yield Text(f"x(kT)  {levels(first, fancy)}{more}", style="cyan")

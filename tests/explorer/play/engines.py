@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 import zwidth as zw
 from zwidth.model.operator import LinearHand, Tracking
 from zwidth.show.explorer.play import Played
-from zwidth.show.explorer.play.page import plant_text
+from zwidth.show.explorer.play.loop import plant_text
 
 Array = NDArray[np.float64]
 

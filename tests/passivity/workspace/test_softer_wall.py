@@ -9,7 +9,7 @@ from typing import Any
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.cli.workspace_report import _changes, _numbers
+from zwidth.cli.workspace.report import _changes, _numbers
 from zwidth.model.arms import PlanarChain
 from zwidth.quantity.units import parse_number
 

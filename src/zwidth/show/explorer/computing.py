@@ -15,8 +15,15 @@ from zwidth.model.environment import Environment, Wall
 from zwidth.model.operator import OPERATORS, ParametricOperator
 from zwidth.model.operator.named import usual_kind
 from zwidth.model.specification.load import pair_of
+from zwidth.model.operator.usual import usual_kind
+from zwidth.model.specification.pairs import pair_of
+from zwidth.model.specification.read import Specification
 from zwidth.model.specification.table import Table, quoted, suggestion
-from zwidth.passivity.check import check
+from zwidth.passivity.check import check, check_by_closed_forms
+from zwidth.passivity.gap import has_gap
+from zwidth.passivity.linear.loop import linear_loop
+from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.parameter import parameters_of
@@ -25,6 +32,7 @@ from zwidth.show.explorer.state import State
 
 if TYPE_CHECKING:
     from zwidth.show.plots.replay import Replay
+
 
 LONGEST_TOUCH = 5.0
 """Of a touch that the page simulates [s]."""
@@ -100,7 +108,7 @@ def touched(state: State) -> Touch:
 def _touch(device: Any, environment: Environment, hand: ParametricOperator) -> Touch:
     from zwidth.loop.energy import ledger
     from zwidth.loop.simulate import simulated
-    from zwidth.show.plots.trace import thinned
+    from zwidth.show.plots.traces import thinned
 
     period = float(device.exact("sample_period"))
     duration = min(DURATION, LONGEST_TOUCH, MOST_SAMPLES * period)
@@ -246,3 +254,50 @@ def played_page(state: State) -> str:
     loop = state.loop()
     verdict = check(loop.device, loop.environment, progress=lambda _: None)
     return play_page([played(loop.device, loop.environment, verdict)])
+
+
+# The verdict on a loop in two steps: what is known at once, and what takes a while.
+
+
+LARGEST = 24
+"""Order of H(z) and samples of delay together, up to which a verdict comes at once."""
+
+
+class Judged(NamedTuple):
+    """What is known of a loop at once.
+
+    `verdict`: None where there is none at once.
+    `final`: False where `judged_in_full` may say more.
+    """
+
+    loop: Specification
+    verdict: Verdict | None
+    final: bool
+
+
+def judged_at_once(loop: Specification) -> Judged:
+    """The verdict by closed forms, in milliseconds, where there is one."""
+    device, law = loop.device, loop.environment
+    if not law.has_transfer_function or _is_large(loop):
+        return Judged(loop, None, final=False)
+    verdict = check_by_closed_forms(device, law)
+    return Judged(loop, verdict, final=not has_gap(device, law, verdict))
+
+
+def _is_large(loop: Specification) -> bool:
+    device, law = loop.device, loop.environment
+    if not (device.is_certain and law.is_certain):
+        return True  # as many loops as there are corners
+    found = linear_loop(device, law)
+    return len(found.denominator) + found.whole_delay > LARGEST
+
+
+def judged_in_full(state: State) -> Verdict:
+    """What `zwidth.check` says, for a process of its own."""
+    loop = state.loop()
+    verdict = check(loop.device, loop.environment, progress=lambda _: None)
+    if isinstance(verdict, LinearVerdict):
+        _ = verdict.limit, verdict.max_stiffness, verdict.required_damping, verdict.advice
+    if not isinstance(verdict, Verdict):
+        raise InputError("the page shows loops of one device")
+    return verdict

@@ -26,8 +26,7 @@ from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.parameter import Parameter, parameters_of
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import in_words, readable, shown, unit_text
-from zwidth.show.explorer.scale import Scale, scale_of, usual
-from zwidth.show.explorer.state import State, Values
+from zwidth.show.explorer.state import Scale, State, Values, scale_of, usual
 
 Sort = Literal["number", "word", "flag", "text"]
 
@@ -52,26 +51,13 @@ _FILTER_BEGINS: Mapping[str, Mapping[str, object]] = MappingProxyType(
 class Control:
     """One parameter as the page shows it.
 
-    Parameters
-    ----------
-    path
-        Where it stands, as `State.changed` takes it.
-    sort
-        What shows it.
-    label, unit, meaning
-        For people.
-    text
-        The value as it is typed; "" where none is given.
-    scale
-        Of a number, what its slider stands for.
-    place
-        Where the slider is, 0 to 1.
-    words
-        That may be chosen.
-    required
-        False where it may be left out.
-    more
-        True for what a verdict does not depend on.
+    `path`: where it stands, as `State.changed` takes it.
+    `text`: the value as it is typed; "" where none is given.
+    `scale`: of a number, what its slider stands for.
+    `place`: where the slider is, 0 to 1.
+    `words`: that may be chosen.
+    `required`: False where it may be left out.
+    `more`: True for what a verdict does not depend on.
     """
 
     path: str

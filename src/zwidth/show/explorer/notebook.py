@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from typing import Any
 
+from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.environment import Environment
-from zwidth.show.explorer.library import need_libraries
 
 
 def explore(device: Device | None = None, environment: Environment | None = None) -> Any:
@@ -36,3 +37,12 @@ def explore(device: Device | None = None, environment: Environment | None = None
     from zwidth.show.explorer.shown import Explorer
 
     return Explorer.of(device, environment)
+
+
+def need_libraries() -> None:
+    """Nothing, if they are."""
+    for module, name in (("panel", "Panel"), ("bokeh", "Bokeh")):
+        if find_spec(module) is None:
+            raise InputError(
+                f"the explorer page is drawn by {name}, which is not installed: pip install 'zwidth[explore]'"
+            )

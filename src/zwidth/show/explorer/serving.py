@@ -6,12 +6,19 @@ Every browser has a session of its own; there are so many at most, and what is s
 from __future__ import annotations
 
 import logging
+import secrets
+import socket
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
+from hmac import compare_digest
+from ipaddress import ip_address
+from pathlib import Path
 from typing import Any
 
+import panel as pn
 from bokeh.document import Document
-from bokeh.server.auth_provider import NullAuth
+from bokeh.server.auth_provider import AuthProvider, NullAuth
 from bokeh.server.server import BaseServer
 from bokeh.server.tornado import BokehTornado
 from bokeh.server.util import bind_sockets
@@ -21,11 +28,14 @@ from panel.io.application import build_applications
 from panel.io.resources import LOCAL_DIST
 from tornado.httpserver import HTTPServer
 from tornado.ioloop import IOLoop
+from tornado.web import RequestHandler
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.live.page import HOST, Page, Serving, checked_port, guarded, origins
 from zwidth.show.explorer.access import ANY, TOKEN, TokenAccess, hosts, token_for
 from zwidth.show.explorer.page import full_page, page_of
+from zwidth.machine.servo.live.page import HOST, OWN, Page, checked_port, guarded, origins
+from zwidth.machine.servo.live.serving import Serving
 from zwidth.show.explorer.session import Session
 from zwidth.show.explorer.starts import first
 from zwidth.show.explorer.state import State, from_query
@@ -166,3 +176,150 @@ def _and_sent(document: Document, work: Callable[[], None]) -> None:
 
 def _text(value: bytes | str) -> str:
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else value
+
+
+# Who may look: on this machine everybody, over the network who has the token.
+
+
+SHORTEST = 16
+"""Characters of a token."""
+
+ANY = ("0.0.0.0", "::")
+"""Addresses that stand for every one of this machine."""
+
+TOKEN = "token"
+_LOGIN = "/enter"
+
+
+def is_loopback(address: str) -> bool:
+    """True where only this machine is answered."""
+    if address == "localhost":
+        return True
+    try:
+        return ip_address(address).is_loopback
+    except ValueError:
+        return False
+
+
+def token_for(address: str, given: str | None) -> str | None:
+    """The token that is asked for, made where none was given; None where only this machine is answered."""
+    if given is None:
+        return None if is_loopback(address) else secrets.token_urlsafe(24)
+    if len(given) < SHORTEST or not all(c.isascii() and (c.isalnum() or c in "-_") for c in given):
+        raise InputError(
+            f"the token has {SHORTEST} characters or more, of letters, digits, - and _: anybody who "
+            "guesses it may look; leave it out, and one is made"
+        )
+    return given
+
+
+def hosts(address: str) -> list[str]:
+    """The names under which this server is asked, in small letters."""
+    names = {address, *OWN}
+    if not is_loopback(address):
+        names |= {socket.gethostname(), socket.getfqdn()}
+    if address in ANY:
+        with suppress(OSError):
+            names.update(socket.gethostbyname_ex(socket.gethostname())[2])
+    return sorted({name.lower() for name in names} - set(ANY))
+
+
+class TokenAccess(AuthProvider):  # type: ignore[misc]  # Bokeh's has no types
+    """Asks for a token.
+
+    `cookie`: the name of what stands for it.
+    """
+
+    def __init__(self, token: str, cookie: str) -> None:
+        self._token, self._cookie = token, cookie
+        super().__init__()
+
+    @property
+    def get_user(self) -> Callable[[RequestHandler], str | None]:
+        """Who asks: somebody with the token, or nobody."""
+
+        def user(handler: RequestHandler) -> str | None:
+            given = handler.get_query_argument(TOKEN, None)
+            if given is not None and self._is_token(given):
+                self._remember(handler)
+                return "somebody"
+            kept = handler.get_cookie(self._cookie)
+            return "somebody" if kept is not None and self._is_token(kept) else None
+
+        return user
+
+    get_user_async = None
+    logout_url = None
+    get_login_url = None
+    logout_handler = None
+
+    @property
+    def login_url(self) -> str:
+        """Where the form is."""
+        return _LOGIN
+
+    @property
+    def login_handler(self) -> type[RequestHandler]:
+        """The form, and what reads it."""
+        access = self
+
+        class Enter(RequestHandler):
+            """Asks for the token."""
+
+            def get(self) -> None:
+                self.set_status(401)
+                self.finish(_FORM.format(message=""))
+
+            def post(self) -> None:
+                if not access._is_token(self.get_body_argument(TOKEN, "")):
+                    self.set_status(401)
+                    self.finish(_FORM.format(message='<p role="alert">That is not the token.</p>'))
+                    return
+                access._remember(self)
+                self.redirect("/")
+
+        return Enter
+
+    def _is_token(self, given: Any) -> bool:
+        return compare_digest(str(given).encode(), self._token.encode())
+
+    def _remember(self, handler: RequestHandler) -> None:
+        handler.set_cookie(self._cookie, self._token, httponly=True, samesite="Strict")
+
+
+_FORM = """<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>zwidth: token</title>
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+</head><body><main><h1>zwidth</h1>{message}<form method="post"><p><label>Token, as the terminal shows it:
+<input name="token" type="password" autocomplete="off" required></label> <button>Enter</button></p></form>
+</main></body></html>"""
+
+
+_HERE = Path(__file__).parent
+
+
+def page_of(session: Session) -> pn.Template:
+    """The page as a template that can be served."""
+    template = pn.Template(_read("page.html"))
+    template.add_variable("views", [(key, name) for key, name, *_ in session.views])
+    for name in ("page.css", "page.js"):
+        template.add_variable(name.replace(".", "_"), _read(name))
+    template.add_panel("form", session.form)
+    template.add_panel("head", session.head)
+    template.add_panel("details", session.details)
+    template.add_panel("badge", session.badge)
+    for view in session.views:
+        template.add_panel(view.key, pn.Column(*view.parts, sizing_mode="stretch_width"))
+    return template
+
+
+def _read(name: str) -> str:
+    return (_HERE / name).read_text(encoding="utf-8")
+
+
+def full_page(most: int) -> pn.Template:
+    """Of a server that has as many pages open as it may."""
+    template = pn.Template(_read("full.html"))
+    template.add_variable("most", most)
+    template.add_variable("page_css", _read("page.css"))
+    return template

@@ -23,14 +23,11 @@ from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.spoken import angles_in, answers_in
 from zwidth.quantity.text import to_json
 from zwidth.show.explorer import starts
-from zwidth.show.explorer.computing import answered, reported
+from zwidth.show.explorer.computing import Judged, answered, judged_at_once, judged_in_full, reported
 from zwidth.show.explorer.controls import Control
-from zwidth.show.explorer.form import Event, Form, Soon, words
-from zwidth.show.explorer.form_of_loop import controls_of, groups_of
-from zwidth.show.explorer.judging import Judged, judged_at_once, judged_in_full
+from zwidth.show.explorer.form import Event, Form, Soon, controls_of, groups_of, words
 from zwidth.show.explorer.state import State, catalogued, from_file, lacking_of
-from zwidth.show.explorer.verdict_card import WAITING, badge, details, head, not_measured
-from zwidth.show.explorer.view import View, given
+from zwidth.show.explorer.view import WAITING, View, badge, details, given, head, not_measured
 from zwidth.show.explorer.views import views_of
 from zwidth.show.explorer.working import Answer, Workers
 from zwidth.showing import element
@@ -43,18 +40,11 @@ _MORE = "The closed forms leave a gap: more is being worked out …"
 class Session:
     """A page.
 
-    Parameters
-    ----------
-    state
-        The loop that it begins with.
-    workers
-        Who computes what takes longer.
-    soon
-        Has something done in the thread of the page.
-    message
-        Said at the top, such as what of the address could not be used.
-    in_page
-        True where the page has an address that holds the loop, and tabs of its own.
+    `state`: the loop that it begins with.
+    `workers`: who computes what takes longer.
+    `soon`: has something done in the thread of the page.
+    `message`: said at the top, such as what of the address could not be used.
+    `in_page`: True where the page has an address that holds the loop, and tabs of its own.
     """
 
     def __init__(

@@ -21,10 +21,7 @@ from zwidth.show.explorer.working import Workers
 class Explorer(Viewer):  # type: ignore[misc]  # Panel has no types
     """Sliders, verdict and pictures of one loop.
 
-    Attributes
-    ----------
-    device, environment, verdict
-        As the sliders stand.
+    `device`, `environment`, `verdict`: as the sliders stand.
     """
 
     def __init__(self, state: State) -> None:

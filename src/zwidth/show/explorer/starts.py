@@ -28,8 +28,7 @@ from zwidth.model.specification.read import (
 from zwidth.model.specification.table import Table
 from zwidth.quantity.parameter import Parameter
 from zwidth.quantity.spoken import angles_typed
-from zwidth.show.explorer.scale import usual
-from zwidth.show.explorer.state import State, Values, catalogued, completed
+from zwidth.show.explorer.state import State, Values, catalogued, completed, usual
 
 FIRST = "haptic-paddle"
 """The device that an empty page begins with."""
@@ -119,14 +118,7 @@ def own_device(kind: str) -> Device:
 def with_device(state: State, device: Device, begun: Mapping[str, str] = MappingProxyType({})) -> State:
     """The same environment on another device; of one that moves otherwise, a wall.
 
-    Parameters
-    ----------
-    state
-        The loop before.
-    device
-        The other device.
-    begun
-        What nobody gave of it, as it begins.
+    `begun`: what nobody gave of it, as it begins.
     """
     before = state.loop()
     if device.motion == before.device.motion:

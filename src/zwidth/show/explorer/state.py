@@ -15,6 +15,8 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
+from math import isfinite, log
+from types import MappingProxyType
 from typing import Any, NamedTuple
 from urllib.parse import quote_plus, urlencode
 
@@ -29,7 +31,6 @@ from zwidth.model.specification.table import Table, plain, quoted
 from zwidth.model.specification.write import tables, toml
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import angles_in, answers_in
-from zwidth.show.explorer.scale import usual
 
 LONGEST_QUERY = 12_000
 """Characters of a URL's query: a page of parameters is a tenth of it."""
@@ -53,12 +54,9 @@ Values = Mapping[str, object]
 class State:
     """A loop in tables, each quantity a text with its unit.
 
-    Parameters
-    ----------
-    device, environment, laws
-        As of a specification; the laws in a chain from the environment to the actuator.
-    extras
-        What the page is asked beside the loop, by the name of its table: one of `EXTRAS`.
+    `device`, `environment`, `laws`: as of a specification; the laws in a chain from the environment to the
+        actuator.
+    `extras`: what the page is asked beside the loop, by the name of its table: one of `EXTRAS`.
     """
 
     device: Values
@@ -119,12 +117,8 @@ class State:
     def changed(self, path: str, value: object) -> State:
         """With one value in the place of another; None takes it out.
 
-        Parameters
-        ----------
-        path
-            "device.damping", "environment.environment.stiffness", "law.1.samples", "coupling.link_delay".
-        value
-            As a specification has it: a text with its unit, a flag, a list or a table.
+        `path`: "device.damping", "environment.environment.stiffness", "law.1.samples", "coupling.link_delay".
+        `value`: as a specification has it: a text with its unit, a flag, a list or a table.
         """
         kind, *keys = path.split(".")
         if kind == "device":
@@ -185,10 +179,7 @@ def _place(keys: Sequence[str], count: int) -> int:
 def from_query(query: Sequence[tuple[str, str]]) -> State:
     """The state that a URL holds.
 
-    Parameters
-    ----------
-    query
-        Its keys and values, decoded, in order.
+    `query`: its keys and values, decoded, in order.
     """
     if sum(len(key) + len(value) for key, value in query) > LONGEST_QUERY:
         raise InputError(f"the address is longer than {LONGEST_QUERY} characters; give the loop as a file")
@@ -244,14 +235,8 @@ def _value(key: str, text: str) -> object:
 class Given(NamedTuple):
     """What is in a file.
 
-    Parameters
-    ----------
-    state
-        The loop; None where there is no environment.
-    device
-        Its device.
-    begun
-        Numbers of the device that the file does not give, as they begin.
+    `state`: the loop; None where there is no environment.
+    `begun`: numbers of the device that the file does not give, as they begin.
     """
 
     state: State | None
@@ -264,14 +249,8 @@ def from_file(text: str, name: str, shown: State) -> Given:
 
     What the device lacks begins with a usual number; an environment alone is put on the device that is shown.
 
-    Parameters
-    ----------
-    text
-        What is in the file.
-    name
-        Of the file, for messages.
-    shown
-        The loop before.
+    `text`: what is in the file.
+    `name`: of the file, for messages.
     """
     if len(text.encode("utf-8", "replace")) > LARGEST_FILE:
         raise InputError(
@@ -341,3 +320,68 @@ def _lacking(known: Container[str], motion: str) -> dict[str, str]:
 
 UNKNOWN_RATE = "1 kHz"
 """Where a slider begins whose number no source gives; the page says that it is nobody's measurement."""
+
+
+# Where a slider stands for a number: decades along its length, with 0 at the very left.
+
+
+AROUND = 30.0
+"""A number that is given stands in the middle, with so many times less and more beside it."""
+
+_LINEAR = {
+    "1": (0.01, 1.0, 100.0), "N*s/m": (1e-3, 0.1, 100.0), "N": (1e-3, 0.1, 100.0), "m": (1e-7, 1e-5, 0.01),
+    "N/m": (1.0, 200.0, 1e5), "kg": (1e-3, 0.1, 10.0), "s/m": (0.01, 1.0, 100.0), "m/s": (1e-3, 0.2, 10.0),
+    "s": (1e-5, 1e-3, 0.1), "Hz": (50.0, 1000.0, 20e3), "J": (1e-5, 1e-3, 1.0), "N/s": (1.0, 1e3, 1e6),
+    "H": (1e-5, 1e-3, 0.1), "V": (1.0, 24.0, 100.0), "A": (0.1, 3.0, 50.0), "s/m^2": (0.01, 1.0, 1e3),
+}  # fmt: skip
+_ROTARY = {
+    "N*m*s/rad": (1e-6, 1e-3, 1.0), "N*m": (1e-4, 5e-3, 10.0), "rad": (1e-6, 1e-3, 0.1),
+    "N*m/rad": (1e-3, 0.5, 1e3), "kg*m^2": (1e-7, 1e-4, 0.1), "s/rad": (1e-3, 0.1, 10.0),
+    "rad/s": (0.01, 2.0, 100.0), "N*m/s": (0.01, 10.0, 1e4),
+}  # fmt: skip
+
+SPANS: Mapping[str, tuple[float, float, float]] = MappingProxyType({**_LINEAR, **_ROTARY})
+"""By unit: the least, a usual one, and the most that a slider reaches where no number is given."""
+
+_ELSE = (1e-3, 1.0, 1e3)
+
+
+class Scale(NamedTuple):
+    """What a slider's length stands for.
+
+    `low`, `high`: > 0, of the share 0 and 1 of its length.
+    `has_zero`: True where the very left is nothing.
+    `whole`: True for a count.
+    """
+
+    low: float
+    high: float
+    has_zero: bool
+    whole: bool = False
+
+    def share(self, value: float) -> float:
+        """Where a number stands, 0 to 1; one that is not on it stands at the nearer end."""
+        if value <= 0 or not isfinite(value):
+            return 0.0
+        return min(max(log(value / self.low) / log(self.high / self.low), 0.0), 1.0)
+
+    def value(self, share: float) -> float:
+        """What stands at a share of the length, to three digits."""
+        if not isfinite(share) or (share <= 0 and self.has_zero):
+            return 0.0 if self.has_zero else self.low
+        found = self.low * (self.high / self.low) ** min(share, 1.0)
+        return float(max(1, round(found))) if self.whole else float(f"{found:.3g}")
+
+
+def scale_of(value: float | None, unit: str, has_zero: bool, whole: bool = False) -> Scale:
+    """The scale around a number; by its unit where there is none, or it is not above 0."""
+    if value is None or value <= 0:
+        low, _, high = SPANS.get(unit, _ELSE)
+    else:
+        low, high = value / AROUND, value * AROUND
+    return Scale(max(low, 1.0) if whole else low, max(high, 10.0) if whole else high, has_zero, whole)
+
+
+def usual(unit: str) -> float:
+    """A number of this unit to begin with."""
+    return SPANS.get(unit, _ELSE)[1]

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol
 
 from panel.pane import Bokeh
 
 from zwidth.errors import InputError
+from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.text import unit_text
 from zwidth.show.explorer.controls import Control, read_entry
 from zwidth.show.explorer.form import Event, Form, Words
 from zwidth.show.explorer.state import State
 from zwidth.show.explorer.working import Answer
-from zwidth.showing import Html, element
+from zwidth.showing import Html, Lines, Table, element, join
 
 
 class Asked(Protocol):
@@ -35,16 +39,9 @@ class Asked(Protocol):
 class View(NamedTuple):
     """A picture under a tab.
 
-    Parameters
-    ----------
-    key, name
-        In the address, and on the tab.
-    parts
-        From above.
-    moved
-        Draws what follows a move.
-    released
-        Has what takes longer computed.
+    `key`, `name`: in the address, and on the tab.
+    `moved`: draws what follows a move.
+    `released`: has what takes longer computed.
     """
 
     key: str
@@ -75,3 +72,74 @@ def given(controls: Mapping[str, Control], event: Event) -> tuple[Control, objec
     if control.scale is None or not isinstance(value, int | float):
         raise InputError("a slider stands for a number")
     return control, control.said(float(value))
+
+
+# The verdict in words: the outcome, what is claimed and of what, the limit, and what to change.
+
+
+WAITING = "Working it out …"
+
+
+def headline(answer: Any) -> Html:
+    """Outcome and claim of anything that has both."""
+    badge = element(
+        "span", answer.outcome, style=f"background:{COLOUR[answer.outcome]}", **{"class": "badge"}
+    )
+    return join(element("p", badge), element("p", answer.claim, **{"class": "claim"}))
+
+
+def not_measured(begun: Mapping[str, str]) -> list[str]:
+    """A sentence about each number of the device that nobody gave, {"damping": "0.1 N*s/m"}."""
+    return [
+        f"The {key} {unit_text(text)} is nobody's measurement: none is given, and the page begins with it. "
+        "The verdict is of that number; set your own."
+        for key, text in begun.items()
+    ]
+
+
+def head(verdict: Verdict | None, note: str = "", begun: Mapping[str, str] = MappingProxyType({})) -> Html:
+    """Outcome and claim; None while it is being worked out.
+
+    `note`: a line below, such as that more is being worked out.
+    `begun`: numbers of the device that nobody gave.
+    """
+    marks = join(*(element("p", line, **{"class": "bad"}) for line in not_measured(begun)))
+    quiet = element("p", note, **{"class": "quiet"}) if note else join()
+    said = (quiet or element("p", WAITING)) if verdict is None else join(headline(verdict), quiet)
+    return join(marks, said)
+
+
+def details(verdict: Verdict | None) -> Html:
+    """The numbers, what to change, and what the claim covers."""
+    if verdict is None:
+        return join()
+    return join(_numbers_of(verdict), _advice(verdict), _scope(verdict))
+
+
+def _numbers_of(verdict: Verdict) -> Html:
+    return element("div", Table(rows=verdict.rows()).html, **{"class": "numbers"})
+
+
+def _advice(verdict: Verdict) -> Html:
+    if not verdict.advice:
+        return join()
+    title, *lines = verdict.advised()
+    heading = element("h3", f"{str(title)[:1].upper()}{str(title)[1:]}")
+    return join(heading, *(line.html for line in lines if isinstance(line, Lines)))
+
+
+def _scope(verdict: Verdict) -> Html:
+    """What the claim covers and takes for granted."""
+    return Lines(verdict.small_print(), "What this covers").html
+
+
+def badge(verdict: Verdict | None, note: str = "", begun: Mapping[str, str] = MappingProxyType({})) -> Html:
+    """The outcome in a line, for where there is little room."""
+    if verdict is None:
+        return element("p", note or WAITING, **{"class": "quiet"})
+    word = element(
+        "span", verdict.outcome, style=f"background:{COLOUR[verdict.outcome]}", **{"class": "badge"}
+    )
+    limit = f" {verdict.limit}" if isinstance(verdict, LinearVerdict) else ""
+    mark = element("span", f" {' and '.join(begun)} not measured", **{"class": "bad"}) if begun else join()
+    return element("p", word, limit, mark)

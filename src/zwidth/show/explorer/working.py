@@ -47,12 +47,7 @@ class _Job(NamedTuple):
 class Workers:
     """So many processes, started when there is something to do.
 
-    Parameters
-    ----------
-    count
-        How many.
-    longest
-        A job may take [s].
+    `longest`: a job may take [s].
     """
 
     def __init__(self, count: int = 2, longest: float = LONGEST) -> None:
@@ -78,16 +73,10 @@ class Workers:
     ) -> None:
         """Have something computed; an older job of the same asker and kind is forgotten.
 
-        Parameters
-        ----------
-        asker, kind
-            Whose job it is, and which of theirs.
-        compute
-            A function of a module, which the process imports.
-        arguments
-            That can be sent to it.
-        then
-            Is told the answer, in a thread of these.
+        `asker`, `kind`: whose job it is, and which of theirs.
+        `compute`: a function of a module, which the process imports.
+        `arguments`: that can be sent to it.
+        `then`: is told the answer, in a thread of these.
         """
         with self._changed:
             self._number += 1

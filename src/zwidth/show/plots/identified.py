@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from textwrap import fill
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from matplotlib import rc_context
@@ -15,15 +15,30 @@ from zwidth.data.identification.device.estimate import Estimate
 from zwidth.data.identification.device.numbers import BINS, IdentifiedNumbers
 from zwidth.data.identification.device.pulses import PIECES, pulse
 from zwidth.data.identification.device.table import percent, rows, title
+from zwidth.data.identification.device.table import rows, title
+from zwidth.data.tissue.experiment.history import History
+from zwidth.data.tissue.model import Model
+from zwidth.errors import InputError
+from zwidth.native.compiled import Array
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import quantity_unit
-from zwidth.show.plots.style import BLACK, BLUE, GREY, LOOK, ORANGE, RED, low_index, new_figure, page_heading
+from zwidth.show.plots.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    LOOK,
+    ORANGE,
+    RED,
+    heading,
+    low_index,
+    new_figure,
+    page_heading,
+    scale,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
-    from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
 
 _BEYOND = 1.15
 """Times the largest speed, to which the axis goes."""
@@ -262,3 +277,103 @@ def _force(identified: IdentifiedNumbers) -> str:
 
 def _speed(identified: IdentifiedNumbers) -> str:
     return quantity_unit("friction_speed", identified.motion)
+
+
+MOST_DOTS = 4000
+
+
+class Fit(Protocol):
+    """What is drawn of a fit."""
+
+    @property
+    def time(self) -> Array | None:
+        """Of the samples [s]."""
+
+    @property
+    def output(self) -> Array:
+        """What was measured, in SI."""
+
+    @property
+    def residuals(self) -> Array:
+        """Measured less fitted, in SI."""
+
+    @property
+    def response(self) -> str:
+        """What was measured, force or position."""
+
+    @property
+    def motion(self) -> str:
+        """Linear or rotary."""
+
+    @property
+    def model(self) -> Model:
+        """Which model was fitted."""
+
+    def table(self) -> list[list[str]]:
+        """Its numbers, a line each, below a line of headings."""
+
+
+@rc_context(LOOK)
+def fit_figure(fit: Fit) -> Figure:
+    """Measured and fitted against the time; below, what is left over.
+
+    Raises
+    ------
+    InputError
+        If the times are not known.
+    """
+    if fit.time is None:
+        raise InputError("this fit does not hold the times of its samples: there is nothing to draw")
+    figure = new_figure(7.4, 5.2)
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1.0))
+    draw_fit(above, fit, fit.time)
+    draw_left(below, fit, fit.time)
+    below.set_xlabel("time t [s]")
+    page_heading(figure, fit_title(fit))
+    return figure
+
+
+def fit_title(fit: Fit) -> str:
+    """The model and its numbers, on a line."""
+    rows = fit.table()[1 : 1 + len(fit.model.parameters)]
+    numbers = ", ".join(f"{row[0].replace('_', ' ')} {float(row[1]):.4g} {row[3]}" for row in rows)
+    return f"{fit.model.name}: {numbers}"
+
+
+def draw_fit(axes: Axes, fit: Fit, time: Array) -> None:
+    """Dots measured, a line fitted."""
+    factor, unit = scale(fit.output, quantity_unit(fit.response, fit.motion))
+    every = slice(None, None, max(1, time.size // MOST_DOTS))
+    axes.plot(time[every], factor * fit.output[every], ".", ms=5, color=GREY, mew=0, label="measured")
+    axes.plot(
+        time, factor * (fit.output - fit.residuals), color=BLUE, lw=1.4, label=f"{fit.model.name}, fitted"
+    )
+    axes.set_ylabel(f"{'force' if fit.response == 'force' else 'depth'} [{unit}]")
+    axes.legend(loc="best")
+
+
+def draw_left(axes: Axes, fit: Fit, time: Array) -> None:
+    """Measured less fitted: noise, if the model is right."""
+    factor, unit = scale(fit.residuals, quantity_unit(fit.response, fit.motion))
+    every = slice(None, None, max(1, time.size // MOST_DOTS))
+    axes.axhline(0.0, color=GREY, lw=0.8)
+    axes.plot(time[every], factor * fit.residuals[every], ".", ms=2.5, color=RED, mew=0)
+    axes.set_ylabel(f"left over [{unit}]")
+    heading(axes, "measured less fitted: noise, where the model is right")
+
+
+@rc_context(LOOK)
+def test_figure(test: History, best: Fit) -> Figure:
+    """The response with the fit, what is left over, and the history that it answers."""
+    figure = new_figure(7.4, 6.4)
+    above, below, history = figure.subplots(3, 1, sharex=True, height_ratios=(2.2, 1.0, 1.0))
+    time = test.time
+    draw_fit(above, best, time)
+    draw_left(below, best, time)
+    given, unit, name = (test.force, "N", "force") if test.kind == "creep" else (test.depth, "m", "depth")
+    factor, shown_unit = scale(given, unit)
+    history.plot(time, factor * given, color=BLACK, lw=1.2)
+    history.set_ylabel(f"{name} [{shown_unit}]")
+    history.set_xlabel("time t [s]")
+    page_heading(figure, f"{test.kind} test, {fit_title(best)}")
+    return figure

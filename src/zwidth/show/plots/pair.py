@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import partial
+from math import pi
 
 import numpy as np
 from matplotlib import rc_context
@@ -19,10 +20,28 @@ from zwidth.passivity.linear.boundary import COARSER, smallest_holding
 from zwidth.passivity.pairs import PairVerdict
 from zwidth.passivity.pairs.criterion import spending
 from zwidth.passivity.pairs.limits import MOST_SAMPLES, largest_stiffness, samples_around
+from zwidth.passivity.pairs.advice import MOST_SAMPLES
+from zwidth.passivity.pairs.course import energy_in_time
+from zwidth.passivity.pairs.held import HeldVerdict
+from zwidth.passivity.pairs.held.criterion import HeldCriterion
+from zwidth.passivity.pairs.limits import largest_stiffness, samples_around
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import quantity_unit
-from zwidth.show.plots.pair_motion import draw_pair_energy, draw_pair_motion
-from zwidth.show.plots.style import GREEN, LOOK, OUTCOME, new_figure, page_heading, scale
+from zwidth.show.plots.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    LOOK,
+    OUTCOME,
+    PURPLE,
+    RED,
+    heading,
+    label,
+    new_figure,
+    number,
+    page_heading,
+    scale,
+)
 
 Array = NDArray[np.float64]
 
@@ -171,3 +190,129 @@ def _number(pair: Pair, usual: int) -> int:
 def _mark(axes: Axes, verdict: PairVerdict, x: float, y: float) -> None:
     marker = "o" if verdict.outcome == "passive" else "X"
     axes.plot([x], [y], marker, color=OUTCOME[verdict.outcome], ms=8, clip_on=False, zorder=6, gid="pair")
+
+
+def draw_pair_motion(axes: Axes, verdict: PairVerdict) -> None:
+    """Positions of both hands in the motion that takes energy out, each repeated part once.
+
+    Parameters
+    ----------
+    axes
+        Where to draw.
+    verdict
+        What `zwidth.check` returned of a `zwidth.Pair` that is active.
+    """
+    found = verdict.witness
+    assert found is not None
+    pair = verdict.pair
+    step = float(pair.sample_period) / pair.own_readings
+    time, unit = scale([step * len(found.positions[0])], "s")
+    length, far = scale(
+        [float(np.ptp(path)) for path in found.positions], quantity_unit("position", pair.motion)
+    )
+    for path, name, colour, line in zip(
+        found.positions, ("leader", "follower"), (BLUE, RED), ("-", "--"), strict=True
+    ):
+        axes.plot(time * step * np.arange(len(path)), length * path, line, color=colour, label=name, gid=name)
+    rounds = [
+        f"samples {p.first} to {p.last}: {p.times:.6g} times" for p in found.leader.repeats if p.times > 1
+    ]
+    heading(axes, "; ".join(["a motion of both hands", *rounds]), color=GREY)
+    axes.set_xlabel(f"time [{unit}]")
+    axes.set_ylabel(f"position [{far}]")
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+
+
+def draw_pair_energy(axes: Axes, verdict: PairVerdict) -> None:
+    """What has come out of both hands' motion by each instant, every round of it: exact sums.
+
+    Parameters
+    ----------
+    axes
+        Where to draw.
+    verdict
+        What `zwidth.check` returned of a `zwidth.Pair` that is active.
+    """
+    found = verdict.witness
+    assert found is not None
+    instants, energies = energy_in_time(found)
+    (time, unit), (size, joule) = (
+        scale([max(abs(float(v)) for v in values)], name)
+        for values, name in ((instants, "s"), (energies, "J"))
+    )
+    axes.axhline(0, color=GREY, lw=0.8)
+    axes.plot(
+        [time * float(t) for t in instants], [size * float(e) for e in energies], color=PURPLE, gid="energy"
+    )
+    heading(axes, f"{number(size * found.energy)} {joule} have come out at the end", color=GREY)
+    axes.set_xlabel(f"time, every round [{unit}]")
+    axes.set_ylabel(f"energy out [{joule}]")
+
+
+# One arm of a pair in a known hand: what damping the other needs at each frequency, and how stiff each hand
+# lets the coupling be.
+
+
+_POINTS = 400
+
+
+@rc_context(LOOK)
+def plot_held_pair(verdict: HeldVerdict) -> Figure:
+    """The damping that is asked of the free arm, where a law is felt; and the three largest stiffnesses.
+
+    Parameters
+    ----------
+    verdict
+        What `zwidth.check` returned of a `zwidth.Pair` with a known hand on one arm.
+    """
+    criterion = HeldCriterion(verdict.question)
+    linear = not criterion.bends
+    figure = new_figure(7.2 if linear else 4.2, 3.4)
+    if linear:
+        draw_held_damping(figure.add_subplot(1, 2, 1), verdict, criterion)
+    draw_held_stiffness(figure.add_subplot(1, 2 if linear else 1, 2 if linear else 1), verdict)
+    page_heading(figure, f"{verdict.outcome}: {verdict.limit}", 10, OUTCOME[verdict.outcome])
+    return figure
+
+
+def draw_held_damping(axes: Axes, verdict: HeldVerdict, criterion: HeldCriterion) -> None:
+    """At each frequency, of the hand that asks for most; and what the free arm has."""
+    motion, free = verdict.pair.motion, verdict.question.free
+    nyquist = 0.5 / float(verdict.pair.sample_period)
+    angles = np.geomspace(pi / 1000, pi, _POINTS)
+    needs = np.max(
+        [
+            [law.required_damping_at(Fraction(float(np.cos(angle)))) for angle in angles]
+            for _, law, _ in criterion.corners
+        ],
+        axis=0,
+    )
+    b = float(verdict.question.arms[0].side.damping)
+    frequencies = angles / pi * nyquist
+    axes.fill_between(frequencies, b, needs, where=(needs > b).tolist(), color=RED, alpha=0.2, lw=0)
+    axes.plot(frequencies, needs, color=BLUE, label=f"asked of the {free}")
+    axes.axhline(
+        b, color="black", ls="--", lw=1.4, label=f"it has {number(b)} {quantity_unit('damping', motion)}"
+    )
+    top = max(b, float(needs.max()))
+    axes.set_ylim(-0.3 * top, 1.2 * top)  # what is below 0 is given back
+    axes.set_xscale("log")
+    axes.set_xlim(nyquist / 1000, nyquist)
+    axes.set_xlabel(label("frequency"))
+    axes.set_ylabel(label("damping", motion, "required damping"))
+    axes.legend(loc="best")
+
+
+def draw_held_stiffness(axes: Axes, verdict: HeldVerdict) -> None:
+    """With just this hand, with anything that damps as much, with a hand that does what it likes."""
+    limits = {
+        "just this": verdict.largest_stiffness,
+        "damps as much": verdict.largest_stiffness_of_any_such_hand,
+        "any": verdict.largest_stiffness_of_two_hands,
+    }
+    heights = [value or 0.0 for value in limits.values()]
+    axes.barh(list(limits), heights, color=[GREEN, BLUE, GREY], height=0.6)
+    axes.axvline(float(verdict.pair.felt_stiffness), color="black", ls="--", lw=1.4)
+    axes.invert_yaxis()
+    axes.set_xlabel(label("stiffness", verdict.pair.motion, "largest stiffness; dashed: this pair,"))
+    axes.set_title(f"hand on the {verdict.question.held}")

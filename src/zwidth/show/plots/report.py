@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
@@ -14,13 +14,25 @@ from zwidth.model.rendering import VirtualCoupling
 from zwidth.model.scene import Scene
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.verdict import Verdict
-from zwidth.show.plots.budget import draw_damping, draw_friction, has_friction
-from zwidth.show.plots.criterion import draw_criterion
-from zwidth.show.plots.plane import draw_plane, has_plane
+from zwidth.show.plots.linear import draw_criterion, draw_damping, draw_friction, has_friction
+from zwidth.show.plots.motions import draw_motion, draw_witness
+from zwidth.show.plots.planes import draw_plane, has_plane
 from zwidth.show.plots.scene import draw_scene
-from zwidth.show.plots.storage import draw_storage
-from zwidth.show.plots.style import LOOK, OUTCOME, new_figure, page_heading, shown_name
-from zwidth.show.plots.witness import draw_witness
+from zwidth.show.plots.storages import draw_storage
+from zwidth.show.plots.style import (
+    LOOK,
+    OUTCOME,
+    heading,
+    new_figure,
+    number,
+    page_heading,
+    scale,
+    shown_name,
+)
+
+if TYPE_CHECKING:
+    from zwidth.passivity.bracket import Bracket
+
 
 Draw = Callable[[Figure, SubplotSpec, Any], None]
 
@@ -114,3 +126,67 @@ def _storage(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
     assert verdict.available_storage is not None
     assert verdict.available_storage.storage is not None
     draw_storage(figure.add_subplot(place), verdict.available_storage.storage)
+
+
+@rc_context(LOOK)
+def limit_figure(bracket: Bracket) -> Figure:
+    """The storage function at the value proved passive, beside the motion at the value refuted.
+
+    A value that a closed condition proves for every hand has no storage function to draw.
+
+    Parameters
+    ----------
+    bracket
+        What `zwidth.limit` returned.
+
+    Raises
+    ------
+    InputError
+        If there is neither.
+    """
+    if bracket.storage is None and bracket.witness is None:
+        raise InputError("there is neither a storage function nor a motion to draw")
+    figure = new_figure(11.0, 5.0)
+    sides = [
+        *([_proved] if bracket.storage is not None else []),
+        *([_refuted] if bracket.witness is not None else []),
+    ]
+    grid = figure.add_gridspec(1, len(sides))
+    for k, draw in enumerate(sides):
+        draw(figure, grid[k], bracket)
+    page_heading(figure, bracket.describe())
+    figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.08, hspace=0.06, wspace=0.05)
+    return figure
+
+
+def _proved(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
+    assert bracket.storage is not None
+    axes = figure.add_subplot(place)
+    draw_storage(axes, bracket.storage)
+    text = f"{_values(bracket)[0]}\n{axes.get_title(loc='left')}"
+    heading(axes, text, color=OUTCOME["passive"])
+
+
+def _refuted(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
+    assert bracket.witness is not None
+    rows = place.subgridspec(3, 1)
+    top = figure.add_subplot(rows[0])
+    axes = [top, *(figure.add_subplot(rows[k], sharex=top) for k in (1, 2))]
+    for upper in axes[:-1]:
+        upper.tick_params(labelbottom=False)
+    draw_motion(axes, bracket.witness)
+    text = f"{_values(bracket)[1]}\n{top.get_title(loc='left')}"
+    heading(top, text, color=OUTCOME["active"])
+
+
+def _values(bracket: Bracket) -> tuple[str, str]:
+    """What was proved and what was refuted, to the four digits of a picture."""
+    proved, refuted = bracket.outward((bracket.proved_passive, bracket.proved_active), 4)
+    return _value(bracket, proved), _value(bracket, refuted)
+
+
+def _value(bracket: Bracket, value: float | None) -> str:
+    if value is None:
+        return ""
+    factor, unit = scale([value], bracket.unit)
+    return f"{number(value * factor)} {unit}".rstrip()

@@ -6,23 +6,29 @@ no meaning hangs on a colour alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from io import BytesIO
 from math import ceil, floor, isfinite, log10
+from pathlib import Path
 from re import sub
 from textwrap import fill
 from typing import Any
 
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
+from matplotlib.text import Text
 from matplotlib.textpath import text_to_path
 
+from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.passivity.scope import TOLD
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import PREFIXES, in_words, unit_text
-from zwidth.showing import printable
+from zwidth.showing import OBEYED, printable
+from zwidth.writing import check_target, writing_whole
 
 BLACK, GREY = "#222222", "#777777"
 BLUE, SKY = "#0072B2", "#56B4E9"
@@ -175,3 +181,45 @@ def note(axes: Axes, text: str) -> None:
         text, (0, 0), (0, -34), xycoords="axes fraction", textcoords="offset points",
         va="top", fontsize=7.5, color=GREY,
     )  # fmt: skip
+
+
+ENDINGS = ("png", "svg", "pdf")
+
+_METADATA: dict[str, dict[str, Any]] = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
+"""No date in a file."""
+
+
+def save_figure(draw: Callable[[], Figure], path: str | Path, overwrite: bool = False) -> None:
+    """Draw and write to a file; its ending, png, svg or pdf, says how.
+
+    Raises
+    ------
+    InputError
+        If the ending is another one, the file exists, or it cannot be written.
+    """
+    target = Path(path)
+    ending = target.suffix.removeprefix(".").lower()
+    if ending not in ENDINGS:
+        raise InputError(
+            f"a picture is written as .png, .svg or .pdf, got {target.name!r}; for example check.png"
+        )
+    check_target(target, overwrite, "overwrite=True")
+    picture = encoded(draw(), ending)
+    with writing_whole(target) as file:
+        file.write(picture)
+
+
+def encoded(figure: Figure, ending: str, dpi: float = 160) -> bytes:
+    """The figure as a file of one of `ENDINGS`."""
+    picture = BytesIO()
+    with rc_context({"svg.hashsalt": "zwidth"}):
+        _printable(figure).savefig(picture, format=ending, dpi=dpi, metadata=_METADATA[ending])
+    return picture.getvalue()
+
+
+def _printable(figure: Figure) -> Figure:
+    """No control characters, of which an SVG must have none."""
+    for text in figure.findobj(Text):
+        if OBEYED.search(text.get_text()):
+            text.set_text(printable(text.get_text()))
+    return figure

@@ -5,7 +5,6 @@ The same verdict gives the same bytes, in every process and folder: no date, no 
 
 from __future__ import annotations
 
-from importlib import import_module
 from pathlib import Path
 
 from zwidth.errors import InputError
@@ -14,9 +13,7 @@ from zwidth.show.report.contents import contents
 from zwidth.show.report.provenance import Provenance
 from zwidth.writing import check_target, writing_whole
 
-__all__ = ["ENDINGS", "Provenance", "html", "pdf", "save"]
-
-ENDINGS = (".html", ".pdf")
+__all__ = ["Provenance", "html", "save"]
 
 
 def html(verdict: Answer, provenance: Provenance | None = None) -> str:
@@ -34,28 +31,10 @@ def html(verdict: Answer, provenance: Provenance | None = None) -> str:
     return page(contents(verdict, provenance))
 
 
-def pdf(verdict: Answer, provenance: Provenance | None = None) -> bytes:
-    """The report as a PDF file, the proof attached; takes ReportLab, the extra `report`.
-
-    Parameters
-    ----------
-    verdict, provenance
-        As for `html`.
-
-    Raises
-    ------
-    InputError
-        If ReportLab is not installed.
-    """
-    from zwidth.show.report.pdf_file import document
-
-    return document(contents(verdict, provenance))
-
-
 def save(
     verdict: Answer, path: str | Path, provenance: Provenance | None = None, overwrite: bool = False
 ) -> None:
-    """Write the report; the ending of the file, .html or .pdf, says how.
+    """Write the report as a page, a file that ends in .html.
 
     Parameters
     ----------
@@ -69,20 +48,22 @@ def save(
     Raises
     ------
     InputError
-        If the ending is another one, the file exists or cannot be written, or ReportLab is not installed.
+        If the ending is another one, or the file exists or cannot be written.
     """
     target = Path(path)
     check_ending(target)
     check_target(target, overwrite, "overwrite=True")
-    is_pdf = target.suffix.lower() == ".pdf"
-    made = pdf(verdict, provenance) if is_pdf else html(verdict, provenance).encode()
+    page = html(verdict, provenance).encode()
     with writing_whole(target) as file:
-        file.write(made)
+        file.write(page)
 
 
 def check_ending(path: Path) -> None:
     """Refuse a name of which no report can be made, before anything is computed."""
-    if path.suffix.lower() not in ENDINGS:
-        raise InputError(f"a report is written as .html or .pdf, got {path.name!r}; for example report.html")
     if path.suffix.lower() == ".pdf":
-        import_module("zwidth.show.report.pdf_file")
+        raise InputError(
+            f"a report is written as .html, got {path.name!r}: write the page, and print it to PDF from the "
+            "browser"
+        )
+    if path.suffix.lower() != ".html":
+        raise InputError(f"a report is written as .html, got {path.name!r}; for example report.html")

@@ -5,11 +5,19 @@ Its policy allows no script and no address abroad; pictures and the proof stand 
 
 from __future__ import annotations
 
-from zwidth.show.report.again import how_to_check_again
-from zwidth.show.report.contents import Contents, Section
-from zwidth.show.report.figures import pictures
-from zwidth.show.report.proof import NAME
-from zwidth.showing import Headline, Html, Part, data_uri, element, void
+from collections.abc import Callable, Iterator
+from hashlib import sha256
+from importlib.metadata import version
+from math import isfinite
+from platform import python_version
+from typing import Any
+
+from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.result import Answer
+from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.text import shown, told
+from zwidth.show.report.contents import NAME, Contents, Section
+from zwidth.showing import Headline, Html, Lines, Part, Picture, Table, data_uri, element, void
 
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
 
@@ -93,5 +101,122 @@ def _part(part: Part) -> Html:
 def _again(said: Contents) -> Html:
     address = data_uri(said.document, "application/json")
     link = element("p", element("a", f"Save {NAME}", href=address, download=NAME))
-    parts = how_to_check_again(said, f"{NAME} is in this page, behind the link above.")
-    return element("section", element("h2", "How to check it again"), link, *map(_part, parts))
+    told = map(_part, _how_to_check_again(said))
+    return element("section", element("h2", "How to check it again"), link, *told)
+
+
+# The pictures, with the defaults of matplotlib, whatever the settings of the person are: the same bytes.
+
+
+_WIDTH = 6.0
+_HEIGHTS = {"plane": 5.0, "motion": 5.0, "budget": 3.6}
+"""Inches; the others are 3.8 high."""
+
+_CAPTIONS = {
+    "criterion": "The damping that the loop asks for, and what the device has. The loop is passive against "
+    "every sustained motion where the curve stays at or below the line, up to half the sample rate.",
+    "plane": "Where the loop lies: viscous friction against sampling, Coulomb friction against the encoder. "
+    "Passive at and beyond ½ on both axes.",
+    "budget": "What feeds energy in, against what the device takes out.",
+    "motion": "The motion that takes energy out: position, held force and energy.",
+    "storage": "The most energy that a hand can take out, from each position on.",
+    "scene": "The scene that is rendered.",
+}
+
+
+def pictures(verdict: Answer) -> list[Picture]:
+    """Every picture of a verdict; none where there is nothing to draw."""
+    from matplotlib import style
+
+    with style.context("default"):
+        return list(_pictures(verdict))
+
+
+def _pictures(verdict: Answer) -> Iterator[Picture]:
+    from zwidth.show.plots.report import panel_figure, panels_of
+    from zwidth.show.plots.style import encoded
+
+    if isinstance(verdict, Verdict):
+        for name, draw in panels_of(verdict).items():
+            figure = panel_figure(draw, verdict, _WIDTH, _HEIGHTS.get(name, 3.8))
+            yield Picture(encoded(figure, "svg"), "svg+xml", _SAYS[name](verdict), _CAPTIONS[name])
+    elif verdict.PICTURE:
+        yield Picture(encoded(verdict.figure(), "svg"), "svg+xml", verdict.describe())
+
+
+def _criterion(verdict: LinearVerdict) -> str:
+    unit = verdict.device.unit("damping")
+    account = verdict.budget
+    most = told(account.required, unit, 4) if isfinite(account.required) else "any amount"
+    return (
+        f"Curve of required damping against frequency: highest at {shown(account.frequency, 'Hz')}, with "
+        f"{most}; a line marks the device's {told(account.damping, unit, 4)}."
+    )
+
+
+def _plane(verdict: LinearVerdict) -> str:
+    from zwidth.passivity.formulas.quantization import plane_point
+
+    stiffness = verdict.decision.loop.static_stiffness
+    assert stiffness is not None
+    point = plane_point(verdict.device, stiffness)
+    return (
+        f"Plane of viscous against Coulomb friction: the loop lies at {float(point.viscous):.4g} and "
+        f"{float(point.dry):.4g}, in the region {point.region}."
+    )
+
+
+def _budget(verdict: LinearVerdict) -> str:
+    unit = verdict.device.unit("damping")
+    account = verdict.budget
+    shares = {"the hold": account.hold, "the law": account.dynamics, "the delay": account.delay}
+    asked = ", ".join(
+        f"{name} {told(value, unit, 4)}" for name, value in shares.items() if isfinite(value) and value
+    )
+    return f"Bars: asked for by {asked or 'nothing'}; the device has {told(account.damping, unit, 4)}."
+
+
+def _motion(verdict: Verdict) -> str:
+    assert verdict.witness is not None
+    return f"Position, force and energy against time: {verdict.witness.describe()}."
+
+
+_SAYS: dict[str, Callable[[Any], str]] = {
+    "criterion": _criterion,
+    "plane": _plane,
+    "budget": _budget,
+    "motion": _motion,
+    "storage": lambda verdict: (
+        "Curve of the available storage against position; it is finite and nowhere below 0."
+    ),
+    "scene": lambda verdict: f"Diagram of the {verdict.environment.describe(verdict.device.motion)}.",
+}
+
+
+def _how_to_check_again(said: Contents) -> list[Part]:
+    """In words and numbers."""
+    steps = [
+        f"{NAME} is in this page, behind the link above. It is the verdict with its evidence, every number "
+        "digit for digit.",
+        f"zwidth verify {NAME} re-proves it, by a checker that shares no code with what found the proof.",
+    ]
+    if said.command:
+        steps.append(f"This report again, byte for byte with the same versions: {said.command}")
+    rows = [
+        (f"SHA-256 of {NAME}", sha256(said.document).hexdigest()),
+        (f"bytes of {NAME}", str(len(said.document))),
+        *_versions(),
+    ]
+    return [Lines(steps), Table(rows=rows)]
+
+
+_LIBRARIES = ("matplotlib", "numpy", "python-flint", "scipy")
+
+
+def _versions() -> list[tuple[str, str]]:
+    """(name, version) of zwidth, Python and the libraries that had a part in it."""
+    return [
+        ("zwidth", version("zwidth")),
+        ("Python", python_version()),
+        *((name, version(name)) for name in _LIBRARIES),
+    ]

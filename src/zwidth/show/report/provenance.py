@@ -12,7 +12,9 @@ from zwidth.model.device import Device, catalogue
 from zwidth.model.device.rotary import ROTARY
 from zwidth.model.environment.environment import Environment
 from zwidth.model.kind import name_of
+from zwidth.model.pairs import Pair
 from zwidth.model.specification.environments import TYPES
+from zwidth.model.specification.pairs import KEYS
 from zwidth.model.specification.table import COMMAND_LINE, Table
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
@@ -77,10 +79,7 @@ def of_device(table: Table, device: Device) -> Iterator[Row]:
         written = next((k for k in _WRITTEN_AS.get(key, (key,)) if k in table.values), None)
         asked = "inertia" if _is_inertia(key, device.motion) else key
         where = _place(table, written, asked) if written else _of_the_catalogue(key, value, known, ranges)
-        yield (
-            *_named(key, value, device.motion),
-            where or _unless_assumed(key, device.assumed, "not given"),
-        )
+        yield (*_named(key, value, device.motion), where or _unless_assumed(key, device.assumed, "not given"))
     for key, own in ROTARY.items():
         if key in table.values and not (key == "inertia" and device.motion == "rotary"):  # it is told above
             yield in_words(key), as_written(table.values[key], own.unit), _place(table, key, key)
@@ -91,16 +90,11 @@ def of_environment(
 ) -> Iterator[Row]:
     """Of an environment made of a table.
 
-    Parameters
-    ----------
-    table
-        With the parameters of the command line in it, as it was read.
-    environment
-        What was made of it; it may stand behind laws in a chain.
-    motion
-        "linear" or "rotary".
-    laws, typed
-        The [[law]] tables of a file, and what stood behind each `--law`, which takes their place.
+    `table`: with the parameters of the command line in it, as it was read.
+    `environment`: what was made of it; it may stand behind laws in a chain.
+    `motion`: "linear" or "rotary".
+    `laws`, `typed`: the [[law]] tables of a file, and what stood behind each `--law`, which takes their
+        place.
     """
     chain = getattr(environment, "laws", ())
     inner: Any = environment.environment if chain else environment  # type: ignore[attr-defined]
@@ -205,3 +199,15 @@ def of_file(label: str) -> str:
     """A table of a file, which is called by its name alone."""
     file, found, name = label.rpartition(": [")
     return f"{PurePath(file.removesuffix(': [')).name}, [{name}" if found else label
+
+
+def of_pair(tables: Mapping[str, Table], pair: Pair) -> Iterator[Row]:
+    """Of two arms made of the tables of one file, as they were read; of one [device] both are made."""
+    arms = [("leader", pair.leader), ("follower", pair.follower)]
+    for name, device in arms if "leader" in tables else [("device", pair.leader)]:
+        for what, value, where in of_device(tables[name], device):
+            yield f"{name}: {what}", value, where
+    coupling = tables["coupling"]
+    for key, given in coupling.values.items():
+        unit = KEYS[key].unit_for(pair.motion) if KEYS[key].is_number else ""
+        yield f"coupling: {in_words(key)}", as_written(given, unit), of_file(coupling.label)

@@ -27,14 +27,21 @@ from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import shown
 from zwidth.showing import Part
 from zwidth.study.bench.adversary import FASTEST, Attack, attack
-from zwidth.study.bench.advice import advice, answer, told_of
-from zwidth.study.bench.at_rim import about_axis, at_rim, radius_of
-from zwidth.study.bench.laws import standard_laws, wall_to_render
+from zwidth.study.bench.advice import (
+    Touch,
+    advice,
+    answer,
+    legend,
+    on_paper,
+    short_table,
+    standard_touches,
+    table,
+    told_of,
+)
+from zwidth.study.bench.laws import about_axis, at_rim, radius_of, standard_laws, wall_to_render
 from zwidth.study.bench.motions import found_motions
 from zwidth.study.bench.pairs import PairComparison, compare_pairs
 from zwidth.study.bench.standing import Standing, standing
-from zwidth.study.bench.table import legend, on_paper, short_table, table
-from zwidth.study.bench.touches import Touch, standard_touches
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
+from fractions import Fraction
 from math import pi
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from zwidth.errors import InputError
 from zwidth.model.device.device import Device
+from zwidth.model.device.rotary import ROTARY, at_handle
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.velocity import OnePole, Window
 from zwidth.model.environment.wall import Wall, wall_of
@@ -39,7 +42,12 @@ from zwidth.model.rendering import (
 )
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.model.rendering.rendering_law import LoopContext
-from zwidth.quantity.exact import Exact
+from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.parameter import read_number
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 Law = Callable[[Device, Wall], Environment]
 
@@ -158,3 +166,47 @@ def _suits(law: Environment, device: Device) -> bool:
     except InputError:
         return False
     return True
+
+
+# A device that turns, on the bench of a handle: its rim at a radius r, where a finger touches it.
+
+
+_TURNED = {"N/m": ("N*m/rad", 2), "N": ("N*m", 1), "m": ("rad", -1), "N*s/m": ("N*m*s/rad", 2)}
+"""What a unit at the rim is about the axis, and the power of the radius that takes a value there."""
+
+
+def radius_of(device: Device, given: RealLike | None) -> Exact:
+    """The radius at which a device that turns is touched [m]."""
+    if given is None:
+        raise InputError(
+            f"the touches of the bench are a finger's, at a handle or rim, and {device.name} turns: say how "
+            "far from the axis that is, --handle-radius '0.15 m' for a wheel, '2 cm' for a knob"
+        )
+    own = ROTARY["handle_radius"]
+    radius: Exact = read_number(
+        given, own, "handle_radius", bound="> 0", why="the handle turns about the axis", uncertain=False
+    )
+    return radius
+
+
+def at_rim(device: Device, wall: Wall, radius: Exact) -> tuple[Device, Wall]:
+    """The same device and wall, felt at the rim."""
+    square = radius.fraction**2
+
+    def over(value: object) -> Exact:
+        if not isinstance(value, Exact):
+            raise InputError("the bench simulates one loop: give numbers, no intervals")
+        return Exact(Fraction(value.fraction / square))
+
+    there = replace(wall, stiffness=over(wall.stiffness), damping=over(wall.damping))
+    return at_handle(device, radius), there
+
+
+def about_axis(scores: xr.Dataset, radius: float) -> xr.Dataset:
+    """What was found at the rim, `radius` [m] from the axis, in torques and angles."""
+    turned = scores.copy()
+    for name, value in scores.data_vars.items():
+        unit, power = _TURNED.get(value.attrs.get("units", ""), ("", 0))
+        if unit:
+            turned[name] = (value.dims, radius**power * value.values, {**value.attrs, "units": unit})
+    return turned

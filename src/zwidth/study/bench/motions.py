@@ -15,6 +15,7 @@ limit, the way of the fastest hand in a sample.  So the same loop in other units
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from math import cos, floor, isfinite, pi
@@ -33,7 +34,6 @@ from zwidth.passivity.storage.program import DynamicProgram, program_of
 from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.study.bench.budget import Spent, budget_of
 
 USUAL = Fraction(1, 10)
 """Part of the fastest speed below which a hand is tried first: about what a hand reaches, of 10 m/s."""
@@ -91,15 +91,9 @@ def fixed_motions(
 ) -> dict[str, Floats]:
     """One round of each motion of the fixed set, by what it does.
 
-    Parameters
-    ----------
-    device
-        Every number certain.
-    fastest
-        Speed that is not exceeded [m/s].
-    environment
-        What is rendered, laws in a chain included: how deep a step of the converter and the force limit
-        are; None: motions in counts only.
+    `fastest`: speed that is not exceeded [m/s].
+    `environment`: what is rendered, laws in a chain included: how deep a step of the converter and the force
+        limit are; None: motions in counts only.
     """
     stiffnesses = () if environment is None else _stiffnesses(device, environment)
     return dict(_fixed(device, Exact(fastest).fraction, stiffnesses))
@@ -309,3 +303,42 @@ def _worst(device: Device, wall: Wall, speed: Fraction) -> Floats | None:
     except (InputError, Spent):  # an ideal encoder, a board that is too large or too small
         return None
     return None if played.witness is None else np.array(played.witness.cycle[:-1])
+
+
+NODES = 9
+"""Places in a cell, about."""
+
+
+class Spent(Exception):
+    """The budget is used up: the iteration was not finished."""
+
+
+@dataclass
+class Budget:
+    """What is told of each round of an iteration, and stops it.
+
+    Parameters
+    ----------
+    rounds
+        How many there may be.
+    """
+
+    rounds: float
+
+    def __call__(self, improved: int) -> None:
+        """One round more."""
+        self.rounds -= 1
+        if self.rounds < 0:
+            raise Spent
+
+
+def budget_of(program: DynamicProgram, moves: float) -> Budget:
+    """For so many moves against one law."""
+    width = 2 * program.domain.reach + 1
+    states = program.domain.cells * width ** (program.law.memory + program.losses.delay)
+    if program.law.relaxing is not None:
+        states *= program.domain.cells
+    rounds = moves // (states * width * NODES)
+    if rounds < 1:
+        raise InputError(f"the grid of {states:,} states is too large to be iterated on here")
+    return Budget(rounds)

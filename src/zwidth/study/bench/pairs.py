@@ -119,12 +119,7 @@ def schemes(pair: Pair) -> dict[str, Pair]:
     none = {"reflection": 0, "follower_reflection": 0}
     ways: dict[str, dict[str, Any]] = {
         "position–position": {**none, "stiffness": felt, "follower_stiffness": felt / ratio},
-        "position–force": {
-            **none,
-            "stiffness": 0,
-            "follower_stiffness": felt / ratio,
-            "reflection": ratio,
-        },
+        "position–force": {**none, "stiffness": 0, "follower_stiffness": felt / ratio, "reflection": ratio},
         "four channels": {
             "stiffness": felt / 2,
             "follower_stiffness": felt / ratio / 2,

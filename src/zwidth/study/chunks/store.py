@@ -72,16 +72,10 @@ def computed(
 ) -> Layers:
     """Every layer, whole; what is not yet on disk is computed.
 
-    Parameters
-    ----------
-    layout
-        What is to be had.
-    finished
-        Gives each of these chunks as it is finished.
-    path
-        Of a zarr store; None to keep nothing.
-    progress
-        Is told how many chunks are done, and of how many.
+    `layout`: what is to be had.
+    `finished`: gives each of these chunks as it is finished.
+    `path`: of a zarr store; None to keep nothing.
+    `progress`: is told how many chunks are done, and of how many.
     """
     keep: Any = Memory(layout) if path is None else Store(path, layout)
     left = keep.left

@@ -22,6 +22,8 @@ from zwidth.model.environment.velocity import VelocityEstimator
 from zwidth.model.operator import Dowel, Finger, HandsOn
 from zwidth.model.operator.hand_impedance import HandImpedance, as_hand
 from zwidth.passivity.stability.known_hand import motion_of
+from zwidth.passivity.scope import Hands, Scope, scope_of
+from zwidth.passivity.stability.known_hand.coupled import motion_of
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.study.chunks.layout import Layout
 
@@ -162,3 +164,21 @@ def _read_axis(name: str, both: tuple[RealLike, RealLike], cells: int) -> Axis:
     if cells != int(cells) or cells < 1:
         raise InputError(f"cells along {name} must be a whole number ≥ 1, got {cells}")
     return Axis(low, high, int(cells))
+
+
+def scopes(asked: Request, speed: float) -> dict[str, Scope]:
+    """The scope of each region by its name; `speed` is that up to which a wall is quiet [m/s; rad/s]."""
+    every = scope_of(asked.device, Wall(1))
+    late = asked.device.exact("delay") / asked.device.exact("sample_period")
+    known = every.replace(
+        contact="kept",
+        encoder="not counted" if every.encoder == "counted" else "ideal",
+        coulomb_friction=None,
+        assumed=(),
+    )
+    return {
+        "passive": every,
+        "passive_sustained": every.replace(contact="kept"),
+        "quiet": every.replace(hands=Hands(speed=speed, in_each_part=late.denominator != 1)),
+        **{f"stable_{name}": known.replace(hands=Hands(impedance=name)) for name, _ in asked.hands},
+    }

@@ -11,7 +11,7 @@ a device, of both.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from difflib import get_close_matches
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -19,30 +19,25 @@ from typing import Any, NamedTuple
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.device.rotary import ROTARY, rotary
+from zwidth.model.environment import OnePole, Window
 from zwidth.model.environment.environment import Environment
 from zwidth.model.operator import ParametricOperator
 from zwidth.model.pairs import Pair
 from zwidth.model.specification.table import quoted
-from zwidth.quantity.exact import Exact
+from zwidth.model.specification.values import time_constant_of
+from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import parameters_of
-from zwidth.study.sweeps.within import Units, numbers_within, with_numbers
 
 
 @dataclass(frozen=True)
 class Loop:
     """One loop, and how it is asked.
 
-    Parameters
-    ----------
-    subject
-        A device, or two arms that follow each other.
-    environment
-        What a device renders; of a pair None.
-    operator
-        The hand of a simulation.
-    options
-        Further arguments of the question.
+    `subject`: a device, or two arms that follow each other.
+    `environment`: what a device renders; of a pair None.
+    `operator`: the hand of a simulation.
+    `options`: further arguments of the question.
     """
 
     subject: Device | Pair
@@ -71,14 +66,9 @@ Changes = dict[str, Exact]
 class Part(NamedTuple):
     """A part of a loop.
 
-    Parameters
-    ----------
-    before
-        What stands before its keys.
-    units
-        The unit of each of its numbers by its key; empty where the loop has no such part.
-    change
-        The loop with other numbers in this part.
+    `before`: what stands before its keys.
+    `units`: the unit of each of its numbers by its key; empty where the loop has no such part.
+    `change`: the loop with other numbers in this part.
     """
 
     before: str
@@ -270,3 +260,62 @@ PARTS: Mapping[str, Part] = MappingProxyType(
     }
 )
 """Where a number may be."""
+
+
+# The numbers of an environment or a law, and behind a dot those of what it is made of.
+
+
+Units = Mapping[str, str]
+
+_PARTS = ("environment", "velocity_filter", "velocity")
+"""Fields that hold something which has numbers itself."""
+
+
+def numbers_within(thing: Any, motion: str) -> Units:
+    """The unit of each number, by its name; none of what has none."""
+    found = dict(_own(thing, motion))
+    for part in _PARTS:
+        inner = getattr(thing, part, None)
+        if inner is not None:
+            found |= {f"{part}.{name}": unit for name, unit in numbers_within(inner, motion).items()}
+    return found
+
+
+def with_numbers(thing: Any, new: Mapping[str, Any]) -> Any:
+    """The thing with other numbers, by the names of `numbers_within`; all of them are set at once."""
+    own: dict[str, Any] = {}
+    inner: dict[str, dict[str, Any]] = {}
+    for name, value in new.items():
+        part, _, rest = name.partition(".")
+        if rest:
+            inner.setdefault(part, {})[rest] = value
+        else:
+            own[_field(thing, name)] = time_constant_of(value) if name == "cutoff" else value
+    own |= {part: with_numbers(getattr(thing, part), numbers) for part, numbers in inner.items()}
+    return replace(thing, **own)
+
+
+def _own(thing: Any, motion: str) -> Units:
+    if isinstance(thing, Window):
+        return {"samples": "1"}
+    if isinstance(thing, OnePole):
+        return {"time_constant": "s", "cutoff": "Hz"}
+    if isinstance(thing, Environment):  # what may be left out says how it is made: it is given, or not
+        given = [
+            each.name for each in fields(thing) if isinstance(getattr(thing, each.name), Exact | Interval)
+        ]
+        return {_name(key): thing.unit_of(key, motion) for key in given}
+    if not is_dataclass(thing):
+        return {}
+    return {key: own.unit_for(motion) for key, own in parameters_of(type(thing)).items() if own.is_number}
+
+
+def _name(key: str) -> str:
+    return "virtual_damping" if key == "damping" else key
+
+
+def _field(thing: Any, name: str) -> str:
+    """The field that holds a number."""
+    if name == "cutoff" and isinstance(thing, OnePole):
+        return "time_constant"
+    return "damping" if name == "virtual_damping" and isinstance(thing, Environment) else name

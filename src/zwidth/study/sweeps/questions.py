@@ -22,7 +22,7 @@ from zwidth.passivity.stability.known_hand.decide import Outcome as Rests
 from zwidth.passivity.scope import Contact, Encoder, FedWith, Law, Scope
 from zwidth.passivity.stability.characteristic import Outcome as Rests
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.study.sweeps.columns import Column, Columns
+from zwidth.study.sweeps.axes import Column, Columns
 from zwidth.study.sweeps.loops import Loop
 
 Answer = Mapping[str, Any]
@@ -34,14 +34,9 @@ Line = dict[Any, Any]
 class Question(NamedTuple):
     """What is asked of each loop.
 
-    Parameters
-    ----------
-    columns
-        What is kept of an answer.
-    answer
-        The answer of one loop, given what is known of its line: a value for each column.
-    needs
-        What the loop must have; raises InputError if it has not.
+    `columns`: what is kept of an answer.
+    `answer`: the answer of one loop, given what is known of its line: a value for each column.
+    `needs`: what the loop must have; raises InputError if it has not.
     """
 
     columns: Callable[[Loop], Columns]
@@ -55,12 +50,7 @@ _ENCODER = Column("whether the encoder's steps are in it", words=get_args(Encode
 
 
 def _scope(scope: Scope) -> Answer:
-    return {
-        "contact": scope.contact,
-        "encoder": scope.encoder,
-        "fed_with": scope.fed_with,
-        "law": scope.law,
-    }
+    return {"contact": scope.contact, "encoder": scope.encoder, "fed_with": scope.fed_with, "law": scope.law}
 
 
 _OF_A_SCOPE = {

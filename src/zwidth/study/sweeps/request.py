@@ -17,12 +17,10 @@ from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted, suggestion
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.study.chunks.layout import Layout, Place, cells
-from zwidth.study.sweeps.axes import Axis, axis
-from zwidth.study.sweeps.columns import OF_EVERY_SWEEP, Columns
+from zwidth.study.sweeps.axes import OF_EVERY_SWEEP, Axis, Columns, axis
 from zwidth.study.sweeps.loops import Loop, Parameter, changed, parameter
 from zwidth.study.sweeps.questions import HANDS, QUESTIONS, Question
-from zwidth.study.sweeps.springs import Springs, springs
-from zwidth.study.sweeps.walls import is_of_walls
+from zwidth.study.sweeps.springs import Springs, is_of_walls, springs
 
 FORMAT = "zwidth sweep 1"
 
@@ -42,16 +40,10 @@ _SLOW = ("limit", "simulate", "pair")
 class Request:
     """All that the bits of a sweep depend on.
 
-    Parameters
-    ----------
-    of
-        The question, by the command that answers it.
-    loop
-        With its numbers before they are varied.
-    parameters, axes
-        What is varied, and its values.
-    at_once
-        Loops that are computed and kept at a time, at most.
+    `of`: the question, by the command that answers it.
+    `loop`: with its numbers before they are varied.
+    `parameters`, `axes`: what is varied, and its values.
+    `at_once`: loops that are computed and kept at a time, at most.
     """
 
     of: str

@@ -6,8 +6,12 @@ The page's engine moves the plant by the module of `firmware.plant` and asks the
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import json
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
+from importlib.resources import files
 from typing import Any
 
 from zwidth.errors import InputError
@@ -16,14 +20,19 @@ from zwidth.loop.plant import Plant
 from zwidth.loop.setup import frame_of
 from zwidth.machine.firmware.javascript import module
 from zwidth.machine.firmware.law import law_program
+from zwidth.machine.firmware.module import module
+from zwidth.machine.firmware.plant import given_plant, plant_module, plant_program
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator import LinearHand, Tracking, usual_hand
 from zwidth.model.pairs import Pair
 from zwidth.passivity.check import check
+from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.result import Answer
-from zwidth.show.explorer.play.played import Played
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
+from zwidth.quantity.text import in_words, shown, unit_text
+from zwidth.showing import element
 
 LONGEST_DELAY = 10
 """[s]: nobody plays with more."""
@@ -185,3 +194,164 @@ def _arm(device: Device, period: Fraction, plant: Plant, hand: LinearHand, start
         "start": float(start),
         "limit": float(device.exact("force_limit")) if device.force_limit is not None else 0.0,
     }
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Played:
+    """A loop that a page can play: made by `played` or `played_pair`.
+
+    Parameters
+    ----------
+    name
+        What the page calls it.
+    loop
+        (device, environment), or (pair,).
+    hand
+        Mass, stiffness and damping of the hand at the handle.
+    start
+        Where handle and hand begin [m; rad].
+    follower
+        What holds the follower of a pair where it begins.
+    verdict
+        On the loop.
+    law
+        The text of the law's module; "" for a pair.
+    arms
+        What the engine needs of each arm, SI.
+    reach
+        The page shows positions from −reach to reach [m; rad].
+    do, notice
+        What to do, and what to look for.
+    """
+
+    name: str
+    loop: tuple[Device, Environment] | tuple[Pair]
+    hand: LinearHand
+    start: float
+    follower: LinearHand
+    verdict: Answer
+    law: str
+    arms: list[dict[str, Any]]
+    reach: float
+    do: str
+    notice: str
+
+    @property
+    def motion(self) -> str:
+        """ "linear" or "rotary"."""
+        return self.loop[0].motion
+
+    def facts(self) -> dict[str, Any]:
+        """All that the page shows and runs, but the law, as plain data."""
+        units = {name: GLOSSARY[name].unit_for(self.motion) for name in ("position", "velocity", "force")}
+        return {
+            "name": self.name,
+            "motion": self.motion,
+            "do": self.do,
+            "notice": self.notice,
+            "outcome": self.verdict.outcome,
+            "colour": COLOUR[self.verdict.outcome],
+            "claim": self.verdict.claim,
+            "assumptions": list(self.verdict.small_print()),
+            "numbers": list(self._numbers()),
+            "keys": {name: unit_suffix(unit) for name, unit in units.items()},
+            "force_unit": unit_text(units["force"]),
+            "reach": self.reach,
+            "often": self.loop[0].own_readings if isinstance(self.loop[0], Pair) else 1,
+            "one_sided": len(self.loop) == 2 and self.loop[1].unilateral,
+            "arms": self.arms,
+        }
+
+    def _numbers(self) -> Iterator[tuple[str, str, str]]:
+        """Symbol, name and value of what the loop is made of."""
+        if isinstance(self.loop[0], Pair):
+            pair = self.loop[0]
+            same = pair.leader == pair.follower
+            yield "", "coupling", pair.describe()
+            yield from _device_numbers(pair.leader, "" if same else " of the leader")
+            if not same:
+                yield from _device_numbers(pair.follower, " of the follower")
+            yield from _hand_numbers("spring that holds the follower", self.follower, self.motion)
+        else:
+            device, environment = self.loop[0], self.loop[-1]
+            assert isinstance(environment, Environment)
+            yield "", "law", environment.describe(device.motion)
+            yield from _device_numbers(device)
+        yield from _hand_numbers("hand", self.hand, self.motion)
+
+
+def _device_numbers(device: Device, whose: str = "") -> Iterator[tuple[str, str, str]]:
+    for key, value in device.parameters().items():
+        own = GLOSSARY[key]
+        yield own.symbol, f"{in_words(key)}{whose}", shown(value, own.unit_for(device.motion))
+
+
+def _hand_numbers(name: str, hand: LinearHand, motion: str) -> Iterator[tuple[str, str, str]]:
+    """On one line; what is 0 is not there."""
+    given = [
+        (symbol, shown(value, GLOSSARY[key].unit_for(motion)))
+        for symbol, (key, value) in zip(("m_h", "k", "c"), hand._asdict().items(), strict=True)
+        if value
+    ]
+    if given:
+        yield ", ".join(symbol for symbol, _ in given), name, ", ".join(text for _, text in given)
+
+
+_EXPORTED = re.compile(r"^export (?:const|function|class) (\w+)", re.MULTILINE)
+_IMPORT_LINE = re.compile(r'^import (\{[^}]*\}) from "\./(\w+)\.mjs";$', re.MULTILINE)
+
+MODULES = ("engine", "recording", "sound", "draw", "player", "view")
+"""The page's own, each after those that it imports."""
+
+
+def play_page(loops: Sequence[Played], *, title: str = "Play with a loop") -> str:
+    """A page of HTML on which a person plays these loops; it works from a file, offline, and in a frame.
+
+    Parameters
+    ----------
+    loops
+        At least one; see `played` and `played_pair`.
+    title
+        Its heading.
+
+    Raises
+    ------
+    InputError
+        If there is no loop.
+    """
+    if not loops:
+        raise InputError("a page plays one loop at least; got none")
+    modules = [
+        f"const plant = {_as_function(plant_text())};",
+        f"const laws = [{', '.join(_as_function(loop.law) if loop.law else 'null' for loop in loops)}];",
+        *(f"const {name} = {_as_function(_file(f'{name}.mjs'))};" for name in MODULES),
+        'view.start(document.getElementById("play"), plant, laws);',
+    ]
+    facts = json.dumps([loop.facts() for loop in loops], ensure_ascii=False).replace("<", "\\u003c")
+    parts = {
+        "title": element("title", title),
+        "heading": element("h1", title),
+        "style": _file("play.css"),
+        "facts": facts,
+        "script": "\n".join(modules).replace("</", "<\\/").replace("<!--", "<\\!--"),
+    }
+    return re.sub(r"<!-- (\w+) -->", lambda found: parts[found[1]], _file("page.html"))
+
+
+def plant_text() -> str:
+    """The module that moves every device and hand: it is told their numbers, and how long."""
+    return plant_module(plant_program(given_plant(amplified=False), None, "anchored"))
+
+
+def _file(name: str) -> str:
+    return files("zwidth.show.explorer.play").joinpath(name).read_text(encoding="utf-8")
+
+
+def _as_function(module: str) -> str:
+    """An ES module as an expression: what it exports, as one object; what it imports stands before it.
+
+    A page that is a file, or a text in a frame, has no address from which a module could be imported.
+    """
+    names = ", ".join(_EXPORTED.findall(module))
+    body = _IMPORT_LINE.sub(r"const \1 = \2;", module)
+    return f"(() => {{\n{re.sub('^export ', '', body, flags=re.MULTILINE)}return {{ {names} }};\n}})()"

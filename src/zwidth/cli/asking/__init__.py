@@ -1,1 +1,0 @@
-"""What `zwidth new` asks, and the files that it makes of the answers."""

@@ -1,0 +1,1 @@
+"""Commands that read what was measured: a device, a tissue, why it shook, how to measure."""

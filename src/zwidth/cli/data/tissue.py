@@ -1,0 +1,201 @@
+"""The command `tissue`: a tissue from a spreadsheet, and how much of it a device may render."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from zwidth.cli.data.results import FittedTissue, OnDevice
+from zwidth.cli.decision import decided, exit_status
+from zwidth.cli.options import IN_FULL, as_options, device_parameters, given, output, pairs_of
+from zwidth.cli.output import print_json, say_written, targets
+from zwidth.errors import InputError
+from zwidth.model.specification.table import quoted, suggestion
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from zwidth.data.tissue import TissueTest
+    from zwidth.model.device import Device
+
+
+QUANTITIES = ("time", "indentation", "force")
+KINDS = ("relaxation", "creep", "loading")
+ZEROS = ("fitted", "exact")
+DISCRETIZATIONS = ("backward", "tustin", "forward", "zoh", "impulse", "matched")
+
+LEVEL = 0.95
+"""How often the box of intervals that is checked holds the tissue."""
+
+
+USAGE = (
+    "TEST [DEVICE] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] [--sheet NAME] "
+    "[--kind KIND] [--trial N] [--model MODEL ...] [--zero KIND] [--discretization RULE] [--scaled] "
+    "[--PARAMETER VALUE ...] [--all] [--json] [--plot FILE] [-o FILE] [--force]"
+)
+OPTIONS = (
+    {
+        "test=TEST": "what a probe in tissue measured, in a file of any format",
+        "device=DEVICE?": "device of the catalogue, or TOML file with a [device] table, that shall render "
+        "the tissue",
+    },
+    "test",
+    {
+        "--column QUANTITY=NAME... > columns": f"column of {', '.join(QUANTITIES)} (repeatable)",
+        "--unit QUANTITY=UNIT... > units": "unit of a column where the file does not state it (repeatable)",
+        "--kind KIND": f"{', '.join(KINDS)} (default: as the data say)",
+        "--sheet NAME": "of a workbook (default: each that holds a test is a trial)",
+        "--trial N": "which of several in the file, from 1 (default: 1)",
+        "--zero KIND": "of the force, and of the depth in creep: fitted (default) or exact",
+    },
+    "model",
+    {
+        "--model MODEL...": "fit this one alone, or several (default: all)",
+        "--discretization RULE": f"how the device shall run it: {', '.join(DISCRETIZATIONS)} (default: "
+        f"{DISCRETIZATIONS[0]})",
+        "--scaled": "save the largest scale of the tissue that is proved passive on DEVICE, not the tissue",
+    },
+    "output",
+    {
+        **output("the numbers", "the plot", "the tissue as an environment in TOML, for zwidth check"),
+        **IN_FULL,
+    },
+    "device: override what DEVICE says, or replace it",
+    device_parameters,
+)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth tissue`: 0; with a device that of `zwidth check` of the tissue on it."""
+    plot, save = targets(arguments.plot, arguments.save, arguments.force)
+    _check(arguments, save)
+    found = _found(arguments)
+    if save is not None:
+        _save(found, save, arguments.scaled)
+    if plot is not None:
+        found.test.plot(plot)
+    if arguments.json:
+        print_json(_json(found))
+    else:
+        from zwidth.cli.data.tissue_report import print_tissue
+
+        print_tissue(found, arguments.in_full)
+        say_written(save, plot)
+    return 0 if found.wall is None else exit_status(found.wall.verdict.outcome)
+
+
+def _check(arguments: argparse.Namespace, save: Path | None) -> None:
+    """Refuse what cannot be, before anything is computed."""
+    for option, value, allowed in (
+        ("--kind", arguments.kind, KINDS),
+        ("--zero", arguments.zero, ZEROS),
+        ("--discretization", arguments.discretization, DISCRETIZATIONS),
+    ):
+        if value is not None and value not in allowed:
+            raise InputError(f"{option}: there is no {quoted(value)}; {suggestion(value, allowed)}")
+    if save is not None and save.suffix.lower() != ".toml":
+        raise InputError(f"--save: a tissue is saved as TOML, my-tissue.toml; got {quoted(save.name)}")
+    if arguments.scaled and (not _names_device(arguments) or save is None):
+        raise InputError("--scaled is of a file and a device: give DEVICE, and -o FILE")
+
+
+def _found(arguments: argparse.Namespace) -> FittedTissue:
+    from zwidth.data.tissue import read_test
+
+    device = _device(arguments) if _names_device(arguments) else None
+    options: dict[str, Any] = {
+        "columns": pairs_of("--column", arguments.columns, QUANTITIES),
+        "units": pairs_of("--unit", arguments.units, QUANTITIES),
+    }
+    with as_options():
+        test = read_test(
+            arguments.test,
+            **options,
+            kind=arguments.kind,
+            trial=_number(arguments.trial),
+            models=tuple(arguments.model or ()),
+            zero=arguments.zero or "fitted",
+            sheet=arguments.sheet,
+        )
+    rule: Any = arguments.discretization or DISCRETIZATIONS[0]
+    return FittedTissue(test, rule, None if device is None else _wall(test, device, rule))
+
+
+def _names_device(arguments: argparse.Namespace) -> bool:
+    return arguments.device is not None or bool(_words(arguments))
+
+
+def _words(arguments: argparse.Namespace) -> dict[str, str]:
+    """What was typed of the device."""
+    return given(arguments, [parameter.key for parameter in device_parameters()])
+
+
+def _device(arguments: argparse.Namespace) -> Device:
+    from zwidth.model.specification.read import load_device
+
+    sources = [] if arguments.device is None else [arguments.device]
+    device = load_device(sources, _words(arguments))
+    if device.motion != "linear":
+        raise InputError(
+            f"{device.name} turns, and a tissue is pushed along a line: give a device whose motion is linear"
+        )
+    return device
+
+
+def _number(typed: str | None) -> int | None:
+    if typed is None:
+        return None
+    if not typed.strip().isdecimal() or int(typed) < 1:
+        raise InputError(f"--trial is a whole number from 1, got {quoted(typed)}")
+    return int(typed)
+
+
+def _wall(test: TissueTest, device: Device, rule: Any) -> OnDevice:
+    """The tissue on the device, its largest passive scale, and all that the intervals allow."""
+    from zwidth.model.specification.read import Specification
+
+    verdict = decided(Specification(device, test.environment(rule)))
+    try:
+        bracket = test.wall(device, rule)
+    except InputError as error:  # a contact that nothing decides on this device
+        return OnDevice(device, verdict, None, str(error), None)
+    try:
+        box = test.environment(rule, level=LEVEL)
+    except InputError:  # intervals that are not to be trusted: the report says which
+        return OnDevice(device, verdict, bracket, "", None)
+    return OnDevice(device, verdict, bracket, "", decided(Specification(device, box)))
+
+
+def _save(found: FittedTissue, path: Path, scaled: bool) -> None:
+    """The environment with its intervals above it, as comments."""
+    from zwidth.model.specification.write import written_environment
+    from zwidth.writing import writing_whole
+
+    law, remark = found.test.environment(found.rule), ""
+    if scaled:
+        gain = None if found.wall is None or found.wall.bracket is None else found.wall.bracket.proved_passive
+        if gain is None:
+            raise InputError("--scaled: no scale of this tissue is proved passive on the device")
+        law, remark = (
+            found.test.scaled(gain, found.rule),
+            f"# Every force times {gain:.6g}: proved passive.\n",
+        )
+    numbers = [f"#   {name}: {low_high} {unit}" for name, _, low_high, unit in found.test.parameters()[1:]]
+    head = [f"# Tissue of a {found.test.test.kind} test, by zwidth tissue; 95 % intervals:", *numbers]
+    with writing_whole(path) as file:
+        file.write(("\n".join(head) + "\n" + remark + written_environment(law)).encode())
+
+
+def _json(found: FittedTissue) -> str:
+    from zwidth.quantity.json_text import to_json
+
+    document = found.test.to_dict()
+    wall = found.wall
+    if wall is not None:
+        document["check"] = wall.verdict.to_dict()
+        document["largest_gain"] = {
+            "proved_passive": wall.bracket and wall.bracket.proved_passive,
+            "proved_active": wall.bracket and wall.bracket.proved_active,
+        }
+        document["check_of_intervals"] = None if wall.box is None else wall.box.outcome
+    return to_json(document)

@@ -1,0 +1,1 @@
+"""The command that asks for a device or an environment, question by question, and writes its file."""

@@ -1,0 +1,1 @@
+"""Commands of a touch: simulated, saved, compared."""

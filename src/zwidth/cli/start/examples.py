@@ -1,0 +1,55 @@
+"""The command `examples`: the sample files with a command for each, listed or copied into a folder."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from pathlib import Path
+
+from zwidth.cli.output import check_new, quiet_pipe
+from zwidth.errors import InputError
+from zwidth.model import samples
+from zwidth.model.specification.table import plain
+from zwidth.writing import writing_whole
+
+OPTIONS = (
+    {
+        "folder=FOLDER?": "where to copy them to; made where it is missing",
+        "--force": "replace files that exist",
+    },
+)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth examples`: 0."""
+    if arguments.folder is None:
+        with quiet_pipe():
+            print("\n\n".join(map(_told, samples.EXAMPLES)))
+            print("\nCopy them into a folder:\n  zwidth examples FOLDER")
+        return 0
+    folder = Path(arguments.folder)
+    copy_to(folder, arguments.force)
+    with quiet_pipe():
+        print(f"written: {len(samples.names())} files in {plain(str(folder), 100)}")
+        print("next:" if folder == Path() else f"next:\n  cd {shlex.quote(str(folder))}")
+        print(f"  {samples.EXAMPLES[0].command}")
+    return 0
+
+
+def copy_to(folder: Path, force: bool) -> None:
+    """Copy every sample into a folder, all of them or none."""
+    try:
+        folder.mkdir(exist_ok=True)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(f"{plain(str(folder), 100)} is no folder and cannot be made one: {reason}") from None
+    for name in samples.names():
+        check_new(folder / name, force)
+    for name in samples.names():
+        with writing_whole(folder / name) as file:
+            file.write(samples.path(name).read_bytes())
+
+
+def _told(example: samples.Example) -> str:
+    """The meaning, the files, the command."""
+    return f"{example.meaning}\n  {', '.join(example.files)}\n  {example.command}"

@@ -1,0 +1,1 @@
+"""Commands on many loops: maps, sweeps, laws beside each other."""

@@ -1,0 +1,1 @@
+"""The command on arms of several joints."""

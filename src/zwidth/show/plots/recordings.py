@@ -1,0 +1,301 @@
+"""A served loop against time: where the device was, what force it was given, how late the samples were."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from zwidth.errors import InputError
+from zwidth.loop.trace import UNITS
+from zwidth.show.plots.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    LOOK,
+    ORANGE,
+    PURPLE,
+    RED,
+    heading,
+    label,
+    new_figure,
+    page_heading,
+    scale,
+    verbatim,
+)
+from zwidth.show.plots.traces import thinned
+
+if TYPE_CHECKING:
+    from zwidth.data.diagnosis.evidence import Evidence
+    from zwidth.data.diagnosis.pairs.energy import PairEvidence
+    from zwidth.data.diagnosis.pairs.recording import PairRecording
+    from zwidth.data.diagnosis.recording import Recording
+    from zwidth.data.diagnosis.vibration import Vibration
+
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+_MOST_GAPS = 200
+"""Samples without an answer that are marked one by one."""
+
+
+@rc_context(LOOK)
+def recording_figure(data: xr.Dataset) -> Figure:
+    """Position, force and lateness, one above the other.
+
+    Parameters
+    ----------
+    data
+        Of a recording of two samples at least, `servo.recording.Recording.dataset`.
+    """
+    figure = new_figure(8.4, 6.2)
+    above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(1.15, 1, 0.7))
+    draw_read_position(above, data)
+    draw_given_force(middle, data)
+    draw_recorded_lateness(below, data)
+    heading(above, verbatim(str(data.attrs["title"])))
+    below.set_xlabel(f"time [{_time(data)[1]}]")
+    return figure
+
+
+def draw_read_position(axes: Axes, data: xr.Dataset) -> None:
+    """The position as it was read; grey lines where a sample had no good answer; the wall is shaded."""
+    time = _time(data)[0]
+    read = data["measured_position"].values
+    factor, unit = scale([float(np.abs(read).max())], UNITS[str(data.attrs["motion"])][0])
+    axes.plot(*thinned(time, read * factor), color=BLUE)
+    low, high = axes.get_ylim()
+    if high > 0:
+        axes.axhspan(0, high, color=GREY, alpha=0.12, lw=0)
+        axes.set_ylim(low, high)
+    for at in time[data["status"].values != 0][:_MOST_GAPS]:
+        axes.axvline(at, color=GREY, lw=0.6)
+    axes.axhline(0, color=GREY, lw=0.8)
+    axes.set_ylabel(f"position [{unit}]\n(wall shaded)")
+
+
+def draw_given_force(axes: Axes, data: xr.Dataset) -> None:
+    """What the law asked for and what was given, both positive out of the wall."""
+    time = _time(data)[0]
+    wished, given = data["wished_force"].values, data["commanded_force"].values
+    largest = max(float(np.abs(wished).max()), float(np.abs(given).max()))
+    factor, unit = scale([largest], UNITS[str(data.attrs["motion"])][2])
+    steps: Any = {"drawstyle": "steps-post"}
+    axes.plot(*thinned(time, wished * factor), color=ORANGE, lw=1, label="asked for by the law", **steps)
+    axes.plot(*thinned(time, given * factor), color=PURPLE, lw=1.2, label="given", **steps)
+    axes.axhline(0, color=GREY, lw=0.8)
+    axes.set_ylabel(f"force [{unit}]")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+
+
+def draw_recorded_lateness(axes: Axes, data: xr.Dataset) -> None:
+    """How late each sample was; red where samples were missed before it."""
+    time = _time(data)[0]
+    late, passed = data["late"].values, np.diff(data["sample"].values, prepend=data["sample"].values[0] - 1)
+    factor, unit = scale([float(np.abs(late).max())], "s")
+    axes.plot(*thinned(time, late * factor), color=BLUE, lw=0.8)
+    missed = passed > 1
+    axes.plot(
+        time[missed], late[missed] * factor, color=RED, marker=".", ms=4, ls="", label="after missed ones"
+    )
+    axes.set_ylabel(f"late by [{unit}]")
+    if missed.any():
+        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+
+
+def _time(data: xr.Dataset) -> tuple[Array, str]:
+    time = data["time"].values
+    factor, unit = scale([float(time[-1])], "s")
+    return time * factor, unit
+
+
+_LEAST = 1e-8
+"""What is less late is drawn as so late [s]."""
+
+_BINS = 20
+"""For each power of ten."""
+
+
+@rc_context(LOOK)
+def plot_lateness(checkup: Any) -> Figure:
+    """Histogram of the lateness, of ordinary and of real-time turns, against the sample period.
+
+    Parameters
+    ----------
+    checkup
+        A `zwidth.servo.Checkup`, what `zwidth.servo.doctor` gives.
+    """
+    figure = new_figure(6.4, 3.6)
+    draw_lateness(figure.add_subplot(), checkup)
+    return figure
+
+
+def draw_lateness(axes: Axes, checkup: Any) -> None:
+    """The same on axes of your own."""
+    period = float(checkup.sample_period)
+    kinds = [(checkup.ordinary, GREY, "ordinary thread", "--")]
+    if checkup.real_time is not None:
+        kinds.append((checkup.real_time, BLUE, "real-time priority", "-"))
+    most = max(2 * period, *(2 * lateness.worst for lateness, *_ in kinds))
+    decades = np.log10(most / _LEAST)
+    edges = np.geomspace(_LEAST, most, int(np.ceil(_BINS * decades)) + 1)
+    for lateness, colour, name, line in kinds:
+        late = np.maximum(lateness.late, _LEAST)
+        axes.hist(late, list(edges), histtype="step", color=colour, ls=line, lw=1.4, label=name)
+        axes.plot([lateness.quantile(0.999)], [1.0], "v", color=colour, ms=6, mew=0)
+    axes.axvline(period, color=ORANGE, lw=1.0, label="sample period")
+    axes.plot([], [], "v", color=BLACK, ms=6, mew=0, label="99.9 % are earlier")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_ylim(0.7, None)
+    axes.set_xlabel("late by [s]")
+    axes.set_ylabel("steps")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
+
+
+class Shaking(Protocol):
+    """What is drawn of any vibration."""
+
+    @property
+    def vibration(self) -> Vibration:
+        """Where, how fast, how far."""
+
+    @property
+    def rotary(self) -> bool:
+        """Of what turns."""
+
+    @property
+    def supplied(self) -> Mapping[str, float]:
+        """[J] by each term in a cycle."""
+
+    @property
+    def lost(self) -> float | None:
+        """[J] that friction takes in a cycle."""
+
+
+Drawn = TypeVar("Drawn", bound=Shaking)
+
+_CYCLES = 8
+"""That are drawn as they went."""
+
+
+def diagnosis_figure(recording: Recording, seen: Evidence | None, claim: str) -> Figure:
+    """Position and force over some cycles; the spectrum beside the energy of a cycle, term by term.
+
+    Raises
+    ------
+    InputError
+        If nothing vibrates: there is nothing to draw.
+    """
+    return figure_of(recording, seen, claim, lambda axes, seen: _cycles(axes, recording, seen))
+
+
+@rc_context(LOOK)
+def figure_of(
+    recording: Recording, seen: Drawn | None, claim: str, draw_cycles: Callable[[Axes, Drawn], None]
+) -> Figure:
+    """What is drawn above, the spectrum of a recording and the energy of a cycle below."""
+    if seen is None:
+        raise InputError("nothing vibrates in this recording, so there is no picture of a vibration")
+    figure = new_figure(9.0, 6.6)
+    grid = figure.add_gridspec(2, 2, height_ratios=(1.1, 1.0))
+    draw_cycles(figure.add_subplot(grid[0, :]), seen)
+    _spectrum(figure.add_subplot(grid[1, 0]), recording, seen)
+    _energy(figure.add_subplot(grid[1, 1]), seen)
+    page_heading(figure, claim)
+    return figure
+
+
+def last_cycles(vibration: Vibration, period: float) -> slice:
+    """Some cycles at the end of the stretch."""
+    rows = max(8, int(_CYCLES / vibration.frequency / period))
+    return slice(max(vibration.rows.start, vibration.rows.stop - rows), vibration.rows.stop)
+
+
+def _cycles(axes: Axes, recording: Recording, seen: Evidence) -> None:
+    part = last_cycles(seen.vibration, recording.period)
+    t = recording.time[part]
+    length, force = ("rad", "N*m") if seen.rotary else ("m", "N")
+    factor, unit = scale(recording.position[part] - recording.position[part].mean(), length)
+    axes.plot(t, factor * recording.position[part], color=BLUE, label="position")
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel(label("position", recording.motion, unit=unit), color=BLUE)
+    beside = axes.twinx()
+    for values, colour, name in (
+        (recording.commanded, GREY, "commanded"),
+        (recording.applied, ORANGE, "of the motor"),
+    ):
+        if values is not None:
+            beside.plot(t, values[part], color=colour, drawstyle="steps-post", label=name)
+    beside.set_ylabel(label("force", recording.motion, unit=force))
+    lines = [*axes.get_lines(), *beside.get_lines()]
+    axes.legend(
+        lines,
+        [str(line.get_label()) for line in lines],
+        loc="lower right",
+        bbox_to_anchor=(1, 1),
+        ncols=3,
+        fontsize=8,
+    )
+
+
+def _spectrum(axes: Axes, recording: Recording, seen: Shaking) -> None:
+    """Amplitude against frequency, up to six times that of the vibration."""
+    vibration = seen.vibration
+    x = recording.position[vibration.rows]
+    y = (x - np.polyval(np.polyfit(np.arange(x.size), x, 1), np.arange(x.size))) * np.hanning(x.size)
+    size = 2 * np.abs(np.fft.rfft(y)) / np.hanning(x.size).sum()
+    frequencies = np.fft.rfftfreq(x.size, recording.period)
+    factor, unit = scale(size, "rad" if seen.rotary else "m")
+    axes.semilogy(frequencies[1:], factor * size[1:] + 1e-12, color=BLUE)
+    axes.axvline(vibration.frequency, color=RED, linewidth=0.8)
+    axes.set_xlim(0, min(frequencies[-1], 6 * vibration.frequency))
+    axes.set_ylim(bottom=factor * size.max() * 1e-4)
+    axes.set_xlabel("frequency [Hz]")
+    axes.set_ylabel(f"amplitude [{unit}]")
+    heading(axes, f"{vibration.frequency:.4g} Hz")
+
+
+def _energy(axes: Axes, seen: Shaking) -> None:
+    """A bar for each term of the energy of a cycle."""
+    terms = {name: work for name, work in seen.supplied.items() if work}
+    if seen.lost is not None:
+        terms["friction"] = -seen.lost
+    factor, unit = scale(terms.values(), "J")
+    names = list(terms)[::-1]
+    colours = [RED if terms[name] > 0 else GREY for name in names]
+    axes.barh(names, [factor * terms[name] for name in names], color=colours)
+    axes.axvline(0, color="black", linewidth=0.8)
+    axes.set_xlabel(f"energy in a cycle [{unit}]")
+    heading(axes, "into the motion (orange), out of it (grey)")
+
+
+def pair_figure(recording: PairRecording, seen: PairEvidence | None, claim: str) -> Figure:
+    """Both arms over some cycles; the spectrum of the one that swings further beside the energy of a cycle.
+
+    Raises
+    ------
+    InputError
+        If nothing vibrates: there is nothing to draw.
+    """
+    further = recording.arms[0 if seen is None else seen.leading]
+    return figure_of(further, seen, claim, lambda axes, seen: _pair_cycles(axes, recording, seen))
+
+
+def _pair_cycles(axes: Axes, recording: PairRecording, seen: PairEvidence) -> None:
+    part = last_cycles(seen.vibration, recording.leader.period)
+    moved = [arm.position[part] for arm in recording.arms]
+    factor, unit = scale(np.concatenate([x - x.mean() for x in moved]), "rad" if seen.rotary else "m")
+    for x, colour, name in zip(moved, (BLUE, ORANGE), ("leader", "follower"), strict=True):
+        axes.plot(recording.leader.time[part], factor * x, color=colour, label=name)
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel(label("position", recording.leader.motion, unit=unit))
+    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, fontsize=8)
