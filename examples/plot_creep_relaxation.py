@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
-from zwidth.model.environment.creeping import compliance
+from zwidth.model.environment.relaxing import compliance
 from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)

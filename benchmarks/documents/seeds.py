@@ -19,12 +19,9 @@ from zwidth.checker.kinds import KINDS
 from zwidth.model import rendering
 from zwidth.passivity.storage.hand_bounds import slow_hands
 from zwidth.passivity.storage.program import program_of
-from zwidth.passivity.storage.slow_hands import slow_hands
-from zwidth.passivity.storage.solve.effort import freely
-from zwidth.quantity.text import to_json
 from zwidth.passivity.storage.storage_function import prove_on_cells
 from zwidth.passivity.storage.value_iteration import freely
-from zwidth.quantity.json_text import to_json
+from zwidth.quantity.text import to_json
 
 Document = dict[str, Any]
 

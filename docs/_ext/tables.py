@@ -16,9 +16,8 @@ from zwidth.cli.options import (
     device_parameters,
     environment_parameters,
 )
-from zwidth.data.gains.plant import plants as published_plants
 from zwidth.cli.parsing import Parameter
-from zwidth.data.gains import published
+from zwidth.data.gains.plant import plants as published_plants
 from zwidth.model.kind import Kind
 from zwidth.model.rendering import ESTIMATORS, LAWS
 from zwidth.model.specification import load as pairs

@@ -19,8 +19,7 @@ from zwidth.loop.law import sampled_force
 from zwidth.loop.setup import Setup, prepare, resting_memory
 from zwidth.machine.firmware.law import law_program
 from zwidth.machine.firmware.machine import machine
-from zwidth.machine.servo.cycle import put_at_rest
-from zwidth.machine.servo.cycle import pack
+from zwidth.machine.servo.cycle import pack, put_at_rest
 from zwidth.model.operator import PrescribedMotion
 
 

@@ -21,10 +21,6 @@ from zwidth.model.operator import Dowel, Finger
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.criterion_choice import decide
 from zwidth.passivity.storage.hand_bounds import slow_hands
-from zwidth.study.maps.chunk import compute
-from zwidth.study.maps.kernel import STABLE, UNKNOWN, UNSTABLE
-from zwidth.passivity.decision import decide
-from zwidth.passivity.storage.slow_hands import slow_hands
 from zwidth.study.maps.kernel import STABLE, UNKNOWN, UNSTABLE, compute
 from zwidth.study.maps.kernel import decide as decide_cell
 from zwidth.study.maps.plan import _exactly, plan

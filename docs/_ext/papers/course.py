@@ -12,8 +12,6 @@ from zwidth.loop.traces.perceived import noticeable_differences
 from zwidth.model.rendering import CrossingCorrection, HalfSamplePrediction, PassivityController
 from zwidth.passivity.formulas.abbott_okamura import edge_crossing
 from zwidth.passivity.formulas.diolaiti import admissible_speed, plane_point
-from zwidth.show.plots.plane import has_plane
-from zwidth.passivity.formulas.quantization import admissible_speed, edge_crossing, plane_point
 from zwidth.show.plots.planes import has_plane
 
 TITLE = "Lecture 10 of ME 327, Design and Control of Haptic Systems (Stanford University, spring 2020)"

@@ -23,7 +23,7 @@ from zwidth.quantity.text import shown
 from zwidth.showing import printable
 
 if TYPE_CHECKING:
-    from zwidth.passivity.storage.evidence.gain import Gain
+    from zwidth.passivity.storage.gain import Gain
     from zwidth.passivity.witness.witness import Witness
 
 

@@ -12,15 +12,12 @@ from zwidth.links.attack import LinkWitness, most_taken
 from zwidth.links.memory import LATE
 from zwidth.links.port import Port
 from zwidth.links.schedule import Schedule
-from zwidth.passivity.certificate import Certificate
 from zwidth.links.wave_port import MARGIN, ROUNDING
-from zwidth.model.device.actuator import current_rise
+from zwidth.model.device.amplifier import current_rise
 from zwidth.passivity.bounding import ROUNDOFF
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import unit_key
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Outcome, Scope
+from zwidth.passivity.scope import Outcome, Scope, unit_key
 from zwidth.passivity.wording import TRANSMISSION
 from zwidth.quantity.exact import ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.wall import Wall, wall_of
-from zwidth.model.rendering.force.friction_compensation import FrictionCompensation
+from zwidth.model.rendering.friction_compensation import FrictionCompensation
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.quantity.balls import ball, middle, precision
 from zwidth.quantity.exact import Exact, ends

@@ -22,7 +22,7 @@ from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.environment import OnePole, Wall, Window
 from zwidth.model.environment.environment import Environment
-from zwidth.model.environment.nonlinear_spring import NonlinearSpring
+from zwidth.model.environment.nonlinear import NonlinearSpring
 from zwidth.model.environment.wall import wall_of
 from zwidth.passivity.advice import (
     Advice,

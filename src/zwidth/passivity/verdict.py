@@ -16,9 +16,7 @@ from zwidth.passivity.scope import unit_key
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import enough, in_unit, in_words, save_json
-from zwidth.quantity.json_text import save_json
-from zwidth.quantity.text import enough, in_unit, in_words, told_quantity
+from zwidth.quantity.text import enough, in_unit, in_words, save_json, told_quantity
 from zwidth.showing import Lines, Part
 
 if TYPE_CHECKING:

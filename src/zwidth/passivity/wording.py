@@ -201,7 +201,7 @@ def _lines(scope: Scope, active: bool) -> Iterator[str]:
 def _of_the_law(note: Law) -> str:
     if note != "rounded power":
         return _LAW[note].in_full
-    from zwidth.model.environment.hunt_crossley import DIGITS  # few loops have such a contact
+    from zwidth.model.environment.nonlinear import DIGITS  # few loops have such a contact
 
     return _LAW[note].in_full.format(digits=DIGITS)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from zwidth.progress import with_bar
 
 if TYPE_CHECKING:  # as they are, several signatures and all
-    from zwidth.data.identification.recording import identify as identify
+    from zwidth.data.identification.device.identify import identify as identify
     from zwidth.loop.batch import simulate_batch as simulate_batch
     from zwidth.loop.simulate import simulate as simulate
     from zwidth.passivity.bracket.passive_limit import passive_limit as passive_limit
@@ -18,7 +18,7 @@ if TYPE_CHECKING:  # as they are, several signatures and all
 _COUNTED = {
     "available_storage": ("zwidth.passivity.storage.solution", "states", True),
     "compare": ("zwidth.study.bench.bench", "laws", False),
-    "identify": ("zwidth.data.identification.recording", "samples", False),
+    "identify": ("zwidth.data.identification.device.identify", "samples", False),
     "passive_limit": ("zwidth.passivity.bracket.passive_limit", "loops", False),
     "simulate": ("zwidth.loop.simulate", "samples", False),
     "simulate_batch": ("zwidth.loop.batch", "loops", False),

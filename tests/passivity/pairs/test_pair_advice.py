@@ -14,10 +14,6 @@ from strategies import seeds
 
 import zwidth as zw
 from zwidth.passivity.advice import Advice, turn_all
-from zwidth.passivity.pairs.advice import _of_the_arms, _of_the_coupling
-from zwidth.passivity.pairs.limits import with_share
-from zwidth.passivity.advice import Advice
-from zwidth.passivity.knob import turn_all
 from zwidth.passivity.pairs.limits import _of_the_arms, _of_the_coupling, with_share
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.units import parse_number

@@ -9,10 +9,8 @@ import pytest
 from written_rows import COLUMNS, drawn
 
 from zwidth import InputError
-from zwidth.data.logs.served.contents import Head
-from zwidth.machine.servo.recording.recorder import McapFile
 from zwidth.data.logs.contents import Head
-from zwidth.machine.servo.recording.mcap import McapFile
+from zwidth.machine.servo.recording.recorder import McapFile
 from zwidth.machine.servo.recording.recording import read_recording
 
 EACH = 50

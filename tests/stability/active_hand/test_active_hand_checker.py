@@ -13,9 +13,8 @@ from tampered import tampered
 import zwidth as zw
 from zwidth import checker
 from zwidth.checker.bounded_hand.active_hand import _least_cosine
-from zwidth.passivity.stability.active_hand.band import band_of
 from zwidth.passivity.stability.shaking_hand import band_of
-from zwidth.quantity.json_text import to_json
+from zwidth.quantity.text import to_json
 
 PADDLE = zw.Device(mass=0.036, damping=0.15, rate=1000, coulomb_friction=0.12, resolution=22.4e-6)
 

@@ -12,7 +12,7 @@ from scipy.linalg import expm
 import zwidth as zw
 from zwidth.model.operator import Dowel, Finger, PrescribedMotion
 from zwidth.model.operator.hand_impedance import as_hand
-from zwidth.passivity.linear.schur import is_schur
+from zwidth.passivity.linear.exact_algebra import is_schur
 from zwidth.passivity.stability.characteristic import (
     PRECISIONS,
     _roots,

@@ -167,7 +167,6 @@ class EachDevice(Documented):
 
     def to_dict(self) -> dict[str, Any]:
         """The verdict on each, with its name and what was measured."""
-        from zwidth.passivity.document import unit_key
 
         key = f"measured_{unit_key('stiffness', self.motion)}"
         devices = [

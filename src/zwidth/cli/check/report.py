@@ -37,7 +37,6 @@ from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.scope import TOLD
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.wording import in_short, intervals
-from zwidth.passivity.wording import intervals
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import shown
 

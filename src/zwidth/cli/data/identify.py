@@ -96,7 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _found(arguments: argparse.Namespace, confidence: float) -> Identification:
-    from zwidth.data.identification.recording import identify, log_from
+    from zwidth.data.identification.device.identify import identify, log_from
     from zwidth.data.logs import Log
     from zwidth.progress import progress_bar
 
@@ -195,7 +195,7 @@ def _environment(arguments: argparse.Namespace) -> Any:
 
 
 def _json(found: Identification) -> str:
-    from zwidth.quantity.json_text import to_json
+    from zwidth.quantity.text import to_json
 
     document = {
         **found.identified.to_dict(found.confidence),

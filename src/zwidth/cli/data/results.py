@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
-    from zwidth.data.identification.device.identified import Identified
+    from zwidth.data.identification.device.identify import Identified
     from zwidth.data.logs import Log
     from zwidth.data.tissue import TissueTest
     from zwidth.model.device import Device

@@ -187,7 +187,7 @@ def _save(found: FittedTissue, path: Path, scaled: bool) -> None:
 
 
 def _json(found: FittedTissue) -> str:
-    from zwidth.quantity.json_text import to_json
+    from zwidth.quantity.text import to_json
 
     document = found.test.to_dict()
     wall = found.wall

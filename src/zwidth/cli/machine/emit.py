@@ -92,7 +92,7 @@ def _give_out(found: Emitted, written: list[Path], as_json: bool) -> None:
         print_json(found.to_json())
         return
     from zwidth.cli.page import below, grid, headline, items, page, section
-    from zwidth.passivity.outcome import TOLD
+    from zwidth.passivity.scope import TOLD
 
     law = ("law", found.environment.describe(found.device.motion))
     with page() as out:

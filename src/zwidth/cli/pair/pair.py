@@ -12,7 +12,7 @@ from zwidth.cli.parsing import Parameter
 from zwidth.cli.simulate.tables import FOLLOWER, OPERATOR
 from zwidth.errors import InputError
 from zwidth.model.operator.hand_impedance import HandImpedance
-from zwidth.model.specification.pairs import load_pair
+from zwidth.model.specification.load import load_pair
 from zwidth.model.specification.table import located, quoted
 from zwidth.model.specification.values import read
 from zwidth.quantity.parameter import parameters_of

@@ -16,11 +16,9 @@ from zwidth.errors import InputError
 from zwidth.model.environment import Environment, NonlinearSpring
 from zwidth.model.operator.named import usual_kind
 from zwidth.model.operator.operator import ParametricOperator
-from zwidth.model.operator.parameter import ParametricOperator
-from zwidth.model.operator.usual import usual_kind
 from zwidth.model.pairs import Pair
 from zwidth.model.specification.laws import with_laws
-from zwidth.model.specification.pairs import option_keys, pair_of
+from zwidth.model.specification.load import option_keys, pair_of
 from zwidth.model.specification.read import PAIR_TABLES, TABLES, read_tables, specified
 from zwidth.model.specification.table import Table
 from zwidth.quantity.glossary import GLOSSARY

@@ -117,7 +117,7 @@ def run(arguments: argparse.Namespace) -> int:
         _draw(found, plot)
     if arguments.json:
         from zwidth.cli.study.sweep_report import summary
-        from zwidth.quantity.json_text import to_json
+        from zwidth.quantity.text import to_json
 
         print_json(to_json(summary(found)))
     else:

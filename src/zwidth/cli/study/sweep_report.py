@@ -10,8 +10,6 @@ import numpy as np
 import xarray as xr
 
 from zwidth.passivity.scope import TOLD
-from zwidth.passivity.stability.known_hand.decide import Outcome as Rests
-from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.stability.characteristic import Outcome as Rests
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import in_words, shown

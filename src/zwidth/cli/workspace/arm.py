@@ -16,7 +16,7 @@ from zwidth.quantity.units import parse_number
 if TYPE_CHECKING:
     from zwidth.data.gains.controllers import CartesianGains
     from zwidth.model.arms import Arm
-    from zwidth.model.arms.matrix_wall import MatrixWall
+    from zwidth.model.arms.wall import MatrixWall
     from zwidth.model.environment.wall import Wall
     from zwidth.quantity.exact import Exact
 
@@ -177,7 +177,7 @@ _WALL_UNITS = {"stiffness": ("N/m", "N/rad", "N*m/rad"), "damping": ("N*s/m", "N
 
 def wall_of(arguments: argparse.Namespace, turns: int) -> Wall | MatrixWall:
     """The wall for a hand with so many rotations, 0: a point."""
-    from zwidth.model.arms.matrix_wall import MatrixWall
+    from zwidth.model.arms.wall import MatrixWall
     from zwidth.model.environment.wall import Wall
 
     given = {
@@ -247,7 +247,7 @@ def left_out(arguments: argparse.Namespace, turns: int) -> list[str]:
 
 def read_wall(path: Path, turns: int) -> MatrixWall:
     """A `MatrixWall` from the table [wall] of a TOML file."""
-    from zwidth.model.arms.matrix_wall import MatrixWall
+    from zwidth.model.arms.wall import MatrixWall
     from zwidth.model.specification.read import read_tables
 
     table = read_tables([path], ("wall",))["wall"]

@@ -196,8 +196,8 @@ def _print(
 ) -> None:
     """The verdict, the numbers, what was asked and what is assumed, on standard output."""
     from zwidth.cli.page import blocks, headline, items, more_with_all, page, section, small_print
-    from zwidth.passivity.in_short import in_short
-    from zwidth.passivity.outcome import TOLD
+    from zwidth.passivity.scope import TOLD
+    from zwidth.passivity.wording import in_short
 
     question = found.question
     about = [

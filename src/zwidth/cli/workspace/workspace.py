@@ -139,9 +139,7 @@ def _timing(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def _postures(arguments: argparse.Namespace, plot: Path | None, save: Path | None) -> int:
     """All joints over their ranges: no region is proved, and the report says so."""
-    from zwidth.cli.workspace_postures import print_postures
     from zwidth.passivity.scope import TOLD
-    from zwidth.passivity.outcome import TOLD
     from zwidth.passivity.workspace import stiffness_over_postures
     from zwidth.quantity.text import to_json
 
@@ -206,10 +204,8 @@ def _borne(arguments: argparse.Namespace, arm: Arm) -> BorneImpedance:
 
 def _null_space(arguments: argparse.Namespace, plot: Path | None, save: Path | None) -> int:
     """Wall and null-space spring together; there is no map of it to save."""
-    from zwidth.passivity.outcome import TOLD
-    from zwidth.quantity.text import to_json
     from zwidth.passivity.scope import TOLD
-    from zwidth.quantity.json_text import to_json
+    from zwidth.quantity.text import to_json
 
     if save is not None and save.suffix.lower() != ".json":
         raise InputError(f"of a null-space spring there is no map: save as .json, got {save.name!r}")

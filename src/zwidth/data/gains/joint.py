@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from zwidth.model.rendering.friction_compensation import FrictionCompensation
 from zwidth.model.device import Device
-from zwidth.model.pairs import FrictionCompensation, Pair
+from zwidth.model.pairs import Pair
+from zwidth.model.rendering.friction_compensation import FrictionCompensation
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import exact_text
 

@@ -19,9 +19,8 @@ from zwidth.errors import InputError
 from zwidth.model.environment import GeneralizedMaxwell, HuntCrossley, Maxwell, StandardLinearSolid, Wall
 from zwidth.model.environment.discretization import Discretization
 from zwidth.model.environment.environment import Environment
-from zwidth.model.environment.relaxing import Elements, force_response, position_response
 from zwidth.model.environment.modes import decaying
-from zwidth.model.environment.relaxing import Elements, force_response
+from zwidth.model.environment.relaxing import Elements, force_response, position_response
 from zwidth.native.compiled import Array
 from zwidth.quantity.exact import Interval
 from zwidth.quantity.glossary import GLOSSARY

@@ -35,8 +35,7 @@ from zwidth.machine.firmware.values import (
     kind_of,
     record,
 )
-from zwidth.native.names import Attributes, Defined, floor
-from zwidth.native.reader import SPELLED, Reader
+from zwidth.native.names import SPELLED, Attributes, Defined, Reader, floor
 
 _FUNCTIONS: dict[Any, str] = {
     abs: "abs",

@@ -56,8 +56,7 @@ from zwidth.machine.firmware.values import (
     kind_of,
     set_all,
 )
-from zwidth.native.names import Defined, OutsideError
-from zwidth.native.reader import counted
+from zwidth.native.names import Defined, OutsideError, counted
 
 MOST_WRITTEN_OUT = 32
 """Passes of a loop that are written one after the other; a longer one stays a loop."""

@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from zwidth.data.logs.served.contents import COLUMNS
+from zwidth.data.logs.contents import COLUMNS
 from zwidth.data.logs.table import readable
 from zwidth.data.logs.telemetry import FORMAT, About, Decoder, Samples, samples_of
 from zwidth.errors import InputError

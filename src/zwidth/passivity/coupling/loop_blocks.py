@@ -19,7 +19,7 @@ from zwidth.model.device import Device
 from zwidth.model.environment import as_environment
 from zwidth.passivity.coupling.loop_condition import whole_delay
 from zwidth.passivity.formulas.hypotheses import NO_CLOCK, positive
-from zwidth.passivity.linear.frequencies import sampled_frequencies
+from zwidth.passivity.linear.criterion import sampled_frequencies
 from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:

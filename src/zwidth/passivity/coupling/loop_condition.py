@@ -33,11 +33,9 @@ from zwidth.passivity.coupling.loop_forms import (
     excess_form,
     largest_need,
 )
-from zwidth.passivity.document import unit_key
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, NO_CLOCK, nonnegative, number, positive
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import Answer
-from zwidth.passivity.scope import Scope
+from zwidth.passivity.scope import Outcome, Scope, unit_key
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import told_quantity
 

@@ -28,7 +28,7 @@ from scipy.optimize import minimize_scalar
 
 from zwidth.loop.sampled_plant import times
 from zwidth.passivity.coupling.environment_class import PassivityExcess, SlopeBounds
-from zwidth.passivity.linear.cosines import from_cosines
+from zwidth.passivity.linear.exact_algebra import from_cosines
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
 from zwidth.quantity.balls import as_fmpq
 

@@ -17,13 +17,11 @@ from typing import Any, get_args
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device
-from zwidth.model.environment.bodies import POWER_OF_MASS, CoupledBody, times
+from zwidth.model.environment.bodies import POWER_OF_MASS, Body, CoupledBody, Integrator, stepped, times
 from zwidth.model.environment.environment import RationalFunction
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.linear.criterion import LinearProof, decide_linear
-from zwidth.model.environment.integrators import POWER_OF_MASS, Body, Integrator, stepped, times
-from zwidth.passivity.document import unit_key
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, nonnegative
+from zwidth.passivity.linear.criterion import LinearProof, decide_linear
 from zwidth.passivity.linear.critical_values import critical_values
 from zwidth.passivity.linear.loop import linear_loop
 from zwidth.passivity.linear_verdict import LinearVerdict

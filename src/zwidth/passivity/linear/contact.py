@@ -28,8 +28,6 @@ from typing import NamedTuple
 from flint import fmpq, fmpq_poly, fmpz_poly
 
 from zwidth.model.environment.environment import Average, Decay, Environment
-from zwidth.model.environment.environment import Environment
-from zwidth.model.environment.velocity_weights import Average, Decay
 from zwidth.passivity.linear.exact_algebra import is_schur, rational_roots_inside, real_product
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.one_norm import NormBound, bound_one_norm

@@ -12,8 +12,16 @@ from typing import Any, Literal
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
-from zwidth.passivity.advice import Advice
-from zwidth.passivity.knob import Knob, between_delays, between_rates, between_sizes, outward, turn, turn_all
+from zwidth.passivity.advice import (
+    Advice,
+    Knob,
+    between_delays,
+    between_rates,
+    between_sizes,
+    outward,
+    turn,
+    turn_all,
+)
 from zwidth.passivity.linear.boundary import COARSE, COARSER, Holds, largest_holding, smallest_holding
 from zwidth.passivity.linear.loop import HIGH_DEGREE
 from zwidth.passivity.pairs.criterion import PairCriterion, largest_spring, spending

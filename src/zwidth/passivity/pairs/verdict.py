@@ -11,7 +11,6 @@ from typing import Any, ClassVar
 from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
 from zwidth.passivity.advice import Advice
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.assumed import (
     assumed_of_arms,
     assumed_of_timing,

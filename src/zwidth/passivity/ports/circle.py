@@ -21,10 +21,8 @@ from typing import Literal
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from zwidth.passivity.linear.exact_algebra import from_cosines
-from zwidth.passivity.linear.cosines import from_cosines
+from zwidth.passivity.linear.exact_algebra import from_cosines, is_schur
 from zwidth.passivity.linear.positivity import prove_nonnegative
-from zwidth.passivity.linear.schur import is_schur
 
 Time = Literal["continuous", "discrete"]
 

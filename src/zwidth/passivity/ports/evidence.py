@@ -13,7 +13,7 @@ import numpy as np
 from flint import fmpq, fmpq_mat, fmpz_poly
 
 from zwidth.passivity.certificate import FORMAT, positivity_document
-from zwidth.passivity.linear.elimination import negative_direction
+from zwidth.passivity.linear.exact_algebra import negative_direction
 from zwidth.passivity.ports.circle import places_of
 from zwidth.passivity.ports.motion import (
     Gaussian,

@@ -18,7 +18,6 @@ from typing import Any, Literal
 
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.ports.circle import places_of
 from zwidth.passivity.ports.evidence import (
     ExtractingInput,
@@ -31,6 +30,7 @@ from zwidth.passivity.ports.largest import Largest, NoLevel
 from zwidth.passivity.ports.motion import absorbed
 from zwidth.passivity.ports.port import Port, typed_at_most
 from zwidth.passivity.ports.positive_real import Band, bands, prove_level
+from zwidth.passivity.scope import Outcome
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.showing import Part, Shown
 

@@ -26,12 +26,8 @@ from zwidth.model.environment.system import is_system, time_of
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.passivity import parameter_limits
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.ports.bands import Band, in_words
-from zwidth.passivity.ports.extracting_input import ExtractingInput
-from zwidth.passivity.decision import decide
-from zwidth.passivity.document import unit_key
-from zwidth.passivity.linear.supremum import frequency, tightest
-from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.criterion_choice import decide
+from zwidth.passivity.linear.criterion import frequency, tightest
 from zwidth.passivity.ports.evidence import ExtractingInput
 from zwidth.passivity.ports.index import PassivityIndex, evidenced
 from zwidth.passivity.ports.largest import Largest, largest_level
@@ -41,7 +37,6 @@ from zwidth.passivity.ports.reading import assumed_period, from_polynomials, rea
 from zwidth.passivity.ports.scattering import RelativeIndex, relative_index
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope, unit_key
-from zwidth.passivity.scope import Scope
 from zwidth.quantity.balls import as_fmpq
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import told_quantity

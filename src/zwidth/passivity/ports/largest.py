@@ -15,7 +15,7 @@ from itertools import pairwise
 
 from flint import fmpq, fmpq_poly
 
-from zwidth.passivity.linear.roots import real_roots, roots_inside
+from zwidth.passivity.linear.exact_algebra import real_roots, roots_inside
 from zwidth.passivity.ports.circle import Time, growing_place, has_positive_sign, near, places_of, vanishes
 from zwidth.passivity.ports.port import Port, common_factor
 from zwidth.passivity.ports.positive_real import is_stable, minors_at, prove_minors

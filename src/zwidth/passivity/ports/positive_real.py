@@ -27,8 +27,8 @@ from math import comb, inf
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
+from zwidth.passivity.linear.exact_algebra import roots_inside
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative, where_negative
-from zwidth.passivity.linear.roots import roots_inside
 from zwidth.passivity.ports.circle import ONE, all_outside, decays
 from zwidth.passivity.ports.port import Port, leverrier
 from zwidth.quantity.balls import as_fmpq, as_fraction

@@ -22,9 +22,6 @@ from flint import fmpq_poly
 
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.ports.bands import Band, in_words
-from zwidth.passivity.ports.extracting_input import ExtractingInput
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.ports.evidence import ExtractingInput, index_document, proof_document
 from zwidth.passivity.ports.index import PassivityIndex, evidenced
 from zwidth.passivity.ports.largest import largest_level
@@ -39,7 +36,6 @@ from zwidth.passivity.ports.positive_real import OFFSET, Band, bands, in_words, 
 from zwidth.passivity.ports.reading import assumed_period, from_polynomials, read_port
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
-from zwidth.passivity.scope import Scope
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.showing import Part, Shown
 

@@ -272,9 +272,7 @@ def _throughout(device: Device, law: Environment, contact: bool) -> _Proved | No
 
 def _document(decision: Decision, activity: float) -> dict[str, Any]:
     setting = decision.setting
-    loop = loop_document(
-        setting.loop, setting.coulomb_friction, setting.resolution, setting.unilateral, setting.motion
-    )
+    loop = setting.loop_document()
     unit = unit_suffix(GLOSSARY["damping"].unit_for(setting.motion))
     return {
         "format": FORMAT,

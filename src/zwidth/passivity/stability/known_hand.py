@@ -21,10 +21,9 @@ from zwidth.model.environment.environment import Environment, RationalFunction
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator.hand_impedance import HandImpedance, as_hand
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.boundary import largest_holding
 from zwidth.passivity.result import Answer
-from zwidth.passivity.scope import Hands, Scope, scope_of
+from zwidth.passivity.scope import Hands, Scope, scope_of, unit_key
 from zwidth.passivity.stability.characteristic import (
     PRECISIONS,
     Found,

@@ -22,11 +22,8 @@ from flint import fmpq_poly, fmpz_poly
 from zwidth.errors import InputError
 from zwidth.loop.sampled_plant import ball
 from zwidth.passivity.linear.loop import LinearLoop
-from zwidth.passivity.scope import unit_key
-from zwidth.passivity.stability.active_hand.band import PI, Band
-from zwidth.passivity.stability.known_hand.characteristic import as_floats, decays
-from zwidth.quantity.balls import precision
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
+from zwidth.passivity.scope import unit_key
 from zwidth.passivity.stability.characteristic import as_floats, decays
 from zwidth.quantity.balls import as_fmpq, precision
 from zwidth.quantity.text import told_quantity

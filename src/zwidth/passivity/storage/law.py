@@ -25,8 +25,6 @@ from zwidth.errors import InputError
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.nonlinear import resting_force
-from zwidth.passivity.document import unit_key
-from zwidth.model.environment.hunt_crossley import resting_force
 from zwidth.passivity.scope import unit_key
 from zwidth.quantity.text import exact_text
 

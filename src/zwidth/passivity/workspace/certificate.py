@@ -21,10 +21,8 @@ from zwidth.checker import verify
 from zwidth.model.arms import Arm, DescribedArm, LeggedArm, PlanarChain, PosedArm
 from zwidth.model.arms.encoders import Chain, EncoderSteps, moving_steps
 from zwidth.model.arms.joints import as_matrix, surplus
-from zwidth.model.arms.wall import MatrixWall, wall_matrices, wall_need
-from zwidth.model.arms.matrix_wall import MatrixWall
-from zwidth.model.arms.need import wall_matrices, wall_need
 from zwidth.model.arms.null_space import NullSpaceSpring, moving, projector, task_jacobian
+from zwidth.model.arms.wall import MatrixWall, wall_matrices, wall_need
 from zwidth.model.environment.environment import certain
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import FORMAT, Certificate

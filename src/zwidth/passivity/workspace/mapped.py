@@ -17,10 +17,7 @@ from zwidth.model.arms.joints import (
     single_additions,
     surplus,
 )
-from zwidth.model.arms.wall import MatrixWall, WallNeed, motion_at_hand, wall_matrices
-from zwidth.model.arms.matrix_wall import MatrixWall
-from zwidth.model.arms.need import WallNeed, wall_matrices
-from zwidth.model.arms.pose import loss_in_pose, motion_at_hand
+from zwidth.model.arms.wall import MatrixWall, WallNeed, loss_in_pose, motion_at_hand, wall_matrices
 from zwidth.model.environment.wall import Wall
 
 Array = npt.NDArray[np.float64]

@@ -23,15 +23,12 @@ import numpy.typing as npt
 from zwidth.errors import InputError
 from zwidth.model.arms import Arm, ArmMotion, DescribedArm, PlanarChain
 from zwidth.model.arms.joints import as_matrix, largest_scale
-from zwidth.model.arms.matrix_wall import MatrixWall
-from zwidth.model.arms.null_space import NullSpaceSpring, fast_motion, moving, task_jacobian
-from zwidth.model.arms.null_space_loop import Loop, slow_loop
+from zwidth.model.arms.null_space import Loop, NullSpaceSpring, fast_motion, moving, slow_loop, task_jacobian
+from zwidth.model.arms.wall import MatrixWall
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
-from zwidth.passivity.workspace.null_space_certificate import largest_certified, null_space_certificate
-from zwidth.passivity.scope import Scope
 from zwidth.passivity.workspace.certificate import largest_certified, needed_at_rest, null_space_certificate
 from zwidth.passivity.workspace.question import Question, asked_of
 from zwidth.passivity.workspace.verdict import arm_document, finite, motion_document, wall_document

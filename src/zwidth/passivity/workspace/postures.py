@@ -23,10 +23,8 @@ from zwidth.errors import InputError
 from zwidth.model.arms import Arm, ArmMotion, DescribedArm
 from zwidth.model.arms.encoders import covered_factors
 from zwidth.model.arms.joints import largest_scale, surplus
-from zwidth.model.arms.matrix_wall import MatrixWall
-from zwidth.model.arms.need import wall_matrices
 from zwidth.model.arms.replay import refuting_motion
-from zwidth.model.arms.wall import MatrixWall, wall_matrices, wall_need
+from zwidth.model.arms.wall import MatrixWall, wall_matrices
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope

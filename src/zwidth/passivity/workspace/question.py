@@ -9,17 +9,18 @@ import numpy as np
 import numpy.typing as npt
 
 from zwidth.errors import InputError
-from zwidth.model.arms import Arm
-from zwidth.model.arms.encoders import forces_of, held_torque_damping
-from zwidth.model.arms.joints import as_matrix
-from zwidth.model.arms.wall import MatrixWall, fits, require_wall
 from zwidth.model.arms import Arm, Sites
-from zwidth.model.arms.edges import first_motion
-from zwidth.model.arms.encoders import EncoderSteps, encoder_steps, with_encoders
-from zwidth.model.arms.held import forces_of, held_torque_damping, in_words
-from zwidth.model.arms.matrix_wall import MatrixWall
-from zwidth.model.arms.need import WallNeed, require_wall, wall_need
-from zwidth.model.arms.pose import fits
+from zwidth.model.arms.encoders import (
+    EncoderSteps,
+    encoder_steps,
+    forces_of,
+    held_torque_damping,
+    in_words,
+    with_encoders,
+)
+from zwidth.model.arms.joints import as_matrix
+from zwidth.model.arms.replay import first_motion
+from zwidth.model.arms.wall import MatrixWall, WallNeed, fits, require_wall, wall_need
 from zwidth.model.environment.wall import Wall
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.units import parse_number

@@ -14,12 +14,12 @@ import numpy.typing as npt
 
 from zwidth.errors import InputError
 from zwidth.model.arms import Arm, ArmMotion, EncoderSteps, Sites
-from zwidth.model.arms.held import in_words
-from zwidth.model.arms.matrix_wall import MatrixWall
+from zwidth.model.arms.encoders import in_words
 from zwidth.model.arms.replay import refuting_motion, steps_of
+from zwidth.model.arms.wall import MatrixWall
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.scope import Outcome
 from zwidth.passivity.workspace.certificate import arm_certificate
 from zwidth.passivity.workspace.mapped import (
     Account,

@@ -11,21 +11,16 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.model.arms import Arm
+from zwidth.model.arms import Arm, DescribedArm
 from zwidth.model.arms.arm import ArmMotion
 from zwidth.model.arms.encoders import EncoderSteps
-from zwidth.model.arms.wall import MatrixWall
-from zwidth.model.arms import Arm, DescribedArm
-from zwidth.model.arms.joints import as_matrix, single_addition
-from zwidth.model.arms.least import least_additions
-from zwidth.model.arms.matrix_wall import MatrixWall
-from zwidth.model.arms.motion import ArmMotion
-from zwidth.model.arms.need import wall_matrices
+from zwidth.model.arms.joints import as_matrix, least_additions, single_addition
+from zwidth.model.arms.wall import MatrixWall, wall_matrices
 from zwidth.model.environment.environment import certain
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Scope, Torque
+from zwidth.passivity.scope import Outcome, Scope, Torque
 from zwidth.passivity.workspace.certificate import arm_certificate
 from zwidth.passivity.workspace.question import Question
 

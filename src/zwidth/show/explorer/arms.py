@@ -7,9 +7,8 @@ from typing import Any
 
 from bokeh.models import ColumnDataSource, Range1d
 
-from zwidth.model.specification.load import KEYS, pair_of
 from zwidth.errors import InputError
-from zwidth.model.specification.pairs import KEYS, pair_of
+from zwidth.model.specification.load import KEYS, pair_of
 from zwidth.passivity.pairs import PairVerdict, check_pair
 from zwidth.quantity.text import in_words
 from zwidth.show.explorer import computing

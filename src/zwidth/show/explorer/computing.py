@@ -15,14 +15,12 @@ from zwidth.model.environment import Environment, Wall
 from zwidth.model.operator import OPERATORS, ParametricOperator
 from zwidth.model.operator.named import usual_kind
 from zwidth.model.specification.load import pair_of
-from zwidth.model.operator.usual import usual_kind
-from zwidth.model.specification.pairs import pair_of
 from zwidth.model.specification.read import Specification
 from zwidth.model.specification.table import Table, quoted, suggestion
 from zwidth.passivity.check import check, check_by_closed_forms
-from zwidth.passivity.gap import has_gap
 from zwidth.passivity.linear.loop import linear_loop
 from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.value_iteration_fallback import has_gap
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, Interval, ends

@@ -20,7 +20,7 @@ from bokeh.plotting import figure
 from numpy import array, full_like, maximum
 
 from zwidth.model.device import catalogue
-from zwidth.passivity.formulas.quantization import plane_point
+from zwidth.passivity.formulas.diolaiti import plane_point
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact

@@ -31,11 +31,7 @@ from tornado.ioloop import IOLoop
 from tornado.web import RequestHandler
 
 from zwidth.errors import InputError
-from zwidth.machine.servo.live.page import HOST, Page, Serving, checked_port, guarded, origins
-from zwidth.show.explorer.access import ANY, TOKEN, TokenAccess, hosts, token_for
-from zwidth.show.explorer.page import full_page, page_of
-from zwidth.machine.servo.live.page import HOST, OWN, Page, checked_port, guarded, origins
-from zwidth.machine.servo.live.serving import Serving
+from zwidth.machine.servo.live.page import HOST, OWN, Page, Serving, checked_port, guarded, origins
 from zwidth.show.explorer.session import Session
 from zwidth.show.explorer.starts import first
 from zwidth.show.explorer.state import State, from_query

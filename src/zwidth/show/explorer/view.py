@@ -10,7 +10,7 @@ from panel.pane import Bokeh
 
 from zwidth.errors import InputError
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.passivity.outcome import COLOUR
+from zwidth.passivity.scope import COLOUR
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.text import unit_text
 from zwidth.show.explorer.controls import Control, read_entry

@@ -14,7 +14,7 @@ from bokeh.models import ColumnDataSource, DataRange1d
 
 from zwidth.model.environment import Wall
 from zwidth.model.operator import OPERATORS, ParametricOperator
-from zwidth.passivity.outcome import COLOUR
+from zwidth.passivity.scope import COLOUR
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import parameters_of
 from zwidth.quantity.text import in_words

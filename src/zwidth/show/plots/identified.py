@@ -15,7 +15,6 @@ from zwidth.data.identification.device.estimate import Estimate
 from zwidth.data.identification.device.numbers import BINS, IdentifiedNumbers
 from zwidth.data.identification.device.pulses import PIECES, pulse
 from zwidth.data.identification.device.table import percent, rows, title
-from zwidth.data.identification.device.table import rows, title
 from zwidth.data.tissue.experiment.history import History
 from zwidth.data.tissue.model import Model
 from zwidth.errors import InputError

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from zwidth.errors import InputError
-from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.scope import TOLD
 from zwidth.quantity.spoken import spoken, spoken_data
 from zwidth.quantity.text import in_words, shown, unit_text
 from zwidth.show.plots.style import (

@@ -18,8 +18,9 @@ from matplotlib.ticker import MaxNLocator
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device
-from zwidth.passivity.formulas.quantization import linear_worst_case, plane_point
-from zwidth.passivity.formulas.quantization import worst_case as worst_case_at
+from zwidth.passivity.formulas.abbott_okamura import linear_worst_case
+from zwidth.passivity.formulas.abbott_okamura import worst_case as worst_case_at
+from zwidth.passivity.formulas.diolaiti import plane_point
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
@@ -41,7 +42,7 @@ from zwidth.show.plots.style import (
 )
 
 if TYPE_CHECKING:
-    from zwidth.passivity.storage.evidence.gain import Gain
+    from zwidth.passivity.storage.gain import Gain
 
 
 _DOTS = 60
@@ -155,7 +156,7 @@ def cycle(gain: Gain) -> Figure:
 
 def draw_cycle(rows: Sequence[Axes], gain: Gain) -> None:
     """The same on three given axes, one above the other."""
-    from zwidth.passivity.storage.evidence.playback import settled_round  # loaded by now
+    from zwidth.passivity.storage.gain import settled_round  # loaded by now
 
     motion = "rotary" if gain.unit == "rad" else "linear"
     once = settled_round(gain)

@@ -19,12 +19,10 @@ from zwidth.model.pairs import Pair
 from zwidth.passivity.linear.boundary import COARSER, smallest_holding
 from zwidth.passivity.pairs import PairVerdict
 from zwidth.passivity.pairs.criterion import spending
-from zwidth.passivity.pairs.limits import MOST_SAMPLES, largest_stiffness, samples_around
-from zwidth.passivity.pairs.advice import MOST_SAMPLES
-from zwidth.passivity.pairs.course import energy_in_time
+from zwidth.passivity.pairs.evidence import energy_in_time
 from zwidth.passivity.pairs.held import HeldVerdict
-from zwidth.passivity.pairs.held.criterion import HeldCriterion
-from zwidth.passivity.pairs.limits import largest_stiffness, samples_around
+from zwidth.passivity.pairs.held.verdict import HeldCriterion
+from zwidth.passivity.pairs.limits import MOST_SAMPLES, largest_stiffness, samples_around
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import quantity_unit
 from zwidth.show.plots.style import (

@@ -15,10 +15,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FormatStrFormatter, MaxNLocator, NullLocator, ScalarFormatter
 
 from zwidth.errors import InputError
-from zwidth.model.arms.encoders import in_words
 from zwidth.model.arms import DescribedArm
-from zwidth.model.arms.held import in_words
-from zwidth.model.arms.null_space_loop import Loop, Shape, gain, shapes
+from zwidth.model.arms.encoders import in_words
+from zwidth.model.arms.null_space import Loop, Shape, gain, shapes
 from zwidth.passivity.workspace import Workspace
 from zwidth.quantity.text import shown, unit_text
 from zwidth.show.plots.style import (

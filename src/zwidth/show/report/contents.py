@@ -14,22 +14,14 @@ from typing import Any, NamedTuple
 from zwidth.checker import EVIDENCE, Verified, verify
 from zwidth.passivity.advice import in_lines
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.passivity.result import Answer
-from zwidth.passivity.scope import COLOUR
-from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.text import json_file
-from zwidth.show.report.beyond import beyond
-from zwidth.show.report.motion import first_steps
-from zwidth.show.report.proof import Examined, checked, examined
-from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.pairs.evidence import PairWitness
 from zwidth.passivity.result import Answer, Evidence
-from zwidth.passivity.storage.evidence.gain import Gain
-from zwidth.passivity.storage.evidence.playback import settled_round
+from zwidth.passivity.scope import COLOUR
+from zwidth.passivity.storage.gain import Gain, settled_round
+from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.json_text import json_file
-from zwidth.quantity.text import in_words, readable
+from zwidth.quantity.text import in_words, json_file, readable
 from zwidth.show.report.provenance import Provenance, of_verdict
 from zwidth.showing import Headline, Lines, Part, Table, printable
 

@@ -155,7 +155,7 @@ def _criterion(verdict: LinearVerdict) -> str:
 
 
 def _plane(verdict: LinearVerdict) -> str:
-    from zwidth.passivity.formulas.quantization import plane_point
+    from zwidth.passivity.formulas.diolaiti import plane_point
 
     stiffness = verdict.decision.loop.static_stiffness
     assert stiffness is not None

@@ -14,7 +14,7 @@ from zwidth.model.environment.environment import Environment
 from zwidth.model.kind import name_of
 from zwidth.model.pairs import Pair
 from zwidth.model.specification.environments import TYPES
-from zwidth.model.specification.pairs import KEYS
+from zwidth.model.specification.load import KEYS
 from zwidth.model.specification.table import COMMAND_LINE, Table
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends

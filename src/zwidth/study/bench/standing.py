@@ -18,9 +18,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from zwidth.model.device.amplifier import current_rise
 from zwidth.errors import InputError
-from zwidth.model.device.actuator import current_rise
+from zwidth.model.device.amplifier import current_rise
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering.rendered import laws_of
@@ -30,10 +29,10 @@ from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.covering_wall import covering
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.storage import available_storage
-from zwidth.passivity.storage.evidence.gain import Gain
+from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of
-from zwidth.passivity.storage.row.program import COUNTS, RowProgram, row_program
-from zwidth.passivity.storage.row.table import DoesNotClose
+from zwidth.passivity.storage.row_program import COUNTS, RowProgram, row_program
+from zwidth.passivity.storage.row_table import DoesNotClose
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import describe_hands

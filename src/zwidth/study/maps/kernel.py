@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zwidth.native.compiled import Array, compiled
-from zwidth.passivity.stability.known_hand.characteristic import family
-from zwidth.passivity.stability.known_hand.decide import decided
+from zwidth.passivity.stability.characteristic import decided, family
 from zwidth.quantity.exact import Exact
 from zwidth.study.chunks.layout import Layers, Place, cells
 from zwidth.study.maps.plan import Contact, HandPlan, Plan

@@ -21,11 +21,16 @@ from zwidth.model.device import Device
 from zwidth.model.environment import BackwardDifference, Wall
 from zwidth.model.environment.velocity import VelocityEstimator
 from zwidth.model.operator.hand_impedance import HandImpedance, as_hand
-from zwidth.passivity.stability.characteristic import last_stable
+from zwidth.passivity.stability.characteristic import (
+    PRECISIONS,
+    Curve,
+    curve,
+    family,
+    last_stable,
+    line,
+    plain,
+)
 from zwidth.passivity.stability.known_hand import largest_stable, motion_of, plain_of
-from zwidth.passivity.stability.known_hand.characteristic import PRECISIONS, family
-from zwidth.passivity.stability.known_hand.coupled import largest_stable, motion_of, plain_of
-from zwidth.passivity.stability.known_hand.crossing import Curve, curve, last_stable, line, plain
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact, RealLike
 

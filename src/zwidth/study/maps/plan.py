@@ -30,11 +30,9 @@ from numpy.typing import NDArray
 from zwidth.loop.sampled_plant import Coefficients, Motion
 from zwidth.model.environment import Wall
 from zwidth.model.environment.environment import RationalFunction
-from zwidth.passivity.criterion_choice import decide
-from zwidth.passivity.formulas.colgate_schenkel import spring_stiffness
 from zwidth.passivity.certificate import Certificate, certify
-from zwidth.passivity.decision import Decision, decide
-from zwidth.passivity.formulas.delayed_spring import spring_stiffness
+from zwidth.passivity.criterion_choice import Decision, decide
+from zwidth.passivity.formulas.colgate_schenkel import spring_stiffness
 from zwidth.passivity.linear.contact import damped_wall, root_above
 from zwidth.passivity.stability.characteristic import (
     Family,

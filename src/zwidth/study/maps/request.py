@@ -21,9 +21,8 @@ from zwidth.model.environment import BackwardDifference, Wall
 from zwidth.model.environment.velocity import VelocityEstimator
 from zwidth.model.operator import Dowel, Finger, HandsOn
 from zwidth.model.operator.hand_impedance import HandImpedance, as_hand
-from zwidth.passivity.stability.known_hand import motion_of
 from zwidth.passivity.scope import Hands, Scope, scope_of
-from zwidth.passivity.stability.known_hand.coupled import motion_of
+from zwidth.passivity.stability.known_hand import motion_of
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.study.chunks.layout import Layout
 

@@ -29,8 +29,6 @@ from zwidth.model.environment.velocity import VelocityEstimator
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import to_json
-from zwidth.study.chunks.layout import Layers, Place
-from zwidth.quantity.json_text import to_json
 from zwidth.quantity.units import parse_number
 from zwidth.study.chunks.layout import Finished, Layers, Place, on_cluster, on_threads
 from zwidth.study.chunks.store import computed

@@ -25,7 +25,7 @@ from zwidth.model.environment.environment import Environment
 from zwidth.passivity.scope import scope_of
 from zwidth.quantity.exact import Interval
 from zwidth.quantity.glossary import unit_suffix
-from zwidth.quantity.json_text import to_json
+from zwidth.quantity.text import to_json
 from zwidth.reading import check_parquet, shown_only
 from zwidth.study.chunks.layout import Layers
 from zwidth.study.sweeps.axes import REFUSED, Column

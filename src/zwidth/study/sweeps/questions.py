@@ -18,8 +18,6 @@ from zwidth.model.specification.table import quoted
 from zwidth.passivity.budget import LIMITS
 from zwidth.passivity.pairs.verdict import LIMITS as LIMITS_OF_A_PAIR
 from zwidth.passivity.scope import Contact, Encoder, FedWith, Law, Outcome, Scope
-from zwidth.passivity.stability.known_hand.decide import Outcome as Rests
-from zwidth.passivity.scope import Contact, Encoder, FedWith, Law, Scope
 from zwidth.passivity.stability.characteristic import Outcome as Rests
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.study.sweeps.axes import Column, Columns

@@ -19,12 +19,12 @@ from numpy.typing import NDArray
 
 from zwidth.model.device import Device
 from zwidth.model.environment import Wall
-from zwidth.model.environment.velocity_weights import Average
+from zwidth.model.environment.environment import Average
 from zwidth.passivity.budget import DELAY, LIMITS, QUANTIZATION, SAMPLING, VIRTUAL_DAMPING
-from zwidth.passivity.decision import Decision, decide
+from zwidth.passivity.criterion_choice import Decision, decide
 from zwidth.passivity.linear.boundary import LARGEST, SMALLEST
 from zwidth.passivity.linear.contact import DampedWall
-from zwidth.passivity.linear.linear import LinearRefutation
+from zwidth.passivity.linear.criterion import LinearRefutation
 from zwidth.passivity.linear.loop import HIGH_DEGREE, LinearLoop
 from zwidth.quantity.exact import Exact
 from zwidth.study.chunks.layout import Layers

@@ -19,9 +19,8 @@ from zwidth.data.diagnosis.pairs.recording import ARMS, PairRecording, read_pair
 from zwidth.data.diagnosis.result import Answer, key_with_unit, rows_of_energy, rows_of_likely
 from zwidth.data.diagnosis.vibration import nothing
 from zwidth.errors import InputError
-from zwidth.model.pairs import Pair
 from zwidth.lazy import above
-from zwidth.model.pairs.pair import Pair
+from zwidth.model.pairs import Pair
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import shown
 
@@ -90,7 +89,7 @@ class PairDiagnosis(Answer[PairChange, PairEvidence, PairRecording]):
         return document
 
     def _written(self, change: PairChange) -> str:
-        from zwidth.model.specification.write_pair import written_pair
+        from zwidth.model.specification.write import written_pair
 
         return written_pair(change.pair)
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from math import nan
 from typing import NamedTuple
 
-from scipy.special import stdtrit
 import numpy as np
+from scipy.special import stdtrit
 
 from zwidth.data.identification.device.moments import COLUMNS, PAIRS, REGRESSORS, Moments
 from zwidth.data.logs import Finding

@@ -13,8 +13,8 @@ from zwidth.data.identification.device.estimate import Directions, Estimate, Reg
 from zwidth.data.identification.device.moments import REGRESSORS, Moments, halves, line, pieces
 from zwidth.data.identification.device.pulses import Pulse, pulse
 from zwidth.data.logs import Log
-from zwidth.native.compiled import Array
 from zwidth.loop.trace import Labelled, Trace
+from zwidth.native.compiled import Array
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:

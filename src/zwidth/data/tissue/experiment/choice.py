@@ -22,8 +22,8 @@ from scipy.special import stdtrit
 from zwidth.data.tissue.experiment.estimate import Solved, solved
 from zwidth.data.tissue.experiment.history import History, about_surface
 from zwidth.data.tissue.experiment.prediction import Fine, Task, derivatives, fines_of, predicted
+from zwidth.data.tissue.findings import by_chance
 from zwidth.data.tissue.model import Model, as_model
-from zwidth.data.tissue.uncertainty import by_chance
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
 

@@ -21,7 +21,6 @@ from zwidth.data.logs.read import table_of_file
 from zwidth.data.logs.table import Finding, Table, listed, readable, understood_sheets
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
-from zwidth.quantity.dimension import Dimension, unit_of
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.units import Dimension, spelled, unit_of
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from zwidth.data.tissue.experiment.choice import UNLIKELY, Slowest, Tried, label, leftover, slowest_of
 from zwidth.data.tissue.experiment.history import History, Kind
+from zwidth.data.tissue.findings import by_chance
 from zwidth.data.tissue.result import TissueFit
-from zwidth.data.tissue.uncertainty import by_chance
 from zwidth.errors import InputError
 from zwidth.lazy import above
 from zwidth.model.environment.discretization import Discretization

@@ -20,8 +20,7 @@ from zlib import crc32
 import numpy as np
 import pyarrow as pa
 
-from zwidth.data.logs.served import mcap as layout
-from zwidth.data.logs.served.contents import ROWS_LOST, Head, as_json, from_json
+from zwidth.data.logs import served as layout
 from zwidth.data.logs.contents import ROWS_LOST, Head, as_json, from_json
 from zwidth.errors import InputError
 from zwidth.loop.trace import own_version

@@ -15,15 +15,12 @@ from numpy.typing import NDArray
 
 from zwidth.checker import verify
 from zwidth.loop.sampled_plant import Motion
-from zwidth.passivity.linear.criterion import frequency
-from zwidth.passivity.pairs.evidence import CERTIFICATE, VIOLATION, pair_document
-from zwidth.passivity.pairs.held.law import HeldPair
 from zwidth.model.pairs import Pair
-from zwidth.passivity.document import unit_key
-from zwidth.passivity.linear.supremum import frequency, tightest
+from zwidth.passivity.linear.criterion import frequency, tightest
 from zwidth.passivity.pairs.evidence import CERTIFICATE, VIOLATION, WITNESS, pair_document
 from zwidth.passivity.pairs.held.law import HeldPair, felt, felt_loop
 from zwidth.passivity.result import Evidence
+from zwidth.passivity.scope import unit_key
 from zwidth.passivity.witness.motion import Repeat
 from zwidth.quantity.text import exact_text, told_quantity
 

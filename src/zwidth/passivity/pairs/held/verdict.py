@@ -15,12 +15,10 @@ from zwidth.errors import InputError
 from zwidth.loop.sampled_plant import Motion
 from zwidth.model.pairs import Pair
 from zwidth.passivity.advice import Advice
-from zwidth.passivity.pairs.advice import StiffnessAt
 from zwidth.passivity.linear.boundary import largest_holding, smallest_holding
-from zwidth.passivity.linear.linear import LinearProof, decide_linear
+from zwidth.passivity.linear.criterion import LinearProof, decide_linear
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.one_norm import bound_one_norm
-from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.assumed import assumed_of_arms, assumed_of_timing, friction_goes_on
 from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.passivity.pairs.evidence import PairCertificate

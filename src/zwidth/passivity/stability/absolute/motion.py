@@ -310,7 +310,7 @@ def replay_motion(
         Periods to simulate.
     """
     from zwidth.loop.simulate import simulate  # xarray takes its time
-    from zwidth.model.operator.tracking import Tracking
+    from zwidth.model.operator.prescribed_motion import Tracking
 
     own = hand.hand if isinstance(hand, Operator) else hand
     period, count = float(device.exact("sample_period")), motion.period * rounds

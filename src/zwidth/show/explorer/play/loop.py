@@ -20,7 +20,6 @@ from zwidth.loop.plant import Plant
 from zwidth.loop.setup import frame_of
 from zwidth.machine.firmware.javascript import module
 from zwidth.machine.firmware.law import law_program
-from zwidth.machine.firmware.module import module
 from zwidth.machine.firmware.plant import given_plant, plant_module, plant_program
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
@@ -28,8 +27,8 @@ from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator import LinearHand, Tracking, usual_hand
 from zwidth.model.pairs import Pair
 from zwidth.passivity.check import check
-from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.result import Answer
+from zwidth.passivity.scope import COLOUR
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import in_words, shown, unit_text
 from zwidth.showing import element

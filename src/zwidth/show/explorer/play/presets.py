@@ -13,10 +13,6 @@ from zwidth.model.pairs import Pair
 from zwidth.model.rendering import render
 from zwidth.model.rendering.bounding import ForceBounding
 from zwidth.model.rendering.passivity_controller import PassivityController
-from zwidth.show.explorer.play.loop import played, played_pair
-from zwidth.show.explorer.play.played import Played
-from zwidth.model.rendering.energy.force_bounding import ForceBounding
-from zwidth.model.rendering.energy.passivity_controller import PassivityController
 from zwidth.show.explorer.play.loop import Played, played, played_pair
 
 _SPRING = LinearHand(mass=0.0, stiffness=60.0, damping=0.2)
