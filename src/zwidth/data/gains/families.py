@@ -10,7 +10,7 @@ from zwidth.data.gains.file import GainTable
 from zwidth.data.gains.joint import NONE, Gains, JointGains
 from zwidth.data.gains.plant import family, servo
 from zwidth.errors import InputError
-from zwidth.model.pairs import FrictionCompensation
+from zwidth.model.rendering.friction_compensation import FrictionCompensation
 from zwidth.quantity.exact import Exact
 
 # LeRobot with Damiao motors (openarm_follower): lists position_kp, position_kd.
