@@ -1,0 +1,83 @@
+"""How large the house may be: rooms, folders, names.  Every number only goes down.
+
+Whoever makes something smaller lowers its number in the same change.  Whoever has to raise one writes in
+docs/inside.md, under "What this project does not do", what was weighed against it and left out.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+from test_circles import imports
+
+import zwidth as zw
+
+SOURCE = Path(zw.__file__).parent
+FILES = [path for ending in ("py", "pyi") for path in SOURCE.rglob(f"*.{ending}")]
+
+LINES = {
+    "beside the rooms": 0,
+}
+"""Of source, at most, in each room."""
+
+IN_ALL, PHYSICS, MOST_FILES, LONE, NAMES = 0, 0, 0, 0, 0
+"""Lines in all; of quantity, model, loop, passivity and checker; files; those that one other file alone imports;
+names that `zwidth` offers."""
+
+FULL = 25
+"""Files and folders in a folder, at most; but for those that wait for their turn:"""
+
+FULLER: dict[str, int] = {}
+
+
+def lines() -> Counter[str]:
+    """Of each room, and of what stands beside them."""
+    found: Counter[str] = Counter()
+    for path in FILES:
+        room = path.relative_to(SOURCE).parts
+        found[room[0] if len(room) > 1 else "beside the rooms"] += path.read_bytes().count(b"\n")
+    return found
+
+
+def test_no_room_grows() -> None:
+    """Each has its number: no less than it has, and little more, so that what was won stays won."""
+    found = lines()
+    assert found.keys() == LINES.keys()
+    assert {room: n for room, n in found.items() if not 0.98 * LINES[room] - 20 <= n <= LINES[room]} == {}
+
+
+def test_the_house_does_not_grow() -> None:
+    """Neither as a whole, nor what the proofs stand on, nor the number of its files."""
+    found = lines()
+    physics = sum(found[room] for room in ("quantity", "model", "loop", "passivity", "checker"))
+    assert found.total() <= IN_ALL
+    assert physics <= PHYSICS
+    assert len(FILES) <= MOST_FILES
+
+
+def test_no_folder_is_too_full() -> None:
+    """A person sees at one look what is in it."""
+    folders = {path.parent for path in FILES}
+    full = {
+        str(folder.relative_to(SOURCE)): count
+        for folder in folders
+        if (count := sum(is_shown(path) for path in folder.iterdir())) > FULL
+    }
+    assert full == FULLER
+
+
+def is_shown(path: Path) -> bool:
+    """What a person sees of a folder: its modules and folders."""
+    return path.is_dir() and path.name != "__pycache__" or path.suffix == ".py" and path.name != "__init__.py"
+
+
+def test_few_files_have_one_reader() -> None:
+    """What one other file alone imports is most often a part of it."""
+    taken = Counter(other for others in imports().values() for other in others)
+    assert sum(count == 1 for count in taken.values()) <= LONE
+
+
+def test_few_names_are_offered() -> None:
+    """The first page of a reference."""
+    assert len(zw.__all__) <= NAMES
