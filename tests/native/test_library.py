@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from zwidth.loop.free import free_response
 from zwidth.loop.kernel import packed_plant
-from zwidth.loop.ledger import book
+from zwidth.loop.plant import free_response
+from zwidth.loop.step import book
 from zwidth.machine.servo.cycle import put_at_rest
 from zwidth.native import build
 

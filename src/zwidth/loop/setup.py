@@ -13,8 +13,7 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.loop import law as laws
 from zwidth.loop.kernel import RECORDED
-from zwidth.loop.plant import DIRECTION, POSITION, STATE_SIZE, VELOCITY, Plant
-from zwidth.loop.series import WORK
+from zwidth.loop.plant import DIRECTION, POSITION, STATE_SIZE, VELOCITY, WORK, Plant
 from zwidth.loop.start import rest_position
 from zwidth.loop.timing import Timing
 from zwidth.model.device.amplifier import Actuation, Amplifier, CurrentAmplifier

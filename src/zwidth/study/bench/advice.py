@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import isfinite, isinf, pi, sin
 from typing import TYPE_CHECKING, NamedTuple
 
-from zwidth.loop.traces.perceived import SOURCE, WEBER
+from zwidth.loop.traces.measures import SOURCE, WEBER
 from zwidth.model.device.device import Device
 from zwidth.model.environment.wall import Wall
 from zwidth.model.operator import Dowel, MaliciousTouch, PrescribedMotion, TypicalTouch

@@ -14,8 +14,21 @@ from zwidth.errors import InputError
 from zwidth.lazy import above
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
-from zwidth.loop.traces import scores
-from zwidth.loop.traces.perceived import SOURCE, WEBER, noticeable_differences
+from zwidth.loop.traces.measures import (
+    SOURCE,
+    WEBER,
+    bounces,
+    chatter,
+    free_damping,
+    generated_energy,
+    noticeable_differences,
+    peak_force,
+    penetration,
+    rate_hardness,
+    rms_force,
+    settling_time,
+    static_stiffness,
+)
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
@@ -61,18 +74,18 @@ class Score(NamedTuple):
 
 
 SCORES: Mapping[str, Score] = {
-    "static_stiffness": Score("stiffness felt at rest", "press", "N/m", scores.static_stiffness),
-    "rate_hardness": Score("rate-hardness in the first 10 ms", "press", "N/m", scores.rate_hardness),
-    "chatter": Score("force above 30 Hz in contact", "press", "N", scores.chatter),
-    "penetration": Score("deepest position", "press", "m", scores.penetration),
-    "settling_time": Score("time until at rest", "press", "s", scores.settling_time),
-    "rms_force": Score("RMS force in contact", "press", "N", scores.rms_force),
-    "peak_force": Score("largest force", "tap", "N", scores.peak_force),
-    "bounces": Score("times that contact is lost", "tap", "1", scores.bounces),
-    "tap_chatter": Score("force above 30 Hz after a tap", "tap", "N", scores.chatter),
-    "generated_energy": Score("energy given out", "tap", "J", scores.generated_energy),
-    "dowel_energy": Score("energy given out to a dowel", "dowel", "J", scores.generated_energy),
-    "free_damping": Score("damping felt in free air", "free air", "N*s/m", scores.free_damping),
+    "static_stiffness": Score("stiffness felt at rest", "press", "N/m", static_stiffness),
+    "rate_hardness": Score("rate-hardness in the first 10 ms", "press", "N/m", rate_hardness),
+    "chatter": Score("force above 30 Hz in contact", "press", "N", chatter),
+    "penetration": Score("deepest position", "press", "m", penetration),
+    "settling_time": Score("time until at rest", "press", "s", settling_time),
+    "rms_force": Score("RMS force in contact", "press", "N", rms_force),
+    "peak_force": Score("largest force", "tap", "N", peak_force),
+    "bounces": Score("times that contact is lost", "tap", "1", bounces),
+    "tap_chatter": Score("force above 30 Hz after a tap", "tap", "N", chatter),
+    "generated_energy": Score("energy given out", "tap", "J", generated_energy),
+    "dowel_energy": Score("energy given out to a dowel", "dowel", "J", generated_energy),
+    "free_damping": Score("damping felt in free air", "free air", "N*s/m", free_damping),
 }
 """What is computed of each law, by variable."""
 
