@@ -1,4 +1,4 @@
-"""The energy ledger of a trace: two balances that must close.
+"""The joules of a trace, what crosses the port, is stored, is lost: two balances that must close.
 
     device   ΔE_k = W_h + W_a − E_b − E_c
     hand     W_s = W_h + ΔE_s + E_d + ΔE_m
@@ -166,10 +166,9 @@ def ledger(trace: AnyTrace) -> Ledger:
     return Ledger(trace)
 
 
-# The energy ledger of a simulated pair: one balance for each arm, and what both hands got out together.
-#
-# A pair is passive if W_l(t) + w W_f(t) + E(0) ≥ 0 for any two hands and every t, with w = K_l/K_f and E(0)
-# what the spring between the arms and their motion hold at first.  So two hands that at some instant have
+# The ledger of a pair.  It is passive if W_l(t) + w W_f(t) + E(0) ≥ 0 for any two hands and every t, with
+# w = K_l/K_f and E(0) what the spring between the arms and their motion hold at first.  So two hands that at
+# some instant have
 #
 #     −W_l(t) − w W_f(t) > E(0)
 #

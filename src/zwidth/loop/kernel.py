@@ -300,10 +300,9 @@ def note(state: Array, column: int, record: Array) -> None:
     record[R_HAND_LOSS, column] = state[HAND_LOSS]
 
 
-# What a law in the loop remembers after each reading that may come next: the step of the simulator itself.
-#
-# A row holds the memory of the law and, behind it, the forces of the last readings, the one that
-# acts in this interval first, that of the last reading last: as many as a delay keeps waiting, and one.
+# What a law remembers after each reading that may come next.  A row holds the memory of the law and, behind
+# it, the forces of the last readings, the one that acts in this interval first, that of the last reading
+# last: as many as a delay keeps waiting, and one.
 
 
 @compiled

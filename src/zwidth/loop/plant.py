@@ -1,6 +1,6 @@
-"""The numbers and the state of one loop, as the step functions see them.
+"""The plant of one loop, as the step functions see it, and its motion between events, in closed form.
 
-The plant is device and hand moving together:
+Device and hand move together:
 
     M v̇ = G(t) − D v − k (x − x_a(t)) − f_c sgn v,   M = m + m_h,   D = b + c
 
@@ -125,10 +125,8 @@ def free_stop(rate: float, velocity: float, acceleration: float) -> float:
     return -ratio * log1p(-z) / z
 
 
-# An interval of the free mass with a stop or a start in it: slide to rest, then stay or slide on.
-#
-# Under a constant force the velocity is 0 once at most, so that this is all that
-# can happen; the same as `step.advance` does, to the last bit, without its loop.
+# An interval of the free mass with a stop or a start in it: under a constant force the velocity is 0 once
+# at most, so this is all that can happen.  The same as `step.advance`, to the last bit, without its loop.
 
 
 class Free(NamedTuple):
@@ -145,7 +143,7 @@ class Free(NamedTuple):
 
 
 @compiled
-def turn(
+def stop_or_start(
     free: Free,
     force: float,
     push: float,

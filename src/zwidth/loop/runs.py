@@ -1,11 +1,10 @@
-"""The plain loop, quickly: free mass, spring wall, regular clock, one force per interval.
+"""Whole runs beside that of the kernel: the plain loop, loops without a trace, rounds of a given motion.
 
-The same motion as `kernel.run`, to the last bit.  An interval without a stop or
-a start in it is one line of multiplications with the responses of that interval, computed
-once; the others go through `turn`.
-
-The time per sample is that of the chain position → count → force → position, so
-that whatever else enters the next position is added up before the force.
+The plain loop has a free mass, a spring wall, a regular clock, one force per interval, and the motion of
+`kernel.run` to the last bit.  An interval without a stop or a start in it is one line of multiplications
+with the responses of that interval, computed once; the others go through `stop_or_start`.  The time per
+sample is that of the chain position → count → force → position, so that whatever else enters the next
+position is added up before the force.
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ from zwidth.loop.plant import (
     VISCOUS,
     Free,
     free_response,
-    turn,
+    stop_or_start,
 )
 from zwidth.native.compiled import Array, compiled
 
@@ -124,7 +123,7 @@ def run_plain(
         else:
             state[STOPS] += abs(side)
             free = Free(x, v, side, hand, actuator, viscous, dry, source)
-            free = turn(free, f, push, drag, coulomb, stiction, inverse, half_hand, h)
+            free = stop_or_start(free, f, push, drag, coulomb, stiction, inverse, half_hand, h)
             x, v, side, hand, actuator, viscous, dry, source = free
     state[POSITION], state[VELOCITY], state[DIRECTION] = x, v, side
     state[FORCE], state[GOAL] = f, f
@@ -190,17 +189,9 @@ def run_each(
     for i in range(states.shape[0]):
         if plain:
             run_plain(
-                0,
-                samples + 1,
-                states[i, :],
-                numbers[i, :],
-                laws[i, :],
-                late,
-                lengths[0],
-                force,
-                commands,
-                record,
-            )
+                0, samples + 1, states[i, :], numbers[i, :], laws[i, :], late, lengths[0],
+                force, commands, record,
+            )  # fmt: skip
         else:
             run(
                 0, samples + 1, points, states[i, :], numbers[i, :], laws[i, :], memories[i, :], work,
@@ -209,10 +200,8 @@ def run_each(
         summarize(record, samples, points, summaries[i, :])
 
 
-# A motion that is prescribed and repeated: what each round takes out, and nothing else.
-#
-# The same forces as `kernel.run`, for a regular clock and an amplifier that gives its force at once.  A round
-# takes out
+# A motion that is prescribed and repeated: what each round takes out, and nothing else.  The same forces as
+# `kernel.run`, for a regular clock and an amplifier that gives its force at once.
 #
 #     −∫ f dx − f_c Σ|Δx| − (b/T) Σ Δx²
 #

@@ -1,4 +1,4 @@
-"""One stretch of motion under given forces: slide, stop, stick, break away, turn round.
+"""One stretch of motion and its energies: slide, stop, stick, break away, turn round; or as prescribed.
 
 At rest the net external force F_e = F + k (x_a − x) + c ẋ_a − f_a is balanced by
 friction up to the stiction f_s; beyond it the mass slides, against f_c sgn v,
@@ -65,7 +65,7 @@ def advance(
     h
         ≥ 0 [s].
     work
-        Scratch, `series.WORK` long.
+        Scratch, `plant.WORK` long.
     """
     elapsed = 0.0
     for _ in range(_MOST_EVENTS):
@@ -93,7 +93,7 @@ def is_free(plant: Plant) -> bool:
 
 
 class Response(NamedTuple):
-    """Of a free mass over a whole interval: 1/M, h1, h2, h3 of `free`, h1/M, h2/M."""
+    """Of a free mass over a whole interval: 1/M, h1, h2, h3 of `free_response`, h1/M, h2/M."""
 
     inverse: float
     h1: float
@@ -356,9 +356,7 @@ def book_rest(state: Array, plant: Plant, drive: Drive, t: float) -> None:
     state[HAND_LOSS] += c * speed * speed * t
 
 
-# A stretch whose motion is prescribed: constant velocity, whatever force that takes.
-#
-# The mass changes its velocity by an impulse of the hand at the beginning; then
+# A stretch whose motion is prescribed: constant velocity, after an impulse of the hand on the mass; then
 # the hand works against the actuator, f_c sgn v and b v.
 
 

@@ -289,7 +289,6 @@ def _left(curve: Array, i: int, before: Array, state: Array) -> bool:
 
 # An arm against a real wall: a spring and a damper in continuous time, on one side of x = 0 only.
 
-
 """How often in a stretch it is looked whether the arm has met or left the wall, at least."""
 
 

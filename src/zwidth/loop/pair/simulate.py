@@ -1,4 +1,7 @@
-"""What happens when two hands, or a hand and a wall, hold a pair: simulated without time-step error."""
+"""What happens when two hands, or a hand and a wall, hold a pair, and the trace of it.
+
+The trace lies along `arm` and `time`; of each arm, ``trace.sel(arm="leader")``, it has the variables of one.
+"""
 
 from __future__ import annotations
 
@@ -169,11 +172,6 @@ def _run(setup: PairSetup, progress: Callable[[int, int], None] | None) -> int:
         if done < 1:
             raise
     return done
-
-
-# The record of a simulated pair as labelled data along `arm` and `time`.
-#
-# Each arm's part, ``trace.sel(arm="leader")``, has the variables of the trace of one arm.
 
 
 FORMAT = "zwidth pair trace 1"

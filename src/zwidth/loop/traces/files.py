@@ -1,4 +1,4 @@
-"""Traces in files, and back: NetCDF, Parquet, CSV; the same numbers, to the last bit.
+"""Traces in files, and back: NetCDF, Parquet, CSV, the same numbers to the last bit; and as sound.
 
 NetCDF keeps units and names as attributes.  Parquet and CSV carry the unit in
 the name of each column, `position_m`, and the attributes of the trace as JSON:

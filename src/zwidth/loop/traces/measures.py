@@ -1,4 +1,4 @@
-"""What a touch was like, in a few numbers."""
+"""What a touch was like in numbers, each computed from a trace and nothing else."""
 
 from __future__ import annotations
 
@@ -13,11 +13,9 @@ from zwidth.loop.energy import ledger
 from zwidth.loop.trace import UNITS
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from zwidth.loop.trace import AnyTrace
 
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 
 CHATTER_ABOVE_HZ = 30.0
@@ -134,9 +132,6 @@ def noticeable_differences(felt: float, wanted: float, weber: float = WEBER) -> 
     return log(felt / wanted) / log(1 + weber) if 0 < felt < float("inf") else nan
 
 
-# Scores of a law, each computed from a trace and nothing else.
-
-
 CHATTER = 30.0
 """Frequency above which force in sustained contact is felt as chatter [Hz]."""
 
@@ -145,8 +140,6 @@ FIRST = 0.01
 
 SETTLED = 0.05
 """Part of the final depth within which the hand must stay to be at rest."""
-
-Floats = NDArray[np.float64]
 
 
 def generated_energy(trace: AnyTrace) -> float:
@@ -248,6 +241,6 @@ def _first_contact(trace: AnyTrace) -> int:
     return int(inside[0]) if inside.size else trace["time"].values.size
 
 
-def _last_half(trace: AnyTrace, name: str) -> tuple[Floats, float]:
+def _last_half(trace: AnyTrace, name: str) -> tuple[Array, float]:
     values, time = trace[name].values, trace["time"].values
     return np.asarray(values[values.size // 2 :]), float(time[1] - time[0])
