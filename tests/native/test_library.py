@@ -23,7 +23,7 @@ from zwidth.native import build, library
 if sys.argv[1] == "plain":
     build.library = library.library = lambda: None
 import zwidth as zw
-from zwidth.study.bench.laws import standard_laws
+from zwidth.study.bench.bench import standard_laws
 
 device = zw.Device(
     mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, rate=1000, delay="0.3 ms",
