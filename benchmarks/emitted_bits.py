@@ -25,8 +25,7 @@ from machines import Ran, compiled_c, law_in_c, law_in_javascript, run_c, run_no
 from moved_plants import CELLS, PERIOD, PLANTS, hand_and_law, plant_in_c, plant_in_javascript
 
 from zwidth.loop.law import sampled_force, sampled_force_at
-from zwidth.loop.plant import STATE_SIZE
-from zwidth.loop.series import WORK
+from zwidth.loop.plant import STATE_SIZE, WORK
 from zwidth.machine.firmware.javascript import module
 from zwidth.machine.firmware.law import LawProgram, law_program
 from zwidth.machine.firmware.plant import one_period, plant_header, plant_module, plant_program

@@ -20,8 +20,7 @@ import numpy as np
 
 from zwidth.loop import kernel as k
 from zwidth.loop import law as laws
-from zwidth.loop.plant import FAULT, STATE_SIZE, STOPS
-from zwidth.loop.series import WORK
+from zwidth.loop.plant import FAULT, STATE_SIZE, STOPS, WORK
 
 SAMPLES = 50
 BOUND = 1e-12

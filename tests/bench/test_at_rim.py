@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 import zwidth as zw
-from zwidth.loop.traces import scores
+from zwidth.loop.traces import measures as scores
 from zwidth.model.operator import TypicalTouch
 from zwidth.quantity.exact import Exact
-from zwidth.study.bench.laws import at_rim, radius_of
+from zwidth.study.bench.bench import at_rim, radius_of
 
 RADIUS = Exact("0.13")
 KNOB = zw.rotary(

@@ -11,7 +11,7 @@ import xarray as xr
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.loop.traces import scores
+from zwidth.loop.traces import measures as scores
 from zwidth.model import rendering
 from zwidth.study.bench import standard_laws
 from zwidth.study.bench.adversary import attack

@@ -9,7 +9,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.errors import InputError
-from zwidth.loop.traces.perceived import WEBER, noticeable_differences
+from zwidth.loop.traces.measures import WEBER, noticeable_differences
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 

@@ -35,7 +35,7 @@ from zwidth.model.rendering import (
     WindowedController,
     render,
 )
-from zwidth.study.bench.laws import standard_laws
+from zwidth.study.bench.bench import standard_laws
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 """A converter with steps, an encoder, a force limit."""

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.loop.plant import STATE_SIZE, Plant
-from zwidth.loop.series import WORK
+from zwidth.loop.plant import STATE_SIZE, WORK, Plant
 from zwidth.machine.firmware.plant import Hand, plant_header
 from zwidth.machine.firmware.program import Program
 

@@ -11,8 +11,7 @@ from moved_plants import CELLS, PERIOD, PLANTS, hand_and_law, plant_in_c, plant_
 from numpy.typing import NDArray
 
 import zwidth as zw
-from zwidth.loop.plant import COULOMB, POSITION, STATE_SIZE, STOPS, VELOCITY
-from zwidth.loop.series import WORK
+from zwidth.loop.plant import COULOMB, POSITION, STATE_SIZE, STOPS, VELOCITY, WORK
 from zwidth.machine.firmware.plant import one_period, plant_module, plant_program
 from zwidth.machine.firmware.program import Program
 

@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf, quad
 
-from zwidth.loop.free import free_response
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
     COULOMB,
@@ -26,9 +25,10 @@ from zwidth.loop.plant import (
     STOPS,
     VELOCITY,
     VISCOUS,
+    WORK,
     Plant,
+    free_response,
 )
-from zwidth.loop.series import WORK
 from zwidth.loop.step import advance
 
 EPS = np.finfo(float).eps

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from zwidth.loop.free import free_response
 from zwidth.loop.kernel import packed_plant
-from zwidth.loop.ledger import book
+from zwidth.loop.plant import free_response
+from zwidth.loop.step import book
 from zwidth.machine.servo.cycle import put_at_rest
 from zwidth.native import build
 
@@ -23,7 +23,7 @@ from zwidth.native import build, library
 if sys.argv[1] == "plain":
     build.library = library.library = lambda: None
 import zwidth as zw
-from zwidth.study.bench.laws import standard_laws
+from zwidth.study.bench.bench import standard_laws
 
 device = zw.Device(
     mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, rate=1000, delay="0.3 ms",

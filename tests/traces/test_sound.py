@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.loop.traces.sound import RATE, waveform
+from zwidth.loop.traces.files import RATE, waveform
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 

@@ -8,7 +8,7 @@ import numpy as np
 
 import zwidth as zw
 from papers.row import Row, close, drawn, row
-from zwidth.loop.traces.perceived import noticeable_differences
+from zwidth.loop.traces.measures import noticeable_differences
 from zwidth.model.rendering import CrossingCorrection, HalfSamplePrediction, PassivityController
 from zwidth.passivity.formulas.abbott_okamura import edge_crossing
 from zwidth.passivity.formulas.diolaiti import admissible_speed, plane_point

@@ -20,7 +20,7 @@ from zwidth.links.springs import PositionHold, TimeDomain, TwoLayer
 from zwidth.links.verdict import check
 from zwidth.links.wave_port import WavePort
 from zwidth.links.waves import HeldWaves, NaiveWaves, felt_stiffness
-from zwidth.loop.traces.scores import static_stiffness
+from zwidth.loop.traces.measures import static_stiffness
 from zwidth.model.device import Device
 from zwidth.model.operator import PrescribedMotion, RecordedForce
 from zwidth.quantity.documented import Documented

@@ -15,9 +15,8 @@ from zwidth.links.schedule import Schedule
 from zwidth.loop.kernel import R_COMMAND, R_READING, first_due
 from zwidth.loop.pair.kernel import Arm, read, through
 from zwidth.loop.pair.setup import Holder, prepare_pair
-from zwidth.loop.pair.trace import build_pair_trace
-from zwidth.loop.plant import FAULT, FORCE, GOAL
-from zwidth.loop.series import WORK
+from zwidth.loop.pair.simulate import build_pair_trace
+from zwidth.loop.plant import FAULT, FORCE, GOAL, WORK
 from zwidth.loop.trace import Trace
 from zwidth.model.pairs import Pair
 from zwidth.native.compiled import Array, compiled

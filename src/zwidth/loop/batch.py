@@ -33,9 +33,9 @@ from zwidth.loop.plant import (
     VELOCITY,
     VISCOUS,
 )
+from zwidth.loop.runs import DEEPEST, EXTRACTED, HIGHEST, LOWEST, PEAK, SUMMARY, run_each
 from zwidth.loop.setup import Laid, empty_record, laid_out, started
 from zwidth.loop.simulate import Progress
-from zwidth.loop.summary import DEEPEST, EXTRACTED, HIGHEST, LOWEST, PEAK, SUMMARY, run_each
 from zwidth.loop.trace import UNITS, VARIABLES
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment

@@ -1,4 +1,4 @@
-"""The environment as the loop runs it, sample by sample.
+"""The environment as the loop runs it, sample by sample, and how it is packed for that.
 
     x_m = Δ floor(x/Δ + φ)              what the encoder reads, φ its phase
     x_m = law(x_m)                      one after the other, where laws look ahead for the environment
@@ -17,9 +17,18 @@ x_m ≤ 0.
 
 from __future__ import annotations
 
+from fractions import Fraction
+from typing import Any, NamedTuple
+
 import numpy as np
 
+from zwidth.model.device.amplifier import Actuation
+from zwidth.model.device.device import Device
+from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering.chain import after, before
+from zwidth.model.rendering.rendered import laws_of
+from zwidth.model.rendering.rendering_law import LoopContext, RenderingLaw
+from zwidth.model.scene.forces import scene_at_rest
 from zwidth.model.scene.step import scene_force
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.elementary import power
@@ -137,3 +146,113 @@ def sampled_force(law: Array, memory: Array, counts: int) -> float:
 def sampled_force_at(law: Array, memory: Array, reading: float) -> float:
     """The same from a position, where the encoder's resolution is not known."""
     return limited(law, memory, rounded(rendered_force(law, memory, reading), law[STEP]))
+
+
+GATES = {"none": BILATERAL, "penetration": PENETRATION, "position": SURFACE}
+"""By where a law acts and what it is computed from."""
+
+
+class Packed(NamedTuple):
+    """An environment and the laws that render it, as the kernel reads them, the encoder's phase left out."""
+
+    numbers: Array
+    row: tuple[RenderingLaw, ...]
+    unit: Array
+    remembers: int  # by law and row, the force between them aside
+
+
+def packed(
+    law: Environment,
+    device: Device,
+    period: Fraction,
+    resolution: float,
+    actuation: Actuation,
+    single: bool,
+    known: dict[Any, Any],
+) -> Packed:
+    """A law at T with this encoder and actuator; `known` and `single` as of `setup.laid_out`."""
+    clock = period.as_integer_ratio()  # a tuple has its hash sooner
+    key = ("law", id(law), id(device) if (row := laws_of(law)) else None, resolution, clock, actuation)
+    if key in known:
+        found: Packed = known[key]
+        return found
+    met = law.met
+    clamped = float(met.clamped and not met.spring)  # a spring pushes wherever it acts
+    header = [GATES[met.surface], resolution, 0.0, actuation.step, actuation.limit, clamped]
+    kinds, body = _body(met, period)
+    alone = np.array([*header, *kinds, 0.0, 0.0, 0.0, *body])
+    unit = at_one(alone)
+    links, context = list[float](), LoopContext(device, met, single)
+    for link in row:
+        own = link.numbers(context)
+        links += [link.code, float(len(own)), float(link.state_size), *own]
+    memory = len(_resting(alone, unit, 0.0))
+    begins = [float(len(row)), float(len(alone)), float(memory)]
+    numbers = np.array([*header, *kinds, *begins, *body, *links])
+    known[key] = Packed(numbers, row, unit, memory + sum(link.state_size for link in row))
+    return known[key]
+
+
+def _body(law: Environment, period: Fraction) -> tuple[list[float], list[float]]:
+    """The numbers of sections and of points and whether it is a contact; and what they are."""
+    if law.points:
+        places, forces = zip(*law.points, strict=True)
+        return [0.0, float(len(places)), 0.0], [*map(float, places), *map(float, forces)]
+    if law.power_law is not None:
+        k, n, dissipation = law.power_law
+        return [0.0, 0.0, POWER_LAW], [float(k), float(n), float(dissipation.fraction / period)]
+    stepped = law.stepped(period)
+    if stepped is not None:
+        return [0.0, 0.0, SCENE], list(stepped.numbers)
+    sections = _sections(law, period)
+    return [float(len(sections)), 0.0, 0.0], [c for s in sections for c in s]
+
+
+def _sections(environment: Environment, period: Fraction) -> list[list[float]]:
+    """The law as a sum of direct forms, each n, b_0 … b_n, a_1 … a_n."""
+    return [_section(part, period) for part in environment.side_by_side()]
+
+
+def _section(environment: Environment, period: Fraction) -> list[float]:
+    numerator, denominator = environment.pulse_transfer_function(period)
+    n, d = denominator[0].as_integer_ratio()
+    # of whole numbers the quotient is rounded once, as that of fractions is, and needs no common divisor
+    b, a = (
+        [c.numerator * d / (c.denominator * n) or 0.0 for c in row] for row in (numerator, denominator[1:])
+    )
+    return [float(len(a)), *[0.0] * (len(a) + 1 - len(b)), *b, *a]
+
+
+def remembered(law: Array, row: tuple[RenderingLaw, ...], unit: Array, reading: float) -> Array:
+    """Environment, and behind it the force that was applied last and the laws that render it."""
+    resting = _resting(law, unit, reading) + 0.0  # no line gives −0
+    if not row:
+        return resting
+    return np.array([*resting, 0.0, *(n for link in row for n in link.initial_state(reading))]) + 0.0
+
+
+def _resting(law: Array, unit: Array, reading: float) -> Array:
+    """The law's memory after it has read this position for ever; 0 where it would not settle."""
+    if law[CONTACT] == POWER_LAW:
+        return np.array([reading])
+    if law[CONTACT] == SCENE:
+        return scene_at_rest(law, HEADER, reading)
+    return unit * (max(reading, 0.0) if law[GATE] == PENETRATION else reading)
+
+
+def at_one(law: Array) -> Array:
+    """What sections remember at a reading of 1: times a reading, one line tells it for all of them."""
+    at, states = HEADER, list[float]()
+    for _ in range(int(law[SECTIONS])):
+        order = int(law[at])
+        b, a = law[at + 1 : at + 2 + order], np.concatenate(([1.0], law[at + 2 + order : at + 2 + 2 * order]))
+        gain = float(np.add.reduce(a))
+        y = float(np.add.reduce(b)) / gain if gain != 0.0 else 0.0
+        later = 0.0
+        own: list[float] = []
+        for i in range(order, 0, -1):
+            later += float(b[i]) - float(a[i]) * y
+            own.append(later if gain != 0.0 else 0.0)
+        states += reversed(own)
+        at += 2 * order + 2
+    return np.array(states or [0.0])

@@ -13,8 +13,7 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.loop import law as laws
 from zwidth.loop.kernel import RECORDED
-from zwidth.loop.plant import DIRECTION, POSITION, STATE_SIZE, VELOCITY, Plant
-from zwidth.loop.series import WORK
+from zwidth.loop.plant import DIRECTION, POSITION, STATE_SIZE, VELOCITY, WORK, Plant
 from zwidth.loop.start import rest_position
 from zwidth.loop.timing import Timing
 from zwidth.model.device.amplifier import Actuation, Amplifier, CurrentAmplifier
@@ -23,8 +22,6 @@ from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator.operator import Operator, Signals
 from zwidth.model.rendering.rendered import laws_of
-from zwidth.model.rendering.rendering_law import LoopContext, RenderingLaw
-from zwidth.model.scene.forces import scene_at_rest
 from zwidth.quantity.exact import Exact, RealLike
 
 if TYPE_CHECKING:
@@ -37,9 +34,6 @@ MOST_PIECES = 1000
 
 MOST_BYTES = 4 << 30
 """A longer record would not fit into the memory of many machines."""
-
-GATES = {"none": laws.BILATERAL, "penetration": laws.PENETRATION, "position": laws.SURFACE}
-"""By where a law acts and what it is computed from."""
 
 _NONE = np.empty(0)
 
@@ -110,11 +104,11 @@ class Laid(NamedTuple):
     operator: Operator
     rest: float
     frame: Frame
-    packed: Packed
+    packed: laws.Packed
 
     @property
     def plain(self) -> bool:
-        """True where `plain.run_plain` runs it: free mass, spring, regular clock, one force an interval."""
+        """True where `runs.run_plain` runs it: free mass, spring, regular clock, one force an interval."""
         f, p, law = self.frame, self.frame.plant, self.packed.numbers
         free = p.stiffness == 0.0 and p.hand_damping == 0.0 and p.lag == 0.0 and p.slew == 0.0
         memoryless = law[laws.SECTIONS] == 1 and law[laws.HEADER] == 0 and law[laws.CHAIN] == 0
@@ -167,7 +161,8 @@ def laid_out(
     if operator.kinematic:
         assert frame.signals.position is not None
         rest = float(frame.signals.position[0])
-    return Laid(operator, rest, frame, _packed(law, device, frame, single, known))
+    numbers = frame.period, frame.resolution, frame.actuation
+    return Laid(operator, rest, frame, laws.packed(law, device, *numbers, single, known))
 
 
 def started(laid: Sequence[Laid], starts: Array) -> tuple[Array, Array, Array]:
@@ -179,43 +174,10 @@ def started(laid: Sequence[Laid], starts: Array) -> tuple[Array, Array, Array]:
     numbers = np.array([loop.packed.numbers for loop in laid])
     numbers[:, laws.PHASE] = phases
     memories = [
-        _remembered(law, packed.row, packed.unit, laws.measured(position, frame.resolution, phase))
+        laws.remembered(law, packed.row, packed.unit, laws.measured(position, frame.resolution, phase))
         for (_, _, frame, packed), law, (position, _, phase) in zip(laid, numbers, starts, strict=True)
     ]
     return states, numbers, np.array(memories)
-
-
-class Packed(NamedTuple):
-    """An environment and the laws that render it, as the kernel reads them, the encoder's phase left out."""
-
-    numbers: Array
-    row: tuple[RenderingLaw, ...]
-    unit: Array
-    remembers: int  # by law and row, the force between them aside
-
-
-def _packed(law: Environment, device: Device, frame: Frame, single: bool, known: dict[Any, Any]) -> Packed:
-    actuation, period = frame.actuation, frame.period
-    clock = period.as_integer_ratio()  # a tuple has its hash sooner
-    key = ("law", id(law), id(device) if (row := laws_of(law)) else None, frame.resolution, clock, actuation)
-    if key in known:
-        found: Packed = known[key]
-        return found
-    met = law.met
-    clamped = float(met.clamped and not met.spring)  # a spring pushes wherever it acts
-    header = [GATES[met.surface], frame.resolution, 0.0, actuation.step, actuation.limit, clamped]
-    kinds, body = _body(met, period)
-    alone = np.array([*header, *kinds, 0.0, 0.0, 0.0, *body])
-    unit = _at_one(alone)
-    links, context = list[float](), LoopContext(device, met, single)
-    for link in row:
-        own = link.numbers(context)
-        links += [link.code, float(len(own)), float(link.state_size), *own]
-    remembered = len(_resting(alone, unit, 0.0))
-    begins = [float(len(row)), float(len(alone)), float(remembered)]
-    numbers = np.array([*header, *kinds, *begins, *body, *links])
-    known[key] = Packed(numbers, row, unit, remembered + sum(link.state_size for link in row))
-    return known[key]
 
 
 def _at_rest(
@@ -348,47 +310,9 @@ def _plant(device: Device, operator: Operator, actuation: Actuation) -> Plant:
     )
 
 
-def _body(law: Environment, period: Fraction) -> tuple[list[float], list[float]]:
-    """The numbers of sections and of points and whether it is a contact; and what they are."""
-    if law.points:
-        places, forces = zip(*law.points, strict=True)
-        return [0.0, float(len(places)), 0.0], [*map(float, places), *map(float, forces)]
-    if law.power_law is not None:
-        k, n, dissipation = law.power_law
-        return [0.0, 0.0, laws.POWER_LAW], [float(k), float(n), float(dissipation.fraction / period)]
-    stepped = law.stepped(period)
-    if stepped is not None:
-        return [0.0, 0.0, laws.SCENE], list(stepped.numbers)
-    sections = sections_of(law, period)
-    return [float(len(sections)), 0.0, 0.0], [c for s in sections for c in s]
-
-
-def sections_of(environment: Environment, period: Fraction) -> list[list[float]]:
-    """The law as a sum of direct forms, each n, b_0 … b_n, a_1 … a_n."""
-    return [_section(part, period) for part in environment.side_by_side()]
-
-
-def _section(environment: Environment, period: Fraction) -> list[float]:
-    numerator, denominator = environment.pulse_transfer_function(period)
-    n, d = denominator[0].as_integer_ratio()
-    # of whole numbers the quotient is rounded once, as that of fractions is, and needs no common divisor
-    b, a = (
-        [c.numerator * d / (c.denominator * n) or 0.0 for c in row] for row in (numerator, denominator[1:])
-    )
-    return [float(len(a)), *[0.0] * (len(a) + 1 - len(b)), *b, *a]
-
-
 def resting_memory(setup: Setup, reading: float) -> Array:
     """What the law of a setup remembers after the hand has been at a reading for ever."""
-    return _remembered(setup.law, laws_of(setup.environment), _at_one(setup.law), reading)
-
-
-def _remembered(law: Array, row: tuple[RenderingLaw, ...], unit: Array, reading: float) -> Array:
-    """Environment, and behind it the force that was applied last and the laws that render it."""
-    resting = _resting(law, unit, reading) + 0.0  # no line gives −0
-    if not row:
-        return resting
-    return np.array([*resting, 0.0, *(n for link in row for n in link.initial_state(reading))]) + 0.0
+    return laws.remembered(setup.law, laws_of(setup.environment), laws.at_one(setup.law), reading)
 
 
 def resting_lines(setup: Setup) -> Array:
@@ -400,33 +324,6 @@ def resting_lines(setup: Setup) -> Array:
     """
     lower, surface, one, two = (resting_memory(setup, x) for x in (-1.0, 0.0, 1.0, 2.0))
     return np.array([[surface, surface - lower], [one - (two - one), two - one]])
-
-
-def _resting(law: Array, unit: Array, reading: float) -> Array:
-    """The law's memory after it has read this position for ever; 0 where it would not settle."""
-    if law[laws.CONTACT] == laws.POWER_LAW:
-        return np.array([reading])
-    if law[laws.CONTACT] == laws.SCENE:
-        return scene_at_rest(law, laws.HEADER, reading)
-    return unit * (max(reading, 0.0) if law[laws.GATE] == laws.PENETRATION else reading)
-
-
-def _at_one(law: Array) -> Array:
-    """What sections remember at a reading of 1: times a reading, one line tells it for all of them."""
-    at, remembered = laws.HEADER, list[float]()
-    for _ in range(int(law[laws.SECTIONS])):
-        order = int(law[at])
-        b, a = law[at + 1 : at + 2 + order], np.concatenate(([1.0], law[at + 2 + order : at + 2 + 2 * order]))
-        gain = float(np.add.reduce(a))
-        y = float(np.add.reduce(b)) / gain if gain != 0.0 else 0.0
-        later = 0.0
-        own: list[float] = []
-        for i in range(order, 0, -1):
-            later += float(b[i]) - float(a[i]) * y
-            own.append(later if gain != 0.0 else 0.0)
-        remembered += reversed(own)
-        at += 2 * order + 2
-    return np.array(remembered or [0.0])
 
 
 def whole_samples(duration: RealLike, period: Fraction) -> int:

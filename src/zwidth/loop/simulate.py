@@ -15,8 +15,8 @@ from zwidth.errors import InputError
 from zwidth.loop.kernel import run
 from zwidth.loop.pair.setup import Holder
 from zwidth.loop.pair.simulate import Friction, simulated_pair
-from zwidth.loop.plain import run_plain
 from zwidth.loop.plant import FAULT, STOPS
+from zwidth.loop.runs import run_plain
 from zwidth.loop.setup import Setup, empty_record, prepare
 from zwidth.loop.timing import Timing
 from zwidth.loop.trace import Trace, build_trace

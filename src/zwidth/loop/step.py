@@ -1,4 +1,4 @@
-"""One stretch of motion under given forces: slide, stop, stick, break away, turn round.
+"""One stretch of motion and its energies: slide, stop, stick, break away, turn round; or as prescribed.
 
 At rest the net external force F_e = F + k (x_a − x) + c ẋ_a − f_a is balanced by
 friction up to the stiction f_s; beyond it the mass slides, against f_c sgn v,
@@ -10,8 +10,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from zwidth.loop.free import free_response, free_stop
-from zwidth.loop.ledger import book, book_rest
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
     COULOMB,
@@ -19,20 +17,21 @@ from zwidth.loop.plant import (
     FAULT,
     FORCE,
     GOAL,
+    HAND_LOSS,
     HAND_WORK,
+    KEPT,
     POSITION,
     SOURCE_WORK,
     STOPS,
+    TERMS,
     VELOCITY,
     VISCOUS,
     Drive,
     Plant,
-)
-from zwidth.loop.series import (
-    KEPT,
-    TERMS,
     expand,
     first_zero,
+    free_response,
+    free_stop,
     integral,
     pieces,
     product_integral,
@@ -66,7 +65,7 @@ def advance(
     h
         ≥ 0 [s].
     work
-        Scratch, `series.WORK` long.
+        Scratch, `plant.WORK` long.
     """
     elapsed = 0.0
     for _ in range(_MOST_EVENTS):
@@ -94,7 +93,7 @@ def is_free(plant: Plant) -> bool:
 
 
 class Response(NamedTuple):
-    """Of a free mass over a whole interval: 1/M, h1, h2, h3 of `free`, h1/M, h2/M."""
+    """Of a free mass over a whole interval: 1/M, h1, h2, h3 of `free_response`, h1/M, h2/M."""
 
     inverse: float
     h1: float
@@ -306,3 +305,94 @@ def _arrive(state: Array, position: float, velocity: float, stopped: bool) -> No
     if stopped:
         state[DIRECTION] = 0.0
         state[STOPS] += 1.0
+
+
+# The energies of one stretch, by closed form.
+#
+# With Δx the distance, t the time, Q = ∫v² dt, A = ∫ξ dt (ξ from the start of the
+# stretch), e0 the slack x_a − x at the start and u the speed of the anchor,
+#
+#     viscous   b Q           Coulomb   f_c |Δx|        actuator   −∫ f_a v dt
+#     spring on the device    ∫ k e v = k [Δx (e0 − Δx/2) + u (t Δx − A)]
+#     damper on the device    ∫ c (u − v) v = c (u Δx − Q)
+#     the hand's own mass     −m_h (v1² − v0²)/2
+#     anchor, by the muscles  u ∫ (k e + c (u − v)) = u [k (e0 t + u t²/2 − A) + c (u t − Δx)]
+#     hand's damper           c ∫ (u − v)² = c (u² t − 2 u Δx + Q)
+
+
+@compiled
+def book(
+    state: Array,
+    plant: Plant,
+    drive: Drive,
+    t: float,
+    moved: float,
+    area: float,
+    squares: float,
+    pull: float,
+    v0: float,
+    v1: float,
+) -> None:
+    """Add the energies of a stretch of sliding to the state; `pull` is ∫ f_a v dt."""
+    k, c = plant.stiffness, plant.hand_damping
+    slack, speed = drive.slack, drive.speed
+    state[VISCOUS] += plant.damping * squares
+    state[COULOMB] += plant.coulomb * abs(moved)
+    state[ACTUATOR_WORK] -= pull
+    spring = k * (moved * (slack - 0.5 * moved) + speed * (t * moved - area))
+    damper = c * (speed * moved - squares)
+    inertia = 0.5 * plant.hand_mass * (v1 - v0) * (v1 + v0)
+    state[HAND_WORK] += drive.force * moved + spring + damper - inertia
+    anchor = speed * (k * (slack * t + 0.5 * speed * t * t - area) + c * (speed * t - moved))
+    state[SOURCE_WORK] += drive.force * moved + anchor
+    state[HAND_LOSS] += c * (speed * speed * t - 2.0 * speed * moved + squares)
+
+
+@compiled
+def book_rest(state: Array, plant: Plant, drive: Drive, t: float) -> None:
+    """Add the energies of a stretch at rest: only the anchor moves."""
+    k, c, speed = plant.stiffness, plant.hand_damping, drive.speed
+    state[SOURCE_WORK] += speed * (k * (drive.slack * t + 0.5 * speed * t * t) + c * speed * t)
+    state[HAND_LOSS] += c * speed * speed * t
+
+
+# A stretch whose motion is prescribed: constant velocity, after an impulse of the hand on the mass; then
+# the hand works against the actuator, f_c sgn v and b v.
+
+
+@compiled
+def carry(state: Array, plant: Plant, target: float, h: float) -> None:
+    """Go to `target` in h seconds; the state is changed in place."""
+    moved = target - state[POSITION]
+    v0, v1 = state[VELOCITY], moved / h
+    mean = _advance_force(state, plant, h)
+    pull = mean * moved
+    viscous, coulomb = plant.damping * v1 * moved, plant.coulomb * abs(moved)
+    state[ACTUATOR_WORK] -= pull
+    state[VISCOUS] += viscous
+    state[COULOMB] += coulomb
+    work = pull + viscous + coulomb + 0.5 * plant.mass * (v1 - v0) * (v1 + v0)
+    state[HAND_WORK] += work
+    state[SOURCE_WORK] += work
+    state[POSITION] = target
+    state[VELOCITY] = v1
+    state[DIRECTION] = 1.0 if v1 > 0.0 else (-1.0 if v1 < 0.0 else 0.0)
+
+
+@compiled
+def _advance_force(state: Array, plant: Plant, h: float) -> float:
+    """Move the actuator force on by h; returns its mean over that time."""
+    start, goal = state[FORCE], state[GOAL]
+    gap = goal - start
+    if gap == 0.0:
+        return start
+    if plant.lag > 0.0:
+        share = -expm1(-h / plant.lag)
+        state[FORCE] = goal - gap * (1.0 - share)
+        return goal - gap * share * plant.lag / h
+    reach = abs(gap) / plant.slew
+    if reach >= h:
+        state[FORCE] = start + gap * (h / reach)
+        return start + 0.5 * gap * (h / reach)
+    state[FORCE] = goal
+    return goal - 0.5 * gap * (reach / h)

@@ -15,7 +15,7 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.loop.every_reading import after_every_reading, scratch
+from zwidth.loop.kernel import after_every_reading, scratch
 from zwidth.model import rendering
 from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.passivity.storage import same_law

@@ -77,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
         (simulated_pair(arguments, tables), "", "") if pair else _simulated(arguments, tables)
     )
     if sound is not None:
-        from zwidth.loop.traces.sound import save_sound
+        from zwidth.loop.traces.files import save_sound
 
         save_sound(trace.sel(arm="leader") if pair else trace, sound, force=True)
     if save is not None or plot is not None:
@@ -250,7 +250,7 @@ def pair_with_options(arguments: argparse.Namespace, tables: Mapping[str, Table]
 def pair_measures(trace: AnyTrace) -> dict[str, Any]:
     """What a trace of a pair is measured by, a unit in every key."""
     from zwidth.loop.energy import PairLedger
-    from zwidth.loop.traces.scores import static_stiffness, tracking_error
+    from zwidth.loop.traces.measures import static_stiffness, tracking_error
 
     motion = str(trace.attrs["motion"])
     felt, apart = static_stiffness(trace.sel(arm="leader")), tracking_error(trace)

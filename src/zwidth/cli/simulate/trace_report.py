@@ -12,11 +12,9 @@ from rich.table import Table
 from rich.text import Text
 
 from zwidth.cli.page import below, blocks, grid, headline, more_with_all, page
-from zwidth.loop.energy import PairLedger
-from zwidth.loop.energy.ledger import ROUNDING, ledger
+from zwidth.loop.energy import ROUNDING, PairLedger, ledger
 from zwidth.loop.trace import UNITS
-from zwidth.loop.traces.measures import measure, units_of
-from zwidth.loop.traces.scores import static_stiffness, tracking_error
+from zwidth.loop.traces.measures import measure, static_stiffness, tracking_error, units_of
 from zwidth.model.specification.table import plain
 from zwidth.quantity.text import quantity_unit, shown
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from zwidth.model.environment import Environment
     from zwidth.model.specification.read import Specification
     from zwidth.quantity.exact import Exact
-    from zwidth.study.bench.bench import LawComparison
+    from zwidth.study.bench.comparison import LawComparison
 
 YOURS = "yours"
 """What the row of laws of a specification is called on the bench."""
@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     loop, radius = _touched(tables, overrides(arguments))
     own = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
     from zwidth.show.with_bar import compare
-    from zwidth.study.bench.laws import standard_laws
+    from zwidth.study.bench.bench import standard_laws
 
     yours = {} if own is loop.environment else {YOURS: own}
     fastest = _speed(arguments.fastest)
@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _touched(tables: Mapping[str, Table], typed: Mapping[str, str]) -> tuple[Specification, Exact | None]:
     """The loop, and of a device that turns the radius at which it is touched."""
     from zwidth.model.specification.read import specified
-    from zwidth.study.bench.laws import radius_of
+    from zwidth.study.bench.bench import radius_of
 
     table = tables.get("device")
     beside = {key: value for key, value in typed.items() if key != "handle_radius"}
@@ -93,7 +93,7 @@ def _of_a_rim(
 ) -> LawComparison:
     """The comparison at the rim, told about the axis."""
     from zwidth.show.with_bar import compare
-    from zwidth.study.bench.laws import at_rim, standard_laws, wall_to_render
+    from zwidth.study.bench.bench import at_rim, standard_laws, wall_to_render
 
     if yours:
         raise InputError(

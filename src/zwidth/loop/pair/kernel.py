@@ -7,9 +7,9 @@ has it.
 
 from __future__ import annotations
 
+from math import ceil, sqrt
 from typing import NamedTuple
 
-from zwidth.loop.carry import carry
 from zwidth.loop.kernel import (
     R_COMMAND,
     R_READING,
@@ -23,9 +23,8 @@ from zwidth.loop.kernel import (
     travel,
 )
 from zwidth.loop.law import measured, rounded
-from zwidth.loop.pair.contact import advance_against
-from zwidth.loop.pair.curve import advance_on, line_of, on_line
-from zwidth.loop.plant import POSITION, SATURATED, Plant
+from zwidth.loop.plant import FAULT, POSITION, SATURATED, VELOCITY, Plant
+from zwidth.loop.step import advance, carry
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.elementary import tanh
 
@@ -196,3 +195,134 @@ def go(arm: Arm, hand: Hand, start: float, end: float, h: float, due: int, k: in
         if now < end:
             due = apply_due(arm.state, arm.plant, due, k, now, arm.late, arm.offset, nothing, arm.commands)
     return due
+
+
+# An arm whose friction is a curve of straight lines: each is Coulomb and viscous friction, of any sign.
+#
+#     f(v) = f_i + b_i |v|  for v_i ≤ |v| < v_{i+1},    stuck up to f(0)
+#
+# Within a line the motion has its closed form; where the speed leaves it is found to the last bits, so that
+# every joule is that of the line it was lost on.  Where friction falls an arm may stick and slip.
+
+
+FROM, COULOMB_PART, VISCOUS_PART = range(3)
+"""Of a line: v_i, f_i, b_i."""
+
+_LOOKS = 8
+"""How often in a stretch it is looked whether the speed has left its line, at least."""
+
+_MOST = 100_000
+_BISECTIONS = 60
+
+
+@compiled
+def line_of(curve: Array, speed: float) -> int:
+    """The line on which a speed lies."""
+    i = 0
+    while i + 1 < curve.shape[0] and speed >= curve[i + 1, FROM]:
+        i += 1
+    return i
+
+
+@compiled
+def on_line(plant: Plant, curve: Array, i: int) -> Plant:
+    """The plant with the friction of one line."""
+    return Plant(
+        plant.mass,
+        plant.hand_mass,
+        curve[i, VISCOUS_PART],
+        curve[i, COULOMB_PART],
+        plant.stiction,
+        plant.stiffness,
+        plant.hand_damping,
+        plant.lag,
+        plant.slew,
+    )
+
+
+@compiled
+def advance_on(
+    state: Array, plant: Plant, curve: Array, push: float, anchor: float, speed: float, h: float, work: Array
+) -> None:
+    """As `step.advance`, with the friction of a curve; without one the same.
+
+    A speed that leaves its line and comes back between two looks is not seen to have left it.
+    """
+    if curve.shape[0] == 0:
+        advance(state, plant, push, anchor, speed, h, work)
+        return
+    mass, now = plant.mass + plant.hand_mass, 0.0
+    for _ in range(_MOST):
+        if now >= h:
+            return
+        before = state.copy()
+        i = line_of(curve, abs(state[VELOCITY]))
+        own = on_line(plant, curve, i)
+        quick = max(abs(own.damping + own.hand_damping) / mass, sqrt(own.stiffness / mass))
+        step = min(h - now, h / max(_LOOKS, ceil(4.0 * quick * h)))
+        here = anchor + speed * now
+        advance(state, own, push, here, speed, step, work)
+        if _left(curve, i, before, state):
+            low = 0.0
+            for _ in range(_BISECTIONS):
+                middle = 0.5 * (low + step)
+                if middle <= low or middle >= step:
+                    break
+                state[:] = before
+                advance(state, own, push, here, speed, middle, work)
+                if _left(curve, i, before, state):
+                    step = middle
+                else:
+                    low = middle
+            state[:] = before
+            advance(state, own, push, here, speed, step, work)
+        now = h if now + step >= h else now + step
+    state[FAULT] = 1.0
+
+
+@compiled
+def _left(curve: Array, i: int, before: Array, state: Array) -> bool:
+    """Whether the speed is on another line, or on this one the other way."""
+    turned = i > 0 and before[VELOCITY] * state[VELOCITY] <= 0.0
+    return turned or line_of(curve, abs(state[VELOCITY])) != i
+
+
+# An arm against a real wall: a spring and a damper in continuous time, on one side of x = 0 only.
+
+"""How often in a stretch it is looked whether the arm has met or left the wall, at least."""
+
+
+@compiled
+def advance_against(state: Array, free: Plant, inside: Plant, curve: Array, h: float, work: Array) -> None:
+    """Move by h seconds under a constant actuator force; as `inside` where x > 0, as `free` elsewhere.
+
+    The instant at which x passes 0 is found to the last bits, so that the wall gives back no more than it
+    took.  An arm that goes in and out again between two looks is not seen to have met it.
+    """
+    looks = _LOOKS
+    if inside.stiffness > 0.0:  # 20 in the half period of a contact
+        looks = max(looks, ceil(h * 20.0 / 3.2 * sqrt(inside.stiffness / inside.mass)))
+    for look in range(looks):
+        left = h * (look + 1) / looks - h * look / looks
+        x = state[POSITION]
+        within = x > 0.0 or (x == 0.0 and state[VELOCITY] > 0.0)
+        for _ in range(4):  # it passes 0 once, or not at all; more often only by rounding
+            before = state.copy()
+            advance_on(state, inside if within else free, curve, 0.0, 0.0, 0.0, left, work)
+            if (state[POSITION] > 0.0) == within or state[POSITION] == 0.0:
+                break
+            low, high = 0.0, left
+            for _ in range(_BISECTIONS):
+                middle = 0.5 * (low + high)
+                if middle <= low or middle >= high:
+                    break
+                state[:] = before
+                advance_on(state, inside if within else free, curve, 0.0, 0.0, 0.0, middle, work)
+                if (state[POSITION] > 0.0) == within:
+                    low = middle
+                else:
+                    high = middle
+            state[:] = before
+            advance_on(state, inside if within else free, curve, 0.0, 0.0, 0.0, low, work)
+            left -= low
+            within = not within

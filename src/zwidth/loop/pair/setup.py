@@ -12,8 +12,7 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.loop.kernel import RECORDED
 from zwidth.loop.law import measured, rounded
-from zwidth.loop.pair.curve import COULOMB_PART
-from zwidth.loop.pair.kernel import Arm, Law
+from zwidth.loop.pair.kernel import COULOMB_PART, Arm, Law
 from zwidth.loop.plant import FORCE, GOAL, POSITION, STATE_SIZE, Plant
 from zwidth.loop.setup import Frame, frame_of
 from zwidth.model.device import FrictionCurve

@@ -10,14 +10,11 @@ import xarray as xr
 
 from zwidth.errors import InputError
 from zwidth.lazy import above
-from zwidth.loop.energy import Ledger, PairLedger, ledger
-from zwidth.loop.energy.pair_ledger import of_one_arm
-from zwidth.loop.pair.trace import FORMAT as OF_A_PAIR
+from zwidth.loop.energy import Ledger, PairLedger, ledger, of_one_arm
+from zwidth.loop.pair.simulate import FORMAT as OF_A_PAIR
 from zwidth.loop.trace import FORMAT
-from zwidth.loop.traces.files import save_trace
-from zwidth.loop.traces.perceived import WEBER, noticeable_differences
-from zwidth.loop.traces.scores import static_stiffness, tracking_error
-from zwidth.loop.traces.sound import save_sound
+from zwidth.loop.traces.files import save_sound, save_trace
+from zwidth.loop.traces.measures import WEBER, noticeable_differences, static_stiffness, tracking_error
 
 
 @xr.register_dataset_accessor("zwidth")  # type: ignore[no-untyped-call]

@@ -11,11 +11,8 @@ from collections.abc import Sequence
 from typing import Literal
 
 from zwidth.errors import InputError
-from zwidth.loop import series
-from zwidth.loop.free import free_response
-from zwidth.loop.ledger import book
-from zwidth.loop.plant import FORCE, GOAL, STATE_SIZE, Plant
-from zwidth.loop.step import advance
+from zwidth.loop.plant import FORCE, GOAL, STATE_SIZE, WORK, Plant, free_response, product_integral
+from zwidth.loop.step import advance, book
 from zwidth.machine.firmware.c99 import C99
 from zwidth.machine.firmware.c99 import KEYWORDS as OF_C
 from zwidth.machine.firmware.header import AS_BEFORE, DOUBLE, UNCONTRACTED, rounded
@@ -30,7 +27,7 @@ from zwidth.quantity.elementary import exp, expm1, log, log1p
 Hand = Literal["free", "anchored"]
 """A force alone; or a spring and a damper to an anchor that moves, as well."""
 
-_APART = (exp, expm1, log, log1p, free_response, series.product_integral, book)
+_APART = (exp, expm1, log, log1p, free_response, product_integral, book)
 
 _PLACES = (
     ("POSITION", "m, or rad"),
@@ -92,7 +89,7 @@ def plant_program(plant: Plant | None, period: float | None, hand: Hand) -> Prog
     anchor = (
         [Variable("real", "anchor"), Variable("real", "anchor_speed")] if hand == "anchored" else [0.0, 0.0]
     )
-    cells = Cells("state", STATE_SIZE), Cells("work", series.WORK)
+    cells = Cells("state", STATE_SIZE), Cells("work", WORK)
     given = Variable("real", "force"), Variable("real", "push")
     length = Variable("real", "period") if period is None else float(period)
     return specialised(one_period, (*cells, numbers, *given, *anchor, length), _APART)
@@ -124,7 +121,7 @@ def plant_header(program: Program, *, name: str = "plant", about: Sequence[str] 
         "/* what is where in state[] */",
         *(f"#define {upper}_{place} {k}  /* {meaning} */" for k, (place, meaning) in enumerate(_PLACES)),
         "",
-        f"typedef struct {{ double state[{STATE_SIZE}]; double work[{series.WORK}]; }} {name}_state;",
+        f"typedef struct {{ double state[{STATE_SIZE}]; double work[{WORK}]; }} {name}_state;",
         "",
         *c.table_lines(),
         *c.helper_lines(),
@@ -134,7 +131,7 @@ def plant_header(program: Program, *, name: str = "plant", about: Sequence[str] 
         f"static inline void {name}_init({name}_state *s, double position)",
         "{",
         f"    for (int k = 0; k < {STATE_SIZE}; k += 1) {{ s->state[k] = 0.0; }}",
-        f"    for (int k = 0; k < {series.WORK}; k += 1) {{ s->work[k] = 0.0; }}",
+        f"    for (int k = 0; k < {WORK}; k += 1) {{ s->work[k] = 0.0; }}",
         f"    s->state[{upper}_POSITION] = position;",
         "}",
         "",
@@ -166,7 +163,7 @@ def plant_module(program: Program, *, about: Sequence[str] = ()) -> str:
         *functions,
         "/* At rest at this position, no force, no energy counted. */",
         "export function init(position) {",
-        f"    const s = {{ state: new Float64Array({STATE_SIZE}), work: new Float64Array({series.WORK}) }};",
+        f"    const s = {{ state: new Float64Array({STATE_SIZE}), work: new Float64Array({WORK}) }};",
         "    s.state[POSITION] = position;",
         "    return s;",
         "}",

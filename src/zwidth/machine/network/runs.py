@@ -18,9 +18,8 @@ from zwidth.links.port import Port
 from zwidth.loop.kernel import R_COMMAND, R_READING
 from zwidth.loop.pair.kernel import Arm, read, through
 from zwidth.loop.pair.setup import prepare_pair
-from zwidth.loop.pair.trace import build_pair_trace
-from zwidth.loop.plant import FORCE, GOAL
-from zwidth.loop.series import WORK
+from zwidth.loop.pair.simulate import build_pair_trace
+from zwidth.loop.plant import FORCE, GOAL, WORK
 from zwidth.model.device import Device
 from zwidth.model.operator.operator import Operator
 from zwidth.model.pairs import Pair

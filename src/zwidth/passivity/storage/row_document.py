@@ -16,7 +16,7 @@ from math import ceil, isfinite
 from typing import Any
 
 from zwidth.errors import InputError
-from zwidth.loop.every_reading import after_reading, scratch
+from zwidth.loop.kernel import after_reading, scratch
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment

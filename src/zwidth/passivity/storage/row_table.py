@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zwidth.errors import InputError
-from zwidth.loop.every_reading import after_every_reading, after_reading, scratch
+from zwidth.loop.kernel import after_every_reading, after_reading, scratch
 from zwidth.loop.law import LIMIT, STEP
 from zwidth.loop.setup import prepare
 from zwidth.model.device.device import Device

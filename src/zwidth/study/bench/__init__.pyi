@@ -1,3 +1,3 @@
-from zwidth.study.bench.bench import LawComparison as LawComparison
 from zwidth.study.bench.bench import compare as compare
-from zwidth.study.bench.laws import standard_laws as standard_laws
+from zwidth.study.bench.bench import standard_laws as standard_laws
+from zwidth.study.bench.comparison import LawComparison as LawComparison

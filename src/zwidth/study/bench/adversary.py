@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from zwidth.loop.law import PHASE, RESOLUTION, measured
 from zwidth.loop.plant import STATE_SIZE
-from zwidth.loop.rounds import run_rounds
+from zwidth.loop.runs import run_rounds
 from zwidth.loop.setup import prepare, resting_memory
 from zwidth.loop.simulate import simulate
 from zwidth.model.device.device import Device

@@ -1,51 +1,80 @@
-"""Many laws, the same touches: what each promises, what it keeps, what it costs the feel."""
+"""Many laws, with defaults from the device, and the same touches: what each promises, keeps and costs."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
-from math import isfinite
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from math import pi
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.lazy import above
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
-from zwidth.loop.traces import scores
-from zwidth.loop.traces.perceived import SOURCE, WEBER, noticeable_differences
+from zwidth.loop.traces.measures import (
+    SOURCE,
+    WEBER,
+    bounces,
+    chatter,
+    free_damping,
+    generated_energy,
+    noticeable_differences,
+    peak_force,
+    penetration,
+    rate_hardness,
+    rms_force,
+    settling_time,
+    static_stiffness,
+)
 from zwidth.model.device.device import Device
+from zwidth.model.device.rotary import ROTARY, at_handle
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
-from zwidth.model.environment.wall import Wall
+from zwidth.model.environment.velocity import OnePole, Window
+from zwidth.model.environment.wall import Wall, wall_of
+from zwidth.model.operator import TypicalTouch
 from zwidth.model.pairs import Pair
-from zwidth.quantity.documented import Documented
-from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.glossary import unit_suffix
-from zwidth.quantity.text import shown
-from zwidth.showing import Part
-from zwidth.study.bench.adversary import FASTEST, Attack, attack
-from zwidth.study.bench.advice import (
-    Touch,
-    advice,
-    answer,
-    legend,
-    on_paper,
-    short_table,
-    standard_touches,
-    table,
-    told_of,
+from zwidth.model.rendering import (
+    AdaptiveWindow,
+    BrakingPulse,
+    CrossingCorrection,
+    Damper,
+    DualRate,
+    EnergyBounding,
+    EnergyTank,
+    EventTransient,
+    Extrapolation,
+    ForceBounding,
+    HalfSamplePrediction,
+    Held,
+    Hysteresis,
+    Kalman,
+    PassiveLeap,
+    PassivityController,
+    PoleMatched,
+    RateTerm,
+    RenderingLaw,
+    TickTime,
+    VirtualCoupling,
+    WindowedController,
+    render,
 )
-from zwidth.study.bench.laws import about_axis, at_rim, radius_of, standard_laws, wall_to_render
+from zwidth.model.rendering.rendered import laws_of
+from zwidth.model.rendering.rendering_law import LoopContext
+from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.parameter import read_number
+from zwidth.study.bench.adversary import FASTEST, Attack, attack
+from zwidth.study.bench.comparison import LawComparison, Touch, standard_touches
 from zwidth.study.bench.motions import found_motions
 from zwidth.study.bench.pairs import PairComparison, compare_pairs
 from zwidth.study.bench.standing import Standing, standing
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.figure import Figure
+
 
 _TIMED = 20_000
 """Samples over which a step is timed."""
@@ -61,131 +90,20 @@ class Score(NamedTuple):
 
 
 SCORES: Mapping[str, Score] = {
-    "static_stiffness": Score("stiffness felt at rest", "press", "N/m", scores.static_stiffness),
-    "rate_hardness": Score("rate-hardness in the first 10 ms", "press", "N/m", scores.rate_hardness),
-    "chatter": Score("force above 30 Hz in contact", "press", "N", scores.chatter),
-    "penetration": Score("deepest position", "press", "m", scores.penetration),
-    "settling_time": Score("time until at rest", "press", "s", scores.settling_time),
-    "rms_force": Score("RMS force in contact", "press", "N", scores.rms_force),
-    "peak_force": Score("largest force", "tap", "N", scores.peak_force),
-    "bounces": Score("times that contact is lost", "tap", "1", scores.bounces),
-    "tap_chatter": Score("force above 30 Hz after a tap", "tap", "N", scores.chatter),
-    "generated_energy": Score("energy given out", "tap", "J", scores.generated_energy),
-    "dowel_energy": Score("energy given out to a dowel", "dowel", "J", scores.generated_energy),
-    "free_damping": Score("damping felt in free air", "free air", "N*s/m", scores.free_damping),
+    "static_stiffness": Score("stiffness felt at rest", "press", "N/m", static_stiffness),
+    "rate_hardness": Score("rate-hardness in the first 10 ms", "press", "N/m", rate_hardness),
+    "chatter": Score("force above 30 Hz in contact", "press", "N", chatter),
+    "penetration": Score("deepest position", "press", "m", penetration),
+    "settling_time": Score("time until at rest", "press", "s", settling_time),
+    "rms_force": Score("RMS force in contact", "press", "N", rms_force),
+    "peak_force": Score("largest force", "tap", "N", peak_force),
+    "bounces": Score("times that contact is lost", "tap", "1", bounces),
+    "tap_chatter": Score("force above 30 Hz after a tap", "tap", "N", chatter),
+    "generated_energy": Score("energy given out", "tap", "J", generated_energy),
+    "dowel_energy": Score("energy given out to a dowel", "dowel", "J", generated_energy),
+    "free_damping": Score("damping felt in free air", "free air", "N*s/m", free_damping),
 }
 """What is computed of each law, by variable."""
-
-
-@dataclass(frozen=True, repr=False)
-class LawComparison(Documented):
-    """What became of each law.
-
-    Attributes
-    ----------
-    scores
-        Dimension `law`; the variables of `SCORES`, units and meanings in the attributes, and
-        `stiffness_jnds`, just-noticeable differences between what is felt and what was wanted,
-        `gain`, energy that the worst motion takes out in a round [J], `step_time` [s],
-        `status`: "passive" with a certificate, "theorem" by a proof on paper, no certificate, "active" with
-        a motion, or "undecided".
-    attacks
-        The motion of each law that took out most.
-    standings
-        What is known of each law for every hand: its status, why, and what of the device that counts.
-    traces
-        Of each law and touch.
-    device, environment
-        What was compared.
-    radius
-        Of a device that turns: how far from its axis it was touched [m]; traces and motions are those of
-        that place.  None for a handle.
-    """
-
-    FORMAT = "zwidth laws 1"
-
-    scores: xr.Dataset
-    attacks: Mapping[str, Attack]
-    standings: Mapping[str, Standing]
-    traces: Mapping[str, Mapping[str, xr.Dataset]]
-    device: Device
-    environment: Wall
-    radius: float | None = None
-
-    def about_axis(self, device: Device, wall: Wall, radius: Exact) -> LawComparison:
-        """What was found at the rim, `radius` [m] from the axis, of a device that turns and its wall.
-
-        Scores are torques and angles; traces and motions stay those of the rim.
-        """
-        scores, far = about_axis(self.scores, float(radius)), float(radius)
-        return replace(self, scores=scores, device=device, environment=wall, radius=far)
-
-    @property
-    def evidence(self) -> dict[str, str]:
-        """Of each law, why its status is what it is."""
-        return {name: known.evidence for name, known in self.standings.items()}
-
-    @property
-    def advice(self) -> str:
-        """What to do, in a paragraph."""
-        return advice(self.scores, self.device, self.environment)
-
-    def in_short(self, most: int = 6) -> Iterable[Part]:
-        """What to do, and the table of a few laws."""
-        what = answer(self.scores, self.device, self.environment)
-        yield f"{self._what()}: {what}"
-        yield ""
-        yield short_table(self.scores, told_of(self.scores, self.environment), most)
-        yield ""
-        yield from on_paper(self.scores)
-
-    def report(self) -> Iterable[Part]:
-        """What to do, the table, and what its words mean."""
-        yield f"{self._what()}: {self.advice}"
-        yield ""
-        yield table(self.scores)
-        yield ""
-        yield legend(self.scores)
-
-    def to_dict(self) -> dict[str, Any]:
-        """The scores of each law, a unit in every key, what is known of it, and the advice."""
-        laws = {name: self._known(name) | self._scored(name) for name in map(str, self.scores["law"].values)}
-        touched = {} if self.radius is None else {"touched_at_radius_m": self.radius}
-        return {"format": self.FORMAT, "advice": self.advice, **touched, "laws": laws}
-
-    def _what(self) -> str:
-        """What was compared, in a few words."""
-        touched = "" if self.radius is None else f", touched {shown(self.radius, 'm')} from its axis"
-        law = self.environment.describe(self.device.motion)
-        return f"{law} on {self.device.name or 'the device'}{touched}"
-
-    def _known(self, name: str) -> dict[str, Any]:
-        known = self.standings[name]
-        return {
-            "status": known.status,
-            "proof": known.proof,
-            "evidence": known.evidence,
-            "withheld": list(known.withheld),
-            "scope": known.scope.to_dict(),
-        }
-
-    def _scored(self, name: str) -> dict[str, float | None]:
-        """By name and unit; None for what has no bound."""
-        scores = self.scores.sel(law=name).drop_vars("status").data_vars.items()
-        units = {key: value.attrs["units"] for key, value in scores}
-        return {
-            str(key) if units[key] == "1" else f"{key}_{unit_suffix(units[key])}": _finite(float(value))
-            for key, value in scores
-        }
-
-    def figure(self) -> Figure:
-        """Stability against fidelity, and the touches of each law."""
-        figure: Figure = above("plots").laws_figure(self)
-        return figure
-
-
-def _finite(number: float) -> float | None:
-    return number if isfinite(number) else None
 
 
 @overload
@@ -330,3 +248,155 @@ def _dataset(
     data["status"] = ("law", [standings[name].status for name in names])
     data["status"].attrs = {"long_name": "what is known for every hand"}
     return data
+
+
+# The laws that are compared, each with defaults that follow from the device.
+
+
+Law = Callable[[Device, Wall], Environment]
+
+CUTOFF = 100.0
+"""Of the velocity filter [Hz]."""
+
+SLOW = 10
+"""Samples between two updates of an environment that is computed slowly."""
+
+FAST = 0.2
+"""Speed of a hand whose leak a hysteresis is sized for [m/s]."""
+
+
+def _damped(device: Device, wall: Wall, **how: object) -> Wall:
+    """The wall with virtual damping K T/2: half a sample ahead."""
+    period = device.exact("sample_period")
+    return wall.replace(damping=wall.stiffness.fraction * period / 2, **how)  # type: ignore[union-attr]
+
+
+def _coupled(device: Device, wall: Wall) -> Environment:
+    """Behind a coupling that the device renders passively, as stiff as 2b/T allows."""
+    limit = 2 * device.exact("damping") / device.exact("sample_period")
+    return VirtualCoupling(stiffness=limit, damping=0, environment=wall)
+
+
+def _through(make: Callable[[Device, Wall], RenderingLaw]) -> Law:
+    return lambda device, wall: render(wall, make(device, wall))
+
+
+def _half_sample_damping(device: Device, wall: Wall) -> float:
+    """K T/2."""
+    return float(wall.stiffness) * float(device.exact("sample_period")) / 2  # type: ignore[arg-type]
+
+
+def _model() -> dict[str, Any]:
+    """The finger of the bench, as laws are told that look ahead with a model."""
+    finger = TypicalTouch()
+    return {
+        "finger_mass": finger.mass,
+        "finger_stiffness": finger.stiffness,
+        "finger_damping": finger.damping,
+    }
+
+
+LAWS: Mapping[str, Law] = {
+    "wall": lambda device, wall: wall,
+    "virtual-damping": _damped,
+    "one-pole-damping": lambda d, w: _damped(d, w, velocity_filter=OnePole(1 / (2 * pi * CUTOFF))),
+    "window-damping": lambda d, w: _damped(d, w, velocity_filter=Window(8)),
+    "virtual-coupling": _coupled,
+    "adaptive-window-damping": _through(lambda d, w: Damper(_half_sample_damping(d, w), AdaptiveWindow())),
+    "tick-time-damping": _through(lambda d, w: Damper(_half_sample_damping(d, w), TickTime())),
+    "kalman-damping": _through(lambda d, w: Damper(_half_sample_damping(d, w), Kalman())),
+    "extrapolation": _through(lambda d, w: Extrapolation()),
+    "half-sample-prediction": _through(lambda d, w: HalfSamplePrediction(**_model())),
+    "crossing-correction": _through(lambda d, w: CrossingCorrection(**_model())),
+    "pole-matched": _through(lambda d, w: PoleMatched(**_model())),
+    "passivity-controller-published": _through(
+        lambda d, w: PassivityController(observer="published", largest_damping="unlimited")
+    ),
+    "passivity-controller-unlimited": _through(lambda d, w: PassivityController(largest_damping="unlimited")),
+    "passivity-controller": _through(lambda d, w: PassivityController()),
+    "passivity-controller-past": _through(lambda d, w: PassivityController(observer="past")),
+    "passivity-controller-limited": _through(lambda d, w: PassivityController(resets=True, ceiling=0)),
+    "windowed-controller": _through(lambda d, w: WindowedController()),
+    "rate-term": _through(lambda d, w: RateTerm()),
+    "force-bounding": _through(lambda d, w: ForceBounding()),
+    "force-bounding-ideal": _through(lambda d, w: ForceBounding(encoder="ideal")),
+    "energy-bounding": _through(lambda d, w: EnergyBounding()),
+    "energy-tank": _through(lambda d, w: EnergyTank()),
+    "passive-leap": _through(lambda d, w: PassiveLeap()),
+    "local-spring": _through(lambda d, w: DualRate(samples=SLOW)),
+    "held": _through(lambda d, w: Held(samples=SLOW)),
+    "hysteresis": _through(lambda d, w: Hysteresis(fastest=FAST)),
+    "braking-pulse": _through(lambda d, w: BrakingPulse()),
+    "event-transient": _through(lambda d, w: EventTransient()),
+}
+"""By name, in the order in which they are shown."""
+
+
+def wall_to_render(environment: Environment) -> Wall:
+    """What the laws of the bench render."""
+    wall = wall_of(environment)
+    if wall is None:
+        raise InputError(f"the bench compares how a wall is rendered, got {environment.describe()}")
+    return wall
+
+
+def standard_laws(device: Device, wall: Environment) -> dict[str, Environment]:
+    """Every law of the bench for a wall on a device; without those that need a number it does not have.
+
+    Parameters
+    ----------
+    device
+        Every number certain.
+    wall
+        What is to be rendered.
+
+    Raises
+    ------
+    InputError
+        If it is no wall, or a number is an interval.
+    """
+    met = wall_to_render(wall)
+    if not met.is_certain or any(not isinstance(v, Exact) for v in (device.damping, device.sample_period)):
+        raise InputError("the bench simulates one loop: give numbers, no intervals")
+    made = {name: law(device, met) for name, law in LAWS.items()}
+    return {name: law for name, law in made.items() if _suits(law, device)}
+
+
+def _suits(law: Environment, device: Device) -> bool:
+    """Whether the device has all the numbers that a law is computed from."""
+    try:
+        for link in laws_of(law):
+            link.numbers(LoopContext(device, law.met))
+    except InputError:
+        return False
+    return True
+
+
+# A device that turns, on the bench of a handle: its rim at a radius r, where a finger touches it.
+
+
+def radius_of(device: Device, given: RealLike | None) -> Exact:
+    """The radius at which a device that turns is touched [m]."""
+    if given is None:
+        raise InputError(
+            f"the touches of the bench are a finger's, at a handle or rim, and {device.name} turns: say how "
+            "far from the axis that is, --handle-radius '0.15 m' for a wheel, '2 cm' for a knob"
+        )
+    own = ROTARY["handle_radius"]
+    radius: Exact = read_number(
+        given, own, "handle_radius", bound="> 0", why="the handle turns about the axis", uncertain=False
+    )
+    return radius
+
+
+def at_rim(device: Device, wall: Wall, radius: Exact) -> tuple[Device, Wall]:
+    """The same device and wall, felt at the rim."""
+    square = radius.fraction**2
+
+    def over(value: object) -> Exact:
+        if not isinstance(value, Exact):
+            raise InputError("the bench simulates one loop: give numbers, no intervals")
+        return Exact(Fraction(value.fraction / square))
+
+    there = replace(wall, stiffness=over(wall.stiffness), damping=over(wall.damping))
+    return at_handle(device, radius), there

@@ -11,7 +11,7 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.loop.simulate import simulate
-from zwidth.loop.traces.scores import static_stiffness
+from zwidth.loop.traces.measures import static_stiffness
 from zwidth.model.environment import Wall
 from zwidth.model.operator import PrescribedMotion, RecordedForce
 from zwidth.model.pairs import Pair

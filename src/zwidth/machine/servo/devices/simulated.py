@@ -27,9 +27,9 @@ from zwidth.loop.plant import (
     STATE_SIZE,
     VELOCITY,
     VISCOUS,
+    WORK,
     Plant,
 )
-from zwidth.loop.series import WORK
 from zwidth.loop.setup import Setup, prepare
 from zwidth.machine.servo.connection import (
     CLOSED,

@@ -1,24 +1,156 @@
-"""One paragraph on which a person can act, computed from the scores."""
+"""What became of each law that was compared: a paragraph on which a person can act, and the tables."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import isfinite, isinf, pi, sin
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from zwidth.loop.traces.perceived import SOURCE, WEBER
+from zwidth.lazy import above
+from zwidth.loop.traces.measures import SOURCE, WEBER
 from zwidth.model.device.device import Device
 from zwidth.model.environment.wall import Wall
 from zwidth.model.operator import Dowel, MaliciousTouch, PrescribedMotion, TypicalTouch
 from zwidth.model.operator.operator import Operator
 from zwidth.passivity.check import check_by_closed_forms
+from zwidth.quantity.documented import Documented
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import at_most, in_a_table, told, unit_text
-from zwidth.showing import Table
+from zwidth.quantity.text import at_most, in_a_table, shown, told, unit_text
+from zwidth.showing import Part, Table
+from zwidth.study.bench.adversary import Attack
+from zwidth.study.bench.standing import Standing
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, repr=False)
+class LawComparison(Documented):
+    """What became of each law.
+
+    Attributes
+    ----------
+    scores
+        Dimension `law`; the variables of `SCORES`, units and meanings in the attributes, and
+        `stiffness_jnds`, just-noticeable differences between what is felt and what was wanted,
+        `gain`, energy that the worst motion takes out in a round [J], `step_time` [s],
+        `status`: "passive" with a certificate, "theorem" by a proof on paper, no certificate, "active" with
+        a motion, or "undecided".
+    attacks
+        The motion of each law that took out most.
+    standings
+        What is known of each law for every hand: its status, why, and what of the device that counts.
+    traces
+        Of each law and touch.
+    device, environment
+        What was compared.
+    radius
+        Of a device that turns: how far from its axis it was touched [m]; traces and motions are those of
+        that place.  None for a handle.
+    """
+
+    FORMAT = "zwidth laws 1"
+
+    scores: xr.Dataset
+    attacks: Mapping[str, Attack]
+    standings: Mapping[str, Standing]
+    traces: Mapping[str, Mapping[str, xr.Dataset]]
+    device: Device
+    environment: Wall
+    radius: float | None = None
+
+    def about_axis(self, device: Device, wall: Wall, radius: Exact) -> LawComparison:
+        """What was found at the rim, `radius` [m] from the axis, of a device that turns and its wall.
+
+        Scores are torques and angles; traces and motions stay those of the rim.
+        """
+        scores, far = _about_axis(self.scores, float(radius)), float(radius)
+        return replace(self, scores=scores, device=device, environment=wall, radius=far)
+
+    @property
+    def evidence(self) -> dict[str, str]:
+        """Of each law, why its status is what it is."""
+        return {name: known.evidence for name, known in self.standings.items()}
+
+    @property
+    def advice(self) -> str:
+        """What to do, in a paragraph."""
+        return advice(self.scores, self.device, self.environment)
+
+    def in_short(self, most: int = 6) -> Iterable[Part]:
+        """What to do, and the table of a few laws."""
+        what = answer(self.scores, self.device, self.environment)
+        yield f"{self._what()}: {what}"
+        yield ""
+        yield short_table(self.scores, told_of(self.scores, self.environment), most)
+        yield ""
+        yield from on_paper(self.scores)
+
+    def report(self) -> Iterable[Part]:
+        """What to do, the table, and what its words mean."""
+        yield f"{self._what()}: {self.advice}"
+        yield ""
+        yield table(self.scores)
+        yield ""
+        yield legend(self.scores)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The scores of each law, a unit in every key, what is known of it, and the advice."""
+        laws = {name: self._known(name) | self._scored(name) for name in map(str, self.scores["law"].values)}
+        touched = {} if self.radius is None else {"touched_at_radius_m": self.radius}
+        return {"format": self.FORMAT, "advice": self.advice, **touched, "laws": laws}
+
+    def _what(self) -> str:
+        """What was compared, in a few words."""
+        touched = "" if self.radius is None else f", touched {shown(self.radius, 'm')} from its axis"
+        law = self.environment.describe(self.device.motion)
+        return f"{law} on {self.device.name or 'the device'}{touched}"
+
+    def _known(self, name: str) -> dict[str, Any]:
+        known = self.standings[name]
+        return {
+            "status": known.status,
+            "proof": known.proof,
+            "evidence": known.evidence,
+            "withheld": list(known.withheld),
+            "scope": known.scope.to_dict(),
+        }
+
+    def _scored(self, name: str) -> dict[str, float | None]:
+        """By name and unit; None for what has no bound."""
+        scores = self.scores.sel(law=name).drop_vars("status").data_vars.items()
+        units = {key: value.attrs["units"] for key, value in scores}
+        return {
+            str(key) if units[key] == "1" else f"{key}_{unit_suffix(units[key])}": _finite(float(value))
+            for key, value in scores
+        }
+
+    def figure(self) -> Figure:
+        """Stability against fidelity, and the touches of each law."""
+        figure: Figure = above("plots").laws_figure(self)
+        return figure
+
+
+def _finite(number: float) -> float | None:
+    return number if isfinite(number) else None
+
+
+_TURNED = {"N/m": ("N*m/rad", 2), "N": ("N*m", 1), "m": ("rad", -1), "N*s/m": ("N*m*s/rad", 2)}
+"""What a unit at the rim is about the axis, and the power of the radius that takes a value there."""
+
+
+def _about_axis(scores: xr.Dataset, radius: float) -> xr.Dataset:
+    """What was found at the rim, `radius` [m] from the axis, in torques and angles."""
+    turned = scores.copy()
+    for name, value in scores.data_vars.items():
+        unit, power = _TURNED.get(value.attrs.get("units", ""), ("", 0))
+        if unit:
+            turned[name] = (value.dims, radius**power * value.values, {**value.attrs, "units": unit})
+    return turned
 
 
 QUIET = 0.02
