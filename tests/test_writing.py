@@ -214,7 +214,7 @@ def test_only_one_place_opens_files_to_write() -> None:
     """
     source = Path(zw.__file__).parent
     writers = {p for p in source.rglob("*.py") if _WRITES.search(p.read_text(encoding="utf-8"))}
-    of_users = {source / "writing.py", source / "show" / "plots" / "files.py"}
+    of_users = {source / "writing.py", source / "show" / "plots" / "style.py"}
     assert writers == {*of_users, source / "checker" / "schema.py"}
 
 

@@ -22,7 +22,7 @@ from zwidth.passivity.storage import same_law
 from zwidth.passivity.storage.program import program_of
 from zwidth.passivity.storage.row_document import packed
 from zwidth.passivity.witness.motion import saved_motion
-from zwidth.show.plots import storages as storage_figure
+from zwidth.show.plots import storage as storage_figure
 
 BOUNDS = {"penetration": "0.0008", "speed": "0.4"}
 FREE = rendering.SlewLimit(10**9)

@@ -12,6 +12,3 @@ in the look of `LOOK` if your axes have it.
 from zwidth.lazy import attach
 
 __getattr__, __dir__, __all__ = attach(__name__)
-
-for _name in ("budget", "criterion", "cycle", "indices", "plane", "storage", "witness", "worst_case"):
-    __getattr__(_name)  # each is a file, too: the function is found before anybody asks for the file
