@@ -13,6 +13,7 @@ import tomllib
 from contextlib import redirect_stdout, suppress
 from fractions import Fraction
 from functools import cache
+from importlib import import_module
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -111,6 +112,17 @@ def test_names_of_all_are_sorted_and_exist() -> None:
     """`zwidth.__all__` is a list one can find a name in."""
     assert list(zw.__all__) == sorted(zw.__all__, key=lambda n: (not n[0].isupper(), n))
     assert all(hasattr(zw, name) for name in zw.__all__)
+
+
+def test_a_room_is_one_under_both_of_its_names() -> None:
+    """`import zwidth.servo.devices` is the room that stands on a floor; of a function there is no module."""
+    assert import_module("zwidth.rendering") is zw.rendering is import_module("zwidth.model.rendering")
+    devices = import_module("zwidth.servo.devices")
+    assert devices is import_module("zwidth.machine.servo.devices")
+    assert devices.__name__ == "zwidth.machine.servo.devices"
+    for name in ("zwidth.check", "zwidth.null_space", "zwidth.nothing", "zwidth.rendering.nothing"):
+        with pytest.raises(ModuleNotFoundError):
+            import_module(name)
 
 
 def test_version_is_the_one_of_the_distribution() -> None:

@@ -66,7 +66,7 @@ class PublicRooms(MetaPathFinder, Loader):
         """Where the first part after the package is offered, and is a room."""
         package, _, rest = name.partition(".")
         room, _, inner = rest.partition(".") if package == self.package else ("", "", "")
-        if room not in self.places:
+        if room not in self.places or not isinstance(_found(*self.places[room]), ModuleType):
             return None
         where = ".".join((*self.places[room], *filter(None, [inner])))
         return ModuleSpec(name, self, origin=where) if find_spec(where) else None
