@@ -9,13 +9,12 @@ from __future__ import annotations
 import ast
 import sys
 from collections.abc import Callable, Sequence
+from functools import cache
 from importlib import import_module
-from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
-from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, cast
 
 ABOVE: dict[str, str] = {}
 """Rooms that those below ask for and never name, such as "plots": the package says here where they are."""
@@ -46,7 +45,7 @@ def attach(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]],
     return get, lambda: sorted(places), sorted(places)
 
 
-class PublicRooms(MetaPathFinder, Loader):
+class PublicRooms:  # `importlib.abc` would load half of the library
     """Rooms that a package offers from a floor below: ``import zwidth.rendering`` is the room itself.
 
     Parameters
@@ -68,8 +67,10 @@ class PublicRooms(MetaPathFinder, Loader):
         room, _, inner = rest.partition(".") if package == self.package else ("", "", "")
         if room not in self.places or not isinstance(_found(*self.places[room]), ModuleType):
             return None
+        from importlib.util import find_spec
+
         where = ".".join((*self.places[room], *filter(None, [inner])))
-        return ModuleSpec(name, self, origin=where) if find_spec(where) else None
+        return ModuleSpec(name, cast(Any, self), origin=where) if find_spec(where) else None
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         """The room, whose own specification is kept."""
@@ -83,6 +84,7 @@ class PublicRooms(MetaPathFinder, Loader):
         module.__spec__ = module.__spec__.loader_state
 
 
+@cache
 def _places(stub: Path) -> list[tuple[str, tuple[str, str]]]:
     """Of each public name its module, and its name there."""
     return [
