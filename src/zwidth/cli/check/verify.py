@@ -7,7 +7,6 @@ import json
 from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
-from importlib.resources import files
 from pathlib import Path
 
 from zwidth.checker import (
@@ -138,6 +137,8 @@ def _joules(energy: Fraction) -> str:
 
 def schema(kind: str) -> str:
     """What stands in the file of a kind of document, in lines for people."""
+    from importlib.resources import files  # it loads half of the library
+
     shipped = {
         path.name.removesuffix(".json").replace("-", " "): path
         for path in files("zwidth.checker").joinpath("schemas").iterdir()
