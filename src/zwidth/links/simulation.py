@@ -24,6 +24,9 @@ from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:
     import xarray as xr
+    from numpy.typing import NDArray
+
+    Ticks = NDArray[np.int64]
 
 
 def simulate(
@@ -191,12 +194,6 @@ def command(arm: Arm, end: End, k: int, points: int) -> None:
     for column in range(k * points, min((k + 1) * points, arm.record.shape[1])):
         arm.record[R_READING, column] = arm.readings[k]
         arm.record[R_COMMAND, column] = f
-
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Ticks = NDArray[np.int64]
 
 
 class Wire(NamedTuple):

@@ -31,7 +31,7 @@ class TraceAccessor:
         if trace.attrs.get("format") not in (FORMAT, OF_A_PAIR):
             raise InputError(
                 f"this Dataset is no zwidth trace: its attribute format is {trace.attrs.get('format')!r}, "
-                f"not {FORMAT!r}; traces come from zwidth.simulate and zwidth.loop.traces.load_trace"
+                f"not {FORMAT!r}; traces come from zwidth.simulate and zwidth.traces.load_trace"
             )
         self._trace = trace
 

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
     from zwidth.model.operator.operator import Signal
 
+    Path = ArrayLike | Callable[[float], float]
+
 
 def _switches(given: ArrayLike | None, name: str) -> Signal | None:
     return None if given is None else as_record(given, "switch positions", UNIT)
@@ -87,13 +89,6 @@ def _same_length(what: str, given: int, wanted: int, of: str) -> None:
             f"give {wanted} values, or another duration"
         )
 
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from zwidth.model.operator.operator import Signal
-
-    Path = ArrayLike | Callable[[float], float]
 
 UNIT = "m or rad"
 

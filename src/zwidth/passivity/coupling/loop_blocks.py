@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike, NDArray
 
+    Floats = NDArray[np.float64]
+
 
 def delay_sum(
     frequencies: ArrayLike, damping: RealLike, sample_period: RealLike, delay: RealLike = 0
@@ -123,13 +125,6 @@ def _dataset(
 # vᵀΛv, the slack is ≥ 0, whatever u does: that is Lemma 2 (Miller, Colgate & Freeman).  W is a storage if V
 # is bounded below; else it bounds what comes out on closed paths and nothing else.  For a constant δ = Λ the
 # slack is (1/T)∫ (v − v̄)ᵀδ(v − v̄) dt: the lemma loses only the change of velocity within a sample.
-
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from numpy.typing import ArrayLike, NDArray
-
-    Floats = NDArray[np.float64]
 
 
 def loop_storage(

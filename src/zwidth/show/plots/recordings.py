@@ -30,18 +30,17 @@ from zwidth.show.plots.style import (
 from zwidth.show.plots.traces import thinned
 
 if TYPE_CHECKING:
+    import xarray as xr
+    from numpy.typing import NDArray
+
     from zwidth.data.diagnosis.evidence import Evidence
     from zwidth.data.diagnosis.pairs.energy import PairEvidence
     from zwidth.data.diagnosis.pairs.recording import PairRecording
     from zwidth.data.diagnosis.recording import Recording
     from zwidth.data.diagnosis.vibration import Vibration
 
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from numpy.typing import NDArray
-
     Array = NDArray[np.float64]
+
 
 _MOST_GAPS = 200
 """Samples without an answer that are marked one by one."""
