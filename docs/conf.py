@@ -13,6 +13,9 @@ sys.path.insert(0, str(HERE / "_ext"))
 
 import tables  # noqa: E402
 
+from zwidth.quantity.answered import declared  # noqa: E402
+from zwidth.quantity.text import unit_text  # noqa: E402
+
 tables.write()  # before Sphinx looks for what the pages include
 
 project = "zwidth"
@@ -69,7 +72,21 @@ html_theme_options = {"navigation_with_keys": True}
 
 def setup(app: Any) -> None:
     """Read the docstrings as they are written: before numpydoc sections are parsed."""
+    app.connect("autodoc-process-docstring", _with_answers, priority=300)
     app.connect("autodoc-process-docstring", _as_written, priority=400)
+
+
+def _with_answers(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+    """A result says where its class has it what each of its fields is."""
+    fields = getattr(thing, "__dataclass_fields__", {}) if what == "class" else {}
+    told = {name: one for name, one in declared(thing).items() if name in fields} if fields else {}
+    if told:
+        lines += ["Parameters", "----------"]
+    for key, one in told.items():
+        units = dict.fromkeys(unit_text(one.unit_for(motion)) for motion in ("linear", "rotary"))
+        unit = f" [{'; '.join(units)}]" if any(units) else ""
+        lines += [key, f"    {one.meaning[0].upper()}{one.meaning[1:]}{unit}."]
+    lines += [""] if told else []
 
 
 def _as_written(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 
 import chips
@@ -22,6 +23,7 @@ from zwidth.model.kind import Kind
 from zwidth.model.rendering import ESTIMATORS, LAWS
 from zwidth.model.specification import load as pairs
 from zwidth.model.specification.environments import TYPES, all_keys
+from zwidth.quantity.answered import declared
 from zwidth.quantity.glossary import GLOSSARY
 
 GENERATED = Path(__file__).parent.parent / "_generated"
@@ -235,6 +237,29 @@ def plants() -> str:
     return f"{table}\n{sources}\n"
 
 
+ANSWERS = {
+    "measured": "machine.servo.proving:Measured",
+    "recorded": "machine.servo.recording.recorder:Recorded",
+    "served": "machine.servo.report:ServoReport",
+    "served_pair": "machine.servo.report:PairServoReport",
+    "served_port": "machine.servo.report:PortReport",
+}
+"""Results whose keys a page lists: where each is declared."""
+
+
+def answer(where: str) -> str:
+    """Every key of a result's plain data, and what it is; units are those of a linear device."""
+    module, _, name = where.partition(":")
+    kind = getattr(import_module(f"zwidth.{module}"), name)
+    rows = [("`format`", f'`"{kind.FORMAT}"`')] if getattr(kind, "FORMAT", "") else []
+    for name, one in declared(kind).items():
+        if not one.only_shown:
+            keys = one.stands_as or [one.key_for(name, "linear")]
+            parts = f": {', '.join(f'`{part}`' for part in one.names)}" if one.names else ""
+            rows.append((", ".join(f"`{key}`" for key in keys), one.meaning.replace("|", "\\|") + parts))
+    return markdown(("key", "value"), rows)
+
+
 def _options(parameters: Iterable[Parameter]) -> str:
     rows = [(f"`{p.option}`", f"`{p.key}`", _pretty(p.help)) for p in parameters]
     return markdown(("option", "key in a file", "meaning"), rows)
@@ -297,7 +322,9 @@ def write() -> None:
 
     GENERATED.mkdir(exist_ok=True)
     for name, table in (
-        TABLES | {f"settings_{name}": partial(settings, name) for name in CONNECTIONS}
+        TABLES
+        | {f"settings_{name}": partial(settings, name) for name in CONNECTIONS}
+        | {f"answer_{name}": partial(answer, where) for name, where in ANSWERS.items()}
     ).items():
         path, text = GENERATED / f"{name}.md", table()
         if not path.exists() or path.read_text(encoding="utf-8") != text:

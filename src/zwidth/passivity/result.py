@@ -11,6 +11,7 @@ from zwidth.checker import EVIDENCE, verify
 from zwidth.errors import InputError
 from zwidth.passivity.scope import COLOUR, Scope
 from zwidth.passivity.wording import lines
+from zwidth.quantity.answered import data_of, rows_of
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.showing import Headline, Lines, Part, Table
@@ -40,7 +41,7 @@ class Result(Documented):
 
     def rows(self) -> Iterable[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
-        return ()
+        return rows_of(self)
 
     def advised(self) -> Iterable[Part]:
         """What to change, or what is left."""
@@ -122,7 +123,7 @@ class Answer(Result):
 
     def numbers(self) -> dict[str, Any]:
         """The main numbers as plain data, a unit in every key of a physical quantity."""
-        return {}
+        return data_of(self)
 
     def evidence(self) -> dict[str, Any]:
         """Proofs and motions as plain data."""

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from zwidth.errors import InputError
 from zwidth.lazy import above
+from zwidth.quantity.answered import data_of
 from zwidth.quantity.text import save_json, to_json
 from zwidth.showing import Picture, Shown
 
@@ -15,15 +16,15 @@ from zwidth.showing import Picture, Shown
 class Documented(Shown):
     """Something that is plain data too: it can be saved, and drawn where there is a picture of it."""
 
-    FORMAT: ClassVar[str]
-    """Under which its document is known."""
+    FORMAT: ClassVar[str] = ""
+    """Under which its document is known; "" for a part of another one."""
 
     PICTURE: ClassVar[str] = ""
     """What draws it, among the plots above."""
 
     def to_dict(self) -> dict[str, Any]:
         """It as plain data, a unit in every key of a physical quantity."""
-        raise NotImplementedError
+        return {**({"format": self.FORMAT} if self.FORMAT else {}), **data_of(self)}
 
     def to_json(self) -> str:
         """`to_dict` as JSON text, every exact number digit for digit."""

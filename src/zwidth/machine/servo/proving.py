@@ -13,7 +13,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
-from typing import Any
 
 import numpy as np
 
@@ -23,8 +22,10 @@ from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.native.compiled import Array
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.answered import answered
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact, Interval, ends
-from zwidth.showing import Part, Shown
+from zwidth.showing import Part
 
 Decide = Callable[[Device, Environment], Verdict]
 
@@ -100,27 +101,20 @@ def least_friction(device: Device) -> Device:
 _MICROSECOND = Fraction(1, 1_000_000)
 
 
+_SHARES = ("median", "of_99_percent", "largest")
+
+
 @dataclass(frozen=True, repr=False)
-class Measured(Shown):
-    """Of a loop that ran with force 0.
+class Measured(Documented):
+    """Of a loop that ran with force 0."""
 
-    Parameters
-    ----------
-    samples, missed
-        How many were taken, and how many were not because the loop came a period late or more.
-    lateness
-        Median, 99 % and largest [s].
-    exchange
-        From the start of a sample to its force being on its way: median, 99 % and largest [s].
-    waits
-        Samples for which a force waits by the protocol.
-    """
-
-    samples: int
-    missed: int
-    lateness: tuple[float, float, float]
-    exchange: tuple[float, float, float]
-    waits: int
+    samples: int = answered("how many were taken")
+    missed: int = answered("not taken, since the loop came a period late or more", key="missed_samples")
+    lateness: tuple[float, float, float] = answered("how late they were", unit="s", names=_SHARES)
+    exchange: tuple[float, float, float] = answered(
+        "from the start of a sample to its force being on its way", unit="s", names=_SHARES
+    )
+    waits: int = answered("samples for which a force waits by the protocol", key="samples_a_force_waits")
 
     @property
     def supposed(self) -> tuple[Fraction, Fraction]:
@@ -136,17 +130,6 @@ class Measured(Shown):
     def longest_period(self, period: Fraction) -> Fraction:
         """T and the lateness that 99 % of the samples keep to [s]."""
         return period + self.supposed[0]
-
-    def to_dict(self) -> dict[str, Any]:
-        """The same with a unit in every key."""
-        names = ("median", "of_99_percent", "largest")
-        return {
-            "samples": self.samples,
-            "missed_samples": self.missed,
-            "lateness_s": dict(zip(names, self.lateness, strict=True)),
-            "exchange_s": dict(zip(names, self.exchange, strict=True)),
-            "samples_a_force_waits": self.waits,
-        }
 
     def report(self) -> Iterable[Part]:
         """Two lines."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import threading
 import time
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from os import PathLike
@@ -26,6 +27,8 @@ from zwidth.errors import InputError
 from zwidth.loop.trace import own_version
 from zwidth.machine.servo.live.rows import Rows, ros2_schema
 from zwidth.native.compiled import Array
+from zwidth.quantity.answered import answered
+from zwidth.quantity.documented import Documented
 from zwidth.writing import check_target, first_line
 
 if TYPE_CHECKING:
@@ -38,45 +41,25 @@ EVERY = 0.2
 SUFFIX = ".mcap"
 
 
-@dataclass(frozen=True, kw_only=True)
-class Recorded:
-    """What became of a recording.
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Recorded(Documented):
+    """What became of a recording."""
 
-    Parameters
-    ----------
-    path
-        The file.
-    rows
-        In the file.
-    rows_lost
-        Written over in the ring before they could be.
-    size
-        [bytes].
-    failure
-        Why it ended before the loop did; None if it did not.
-    """
+    path: Path = answered("the file")
+    rows: int = answered("in the file")
+    rows_lost: int = answered("written over in the ring before they could be")
+    size: int = answered("of the file", unit="bytes")
+    failure: str | None = answered("why it ended before the loop did; null if it did not")
 
-    path: Path
-    rows: int
-    rows_lost: int
-    size: int
-    failure: str | None
+    def report(self) -> Iterable[str]:
+        """In a line."""
+        yield self.describe()
 
     def describe(self) -> str:
         """In a line."""
         lost = f"{self.rows_lost:,} rows were lost" if self.rows_lost else "none lost"
         line = f"{self.path}: {self.rows:,} rows, {lost}, {self.size / 1e6:.1f} MB"
         return line if self.failure is None else f"{line}; the recording ended early: {self.failure}"
-
-    def to_dict(self) -> dict[str, Any]:
-        """The same with a unit in every key."""
-        return {
-            "path": str(self.path),
-            "rows": self.rows,
-            "rows_lost": self.rows_lost,
-            "size_bytes": self.size,
-            "failure": self.failure,
-        }
 
 
 class Recorder:

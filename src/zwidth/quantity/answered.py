@@ -1,0 +1,150 @@
+"""What a result says, declared once: where its class has it, as what is given is.
+
+    @dataclass(frozen=True, repr=False)
+    class Served(Documented):
+        FORMAT = "zwidth served 1"
+        missed: int = answered("not taken: the loop came a period late", key="missed_samples", row="missed")
+        energy: float = answered("given to the handle", unit="J", row="the actuator gave the handle")
+
+        @property
+        @answers("of samples, how many were missed", row="share missed")
+        def share(self) -> float: ...
+
+Its plain data, the rows of its report, the tables of docs/json.md and its parameters in docs/api.md are made
+of that.  Fields come first, then what is computed, in the order in which they stand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import field
+from functools import cache, cached_property
+from pathlib import PurePath
+from types import MappingProxyType
+from typing import Any, NamedTuple, TypeVar
+
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
+from zwidth.quantity.text import shown
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+class Told(NamedTuple):
+    """What is known of one thing that a result says.
+
+    Parameters
+    ----------
+    meaning
+        What it is: in the documentation.
+    key
+        Its name in plain data, the unit left out; "" for that of the field.
+    unit, quantity
+        Its unit; or the quantity of the glossary whose unit it has, by the motion of the result.
+    row
+        What people read beside it, of a tuple beside each of its entries; None where no report has it.
+    digits
+        Of a number in a row.
+    names
+        Of the entries of a tuple, in plain data.
+    stands_as
+        What of it plain data has, in its place: an attribute by each key.
+    optional
+        Left out of plain data where it is None.
+    only_shown
+        No part of plain data.
+    """
+
+    meaning: str
+    key: str = ""
+    unit: str = ""
+    quantity: str = ""
+    row: str | tuple[str, ...] | None = None
+    digits: int = 4
+    names: tuple[str, ...] = ()
+    stands_as: Mapping[str, str] = MappingProxyType({})
+    optional: bool = False
+    only_shown: bool = False
+
+    def unit_for(self, motion: str) -> str:
+        """The SI unit for a "linear" or a "rotary" device; "" where it has none."""
+        return GLOSSARY[self.quantity].unit_for(motion) if self.quantity else self.unit
+
+    def key_for(self, name: str, motion: str) -> str:
+        """Its key in plain data, the unit included."""
+        unit = self.unit_for(motion)
+        return f"{self.key or name}_{unit_suffix(unit)}" if unit not in ("", "1") else self.key or name
+
+
+def answered(meaning: str, *, default: Any = ..., **about: Any) -> Any:
+    """A field of a data class that is a result; see `Told` for what may be said of it."""
+    metadata = {"told": Told(meaning, **about)}
+    return field(metadata=metadata) if default is ... else field(default=default, metadata=metadata)
+
+
+def answers(meaning: str, **about: Any) -> Callable[[F], F]:
+    """The same of a property, below `@property` or `@cached_property`."""
+
+    def declare(function: F) -> F:
+        function.told = Told(meaning, **about)  # type: ignore[attr-defined]
+        return function
+
+    return declare
+
+
+def declared(result: object) -> Mapping[str, Told]:
+    """What a result, or a class of results, says, by name."""
+    return _declared(result if isinstance(result, type) else type(result))
+
+
+@cache
+def _declared(kind: Any) -> Mapping[str, Told]:
+    found = {
+        name: one.metadata["told"]
+        for name, one in getattr(kind, "__dataclass_fields__", {}).items()
+        if "told" in one.metadata
+    }
+    for owner in reversed(kind.__mro__):
+        for name, value in vars(owner).items():
+            function: Any = value.fget if isinstance(value, property) else getattr(value, "func", None)
+            if isinstance(value, (property, cached_property)) and hasattr(function, "told"):
+                found[name] = function.told
+    return found
+
+
+def data_of(result: object) -> dict[str, Any]:
+    """What is declared, as plain data: the unit of each in its key."""
+    found: dict[str, Any] = {}
+    motion = getattr(result, "motion", "linear")
+    for name, one in declared(result).items():
+        value = getattr(result, name)
+        if one.only_shown or (one.optional and value is None):
+            continue
+        if one.stands_as:
+            found |= {key: getattr(value, own, None) for key, own in one.stands_as.items()}
+        else:
+            found[one.key_for(name, motion)] = plain(value, one.names)
+    return found
+
+
+def plain(value: Any, names: Sequence[str] = ()) -> Any:
+    """A value as plain data; entries of a tuple that have names by their names."""
+    if names and value is not None:
+        return {name: plain(one) for name, one in zip(names, value, strict=True)}
+    if hasattr(value, "to_dict"):
+        return value.to_dict()
+    if isinstance(value, (list, tuple)):
+        return [plain(one) for one in value]
+    return str(value) if isinstance(value, PurePath) else value
+
+
+def rows_of(result: object) -> Iterator[tuple[str, str]]:
+    """What people read: each that has a row, in words and with its unit; a number that is None is "none"."""
+    motion = getattr(result, "motion", "linear")
+    for name, one in declared(result).items():
+        value, unit = getattr(result, name), one.unit_for(motion)
+        if isinstance(one.row, tuple):
+            yield from (
+                (row, shown(part, unit, one.digits)) for row, part in zip(one.row, value, strict=True)
+            )
+        elif one.row is not None:
+            yield one.row, shown(value, unit, one.digits) if unit else str(value)

@@ -1,0 +1,86 @@
+"""What a result says, declared once: plain data, rows, and the page of keys."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf
+from pathlib import Path
+
+import pytest
+
+from zwidth.quantity.answered import answered, answers, data_of, declared, rows_of
+from zwidth.quantity.documented import Documented
+
+
+@dataclass(frozen=True)
+class _Part(Documented):
+    size: int = answered("of the file", unit="bytes")
+
+
+@dataclass(frozen=True, repr=False)
+class _Pressed(Documented):
+    FORMAT = "zwidth pressed 1"
+
+    motion: str = answered("linear or rotary")
+    stiffness: float | None = answered("how stiff it is", quantity="stiffness", row="largest stiffness")
+    late: tuple[float, float] = answered("late", unit="s", names=("half", "all"), row=("half", "at most"))
+    part: _Part | None = answered("a part", default=None)
+    cut: bool | None = answered("only where it was cut", default=None, optional=True)
+    note: str = answered("for a screen", default="", only_shown=True)
+    file: Path = answered("where it is", default=Path("a", "b"))
+
+    @property
+    @answers("twice as much", quantity="stiffness", key="doubled")
+    def twice(self) -> float:
+        return 2 * (self.stiffness or 0)
+
+    @cached_property
+    @answers("of the part", stands_as={"bytes": "size"})
+    def inner(self) -> _Part | None:
+        return self.part
+
+
+def test_plain_data_has_the_unit_of_the_motion_in_each_key() -> None:
+    """A field by its name or key, a tuple by its names, a part as its own data, a path as text."""
+    pressed = _Pressed("rotary", 2.0, (0.1, 0.2), _Part(7))
+    assert pressed.to_dict() == {
+        "format": "zwidth pressed 1",
+        "motion": "rotary",
+        "stiffness_N_m_per_rad": 2.0,
+        "late_s": {"half": 0.1, "all": 0.2},
+        "part": {"size_bytes": 7},
+        "file": str(Path("a", "b")),
+        "doubled_N_m_per_rad": 4.0,
+        "bytes": 7,
+    }
+    assert _Pressed("linear", None, (0, 0), cut=True).to_dict()["cut"] is True
+
+
+def test_a_part_that_is_missing_is_null() -> None:
+    """Its keys stay, so that whoever reads them needs to ask nothing."""
+    data = data_of(_Pressed("linear", None, (0.0, 0.0)))
+    assert (data["part"], data["bytes"], data["stiffness_N_per_m"]) == (None, None, None)
+    assert "cut" not in data
+    assert "note" not in data
+
+
+def test_rows_are_what_has_words_and_each_number_has_its_unit() -> None:
+    """A number that is None is none; one without bound is any."""
+    assert list(rows_of(_Pressed("linear", None, (1e-3, inf)))) == [
+        ("largest stiffness", "none"),
+        ("half", "1 ms"),
+        ("at most", "any"),
+    ]
+
+
+def test_names_and_entries_of_a_tuple_must_be_as_many() -> None:
+    """One name too few would leave a number out of every file."""
+    with pytest.raises(ValueError, match="zip"):
+        data_of(_Pressed("linear", 1.0, (0.0, 1.0, 2.0)))  # type: ignore[arg-type]
+
+
+def test_what_is_declared_is_known_of_class_and_result() -> None:
+    """Fields first, then what is computed."""
+    names = ["motion", "stiffness", "late", "part", "cut", "note", "file", "twice", "inner"]
+    assert list(declared(_Pressed)) == list(declared(_Pressed("linear", 1, (0, 0)))) == names
