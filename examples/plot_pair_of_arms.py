@@ -75,7 +75,7 @@ compared = zw.compare(
         ),
         "in the drives": pair.replace(drive_rate="20 kHz"),
         "friction compensated": pair.replace(
-            compensation=zw.FrictionCompensation(coulomb="0.04 N*m", viscous="0.1 N*m*s/rad")
+            compensation=zw.rendering.FrictionCompensation(coulomb="0.04 N*m", viscous="0.1 N*m*s/rad")
         ),
     }
 )

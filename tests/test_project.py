@@ -469,3 +469,21 @@ def test_no_two_files_of_tests_have_one_name() -> None:
     """Two of one name, in folders without `__init__.py`, cannot be collected in one run."""
     names = [path.name for path in (ROOT / "tests").rglob("test_*.py")]
     assert sorted(set(names)) == sorted(names)
+
+
+def test_names_that_are_found_and_not_offered_stand_where_they_belong() -> None:
+    """Old programs go on, and `dir` is short; each is offered by a namespace, or is the type of a result."""
+    found = {
+        "amplifiers": zw.simulation.amplifiers,
+        "Log": zw.identification.Log,
+        "FrictionCompensation": zw.rendering.FrictionCompensation,
+        "check_gains": zw.gains.check_gains,
+        "read_gains": zw.gains.read_gains,
+        "load_sweep": zw.maps.load_sweep,
+        "stiffness_over_postures": zw.maps.stiffness_over_postures,
+    }
+    assert {name: getattr(zw, name) for name in found} == found
+    assert not {*found, "Certificate", "Witness", "Exact"} & {*dir(zw)}
+    paddle = zw.catalogue.device("haptic-paddle")
+    assert isinstance(zw.check(paddle, zw.Wall(stiffness=300)).certificate, zw.Certificate)
+    assert isinstance(zw.check(paddle, zw.Wall(stiffness=9000)).witness, zw.Witness)

@@ -5,10 +5,7 @@ from zwidth.data import identification as identification
 from zwidth.data import tissue as tissue
 from zwidth.data.diagnosis import diagnose as diagnose
 from zwidth.data.diagnosis import diagnose_pair as diagnose_pair
-from zwidth.data.gains import check_gains as check_gains
-from zwidth.data.gains import read_gains as read_gains
 from zwidth.data.identification.device.plan import plan_identification as plan
-from zwidth.data.logs import Log as Log
 from zwidth.data.logs import read_log as read_log
 from zwidth.errors import InputError as InputError
 from zwidth.loop import traces as traces
@@ -24,7 +21,6 @@ from zwidth.model import samples as samples
 from zwidth.model import scene as scene
 from zwidth.model.device import Device as Device
 from zwidth.model.device import FrictionCurve as FrictionCurve
-from zwidth.model.device import amplifier as amplifiers
 from zwidth.model.device import catalogue as catalogue
 from zwidth.model.device.rotary import rotary as rotary
 from zwidth.model.environment import ContinuousTransferFunction as ContinuousTransferFunction
@@ -36,7 +32,6 @@ from zwidth.model.environment import PulseTransferFunction as PulseTransferFunct
 from zwidth.model.environment import StandardLinearSolid as StandardLinearSolid
 from zwidth.model.environment import Wall as Wall
 from zwidth.model.pairs import Pair as Pair
-from zwidth.model.rendering import FrictionCompensation as FrictionCompensation
 from zwidth.model.rendering import VirtualCoupling as VirtualCoupling
 from zwidth.model.rendering import render as render
 from zwidth.model.scene import Scene as Scene
@@ -45,15 +40,11 @@ from zwidth.passivity import coupling as coupling
 from zwidth.passivity import formulas as formulas
 from zwidth.passivity import ports as ports
 from zwidth.passivity import stability as stability
-from zwidth.passivity.certificate import Certificate as Certificate
 from zwidth.passivity.check import check as check
 from zwidth.passivity.finite_stiffness import replay as replay
 from zwidth.passivity.verdict import Verdict as Verdict
-from zwidth.passivity.witness.witness import Witness as Witness
 from zwidth.passivity.workspace import null_space as null_space
-from zwidth.passivity.workspace import stiffness_over_postures as stiffness_over_postures
 from zwidth.passivity.workspace import workspace as workspace
-from zwidth.quantity import Exact as Exact
 from zwidth.quantity import Interval as Interval
 from zwidth.show import plots as plots
 from zwidth.show import report as report
@@ -66,5 +57,16 @@ from zwidth.show.with_bar import passive_limit as limit
 from zwidth.show.with_bar import simulate as simulate
 from zwidth.study import maps as maps
 from zwidth.study.maps import z_width as z_width
-from zwidth.study.sweeps.files import load_sweep as load_sweep
 from zwidth.study.sweeps.run import sweep as sweep
+
+if True:  # found as ever; offered where they belong, such as gains.read_gains
+    from zwidth.data.gains import check_gains as check_gains
+    from zwidth.data.gains import read_gains as read_gains
+    from zwidth.data.logs import Log as Log
+    from zwidth.model.device import amplifier as amplifiers
+    from zwidth.model.rendering import FrictionCompensation as FrictionCompensation
+    from zwidth.passivity.certificate import Certificate as Certificate
+    from zwidth.passivity.witness.witness import Witness as Witness
+    from zwidth.passivity.workspace import stiffness_over_postures as stiffness_over_postures
+    from zwidth.quantity import Exact as Exact
+    from zwidth.study.sweeps.files import load_sweep as load_sweep

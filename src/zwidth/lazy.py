@@ -29,10 +29,12 @@ def attach(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]],
     """`__getattr__`, `__dir__` and `__all__` of a package, from its `__init__.pyi`.
 
     Each line of the stub is ``from module import name as public_name``; what is no name of the module is a
-    module in it.
+    module in it.  Lines below an ``if`` are found all the same, and not listed.
     """
     module = sys.modules[package]
-    places = dict(_places(Path(str(module.__file__)).with_suffix(".pyi")))
+    stub = Path(str(module.__file__)).with_suffix(".pyi")
+    offered = sorted(dict(_places(stub)))
+    places = dict(_places(stub, True))
 
     def get(name: str) -> Any:
         if name not in places:
@@ -42,7 +44,7 @@ def attach(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]],
         setattr(module, name, found)
         return found
 
-    return get, lambda: sorted(places), sorted(places)
+    return get, lambda: offered, offered
 
 
 class PublicRooms:  # `importlib.abc` would load half of the library
@@ -57,7 +59,7 @@ class PublicRooms:  # `importlib.abc` would load half of the library
     def __init__(self, package: str) -> None:
         self.package = package
         stub = Path(str(sys.modules[package].__file__)).with_suffix(".pyi")
-        self.places = {name: place for name, place in _places(stub) if place[0] != package}
+        self.places = {name: place for name, place in _places(stub, True) if place[0] != package}
 
     def find_spec(
         self, name: str, path: Sequence[str] | None, target: ModuleType | None = None
@@ -85,11 +87,14 @@ class PublicRooms:  # `importlib.abc` would load half of the library
 
 
 @cache
-def _places(stub: Path) -> list[tuple[str, tuple[str, str]]]:
+def _places(stub: Path, all_of_them: bool = False) -> list[tuple[str, tuple[str, str]]]:
     """Of each public name its module, and its name there."""
+    lines: list[ast.stmt] = []
+    for line in ast.parse(stub.read_text(encoding="utf-8")).body:
+        lines += line.body if isinstance(line, ast.If) and all_of_them else [line]
     return [
         (alias.asname or alias.name, (str(line.module), alias.name))
-        for line in ast.parse(stub.read_text(encoding="utf-8")).body
+        for line in lines
         if isinstance(line, ast.ImportFrom)
         for alias in line.names
     ]

@@ -4,3 +4,4 @@ from zwidth.data.identification.device.published import PublishedFit as Publishe
 from zwidth.data.identification.device.published import identify_published as identify_published
 from zwidth.data.identification.finger import IdentifiedFinger as IdentifiedFinger
 from zwidth.data.identification.finger import identify_finger as identify_finger
+from zwidth.data.logs import Log as Log

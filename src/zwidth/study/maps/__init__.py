@@ -1,7 +1,5 @@
 """Maps over parameters: which walls a device can render, and what makes them many."""
 
-from zwidth.study.maps.lines import stability_boundary
-from zwidth.study.maps.run import robust_boundary, z_width, z_width_certificate
-from zwidth.study.maps.z_width import z_width_factors
+from zwidth.lazy import attach
 
-__all__ = ["robust_boundary", "stability_boundary", "z_width", "z_width_certificate", "z_width_factors"]
+__getattr__, __dir__, __all__ = attach(__name__)
