@@ -86,7 +86,7 @@ def most_taken(pair: zw.Pair, random: np.random.Generator) -> float:
     return most
 
 
-def main() -> None:
+def main() -> int:
     """Measure and print."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
@@ -109,6 +109,7 @@ def main() -> None:
         seen[f"{sort}, {_gap(pair, exact, seen)}"] += 1
     for what, number in sorted(seen.items()):
         print(f"{number:>7} {what}")
+    return int(any(what.startswith("WRONG") and number for what, number in seen.items()))
 
 
 def _gap(pair: zw.Pair, share: Fraction, seen: Counter[str]) -> str:
@@ -124,4 +125,4 @@ def _gap(pair: zw.Pair, share: Fraction, seen: Counter[str]) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -163,12 +163,13 @@ def run(code: float, seed: int, count: int) -> Array:
     return found
 
 
-def main() -> None:
-    """A row for each kind of port."""
+def main() -> int:
+    """A row for each kind of port; 1 where a hand gained from the one that is proved."""
     schedules = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
     print("| port | schedules | gained | most taken [J] | of the work done | time [s] |")
     print("|---|---|---|---|---|---|")
+    wrong = 0
     for name, code in KINDS.items():
         count = schedules if code == WAVE_PORT else min(schedules, 20_000)
         start = time.perf_counter()
@@ -176,10 +177,12 @@ def main() -> None:
             seeds = range(first, first + 1000 * _WORKERS, 1000)
             parts = list(pool.map(partial(run, code, count=count // _WORKERS), seeds))
         gained = sum(int(part[0]) for part in parts)
+        wrong += gained if code == WAVE_PORT else 0
         most, share = (max(float(part[i]) for part in parts) for i in (1, 2))
         took = time.perf_counter() - start
         print(f"| {name} | {count} | {gained} | {most:.2g} | {share:.2g} | {took:.0f} |", flush=True)
+    return int(wrong > 0)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

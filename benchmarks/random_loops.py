@@ -7,7 +7,7 @@ that it accepts; of every fiftieth loop the motion, where one is short enough, t
 energy, recomputed in rational arithmetic.  The required damping is also compared with a
 fine evaluation of the criterion from its definition.
 
-    python benchmarks/random_loops.py [number] [processes]
+    python benchmarks/random_loops.py [NUMBER] [PROCESSES] [FIRST SEED]
 """
 
 from __future__ import annotations
@@ -81,12 +81,14 @@ def one(seed: int) -> tuple[str, float, int]:
     return (f"seed {seed}, order {order}: {said}" if said else ""), spent, samples
 
 
-def main() -> None:
+def main() -> int:
     """Run all and print what was wrong."""
     number = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
     processes = int(sys.argv[2]) if len(sys.argv) > 2 else 2
+    first = int(sys.argv[3]) if len(sys.argv) > 3 else 0
     with ProcessPoolExecutor(processes) as pool:
-        results = list(track(pool.map(one, range(number), chunksize=20), "loops", total=number))
+        seeds = range(first, first + number)
+        results = list(track(pool.map(one, seeds, chunksize=20), "loops", total=number))
     wrong = [text for text, _, _ in results if text]
     print(*wrong, sep="\n")
     times = [1e3 * spent for _, spent, _ in results]
@@ -95,7 +97,8 @@ def main() -> None:
         f"{number} loops, {len(wrong)} wrong; limit and both verdicts: median {median(times):.0f} ms, "
         f"worst {max(times):.0f} ms; longest motion {longest:.3g} samples"
     )
+    return int(bool(wrong))
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -116,7 +116,7 @@ def passive_limit(pair: zw.Pair) -> float | None:
     return found if found and holds(Fraction(found) / 2) else None
 
 
-def main() -> None:
+def main() -> int:
     """Measure and print."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
@@ -161,7 +161,8 @@ def main() -> None:
         print(f"{number:>7} {what}")
     for what, values in times.items():
         print(f"{what:>8}: median {1e3 * median(values):.2f} ms, worst {1e3 * max(values):.1f} ms")
+    return int(any(what.startswith("WRONG") for what in seen))
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

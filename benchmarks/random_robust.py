@@ -18,6 +18,7 @@ from __future__ import annotations
 import argparse
 import itertools
 import math
+import sys
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -39,7 +40,7 @@ class Loop(NamedTuple):
     time_constant: Fraction
 
 
-def main() -> None:
+def main() -> int:
     """Print how many points were looked at, and each that is wrong."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -67,6 +68,7 @@ def main() -> None:
                 gaps.append(1 - guaranteed / refuted)
     print(f"{points} points of {asked.hands} hands, {wrong} wrong")
     print(f"between the two bounds: {np.median(gaps):.2%} in the middle, {max(gaps):.2%} at most")
+    return int(wrong > 0)
 
 
 Ranges = tuple[tuple[Fraction, Fraction], ...]
@@ -242,4 +244,4 @@ def _radius(loop: Loop, hand: tuple[Fraction, ...], stiffness: Fraction, virtual
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

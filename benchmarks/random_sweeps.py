@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import sys
 import time
 from typing import Any
 
@@ -27,7 +28,7 @@ from zwidth.study.sweeps.run import compute
 from zwidth.study.sweeps.springs import FEWEST
 
 
-def main() -> None:
+def main() -> int:
     """Print how many loops were compared, and each that differs."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -60,6 +61,7 @@ def main() -> None:
                     print(f"{name}: sweep {found}, alone {own}: {line.at((place,))}", flush=True)
     print(f"{loops} loops, {different} answers differ")
     print(f"a loop: sweep {swept / loops * 1e3:.3f} ms, alone {alone / loops * 1e3:.3f} ms of the processor")
+    return int(different > 0)
 
 
 def _line(drawn: np.random.Generator) -> Request | None:
@@ -99,4 +101,4 @@ def _line(drawn: np.random.Generator) -> Request | None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

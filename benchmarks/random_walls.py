@@ -24,6 +24,7 @@ contradiction, as such a certificate does not speak of it; these are counted apa
 from __future__ import annotations
 
 import argparse
+import sys
 import time
 from collections import Counter
 from dataclasses import dataclass, field
@@ -280,7 +281,7 @@ def _replay(loop: Loop, motion: Any, tally: Tally) -> None:
         tally.found("witness: no stiff hand gets it", loop, motion.describe())
 
 
-def main() -> None:
+def main() -> int:
     """Run all and print what was noticed."""
     parser = argparse.ArgumentParser(description="Available storage and the closed forms on random walls.")
     parser.add_argument("--loops", type=int, default=10_000)
@@ -299,7 +300,8 @@ def main() -> None:
         print(*(f"           {text}" for text in found[:5]), sep="\n")
     wrong = sum(len(found) for kind, found in tally.findings.items() if not kind.startswith("("))
     print(f"{wrong} contradictions")
+    return int(wrong > 0)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Generator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +62,56 @@ def _messages_in_one_line() -> Iterator[None]:
 def pytest_configure(config: pytest.Config) -> None:
     """Marks of these tests."""
     config.addinivalue_line("markers", "real_time: made again if the machine stood still, see real_time.py")
+    config.addinivalue_line(
+        "markers", "soak: takes long, and a quicker test gives an answer of its kind; see .ci/soak"
+    )
     library()  # where a source has changed it is built now, before other processes ask for it
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Where the time goes."""
+    parser.addoption(
+        "--processor", metavar="FILE", help="append what each test took of the processor, in seconds"
+    )
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Marks what `soak.txt` names; of every test there it leaves something that answers alike and is quick."""
+    named = soaked()
+    left = Counter(item.nodeid.partition("[")[0] for item in items)
+    for item in items:
+        test = item.nodeid.partition("[")[0]
+        if named.keys() & {item.nodeid, test}:
+            item.add_marker(pytest.mark.soak)
+            left[test] -= 1
+    missing = [test for test, count in left.items() if not count and not named.get(test)]
+    if missing and not any("::" in given for given in config.args):
+        raise pytest.UsageError(f"soak.txt leaves nothing of {missing[0]}, and names nothing in its place")
+
+
+def soaked() -> dict[str, str]:
+    """Of each test, or case of a test, that takes long, the test that stands for it; "" where cases are left."""
+    lines = (Path(__file__).parent / "soak.txt").read_text(encoding="utf-8").splitlines()
+    parts = (line.split(maxsplit=1)[1].partition(" -> ") for line in lines if line and line[0] != "#")
+    return {test: quick for test, _, quick in parts}
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
+    """A line for each test: seconds of the processor, those of processes that it waited for among them."""
+    before = _processor()
+    try:
+        return (yield)
+    finally:
+        if path := item.config.getoption("--processor"):
+            with Path(path).open("a", encoding="utf-8") as file:
+                file.write(f"{_processor() - before:.3f} {item.nodeid}\n")
+
+
+def _processor() -> float:
+    own, others = os.times()[:2], os.times()[2:4]
+    return sum(own) + sum(others)
 
 
 @pytest.hookimpl(tryfirst=True)
