@@ -238,11 +238,15 @@ def plants() -> str:
 
 
 ANSWERS = {
+    "checkup": "machine.servo.checkup:Checkup",
+    "finding": "machine.servo.checkup:Finding",
+    "lateness": "machine.servo.lateness:Lateness",
     "measured": "machine.servo.proving:Measured",
     "recorded": "machine.servo.recording.recorder:Recorded",
     "served": "machine.servo.report:ServoReport",
     "served_pair": "machine.servo.report:PairServoReport",
     "served_port": "machine.servo.report:PortReport",
+    "stiffness_cost": "machine.servo.lateness:StiffnessCost",
 }
 """Results whose keys a page lists: where each is declared."""
 
