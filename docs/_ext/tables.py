@@ -238,7 +238,9 @@ def plants() -> str:
 
 
 ANSWERS = {
+    "change": "data.diagnosis.change:Lowered",
     "checkup": "machine.servo.checkup:Checkup",
+    "diagnosis": "data.diagnosis.result:Diagnosis",
     "finding": "machine.servo.checkup:Finding",
     "lateness": "machine.servo.lateness:Lateness",
     "link": "machine.network.peer:LinkReport",

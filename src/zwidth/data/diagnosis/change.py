@@ -22,6 +22,7 @@ from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.check import check, check_by_closed_forms
 from zwidth.passivity.covering_wall import covering
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.answered import answered, answers
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import shown
 
@@ -50,28 +51,19 @@ class Judged(Protocol):
 class Lowered:
     """One number, from where it is to where it may be."""
 
-    parameter: str
-    """Its key, such as "stiffness"."""
-    current: float
-    to: float
-    """In `unit`."""
-    unit: str
-    """SI."""
-    text: str
-    """In words."""
+    parameter: str = answered('its key, such as "stiffness"')
+    current: float = answered("where it is, in `unit`", key="from")
+    to: float = answered("where it may be")
+    unit: str = answered("SI")
+    text: str = answered("what to do, in words")
     verdict: Judged
     """What `check` says to what has the number changed."""
 
-    def to_dict(self) -> dict[str, object]:
-        """As plain data."""
-        return {
-            "parameter": self.parameter,
-            "from": self.current,
-            "to": self.to,
-            "unit": self.unit,
-            "text": self.text,
-            "outcome": self.verdict.outcome,
-        }
+    @property
+    @answers("of `zwidth check` with it")
+    def outcome(self) -> str:
+        """Of the verdict."""
+        return self.verdict.outcome
 
 
 def lowered_to(name: str, current: float, to: float, unit: str) -> str:
