@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import floor, log10
-from typing import Protocol
+from typing import Any, Protocol
 
 from zwidth.data.diagnosis.evidence import Evidence
 from zwidth.errors import InputError
@@ -22,7 +22,7 @@ from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.check import check, check_by_closed_forms
 from zwidth.passivity.covering_wall import covering
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.answered import answered, answers
+from zwidth.quantity.answered import answered, answers, data_of
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import shown
 
@@ -64,6 +64,10 @@ class Lowered:
     def outcome(self) -> str:
         """Of the verdict."""
         return self.verdict.outcome
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data."""
+        return data_of(self)
 
 
 def lowered_to(name: str, current: float, to: float, unit: str) -> str:
@@ -111,16 +115,10 @@ def text_of(value: float) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Change(Lowered):
-    """One number of the loop, from where it is to where it may be.
+    """One number of the loop, from where it is to where it may be."""
 
-    Parameters
-    ----------
-    device, environment
-        The loop with that number changed.
-    """
-
-    device: Device
-    environment: Environment
+    device: Device = answered("of the loop with that number changed", only_shown=True)
+    environment: Environment = answered("of the same", only_shown=True)
     verdict: Verdict
 
 
