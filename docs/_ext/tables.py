@@ -244,6 +244,7 @@ ANSWERS = {
     "finding": "machine.servo.checkup:Finding",
     "gains": "data.gains.verdict:GainsVerdict",
     "held_joints": "data.gains.held_joints:HeldJoints",
+    "identified": "data.identification.device.numbers:IdentifiedNumbers",
     "joint_gains": "data.gains.joint:JointGains",
     "joint_verdict": "data.gains.verdict:JointVerdict",
     "lateness": "machine.servo.lateness:Lateness",
