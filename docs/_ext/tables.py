@@ -257,6 +257,7 @@ ANSWERS = {
     "served_pair": "machine.servo.report:PairServoReport",
     "served_port": "machine.servo.report:PortReport",
     "stiffness_cost": "machine.servo.lateness:StiffnessCost",
+    "tissue": "data.tissue.result:TissueFit",
 }
 """Results whose keys a page lists: where each is declared."""
 
