@@ -20,7 +20,7 @@ LINES = {
     "beside the rooms": 921,
     "checker": 10317,
     "cli": 10423,
-    "data": 20715,
+    "data": 20721,
     "links": 2316,
     "loop": 6083,
     "machine": 17472,

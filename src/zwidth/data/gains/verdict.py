@@ -75,7 +75,7 @@ class JointVerdict:
 
     gains: JointGains
     model: CoupledJoint
-    verdict: PairVerdict = answered("in a sentence", stands_as={"claim": "claim"})
+    verdict: PairVerdict
 
     @property
     def name(self) -> str:
@@ -87,6 +87,12 @@ class JointVerdict:
     def outcome(self) -> Outcome:
         """ "passive", "active" or "undecided"."""
         return self.verdict.outcome
+
+    @property
+    @answers()
+    def claim(self) -> str:
+        """In a sentence."""
+        return self.verdict.claim
 
     @property
     @answers()

@@ -47,7 +47,7 @@ _USUAL = 1.96
 class TissueFit(Documented):
     """A model fitted to a record, with the uncertainty of its parameters."""
 
-    model: Model = answered("its name", stands_as={"model": "name"})
+    model: Model = answered("what was fitted, by its name", stands_as={"model": "name"})
     estimates: Array = answered(
         "logarithms of the parameters, then the offset itself where one was fitted", only_shown=True
     )
