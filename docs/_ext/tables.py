@@ -238,11 +238,26 @@ def plants() -> str:
 
 
 ANSWERS = {
+    "change": "data.diagnosis.change:Lowered",
+    "checkup": "machine.servo.checkup:Checkup",
+    "diagnosis": "data.diagnosis.result:Diagnosis",
+    "finding": "machine.servo.checkup:Finding",
+    "gains": "data.gains.verdict:GainsVerdict",
+    "held_joints": "data.gains.held_joints:HeldJoints",
+    "identified": "data.identification.device.numbers:IdentifiedNumbers",
+    "joint_gains": "data.gains.joint:JointGains",
+    "joint_verdict": "data.gains.verdict:JointVerdict",
+    "lateness": "machine.servo.lateness:Lateness",
+    "link": "machine.network.peer:LinkReport",
     "measured": "machine.servo.proving:Measured",
+    "peer": "machine.network.peer:PeerReport",
     "recorded": "machine.servo.recording.recorder:Recorded",
+    "recording": "machine.servo.recording.recording:Recording",
     "served": "machine.servo.report:ServoReport",
     "served_pair": "machine.servo.report:PairServoReport",
     "served_port": "machine.servo.report:PortReport",
+    "stiffness_cost": "machine.servo.lateness:StiffnessCost",
+    "tissue": "data.tissue.result:TissueFit",
 }
 """Results whose keys a page lists: where each is declared."""
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from zwidth.quantity.answered import answered, answers, data_of, declared, rows_of
+from zwidth.quantity.answered import answered, answers, data_of, declared, plain, rows_of
 from zwidth.quantity.documented import Documented
 
 
@@ -55,6 +55,29 @@ def test_plain_data_has_the_unit_of_the_motion_in_each_key() -> None:
         "bytes": 7,
     }
     assert _Pressed("linear", None, (0, 0), cut=True).to_dict()["cut"] is True
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """Neither saved nor shown by itself."""
+
+    silent: float = answered("since it was heard", unit="s")
+
+    @property
+    @answers(unit="s")
+    def twice(self) -> tuple[float, float]:
+        """Twice as
+        long.
+
+        No more.
+        """
+        return (2 * self.silent, 1.0)
+
+
+def test_a_part_says_what_it_declares_and_a_number_without_bound_is_null() -> None:
+    """JSON has no infinity, in a list as little as alone; a property means what its docstring says first."""
+    assert plain([_Seen(inf)]) == [{"silent_s": None, "twice_s": [None, 1.0]}]
+    assert declared(_Seen)["twice"].meaning == "twice as long"
 
 
 def test_a_part_that_is_missing_is_null() -> None:

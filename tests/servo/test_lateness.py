@@ -11,6 +11,7 @@ from zwidth.machine.servo import lateness as measured
 from zwidth.machine.servo.lateness import Lateness, measure_lateness, run_turn
 from zwidth.machine.servo.posix import now
 from zwidth.machine.servo.priority import Answer, Granted, RealTime
+from zwidth.quantity.answered import data_of
 
 NOTHING = Granted(())
 
@@ -53,7 +54,7 @@ def test_a_quantile_is_the_lateness_that_so_many_steps_kept():
         assert (late <= q).sum() >= share * len(late)
         assert (late < q).sum() < share * len(late)
     assert told.worst == told.quantile(1.0)
-    document = told.to_dict()
+    document = data_of(told)
     assert document["steps"] == 4321
     assert document["missed"] == 5
     assert document["lateness_s"]["of_99_9_percent"] == told.quantile(0.999)

@@ -9,6 +9,7 @@ import pytest
 import zwidth as zw
 from zwidth.errors import InputError
 from zwidth.machine.servo.lateness import stiffness_cost
+from zwidth.quantity.answered import data_of
 
 PLAIN = {"damping": "0.35", "rate": "2 kHz"}
 
@@ -63,7 +64,7 @@ def test_what_is_saved_has_units_and_says_what_has_no_bound():
     found = stiffness_cost(
         zw.Device(damping="0.2", rate="1 kHz", motion="rotary"), zw.Wall(stiffness=1), 1e-4
     )
-    document = found.to_dict()
+    document = data_of(found)
     assert set(document["max_stiffness_N_m_per_rad"]) == {"nominal", "longer_period", "later_force"}
     assert document["lateness_s"] == 1e-4
     assert document["any_stiffness"] == []

@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field
 from functools import cache, cached_property
+from math import isfinite
 from pathlib import PurePath
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
@@ -81,11 +82,13 @@ def answered(meaning: str, *, default: Any = ..., **about: Any) -> Any:
     return field(metadata=metadata) if default is ... else field(default=default, metadata=metadata)
 
 
-def answers(meaning: str, **about: Any) -> Callable[[F], F]:
-    """The same of a property, below `@property` or `@cached_property`."""
+def answers(meaning: str = "", **about: Any) -> Callable[[F], F]:
+    """The same of a property, below `@property` or `@cached_property`; by default what its docstring says."""
 
     def declare(function: F) -> F:
-        function.told = Told(meaning, **about)  # type: ignore[attr-defined]
+        said = " ".join((function.__doc__ or "").partition("\n\n")[0].split()).removesuffix(".")
+        said = said[0].lower() + said[1:] if said[1:2].islower() else said  # "T of the loop" begins with T
+        function.told = Told(meaning or said, **about)  # type: ignore[attr-defined]
         return function
 
     return declare
@@ -127,13 +130,17 @@ def data_of(result: object) -> dict[str, Any]:
 
 
 def plain(value: Any, names: Sequence[str] = ()) -> Any:
-    """A value as plain data; entries of a tuple that have names by their names."""
+    """A value as plain data; named entries of a tuple by their names; what is not finite is null."""
     if names and value is not None:
         return {name: plain(one) for name, one in zip(names, value, strict=True)}
     if hasattr(value, "to_dict"):
         return value.to_dict()
+    if declared(value):
+        return data_of(value)
     if isinstance(value, (list, tuple)):
         return [plain(one) for one in value]
+    if isinstance(value, float) and not isfinite(value):
+        return None
     return str(value) if isinstance(value, PurePath) else value
 
 

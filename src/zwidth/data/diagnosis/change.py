@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import floor, log10
-from typing import Protocol
+from typing import Any, Protocol
 
 from zwidth.data.diagnosis.evidence import Evidence
 from zwidth.errors import InputError
@@ -22,6 +22,7 @@ from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.check import check, check_by_closed_forms
 from zwidth.passivity.covering_wall import covering
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.answered import answered, answers, data_of
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import shown
 
@@ -50,28 +51,23 @@ class Judged(Protocol):
 class Lowered:
     """One number, from where it is to where it may be."""
 
-    parameter: str
-    """Its key, such as "stiffness"."""
-    current: float
-    to: float
-    """In `unit`."""
-    unit: str
-    """SI."""
-    text: str
-    """In words."""
+    parameter: str = answered('its key, such as "stiffness"')
+    current: float = answered("where it is, in `unit`", key="from")
+    to: float = answered("where it may be")
+    unit: str = answered("SI")
+    text: str = answered("what to do, in words")
     verdict: Judged
     """What `check` says to what has the number changed."""
 
-    def to_dict(self) -> dict[str, object]:
+    @property
+    @answers("of `zwidth check` with it")
+    def outcome(self) -> str:
+        """Of the verdict."""
+        return self.verdict.outcome
+
+    def to_dict(self) -> dict[str, Any]:
         """As plain data."""
-        return {
-            "parameter": self.parameter,
-            "from": self.current,
-            "to": self.to,
-            "unit": self.unit,
-            "text": self.text,
-            "outcome": self.verdict.outcome,
-        }
+        return data_of(self)
 
 
 def lowered_to(name: str, current: float, to: float, unit: str) -> str:
@@ -119,16 +115,10 @@ def text_of(value: float) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Change(Lowered):
-    """One number of the loop, from where it is to where it may be.
+    """One number of the loop, from where it is to where it may be."""
 
-    Parameters
-    ----------
-    device, environment
-        The loop with that number changed.
-    """
-
-    device: Device
-    environment: Environment
+    device: Device = answered("of the loop with that number changed", only_shown=True)
+    environment: Environment = answered("of the same", only_shown=True)
     verdict: Verdict
 
 

@@ -17,6 +17,7 @@ from zwidth.data.diagnosis.recording import Recording
 from zwidth.data.diagnosis.vibration import nothing
 from zwidth.errors import InputError
 from zwidth.lazy import above
+from zwidth.quantity.answered import answered, answers, data_of
 from zwidth.quantity.text import shown
 from zwidth.showing import Part, Shown, Table
 from zwidth.writing import check_target, writing_whole
@@ -35,47 +36,28 @@ NO_NUMBER = "no one number of the loop is proved to end it, with the device as i
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Answer(Shown, Generic[Changed, Seen, Recorded]):
-    """Why it shook.
+    """Why it shook."""
 
-    Parameters
-    ----------
-    cause
-        Its name; None where the data do not say.
-    confidence
-        How often such a finding is right, among simulated faults; 0 for None.
-    likely
-        Each cause with its p, the likeliest first.
-    frequency, frequency_spread
-        [Hz] of the vibration, and how far it is known.
-    energy_per_cycle
-        [J] that the forces put into the motion in each cycle, negative where they take.
-    evidence
-        Sentences with the numbers that speak for the cause.
-    change
-        The one number to change; None where there is none, or no device was given.
-    record
-        What to record next, where the data do not say.
-    seen
-        Every number that was measured; None where nothing vibrates.
-    findings
-        What was odd in the file, and what was supposed.
-    """
-
-    cause: str | None
-    confidence: float
-    likely: Mapping[str, float]
-    frequency: float | None
-    frequency_spread: float | None
-    energy_per_cycle: float | None
-    evidence: tuple[str, ...]
-    change: Changed | None
-    record: tuple[str, ...]
-    seen: Seen | None
-    findings: tuple[str, ...]
-    recording: Recorded
+    cause: str | None = answered("what keeps it shaking; null where the data do not say")
+    confidence: float = answered("how often such a finding is right, among simulated faults, from 0 to 1")
+    likely: Mapping[str, float] = answered("of each cause how likely it is, the likeliest first")
+    frequency: float | None = answered("of the vibration", unit="Hz")
+    frequency_spread: float | None = answered("how far it wanders", unit="Hz")
+    energy_per_cycle: float | None = answered(
+        "what the forces put into the motion in each cycle, negative where they take", unit="J"
+    )
+    evidence: tuple[str, ...] = answered("sentences with the numbers that speak for the cause")
+    change: Changed | None = answered(
+        "the one number to change; null where there is none, or no device was given"
+    )
+    record: tuple[str, ...] = answered("what to record next, where the data do not say")
+    seen: Seen | None = answered("what was measured; None where nothing vibrates", only_shown=True)
+    findings: tuple[str, ...] = answered("what was odd in the file, and what was supposed")
+    recording: Recorded = answered("what was read", only_shown=True)
 
     @property
     @abstractmethod
+    @answers()
     def claim(self) -> str:
         """The answer in one sentence."""
 
@@ -113,19 +95,11 @@ class Answer(Shown, Generic[Changed, Seen, Recorded]):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
-        return {
-            "cause": self.cause,
+        rounded = {
             "confidence": round(self.confidence, 3),
-            "claim": self.claim,
             "likely": {name: round(p, 4) for name, p in self.likely.items()},
-            "frequency_Hz": self.frequency,
-            "frequency_spread_Hz": self.frequency_spread,
-            "energy_per_cycle_J": self.energy_per_cycle,
-            "evidence": list(self.evidence),
-            "record": list(self.record),
-            "change": None if self.change is None else self.change.to_dict(),
-            "findings": list(self.findings),
-        } | ({} if self.seen is None else self._measured(self.seen))
+        }
+        return data_of(self) | rounded | ({} if self.seen is None else self._measured(self.seen))
 
     def to_json(self) -> str:
         """`to_dict` as JSON."""
@@ -190,15 +164,13 @@ def key_with_unit(name: str, unit: str) -> str:
 class Diagnosis(Answer[Change, Evidence, Recording]):
     """Why it shook: `cause` is one of the keys of `zwidth.data.diagnosis.CAUSES`, or None where the data do
     not say, and `confidence` how often such a finding is right, among faults simulated as the weights were
-    learnt from.
+    learnt from."""
 
-    Parameters
-    ----------
-    stated
-        How the law as it was stated fits the force, and what `check` says to that loop; nothing without one.
-    """
-
-    stated: tuple[str, ...] = ()
+    stated: tuple[str, ...] = answered(
+        "how the law as stated fits the force, and what `check` says to that loop; empty without one",
+        default=(),
+        only_shown=True,
+    )
 
     @property
     def claim(self) -> str:

@@ -12,6 +12,7 @@ from zwidth.data.gains.plant import Family, GivenPlant, Value, family, plant_of
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
+from zwidth.quantity.answered import answered, data_of
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
@@ -33,27 +34,19 @@ class Setting:
 
 @dataclass(frozen=True, repr=False)
 class ArmGains(Shown):
-    """What the gain files of two arms say, in the units of the joints.
+    """What the gain files of two arms say, in the units of the joints."""
 
-    Attributes
-    ----------
-    family
-        Such as "openarm": whose law these gains are for.
-    joints
-        The gains of each joint, on both sides.
-    notes
-        What each number is, and what is not known of it.
-    drives
-        True where each arm's own part is computed in its motor drive.
-    follows
-        True where the files are of a follower alone, whatever was taken for the leader.
-    """
-
-    family: str
-    joints: tuple[JointGains, ...]
-    notes: tuple[str, ...]
-    drives: bool = True
-    follows: bool = False
+    family: str = answered('such as "openarm": whose law these gains are for')
+    joints: tuple[JointGains, ...] = answered("the gains of each joint, on both sides")
+    notes: tuple[str, ...] = answered("what each number is, and what is not known of it")
+    drives: bool = answered(
+        "true where each arm's own part is computed in its motor drive", default=True, only_shown=True
+    )
+    follows: bool = answered(
+        "true where the files are of a follower alone, whatever was taken for the leader",
+        default=False,
+        only_shown=True,
+    )
 
     @property
     def published(self) -> Family:
@@ -200,11 +193,7 @@ class ArmGains(Shown):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
-        return {
-            "family": self.family,
-            "joints": [joint.to_dict() for joint in self.joints],
-            "notes": list(self.notes),
-        }
+        return data_of(self)
 
     def report(self) -> Iterator[Part]:
         """The gains joint by joint, and what they are."""

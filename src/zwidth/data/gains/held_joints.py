@@ -17,6 +17,7 @@ from zwidth.passivity.check import check
 from zwidth.passivity.result import evidence_of
 from zwidth.passivity.scope import COLOUR, Outcome
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.answered import answered, answers
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import shown
@@ -56,28 +57,22 @@ class HeldJoint:
 
 @dataclass(frozen=True, repr=False)
 class HeldJoints(Documented):
-    """The verdicts on the joints of one arm, held at a target by springs and dampers.
-
-    Attributes
-    ----------
-    joints
-        Each with its verdict, which holds proof or motion.
-    notes
-        What was taken for granted.
-    """
+    """The verdicts on the joints of one arm, held at a target by springs and dampers."""
 
     FORMAT: ClassVar[str] = "zwidth held joints 1"
 
-    joints: tuple[HeldJoint, ...]
-    notes: tuple[str, ...]
+    joints: tuple[HeldJoint, ...] = answered("each with its verdict, which holds proof or motion")
+    notes: tuple[str, ...] = answered("what was taken for granted")
 
     @property
+    @answers()
     def outcome(self) -> Outcome:
         """Of all joints: "passive" where every one is, else the worst."""
         found = [joint.verdict.outcome for joint in self.joints]
         return next((outcome for outcome in _WORST if outcome in found), "passive")
 
     @property
+    @answers()
     def claim(self) -> str:
         """In a sentence."""
         names = [joint.law.name for joint in self.joints if joint.verdict.outcome == self.outcome]
@@ -86,22 +81,10 @@ class HeldJoints(Documented):
         what = {"active": "Energy comes out of", "undecided": "It is not known whether energy comes out of"}
         return f"{what.get(self.outcome, 'Proved less than passive are')} {', '.join(names)}."
 
-    def to_dict(self) -> dict[str, Any]:
-        """As plain data, units in the keys."""
-        return self._document([joint.to_dict() for joint in self.joints])
-
     def saved(self) -> dict[str, Any]:
         """The same with the proof, or the motion, of each joint."""
-        return self._document([{**joint.to_dict(), **evidence_of(joint.verdict)} for joint in self.joints])
-
-    def _document(self, joints: list[dict[str, Any]]) -> dict[str, Any]:
-        return {
-            "format": self.FORMAT,
-            "outcome": self.outcome,
-            "claim": self.claim,
-            "joints": joints,
-            "notes": list(self.notes),
-        }
+        joints = [{**joint.to_dict(), **evidence_of(joint.verdict)} for joint in self.joints]
+        return {**self.to_dict(), "joints": joints}
 
     def report(self) -> Iterator[Part]:
         """The sentence, joint by joint, and what is taken for granted."""

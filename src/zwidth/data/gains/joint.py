@@ -9,6 +9,7 @@ from typing import Any
 from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
 from zwidth.model.rendering.friction_compensation import FrictionCompensation
+from zwidth.quantity.answered import answered
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import exact_text
 
@@ -64,30 +65,12 @@ class Gains:
 
 @dataclass(frozen=True)
 class JointGains:
-    """A joint of both arms; `leader` is None where the leader feels nothing.
+    """A joint of both arms."""
 
-    Attributes
-    ----------
-    name
-        Such as J1.
-    leader, follower
-        The gains of each side.
-    motor
-        Its motor, where that is known.
-    """
-
-    name: str
-    leader: Gains | None
-    follower: Gains
-    motor: str = ""
-
-    def to_dict(self) -> dict[str, object]:
-        """As plain data, units in the keys."""
-        return {
-            "name": self.name,
-            "leader": None if self.leader is None else self.leader.to_dict(),
-            "follower": self.follower.to_dict(),
-        }
+    name: str = answered("of the joint, such as J1")
+    leader: Gains | None = answered("the gains of the leader; null where it feels nothing")
+    follower: Gains = answered("those of the follower")
+    motor: str = answered("its motor, where that is known", default="", only_shown=True)
 
 
 # One joint of both arms as a pair: its gains, its two devices, the link and the drives.
@@ -176,6 +159,17 @@ class CoupledJoint:
             drive_rate=self.drive_rate,
             **laws,
         )
+
+    def to_dict(self) -> dict[str, Any]:
+        """The gains of both sides, units in the keys."""
+        return {
+            side: {
+                "stiffness_N_m_per_rad": float(own.stiffness),
+                "damping_N_m_s_per_rad": float(own.damping),
+                "local_damping_N_m_s_per_rad": float(own.local_damping),
+            }
+            for side, own in zip(("leader", "follower"), self.gains, strict=True)
+        }
 
     def _side(self, device: Device, gains: Gains) -> tuple[Device, Fraction]:
         """The device, and D of its controller."""

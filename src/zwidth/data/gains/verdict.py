@@ -17,6 +17,7 @@ from zwidth.model.specification.table import quoted, suggestion
 from zwidth.passivity.pairs import PairVerdict, check_pair
 from zwidth.passivity.pairs.limits import samples_around
 from zwidth.passivity.scope import COLOUR, Outcome
+from zwidth.quantity.answered import answered, answers, data_of
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
@@ -82,44 +83,59 @@ class JointVerdict:
         return self.gains.name
 
     @property
+    @answers()
     def outcome(self) -> Outcome:
         """ "passive", "active" or "undecided"."""
         return self.verdict.outcome
 
     @property
+    @answers()
+    def claim(self) -> str:
+        """In a sentence."""
+        return self.verdict.claim
+
+    @property
+    @answers()
     def is_searched(self) -> bool:
-        """False where readings are too old, or a drive's too many, to look for passive gains."""
+        """False where readings are too old, or a drive's too many, to look for passive gains: those are then
+        null."""
         pair = self.verdict.pair
         return samples_around(pair) <= MOST_SAMPLES and pair.own_readings <= MOST_READINGS
 
     @cached_property
+    @answers()
     def stiffest(self) -> CoupledJoint | None:
-        """The stiffest passive joint with the damping of the files, rounded down, proved; None if none is."""
+        """The stiffest passive joint with the damping of the files, rounded down, proved; null if none is."""
         return stiffest(self.model) if self.is_searched else None
 
     @cached_property
+    @answers()
     def best(self) -> CoupledJoint | None:
-        """The stiffest passive joint over multiples of the damping, rounded and proved; None if none is."""
+        """The stiffest passive joint over multiples of the damping, rounded and proved; null if none is."""
         return best(self.model) if self.is_searched else None
 
     @cached_property
+    @answers(unit="N*m*s/rad")
     def required_damping(self) -> float | None:
         """The least b of both arms, the same, for the gains of the files [N·m·s/rad]; rounded up, proved."""
         return required_damping(self.model) if self.is_searched else None
 
     @cached_property
+    @answers(key="largest_compensation")
     def compensation(self) -> float | None:
-        """How much of the compensation of friction is passive, 1 for all; None if none, or there is none."""
+        """How much of the compensation of friction is passive, 1 for all; null if none, or there is none."""
         return passive_compensation(self.model) if self.is_searched else None
 
     @cached_property
+    @answers()
     def with_ideal_drive(self) -> Outcome | None:
-        """The outcome if kd in the drive were a damper; None without a drive, or where it is taken so."""
+        """The outcome if kd in the drive were a damper; null without a drive, or where it is taken so."""
         if self.model.drive_rate is None or self.model.ideal_drive:
             return None
         return check_pair(replace(self.model, ideal_drive=True).pair()).outcome
 
     @property
+    @answers()
     def limit(self) -> str:
         """What binds, in a few words."""
         verdict = self.verdict
@@ -130,6 +146,7 @@ class JointVerdict:
         return "" if verdict.passive else verdict.limit.partition(":")[0]
 
     @property
+    @answers()
     def assumptions(self) -> tuple[str, ...]:
         """What the claim covers and takes for granted."""
         ideal = "kd of an arm's own speed, in its drive, is a damper at once: b holds it, the controller not"
@@ -137,20 +154,8 @@ class JointVerdict:
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys; every gain that is told was proved."""
-        return {
-            **self.gains.to_dict(),
-            "outcome": self.outcome,
-            "claim": self.verdict.claim,
-            "limit": self.limit,
-            "with_ideal_drive": self.with_ideal_drive,
-            "damping_N_m_s_per_rad": [float(b) for b in self.model.damping],
-            "assumptions": list(self.assumptions),
-            "is_searched": self.is_searched,
-            "stiffest": _gains(self.stiffest),
-            "best": _gains(self.best),
-            "largest_compensation": self.compensation,
-            "required_damping_N_m_s_per_rad": self.required_damping,
-        }
+        damping = [float(b) for b in self.model.damping]
+        return {**data_of(self.gains), **data_of(self), "damping_N_m_s_per_rad": damping}
 
     def saved(self) -> dict[str, Any]:
         """The same with the proof, or the violation, for `zwidth verify`."""
@@ -166,31 +171,23 @@ class JointVerdict:
 
 @dataclass(frozen=True, repr=False)
 class GainsVerdict(Documented):
-    """The verdicts on all joints of an arm.
-
-    Attributes
-    ----------
-    gains
-        What the files say.
-    joints
-        The verdict on each joint.
-    taken
-        What was taken for granted that no file says.
-    """
+    """The verdicts on all joints of an arm."""
 
     FORMAT: ClassVar[str] = "zwidth gains 1"
 
-    gains: ArmGains
-    joints: tuple[JointVerdict, ...]
-    taken: tuple[str, ...]
+    gains: ArmGains = answered("what the files say, of a `family` of arms", stands_as={"family": "family"})
+    joints: tuple[JointVerdict, ...] = answered("the verdict on each joint")
+    taken: tuple[str, ...] = answered("what was taken for granted that no file says", only_shown=True)
 
     @property
+    @answers()
     def outcome(self) -> Outcome:
         """ "active" if a joint is, else "undecided" if a joint is, else "passive"."""
         found = {joint.outcome for joint in self.joints}
         return "active" if "active" in found else "undecided" if "undecided" in found else "passive"
 
     @property
+    @answers()
     def claim(self) -> str:
         """How many joints are what, in a sentence."""
         counts = [
@@ -201,6 +198,7 @@ class GainsVerdict(Documented):
         return f"Of {len(self.joints)} joints, each by itself: {told}."
 
     @property
+    @answers()
     def notes(self) -> tuple[str, ...]:
         """What each number is, what was taken for granted, and what is not counted."""
         return (
@@ -277,23 +275,9 @@ class GainsVerdict(Documented):
         yield second
         yield Lines(self.notes, "assumptions")
 
-    def to_dict(self) -> dict[str, Any]:
-        """As plain data, units in the keys."""
-        return self._document([joint.to_dict() for joint in self.joints])
-
     def saved(self) -> dict[str, Any]:
         """The same with the proof of each joint."""
-        return self._document([joint.saved() for joint in self.joints])
-
-    def _document(self, joints: list[dict[str, Any]]) -> dict[str, Any]:
-        return {
-            "format": self.FORMAT,
-            "outcome": self.outcome,
-            "claim": self.claim,
-            "family": self.gains.family,
-            "joints": joints,
-            "notes": list(self.notes),
-        }
+        return {**self.to_dict(), "joints": [joint.saved() for joint in self.joints]}
 
 
 def _decided(joint: JointVerdict) -> list[str]:
@@ -342,16 +326,3 @@ def _sides(leader: Fraction, follower: Fraction) -> str:
     """One number, or leader / follower."""
     first, second = (f"{float(value):.4g}" for value in (leader, follower))
     return first if first == second else f"{first}/{second}"
-
-
-def _gains(joint: CoupledJoint | None) -> dict[str, Any] | None:
-    if joint is None:
-        return None
-    return {
-        side: {
-            "stiffness_N_m_per_rad": float(own.stiffness),
-            "damping_N_m_s_per_rad": float(own.damping),
-            "local_damping_N_m_s_per_rad": float(own.local_damping),
-        }
-        for side, own in zip(("leader", "follower"), joint.gains, strict=True)
-    }

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zwidth.errors import InputError
+from zwidth.quantity.answered import answered
 
 if TYPE_CHECKING:
     from zwidth.native.compiled import Array
@@ -155,21 +156,11 @@ def whole_runs(blocks: Iterable[Block]) -> Iterator[Block]:
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """Something odd in a log, and what was done about it.
+    """Something odd in a log, and what was done about it."""
 
-    Parameters
-    ----------
-    kind
-        A word for programs, such as "gap" or "jitter".
-    text
-        A sentence for people, with numbers.
-    samples
-        How many samples it concerns; 0 if it concerns all.
-    """
-
-    kind: str
-    text: str
-    samples: int = 0
+    kind: str = answered('a word for programs, such as "gap" or "jitter"')
+    text: str = answered("a sentence for people, with numbers")
+    samples: int = answered("how many it concerns; 0 if it concerns all", default=0, only_shown=True)
 
     def __str__(self) -> str:
         return self.text

@@ -18,6 +18,7 @@ from zwidth.lazy import above
 from zwidth.model.environment.discretization import Discretization
 from zwidth.model.environment.environment import Environment
 from zwidth.native.compiled import Array
+from zwidth.quantity.answered import answered, answers, data_of
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Interval
 from zwidth.quantity.glossary import GLOSSARY
@@ -44,58 +45,46 @@ _USUAL = 1.96
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class TissueFit(Documented):
-    """A model fitted to a record, with the uncertainty of its parameters.
+    """A model fitted to a record, with the uncertainty of its parameters."""
 
-    Attributes
-    ----------
-    model
-        Its name and branches.
-    estimates
-        Logarithms of the parameters, then the offset itself where one was fitted.
-    covariance
-        Of these.
-    residuals
-        Measured less predicted, of the samples that count [N; N·m, or m; rad].
-    output
-        What was measured and predicted.
-    response
-        "force" or "position".
-    condition
-        Of the Jacobian with respect to relative changes of the parameters.
-    noise_order
-        Of the autoregressive process that the residuals were taken for; 0 for white noise.
-    independent_samples
-        How many samples without memory would say as much.
-    motion
-        "linear" or "rotary".
-    further
-        How many other numbers were fitted, for what was found in the record.
-    findings
-        What was found in the record, and what was done about it.
-    position
-        As it was read [m; rad]; None where it is not known.
-    time
-        Of the samples that count [s]; None where it is not known, and then there is no picture.
-    bends
-        Of each parameter how much further its interval goes below and above, in the logarithm, than the usual
-        one: by t σ times 1 + c t; empty where none was asked for.
-    """
-
-    model: Model
-    estimates: Array
-    covariance: Array
-    residuals: Array
-    output: Array
-    response: str
-    condition: float
-    noise_order: int
-    independent_samples: float
-    motion: str
-    further: int = 0
-    findings: tuple[Finding, ...] = ()
-    position: Array | None = None
-    time: Array | None = None
-    bends: tuple[tuple[float, float], ...] = ()
+    model: Model = answered("what was fitted, by its name", stands_as={"model": "name"})
+    estimates: Array = answered(
+        "logarithms of the parameters, then the offset itself where one was fitted", only_shown=True
+    )
+    covariance: Array = answered("of these", only_shown=True)
+    residuals: Array = answered(
+        "measured less predicted, of the samples that count [N; N·m, or m; rad]", only_shown=True
+    )
+    output: Array = answered("what was measured and predicted", only_shown=True)
+    response: str = answered('"force" or "position"')
+    condition: float = answered("of the Jacobian with respect to relative changes of the parameters")
+    noise_order: int = answered(
+        "of the autoregressive process that the residuals were taken for; 0 for white noise"
+    )
+    independent_samples: float = answered(
+        "how many samples without memory would say as much", only_shown=True
+    )
+    motion: str = answered('"linear" or "rotary"', only_shown=True)
+    further: int = answered(
+        "how many other numbers were fitted, for what was found in the record", default=0, only_shown=True
+    )
+    findings: tuple[Finding, ...] = answered(
+        "what was found in the record, and what was done about it", default=()
+    )
+    position: Array | None = answered(
+        "as it was read [m; rad]; None where it is not known", default=None, only_shown=True
+    )
+    time: Array | None = answered(
+        "of the samples that count [s]; None where it is not known, and then there is no picture",
+        default=None,
+        only_shown=True,
+    )
+    bends: tuple[tuple[float, float], ...] = answered(
+        "of each parameter how much further its interval goes below and above, in the logarithm, than the "
+        "usual one: by t σ times 1 + c t; empty where none was asked for",
+        default=(),
+        only_shown=True,
+    )
 
     @cached_property
     def values(self) -> Mapping[str, float]:
@@ -155,6 +144,7 @@ class TissueFit(Documented):
         return max(self.independent_samples - self.estimates.size - self.further, 1.0)
 
     @property
+    @answers()
     def r_squared(self) -> float:
         """1 − Σ e²/Σ (y − ȳ)²."""
         about = self.output - self.output.mean()
@@ -162,16 +152,19 @@ class TissueFit(Documented):
         return 1.0 - float(self.residuals @ self.residuals) / total if total else 0.0
 
     @property
+    @answers()
     def rms(self) -> float:
         """Of the residuals [N; N·m, or m; rad]."""
         return sqrt(float(np.mean(self.residuals**2)))
 
     @property
+    @answers()
     def aic(self) -> float:
         """N ln(Σ e²/N) + 2 k, for k parameters; the residuals are taken as white here."""
         return self._deviance + 2 * (self.estimates.size + self.further)
 
     @property
+    @answers()
     def bic(self) -> float:
         """N ln(Σ e²/N) + k ln N: the smaller, the better the model.
 
@@ -185,6 +178,7 @@ class TissueFit(Documented):
         return self.residuals.size * log(mean)
 
     @cached_property
+    @answers()
     def remarks(self) -> tuple[str, ...]:
         """What a reader should know before trusting the numbers."""
         said = [
@@ -271,22 +265,12 @@ class TissueFit(Documented):
 
     def to_dict(self) -> dict[str, Any]:
         """The numbers, for JSON."""
-        return {
-            "model": self.model.name,
-            "response": self.response,
-            "parameters": {
-                name: {"value": value, "unit": self._unit(name), "interval_95": list(self.interval(name))}
-                for name, value in self.values.items()
-            },
-            "r_squared": self.r_squared,
-            "rms": self.rms,
-            "aic": self.aic,
-            "bic": self.bic,
-            "condition": self.condition,
-            "noise_order": self.noise_order,
-            "remarks": list(self.remarks),
-            "findings": [finding.text for finding in self.findings],
+        parameters = {
+            name: {"value": value, "unit": self._unit(name), "interval_95": list(self.interval(name))}
+            for name, value in self.values.items()
         }
+        said = [finding.text for finding in self.findings]
+        return {**data_of(self), "parameters": parameters, "findings": said}
 
     def _unit(self, name: str) -> str:
         if name == "offset":

@@ -17,11 +17,13 @@ from typing import Any, ClassVar, Protocol
 from zwidth.errors import InputError
 from zwidth.links import Packet
 from zwidth.machine.network.channel import Channel, Frame
+from zwidth.quantity.answered import answered
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import read_number
 from zwidth.quantity.text import shown
-from zwidth.showing import Part, Shown, Table
+from zwidth.showing import Part, Table
 
 _CALL = 0.02
 """Between two calls to the other ends [s]."""
@@ -46,30 +48,24 @@ class Steps(Protocol):
 
 
 @dataclass(frozen=True, repr=False)
-class PeerReport(Shown):
+class PeerReport(Documented):
     """What a peer did."""
 
-    steps: int
-    late: int
-    """Steps that began more than a period late; they follow at once, until the time is made up for."""
-    lateness: tuple[float, float, float]
-    """Median, 99 % and largest lateness of a step [s]."""
-    links: Mapping[str, LinkReport]
-    forces: Mapping[str, float]
-    """What each line gave at last [N; N·m]."""
+    steps: int = answered("how many began")
+    late: int = answered(
+        "steps that began more than a period late; they follow at once, until the time is made up for"
+    )
+    lateness: tuple[float, float, float] = answered(
+        "of a step", unit="s", names=("median", "of_99_percent", "largest")
+    )
+    links: Mapping[str, LinkReport] = answered("by name, what was seen of each")
+    forces: Mapping[str, float] = answered("what each line gave at last [N; N·m]", only_shown=True)
 
     def to_dict(self) -> dict[str, Any]:
         """The same with a unit in every key."""
-        p50, p99, most = self.lateness
-        return {
-            "steps": self.steps,
-            "late": self.late,
-            "lateness_s": {"median": p50, "of_99_percent": p99, "largest": most},
-            "links": {
-                name: {**link.to_dict(), "last_force_N": self.forces[name]}
-                for name, link in self.links.items()
-            },
-        }
+        forces = self.forces
+        links = {name: {**link.to_dict(), "last_force_N": forces[name]} for name, link in self.links.items()}
+        return {**super().to_dict(), "links": links}
 
     def report(self) -> Iterable[Part]:
         """The steps, then line by line."""
@@ -206,56 +202,33 @@ WINDOW = 4096
 
 
 @dataclass(frozen=True, repr=False)
-class LinkReport(Shown):
-    """What was seen of a link from one side."""
+class LinkReport(Documented):
+    """What was seen of a link from one side; in plain data null before the first packet, or echo."""
 
-    sent: int
-    """Packets sent."""
-    received: int
-    """Packets received, each counted once."""
-    lost: int
-    """Numbers between the first and the newest received that did not come."""
-    doubled: int
-    late: int
-    """Packets that came after a younger one."""
-    foreign: int
-    """Datagrams that were none of a port."""
-    other_version: int
-    """Of those, from another version of zwidth."""
-    rate: float
-    """Packets received per second since the first."""
-    round_trip: tuple[float, float, float]
-    """Median, 99 % and longest round trip [s]; NaN before the first echo."""
-    energy_sent: float
-    """That this side has sent in all [J]."""
-    energy_received: float
-    """That the other side has sent to this run in all, as far as this one has heard [J]."""
-    silent: float
-    """Since the last packet came [s]; infinite before the first."""
+    sent: int = answered("packets sent")
+    received: int = answered("packets received, each counted once")
+    lost: int = answered("numbers between the first and the newest received that did not come")
+    doubled: int = answered("packets that came once more")
+    late: int = answered("packets that came after a younger one")
+    foreign: int = answered("datagrams that were none of a port")
+    other_version: int = answered("of those, from another version of zwidth", key="of_another_version")
+    rate: float = answered("packets received per second since the first", unit="Hz")
+    round_trip: tuple[float, float, float] = answered(
+        "there and back; not known before the first echo",
+        unit="s",
+        names=("median", "of_99_percent", "longest"),
+    )
+    energy_sent: float = answered("that this side has sent in all", unit="J")
+    energy_received: float = answered(
+        "that the other side has sent to this run in all, as far as this one has heard", unit="J"
+    )
+    silent: float = answered("since the last packet came; without end before the first", unit="s")
 
     def report(self) -> Iterable[Part]:
         """Six lines."""
         yield Table(rows=self.rows())
 
     HEADS: ClassVar = ["line", "sent", "received", "lost", "there and back, 99 %", "energy out", "energy in"]
-
-    def to_dict(self) -> dict[str, Any]:
-        """The same with a unit in every key; null where there is none yet."""
-        p50, p99, most = (t if math.isfinite(t) else None for t in self.round_trip)
-        return {
-            "sent": self.sent,
-            "received": self.received,
-            "lost": self.lost,
-            "doubled": self.doubled,
-            "late": self.late,
-            "foreign": self.foreign,
-            "of_another_version": self.other_version,
-            "rate_Hz": self.rate,
-            "round_trip_s": {"median": p50, "of_99_percent": p99, "longest": most},
-            "energy_sent_J": self.energy_sent,
-            "energy_received_J": self.energy_received,
-            "silent_s": self.silent if math.isfinite(self.silent) else None,
-        }
 
     def row(self, name: str) -> list[str]:
         """One row of a table of links."""

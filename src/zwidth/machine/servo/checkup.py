@@ -7,7 +7,7 @@ import platform
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.lateness import Lateness, StiffnessCost, measure_lateness, stiffness_cost
@@ -16,6 +16,7 @@ from zwidth.model.device import Device
 from zwidth.model.environment import Wall
 from zwidth.model.environment.environment import Environment
 from zwidth.progress import progress_bar
+from zwidth.quantity.answered import answered
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
@@ -41,34 +42,23 @@ class Checkup(Documented):
     FORMAT: ClassVar[str] = "zwidth doctor 1"
     PICTURE: ClassVar[str] = "plot_lateness"
 
-    sample_period: Exact
-    ordinary: Lateness
-    real_time: Lateness | None
-    """None where real-time priority was refused."""
-    asked: Granted
-    """What a loop asks of the system here, and what became of it."""
-    findings: tuple[Finding, ...]
-    device: str | None = None
-    cost: StiffnessCost | None = None
-    """None where no device was given."""
+    sample_period: Exact = answered("T of the loop that was run", unit="s")
+    ordinary: Lateness = answered("turns without real-time priority")
+    real_time: Lateness | None = answered("turns with it; null where it was refused")
+    asked: Granted = answered(
+        "what a loop asks of the system here, and what became of it: by wish, such as `priority` and "
+        "`memory`, whether it was `granted`, and `told`, in words what or why not"
+    )
+    findings: tuple[Finding, ...] = answered("what makes a loop late here, or does not")
+    device: str | None = answered("its name; null without one", default=None)
+    cost: StiffnessCost | None = answered(
+        "what lateness costs it in stiffness; null without a device", default=None
+    )
 
     @property
     def best(self) -> Lateness:
         """Of the loop as it would be served here: with real-time priority where that is granted."""
         return self.real_time or self.ordinary
-
-    def to_dict(self) -> dict[str, Any]:
-        """Everything, a unit in every key of a physical quantity."""
-        return {
-            "format": self.FORMAT,
-            "sample_period_s": self.sample_period,
-            "ordinary": self.ordinary.to_dict(),
-            "real_time": None if self.real_time is None else self.real_time.to_dict(),
-            "asked": self.asked.to_dict(),
-            "device": self.device,
-            "cost": None if self.cost is None else self.cost.to_dict(),
-            "findings": [finding.to_dict() for finding in self.findings],
-        }
 
     def report(self) -> Iterable[Part]:
         """The lateness of both kinds of turns, what it costs, what was found, what to change."""
@@ -102,8 +92,7 @@ class Checkup(Documented):
 
 
 def _row(lateness: Lateness) -> tuple[str, ...]:
-    values = (*(lateness.quantile(share) for share in (0.5, 0.99, _SHARE)), lateness.worst)
-    return (*(f"{1e3 * value:.3g}" for value in values), str(lateness.missed), str(len(lateness.late)))
+    return (*(f"{1e3 * t:.3g}" for t in lateness.shares), str(lateness.missed), str(lateness.steps))
 
 
 def doctor(
@@ -204,20 +193,14 @@ _FAST_CLOCKS = ("tsc", "arch_sys_counter", "kvm-clock", "hyperv_clocksource_tsc_
 class Finding:
     """One thing that makes a loop late, or does not."""
 
-    about: str
-    seen: str | None
-    """What was read; None where it cannot be read here."""
-    advice: str | None = None
-    """What to change; None where it is well, or unknown."""
+    about: str = answered("of what")
+    seen: str | None = answered("what was read; null where it cannot be read here")
+    advice: str | None = answered("what to change; null where it is well, or unknown", default=None)
 
     @property
     def told(self) -> str:
         """What was seen, or that it cannot be."""
         return "cannot be read here" if self.seen is None else self.seen
-
-    def to_dict(self) -> dict[str, str | None]:
-        """What was seen, and what to change."""
-        return {"about": self.about, "seen": self.seen, "advice": self.advice}
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, inf
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +25,9 @@ from zwidth.model.environment.environment import Environment
 from zwidth.native.compiled import compiled
 from zwidth.passivity.corners import worst_corners
 from zwidth.passivity.parameter_limits import has_stiffness, max_stiffness
+from zwidth.quantity.answered import answered, answers
 from zwidth.quantity.exact import Exact, Interval, ends
-from zwidth.quantity.glossary import unit_suffix
+from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_unit
 from zwidth.showing import Table
 
@@ -59,15 +60,24 @@ def run_turn(period: int, most: int, late: Nanoseconds, told: Nanoseconds) -> No
 
 @dataclass(frozen=True)
 class Lateness:
-    """How late each step of a loop was [s], and samples that were not taken.
-
-    `margin` is how long before a deadline the loop awoke in the end [s].
-    """
+    """How late each step of a loop was [s]."""
 
     late: NDArray[np.float64]
-    missed: int
-    margin: float
-    granted: Granted
+    missed: int = answered("samples that were not taken")
+    margin: float = answered("how long before a deadline the loop awoke in the end", unit="s")
+    granted: Granted = answered("what of its wishes the system granted, as in `asked`")
+
+    @property
+    @answers()
+    def steps(self) -> int:
+        """How many began."""
+        return len(self.late)
+
+    @property
+    @answers(key="lateness", unit="s", names=("of_50_percent", "of_99_percent", "of_99_9_percent", "largest"))
+    def shares(self) -> tuple[float, ...]:
+        """Within which this share of the steps began."""
+        return (*(self.quantile(share) for share in (0.5, 0.99, 0.999)), self.worst)
 
     def quantile(self, share: float) -> float:
         """The least of these latenesses within which this share of the steps began [s]."""
@@ -78,17 +88,6 @@ class Lateness:
     def worst(self) -> float:
         """The largest [s]."""
         return float(self.late.max())
-
-    def to_dict(self) -> dict[str, Any]:
-        """Its numbers, a unit in every key."""
-        shares = {"of_50_percent": 0.5, "of_99_percent": 0.99, "of_99_9_percent": 0.999}
-        return {
-            "steps": len(self.late),
-            "missed": self.missed,
-            "lateness_s": {**{key: self.quantile(q) for key, q in shares.items()}, "largest": self.worst},
-            "margin_s": self.margin,
-            "granted": self.granted.to_dict(),
-        }
 
 
 class Measured(NamedTuple):
@@ -176,6 +175,9 @@ _DIGITS = 9
 """Of seconds: the clock counts nanoseconds."""
 
 
+_STAGES = ("nominal", "longer_period", "later_force")
+
+
 @dataclass(frozen=True)
 class StiffnessCost:
     """The largest stiffness that is proved passive, all else as given [N/m; N·m/rad].
@@ -188,32 +190,29 @@ class StiffnessCost:
     """With T + L."""
     later_force: float | None
     """With T + L, and delay + L."""
-    lateness: float
-    """L [s]."""
-    contact: str
-    """Of which the proofs are: "made and broken" or "kept"."""
-    unit: str
+    lateness: float = answered("L, within which 99.9 % of the steps began", unit="s")
+    contact: str = answered('of which the proofs are: "made and broken" or "kept"')
+    motion: str = answered('"linear" or "rotary"', only_shown=True)
 
-    def to_dict(self) -> dict[str, Any]:
-        """The three, a unit in every key; null for none, and for any stiffness."""
-        key = f"max_stiffness_{unit_suffix(self.unit)}"
-        told = {"nominal": self.nominal, "longer_period": self.longer_period, "later_force": self.later_force}
-        return {
-            "lateness_s": self.lateness,
-            "contact": self.contact,
-            key: {name: None if value == inf else value for name, value in told.items()},
-            "any_stiffness": [name for name, value in told.items() if value == inf],
-        }
+    @property
+    @answers(key="max_stiffness", quantity="stiffness", names=_STAGES)
+    def largest(self) -> tuple[float | None, ...]:
+        """Proved passive as given, with every period longer by L, and with every force later by L too; null
+        where none is, or any."""
+        return self.nominal, self.longer_period, self.later_force
+
+    @property
+    @answers()
+    def any_stiffness(self) -> list[str]:
+        """Those of the three that have no bound."""
+        return [name for name, value in zip(_STAGES, self.largest, strict=True) if value == inf]
 
     def table(self) -> Table:
         """A row for each."""
         late = f"{1e3 * self.lateness:.3g} ms"
-        values = {
-            "as given": self.nominal,
-            f"every period longer by {late}": self.longer_period,
-            f"and every force later by {late}": self.later_force,
-        }
-        rows = [(name, in_unit(value, self.unit)) for name, value in values.items()]
+        names = ("as given", f"every period longer by {late}", f"and every force later by {late}")
+        unit = GLOSSARY["stiffness"].unit_for(self.motion)
+        rows = [(name, in_unit(value, unit)) for name, value in zip(names, self.largest, strict=True)]
         return Table(rows=rows, caption=f"largest passive stiffness, contact {self.contact}")
 
 
@@ -233,8 +232,7 @@ def stiffness_cost(device: Device, environment: Environment, lateness: float) ->
     if None in found:  # what is proved while contact is kept compares better than what is not proved at all
         contact, found = "kept", [_largest(each, environment, False) for each in loops]
     nominal, longer_period, later_force = found
-    unit = device.unit("stiffness")
-    return StiffnessCost(nominal, longer_period, later_force, float(by), contact, unit)
+    return StiffnessCost(nominal, longer_period, later_force, float(by), contact, device.motion)
 
 
 def _largest(device: Device, environment: Environment, contact: bool) -> float | None:

@@ -15,6 +15,7 @@ from zwidth.data.logs import Finding
 from zwidth.errors import InputError
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
+from zwidth.quantity.answered import answered
 from zwidth.quantity.exact import Interval, as_parameter, ends
 
 if TYPE_CHECKING:
@@ -29,65 +30,47 @@ BINS = 6
 
 @dataclass(frozen=True, kw_only=True)
 class IdentifiedNumbers:
-    """A device as a log shows it.
+    """A device as a log shows it."""
 
-    Parameters
-    ----------
-    estimates
-        By parameter: damping, coulomb_friction, mass unless it was given, and what else was fitted: spring
-        [N/m], force_lag [s], and slow, what friction is more at rest [N]; N·m and rad if rotary.
-    directions
-        Damping into the wall and out of it.
-    fastest
-        Speed that 32 strokes, or a quarter of them, went beyond, into the wall and out of it [m/s; rad/s]:
-        of friction beyond it the data say nothing.
-    slopes
-        Slope of friction at that speed, in each direction, if friction is bent.
-    mass
-        The given one [kg; kg·m²], or None.
-    sample_period, resolution
-        T [s] and Δ [m; rad] of the log.
-    motion
-        "linear" or "rotary".
-    source
-        The log.
-    explained
-        r² of the pulses' mean forces.
-    force_noise
-        Standard deviation of the force, per sample, that the model leaves [N; N·m].
-    offset
-        Mean of what the force has besides: the sensor's zero, gravity, and half of what
-        friction differs between the two directions; they cannot be told apart [N; N·m].
-    viscous_alone
-        Damping that a mass–damper model would be given [N·s/m; N·m·s/rad].
-    pulse_length
-        Time over which the equation of motion was averaged [s].
-    strokes, pulses
-        How many the numbers rest on.
-    findings
-        What a person should know.
-    seen
-        Mean speed and friction of up to some ten thousand pulses, for pictures.
-    """
-
-    estimates: Mapping[str, Estimate]
-    directions: Directions
-    fastest: tuple[float, float]
-    slopes: Directions
-    mass: float | None
-    sample_period: float
-    resolution: float
-    motion: Literal["linear", "rotary"]
-    source: str
-    explained: float
-    force_noise: float
-    offset: float
-    viscous_alone: float
-    pulse_length: float
-    strokes: int
-    pulses: int
-    findings: tuple[Finding, ...]
-    seen: Trace
+    estimates: Mapping[str, Estimate] = answered(
+        "by parameter: damping, coulomb_friction, mass unless it was given, and what else was fitted: spring "
+        "[N/m], force_lag [s], and slow, what friction is more at rest [N]; N·m and rad if rotary",
+        only_shown=True,
+    )
+    directions: Directions = answered("damping into the wall and out of it", only_shown=True)
+    fastest: tuple[float, float] = answered(
+        "speed that 32 strokes, or a quarter of them, went beyond, into the wall and out of it: of friction "
+        "beyond it the data say nothing",
+        quantity="friction_speed",
+        only_shown=True,
+    )
+    slopes: Directions = answered(
+        "slope of friction at that speed, in each direction, if friction is bent", only_shown=True
+    )
+    mass: float | None = answered(
+        "a mass that was stated; else it is fitted", key="given_mass", quantity="mass", optional=True
+    )
+    sample_period: float = answered("T of the log", quantity="sample_period")
+    resolution: float = answered("Δ of the log", quantity="resolution")
+    motion: Literal["linear", "rotary"] = answered('"linear" or "rotary"')
+    source: str = answered("the log")
+    explained: float = answered("r² of the pulses' mean forces")
+    force_noise: float = answered(
+        "standard deviation of the force, per sample, that the model leaves", quantity="force"
+    )
+    offset: float = answered(
+        "mean of what the force has besides: the sensor's zero, gravity, and half of what friction differs "
+        "between the two directions; they cannot be told apart",
+        quantity="force",
+    )
+    viscous_alone: float = answered("damping that a mass–damper model would be given", quantity="damping")
+    pulse_length: float = answered("time over which the equation of motion was averaged", unit="s")
+    strokes: int = answered("how many the numbers rest on")
+    pulses: int = answered("how many of them, inside the strokes")
+    findings: tuple[Finding, ...] = answered("what a person should know: `kind` and `text` of each")
+    seen: Trace = answered(
+        "mean speed and friction of up to some ten thousand pulses, for pictures", only_shown=True
+    )
 
     @cached_property
     def points(self) -> xr.Dataset:

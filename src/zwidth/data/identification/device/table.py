@@ -13,6 +13,7 @@ import numpy as np
 
 from zwidth.model.device.device import Device
 from zwidth.model.specification.write import toml
+from zwidth.quantity.answered import data_of
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.spoken import spoken
@@ -148,14 +149,11 @@ def to_dict(identified: IdentifiedNumbers, confidence: float) -> dict[str, Any]:
 
     document: dict[str, Any] = {
         "format": FORMAT,
-        "source": identified.source,
-        "motion": identified.motion,
-        key("sample_period"): identified.sample_period,
-        key("resolution"): identified.resolution,
         "confidence": confidence,
+        **data_of(identified),
+        "advice": list(advice(identified, confidence)),
+        "assumptions": [BOTH_SIDES],
     }
-    if identified.mass is not None:
-        document[key("given_mass", "mass")] = identified.mass
     for name, estimate in identified.estimates.items():
         document[key(name)] = _estimate(estimate, confidence)
     for name in ("inward", "outward"):
@@ -172,19 +170,7 @@ def to_dict(identified: IdentifiedNumbers, confidence: float) -> dict[str, Any]:
             "value": limit.value,
             "interval": [low, high],
         }
-    return {
-        **document,
-        "explained": identified.explained,
-        key("force_noise", "force"): identified.force_noise,
-        key("offset", "force"): identified.offset,
-        key("viscous_alone", "damping"): identified.viscous_alone,
-        "pulse_length_s": identified.pulse_length,
-        "strokes": identified.strokes,
-        "pulses": identified.pulses,
-        "findings": [{"kind": f.kind, "text": f.text} for f in identified.findings],
-        "advice": list(advice(identified, confidence)),
-        "assumptions": [BOTH_SIDES],
-    }
+    return document
 
 
 def _estimate(estimate: Estimate, confidence: float) -> dict[str, Any]:

@@ -21,6 +21,7 @@ from zwidth.missing import did_you_mean
 from zwidth.model.specification.read import Specification
 from zwidth.model.specification.write import parsed
 from zwidth.native.compiled import Array
+from zwidth.quantity.answered import answered, answers, data_of
 from zwidth.showing import Lines, Part, Shown, Table, printable
 
 if TYPE_CHECKING:
@@ -54,59 +55,46 @@ _MEANINGS = {
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class Recording(Shown):
-    """What was recorded, as far as the file is whole.
+    """What was recorded, as far as the file is whole."""
 
-    Parameters
-    ----------
-    path
-        Where it was read.
-    columns
-        Each column as an array; the unit is in its name.
-    motion
-        "linear" or "rotary".
-    period
-        T [s].
-    title
-        What was served, in words.
-    about
-        What the loop said of itself: device, environment, laws, safety, versions.
-    events
-        What happened, in order.
-    whole
-        True where the recording was ended as it should be; False where it was cut off.
-    """
-
-    path: Path
-    columns: dict[str, Array]
-    motion: str
-    period: float
-    title: str
-    about: dict[str, Any]
-    events: list[dict[str, Any]]
-    whole: bool
+    path: Path = answered("where it was read", only_shown=True)
+    columns: dict[str, Array] = answered("each column as an array; the unit is in its name", only_shown=True)
+    motion: str = answered('"linear" or "rotary"')
+    period: float = answered("T", key="sample_period", unit="s")
+    title: str = answered("what was served, in words")
+    about: dict[str, Any] = answered(
+        "what the loop said of itself, as in the file: device, environment, laws, safety, versions"
+    )
+    events: list[dict[str, Any]] = answered("what happened, in order, as in the file")
+    whole: bool = answered("true where the recording was ended as it should be, false where it was cut off")
 
     @property
+    @answers()
     def samples(self) -> int:
         """Rows that were read."""
         return int(next(iter(self.columns.values())).size)
 
     @property
+    @answers(unit="s")
     def duration(self) -> float:
-        """From the first row to the last [s]."""
+        """From the first row to the last."""
         time = self.columns["time_s"]
         return float(time[-1] - time[0]) if time.size else 0.0
 
     @property
+    @answers(key="without_answer")
     def unanswered(self) -> int:
         """Samples to which the device gave no good answer before the force ended."""
         return int(((self.columns["status"] != 0) & (self.columns["phase"] != ENDED)).sum())
 
     @property
+    @answers()
     def rows_lost(self) -> int:
         """Rows that never came into the file, as it says itself."""
         return rows_lost(self.events)
 
     @property
+    @answers()
     def missed(self) -> int:
         """Samples that the loop left out: their numbers do not occur, and no row was lost there."""
         numbers = self.columns["sample"]
@@ -190,20 +178,7 @@ class Recording(Shown):
 
     def to_dict(self) -> dict[str, Any]:
         """What is in it but for the rows, units in the keys."""
-        return {
-            "format": FORMAT,
-            "title": self.title,
-            "motion": self.motion,
-            "sample_period_s": self.period,
-            "samples": self.samples,
-            "duration_s": self.duration,
-            "whole": self.whole,
-            "rows_lost": self.rows_lost,
-            "missed": self.missed,
-            "without_answer": self.unanswered,
-            "about": self.about,
-            "events": self.events,
-        }
+        return {"format": FORMAT, **data_of(self)}
 
     def report(self) -> Iterable[Part]:
         """What is in it, from the top down."""
