@@ -77,7 +77,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Marks what `soak.txt` names; of every test there it leaves something that answers alike and is quick."""
+    """Marks what `soak.txt` names; of every test there it leaves something quick that answers alike."""
     named = soaked()
     left = Counter(item.nodeid.partition("[")[0] for item in items)
     for item in items:
@@ -91,7 +91,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def soaked() -> dict[str, str]:
-    """Of each test, or case of a test, that takes long, the test that stands for it; "" where cases are left."""
+    """Of each test, or case of a test, that takes long, what stands for it; "" where cases are left."""
     lines = (Path(__file__).parent / "soak.txt").read_text(encoding="utf-8").splitlines()
     parts = (line.split(maxsplit=1)[1].partition(" -> ") for line in lines if line and line[0] != "#")
     return {test: quick for test, _, quick in parts}

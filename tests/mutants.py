@@ -1,12 +1,12 @@
-"""Would a mistake in the physics be seen?  Small ones are put in, one at a time; the tests that reach them run.
+"""Would a mistake in the physics be seen?  Small ones are put in; the tests that reach them run.
 
     python tests/mutants.py --rooms passivity/linear quantity --sample 300 --seed 1 --ledger mutants.csv
 
 First every test runs once, and is asked which lines of these rooms it reaches.  Then each mutant (see
 `checker/mutations.py`) is put into the functions of a process forked from one that has all tests collected,
 and the tests that reach its line are run, the quickest first, until one fails: that killed it.  A mutant is
-alive when all have passed that fit into --seconds.  Step functions that are translated to C are left out: what runs
-is not the Python that would be changed.
+alive when all have passed that fit into --seconds.  Step functions that are translated to C are left out:
+what runs is not the Python that would be changed.
 """
 
 from __future__ import annotations
@@ -142,7 +142,7 @@ class Tried:
 
     def _ledger(self) -> tuple[set[tuple[str, ...]], Any]:
         path = Path(self.given.ledger)
-        rows = list(csv.DictReader(path.open(encoding="utf-8"))) if path.exists() else []
+        rows = rows_of(path)
         self.file = path.open("a", encoding="utf-8", newline="")
         writer = csv.writer(self.file, lineterminator="\n")
         writer.writerows([] if rows else [COLUMNS])
@@ -223,6 +223,14 @@ class Tried:
         return ("alive so far", "") if ended == signal.SIGXCPU else ("killed", "the process ended")
 
 
+def rows_of(path: Path) -> list[dict[str, str]]:
+    """What was tried so far."""
+    if not path.exists():
+        return []
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
 def _silent() -> None:
     nothing = os.open(os.devnull, os.O_RDWR)
     for number in (0, 1, 2):
@@ -243,7 +251,7 @@ def main() -> int:
     given = parser.parse_args()
     options = ["-q", "-n", "0", "-p", "no:cacheprovider", "-p", "no:faulthandler", *given.tests]
     pytest.main(options, plugins=[Tried(given)])
-    rows = list(csv.DictReader(Path(given.ledger).open(encoding="utf-8")))
+    rows = rows_of(Path(given.ledger))
     for room in given.rooms:
         own = Counter(row["outcome"] for row in rows if row["file"].startswith(room))
         killed, tried = own["killed"], sum(own.values()) - own["not made"]
