@@ -17,7 +17,7 @@ from cases import cases_of, files
 
 from zwidth import checker
 from zwidth.checker import Scope, Unreadable, Verified, judge, verify
-from zwidth.checker.document import effort
+from zwidth.checker.document import refusal as effort
 from zwidth.checker.kinds import KINDS
 from zwidth.checker.whole import PASSIVITY, REST, SHAPES
 

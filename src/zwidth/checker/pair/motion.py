@@ -9,14 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from ..document.effort import spend
-from ..document.fields import List, Read, document, numbers, only_if
-from ..document.number import MOST_BITS, common_scale
-from ..document.refusal import Invalid
-from ..document.unit import LENGTH
+from ..document.fields import List, Read, document, numbers
+from ..document.number import LENGTH, MOST_BITS, common_scale
+from ..document.refusal import Invalid, only_if, spend
 from ..loop.motion import MOST_SAMPLES, REPEAT, TOLD, require_apart
-from .compensation import BITS, tanh_between
-from .coupling import PAIR, Side, sides_of
+from .coupling import BITS, PAIR, Side, sides_of, tanh_between
 
 PAIR_MOTION = document(
     {

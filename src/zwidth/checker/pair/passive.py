@@ -16,40 +16,78 @@ With m readings of its own in a sample an arm loses the least, for given moves i
 
 t = γᵐ T_m(β/γ), u = γᵐ⁻¹ U_{m−1}(β/γ), g = (−γ)ᵐ; where β < |γ| it gains inside a sample, by itself.
 
-Compensation of friction under a line h + s v (`compensation`) takes h of Coulomb friction, s/2 of damping and
+Compensation of friction under a line h + s v (`coupling`) takes h of Coulomb friction, s/2 of damping and
 C + s/2 of local damping.  Beside the square of a large round F is as nothing: what is negative with s = 0 is
 a violation.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..document.effort import spend
-from ..document.fields import Number, Read, Record, document, only_if
-from ..document.number import about, common_scale
-from ..document.refusal import Invalid
-from ..document.unit import DAMPING
-from ..exact.polynomial import bits, multiply, value
+from ..document.fields import Number, Read, Record, document
+from ..document.number import DAMPING, about, common_scale
+from ..document.refusal import Invalid, only_if, spend
+from ..exact.polynomial import bits, in_powers, multiply, value
 from ..exact.positivity import POSITIVITY, require_nonnegative
-from .compensation import NO_LINE, TANGENTS, Line, line_of
-from .coupling import PAIR, Side, sides_of
-from .laurent import (
-    Laurent,
-    conjugate,
-    from_ascending,
-    in_cosine,
-    square_in_cosine,
-    times,
-    weighted,
-)
+from .coupling import NO_LINE, PAIR, TANGENTS, Line, Side, line_of, sides_of
+
+# Polynomials in ζ = e^{−jθ} and in its conjugate, by powers of ζ.
+
+Laurent = dict[int, Fraction]
+
+
+def from_ascending(a: Iterable[Fraction], late: int = 0) -> Laurent:
+    """ζ^late times a polynomial."""
+    return {k + late: c for k, c in enumerate(a) if c}
+
+
+def conjugate(a: Laurent) -> Laurent:
+    """On the unit circle."""
+    return {-k: c for k, c in a.items()}
+
+
+def times(a: Laurent, b: Laurent) -> Laurent:
+    """The product."""
+    found: Laurent = {}
+    for i, x in a.items():
+        for j, y in b.items():
+            found[i + j] = found.get(i + j, Fraction(0)) + x * y
+    return found
+
+
+def weighted(*parts: tuple[Fraction | int, Laurent]) -> Laurent:
+    """A sum, each with its factor."""
+    found: Laurent = {}
+    for factor, a in parts:
+        for k, c in a.items():
+            found[k] = found.get(k, Fraction(0)) + factor * c
+    return found
+
+
+def in_cosine(a: Mapping[int, int]) -> list[int]:
+    """The real part, ascending in c = cos θ."""
+    degree = max(map(abs, a), default=0)
+    sums = [a.get(0, 0), *(a.get(k, 0) + a.get(-k, 0) for k in range(1, degree + 1))]
+    spend(degree**2, bits(sums) + degree)
+    return in_powers(sums, 1)
+
+
+def square_in_cosine(a: Mapping[int, int]) -> list[int]:
+    """|a|², ascending in c."""
+    size = max(a, default=0) - min(a, default=0) + 1
+    longest = bits(list(a.values()))
+    spend(size**2, longest, longest)
+    row: Sequence[int] = [a.get(k + min(a, default=0), 0) for k in range(size)]
+    lags = [sum(row[i] * row[i + j] for i in range(size - j)) for j in range(size)]
+    return in_powers([lags[0], *(2 * lag for lag in lags[1:])], 1)
+
 
 LOSS = Record({"damping": Number(DAMPING), "local_damping": Number(DAMPING)})
 LOSSES = Record({"leader": LOSS, "follower": LOSS}, default=None)
 """β' and γ' in the place of β and γ, β' + γ' cos φ ≤ β + γ cos φ at every φ: of fewer digits, for powers."""
-
 PAIR_PROOF = document(
     {
         "loop": PAIR,
@@ -68,7 +106,6 @@ PAIR_PROOF = document(
 PAIR_VIOLATION = document(
     {"loop": PAIR, "proof": Record({"cosine": Number(least=-1, below=1)}, default=None, shown=False)}
 )
-
 _STEP = from_ascending([Fraction(1), Fraction(-1)])
 _SQUARE = times(_STEP, conjugate(_STEP))
 _MOST_BITS = 100_000
