@@ -59,7 +59,6 @@ def force_bounding(told: Read) -> str:
     _counts_are_covered(device, law)
     _bound_is_paid(device, law)
     _lines_are_rounded_down(law)
-    _bounds_are_rounded_down(law)
     return (
         "friction takes at least what force bounding credits, at any position within a count and for moves "
         f"of any length, rounding by {float(law.roundoff):.3g} of a number paid, contact made and broken"
@@ -112,22 +111,16 @@ def _lines_are_rounded_down(law: Read) -> None:
     with two roundings before it is squared, a product and a quotient, against |g' − f| + φ: 4 + 2 + 2 = 8.
     |g' − g| δ/2: 2 + 1 = 3.  One more as ε M is taken off: all together at most 9, of M, the sum of their
     sizes.  M itself is computed too small by 9 roundings at most, its readings by 2, ε M by 2 more.
+
+    Neither is the bound.  In (1 − ε) (φ + 2 √(β S)) − h the product below the root, the root, the sum, the
+    product with 1 − ε and the difference are rounded; then the converter's step, its quotient, the sum with ½
+    and the product with the step: 9 in all, the first halved by the root.  With v = (1 + u)⁹ − 1 ≤ ε < 1 that
+    is (1 − ε) (1 + u)⁹ ≤ 1 − v² at most.  In (1 − ε) E − (1 + ε) |g| δ/2 E is rounded twice, |g| δ/2 at least
+    twice, and (1 + ε) (1 − u)² ≥ (1 + u)⁷ (1 − u²)² ≥ 1, as v < 1 needs u < 1/12.
     """
     u = law.roundoff
     if (1 + u) ** 9 - 1 > law.hair * (1 - u) ** 13:
         raise Invalid("what is taken off the energy does not pay for its rounding")
-
-
-def _bounds_are_rounded_down(law: Read) -> None:
-    """(1 − ε) E − (1 + ε) |g| δ/2 and (1 − ε) (φ + 2 √(β S)) − h, computed, are not above the same without ε.
-
-    E is rounded twice, |g| δ/2 at least twice.  In the bound the product below the root, the root, the sum,
-    the product with 1 − ε and the difference are rounded; then the converter's step, its quotient, the sum
-    with ½ and the product with the step: 9 in all, the first halved by the root.
-    """
-    u = law.roundoff
-    if (1 - law.hair) * (1 + u) ** 9 > 1 or (1 + law.hair) * (1 - u) ** 2 < 1:
-        raise Invalid("what is taken off the bound does not pay for its rounding")
 
 
 # A port of waves with a ledger: it credits no more than the device loses, in counts and rounded numbers.

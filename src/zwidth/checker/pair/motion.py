@@ -238,8 +238,7 @@ def _skip(
     for arm, advance, its, (work, path, early, late, helped, pushed) in zip(
         arms, advances, advances[::-1], before, strict=True
     ):
-        told = sum(arm.other) * its + sum(arm.echo) * advance
-        push = sum(arm.own) * advance + told
+        push = (sum(arm.own) + sum(arm.echo)) * advance + sum(arm.other) * its
         spend(
             12 + len(arm.sent) + len(arm.forces),
             left.bit_length() + advance.bit_length(),
@@ -254,5 +253,4 @@ def _skip(
         arm.ahead += left * advance
         arm.read = [v + left * advance for v in arm.read]
         arm.sent = [v + left * advance for v in arm.sent]
-        arm.told += left * told
         arm.forces = [f + left * push for f in arm.forces]

@@ -54,11 +54,8 @@ def positive_real(told: Read) -> str:
 
 def require_inside(descending: Polynomial, continuous: bool) -> None:
     """Refuse a polynomial with a root that does not decay, or of less than its degree."""
-    if continuous:
-        inside = in_left_half_plane(descending)
-    else:
-        inside = descending[0] != 0 and inside_unit_circle(descending)
-    if not inside:
+    inside = in_left_half_plane if continuous else inside_unit_circle
+    if not inside(descending):
         raise Invalid("the port is not positive real: a root lies outside")
 
 
@@ -218,7 +215,7 @@ def _at(ascending: Sequence[int], point: Gaussian, unit: int, order: int) -> Gau
         real, imaginary = real * point[0] - imaginary * point[1], real * point[1] + imaginary * point[0]
         real += c * power
         power *= unit
-    return (real, imaginary) if ascending else (0, 0)
+    return real, imaginary
 
 
 def _principal_sums(a: list[list[Gaussian]]) -> list[int]:
