@@ -185,7 +185,7 @@ MOST_TURNS = 64
 MOST_TERMS = 400
 
 
-class NotPositive(Exception):
+class NotPositive(ArithmeticError):
     """A root of what may be 0 or less, or an inverse of what may be 0."""
 
 
