@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from zwidth.checker.arm.damping import constant
+from zwidth.checker.arm.cells import constant
 from zwidth.checker.arm.region import Claim, claim_of
-from zwidth.checker.document.fields import Read, read_document
+from zwidth.checker.document.fields import Read
+from zwidth.checker.document.file import read_document
 from zwidth.checker.kinds import fields_of, kind_of
 from zwidth.checker.loop.loop import Loop, loop_of
 

@@ -10,7 +10,7 @@ from zwidth import checker
 from zwidth.checker.kinds import KINDS
 
 HOUSE = Path(checker.__file__).parent
-SHARED = ("__init__", "__main__", "kinds", "one", "scope", "verdict", "whole", "words")
+SHARED = ("__init__", "__main__", "kinds", "one", "scope", "verdict", "whole")
 """Files that every kind goes through, besides those that they read documents with."""
 
 
@@ -21,7 +21,7 @@ def files_of(kind: str) -> list[Path]:
     used = {node.id for node in ast.walk(_entry(registry, kind)) if isinstance(node, ast.Name)}
     found: set[Path] = {HOUSE / f"{name}.py" for name in SHARED}
     waiting = [modules[name] for name in used if name in modules]
-    waiting += [HOUSE / "document" / f"{name}.py" for name in ("fields", "effort", "file")]
+    waiting += [HOUSE / "document" / f"{name}.py" for name in ("fields", "file")]
     while waiting:
         file = waiting.pop()
         if file not in found:

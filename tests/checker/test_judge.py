@@ -17,7 +17,7 @@ from cases import cases_of, files
 
 from zwidth import checker
 from zwidth.checker import Scope, Unreadable, Verified, judge, verify
-from zwidth.checker.document import effort
+from zwidth.checker.document import refusal as effort
 from zwidth.checker.kinds import KINDS
 from zwidth.checker.whole import PASSIVITY, REST, SHAPES
 
@@ -92,6 +92,15 @@ def test_a_band_that_keeps_contact_is_no_proof_of_a_hand_that_leaves() -> None:
     activity = {"format": "zwidth activity 1", "contact_kept": {"certificate": kept}}
     assert judge(activity).valid
     assert not judge({"format": "zwidth activity 1", "contact_broken": {"certificate": kept}}).valid
+
+
+def test_an_arm_out_of_reach_stops_no_reader(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Refused where its cells are looked at; and were they not, the answer is that the checker stopped."""
+    (case,) = (case for case in cases_of("arm") if case.name == "arm: out of reach")
+    assert "does not reach" in verify(case.document).reason
+    monkeypatch.setattr("zwidth.checker.arm.region.positive_in", lambda *_: 1)
+    found = judge(case.document).parts[0].verification
+    assert (found.valid, found.reason) == (False, f"{checker.STOPPED}: NotPositive: ")
 
 
 def spring() -> Document:

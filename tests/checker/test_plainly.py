@@ -19,7 +19,7 @@ from cases.storage import CASES, STORAGES, packed, unpacked
 from twins import fast, plainly
 
 from zwidth import checker
-from zwidth.checker.storage import choice
+from zwidth.checker.storage import plainly as choice
 from zwidth.checker.storage.plainly import MOST_MOVES
 
 ALLOWED = 40

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from zwidth.checker.document.effort import one_document
-from zwidth.checker.document.fields import read_document
-from zwidth.checker.document.refusal import Invalid
+from zwidth.checker.document.file import read_document
+from zwidth.checker.document.refusal import Invalid, one_document
 from zwidth.checker.kinds import fields_of, kind_of
-from zwidth.checker.storage.choice import FAST, PLAINLY
+from zwidth.checker.storage.plainly import FAST, PLAINLY
 
 
 class Said(NamedTuple):

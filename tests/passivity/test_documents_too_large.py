@@ -11,10 +11,9 @@ from typing import Any
 import pytest
 
 from zwidth import checker
-from zwidth.checker.document import effort
-from zwidth.checker.document.effort import MOST, one_document, spend
+from zwidth.checker.document import refusal as effort
 from zwidth.checker.document.number import common_scale
-from zwidth.checker.document.refusal import Invalid
+from zwidth.checker.document.refusal import MOST, Invalid, one_document, spend
 from zwidth.checker.exact.positivity import _bernstein
 from zwidth.checker.known_hand import rest
 

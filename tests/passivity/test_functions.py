@@ -8,10 +8,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from zwidth.checker.arm.damping import constant
+from zwidth.checker.arm.cells import constant
 from zwidth.checker.document.refusal import Invalid
-from zwidth.checker.exact.enclosed import Enclosed, dot, known
-from zwidth.checker.exact.functions import NotPositive, inverse, root, sine_cosine
+from zwidth.checker.exact.enclosed import Enclosed, NotPositive, dot, inverse, known, root, sine_cosine
 
 BITS = 80
 ONE = 1 << BITS

@@ -16,9 +16,8 @@ from .document.fields import Row
 from .document.file import Unreadable, read_file
 from .one import STOPPED, Verified, verify
 from .scope import Scope
-from .verdict import Judged, Part, judge, judge_file
+from .verdict import Judged, Part, answer, headline, judge, judge_file, not_checked, rows
 from .whole import EVIDENCE
-from .words import answer, headline, not_checked, rows
 
 __all__ = [
     "EVIDENCE",

@@ -13,8 +13,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from .document.file import Unreadable
-from .verdict import judge_file
-from .words import answer, headline, not_checked, rows
+from .verdict import answer, headline, judge_file, not_checked, rows
 
 
 def main(arguments: Sequence[str]) -> int:

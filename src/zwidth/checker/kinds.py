@@ -7,40 +7,32 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from . import scope
+from .active_hand import ACTIVE_HAND, active_hand
 from .arm.null_space import NULL_SPACE, null_space
 from .arm.region import ARM, arm
-from .bounded_hand.active_hand import ACTIVE_HAND, active_hand
-from .bounded_hand.slow_hands import SLOW_HANDS, slow_hands
-from .contact.damped_wall import CONTACT, contact
-from .contact.motion import CONTACT_MOTION, contact_motion_energy
+from .contact.motion import CONTACT_MOTION, ROW_MOTION, contact_motion_energy, row_motion_energy
 from .contact.multiplier import MULTIPLIER_CONTACT, multiplier_contact
-from .contact.relaxing import RELAXING_CONTACT, relaxing_contact
-from .contact.row_motion import ROW_MOTION, row_motion_energy
 from .contact.touching_motion import TOUCHING_MOTION, touching_motion_energy
+from .contact.walls import CONTACT, RELAXING_CONTACT, SLOW_HANDS, contact, relaxing_contact, slow_hands
 from .document.fields import Choice, Read, Record
 from .document.number import about
 from .document.refusal import Invalid
-from .known_hand.absolute import ABSOLUTE_STABILITY, absolute
 from .known_hand.rest import KNOWN_HAND, instability, stability
-from .known_hand.vibration import VIBRATION, vibration
-from .loop.force_bounding import FORCE_BOUNDING, force_bounding
+from .known_hand.wall import ABSOLUTE_STABILITY, VIBRATION, absolute, vibration
+from .loop.ledger import FORCE_BOUNDING, WAVE_PORT, force_bounding, wave_port
 from .loop.linear import DELAYS, LINEAR, QUANTIZED, delays, linear, quantized
 from .loop.motion import MOTION, motion_energy, stored_at_start
-from .loop.nonlinear_spring import NONLINEAR_SPRING, endless_pull, nonlinear_spring
-from .loop.spring import SPRING, spring
+from .loop.spring import NONLINEAR_SPRING, SPRING, endless_pull, nonlinear_spring, spring
 from .loop.violation import VIOLATION, violation
-from .loop.wave_port import WAVE_PORT, wave_port
-from .pair.held import HELD_PAIR, HELD_VIOLATION, held_pair, held_violation
-from .pair.held_motion import HELD_MOTION, held_motion_energy
+from .pair.held import HELD_MOTION, HELD_PAIR, HELD_VIOLATION, held_motion_energy, held_pair, held_violation
 from .pair.motion import PAIR_MOTION, pair_motion_energy, pair_stored_at_start
 from .pair.passive import PAIR_PROOF, PAIR_VIOLATION, pair, pair_violation
-from .port.index import POSITIVE_REAL, positive_real
-from .port.matrix import POSITIVE_REAL_MATRIX, positive_real_matrix
+from .port.index import POSITIVE_REAL, POSITIVE_REAL_MATRIX, positive_real, positive_real_matrix
 from .port.motion import EXTRACTION, MATRIX_EXTRACTION, extraction
 from .scope import ACTIVE, BROKEN, INDEX, KEPT, NO_INDEX, PASSIVE, STABLE, UNSTABLE, Scope
-from .storage.choice import checked
 from .storage.coarse import COARSE_STORAGE
 from .storage.grid import STORAGE
+from .storage.plainly import checked
 from .storage.row import ROW_STORAGE
 
 

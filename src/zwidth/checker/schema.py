@@ -11,9 +11,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from .corners import MOST_CORNERS
 from .document.fields import LINEAR, MOST_LETTERS, RATIONAL, ROTARY
 from .kinds import KINDS, fields_of
+from .one import MOST_CORNERS
 
 FOLDER = Path(__file__).with_name("schemas")
 CORNERS = "corners"

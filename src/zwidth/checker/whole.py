@@ -10,9 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from .document.effort import spend
 from .document.file import Unreadable, require_shallow
-from .document.refusal import Invalid
+from .document.refusal import Invalid, spend
 from .scope import ACTIVE, BOTH_SIDES, BROKEN, COUNTED, IDEAL, KEPT, PASSIVE, STABLE, UNSTABLE
 
 EVIDENCE = ("certificate", "violation", "witness")

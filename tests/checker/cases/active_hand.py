@@ -86,7 +86,7 @@ REDUCED = everywhere(spring(4))
 
 def least_cosines() -> str:
     """Below the cosine by 10⁻¹⁶ at most, by twice as many terms of the series; −1 beyond π."""
-    least = import_module("zwidth.checker.bounded_hand.active_hand")._least_cosine
+    least = import_module("zwidth.checker.active_hand")._least_cosine
     for k in range(1, 33):
         x, cosine, term = Fraction(k, 8), Fraction(0), Fraction(1)
         for n in range(32):

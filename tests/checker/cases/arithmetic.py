@@ -23,7 +23,7 @@ FINE = 400
 
 def module(name: str) -> Any:
     """Of the checker, as it is loaded now."""
-    return import_module(f"zwidth.checker.exact.{name}")
+    return import_module(f"zwidth.checker.{name}")
 
 
 def some(random: Random, bits: int, low: int, high: int, part: Fraction) -> Any:
@@ -31,7 +31,7 @@ def some(random: Random, bits: int, low: int, high: int, part: Fraction) -> Any:
     middle = random.randrange(low, high)
     reach = int(abs(middle) * part)
     slopes = tuple(random.randrange(-(reach // 3), reach // 3 + 1) for _ in range(2))
-    return module("enclosed").Enclosed(
+    return module("exact.enclosed").Enclosed(
         bits, middle, slopes if random.random() < 0.7 else (), random.randrange(0, reach // 3 + 1)
     )
 
@@ -75,7 +75,7 @@ def sine(x: Fraction, first: int = 1) -> Fraction:
 
 def functions_are_rounded_outward() -> str:
     """Inverses, roots, sines and cosines at every corner of what varies."""
-    functions, random = module("functions"), Random(1)
+    functions, random = module("exact.enclosed"), Random(1)
     for part in (Fraction(0), Fraction(1, 100), Fraction(1, 9), Fraction(3, 4)):
         for bits in (6, 20, 60):
             for _ in range(ROUNDS):
@@ -91,7 +91,7 @@ def functions_are_rounded_outward() -> str:
 
 def curvature_is_bounded_closely() -> str:
     """Of numbers that vary by a 64th: what a tangent leaves, and a bound above it by less than a quarter."""
-    functions, enclosed = module("functions"), module("enclosed").Enclosed
+    functions, enclosed = module("exact.enclosed"), module("exact.enclosed").Enclosed
     for middle in (1 << 58, 3 << 58, 5 << 60):
         x = enclosed(60, middle, (middle >> 6,))
         for function, right in ((functions.root, square_root), (functions.inverse, lambda v: 1 / v)):
@@ -104,7 +104,7 @@ def curvature_is_bounded_closely() -> str:
 
 def what_has_few_bits_is_rounded_outward() -> str:
     """Roots of a unit or two, and inverses of numbers so far from 1 that their slope is a part of a unit."""
-    functions, enclosed = module("functions"), module("enclosed").Enclosed
+    functions, enclosed = module("exact.enclosed"), module("exact.enclosed").Enclosed
     for bits, middle in product(range(4), (*range(1, 9), 13, 29, 63, 200)):
         for slopes, radius in (
             ((), 0),
@@ -129,13 +129,13 @@ def what_has_few_bits_is_rounded_outward() -> str:
 
 def a_slope_is_known_to_a_unit() -> str:
     """Of a number so far from 1 that the slope of its inverse is some hundred units."""
-    x = module("enclosed").Enclosed(22, 880539593, (21290496,))
-    return outside(module("functions").inverse(x), x, lambda v: 1 / v, 1 << 40)
+    x = module("exact.enclosed").Enclosed(22, 880539593, (21290496,))
+    return outside(module("exact.enclosed").inverse(x), x, lambda v: 1 / v, 1 << 40)
 
 
 def what_may_be_0_has_no_inverse() -> str:
     """Nor a root; the smallest number that is not 0 has both."""
-    functions, enclosed = module("functions"), module("enclosed").Enclosed
+    functions, enclosed = module("exact.enclosed"), module("exact.enclosed").Enclosed
     for function in (functions.inverse, functions.root):
         known = ((0,), (3, (), 3), (-3, (), 3), (3, (), 5), (3, (2, -1)), (3, (2,), 2))
         for x in (enclosed(8, *numbers) for numbers in known):
@@ -160,13 +160,13 @@ def refuses(function: Callable[[Any], Any], value: Any, error: type[Exception]) 
 
 def sines_are_rounded_outward() -> str:
     """Of angles small and of several turns, in few and in many bits."""
-    functions, random = module("functions"), Random(3)
+    functions, random = module("exact.enclosed"), Random(3)
     for bits, turns in product((6, 20, 60), (0, 1, 7, 40)):
         for reach in (0, 3, 1 << bits - 5, 1 << bits - 1):
             for sign in (-1, 1):
                 middle = sign * random.randrange(turns << bits, (turns + 1) << bits)
                 slopes = (random.randrange(-reach, reach + 1), reach // 2) if reach else ()
-                x = module("enclosed").Enclosed(bits, middle, slopes, reach)
+                x = module("exact.enclosed").Enclosed(bits, middle, slopes, reach)
                 for first, found in zip((1, 0), functions.sine_cosine(x), strict=True):
                     wrong = _not_curved(found, x, first)
                     if wrong:
@@ -176,7 +176,7 @@ def sines_are_rounded_outward() -> str:
 
 def series_are_cut_off_outward() -> str:
     """Of small angles and of some turns, each exact: their sine and cosine lie within what is said."""
-    functions, enclosed = module("functions"), module("enclosed").Enclosed
+    functions, enclosed = module("exact.enclosed"), module("exact.enclosed").Enclosed
     angles = ((8, 0), (8, 1), (8, -70), (12, 4096), (20, 3 << 20), (40, -(5 << 40)), (40, 1 << 43))
     for bits, middle in angles:
         for first in (0, 1):
@@ -200,8 +200,8 @@ def _not_curved(found: Any, x: Any, first: int) -> str:
 
 def series_keep_what_their_angle_is_off() -> str:
     """By some units."""
-    functions, x = module("functions"), module("enclosed").Enclosed(40, 3 << 40, (), 1000)
-    if functions._ends(module("enclosed").Enclosed(8, 5, (), 3)) != (2, 8):
+    functions, x = module("exact.enclosed"), module("exact.enclosed").Enclosed(40, 3 << 40, (), 1000)
+    if functions._ends(module("exact.enclosed").Enclosed(8, 5, (), 3)) != (2, 8):
         return "the ends of a number"
     found = [functions._series(x, first) for first in (0, 1)]
     wrong = (outside(f, x, lambda v, first=first: sine(v, first), 1 << 16) for first, f in enumerate(found))
@@ -210,7 +210,7 @@ def series_keep_what_their_angle_is_off() -> str:
 
 def angles_have_few_turns() -> str:
     """64 rad is the largest."""
-    functions, enclosed = module("functions"), module("enclosed").Enclosed
+    functions, enclosed = module("exact.enclosed"), module("exact.enclosed").Enclosed
     refusal = import_module("zwidth.checker.document.refusal").Invalid
     most = 64 << 12
     for x, right in (
@@ -252,7 +252,7 @@ def _threes(two: Sequence[list[int]], third: Sequence[list[int]]) -> Iterator[tu
 
 def roots_are_told_inside_from_outside() -> str:
     """Products of three polynomials whose roots are known; a root on the edge is not inside."""
-    roots = module("roots")
+    roots = module("exact.roots")
     for test, good, bad in (
         (roots.inside_unit_circle, INSIDE, NOT_INSIDE),
         (roots.in_left_half_plane, LEFT, NOT_LEFT),
@@ -271,14 +271,14 @@ def roots_next_to_the_circle_are_told() -> str:
     near = Fraction(1, 1 << 5000)
     for sign, part in product((1, -1), (Fraction(1), Fraction(-1, 2))):
         for root, right in ((1 - near, True), (1 + near, False), (near - 1, True), (-1 - near, False)):
-            if module("roots").inside_unit_circle([sign * part, -sign * part * root]) is not right:
+            if module("exact.roots").inside_unit_circle([sign * part, -sign * part * root]) is not right:
                 return f"{sign * part} (z − {float(root)})"
     return ""
 
 
 def what_is_0_somewhere_is_not_positive() -> str:
     """c² in coefficients of Bernstein is 1, −1, 1, or 3, −1, −1, 3; with a little more it is positive."""
-    positivity, refusal = module("positivity"), import_module("zwidth.checker.document.refusal").Invalid
+    positivity, refusal = module("exact.positivity"), import_module("zwidth.checker.document.refusal").Invalid
     for told in ([0, 0, 1], [0, 0, 1, 0], [0, 0, 1, 0, 0]):
         if not refuses(positivity.require_positive, list(map(Fraction, told)), refusal):
             return f"{told}"
@@ -289,7 +289,7 @@ def what_is_0_somewhere_is_not_positive() -> str:
 
 def whole_numbers_decide_every_root() -> str:
     """The same without rounding, where no number of bits is enough."""
-    decays, enclosed = module("schur_cohn").decays, module("enclosed").Enclosed
+    decays, enclosed = module("exact.roots").decays, module("exact.enclosed").Enclosed
     for chosen in _threes(INSIDE, (*INSIDE, *NOT_INSIDE)):
         whole = in_zeta(expanded(*chosen))
         if decays([enclosed(0, c) for c in whole]) is not (chosen[2] in INSIDE):
@@ -308,7 +308,7 @@ def in_zeta(descending: Sequence[int]) -> list[int]:
 
 def what_is_open_is_not_decided() -> str:
     """A sign that the bounds leave open, of every condition of the recursion; what one refutes is refuted."""
-    decays, enclosed = module("schur_cohn").decays, module("enclosed").Enclosed
+    decays, enclosed = module("exact.roots").decays, module("exact.enclosed").Enclosed
     one = 1 << 20
     for told, answer in (
         ([(one, 0), (one // 2, 0)], True), ([(one, 0), (one // 2, one // 2)], None),
@@ -327,8 +327,8 @@ def what_is_open_is_not_decided() -> str:
 
 def coprime_polynomials_are_told() -> str:
     """True only of those without a common root, whatever the size of the coefficients; modulo primes."""
-    are_coprime = module("coprime").are_coprime
-    if not all(pow(base, p - 1, p) == 1 for p in module("coprime")._PRIMES for base in (3, 5, 7)):
+    are_coprime = module("exact.polynomial").are_coprime
+    if not all(pow(base, p - 1, p) == 1 for p in module("exact.polynomial")._PRIMES for base in (3, 5, 7)):
         return "modulo what is no prime"
     for shared, a, b in product(INSIDE, INSIDE, NOT_INSIDE):
         n, d = ([10**50 * c for c in expanded(*part)[::-1]] for part in ((shared, a), (shared, b)))
@@ -346,7 +346,7 @@ def coprime_polynomials_are_told() -> str:
 
 def the_circle_becomes_an_axis() -> str:
     """ζ = 2w/(1 − w), times (1 − w)ⁿ, exactly; a constant has no root."""
-    crossing, enclosed, random = module("crossing"), module("enclosed").Enclosed, Random(6)
+    crossing, enclosed, random = module("known_hand.rest"), module("exact.enclosed").Enclosed, Random(6)
     for order in range(5):
         told = [random.randrange(-9, 10) for _ in range(order + 1)]
         found = crossing._bilinear([enclosed(8, c, (), abs(c)) for c in told])
@@ -359,7 +359,12 @@ def the_circle_becomes_an_axis() -> str:
 
 def what_is_left_of_a_matrix_is_bounded() -> str:
     """|I − C H R| for any C and R, rounded up once."""
-    crossing, enclosed, random, bits = module("crossing"), module("enclosed").Enclosed, Random(8), 6
+    crossing, enclosed, random, bits = (
+        module("known_hand.rest"),
+        module("exact.enclosed").Enclosed,
+        Random(8),
+        6,
+    )
     for size, part, _ in product((1, 2, 3), (1, 16), range(10)):
         h = [
             [enclosed(bits, random.randrange(-200, 200), (), random.randrange(3)) for _ in range(size)]
@@ -382,7 +387,7 @@ def what_is_left_of_a_matrix_is_bounded() -> str:
 
 def what_is_small_shrinks_every_vector() -> str:
     """Matrices ≥ 0 by their largest eigenvalue: below 1 or not."""
-    is_small = module("crossing")._is_small
+    is_small = module("known_hand.rest")._is_small
     for told, right in (
         ([["0"]], True), ([["1/2"]], True), ([["15/16"]], True), ([["1"]], False), ([["17/16"]], False),
         ([["2"]], False), ([["3"]], False), ([["1/4", "4"], ["1/16", "1/4"]], True), ([], True),
@@ -417,26 +422,26 @@ def no_root_crosses_unseen() -> str:
 
 def _never(moving: Sequence[Sequence[int]], rest: Sequence[Sequence[int]], most: Fraction) -> bool:
     """(a + ε b) q(z), |ε| ≤ most, to 60 bits."""
-    enclosed, bits = module("enclosed").Enclosed, 60
+    enclosed, bits = module("exact.enclosed").Enclosed, 60
     steady, changing = (in_zeta(expanded(part, *rest)) for part in moving)
     changing = [0] * (len(steady) - len(changing)) + changing
     told = [
         enclosed(bits, s << bits, (floor(c * most * (1 << bits)),), 1)
         for s, c in zip(steady, changing, strict=True)
     ]
-    found: bool = module("crossing").never_crosses(told)
+    found: bool = module("known_hand.rest").never_crosses(told)
     return found
 
 
 def sums_of_products_are_rounded_once() -> str:
     """As products and their sums are, and no wider."""
-    dot, random = module("enclosed").dot, Random(5)
+    dot, random = module("exact.enclosed").dot, Random(5)
     for count in (1, 2, 5):
         for _ in range(ROUNDS):
             a = [some(random, 20, -(10**7), 10**7, Fraction(1, 50)) for _ in range(count)]
             b = [some(random, 20, -(10**7), 10**7, Fraction(1, 50)) for _ in range(count)]
             if random.random() < 0.3:
-                a[0] = module("enclosed").Enclosed(20, 0)
+                a[0] = module("exact.enclosed").Enclosed(20, 0)
             found = dot(a, b)
             for first, second, *shared in product((-1, 1), repeat=4):
                 value = sum(at(x, shared, first) * at(y, shared, second) for x, y in zip(a, b, strict=True))
@@ -450,7 +455,7 @@ def sums_of_products_are_rounded_once() -> str:
 
 def what_may_not_be_0_is_not_left_out() -> str:
     """Of a sum of products: a number near 0 that is not 0, for its radius or a slope."""
-    dot, enclosed = module("enclosed").dot, module("enclosed").Enclosed
+    dot, enclosed = module("exact.enclosed").dot, module("exact.enclosed").Enclosed
     five = enclosed(8, 5 << 8)
     for x, right in (
         (enclosed(8, 0), True), (enclosed(8, 0, (), 1), False), (enclosed(8, 0, (0, 1)), False),
@@ -466,7 +471,7 @@ def what_may_not_be_0_is_not_left_out() -> str:
 
 def what_a_quotient_loses_is_kept() -> str:
     """A unit for each number that does not come out, and none for one that does."""
-    enclosed = module("enclosed").Enclosed
+    enclosed = module("exact.enclosed").Enclosed
     for middle, slope, radius, whole in product(range(-2, 3), range(-2, 3), range(2), (1, 2, 3)):
         x = enclosed(8, middle, (slope,), radius)
         found = x.over(whole)
@@ -481,7 +486,7 @@ def what_a_quotient_loses_is_kept() -> str:
 
 def numbers_keep_what_they_share() -> str:
     """Sums, differences, products, shifts and quotients at every corner of what varies, radius and slopes."""
-    enclosed = module("enclosed")
+    enclosed = module("exact.enclosed")
     random, bits = Random(2), 20
 
     def any_number() -> Any:
@@ -524,7 +529,7 @@ def _not_enclosed(found: Any, a: Any, b: Any, expected: Callable[[Fraction, Frac
 
 def what_is_kept_apart_cancels() -> str:
     """Each radius an ε of its own; what they share already is shared still."""
-    enclosed, apart = module("enclosed").Enclosed, module("enclosed").apart
+    enclosed, apart = module("exact.enclosed").Enclosed, module("exact.enclosed").apart
     told = [enclosed(8, 5, (1, 2), 3), enclosed(8, 7, (), 4), enclosed(8, 9, (1, -2))]
     first, second, third = apart(told)
     if any(
@@ -540,7 +545,7 @@ def what_is_kept_apart_cancels() -> str:
 
 def signs_are_certain() -> str:
     """Of a number that reaches 0, that does not, and of 0."""
-    enclosed = module("enclosed").Enclosed
+    enclosed = module("exact.enclosed").Enclosed
     for middle, slopes, radius, sign in (
         (3, (1, -1), 0, 1), (-3, (1, -1), 0, -1), (3, (1, -1), 1, None), (-3, (1, 1), 1, None),
         (0, (), 0, 0), (0, (), 1, None),
@@ -553,7 +558,7 @@ def signs_are_certain() -> str:
 
 def rational_numbers_are_enclosed() -> str:
     """Quotients that come out and that do not, and both ends of an interval."""
-    enclosed = module("enclosed")
+    enclosed = module("exact.enclosed")
     for value in (Fraction(3, 8), Fraction(1, 3), Fraction(-1, 3), Fraction(-5, 7)):
         found = enclosed.known(value, 9)
         off = abs(value - Fraction(found.middle, 512))
@@ -579,7 +584,7 @@ def rational_numbers_are_enclosed() -> str:
 
 def halves_are_the_same_polynomial() -> str:
     """Bernstein coefficients on both halves, times 2ⁿ."""
-    split, random = module("positivity")._split, Random(9)
+    split, random = module("exact.positivity")._split, Random(9)
     for degree, _ in product(range(6), range(5)):
         b = [random.randrange(-99, 100) for _ in range(degree + 1)]
         left = [sum(comb(i, k) * b[k] for k in range(i + 1)) << degree - i for i in range(degree + 1)]
@@ -593,7 +598,7 @@ def halves_are_the_same_polynomial() -> str:
 
 def sizes_of_a_product_are_bounded() -> str:
     """Every coefficient of a polynomial within bounds times one of whole numbers."""
-    enclosed, random = module("enclosed").Enclosed, Random(10)
+    enclosed, random = module("exact.enclosed").Enclosed, Random(10)
     for first, second in product(range(1, 5), repeat=2):
         a = [enclosed(8, random.randrange(-50, 50), (), random.randrange(5)) for _ in range(first)]
         e = [random.randrange(-9, 10) for _ in range(second)]
@@ -602,7 +607,7 @@ def sizes_of_a_product_are_bounded() -> str:
             + sum(a[i].radius * abs(e[k - i]) for i in range(first) if 0 <= k - i < second)
             for k in range(first + second - 1)
         ]
-        if module("one_norm")._sizes(a, e) != right:
+        if module("pair.felt")._sizes(a, e) != right:
             return f"{first} by {second}"
     return ""
 

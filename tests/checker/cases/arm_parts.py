@@ -25,7 +25,7 @@ def enclosed(middle: Any, slopes: tuple[int, ...] = (), radius: int = 0) -> Any:
 
 def what_cannot_be_computed_is_halved() -> str:
     """diag(1/x², 1/y²), where neither square is certainly above 0 in the whole box, but in parts of it."""
-    cells, functions = part("arm.cells"), part("exact.functions")
+    cells, functions = part("arm.cells"), part("exact.enclosed")
     one = 1 << cells.BITS
 
     def matrix(at: Any) -> Any:
@@ -46,7 +46,7 @@ def a_matrix_is_parted_to_the_last_digit() -> str:
 
 def what_is_nearly_a_rotation_is_let_through() -> str:
     """Up to 10⁻⁹ from right angles, and no farther."""
-    chain = part("arm.chain")
+    chain = part("arm.kinematics")
     for off, right in ((TINY, False), (-TINY, False), (TINY * (1 + TINY), True), (-TINY * (1 + TINY), True)):
         if refuses(chain.require_square, [[1, 0, 0], [0, 1, 0], [off, 0, 1]], "") is not right:
             return f"{off} from a right angle"
@@ -55,7 +55,7 @@ def what_is_nearly_a_rotation_is_let_through() -> str:
 
 def roots_are_the_next_above() -> str:
     """In units of the last digit."""
-    chain, unit = part("arm.chain"), Fraction(1, 1 << part("arm.cells").BITS)
+    chain, unit = part("arm.kinematics"), Fraction(1, 1 << part("arm.cells").BITS)
     for x in (Fraction(2), Fraction(1, 3), Fraction(10**9 + 1, 7), Fraction(4, 7), Fraction(2, 9), unit / 3):
         root = chain.root_above(x)
         if not (root - unit) ** 2 <= x < root**2:
@@ -65,7 +65,7 @@ def roots_are_the_next_above() -> str:
 
 def bends_are_what_lies_beyond_both_joints() -> str:
     """Of joints that turn and slide, with ranges to either side of 0: link by link, from the base."""
-    chain = part("arm.chain")
+    chain = part("arm.kinematics")
     slides = [None, (-3, 2), None, (1, 4), None, (-5, -4)]
     lengths = [Fraction(x) for x in (9, 2, 4, 1, 6, 3)]
     joints = [
@@ -84,7 +84,7 @@ def bends_are_what_lies_beyond_both_joints() -> str:
 
 def sizes_of_a_wall_are_those_of_its_blocks() -> str:
     """In the plane two coordinates and a turn: diag(1, 7) and 5, coupled by 2; damping diag(0, 3) and 1."""
-    encoders, pose = part("arm.encoders"), part("arm.pose")
+    encoders, pose = part("arm.region"), part("arm.pose")
     stiffness, damping = (
         [[Fraction(x) for x in row] for row in rows]
         for rows in (([1, 0, 0], [0, 7, 2], [0, 2, 5]), ([0, 0, 0], [0, 3, 0], [0, 0, 1]))
@@ -119,7 +119,7 @@ def matrices_of_a_wall_are_of_one_size() -> str:
 
 def links(number: type = Fraction) -> Any:
     """Four joints that turn, in space, in exact numbers or in doubles."""
-    chain, told = part("arm.chain"), SPACE["arm"]
+    chain, told = part("arm.kinematics"), SPACE["arm"]
     joints = [
         chain.Joint(
             False,
@@ -153,14 +153,14 @@ def derived(chain: Any, at: list[float], times: list[int], axis: int | None = No
 def vector_products_are_derivatives() -> str:
     """Of the columns of J, once and twice, against derivatives of the matrices of the joints."""
     projector, pose, chain, one = (
-        part("arm.projector"),
+        part("arm.null_space"),
         part("arm.pose"),
         links(),
         1 << part("arm.cells").BITS,
     )
     numbers, at = links(float), [0.3, -0.7, 1.1, 0.4]
     joints = [enclosed(int(x * one)) for x in at]
-    columns, axes = part("arm.chain").jacobian(chain, 3)(joints), pose.axes_of(chain)(joints)
+    columns, axes = part("arm.kinematics").jacobian(chain, 3)(joints), pose.axes_of(chain)(joints)
     for size in ((2, 1), (3, 3)):
         place = projector.Place(chain, columns, axes, *size, [0, 1, 2, 3])
         for count in (1, 2):
@@ -178,8 +178,8 @@ def vector_products_are_derivatives() -> str:
 
 def third_derivatives_are_bounded() -> str:
     """Of a row W = (3, 4, 0 | 0, 5, 12): lengths 5 and 13, and every four joints counted by their last."""
-    projector, chain = part("arm.projector"), links()
-    beyond = [row[i] for i, row in enumerate(part("arm.chain").bends(chain))]
+    projector, chain = part("arm.null_space"), links()
+    beyond = [row[i] for i, row in enumerate(part("arm.kinematics").bends(chain))]
     count = len(beyond)
     moved = sum(((k + 1) ** 4 - k**4) * r * r for k, r in enumerate(beyond))
     turned = sum(k**3 for k in range(count))

@@ -24,8 +24,8 @@ ROUNDS = 25
 def found(name: str, kind: str, document: Any) -> Any:
     """What the checker finds: the energy, or with rounds the energy and that of one more."""
     motion = import_module(f"zwidth.checker.{name}")
-    fields = import_module("zwidth.checker.document.fields")
-    read, _ = fields.read_document(getattr(motion, kind.upper()), plain(document))
+    file = import_module("zwidth.checker.document.file")
+    read, _ = file.read_document(getattr(motion, kind.upper()), plain(document))
     return getattr(motion, f"{kind}_energy")(read)
 
 
@@ -308,7 +308,7 @@ def stores_at_the_start() -> str:
 
 def denominators_of_positive_real_loops() -> str:
     """n + g d of b + T ζ^{d+1} N/((1 − ζ) D), and without 1 − ζ where N has it, too."""
-    loop = import_module("zwidth.checker.loop.criterion")
+    loop = import_module("zwidth.checker.loop.linear")
     random = Random(7)
     for _ in range(ROUNDS):
         bottom = [some(random, 1, 3) for _ in range(random.randrange(1, 4))]
@@ -328,7 +328,7 @@ def denominators_of_positive_real_loops() -> str:
 
 def moves_within_bounds() -> str:
     """Every position no deeper and no farther out, every move no quicker; of equals none is too much."""
-    contact = import_module("zwidth.checker.contact.bounds")
+    contact = import_module("zwidth.checker.contact.motion")
     random = Random(3)
     for _ in range(10 * ROUNDS):
         x = walk(random, 3, some(random, -2, 2))

@@ -19,6 +19,11 @@ def fields() -> Any:
     return import_module("zwidth.checker.document.fields")
 
 
+def file() -> Any:
+    """What reads a document by them."""
+    return import_module("zwidth.checker.document.file")
+
+
 def refusal(read: Callable[..., Any], *given: Any) -> str:
     """What is said against it; "" where it is taken."""
     try:
@@ -36,7 +41,7 @@ def first_wrong(pairs: Iterator[tuple[Any, Any]]) -> str:
 def _record() -> Any:
     """One entry of each sort, some of them left out."""
     f = fields()
-    unit = import_module("zwidth.checker.document.unit")
+    unit = import_module("zwidth.checker.document.number")
     inner = {"own_part": f.Number(unit.LENGTH), "hidden": f.Number(default=None, shown=False)}
     return f.Record(
         {
@@ -131,7 +136,7 @@ def rows_of_every_sort() -> str:
 
 def _rows(told: Any) -> list[tuple[Any, ...]]:
     record = fields().document({"told": _record()})
-    read, motion = fields().read_document(record, {"format": "words", "told": told})
+    read, motion = file().read_document(record, {"format": "words", "told": told})
     return [tuple(row) for row in record.rows("", read, motion)]
 
 
@@ -176,7 +181,7 @@ def sorts_take_what_they_declare() -> str:
 
 def keys_that_are_unknown() -> str:
     """A quantity in another unit is told as one, in any order; of a long name the beginning is."""
-    f, unit = fields(), import_module("zwidth.checker.document.unit")
+    f, unit = fields(), import_module("zwidth.checker.document.number")
     record = f.Record({n: f.Number(u, default=None) for n, u in [("z", unit.LENGTH), ("size", unit.NONE)]})
     said = {
         "z": "the unit of z must be that of z_m, got p.z",
@@ -192,7 +197,7 @@ def keys_that_are_unknown() -> str:
 
 def every_key_has_its_motion() -> str:
     """Linear or rotary by any key within, at any depth; a key that both have says nothing."""
-    f, record = fields(), _record()
+    f, record = file(), _record()
     linear, rotary = f._keys_of_one_motion(record)
     mixed = "one document has the units of a linear device or of a rotary one: interval_m and lengths_rad"
     both = {"lengths_rad": [], "list": [{"x": [{"interval_m": 1}]}]}
@@ -212,7 +217,7 @@ def every_key_has_its_motion() -> str:
 
 def levels_are_counted_once() -> str:
     """Objects and lists within one another, twelve of them."""
-    f = fields()
+    f = file()
     for make in (lambda inner: {"k": inner}, lambda inner: [inner]):
         deep: Any = {}
         for _ in range(f.MOST_LEVELS - 1):
@@ -240,7 +245,7 @@ def numbers_of_every_type() -> str:
 
 def numbers_for_people() -> str:
     """All digits of a decimal that ends soon, a fraction as long as it is short, else about as much."""
-    f = fields()
+    exactly = import_module("zwidth.checker.document.number").exactly
     pairs = [
         (Fraction(1, 4), "0.25"),
         (Fraction(-1, 3), "-1/3"),
@@ -256,14 +261,14 @@ def numbers_for_people() -> str:
         (Fraction(1, 2**200), "about"),
         (Fraction(-(2**200)), "about"),
     ]
-    return first_wrong((f._exactly(x), text) for x, text in pairs) or first_wrong(
-        (word in f._exactly(x) and (word == "about") == ("about" in f._exactly(x)), True) for x, word in long
+    return first_wrong((exactly(x), text) for x, text in pairs) or first_wrong(
+        (word in exactly(x) and (word == "about") == ("about" in exactly(x)), True) for x, word in long
     )
 
 
 def effort_is_counted_in_a_document() -> str:
     """And not outside of one; what is begun inside another goes on with its count."""
-    effort = import_module("zwidth.checker.document.effort")
+    effort = import_module("zwidth.checker.document.refusal")
     counts = [effort.spent()]
     with effort.one_document():
         effort.spend(3, each=1)
@@ -275,13 +280,13 @@ def effort_is_counted_in_a_document() -> str:
 
 def parts_of_a_proof_are_not_shown() -> str:
     """Where a motion is, how often a part of it is done, and a law for who has it."""
-    places = {"loop.motion": "MOTION", "contact.motion": "CONTACT_MOTION", "contact.row_motion": "ROW_MOTION"}
-    for name, kind in places.items():
-        record = getattr(import_module(f"zwidth.checker.{name}"), kind)
+    places = (("loop", "MOTION"), ("contact", "CONTACT_MOTION"), ("contact", "ROW_MOTION"))
+    for name, kind in places:
+        record = getattr(import_module(f"zwidth.checker.{name}.motion"), kind)
         for inner in ("positions", "switch_positions", "repeats", "forces"):
             if inner in record.fields and record.fields[inner].shown:
-                return f"{inner} of {name}"
-    law = import_module("zwidth.checker.contact.row_motion").TOLD_LAW
+                return f"{inner} of {kind}"
+    law = import_module("zwidth.checker.contact.law").TOLD_LAW
     return "specification" if law.fields["specification"].shown else ""
 
 

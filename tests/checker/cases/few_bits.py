@@ -20,7 +20,7 @@ from .arithmetic import at, expanded, in_zeta, module, refuses
 
 
 def number(bits: int, middle: int, slopes: tuple[int, ...] = (), radius: int = 0) -> Any:
-    return module("enclosed").Enclosed(bits, middle, slopes, radius)
+    return module("exact.enclosed").Enclosed(bits, middle, slopes, radius)
 
 
 def refusal() -> type[Exception]:
@@ -47,7 +47,7 @@ def some(random: Random, bits: int = 3, certain: float = 0.3) -> Any:
 
 def what_two_numbers_make() -> str:
     """Sums and differences without any loss; products, alone and summed, within what is said."""
-    random, dot, ends = Random(1), module("enclosed").dot, tuple(product((-1, 1), repeat=4))
+    random, dot, ends = Random(1), module("exact.enclosed").dot, tuple(product((-1, 1), repeat=4))
     for _ in range(25):
         a, b, c, d = (some(random) for _ in range(4))
         if random.random() < 0.4:
@@ -68,13 +68,13 @@ def what_two_numbers_make() -> str:
 
 def an_interval_about_zero_keeps_its_ends() -> str:
     """Its middle comes out, half of it does not."""
-    found = module("enclosed").between(Fraction(-1, 3), Fraction(1, 3), 0, 1, 4)
+    found = module("exact.enclosed").between(Fraction(-1, 3), Fraction(1, 3), 0, 1, 4)
     return "" if (found.middle, found.slopes, found.radius) == (0, (5,), 1) else "−1/3 … 1/3"
 
 
 def roots_and_inverses_reach_their_ends() -> str:
     """Of small numbers and large ones, in few bits and in many."""
-    functions, random = module("functions"), Random(2)
+    functions, random = module("exact.enclosed"), Random(2)
     told = [number(7, 984, (171,))]  # where nearly every rounding goes to one side
     for bits, _ in product((1, 5, 40), range(16)):
         m = random.randrange(3, 300) if bits < 9 else random.randrange(1 << bits, 4 << bits)
@@ -110,7 +110,7 @@ def sines_reach_their_ends() -> str:
         for slopes, radius in (((), reach), ((reach, -reach // 2), reach // 3)):
             x = number(20, middle * one // 64, slopes, radius)
             for function, rate, found in zip(
-                (sin, cos), (cos, sin), module("functions").sine_cosine(x), strict=True
+                (sin, cos), (cos, sin), module("exact.enclosed").sine_cosine(x), strict=True
             ):
                 places = [(at(x, s, r), at(found, s, 0)) for r, *s in product((-1, 0, 1), repeat=3)]
                 most = max(abs(function(v) - here) for v, here in places) * one
@@ -126,19 +126,19 @@ def sines_reach_their_ends() -> str:
 
 def polynomials_of_one_coefficient() -> str:
     """A constant is its own value, of any length; of no coefficients nothing is made."""
-    circle, one_norm = module("circle"), module("one_norm").one_norm
+    circle, one_norm = module("pair.felt"), module("pair.felt").one_norm
     if circle.at([number(3, 5)], Fraction(1, 2)).middle != 5:
         return "a constant on the circle"
     if one_norm([number(0, 3)], [number(0, 1)]) != 3 or one_norm(
         [number(8, 3)], [number(8, -256)]
     ) != Fraction(3, 256):
         return "a constant filter"
-    return "" if module("polynomial").multiply([1, 2], []) == [] else "times nothing"
+    return "" if module("exact.polynomial").multiply([1, 2], []) == [] else "times nothing"
 
 
 def what_may_ring_for_ever_has_no_norm() -> str:
     """1/(1 + ζ ε), |ε| ≤ 1; with less there is a bound, and of a divisor that begins below 0, too."""
-    one_norm = module("one_norm").one_norm
+    one_norm = module("pair.felt").one_norm
     for first, radius in ((8, 8), (8, 9), (-8, 8)):
         told = [number(3, first), number(3, 0, (), radius)]
         if not refuses(lambda bottom: one_norm([number(3, 8)], bottom), told, refusal()):
@@ -154,7 +154,7 @@ def what_may_ring_for_ever_has_no_norm() -> str:
 
 def products_that_are_too_long() -> str:
     """Of too many factors at either end; where there is no square nothing is multiplied."""
-    positivity = module("positivity")
+    positivity = module("exact.positivity")
     for q, at_one, at_minus_one, square, right in (
         ([1, 1], 0, 1, [1], True), ([1, -1], 1, 0, [1], True), ([1, 0, -1], 1, 1, [1], True),
         ([1, 2], 0, 2, [1], False), ([1, -2], 2, 0, [1], False), ([1, 1], 1, 1, [1], False),
@@ -178,7 +178,7 @@ def products_that_are_too_long() -> str:
 
 def work_that_never_ends_is_left() -> str:
     """(c² − ½)² is never above 0 nor seen to be 0; a root on the circle is open in any number of bits."""
-    positivity, roots = module("positivity"), module("roots")
+    positivity, roots = module("exact.positivity"), module("exact.roots")
     with limited(positivity, MOST_SPLITS=20):
         square = [Fraction(c) for c in (1, 0, -4, 0, 4)]
         if not refuses(positivity.require_positive, square, refusal()):
@@ -189,12 +189,12 @@ def work_that_never_ends_is_left() -> str:
         if not roots.inside_unit_circle([Fraction(c) for c in (5, -6, 4)]):
             return "a root inside it"
     many = [number(64, c << 64) for c in in_zeta([2, *[0] * 29, 1])]
-    return "" if module("schur_cohn").decays(many) else "many roots inside it"
+    return "" if module("exact.roots").decays(many) else "many roots inside it"
 
 
 def half_planes_are_told() -> str:
     """Products of two with known roots, of which one may lie on the axis or to the right."""
-    test = module("roots").in_left_half_plane
+    test = module("exact.roots").in_left_half_plane
     good, bad = ([1, 1], [1, 1000], [1, 2, 2], [1000, 1]), ([1, 0], [1, -1], [1, 0, 1], [1, -1, 100])
     for first, second in product(good, (*good, *bad)):
         if test(list(map(Fraction, expanded(first, second)))) is not (second in good):
@@ -204,7 +204,7 @@ def half_planes_are_told() -> str:
 
 def hurwitz_has_zeros_that_are_exact() -> str:
     """Beside the coefficients, c₀ … cₙ with 2j − i below or above."""
-    crossing, order = module("crossing"), 4
+    crossing, order = module("known_hand.rest"), 4
     told = [number(3, 10 + i, (), 1) for i in range(order + 1)]
     for i, row in enumerate(crossing._hurwitz(told), start=1):
         for j, x in enumerate(row, start=1):
@@ -217,7 +217,7 @@ def hurwitz_has_zeros_that_are_exact() -> str:
 
 def matrices_without_an_inverse_show_nothing() -> str:
     """A pair of roots just on the circle; one so near that the inverse is beyond any float."""
-    crossing = module("crossing")
+    crossing = module("known_hand.rest")
     for told in ([5, -6, 5], expanded([1, 0, 1], [25, -30, 25])):
         if crossing.never_crosses([number(8, c << 8) for c in in_zeta(told)]):
             return f"{told}"

@@ -144,13 +144,13 @@ def costs_are_below_what_is_lost() -> str:
 
 def a_law_that_relaxes_on_levels() -> str:
     """Its force inwards and outwards, and where each level of its average goes, down and up."""
-    relaxing, low, high, per, unit = storage("relaxing"), -2, 2, 2, Fraction(1, 100)
+    relaxing, low, high, per, unit = storage("grid"), -2, 2, 2, Fraction(1, 100)
     for surface, clamped, resets in product(SURFACES, (False, True), (False, True)):
         told = law(surface, taps=[Fraction(3)], relaxing=(Fraction(2, 3), Fraction(5)), resets=resets)
         least = 0 if surface == "penetration" else low
         averages = [(least + Fraction(i, per)) * STEP for i in range((high - least) * per + 1)]
         args = low, high, least, per, len(averages)
-        forces = relaxing._forces(told._replace(clamped=clamped), 30, 25, *args)
+        forces = relaxing._level_forces(told._replace(clamped=clamped), 30, 25, *args)
         images = relaxing._images(told, *args)
         for n in range(low, high + 1):
             line = [told.force([n * STEP], average) / unit for average in averages]
@@ -222,9 +222,9 @@ def words_of_cells() -> str:
 
 def forces_and_costs_of_levels() -> str:
     """A level is a part of a count; costs are those of the longest move, in steps."""
-    relaxing_grid = import_module("zwidth.checker.storage.relaxing")
+    relaxing_grid = import_module("zwidth.checker.storage.grid")
     asked: dict[str, Any] = {}
-    kept = relaxing_grid._forces, relaxing_grid.costs_of
+    kept = relaxing_grid._level_forces, relaxing_grid.costs_of
 
     def told(name: str, real: Any) -> Any:
         def call(*given: Any) -> Any:
@@ -233,13 +233,13 @@ def forces_and_costs_of_levels() -> str:
 
         return call
 
-    relaxing_grid._forces, relaxing_grid.costs_of = told("forces", kept[0]), told("costs", kept[1])
+    relaxing_grid._level_forces, relaxing_grid.costs_of = told("forces", kept[0]), told("costs", kept[1])
     try:
         grid = relaxing(-1, 1, [0] * 45, {}, largest_move_counts=3, steps_per_count=2)
         grid = put(grid, {"domain.levels_per_count": 2})
         import_module("zwidth.checker").verify(plain(grid))
     finally:
-        relaxing_grid._forces, relaxing_grid.costs_of = kept
+        relaxing_grid._level_forces, relaxing_grid.costs_of = kept
     found = [*asked["forces"][1:3], *asked["costs"][4:]]
     return "" if found == [10, 2, 3, 2] else f"{found}"
 
@@ -258,7 +258,7 @@ def costs_of_a_table() -> str:
 
 def averages_go_where_the_law_sends_them() -> str:
     """Forces by reading and level, inwards and outwards, and the images of all levels."""
-    relaxing = storage("relaxing")
+    relaxing = storage("grid")
     for surface, clamped, resets, per_count in product(SURFACES, (False, True), (False, True), (1, 3)):
         if clamped and surface == "none":
             continue
@@ -266,7 +266,7 @@ def averages_go_where_the_law_sends_them() -> str:
         least = 0 if surface == "penetration" else LOW
         levels = (HIGH - least) * per_count + 1
         spring, branch = (int(k * STEP / UNIT) for k in (told.taps[0], told.relaxing[1] / per_count))
-        both = relaxing._forces(told, spring, branch, LOW, HIGH, least, per_count, levels)
+        both = relaxing._level_forces(told, spring, branch, LOW, HIGH, least, per_count, levels)
         images = relaxing._images(told, LOW, HIGH, least, per_count, levels)
         for n in range(LOW, HIGH + 1):
             averages = [least + Fraction(i, per_count) for i in range(levels)]

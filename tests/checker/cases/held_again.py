@@ -52,7 +52,7 @@ def _pair(random: Random) -> dict[str, Any]:
 def motions_beside_a_mass() -> str:
     """Of a held arm that is free to fly: x and v go on by f T²/2M and f T/M while a force f is held."""
     random = Random(1)
-    motion = part("held_motion")
+    motion = part("held")
     for _ in range(ROUNDS):
         pair, mass, which = _pair(random), some(random, 2, 9), random.randrange(2)
         names = ("leader", "follower")
@@ -115,7 +115,7 @@ def _parts(forces: Sequence[Fraction], k: int, late: Fraction) -> list[tuple[Fra
 
 def nothing_acts_at_first() -> str:
     """A first move that is not rubbed takes nothing, to the last bit."""
-    motion = part("held_motion")
+    motion = part("held")
     for end in (1, -1):
         told = {**with_damping(MOVED, 0), "positions_m": [0, end]}
         told = put(told, {"loop.leader.coulomb_friction_N": 0})

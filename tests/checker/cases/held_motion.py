@@ -134,7 +134,7 @@ def a_mass_twice_as_large_moves_half_as_far() -> str:
 
 def every_term_of_a_cosine_sum_counts() -> str:
     """But for those that are 0; a unit of the last digit as well as any."""
-    positive = module("absolute")._require_positive
+    positive = module("wall")._require_positive
     for sums, right in (
         ([1, 0, 0], True), ([3, 0, -2], True), ([1, 0, -2], False), ([2, 1], True), ([1, 1], False),
         ([1, -1], False), ([2, -1], True), ([0, 0], False), ([0], False),
@@ -168,12 +168,12 @@ def plants_are_padded_with_what_is_0() -> str:
     """Below for every sample of delay, above to the same length; what is not certain stays so."""
     for late, zeros in ((0, 0), (2, 2), (Fraction(1, 2), 1), (Fraction(7, 3), 3)):
         told = hand(late)
-        found = module("plant").plant_of(told, 40)
+        found = module("wall").plant_of(told, 40)
         if len(found.denominator) != 3 + zeros or not all(
             x.is_zero for x in found.denominator[len(found.denominator) - zeros :]
         ):
             return f"below, {late} samples late"
-        above, below = module("vibration")._plant(told, 40)
+        above, below = module("wall")._plant(told, 40)
         extra = len(above) - len(found.numerator)
         if len(above) != len(below) or not all(x.is_zero for x in above[len(found.numerator) :]):
             return f"above, {late} samples late: {extra} more"
@@ -188,7 +188,7 @@ def what_is_damped_nowhere_is_not_stable() -> str:
     for stiffness, damping, by_hand in product((0, 1), repeat=3):
         told = hand(hand_stiffness=stiffness, damping=damping, hand_damping=by_hand)
         right = bool(stiffness and (damping or by_hand))
-        if refuses(module("absolute")._require_stable, told, refusal()) is right:
+        if refuses(module("wall")._require_stable, told, refusal()) is right:
             return f"{stiffness}, {damping}, {by_hand}"
     return ""
 
@@ -197,7 +197,7 @@ def what_is_uncertain_is_taken_off() -> str:
     """Of a + b cos θ, each within its bound."""
     for a, b, reach, right in ((9, 4, 2, True), (9, 4, 3, False), (9, -4, 2, True), (9, -4, 3, False)):
         told = [number(8, a, (), reach), number(8, b, (reach - 1,), 1)]
-        if refuses(module("absolute")._require_positive, told, refusal()) is right:
+        if refuses(module("wall")._require_positive, told, refusal()) is right:
             return f"{a} + {b} cos θ, each ± {reach}"
     return ""
 
@@ -231,7 +231,7 @@ def positions_follow_from_the_first() -> str:
     """Of a plant of two poles, each sample inside or not, in fractions; the first stand for themselves."""
     above, below = (Fraction(1, 2), Fraction(1, 4)), (Fraction(1, 4), Fraction(-1, 2))
     gap, slope, inside = Fraction(-3, 4), Fraction(5, 4), [True, False, True]
-    rows = module("vibration")._positions(
+    rows = module("wall")._positions(
         *([number(20, int(c * 2**20)) for c in part] for part in (above, below)),
         SimpleNamespace(gap=gap, slope=slope, inside=inside),
         20,

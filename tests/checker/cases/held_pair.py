@@ -120,8 +120,8 @@ def moved(document: Any, damping: Any, friction: Any, path: Any, energy: Any) ->
 
 
 def polynomials_are_exact() -> str:
-    """In powers of w, of ζ and of u, of whole numbers without a radius; at a point of the circle."""
-    felt, circle = (import_module(f"zwidth.checker.{name}") for name in ("pair.felt", "exact.circle"))
+    """In powers of w, of ζ and of u, of whole numbers without a radius; at a point of the felt."""
+    felt = import_module("zwidth.checker.pair.felt")
     enclosed = import_module("zwidth.checker.exact.enclosed").Enclosed
 
     def known(*values: int, radius: int = 0) -> list[Any]:
@@ -157,13 +157,13 @@ def polynomials_are_exact() -> str:
 
     for one, other in ((a, b), (b, a), (a, a)):
         (x, y), (s, t) = on_circle(one), on_circle(other)
-        found = circle.real_part(one, other, 8)
+        found = felt.real_part(one, other, 8)
         pairs[f"real part {len(one)} {len(other)}"] = (at(found, u), x * s + y * t)
         pairs[f"radius {len(one)} {len(other)}"] = (Fraction(sum(c.reach for c in found)), Fraction(0))
-        total = circle.at(found, 1 - u)
+        total = felt.at(found, 1 - u)
         pairs[f"at {len(one)} {len(other)}"] = (Fraction(total.middle, 256), (x * s + y * t) * 5**7)
     for sign, more in product((-1, 1), repeat=2):  # what is unknown is within the radius that is found
-        bounds = circle.real_part(known(3, -5, 2, 7, radius=8), known(4, 1, -6, radius=8), 8)
+        bounds = felt.real_part(known(3, -5, 2, 7, radius=8), known(4, 1, -6, radius=8), 8)
         moved = [[c.middle + s * 8 for c in p] for p, s in ((a, sign), (b, more))]
         (x, y), (s, t) = (on_circle([enclosed(8, m) for m in p]) for p in moved)
         off = abs(x * s + y * t - at(bounds, u))
@@ -174,7 +174,7 @@ def polynomials_are_exact() -> str:
 
 def radii_are_those_of_powers() -> str:
     """Of one power of w and another: |Re wⁱ w̄ᵏ| ≤ (2u)ⁿ, or |i − k| 2ⁿ uⁿ⁺¹ where i + k is odd."""
-    circle = import_module("zwidth.checker.exact.circle")
+    circle = import_module("zwidth.checker.pair.felt")
     enclosed = import_module("zwidth.checker.exact.enclosed").Enclosed
     for i, k in product(range(4), repeat=2):
         a, b = ([enclosed(8, 0)] * n + [enclosed(8, 256, (), r)] for n, r in ((i, 3), (k, 0)))
@@ -189,7 +189,7 @@ def radii_are_those_of_powers() -> str:
 
 def a_polynomial_stays_above_zero_at_every_end() -> str:
     """Where slopes cancel they count together, a radius by itself; for 0 ≤ u ≤ 2 and no further."""
-    circle = import_module("zwidth.checker.exact.circle")
+    circle = import_module("zwidth.checker.pair.felt")
     enclosed = import_module("zwidth.checker.exact.enclosed").Enclosed
     refusal = import_module("zwidth.checker.document.refusal").Invalid
 
@@ -221,7 +221,7 @@ def a_polynomial_stays_above_zero_at_every_end() -> str:
 
 def sums_of_impulse_responses() -> str:
     """1/(1 − ζ/2) has 2, and 3 (1 + ζ)/(2 + ζ) has 3/2 + 3/4 + 3/8 + …"""
-    one_norm = import_module("zwidth.checker.exact.one_norm").one_norm
+    one_norm = import_module("zwidth.checker.pair.felt").one_norm
     enclosed = import_module("zwidth.checker.exact.enclosed").Enclosed
 
     def known(*values: Any) -> list[Any]:

@@ -183,7 +183,7 @@ def artanh_is_from_below() -> str:
 
 def _module() -> Any:
     """Of the checker, as it is loaded now."""
-    return import_module("zwidth.checker.pair.compensation")
+    return import_module("zwidth.checker.pair.coupling")
 
 
 CASES = [

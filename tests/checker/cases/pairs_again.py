@@ -32,7 +32,7 @@ def part(name: str) -> Any:
 
 def document(sort: Any, told: Any) -> Any:
     """What is read of it."""
-    return import_module("zwidth.checker.document.fields").read_document(sort, plain(told))[0]
+    return import_module("zwidth.checker.document.file").read_document(sort, plain(told))[0]
 
 
 def _arm(random: Random, period: Fraction, late: Sequence[Any]) -> dict[str, Any]:
@@ -194,7 +194,7 @@ _NO_LAW = dict.fromkeys(
 
 def _compensated(random: Random) -> Iterator[tuple[Any, list[Any]]]:
     """Pairs and what compensation takes; drives first that have fractions at one place of the form alone."""
-    line = part("compensation").Line
+    line = part("coupling").Line
     springs = (
         one_arm(Fraction(35, 8), Fraction(3, 4), reflection=1),
         one_arm(8, Fraction(1, 4)),
@@ -208,7 +208,7 @@ def _compensated(random: Random) -> Iterator[tuple[Any, list[Any]]]:
             told[name] = {"own_readings": 1, "reflection": 0, **one}
             told[name] = {key: Fraction(value) for key, value in told[name].items()}
             told[name]["own_readings"] = int(told[name]["own_readings"])
-        yield told, [part("compensation").NO_LINE] * 2
+        yield told, [part("coupling").NO_LINE] * 2
     for _ in range(3 * ROUNDS):
         told = _loop(random, some(random, 1, 3))
         lines = [line(*(some(random, 0, 1) * random.choice([0, 1]) for _ in range(3))) for _ in _ARMS]
@@ -322,7 +322,7 @@ def _least(beta: float, gamma: float, back: complex, often: int) -> float:
 def younger_readings_beside_springs() -> str:
     """That they change nothing is said of springs alone: of no damper, delay or compensation."""
     passive = part("passive")
-    line = part("compensation").Line
+    line = part("coupling").Line
     one = {"own": (4, 0), "other": (-4, 0), "echo": (0, 0), "part": 0}
     beside = [
         ({"own": (5, -1)}, 0), ({"other": (-5, 1)}, 0), ({"echo": (1, -1)}, 0), ({"part": 1}, 0), ({}, 1),

@@ -30,7 +30,7 @@ def refuses(function: Callable[..., Any], *values: Any, **more: Any) -> bool:
 
 def what_is_spent_adds_up() -> str:
     """In one document, and not from one to the next; what is too much at once is refused anywhere."""
-    effort = part("document.effort")
+    effort = part("document.refusal")
     most = effort.MOST * 10  # a product of no bits costs a tenth
     for _ in range(2):
         with effort.one_document():
@@ -100,7 +100,7 @@ def _is_read_by(field: Any, value: Any) -> bool:
 
 def entries_are_told() -> str:
     """Exact decimals, fractions, intervals, units; the first four entries too many."""
-    fields, unit = part("document.fields"), part("document.unit")
+    fields, file, number = part("document.fields"), part("document.file"), part("document.number")
     for value, told in (
         (Fraction(1, 10), "0.1"), (Fraction(7, 20), "0.35"), (Fraction(1, 6), "1/6"), (Fraction(3), "3"),
         (Fraction(-1, 3), "-1/3"), (Fraction(1, 3**90), "about 1.14574263767e-43"),
@@ -108,9 +108,9 @@ def entries_are_told() -> str:
         (Fraction(2**200 - 1, 2**199), f"1.{10**199 - 5**199:0199d}"),
         (Fraction(1, 2**40), "9.094947017729282379150390625e-13"),
     ):  # fmt: skip
-        if fields._exactly(value) != told:
-            return f"{value} is told as {fields._exactly(value)}"
-    between = fields.Between(unit.FORCE)
+        if (found := number.exactly(value)) != told:
+            return f"{value} is told as {found}"
+    between = fields.Between(number.FORCE)
     if (
         between.text((Fraction(1), Fraction(2)), "linear") != "1 to 2"
         or between.text((1, 1), "linear") != "1"
@@ -122,8 +122,8 @@ def entries_are_told() -> str:
         "N_m_s_rad": "in N, m, s, rad", "kg_m2": "kg·m²", "N_s_per_m": "N·s/m", "": "",
     }  # fmt: skip
     for ending, told in words.items():
-        if unit.in_words(ending) != told:
-            return f"{ending} is told as {unit.in_words(ending)}"
+        if number.in_words(ending) != told:
+            return f"{ending} is told as {number.in_words(ending)}"
     record = fields.Record({"a": fields.Number()})
     try:
         record.read(dict.fromkeys("bcdefg", 1), "", "linear")
@@ -158,16 +158,16 @@ def entries_are_told() -> str:
         shallow = {"x": shallow}
     return (
         ""
-        if refuses(lambda: list(fields._told(deep)))
-        and refuses(lambda: list(fields._told({"x": shallow})))
-        and list(fields._told(shallow)) == ["x"] * 11
+        if refuses(lambda: list(file._told(deep)))
+        and refuses(lambda: list(file._told({"x": shallow})))
+        and list(file._told(shallow)) == ["x"] * 11
         else "depth"
     )
 
 
 def sums_of_minors_are_those_of_the_matrix() -> str:
     """Of Hermitian matrices of whole numbers, by all minors."""
-    sums, random = part("port.matrix")._principal_sums, Random(1)
+    sums, random = part("port.index")._principal_sums, Random(1)
     for size, _ in product((1, 2, 3, 4), range(4)):
         a = [[(0, 0)] * size for _ in range(size)]
         for i in range(size):
@@ -205,7 +205,7 @@ def _determinant(a: Sequence[Sequence[tuple[Any, Any]]]) -> tuple[Any, Any]:
 
 def minors_of_a_port_are_those_at_a_point() -> str:
     """Π = ½(Dᴴ N + Nᴴ D) − σ Dᴴ D at s = j tan θ/2 or z = e^{jθ}, in rational numbers."""
-    matrix, system, random = part("port.matrix"), part("port.system"), Random(2)
+    matrix, system, random = part("port.index"), part("port.system"), Random(2)
     for continuous, axes, level in product(
         (True, False), (1, 2, 3), (Fraction(0), Fraction(2, 3), Fraction(-1))
     ):
@@ -312,7 +312,7 @@ def rotations_are_those_of_their_quaternions() -> str:
 
 def turns_are_bounded() -> str:
     """Half for every joint that turns, where the hand turns in space; how many rows a wall has."""
-    pose, chain = part("arm.pose"), part("arm.chain")
+    pose, chain = part("arm.pose"), part("arm.kinematics")
     told = chain.Chain([SimpleNamespace(slides=s) for s in (False, True, False, False)], [], [])
     found = [pose.turning_bend(told, pose.Pose(turns, True)) for turns in (0, 1, 3)]
     if found != [0, 0, Fraction(3, 2)]:
@@ -341,7 +341,11 @@ def turns_are_bounded() -> str:
 def what_an_arm_is_made_of_is_as_it_is_told() -> str:
     """Ends of cells and of boxes, matrices without a sign, and what is known of a projector, one by one."""
     cells, region, pose, null = (part(f"arm.{name}") for name in ("cells", "region", "pose", "null_space"))
-    projector, enclosed, bits = part("arm.projector"), part("exact.enclosed").Enclosed, part("arm.cells").BITS
+    projector, enclosed, bits = (
+        part("arm.null_space"),
+        part("exact.enclosed").Enclosed,
+        part("arm.cells").BITS,
+    )
     numbers = [
         (x.middle, x.slopes, x.radius)
         for x in (
@@ -378,7 +382,7 @@ def what_an_arm_is_made_of_is_as_it_is_told() -> str:
             return f"{turn} mirrors: {mirrored}"
     joint = SimpleNamespace(low=Fraction(-1), high=Fraction(2))
     chain, rest = SimpleNamespace(joints=[joint] * 3), [Fraction(-1), Fraction(1, 2), Fraction(3, 2)]
-    encoders, chain_of = part("arm.encoders"), part("arm.chain")
+    encoders, chain_of = part("arm.region"), part("arm.kinematics")
     wider = encoders.with_steps(
         chain_of.Chain([chain_of.Joint(False, [], [], Fraction(1), Fraction(2))], [], []),
         encoders.Encoders([Fraction(1, 10)], [], []),
@@ -451,7 +455,7 @@ def what_a_hand_moves_is_bounded() -> str:
 def what_two_arms_lose_is_summed_up() -> str:
     """What counts to the side of less, of a motion as of encoders, one by one."""
     coupling, passive, motion, held = (
-        part(f"pair.{name}") for name in ("coupling", "passive", "motion", "held_motion")
+        part(f"pair.{name}") for name in ("coupling", "passive", "motion", "held")
     )
     zero, nothing = Fraction(0), passive.NO_LINE
     side = coupling.Side(
@@ -508,7 +512,7 @@ def what_two_arms_lose_is_summed_up() -> str:
 
 def sizes_of_matrices_are_not_below() -> str:
     """√(‖A‖₁ ‖A‖∞) or ‖A‖_F, the smaller; a root is not below."""
-    encoders, chain = part("arm.encoders"), part("arm.chain")
+    encoders, chain = part("arm.region"), part("arm.kinematics")
     for rows, square in (([[3, 4]], 25), ([[1, 1], [1, 1]], 4), ([[2, 0], [0, 2]], 4), ([[1, -2], [0, 0]], 5),
                          ([[-3, 0], [0, 0]], 9), ([[1], [-1]], 2)):  # fmt: skip
         found = encoders._size([[Fraction(x) for x in row] for row in rows])
@@ -541,7 +545,7 @@ def a_friction_curve_goes_on() -> str:
 
 def a_violation_is_the_criterion_at_a_point() -> str:
     """Up to a power of the denominator of cos θ, whatever the law and its delay are."""
-    loop, criterion, violation = (part(f"loop.{name}") for name in ("loop", "criterion", "violation"))
+    loop, criterion, violation = (part(f"loop.{name}") for name in ("loop", "linear", "violation"))
     value, random = part("exact.polynomial").value, Random(4)
     for above, below, whole, late in product((1, 3), (1, 2, 3), (0, 2), (Fraction(0), Fraction(1, 3))):
         n, d = ([Fraction(random.randrange(1, 9)) for _ in range(size)] for size in (above, below))
@@ -615,7 +619,7 @@ def rounds_are_summed_once_they_are_alike() -> str:
 
 def a_motion_in_contact_is_read_as_late_as_it_is() -> str:
     """Forces of two ages, bounds of speed in each part of a sample, and roundings that are never a gain."""
-    motion, bounds = part("contact.motion"), part("contact.bounds")
+    motion = part("contact.motion")
     law = SimpleNamespace(force=lambda readings, _: readings[0], averaged=lambda average, _: average)
     for delay, right in ((0, (9, 9)), (1, (7, 9)), (2, (5, 7)), (3, (4, 5))):
         losses, state = SimpleNamespace(delay=delay, resolution=1), motion._State([0] * 5, [0] * 5)
@@ -631,9 +635,9 @@ def a_motion_in_contact_is_read_as_late_as_it_is() -> str:
     losses = SimpleNamespace(part=Fraction(1, 4), period=Fraction(2))
     for speed, right in ((Fraction(2), True), (Fraction(19, 10), False)):
         for path, turn in (([0, 4], 1), ([4, 0], 3), ([0, 1], 1), ([1, 4], 1)):
-            if bounds._slow(losses, path, [turn], speed) is not right:
+            if motion._slow(losses, path, [turn], speed) is not right:
                 return f"{path} by {turn} at {speed}"
-        if bounds._slow(SimpleNamespace(part=1, period=Fraction(2)), [0, 4, 0], [], speed) is not right:
+        if motion._slow(SimpleNamespace(part=1, period=Fraction(2)), [0, 4, 0], [], speed) is not right:
             return f"in one at {speed}"
     return ""
 

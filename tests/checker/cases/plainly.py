@@ -37,16 +37,16 @@ def checker(name: str) -> Any:
 def told_by(document: Any) -> Any:
     """What the checker reads."""
     kinds = checker("kinds")
-    told, _ = checker("document.fields").read_document(kinds.fields_of(kinds.kind_of(document)), document)
+    told, _ = checker("document.file").read_document(kinds.fields_of(kinds.kind_of(document)), document)
     return told
 
 
 def plainly(document: Any) -> tuple[bool, str]:
     """Whether the twin accepts, and what it says."""
     try:
-        with checker("document.effort").one_document():
+        with checker("document.refusal").one_document():
             told = told_by(document)
-            return True, checker("storage.choice").PLAINLY[told.kind](told)
+            return True, checker("storage.plainly").PLAINLY[told.kind](told)
     except checker("document.refusal").Invalid as error:
         return False, str(error)
 
@@ -333,7 +333,7 @@ def in_a_table(told: Any) -> Board:
     reach, steps = ceil(domain.largest_move_counts), domain.steps_per_count
     step = losses.resolution / steps
     counts, flat = unpacked(table.counts), unpacked(table.successors)
-    listed = checker("storage.packed")
+    listed = checker("storage.domain")
     conditions: list[Condition] = []
     at = {}
 

@@ -72,7 +72,7 @@ def values_at_a_point() -> str:
         )
         point = random.randrange(-5, 6), random.randrange(1, 6)
         right = _at([Fraction(c) for c in p], (Fraction(point[0], unit), Fraction(point[1], unit)))
-        if part("matrix")._at(p, point, unit, order) != tuple(unit**order * x for x in right):
+        if part("index")._at(p, point, unit, order) != tuple(unit**order * x for x in right):
             return f"{p} at {point} over {unit}"
     return ""
 

@@ -352,10 +352,10 @@ def what_nothing_proves_is_told() -> str:
         "worst_hand.certificate",
     ]:
         return f"{[one.at for one in found.parts]}"
-    if part("words").not_checked(found) != "limit, max_stiffness_N_per_m, claim, assumptions, law, " + (
+    if part("verdict").not_checked(found) != "limit, max_stiffness_N_per_m, claim, assumptions, law, " + (
         "damping_N_s_per_m, frequency_Hz, below"
     ):
-        return part("words").not_checked(found)
+        return part("verdict").not_checked(found)
     if found.parts[0].verification is not found.parts[2].verification or judged(covering()).parts[0].at:
         return "the same evidence is not checked once"
     return "" if judged({**true, "known_hands": {}}).told == () else "told"
@@ -372,7 +372,7 @@ def a_wrong_word_is_that_of_its_statement() -> str:
 
 def words_are_of_what_is_covered() -> str:
     """The answer to a whole document, and the headline of each proof."""
-    words, verdict, one, scope = part("words"), part("verdict"), part("one"), part("scope").Scope
+    words, verdict, one, scope = part("verdict"), part("verdict"), part("one"), part("scope").Scope
     loop, arms = "out of the loop below, proved", "out of the arms below, proved"
     for kind, covered, said in (
         ("x", scope("stable"), "Proved"), ("x", scope("unstable", "known"), "Proved"),
@@ -429,7 +429,7 @@ def words_are_of_what_is_covered() -> str:
 
 def rows_are_of_what_was_checked() -> str:
     """The numbers that entered a proof that holds."""
-    words, verdict, one, scope = part("words"), part("verdict"), part("one"), part("scope").Scope
+    words, verdict, one, scope = part("verdict"), part("verdict"), part("one"), part("scope").Scope
     row = part("document.fields").Row
     entries = (
         row("b", "4", "N·s/m", False),
@@ -576,7 +576,7 @@ def _unreadable(file: Any, path: str) -> str:
 
 def reading_counts_as_effort() -> str:
     """A file of many values is refused with what it costs, whole as in its evidence."""
-    effort, verdict, one = part("document.effort"), part("verdict"), part("one")
+    effort, verdict, one = part("document.refusal"), part("verdict"), part("one")
     counts: list[float] = []
 
     def verify(_: object) -> Any:
@@ -591,7 +591,7 @@ def reading_counts_as_effort() -> str:
             verdict.judge({"certificate": covering(), "violation": covering("active")})
     if not 1000 <= counts[0] < 1500 or not counts[1] == counts[2] < 500:
         return f"{counts}"
-    with put_in_place("document.effort", MOST=90):
+    with put_in_place("document.refusal", MOST=90):
         hands = {str(k): {} for k in range(5)}
         return (
             "" if verdict.judge({"certificate": {}, "known_hands": hands}).faults else "too many statements"

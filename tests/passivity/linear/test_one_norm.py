@@ -13,7 +13,7 @@ from strategies import seeds
 import zwidth as zw
 from zwidth import checker
 from zwidth.checker.document.refusal import Invalid
-from zwidth.checker.loop.one_norm import NORM, one_norm_bound
+from zwidth.checker.loop.linear import NORM, one_norm_bound
 from zwidth.passivity.certificate import certify
 from zwidth.passivity.criterion_choice import Decision
 from zwidth.passivity.linear.loop import linear_loop

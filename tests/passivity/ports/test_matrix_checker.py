@@ -15,7 +15,7 @@ from tampered import tampered
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.checker.port.matrix import _principal_sums
+from zwidth.checker.port.index import _principal_sums
 from zwidth.passivity.ports.circle import product
 from zwidth.passivity.ports.port import leverrier, multiplied
 

@@ -16,7 +16,7 @@ from tampered import tampered
 import zwidth as zw
 from zwidth import checker
 from zwidth.checker import judge
-from zwidth.checker.loop.criterion import criterion
+from zwidth.checker.loop.linear import criterion
 from zwidth.checker.loop.loop import LOOP, loop_of
 from zwidth.checker.loop.violation import criterion_at
 from zwidth.passivity.certificate import verify_document

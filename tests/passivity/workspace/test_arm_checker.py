@@ -13,8 +13,7 @@ from checked import claim, matrix_at
 
 from zwidth import checker
 from zwidth.checker.arm import cells as arm_cells
-from zwidth.checker.arm.cells import BITS
-from zwidth.checker.arm.damping import constant
+from zwidth.checker.arm.cells import BITS, constant
 from zwidth.checker.exact.enclosed import Enclosed
 from zwidth.model.arms import Leg, LeggedArm
 

@@ -16,8 +16,7 @@ from scipy.spatial.transform import Rotation
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.checker.arm.cells import BITS
-from zwidth.checker.arm.damping import constant
+from zwidth.checker.arm.cells import BITS, constant
 from zwidth.checker.arm.pose import _quaternion, _rotation
 from zwidth.checker.exact.enclosed import Enclosed
 from zwidth.model.arms import PlanarChain, read_arm

@@ -11,7 +11,7 @@ from scipy.linalg import expm
 from strategies import seeds
 
 from zwidth import checker
-from zwidth.checker.known_hand.plant import plant_of
+from zwidth.checker.known_hand.wall import plant_of
 
 LOOP = {
     "mass_kg": "0.05",

@@ -12,7 +12,7 @@ from tampered import tampered
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.checker.bounded_hand.active_hand import _least_cosine
+from zwidth.checker.active_hand import _least_cosine
 from zwidth.passivity.stability.shaking_hand import band_of
 from zwidth.quantity.text import to_json
 

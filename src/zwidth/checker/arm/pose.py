@@ -18,13 +18,12 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..document.fields import Read, only_if
+from ..document.fields import Read
 from ..document.number import about
-from ..document.refusal import Invalid
-from ..exact.enclosed import Enclosed, dot, mapped
-from ..exact.functions import inverse, root, sine_cosine
-from .chain import NOTHING, UNIT, Chain, about_z, from_end
-from .damping import Matrix, constant
+from ..document.refusal import Invalid, only_if
+from ..exact.enclosed import Enclosed, dot, inverse, mapped, root, sine_cosine
+from .cells import Matrix, constant
+from .kinematics import NOTHING, UNIT, Chain, about_z, from_end
 
 Columns = Callable[[Sequence[Enclosed]], list[list[Enclosed]]]
 

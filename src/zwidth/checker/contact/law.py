@@ -13,9 +13,8 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..document.fields import Choice, Flag, Number, Read, Record, increasing, numbers, only_if, pairs
-from ..document.refusal import Invalid
-from ..document.unit import (
+from ..document.fields import Choice, Flag, Number, Read, Record, Words, numbers, pairs
+from ..document.number import (
     DAMPING,
     FORCE,
     FORCE_AT,
@@ -25,11 +24,12 @@ from ..document.unit import (
     PER_LENGTH,
     SECONDS,
     STIFFNESS,
+    increasing,
 )
+from ..document.refusal import Invalid, only_if
 
 MOST_TAPS = 50
 MOST_POINTS = 10_000
-
 LOSSES = Record(
     {
         "damping": Number(DAMPING, least=0, default=None),
@@ -42,7 +42,6 @@ LOSSES = Record(
     }
 )
 """A device with damping and Coulomb friction, or with a friction curve and models below it."""
-
 LAW = Record(
     {
         "taps": numbers(STIFFNESS, most=MOST_TAPS),
@@ -208,3 +207,17 @@ def law_of(told: Read) -> Law:
         told.force_step,
         told.rate_per or Fraction(0),
     )
+
+
+MOST_WORDS = 10_000
+MOST_PARAMETERS = 100_000
+TOLD_LAW = Record(
+    {
+        "description": Words(MOST_WORDS),
+        "specification": Words(MOST_PARAMETERS, default="", shown=False),
+        "counts_force_limit": Flag(shown=False),
+        "counts_force_resolution": Flag(shown=False),
+    }
+)
+"""What is said of laws in a chain, and their parameters for who has the law: the proof is of the table, or of
+the forces, and not of these words."""

@@ -1,25 +1,112 @@
-"""A motion re-run through a law with contact made and broken: the energy it takes out, exactly."""
+"""Motions through contact made and broken, re-run: through a law, or with the forces of laws in a chain."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
 
-from ..document.effort import spend
-from ..document.fields import Read, document, numbers
-from ..document.refusal import Invalid
-from ..document.unit import LENGTH
+from ..document.fields import Number, Read, Record, document, numbers
+from ..document.number import FORCE, LENGTH, SPEED
+from ..document.refusal import Invalid, spend
 from ..loop.motion import REPEAT, TOLD, switch_positions
-from .bounds import BOUNDS, require_within
-from .law import LAW, LOSSES, Law, Losses, law_of, losses_of
-from .row_motion import MOST_POSITIONS, closed_cycle
+from .law import LAW, LOSSES, TOLD_LAW, Law, Losses, law_of, losses_of
+
+# The bounds on the hand that a motion is said to keep: how deep, how far outside, how fast.
+#
+# x ≤ depth,    x ≥ −outside,    |Δx| ≤ speed · t    over each time t in which one force is held
+
+BOUNDS = Record(
+    {
+        "speed": Number(SPEED, least=0, default=None),
+        "depth": Number(LENGTH, default=None),
+        "outside": Number(LENGTH, default=None),
+    },
+    default=None,
+)
+
+
+def require_within(
+    bounds: Read | None, losses: Losses, x: Sequence[Fraction], switches: Sequence[Fraction]
+) -> None:
+    """Where bounds are stated, every position and every move keeps to them."""
+    if bounds is None:
+        return
+    if bounds.speed is not None and not _slow(losses, x, switches, bounds.speed):
+        raise Invalid("the motion does not keep to its speed")
+    for name, most, side in (("depth", bounds.depth, 1), ("outside", bounds.outside, -1)):
+        if most is not None and any(side * place > most for place in (*x, *switches)):
+            raise Invalid(f"the motion does not keep to its {name}")
+
+
+def _slow(losses: Losses, x: Sequence[Fraction], switches: Sequence[Fraction], speed: Fraction) -> bool:
+    if losses.part == 1:
+        return all(abs(b - a) <= speed * losses.period for a, b in pairwise(x))
+    early, late = speed * losses.period * losses.part, speed * losses.period * (1 - losses.part)
+    turns = zip(pairwise(x), switches, strict=True)
+    return all(abs(m - a) <= early and abs(b - m) <= late for (a, b), m in turns)
+
+
+# A motion against laws in a chain re-counted: positions and the forces that were held, exactly.
+#
+#     energy out = −Σ f Δx − Σ c(Δx)
+#
+# The forces are those that the document lists.  That the law gives them is not checked here:
+# this needs the law.
+
+
+MOST_POSITIONS = 100_000
+ROW_MOTION = document(
+    {
+        "loop": LOSSES,
+        "law": TOLD_LAW,
+        "bounds": BOUNDS,
+        **TOLD,
+        "repeats": REPEAT,
+        "positions": numbers(LENGTH, least=2, most=MOST_POSITIONS, shown=False),
+        "forces": numbers(FORCE, least=1, most=MOST_POSITIONS, shown=False),
+    }
+)
+
+
+def row_motion_energy(told: Read) -> tuple[Fraction, Fraction]:
+    """Energy the hand takes out over the motion, and by one more round of its cycle [J].
+
+    `repeats` names the part that is done `times` times; it must return to where it began.
+    """
+    losses = losses_of(told.loop)
+    if losses.part < 1:
+        raise Invalid("laws in a chain are checked for delays of whole samples")
+    x, forces = told.positions, told.forces
+    if len(forces) != len(x) - 1:
+        raise Invalid("there must be one force for each move")
+    require_within(told.bounds, losses, x, ())
+    first, last, times = closed_cycle(told.repeats, x)
+
+    def taken(begin: int, end: int) -> Fraction:
+        moves = ((forces[k], x[k + 1] - x[k]) for k in range(begin, end))
+        return -sum((f * d + losses.lost(d, losses.part) for f, d in moves), Fraction(0))
+
+    gain = taken(first, last)
+    return taken(0, first) + times * gain + taken(last, len(x) - 1), gain
+
+
+def closed_cycle(part: Read, x: list[Fraction]) -> tuple[int, int, int]:
+    """First and last sample of the part that is repeated, and how often; it returns to where it began."""
+    first, last, times = part.first, part.last, part.times
+    if not first < last < len(x) or x[first] != x[last]:
+        raise Invalid("the repeated part must lie in the motion and return to where it began")
+    return first, last, times
+
+
+# A motion re-run through a law with contact made and broken: the energy it takes out, exactly.
+
 
 MOST_SAMPLES = 2_000_000
 FINEST = 2**80
 """An average is kept to so many parts of a count; what that may cost in energy is taken off."""
 _SAMPLE = 400
 """Steps of work."""
-
 CONTACT_MOTION = document(
     {
         "loop": LOSSES,

@@ -5,14 +5,13 @@ from __future__ import annotations
 from fractions import Fraction
 from itertools import accumulate
 
-from ..document.fields import Choice, Flag, Number, Read, Record, document, only_if
+from ..document.fields import Choice, Flag, Number, Read, Record, document
 from ..document.number import common_scale
-from ..document.refusal import Invalid
+from ..document.refusal import Invalid, only_if
 from ..exact.polynomial import square_modulus
 from ..exact.positivity import POSITIVITY, require_nonnegative
-from ..loop.criterion import require_stable_by_itself
+from ..loop.linear import NORM, one_norm_bound, require_stable_by_itself
 from ..loop.loop import LOOP, Loop, loop_of, require_surface, require_whole_delay
-from ..loop.one_norm import NORM, one_norm_bound
 
 MULTIPLIER_CONTACT = document(
     {

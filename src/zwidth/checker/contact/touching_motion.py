@@ -5,11 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 from math import gcd, lcm
 
-from ..document.effort import spend
 from ..document.fields import Choice, Flag, Read, Record, document, numbers
-from ..document.number import common_scale
-from ..document.refusal import Invalid
-from ..document.unit import LENGTH
+from ..document.number import LENGTH, common_scale
+from ..document.refusal import Invalid, spend
 from ..exact.roots import inside_unit_circle
 from ..loop.loop import LOOP, Loop, loop_of, require_surface
 from ..loop.motion import TOLD, switch_positions

@@ -10,29 +10,20 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import cache
-from itertools import pairwise
 from operator import ge, gt, le, lt
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
-from .effort import spend
-from .number import LONGEST_NUMBER, PATTERN, about, number
-from .refusal import Invalid
-from .unit import NONE, Unit, in_words
+from .number import LONGEST_NUMBER, NONE, PATTERN, Unit, about, exactly, in_words, number
+from .refusal import Invalid, spend
 
 LINEAR, ROTARY = "linear", "rotary"
 SHOWN_AT_MOST = 12
 """Numbers of a list."""
 MOST_LETTERS = 60
 """Of the words that say what a document is."""
-
-MOST_LEVELS = 12
-"""Of objects and lists within one another."""
-
 RATIONAL = {"type": "string", "pattern": PATTERN, "maxLength": LONGEST_NUMBER}
 """A number as text, in JSON Schema: `$defs/rational` of every schema."""
-
 _REQUIRED = object()
 
 
@@ -53,17 +44,8 @@ class Row(NamedTuple):
 
 
 class Field(ABC):
-    """One entry.
-
-    Parameters
-    ----------
-    unit
-        What its key ends in.
-    default
-        Its value where it is left out; without one it must be there.
-    shown
-        False of what is a part of the proof, and not of what is proved.
-    """
+    """One entry: its key ends in `unit`; without a `default` it must be there; what is of the proof alone,
+    and not of what is proved, is not `shown`."""
 
     def __init__(self, *, unit: Unit = NONE, default: Any = _REQUIRED, shown: bool = True) -> None:
         self.unit, self.default, self.shown = unit, default, shown
@@ -147,7 +129,7 @@ class Number(Field):
         return {"anyOf": [{"type": "number", **stated}, {"$ref": "#/$defs/rational"}]}
 
     def text(self, value: Fraction, motion: str) -> str:
-        return _exactly(value)
+        return exactly(value)
 
 
 class Whole(Number):
@@ -286,14 +268,6 @@ def pairs(unit: Unit, *, least: int, most: int, default: Any = _REQUIRED) -> Lis
     return List(numbers(least=2, most=2), unit=unit, least=least, most=most, default=default)
 
 
-def increasing(told: Sequence[Sequence[Fraction]], what: str) -> list[tuple[Fraction, Fraction]]:
-    """Pairs whose first numbers increase."""
-    found = [(a, b) for a, b in told]
-    if any(before[0] >= after[0] for before, after in pairwise(found)):
-        raise Invalid(f"{what} must increase")
-    return found
-
-
 class Between(Field):
     """A number, or the smaller and the larger end of an interval; read as both ends."""
 
@@ -315,17 +289,14 @@ class Between(Field):
         return {"anyOf": [one, {"type": "array", "items": one, "minItems": 2, "maxItems": 2}]}
 
     def text(self, value: tuple[Fraction, Fraction], motion: str) -> str:
-        low, high = map(_exactly, value)
+        low, high = map(exactly, value)
         return low if low == high else f"{low} to {high}"
 
 
 class Record(Field):
     """An object with these entries and no others.
 
-    Parameters
-    ----------
-    named
-        True if its name stands before each of its rows, as there is another one with the same entries.
+    `named`: its name stands before each of its rows, as there is another one with the same entries.
     """
 
     def __init__(
@@ -476,64 +447,3 @@ def _is_of(field: Field, value: Any) -> bool:
 def document(fields: Mapping[str, Field]) -> Record:
     """What a document consists of, besides its kind and words for those who sort documents."""
     return Record({"format": Words(MOST_LETTERS, default=None, shown=False), **fields})
-
-
-def only_if(condition: object, value: Any, name: str) -> Any:
-    """An entry that stands there exactly if a condition holds; None where it does not."""
-    if condition and value is None:
-        raise Invalid(f"{name} is missing")
-    if not condition and value is not None:
-        raise Invalid(f"entries that no proof of this kind has: {name} is of no use here")
-    return value
-
-
-def read_document(fields: Record, document: Mapping[str, Any]) -> tuple[Read, str]:
-    """What a document says, and whether it is of a linear or a rotary device."""
-    motion = _motion(fields, document)
-    found: Read = fields.read(document, "", motion)
-    found.units = motion
-    return found, motion
-
-
-def _motion(fields: Record, document: Mapping[str, Any]) -> str:
-    linear, rotary = _keys_of_one_motion(fields)
-    told = set(_told(document))
-    slides, turns = sorted(told & linear), sorted(told & rotary)
-    if slides and turns:
-        raise Invalid(
-            f"one document has the units of a linear device or of a rotary one: {slides[0]} and {turns[0]}"
-        )
-    return ROTARY if turns else LINEAR
-
-
-@cache
-def _keys_of_one_motion(fields: Record) -> tuple[set[str], set[str]]:
-    """The keys that only a linear device has, and those that only a rotary one has."""
-    linear, rotary = set(fields.keys(LINEAR)), set(fields.keys(ROTARY))
-    return linear - rotary, rotary - linear
-
-
-def _told(value: Any, depth: int = MOST_LEVELS) -> Iterator[str]:
-    """The keys of a document."""
-    if depth == 0:
-        raise Invalid(f"a document has at most {MOST_LEVELS} levels")
-    if isinstance(value, Mapping):
-        for key, inner in value.items():
-            yield str(key)
-            yield from _told(inner, depth - 1)
-    elif isinstance(value, (list, tuple)) and any(isinstance(v, (Mapping, list, tuple)) for v in value):
-        for inner in value:
-            yield from _told(inner, depth - 1)
-
-
-def _exactly(value: Fraction) -> str:
-    """As a decimal where one ends soon, else as it is written."""
-    if max(value.denominator, abs(value.numerator)).bit_length() <= 200:
-        rest = value.denominator
-        for prime in (2, 5):
-            while rest % prime == 0:
-                rest //= prime
-        if rest == 1:
-            return about(value, 200)
-    short = value.numerator.bit_length() + value.denominator.bit_length() <= 128
-    return str(value) if short else f"about {about(value, 12)}"

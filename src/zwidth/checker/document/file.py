@@ -1,15 +1,17 @@
-"""A file of JSON, read with every number as the decimal that is written; refused before it costs much."""
+"""A file of JSON, and a document read as its kind declares it; refused before it costs much."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from decimal import Decimal, DecimalException
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from .effort import spend
+from .fields import LINEAR, ROTARY, Read, Record
+from .refusal import Invalid, spend
 
 LARGEST_FILE = 10_000_000
 """Bytes."""
@@ -84,3 +86,46 @@ def _decimal(text: str) -> Decimal:
         return Decimal(text)
     except DecimalException:  # an exponent beyond any
         raise Unreadable(f"expected a number of ordinary size, got {text[:40]}") from None
+
+
+MOST_LEVELS = 12
+"""Of objects and lists within one another."""
+
+
+def read_document(fields: Record, document: Mapping[str, Any]) -> tuple[Read, str]:
+    """What a document says, and whether it is of a linear or a rotary device."""
+    motion = _motion(fields, document)
+    found: Read = fields.read(document, "", motion)
+    found.units = motion
+    return found, motion
+
+
+def _motion(fields: Record, document: Mapping[str, Any]) -> str:
+    linear, rotary = _keys_of_one_motion(fields)
+    told = set(_told(document))
+    slides, turns = sorted(told & linear), sorted(told & rotary)
+    if slides and turns:
+        raise Invalid(
+            f"one document has the units of a linear device or of a rotary one: {slides[0]} and {turns[0]}"
+        )
+    return ROTARY if turns else LINEAR
+
+
+@cache
+def _keys_of_one_motion(fields: Record) -> tuple[set[str], set[str]]:
+    """The keys that only a linear device has, and those that only a rotary one has."""
+    linear, rotary = set(fields.keys(LINEAR)), set(fields.keys(ROTARY))
+    return linear - rotary, rotary - linear
+
+
+def _told(value: Any, depth: int = MOST_LEVELS) -> Iterator[str]:
+    """The keys of a document."""
+    if depth == 0:
+        raise Invalid(f"a document has at most {MOST_LEVELS} levels")
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            yield str(key)
+            yield from _told(inner, depth - 1)
+    elif isinstance(value, (list, tuple)) and any(isinstance(v, (Mapping, list, tuple)) for v in value):
+        for inner in value:
+            yield from _told(inner, depth - 1)

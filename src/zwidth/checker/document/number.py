@@ -1,16 +1,16 @@
-"""Numbers of a document, exact: whole, decimal or a fraction, in plain digits, of ordinary size."""
+"""Numbers of a document, exact: whole, decimal or a fraction, in plain digits, of ordinary size; units."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
+from itertools import pairwise
 from math import lcm
-from typing import Any
+from typing import Any, NamedTuple
 
-from .effort import spend
-from .refusal import Invalid
+from .refusal import Invalid, spend
 
 LONGEST_NUMBER = 20_000
 _READ = 60
@@ -18,10 +18,8 @@ _READ = 60
 LARGEST_EXPONENT = 5000
 MOST_BITS = 400_000
 MOST_BITS_OF_A_LAW = 20_000
-
 _NUMBER = re.compile(r"[+-]?[0-9]+/[0-9]+|[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 """A fraction or a decimal: no spaces, no underscores, no digits of other scripts."""
-
 PATTERN = f"^({_NUMBER.pattern})$"
 
 
@@ -90,3 +88,78 @@ def up(value: Fraction) -> str:
 def _digits(value: Fraction, context: Context) -> str:
     found = context.divide(Decimal(value.numerator), Decimal(value.denominator)).normalize(context)
     return f"{found:f}" if not found or -6 < found.adjusted() < context.prec + 3 else f"{found:e}".lower()
+
+
+def increasing(told: Sequence[Sequence[Fraction]], what: str) -> list[tuple[Fraction, Fraction]]:
+    """Pairs whose first numbers increase."""
+    found = [(a, b) for a, b in told]
+    if any(before[0] >= after[0] for before, after in pairwise(found)):
+        raise Invalid(f"{what} must increase")
+    return found
+
+
+def exactly(value: Fraction) -> str:
+    """As a decimal where one ends soon, else as it is written."""
+    if max(value.denominator, abs(value.numerator)).bit_length() <= 200:
+        rest = value.denominator
+        for prime in (2, 5):
+            while rest % prime == 0:
+                rest //= prime
+        if rest == 1:
+            return about(value, 200)
+    short = value.numerator.bit_length() + value.denominator.bit_length() <= 128
+    return str(value) if short else f"about {about(value, 12)}"
+
+
+# Units that the keys of a document end in, of a device that slides and of one that turns.
+
+
+class Unit(NamedTuple):
+    """Of a linear device, and of a rotary one."""
+
+    linear: str
+    rotary: str
+
+    def of(self, motion: str) -> str:
+        """The ending of a key."""
+        return self.rotary if motion == "rotary" else self.linear
+
+
+def always(unit: str) -> Unit:
+    """The same for both."""
+    return Unit(unit, unit)
+
+
+_SEVERAL = {
+    "m_N": "m, N",
+    "rad_N_m": "rad, N·m",
+    "m_per_s_N": "m/s, N",
+    "rad_per_s_N_m": "rad/s, N·m",
+    "N_N_s_per_m": "N, N·s/m",
+    "N_m_N_m_s_per_rad": "N·m, N·m·s/rad",
+    "N_m_rad": "in N, m, rad",
+    "N_m_s_rad": "in N, m, s, rad",
+}
+"""Keys of pairs, and of matrices that hold forces and moments."""
+
+
+def in_words(ending: str) -> str:
+    """The ending of a key as people write a unit: "N_s_per_m" is N·s/m."""
+    plain = ending.replace("_per_", "/").replace("_", "·").replace("2", "²")
+    return _SEVERAL.get(ending, plain)
+
+
+NONE = always("")
+SECONDS = always("s")
+JOULES = always("J")
+HERTZ = always("Hz")
+FORCE = Unit("N", "N_m")
+LENGTH = Unit("m", "rad")
+SPEED = Unit("m_per_s", "rad_per_s")
+MASS = Unit("kg", "kg_m2")
+DAMPING = Unit("N_s_per_m", "N_m_s_per_rad")
+STIFFNESS = Unit("N_per_m", "N_m_per_rad")
+FORCE_AT = Unit("m_N", "rad_N_m")
+FORCE_AT_SPEED = Unit("m_per_s_N", "rad_per_s_N_m")
+FRICTION_MODEL = Unit("N_N_s_per_m", "N_m_N_m_s_per_rad")
+PER_LENGTH = Unit("m", "rad")

@@ -9,9 +9,8 @@ from collections.abc import Sequence
 from fractions import Fraction
 from math import comb, lcm
 
-from ..document.effort import spend
 from ..document.fields import Read, Record, Whole, numbers
-from ..document.refusal import Invalid
+from ..document.refusal import Invalid, spend
 from .polynomial import bits, cleared, multiply
 
 MOST_ROOTS = 2000

@@ -1,20 +1,54 @@
-"""Where the roots of a polynomial of rational coefficients lie.
-
-The recursion of Schur and Cohn, in fixed point with bounds, with more digits where a sign is open, and at
-last in whole numbers.  What is to lie left of the imaginary axis is mapped to the unit circle by
-s = (z − 1)/(z + 1) = ζ/(ζ + 2), ζ = z − 1.
-"""
+"""Where the roots of a polynomial lie: inside the unit circle, or left of the imaginary axis."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from math import gcd
 
-from ..document.effort import spend
-from ..document.refusal import Invalid
-from .enclosed import Enclosed, quotient
+from ..document.refusal import Invalid, spend
+from .enclosed import Enclosed, in_z, quotient
 from .polynomial import bits, cleared, shifted
-from .schur_cohn import decays
+
+# Do all roots lie inside the unit circle?  The recursion of Schur and Cohn, on numbers with error bounds.
+#
+#     p ← (pₙ p(z) − p₀ zⁿ p(1/z))/z,  one degree less, while |p₀| < |pₙ|
+#
+# All roots of the first p lie inside exactly if |p₀| < |pₙ| holds to the end.  With p(1) > 0, which stays so,
+# p₀ < pₙ is enough: where p₀ ≤ −pₙ all that follow begin with 0 or less, to the last, pₙ z + p₀, which then
+# has p₀ > 0 ≥ pₙ.  Only signs that are certain count.  A polynomial of whole numbers, `bits` = 0, is decided
+# exactly.
+
+
+def decays(in_zeta: list[Enclosed]) -> bool | None:
+    """Of a polynomial in ζ = z − 1, descending, the first coefficient > 0; None where a sign is open."""
+    at_one = in_zeta[-1].sign
+    if at_one is None or at_one <= 0:  # a root at z = 1 or beyond
+        return None if at_one is None else False
+    p = in_z(in_zeta)
+    while len(p) > 1:
+        sign = (p[0] - p[-1]).sign
+        if sign != 1:
+            return None if sign is None else False
+        p = _scaled([p[0] * x - p[-1] * y for x, y in zip(p[:-1], p[:0:-1], strict=True)])
+    return True
+
+
+def _scaled(p: list[Enclosed]) -> list[Enclosed]:
+    """The same roots, the first coefficient near 1; of whole numbers without a common factor."""
+    if p[0].bits == 0:
+        common = gcd(*(c.middle for c in p))
+        return [Enclosed(0, c.middle // common) for c in p]
+    up = p[0].bits - abs(p[0].middle).bit_length()
+    return [c.shifted(up) for c in p]
+
+
+# Where the roots of a polynomial of rational coefficients lie.
+#
+# The recursion of Schur and Cohn, in fixed point with bounds, with more digits where a sign is open, and at
+# last in whole numbers.  What is to lie left of the imaginary axis is mapped to the unit circle by
+# s = (z − 1)/(z + 1) = ζ/(ζ + 2), ζ = z − 1.
+
 
 PRECISIONS = (256, 1024, 4096)
 MOST_EXACT = 8_000_000

@@ -8,9 +8,8 @@ from math import lcm
 from typing import NamedTuple
 
 from ..document.fields import Flag, Number, Read, Record, numbers
-from ..document.number import common_scale
+from ..document.number import DAMPING, FORCE, LENGTH, SECONDS, common_scale
 from ..document.refusal import Invalid
-from ..document.unit import DAMPING, FORCE, LENGTH, SECONDS
 from ..exact.polynomial import multiply, same
 
 MOST_DELAY = 2000

@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from fractions import Fraction
 from math import gcd
 
-from ..document.effort import spend
-from ..document.fields import List, Number, Read, Record, Whole, document, numbers, only_if
-from ..document.number import MOST_BITS, common_scale
-from ..document.refusal import Invalid
-from ..document.unit import JOULES, LENGTH, SECONDS
+from ..document.fields import List, Number, Read, Record, Whole, document, numbers
+from ..document.number import JOULES, LENGTH, MOST_BITS, SECONDS, common_scale
+from ..document.refusal import Invalid, only_if, spend
 from .loop import LOOP, Loop, loop_of
 
 MOST_SAMPLES = 4_000_000

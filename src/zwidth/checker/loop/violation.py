@@ -22,12 +22,12 @@ from fractions import Fraction
 from math import acos, pi
 from typing import NamedTuple
 
-from ..document.fields import Number, OneOf, Read, Record, document, only_if
+from ..document.fields import Number, OneOf, Read, Record, document
 from ..document.number import about
-from ..document.refusal import Invalid
+from ..document.refusal import Invalid, only_if
 from ..exact.polynomial import bits
 from ..exact.roots import inside_unit_circle
-from .criterion import positive_real_denominator, require_coprime
+from .linear import positive_real_denominator, require_coprime
 from .loop import LOOP, Loop, in_whole_numbers, loop_of
 
 MOST_WORK = 2e10

@@ -9,14 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from ..document.effort import spend
-from ..document.fields import List, Read, document, numbers, only_if
-from ..document.number import MOST_BITS, common_scale
-from ..document.refusal import Invalid
-from ..document.unit import LENGTH
+from ..document.fields import List, Read, document, numbers
+from ..document.number import LENGTH, MOST_BITS, common_scale
+from ..document.refusal import Invalid, only_if, spend
 from ..loop.motion import MOST_SAMPLES, REPEAT, TOLD, require_apart
-from .compensation import BITS, tanh_between
-from .coupling import PAIR, Side, sides_of
+from .coupling import BITS, PAIR, Side, sides_of, tanh_between
 
 PAIR_MOTION = document(
     {
@@ -241,8 +238,7 @@ def _skip(
     for arm, advance, its, (work, path, early, late, helped, pushed) in zip(
         arms, advances, advances[::-1], before, strict=True
     ):
-        told = sum(arm.other) * its + sum(arm.echo) * advance
-        push = sum(arm.own) * advance + told
+        push = (sum(arm.own) + sum(arm.echo)) * advance + sum(arm.other) * its
         spend(
             12 + len(arm.sent) + len(arm.forces),
             left.bit_length() + advance.bit_length(),
@@ -257,5 +253,4 @@ def _skip(
         arm.ahead += left * advance
         arm.read = [v + left * advance for v in arm.read]
         arm.sent = [v + left * advance for v in arm.sent]
-        arm.told += left * told
         arm.forces = [f + left * push for f in arm.forces]

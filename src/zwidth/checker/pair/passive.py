@@ -16,40 +16,78 @@ With m readings of its own in a sample an arm loses the least, for given moves i
 
 t = γᵐ T_m(β/γ), u = γᵐ⁻¹ U_{m−1}(β/γ), g = (−γ)ᵐ; where β < |γ| it gains inside a sample, by itself.
 
-Compensation of friction under a line h + s v (`compensation`) takes h of Coulomb friction, s/2 of damping and
+Compensation of friction under a line h + s v (`coupling`) takes h of Coulomb friction, s/2 of damping and
 C + s/2 of local damping.  Beside the square of a large round F is as nothing: what is negative with s = 0 is
 a violation.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..document.effort import spend
-from ..document.fields import Number, Read, Record, document, only_if
-from ..document.number import about, common_scale
-from ..document.refusal import Invalid
-from ..document.unit import DAMPING
-from ..exact.polynomial import bits, multiply, value
+from ..document.fields import Number, Read, Record, document
+from ..document.number import DAMPING, about, common_scale
+from ..document.refusal import Invalid, only_if, spend
+from ..exact.polynomial import add, bits, in_powers, multiply, value
 from ..exact.positivity import POSITIVITY, require_nonnegative
-from .compensation import NO_LINE, TANGENTS, Line, line_of
-from .coupling import PAIR, Side, sides_of
-from .laurent import (
-    Laurent,
-    conjugate,
-    from_ascending,
-    in_cosine,
-    square_in_cosine,
-    times,
-    weighted,
-)
+from .coupling import NO_LINE, PAIR, TANGENTS, Line, Side, line_of, sides_of
+
+# Polynomials in ζ = e^{−jθ} and in its conjugate, by powers of ζ.
+
+Laurent = dict[int, Fraction]
+
+
+def from_ascending(a: Iterable[Fraction], late: int = 0) -> Laurent:
+    """ζ^late times a polynomial."""
+    return {k + late: c for k, c in enumerate(a) if c}
+
+
+def conjugate(a: Laurent) -> Laurent:
+    """On the unit circle."""
+    return {-k: c for k, c in a.items()}
+
+
+def times(a: Laurent, b: Laurent) -> Laurent:
+    """The product."""
+    found: Laurent = {}
+    for i, x in a.items():
+        for j, y in b.items():
+            found[i + j] = found.get(i + j, Fraction(0)) + x * y
+    return found
+
+
+def weighted(*parts: tuple[Fraction | int, Laurent]) -> Laurent:
+    """A sum, each with its factor."""
+    found: Laurent = {}
+    for factor, a in parts:
+        for k, c in a.items():
+            found[k] = found.get(k, Fraction(0)) + factor * c
+    return found
+
+
+def in_cosine(a: Mapping[int, int]) -> list[int]:
+    """The real part, ascending in c = cos θ."""
+    degree = max(map(abs, a), default=0)
+    sums = [a.get(0, 0), *(a.get(k, 0) + a.get(-k, 0) for k in range(1, degree + 1))]
+    spend(degree**2, bits(sums) + degree)
+    return in_powers(sums, 1)
+
+
+def square_in_cosine(a: Mapping[int, int]) -> list[int]:
+    """|a|², ascending in c."""
+    size = max(a, default=0) - min(a, default=0) + 1
+    longest = bits(list(a.values()))
+    spend(size**2, longest, longest)
+    row: Sequence[int] = [a.get(k + min(a, default=0), 0) for k in range(size)]
+    lags = [sum(row[i] * row[i + j] for i in range(size - j)) for j in range(size)]
+    return in_powers([lags[0], *(2 * lag for lag in lags[1:])], 1)
+
 
 LOSS = Record({"damping": Number(DAMPING), "local_damping": Number(DAMPING)})
 LOSSES = Record({"leader": LOSS, "follower": LOSS}, default=None)
 """β' and γ' in the place of β and γ, β' + γ' cos φ ≤ β + γ cos φ at every φ: of fewer digits, for powers."""
-
 PAIR_PROOF = document(
     {
         "loop": PAIR,
@@ -68,7 +106,6 @@ PAIR_PROOF = document(
 PAIR_VIOLATION = document(
     {"loop": PAIR, "proof": Record({"cosine": Number(least=-1, below=1)}, default=None, shown=False)}
 )
-
 _STEP = from_ascending([Fraction(1), Fraction(-1)])
 _SQUARE = times(_STEP, conjugate(_STEP))
 _MOST_BITS = 100_000
@@ -198,64 +235,82 @@ def criterion(
     leader, follower, cross = ({k: int(c * scale) for k, c in form.items()} for form in forms)
     diagonal = in_cosine(leader), in_cosine(follower)
     spend(len(diagonal[0]) * len(diagonal[1]), bits(diagonal[0]), bits(diagonal[1]))
-    product, square = multiply(*diagonal), square_in_cosine(cross)
-    width = max(len(product), len(square))
-    both = [a - b for a, b in zip(_padded(product, width), _padded(square, width), strict=True)]
-    return Criterion(*diagonal, both)
+    return Criterion(*diagonal, add(multiply(*diagonal), [-c for c in square_in_cosine(cross)]))
+
+
+class _Loss(NamedTuple):
+    """What an arm loses at least in a sample, top over bottom, both positive; ascending in c."""
+
+    top: list[Fraction]
+    bottom: list[Fraction]
 
 
 def _driven(
     told: Read, sides: Sequence[Side], lines: Sequence[Line], crossed: Laurent, losses: Read | None
 ) -> Criterion | None:
-    """The same with what each arm loses at least: tops over bottoms, both positive."""
-    tops, bottoms = [], []
-    least = (None, None) if losses is None else (losses.leader, losses.follower)
-    for side, arm, less in zip(sides, (told.leader, told.follower), least, strict=True):
-        often, period = side.often, told.sample_period
-        beta = side.weight * (side.damping - arm.stiffness * period / (2 * often))
-        gamma = -side.weight * side.own[1] * period / often
-        if less is not None:
-            if beta - less.damping < abs(gamma - less.local_damping):
-                raise Invalid("a move inside a sample loses less than the proof counts")
-            beta, gamma = less.damping, less.local_damping
-        if often == 1:
-            tops.append([beta, gamma])
-            bottoms.append([Fraction(1), Fraction(0)])
-            continue
-        if beta < abs(gamma):
+    """The same with what each arm loses at least, times both bottoms."""
+    lost = []
+    for name, side, line in zip(("leader", "follower"), sides, lines, strict=True):
+        less = None if losses is None else getattr(losses, name)
+        own = _least_loss(side, getattr(told, name).stiffness, told.sample_period, less)
+        if own is None:
             return None
-        if beta == -gamma:
-            raise Invalid("the drive of an arm is at the very edge of gaining by itself")
-        size = bits([beta.numerator, beta.denominator, gamma.numerator, gamma.denominator])
-        spend(20 * often, often * size, size)
-        t, t_next, u, u_next = Fraction(1), beta, Fraction(0), Fraction(1)
-        for _ in range(often):
-            t, t_next = t_next, 2 * beta * t_next - gamma**2 * t
-            u, u_next = u_next, 2 * beta * u_next - gamma**2 * u
-        g = (-gamma) ** often
-        level, slope = often * t, -often * g
-        tops.append([(beta + gamma) * level, (beta + gamma) * slope])
-        bottoms.append([level + gamma * u, slope - gamma * u])
-    for place, (side, line) in enumerate(zip(sides, lines, strict=True)):
-        if side.law is not None and side.often > 1:
-            tops[place] = _helped(tops[place], bottoms[place], side, line)
+        lost.append(_helped(own, side, line))
+    tops, bottoms = zip(*lost, strict=True)
     backs = [_back(side, told.sample_period) for side in sides]
-    coefficients = [*crossed.values(), *(c for back in backs for c in back.values())]
+    coefficients = [c for form in (crossed, *backs) for c in form.values()]
     scale = common_scale([*coefficients, *(c for line in (*tops, *bottoms) for c in line)], _MOST_BITS)
-    (top, its_top), (bottom, its_bottom) = (
-        [[int(c * scale) for c in line] for line in lines] for lines in (tops, bottoms)
+    first_top, second_top = ([int(c * scale) for c in top] for top in tops)
+    first_bottom, second_bottom = ([int(c * scale) for c in bottom] for bottom in bottoms)
+    first_back, second_back, cross = (
+        {k: int(c * scale) for k, c in form.items()} for form in (*backs, crossed)
     )
-    square = square_in_cosine({k: int(c * scale) for k, c in crossed.items()})
-    first, second = (
-        _with_back(multiply(line, [2, -2]), under, {k: int(c * scale) for k, c in back.items()}, scale)
-        for line, under, back in zip((top, its_top), (bottom, its_bottom), backs, strict=True)
-    )
-    spend(9 * len(square), bits(square) + 2 * bits(bottom), bits(bottom))
+    square = square_in_cosine(cross)
+    first = _with_back(first_top, first_bottom, first_back, scale)
+    second = _with_back(second_top, second_bottom, second_back, scale)
+    spend(9 * len(square), bits(square) + 2 * bits(first_bottom), bits(first_bottom))
     product = multiply(first, second)
-    lost = multiply(square, multiply(bottom, its_bottom))
-    width = max(len(product), len(lost))
-    both = [a - b for a, b in zip(_padded(product, width), _padded(lost, width), strict=True)]
+    both = add(product, [-c for c in multiply(square, multiply(first_bottom, second_bottom))])
     return Criterion(first, second, both)
+
+
+def _least_loss(side: Side, stiffness: Fraction, period: Fraction, less: Read | None) -> _Loss | None:
+    """Of one reading in a sample β + γ c, of several as above; None where the arm gains by itself."""
+    often = side.often
+    beta = side.weight * (side.damping - stiffness * period / (2 * often))
+    gamma = -side.weight * side.own[1] * period / often
+    if less is not None:
+        if beta - less.damping < abs(gamma - less.local_damping):
+            raise Invalid("a move inside a sample loses less than the proof counts")
+        beta, gamma = less.damping, less.local_damping
+    if often == 1:
+        return _Loss([beta, gamma], [Fraction(1), Fraction(0)])
+    if beta < abs(gamma):
+        return None
+    if beta == -gamma:
+        raise Invalid("the drive of an arm is at the very edge of gaining by itself")
+    size = bits([beta.numerator, beta.denominator, gamma.numerator, gamma.denominator])
+    spend(20 * often, often * size, size)
+    t, t_next, u, u_next = Fraction(1), beta, Fraction(0), Fraction(1)
+    for _ in range(often):
+        t, t_next = t_next, 2 * beta * t_next - gamma**2 * t
+        u, u_next = u_next, 2 * beta * u_next - gamma**2 * u
+    g = (-gamma) ** often
+    level, slope = often * t, -often * g
+    top = [(beta + gamma) * level, (beta + gamma) * slope]
+    return _Loss(top, [level + gamma * u, slope - gamma * u])
+
+
+def _helped(lost: _Loss, side: Side, line: Line) -> _Loss:
+    """What is left once compensation, computed once in T, has taken its part of top/bottom.
+
+    Of an arm that reads itself once a sample it was taken before, with its damping.
+    """
+    if side.law is None or side.often == 1:
+        return lost
+    still, moving = side.weight * line.still, side.weight * line.moving
+    (a, b), (p, q) = lost
+    return lost._replace(top=[a - still * p, b - still * q - moving * p, -moving * q])
 
 
 def _back(side: Side, period: Fraction) -> Laurent:
@@ -265,17 +320,10 @@ def _back(side: Side, period: Fraction) -> Laurent:
 
 
 def _with_back(top: list[int], bottom: list[int], back: dict[int, int], scale: int) -> list[int]:
+    """Top times 2 − 2c, and what comes back over the same bottom; both times `scale`."""
+    found = [scale * c for c in multiply(top, [2, -2])]
     spend(len(back) * len(bottom), scale.bit_length(), bits(bottom))
-    found, more = [scale * c for c in top], multiply(in_cosine(back), bottom)
-    width = max(len(found), len(more))
-    return [a + b for a, b in zip(_padded(found, width), _padded(more, width), strict=True)]
-
-
-def _helped(top: list[Fraction], bottom: list[Fraction], side: Side, line: Line) -> list[Fraction]:
-    """What is left of a top once compensation, computed once in T, has taken its part of top/bottom."""
-    still, moving = side.weight * line.still, side.weight * line.moving
-    (a, b), (p, q) = top, bottom
-    return [a - still * p, b - still * q - moving * p, -moving * q]
+    return add(found, multiply(in_cosine(back), bottom))
 
 
 def _row(side: Side, period: Fraction) -> tuple[Laurent, Laurent]:
@@ -299,7 +347,3 @@ def readings(side: Side) -> tuple[Laurent, Laurent]:
     """The row of all its own readings, and of the other's."""
     own, echo = from_ascending(side.own), from_ascending(side.echo, side.echo_age)
     return weighted((1, own), (1, echo)), from_ascending(side.other, side.age)
-
-
-def _padded(a: list[int], width: int) -> list[int]:
-    return a + [0] * (width - len(a))

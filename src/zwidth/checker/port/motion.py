@@ -15,11 +15,9 @@ from fractions import Fraction
 from math import comb, lcm, pi
 from typing import Any
 
-from ..document.effort import spend
 from ..document.fields import Field, List, Number, OneOf, Read, Record, Whole, document, numbers
-from ..document.number import about, common_scale, up
-from ..document.refusal import Invalid
-from ..document.unit import SECONDS, always
+from ..document.number import SECONDS, about, always, common_scale, up
+from ..document.refusal import Invalid, spend
 from ..exact.polynomial import add, multiply, value
 from .system import CLAIM, MATRIX_SYSTEM, MOST_AXES, SYSTEM, Polynomial, Port, part_of, port_of
 

@@ -20,12 +20,10 @@ from math import ceil
 from typing import Any, NamedTuple
 
 from ..contact.law import LAW, LOSSES, MOST_TAPS, Law, Losses, law_of, losses_of
-from ..document.effort import reserve, spend
 from ..document.fields import Number, Packed, Read, Record, Whole, document
 from ..document.number import down
-from ..document.refusal import Invalid
-from .domain import histories_of, spend_moves
-from .packed import storage_of
+from ..document.refusal import Invalid, reserve, spend
+from .domain import histories_of, spend_moves, storage_of
 
 MOST_VALUES = 4_000_000
 MOST_CELLS = 100_000

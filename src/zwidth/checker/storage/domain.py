@@ -5,15 +5,57 @@ The law of these costs stands in `grid`.
 
 from __future__ import annotations
 
+import base64
+import zlib
 from fractions import Fraction
 from itertools import product
-from math import ceil
+from math import ceil, prod
+from struct import unpack
 from typing import Any
 
 from ..contact.law import Law, Losses
-from ..document.effort import reserve, spend
 from ..document.fields import Number, Read, Whole
 from ..document.number import down
+from ..document.refusal import Invalid, reserve, spend
+
+# Numbers of a storage function or a table: of 64 bits, little-endian, deflated, in base 64.
+
+WHOLE, DOUBLE = "<i8", "<f8"
+
+
+def values_of(text: str, shape: tuple[int, ...], kind: str = WHOLE) -> Any:
+    """An array of that shape, exactly."""
+    import numpy as np  # loaded only where a storage function is to be checked
+
+    return np.frombuffer(_unpacked(text, prod(shape)), dtype=kind).reshape(shape)
+
+
+def listed(text: str, count: int, kind: str = WHOLE) -> list[Any]:
+    """The same as a list."""
+    return list(unpack(f"<{count}{'d' if kind == DOUBLE else 'q'}", _unpacked(text, count)))
+
+
+def _unpacked(text: str, count: int) -> bytes:
+    size = 8 * count
+    reserve(2 * size)
+    spend(0.1 * count)
+    try:
+        packed = base64.b64decode(text, validate=True)
+        raw = zlib.decompressobj().decompress(packed, size + 1)
+    except (ValueError, zlib.error) as error:
+        raise Invalid(f"a storage function or table cannot be unpacked: {error}") from None
+    if len(raw) != size:
+        raise Invalid("the storage function has not one value for each state")
+    return raw
+
+
+def storage_of(text: str, shape: tuple[int, ...]) -> Any:
+    """V, which is nowhere below 0."""
+    value = values_of(text, shape)
+    if value.min() < 0:
+        raise Invalid("a storage function must be bounded below by 0")
+    return value
+
 
 MOST_VALUES = 60_000_000
 MOST_MOVES = 10_000_000
@@ -23,10 +65,8 @@ MOVE, PLACE, FOUND, CALL = 1 / 80, 0.1, 0.3, 15.0
 """Steps of work for a move; for a place that it may lead to, once for each state, and once more for all that
 lead to the same ones; and for an operation on a block of states, however few.
 """
-
 FARTHEST = 10**7
 """Count."""
-
 DOMAIN = {
     "lowest_count": Whole(least=-FARTHEST, most=FARTHEST),
     "highest_count": Whole(least=-FARTHEST, most=FARTHEST),

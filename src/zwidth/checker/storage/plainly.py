@@ -14,22 +14,23 @@ Boards of at most `MOST_MOVES` moves are checked.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from importlib import import_module
 from itertools import pairwise, product
 from math import ceil, isfinite
 from typing import Any, NamedTuple
 
 from ..contact.law import Law, Losses, law_of, losses_of
-from ..document.effort import spend
-from ..document.fields import Read, only_if
-from ..document.refusal import Invalid
+from ..document.fields import Read
+from ..document.refusal import Invalid, only_if, spend
 from . import coarse, row
-from .domain import proved
-from .packed import DOUBLE, listed
+from .coarse import coarse_storage
+from .domain import DOUBLE, listed, proved
+from .grid import storage
+from .row import storage_of_row
 
 MOST_MOVES = 500_000
-
 Energies = Mapping[int, Any]
 """By position."""
 
@@ -403,3 +404,34 @@ def _require_few(nodes: int, each: int) -> None:
 def _spend(moves: int, numbers: Sequence[Fraction]) -> None:
     """Before so many moves with numbers like these."""
     spend(10 * moves, max(n.numerator.bit_length() + n.denominator.bit_length() for n in numbers))
+
+
+# Which check of a storage function is made: the fast one, or its slow twin where it cannot be.
+
+
+Check = Callable[[Read], str]
+PLAINLY: dict[str, Check] = {
+    "storage": storage_plainly,
+    "coarse storage": coarse_storage_plainly,
+    "row storage": row_storage_plainly,
+}
+"""With the standard library alone."""
+FAST: dict[str, Check] = {
+    "storage": storage,
+    "coarse storage": coarse_storage,
+    "row storage": storage_of_row,
+}
+
+
+def checked(told: Read) -> str:
+    """Say what was proved."""
+    return (FAST if _is_fast() else PLAINLY)[told.kind](told)
+
+
+def _is_fast() -> bool:
+    """True where what the fast checks need can be imported."""
+    try:
+        import_module("numpy")
+    except ImportError:
+        return False
+    return True

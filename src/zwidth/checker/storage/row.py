@@ -3,7 +3,7 @@
 The document lists states, each with its count and the force that acts until the next sample, and
 where every reading leads.  It is checked that the list is closed: from each state every reading
 on the grid leads to a state of that reading; and that no move takes out more than V falls, by
-the rules of `storage_proof`.  That the list is what the law does is not checked here: this needs the law.
+the rules of `grid`.  That the list is what the law does is not checked here: this needs the law.
 """
 
 from __future__ import annotations
@@ -12,14 +12,11 @@ from fractions import Fraction
 from math import ceil
 from typing import Any
 
-from ..contact.law import LOSSES, losses_of
-from ..contact.row_motion import TOLD_LAW
-from ..document.effort import reserve
+from ..contact.law import LOSSES, TOLD_LAW, losses_of
 from ..document.fields import List, Number, Packed, Read, Record, Whole, document
 from ..document.number import down
-from ..document.refusal import Invalid
-from .domain import DOMAIN, MOST_MOVES, MOST_VALUES, costs_of, spend_moves
-from .packed import DOUBLE, storage_of, values_of
+from ..document.refusal import Invalid, reserve
+from .domain import DOMAIN, DOUBLE, MOST_MOVES, MOST_VALUES, costs_of, spend_moves, storage_of, values_of
 
 _EXACT = 2**53
 MOST_STATES = 1_000_000

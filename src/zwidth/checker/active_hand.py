@@ -10,24 +10,30 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from ..contact.damped_wall import CONTACT, contact
-from ..contact.multiplier import MULTIPLIER_CONTACT, multiplier_contact
-from ..contact.relaxing import RELAXING_CONTACT, relaxing_contact
-from ..document.fields import Either, Number, OneOf, Read, Record, document, only_if
-from ..document.refusal import Invalid
-from ..document.unit import DAMPING, HERTZ
-from ..exact.positivity import POSITIVITY, require_nonnegative
-from ..loop.criterion import CRITERION, criterion, require_criterion
-from ..loop.linear import LINEAR, QUANTIZED, linear, quantized
-from ..loop.loop import LOOP, Loop, loop_of
-from ..loop.one_norm import NORM, require_friction
-from ..loop.spring import SPRING, spring
+from .contact.multiplier import MULTIPLIER_CONTACT, multiplier_contact
+from .contact.walls import CONTACT, RELAXING_CONTACT, contact, relaxing_contact
+from .document.fields import Either, Number, OneOf, Read, Record, document
+from .document.number import DAMPING, HERTZ
+from .document.refusal import Invalid, only_if
+from .exact.positivity import POSITIVITY, require_nonnegative
+from .loop.linear import (
+    CRITERION,
+    LINEAR,
+    NORM,
+    QUANTIZED,
+    criterion,
+    linear,
+    quantized,
+    require_criterion,
+    require_friction,
+)
+from .loop.loop import LOOP, Loop, loop_of
+from .loop.spring import SPRING, spring
 
 MOST_BITS_OF_ANGLE = 4000  # high powers of it are taken
 _PI = Fraction(31415926535897932385, 10**19)
 """Above π, by less than its last digit."""
 _LESS_THAN_PI = _PI - Fraction(1, 10**19)
-
 REDUCED: dict[str, tuple[Record, Callable[[Read], str]]] = {
     "spring": (SPRING, spring),
     "linear": (LINEAR, linear),
@@ -37,7 +43,6 @@ REDUCED: dict[str, tuple[Record, Callable[[Read], str]]] = {
     "multiplier contact": (MULTIPLIER_CONTACT, multiplier_contact),
 }
 """Proofs of passivity that the loop with less damping may have."""
-
 _EVERYWHERE = Record({"reduced": OneOf("kind", {kind: fields for kind, (fields, _) in REDUCED.items()})})
 _IN_BAND = Record(
     {
