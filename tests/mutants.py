@@ -132,6 +132,9 @@ class Tried:
             if key in done:
                 continue
             tests = [items[name] for name in by_line[place.file, place.line] if name in items]
+            tests.sort(
+                key=lambda item: item.get_closest_marker("soak") is not None
+            )  # these last, else as they are
             begun = time.monotonic()
             outcome, by = self._tried(place, tests) if tests else ("not reached", "")
             text = Path(place.file).read_text(encoding="utf-8").splitlines()[place.line - 1].strip()
@@ -203,7 +206,8 @@ class Tried:
             for item in items:
                 item.config.hook.pytest_runtest_protocol(item=item, nextitem=None)
                 if self.failed:
-                    os.write(writes, self.failed.encode())
+                    soak = " (soak)" if item.get_closest_marker("soak") else ""
+                    os.write(writes, (self.failed + soak).encode())
                     os._exit(0)
             os.write(writes, b"+")
             os._exit(0)
@@ -249,13 +253,16 @@ def main() -> int:
     parser.add_argument("--ledger", default="mutants.csv", help="what was tried; gone on with where it is")
     parser.add_argument("--tests", nargs="+", default=["tests"])
     given = parser.parse_args()
-    options = ["-q", "-n", "0", "-p", "no:cacheprovider", "-p", "no:faulthandler", *given.tests]
+    options = ["-m", "", "-q", "-n", "0", "-p", "no:cacheprovider", "-p", "no:faulthandler", *given.tests]
     pytest.main(options, plugins=[Tried(given)])
     rows = rows_of(Path(given.ledger))
     for room in given.rooms:
         own = Counter(row["outcome"] for row in rows if row["file"].startswith(room))
         killed, tried = own["killed"], sum(own.values()) - own["not made"]
-        print(f"{room}: {killed} of {tried} killed ({killed / max(tried, 1):.1%}); {dict(own)}")
+        late = sum(row["by"].endswith("(soak)") for row in rows if row["file"].startswith(room))
+        print(
+            f"{room}: {killed} of {tried} killed ({killed / max(tried, 1):.1%}), {late} in the soak; {dict(own)}"
+        )
     return 0
 
 
