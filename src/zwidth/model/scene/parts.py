@@ -157,30 +157,23 @@ def cut_scene(
         for name, w in (impedances or {}).items()
     }
     inside: dict[str, list[Element]] = {name: [] for name in parts}
+
+    def end(line: Line) -> None:
+        for part, node in zip(line.parts, line.nodes, strict=True):
+            inside[part].append(LineEnd(node, line.impedance, line.name))
+
     for line in lines:
-        for part, node in zip(line.parts, line.nodes, strict=True):
-            inside[part].append(LineEnd(node, line.impedance, line.name))
+        end(line)
     for title, element in titled:
-        here, there = (home.get(n) for n in element.nodes)
-        owner = here if here is not None else there
-        assert owner is not None  # an element has one end at least that moves
-        if there is None or here is None or here == there:
-            inside[owner].append(element)
+        own = [home[node] for node in element.nodes if node in home]
+        if own[0] == own[-1]:  # one end at least moves, and is at home
+            inside[own[0]].append(element)
             continue
-        first, second = element.nodes
-        is_spring = element.reflection == 1
-        w = given.pop(title, None)
-        if is_spring and w is None:
-            line = Line(title, (here, there), (first, second), Exact(_stiffness(element) * tau), tau, title)
-        else:
-            if w is None:
-                w = _damping_of(element, title)
-            far = f"{second} of {title}"
-            inside[here].append(replace(element, **{"second": far}))
-            line = Line(title, (here, there), (far, second), w, tau, "")
+        line, stays = _crossing(title, element, (own[0], own[1]), given.pop(title, None), tau)
+        if stays is not None:
+            inside[own[0]].append(stays)
         lines.append(line)
-        for part, node in zip(line.parts, line.nodes, strict=True):
-            inside[part].append(LineEnd(node, line.impedance, line.name))
+        end(line)
     if given:
         raise InputError(
             f"{next(iter(given))} is not cut, so no impedance is wanted; cut are: "
@@ -194,6 +187,18 @@ def cut_scene(
         tuple(lines),
         motion,
     )
+
+
+def _crossing(
+    title: str, element: Element, parts: tuple[str, str], w: Exact | None, tau: Fraction
+) -> tuple[Line, Element | None]:
+    """The line of an element between two parts, and the element where it stays, with the line behind it."""
+    first, second = element.nodes
+    if element.reflection == 1 and w is None:
+        return Line(title, parts, (first, second), Exact(_stiffness(element) * tau), tau, title), None
+    far = f"{second} of {title}"
+    line = Line(title, parts, (far, second), _damping_of(element, title) if w is None else w, tau, "")
+    return line, replace(element, **{"second": far})
 
 
 _NO_FORCE = "a wave of no impedance carries no force"
@@ -295,10 +300,10 @@ def best_parts(scene: Scene, count: int) -> dict[str, tuple[str, ...]]:
     springs = sorted((e for e in joined if e.reflection == 1), key=_stiffness, reverse=True)
     bodies = {e.nodes[0] for e in scene.elements if e.reflection == -1}
     light = [e for n in scene.nodes if n not in bodies for e in [s for s in springs if n in s.nodes][:1]]
-    left = len(group)
-    for element in (*firm, *light, *springs):
+    left, kept = len(group), len(firm) + len(light)
+    for i, element in enumerate((*firm, *light, *springs)):
         a, b = (root(n) for n in element.nodes)
-        if a != b and (left > count or element in firm or element in light):
+        if a != b and (left > count or i < kept):
             group[b] = a
             left -= 1
     if left < count:
