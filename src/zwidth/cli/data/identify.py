@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from zwidth.cli.data.results import Identification
 from zwidth.cli.decision import decided, exit_status
@@ -23,10 +23,6 @@ from zwidth.cli.options import (
 from zwidth.cli.output import targets, tell
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted
-
-if TYPE_CHECKING:
-    pass
-
 
 QUANTITIES = ("time", "position", "hand_force", "actuator_force")
 """What a column may hold."""

@@ -16,12 +16,12 @@ from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.bracket.bracket import Bracket, parameter_of, refuse_without_part
 from zwidth.passivity.bracket.search import NOTHING, Found, Search, approach, is_stepped
 from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.storage.chain_document import ChainStorage
+from zwidth.passivity.storage.chain_program import ChainProgram, chain_program
+from zwidth.passivity.storage.chain_table import DoesNotClose
 from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.storage.hand_bounds import slow_hands
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of, program_scope
-from zwidth.passivity.storage.row_document import RowStorage
-from zwidth.passivity.storage.row_program import RowProgram, row_program
-from zwidth.passivity.storage.row_table import DoesNotClose
 from zwidth.passivity.storage.storage_function import CELLS, StorageFunction
 from zwidth.passivity.storage.value_iteration import EFFORT, Effort, Until, checked_effort, time_limit
 from zwidth.quantity.exact import Exact, RealLike, ends
@@ -121,11 +121,11 @@ def passive_limit(
             "a scene that is not linear, or of many elements, is decided for every hand, behind a virtual "
             "coupling, and read without encoder steps: give it one, the device resolution=0, and no bounds"
         )
-    built: Callable[..., DynamicProgram | RowProgram] = program_of
+    built: Callable[..., DynamicProgram | ChainProgram] = program_of
     if in_a_chain:  # one grid for all values: that on which the laws close as they are given
-        built = partial(row_program, domains=(row_program(device, law, *counted).counts,))
+        built = partial(chain_program, domains=(chain_program(device, law, *counted).counts,))
 
-    def program(value: Exact) -> DynamicProgram | RowProgram:
+    def program(value: Exact) -> DynamicProgram | ChainProgram:
         return built(*asked.change(value), *counted)
 
     def slow(value: Exact) -> Certificate | None:
@@ -152,7 +152,7 @@ def _by_closed_forms(search: Search, counted: tuple[Any, ...]) -> Bracket:
 # A bracket of bounded hands: by what covers slow ones, and by value iteration on finer and finer grids.
 
 
-Proof = Certificate | StorageFunction | RowStorage
+Proof = Certificate | StorageFunction | ChainStorage
 
 
 class BoundedSearch:
@@ -165,7 +165,7 @@ class BoundedSearch:
     def __init__(
         self,
         search: Search,
-        program: Callable[[Exact], DynamicProgram | RowProgram],
+        program: Callable[[Exact], DynamicProgram | ChainProgram],
         slow: Callable[[Exact], Certificate | None],
         every: Found,
     ) -> None:
