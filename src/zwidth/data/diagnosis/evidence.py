@@ -228,9 +228,7 @@ def gather(
         apparent_mass=float(np.real(F[0] / X)) / motion.omega**2,
         standing=_standing(x, period, file.cycle),
         distortion=float(np.sqrt((np.abs(xs[1:]) ** 2).sum()) / abs(X)),
-        roles=tuple(
-            name for name, values in (("commanded", commanded), ("applied", applied)) if values is not None
-        ),
+        roles=tuple(name for name, f in (("commanded", commanded), ("applied", applied)) if f is not None),
         known=known,
         rotary=recording.motion == "rotary",
         moves_as=None if known.mass is None or not abs(held[0]) else complex(needed[0] / held[0]),
@@ -258,10 +256,10 @@ def _fitted(file: _Aligned, stated: Environment | None) -> _Fitted:
     """Over all of the file; what an Evidence keeps of it is of the vibration alone."""
     force = file.applied if file.commanded is None else file.commanded
     assert force is not None
-    lags = _lags(file.commanded is not None, file.cycle, file.loop_period)
-    seen = file.x, force, file.period, file.loop_period, lags
-    told = _compared(stated, file, seen) if stated is not None and np.ptp(force) else None
-    found: Law | None
+    seen = file.x, force, file.period, file.loop_period, _lags(file)
+    told = None
+    if stated is not None and np.ptp(force):
+        told = _accounted(file, compare(stated, *seen, file.commanded is not None))
     if told is None or not told.holds:
         commanded, found = file.commanded, law.fit(*seen) if np.ptp(force) else None
     else:
@@ -277,13 +275,9 @@ def _fitted(file: _Aligned, stated: Environment | None) -> _Fitted:
     )
 
 
-def _compared(
-    stated: Environment, file: _Aligned, seen: tuple[Array, Array, float, float, list[float]]
-) -> Stated:
+def _accounted(file: _Aligned, told: Stated) -> Stated:
     """With the share of a motor's force alone that the command leaves over, as a drive suits it best."""
-    told = compare(stated, *seen, file.commanded is not None)
-    between = file.drive_after(told.asked) if file.commanded is None else None
-    if between is None:
+    if file.commanded is not None or (between := file.drive_after(told.asked)) is None:
         return told
     return replace(told, accounted=min(between.by_delay, between.by_damper, between.by_rate))
 
@@ -371,12 +365,12 @@ def _sign(x: Array, force: Array) -> float:
     return 1.0 if slope >= 0 else -1.0
 
 
-def _lags(commanded: bool, cycle: float, loop_period: float) -> list[float]:
+def _lags(file: _Aligned) -> list[float]:
     """Lags to try: some samples of bookkeeping for a command, most of half a cycle for what was applied."""
-    if commanded:
-        return [k * loop_period for k in range(3)]
-    most = max(2, int(0.45 * cycle / loop_period))
-    return [float(k) * loop_period for k in np.unique(np.linspace(0, most, min(most + 1, 25)).round())]
+    if file.commanded is not None:
+        return [k * file.loop_period for k in range(3)]
+    most = max(2, int(0.45 * file.cycle / file.loop_period))
+    return [float(k) * file.loop_period for k in np.unique(np.linspace(0, most, min(most + 1, 25)).round())]
 
 
 def _delay(known: Known, fitted: _Fitted, commanded: bool) -> float:

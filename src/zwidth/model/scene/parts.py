@@ -54,12 +54,10 @@ class Line(NamedTuple):
 
     def adds(self, motion: str = "linear") -> str:
         """The mass of a line, or how far the one of a body gives way, in words."""
+        gives = self.keeps == "mass"
         if motion == "rotary":
-            gives = self.keeps == "mass"
             return readable(1 / self.stiffness, "rad/N/m") if gives else readable(self.mass, "kg*m^2")
-        if self.keeps == "mass":
-            return f"{1e3 / self.stiffness:.4g} mm/N"
-        return f"{1e3 * self.mass:.4g} g"
+        return f"{1e3 / self.stiffness:.4g} mm/N" if gives else f"{1e3 * self.mass:.4g} g"
 
     @property
     def mass(self) -> float:
@@ -170,8 +168,7 @@ def cut_scene(
             inside[own[0]].append(element)
             continue
         line, stays = _crossing(title, element, (own[0], own[1]), given.pop(title, None), tau)
-        if stays is not None:
-            inside[own[0]].append(stays)
+        inside[own[0]] += stays
         lines.append(line)
         end(line)
     if given:
@@ -191,14 +188,13 @@ def cut_scene(
 
 def _crossing(
     title: str, element: Element, parts: tuple[str, str], w: Exact | None, tau: Fraction
-) -> tuple[Line, Element | None]:
+) -> tuple[Line, list[Element]]:
     """The line of an element between two parts, and the element where it stays, with the line behind it."""
-    first, second = element.nodes
     if element.reflection == 1 and w is None:
-        return Line(title, parts, (first, second), Exact(_stiffness(element) * tau), tau, title), None
-    far = f"{second} of {title}"
-    line = Line(title, parts, (far, second), _damping_of(element, title) if w is None else w, tau, "")
-    return line, replace(element, **{"second": far})
+        return Line(title, parts, element.nodes, Exact(_stiffness(element) * tau), tau, title), []
+    far = f"{element.nodes[1]} of {title}"
+    w = _damping_of(element, title) if w is None else w
+    return Line(title, parts, (far, element.nodes[1]), w, tau, ""), [replace(element, **{"second": far})]
 
 
 _NO_FORCE = "a wave of no impedance carries no force"
@@ -249,8 +245,7 @@ def _homes(scene: Scene, parts: Mapping[str, Iterable[str]]) -> dict[str, tuple[
                     f'"{node}" of part "{name}" is no node of the scene: {", ".join(scene.nodes)}'
                 )
             home[node] = (*home.get(node, ()), name)
-    left = [n for n in scene.nodes if n not in home]
-    if left:
+    if left := [n for n in scene.nodes if n not in home]:
         raise InputError(f"in no part: {', '.join(left)}; every node must be somewhere")
     return home
 
