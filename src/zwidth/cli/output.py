@@ -194,10 +194,10 @@ def give_out(
         found.save(save)
     if plot is not None:
         found.plot(plot)
-    tell(as_json, document or found.to_json, report or found.report, save, plot)
+    print_found(as_json, document or found.to_json, report or found.report, save, plot)
 
 
-def tell(as_json: bool, document: Callable[[], str], report: Report, *written: Path | None) -> None:
+def print_found(as_json: bool, document: Callable[[], str], report: Report, *written: Path | None) -> None:
     """Print JSON; or the report, and say which files were written."""
     if as_json:
         print_json(document())

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from zwidth.cli.decision import NAMES, asked, decided, exit_status, with_hands
 from zwidth.cli.options import CONTACT, IN_FULL, LAW, LOOP, PARAMETERS, contact, output
-from zwidth.cli.output import targets, tell
+from zwidth.cli.output import print_found, targets
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
         print_verdict(verdict, replayed, active, arguments.in_full, ranges, hands)
 
     in_full = partial(_in_full, verdict, hands, real_hand=replayed, active_hand=active, ranges=ranges)
-    tell(arguments.json, in_full, report, save, plot)
+    print_found(arguments.json, in_full, report, save, plot)
     return exit_status(verdict.outcome)
 
 

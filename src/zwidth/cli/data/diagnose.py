@@ -20,7 +20,7 @@ from zwidth.cli.options import (
     overrides,
     sheet_option,
 )
-from zwidth.cli.output import targets, tell
+from zwidth.cli.output import print_found, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted
 
@@ -93,7 +93,7 @@ def run(arguments: argparse.Namespace) -> int:
         whole = {**found.to_dict(), "command": command(found, arguments)}
         return json.dumps(whole, indent=2, ensure_ascii=False)
 
-    tell(arguments.json, document, partial(print_diagnosis, found, arguments), save, plot)
+    print_found(arguments.json, document, partial(print_diagnosis, found, arguments), save, plot)
     return 0 if found.cause is not None else 3
 
 

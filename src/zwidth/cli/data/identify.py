@@ -20,7 +20,7 @@ from zwidth.cli.options import (
     output,
     pairs_of,
 )
-from zwidth.cli.output import targets, tell
+from zwidth.cli.output import print_found, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted
 
@@ -86,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
 
         print_identified(found, arguments.in_full)
 
-    tell(arguments.json, partial(_json, found), report, save, plot)
+    print_found(arguments.json, partial(_json, found), report, save, plot)
     if found.environment is None:
         return 0
     return exit_status("undecided" if found.verdict is None else found.verdict.outcome)

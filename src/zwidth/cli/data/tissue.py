@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from zwidth.cli.data.results import FittedTissue, OnDevice
 from zwidth.cli.decision import decided, exit_status
 from zwidth.cli.options import IN_FULL, as_options, device_parameters, given, output, pairs_of
-from zwidth.cli.output import targets, tell
+from zwidth.cli.output import print_found, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted, suggestion
 
@@ -81,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
 
         print_tissue(found, arguments.in_full)
 
-    tell(arguments.json, partial(_json, found), report, save, plot)
+    print_found(arguments.json, partial(_json, found), report, save, plot)
     return 0 if found.wall is None else exit_status(found.wall.verdict.outcome)
 
 

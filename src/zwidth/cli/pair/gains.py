@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from zwidth.cli.decision import exit_status
 from zwidth.cli.options import FORCE, IN_FULL
-from zwidth.cli.output import give_out, targets, tell
+from zwidth.cli.output import give_out, print_found, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.read import question_time
 from zwidth.quantity.text import save_json, to_json
@@ -150,7 +150,7 @@ def _held(arguments: argparse.Namespace) -> int:
 
         print_held(found, better)
 
-    tell(arguments.json, lambda: to_json(found.to_dict()), report, save)
+    print_found(arguments.json, lambda: to_json(found.to_dict()), report, save)
     return exit_status(found.outcome)
 
 
@@ -180,7 +180,7 @@ def _cartesian(controllers: Controllers, arguments: argparse.Namespace) -> int:
         print_cartesian(controllers, arguments.files[0])
 
     document = {"outcome": "undecided", **controllers.to_dict()}
-    tell(arguments.json, lambda: to_json(document), report)
+    print_found(arguments.json, lambda: to_json(document), report)
     return exit_status("undecided")
 
 
@@ -199,7 +199,7 @@ def _of_one(
 
         print_joint(pair, verdict.notes, arguments.in_full)
 
-    tell(arguments.json, lambda: to_json({**pair.to_dict(), **notes}), report, save, plot)
+    print_found(arguments.json, lambda: to_json({**pair.to_dict(), **notes}), report, save, plot)
     return exit_status(pair.outcome)
 
 
@@ -213,7 +213,7 @@ def _told(gains: ArmGains, as_json: bool, save: Path | None) -> int:
 
         print_follower(gains)
 
-    tell(as_json, lambda: to_json(gains.to_dict()), report)
+    print_found(as_json, lambda: to_json(gains.to_dict()), report)
     return exit_status("undecided")
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.decision import NAMES, named_hands
 from zwidth.cli.options import DEVICE, FORCE, PLOT, device_parameters, given
-from zwidth.cli.output import print_message, targets, tell
+from zwidth.cli.output import print_found, print_message, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.read import LOOP_TABLES, keep_axis, read_tables, specified_device
 from zwidth.model.specification.table import Table, plain, quoted
@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
     if proof is not None:
         _certify(device, found, options.get("velocity_filter"), proof)
     kept = None if arguments.save is None else Path(arguments.save)
-    tell(arguments.json, partial(_json, found), partial(_report, found), kept, plot, proof)
+    print_found(arguments.json, partial(_json, found), partial(_report, found), kept, plot, proof)
     return 0
 
 

@@ -22,7 +22,7 @@ from zwidth.cli.options import (
     given,
     overrides,
 )
-from zwidth.cli.output import PICTURES, print_message, target, tell
+from zwidth.cli.output import PICTURES, print_found, print_message, target
 from zwidth.cli.parsing import Parameter
 from zwidth.cli.simulate.tables import operator_parameters, simulation_parameters
 from zwidth.errors import InputError
@@ -120,7 +120,7 @@ def run(arguments: argparse.Namespace) -> int:
     from zwidth.quantity.text import to_json
 
     kept = None if arguments.save is None else Path(arguments.save)
-    tell(arguments.json, lambda: to_json(summary(found)), partial(report, found), kept, plot)
+    print_found(arguments.json, lambda: to_json(summary(found)), partial(report, found), kept, plot)
     return 0
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import IN_FULL, output
-from zwidth.cli.output import targets, tell
+from zwidth.cli.output import print_found, targets
 from zwidth.cli.workspace.arm import (
     JOINTS,
     WALL,
@@ -125,7 +125,7 @@ def _give_out(
     if plot is not None:
         found.plot(plot)
     more = {"wall_leaves_out": without} if without else {}
-    tell(arguments.json, lambda: written({**found.to_dict(), **more}), report, save, plot)
+    print_found(arguments.json, lambda: written({**found.to_dict(), **more}), report, save, plot)
     return TOLD[found.outcome].status
 
 
