@@ -31,7 +31,7 @@ from in_c import WHOLE, WHOLES, library
 import zwidth as zw
 from zwidth.passivity.storage import value_iteration as solve
 from zwidth.passivity.storage.grid import Grid
-from zwidth.passivity.storage.hull import NOWHERE, extremes, sweep, worthwhile
+from zwidth.passivity.storage.hull import NOWHERE, ONE_MOVE, extremes, sweep, worthwhile
 from zwidth.passivity.storage.program import DynamicProgram, program_of
 from zwidth.quantity.exact import Exact
 
@@ -146,7 +146,7 @@ def side_by_side(grid: Grid) -> dict:
     pairs = counted(grid)["pairs"]
     ends, rows = {}, {}
     for name, one, runs in (
-        ("zwidth, the hull", sweep, 20),
+        ("zwidth, the hull", lambda *of: sweep(*of, *ONE_MOVE), 20),
         ("C, every move", plain_sweep, 3),
         ("NumPy, every move", numpy_sweep, 2),
     ):
@@ -213,7 +213,7 @@ def limits(grid: Grid) -> dict:
         place.copy(),
     )
     actions = {
-        "sweep": lambda: sweep(value, choice, 0, len(grid.forces), *_tables(grid)),
+        "sweep": lambda: sweep(value, choice, 0, len(grid.forces), *_tables(grid), *ONE_MOVE),
         "loads": lambda: IN_C.loads_alone(*tables),
         "arithmetic": lambda: IN_C.arithmetic_alone(targets, points, states, -7),
     }

@@ -260,9 +260,8 @@ def main() -> int:
         own = Counter(row["outcome"] for row in rows if row["file"].startswith(room))
         killed, tried = own["killed"], sum(own.values()) - own["not made"]
         late = sum(row["by"].endswith("(soak)") for row in rows if row["file"].startswith(room))
-        print(
-            f"{room}: {killed} of {tried} killed ({killed / max(tried, 1):.1%}), {late} in the soak; {dict(own)}"
-        )
+        share = killed / max(tried, 1)
+        print(f"{room}: {killed} of {tried} killed ({share:.1%}), {late} in the soak; {dict(own)}")
     return 0
 
 

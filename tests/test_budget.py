@@ -17,27 +17,27 @@ SOURCE = Path(zw.__file__).parent
 FILES = [path for ending in ("py", "pyi") for path in SOURCE.rglob(f"*.{ending}")]
 
 LINES = {
-    "beside the rooms": 921,
+    "beside the rooms": 928,
     "checker": 10017,
-    "cli": 10423,
-    "data": 20721,
+    "cli": 10407,
+    "data": 20722,
     "links": 2316,
-    "loop": 6083,
-    "machine": 17472,
+    "loop": 6064,
+    "machine": 17466,
     "model": 17218,
     "native": 1658,
-    "passivity": 26790,
-    "quantity": 1861,
-    "show": 8843,
-    "study": 5480,
+    "passivity": 26770,
+    "quantity": 2019,
+    "show": 8844,
+    "study": 5485,
 }
 """Of source, at most, in each room."""
 
-IN_ALL = 130113
-PHYSICS = 61969
+IN_ALL = 129914
+PHYSICS = 62088
 """Lines of quantity, model, loop, passivity and checker."""
 
-FILES_IN_ALL, IN_A_FOLDER = 649, 25
+FILES_IN_ALL, IN_A_FOLDER = 651, 25
 
 ALONE = 134
 """Files that one other file alone imports."""

@@ -16,8 +16,8 @@ from tampered import tampered
 import zwidth as zw
 from zwidth.cli.main import main
 from zwidth.model import rendering
+from zwidth.passivity.storage import chain_document as documents
 from zwidth.passivity.storage import law_of
-from zwidth.passivity.storage import row_document as documents
 from zwidth.quantity.text import to_json
 
 DEVICE = zw.Device(damping="0.26", coulomb_friction="0.027", resolution="0.0001", sample_period="0.001")

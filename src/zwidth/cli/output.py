@@ -19,6 +19,9 @@ from zwidth.model.specification.table import plain
 from zwidth.showing import OBEYED, Lines, Part, Table, printable
 from zwidth.writing import check_target
 
+Report = Callable[[], Iterable[Part] | None]
+"""Gives the parts of a report, or prints it; what only a report takes is loaded by it."""
+
 PICTURES = (".png", ".svg", ".pdf")
 
 _ASCII = {
@@ -176,21 +179,33 @@ def say_written(*paths: Path | None) -> None:
 
 
 def give_out(
-    found: Any, save: Path | None, plot: Path | None, as_json: bool, in_short: Iterable[Part] | None = None
+    found: Any,
+    save: Path | None,
+    plot: Path | None,
+    as_json: bool,
+    report: Report | None = None,
+    document: Callable[[], str] | None = None,
 ) -> None:
-    """Save a result and its picture where that was asked for, print it, and say what was written.
+    """Save a result and its picture where that was asked for, and tell it.
 
-    `in_short` is what is printed in the place of its whole report.
+    `report` and `document` stand in the place of its own.
     """
     if save is not None:
         found.save(save)
     if plot is not None:
         found.plot(plot)
+    print_found(as_json, document or found.to_json, report or found.report, save, plot)
+
+
+def print_found(as_json: bool, document: Callable[[], str], report: Report, *written: Path | None) -> None:
+    """Print JSON; or the report, and say which files were written."""
     if as_json:
-        print_json(found.to_json())
-    else:
-        print_report(found.report() if in_short is None else in_short)
-        say_written(save, plot)
+        print_json(document())
+        return
+    parts = report()
+    if parts is not None:
+        print_report(parts)
+    say_written(*written)
 
 
 def _reason(error: Exception) -> str:

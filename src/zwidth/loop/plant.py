@@ -65,6 +65,11 @@ INSIDE, SATURATED = 13, 14
 """How many samples were taken inside the surface; for how many the command went beyond the force limit."""
 STATE_SIZE = 15
 
+TOO_MANY_STOPS = (
+    "the motion has too many stops in one sample to be followed: device, hand and forces differ by "
+    "so many orders of magnitude that rounding decides; scale them closer together"
+)
+
 
 # The free mass: no spring at the hand, a constant force, in closed form.
 #

@@ -7,7 +7,7 @@ energies; nothing is integrated numerically.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from zwidth.errors import InputError
 from zwidth.loop.kernel import run
 from zwidth.loop.pair.setup import Holder
 from zwidth.loop.pair.simulate import Friction, simulated_pair
-from zwidth.loop.plant import FAULT, STOPS
+from zwidth.loop.plant import FAULT, STOPS, TOO_MANY_STOPS
 from zwidth.loop.runs import run_plain
 from zwidth.loop.setup import Setup, empty_record, prepare
 from zwidth.loop.timing import Timing
@@ -32,11 +32,6 @@ if TYPE_CHECKING:
 
 Progress = Callable[[int, int], None]
 """Told (done, total) samples now and then."""
-
-TOO_MANY_STOPS = (
-    "the motion has too many stops in one sample to be followed: device, hand and forces differ by "
-    "so many orders of magnitude that rounding decides; scale them closer together"
-)
 
 _STRIDE = 200_000
 """Samples between two looks at progress and Ctrl-C."""
@@ -149,53 +144,37 @@ def simulate(
     ).dataset()
 
 
-def simulated(
-    device: Device | Pair,
+def simulated(device: Any, environment: Any, operator: Any, duration: RealLike, **how: Any) -> Trace:
+    """What `simulate` returns, before it is a Dataset."""
+    is_pair = isinstance(device, Pair)
+    foreign, why = _OF_ONE if is_pair else _OF_A_PAIR
+    if any(how.pop(name, usual) != usual for name, usual in foreign.items()):
+        raise InputError(why)
+    return (simulated_pair if is_pair else _simulated_one)(device, environment, operator, duration, **how)
+
+
+_OF_ONE = (
+    {"initial_position": None, "initial_velocity": 0.0, "timing": None},
+    "a pair starts where its hands do, at rest, with a regular clock: leave out initial_position, "
+    "initial_velocity and timing",
+)
+_OF_A_PAIR = (
+    {"friction": None},
+    "friction: a curve is simulated of the arms of a pair; give the device f_c and b",
+)
+"""What the other subject alone takes, with what it is by default, and why this one does not."""
+
+
+def _simulated_one(
+    device: Device,
     environment: object,
-    operator: Operator | Holder,
+    operator: Operator,
     duration: RealLike,
     *,
-    initial_position: float | None = None,
-    initial_velocity: float = 0.0,
-    encoder_phase: float | tuple[float, float] = 0.0,
-    amplifier: Amplifier | None = None,
-    timing: Timing | None = None,
-    points_per_sample: int = 1,
-    friction: Friction | tuple[Friction, Friction] = None,
     progress: Progress | None = None,
+    **how: Any,
 ) -> Trace:
-    """What `simulate` returns, before it is a Dataset."""
-    if isinstance(device, Pair):
-        if initial_position is not None or initial_velocity or timing is not None:
-            raise InputError(
-                "a pair starts where its hands do, at rest, with a regular clock: leave out "
-                "initial_position, initial_velocity and timing"
-            )
-        return simulated_pair(
-            device,
-            environment,  # type: ignore[arg-type]  # what it is, is looked at there
-            operator,
-            duration,
-            encoder_phase=encoder_phase,
-            amplifier=amplifier,
-            points_per_sample=points_per_sample,
-            friction=friction,
-            progress=progress,
-        )
-    if friction is not None:
-        raise InputError("friction: a curve is simulated of the arms of a pair; give the device f_c and b")
-    setup = prepare(
-        device,
-        environment,
-        operator,  # type: ignore[arg-type]  # what it is, is looked at there
-        duration,
-        initial_position=initial_position,
-        initial_velocity=initial_velocity,
-        encoder_phase=encoder_phase,  # type: ignore[arg-type]
-        amplifier=amplifier,
-        timing=timing,
-        points_per_sample=points_per_sample,
-    )
+    setup = prepare(device, environment, operator, duration, **how)
     commands, record, work = empty_record(setup.frame)
     state, memory = setup.state.copy(), setup.memory.copy()
     done = run_setup(setup, state, memory, work, commands, record, progress)

@@ -15,9 +15,9 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.loop.law import PHASE, RESOLUTION, measured
-from zwidth.loop.plant import FAULT, POSITION, STOPS, VELOCITY
+from zwidth.loop.plant import FAULT, POSITION, STOPS, TOO_MANY_STOPS, VELOCITY
 from zwidth.loop.setup import empty_record, prepare
-from zwidth.loop.simulate import TOO_MANY_STOPS, run_samples
+from zwidth.loop.simulate import run_samples
 from zwidth.loop.timing import Timing
 from zwidth.loop.trace import build_trace
 from zwidth.model.device.amplifier import Amplifier

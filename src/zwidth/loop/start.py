@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 DOWNHILL = "the spring pushes away for ever at one end, so that what it holds has no bound"
-IN_A_ROW = "laws in a chain may hold energy of their own"
+IN_A_CHAIN = "laws in a chain may hold energy of their own"
 LOADED = "the scene is loaded where the touch starts, and pushes the handle"
 ON_THE_WAY = "the amplifier has not yet reached the force of the law when the touch starts"
 
@@ -168,7 +168,7 @@ def held_at_start(at: Start, deepest: float) -> Held:
         return Held(stored=at.plant.coulomb * max(at.beyond, 0.0))
     found = _of_law(at, met, deepest)
     if found.force and laws_of(at.law):
-        return Held(stored=None, unknown=IN_A_ROW)
+        return Held(stored=None, unknown=IN_A_CHAIN)
     if found.force and (at.actuation.lag or at.actuation.slew):
         return Held(stored=None, unknown=ON_THE_WAY)
     return found

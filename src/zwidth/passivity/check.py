@@ -115,53 +115,53 @@ def check(
     InputError
         If the environment cannot be sampled at this rate or is not an environment.
     """
-    asked = as_contact(contact)
-    if isinstance(device, Pair):
-        return _check_pair(device, environment, of_an_arm)
-    if environment is None:
+    if environment is None and not isinstance(device, Pair):
         raise InputError("the environment is missing: check(device, zw.Wall(300)) asks for a wall of 300 N/m")
-    if not isinstance(device, Device):
-        if asked == "kept":
-            raise InputError("contact: the wall of an arm acts on both sides of its rest; leave it out")
-        return _check_arm(device, environment, of_an_arm)
-    if "discretization" in of_an_arm:
-        raise InputError(
-            "the discretization belongs to the law: check(device, ContinuousTransferFunction(system, "
-            "discretization=…)); a discrete system has its own H(z)"
-        )
-    if of_an_arm:
-        raise InputError(
-            f"{', '.join(of_an_arm)}: of an arm; a device of one axis has its rate and delay in itself"
-        )
+    given = {"contact": as_contact(contact), "iterate": iterate, "progress": progress}
+    asked = of_an_arm | {name: told for name, told in given.items() if told != _USUAL[name]}
+    called, takes, answer = next(own for kind, own in _SUBJECTS.items() if isinstance(device, kind))
+    for name in asked:
+        if name not in takes:
+            why = _OF_THE_LAW if name == "discretization" else ""
+            raise InputError(f"check of {called} takes {', '.join(takes)}, and no {name}{why}")
+    verdict: Verdict | Workspace | PairVerdict | HeldVerdict = answer(device, environment, **asked)
+    return verdict
+
+
+def _check_device(
+    device: Device,
+    environment: Any,
+    contact: str = "made and broken",
+    iterate: bool = True,
+    progress: Callable[[int], None] | None = None,
+) -> Verdict:
     law = _as_law(device, environment)
     if not law.has_transfer_function:
         from zwidth.passivity.other_laws import check_other  # few loops have such a law
 
         return check_other(device, law, check_by_closed_forms, progress, iterate)
     verdict = check_by_closed_forms(device, law, contact=contact)
-    if not iterate or asked == "kept" or not has_gap(device, law, verdict):
+    if not iterate or contact == "kept" or not has_gap(device, law, verdict):
         return verdict
     return with_value_iteration(device, law, verdict, progress)
 
 
-def _check_pair(pair: Pair, environment: Any, further: Mapping[str, Any]) -> PairVerdict | HeldVerdict:
-    """The verdict on two arms that follow each other."""
-    if environment is not None or not {"leader", "follower"}.issuperset(further):
+def _check_pair(pair: Pair, environment: Any, **hands: Any) -> PairVerdict | HeldVerdict:
+    if environment is not None:
         raise InputError(
             "a pair of arms holds its coupling in itself: check(pair), or check(pair, follower=hand) where a "
             "known hand holds an arm"
         )
-    if further:
+    if hands:
         from zwidth.passivity.pairs.held import check_held_pair
 
-        return check_held_pair(pair, **further)
+        return check_held_pair(pair, **hands)
     from zwidth.passivity.pairs import check_pair
 
     return check_pair(pair)
 
 
-def _check_arm(arm: Any, wall: Any, further: Mapping[str, Any]) -> Workspace:
-    """The verdict on a device of several joints."""
+def _check_arm(arm: Any, wall: Any, **further: Any) -> Workspace:
     from zwidth.model.arms import Arm  # numpy takes its time
 
     if not isinstance(arm, Arm):
@@ -171,6 +171,21 @@ def _check_arm(arm: Any, wall: Any, further: Mapping[str, Any]) -> Workspace:
     if "rate" not in further:
         raise InputError('an arm has no rate of its own: give rate=…, such as rate="1 kHz"')
     return workspace(arm, wall, **further)
+
+
+_USUAL = {"contact": "made and broken", "iterate": True, "progress": None}
+
+_SUBJECTS: Mapping[type, tuple[str, tuple[str, ...], Callable[..., Any]]] = {
+    Device: ("a device", tuple(_USUAL), _check_device),
+    Pair: ("a pair", ("leader", "follower"), _check_pair),
+    object: ("an arm", ("rate", "delay", "points", "torque_held_up_to", "largest_force"), _check_arm),
+}
+"""What can be asked about, what each takes by name, and who answers: an arm, if it is nothing else."""
+
+_OF_THE_LAW = (
+    "; it belongs to the law: check(device, ContinuousTransferFunction(system, discretization=…)); a "
+    "discrete system has its own H(z)"
+)
 
 
 def check_by_closed_forms(

@@ -9,7 +9,7 @@ import pytest
 
 from zwidth.passivity.storage.domain import Domain, Losses
 from zwidth.passivity.storage.grid import Grid
-from zwidth.passivity.storage.hull import NOWHERE, sweep
+from zwidth.passivity.storage.hull import NOWHERE, ONE_MOVE, sweep
 from zwidth.passivity.storage.law import FiniteLaw
 
 
@@ -81,7 +81,7 @@ def test_a_sweep_finds_the_best_move_of_every_state(memory: int) -> None:
         own_value, own_choice = value.copy(), choice.copy()
         groups = len(value) * (grid.histories // grid.width if memory else 1)
         tables = grid.forces, grid.costs, grid.nodes, grid.places, grid.domain.reach, grid.steps
-        improved += sweep(own_value, own_choice, 0, groups, *tables)
+        improved += sweep(own_value, own_choice, 0, groups, *tables, *ONE_MOVE)
         _by_definition(grid, value, choice)
         assert (own_value == value).all()
         assert (own_choice == choice).all()

@@ -8,24 +8,24 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from zwidth.machine.servo.connection import GARBLED, SILENT, STALE
-from zwidth.machine.servo.devices.frames import dropped, more_bytes, unanswered, unwrapped
+from zwidth.machine.servo.devices.frames import counted_on, dropped, more_bytes, unanswered
 from zwidth.machine.servo.posix import now
 
 
 @given(start=st.integers(0, 4095), steps=st.lists(st.integers(-2047, 2047), max_size=30))
 def test_a_counter_that_begins_anew_is_followed(start, steps):
     """Steps of less than half a turn are found again from the counts modulo 4096, exactly."""
-    true = counted = float(start)
+    true, memory = float(start), np.zeros(2)
+    assert counted_on(memory, 0, true, 4096.0) == true
     for step in steps:
         true += step
-        counted = unwrapped(true % 4096, counted, 4096.0)
-        assert counted == true
+        assert counted_on(memory, 0, true % 4096, 4096.0) == true
 
 
 @given(reading=st.floats(-1e3, 1e3), before=st.floats(-1e3, 1e3), turn=st.floats(0.1, 1e3))
 def test_the_nearest_of_all_turns(reading, before, turn):
     """Half a turn away at most, and whole turns from the reading."""
-    found = unwrapped(reading, before, turn)
+    found = counted_on(np.array([before, 1.0]), 0, reading, turn)
     assert abs(found - before) <= 0.5 * turn * (1 + 1e-9) + 1e-9
     turns = (found - reading) / turn
     assert turns == pytest.approx(round(turns), abs=1e-6)

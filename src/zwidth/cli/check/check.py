@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from zwidth.cli.decision import NAMES, asked, decided, exit_status, with_hands
 from zwidth.cli.options import CONTACT, IN_FULL, LAW, LOOP, PARAMETERS, contact, output
-from zwidth.cli.output import print_json, say_written, targets
+from zwidth.cli.output import print_found, targets
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
@@ -55,13 +56,14 @@ def run(arguments: argparse.Namespace) -> int:
     if plot is not None:
         verdict.plot(plot)
     replayed = _replayed(verdict) if arguments.replay else None
-    if arguments.json:
-        print_json(_in_full(verdict, hands, real_hand=replayed, active_hand=active, ranges=ranges))
-    else:
+
+    def report() -> None:
         from zwidth.cli.check.report import print_verdict
 
         print_verdict(verdict, replayed, active, arguments.in_full, ranges, hands)
-        say_written(save, plot)
+
+    in_full = partial(_in_full, verdict, hands, real_hand=replayed, active_hand=active, ranges=ranges)
+    print_found(arguments.json, in_full, report, save, plot)
     return exit_status(verdict.outcome)
 
 

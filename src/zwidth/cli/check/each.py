@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from zwidth.cli.options import PARAMETERS, overrides
-from zwidth.cli.output import print_json, print_report, say_written, targets
+from zwidth.cli.output import print_found, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.table import plain, quoted
 from zwidth.passivity.scope import unit_key
@@ -75,11 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
     verdicts = {name: check(loop.device, loop.environment, iterate=False) for name, loop in loops.items()}
     found = EachDevice(verdicts, measured)
     _save(found, save)
-    if arguments.json:
-        print_json(found.to_json())
-    else:
-        print_report(found.report())
-        say_written(save)
+    print_found(arguments.json, found.to_json, found.report, save)
     outcomes = {verdict.outcome for verdict in verdicts.values()}
     return exit_status(next(word for word in _STATUS if word in outcomes))
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 from dataclasses import fields
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.decision import asked
 from zwidth.cli.options import IN_FULL, LAW, LOOP, PARAMETERS, output
-from zwidth.cli.output import print_json, print_message, say_written, targets
+from zwidth.cli.output import give_out, print_message, targets
 from zwidth.errors import InputError
 from zwidth.model.device.catalogue import PROPERTIES
 from zwidth.model.specification.environments import option_keys
@@ -63,17 +64,13 @@ def run(arguments: argparse.Namespace) -> int:
     from zwidth.show.with_bar import passive_limit
 
     bracket = passive_limit(loop.device, loop.environment, parameter, told=_announce, **options)
-    if save is not None:
-        bracket.save(save)
-    if plot is not None:
-        bracket.plot(plot)
-    if arguments.json:
-        print_json(_json(bracket))
-    else:
+
+    def report() -> None:
         from zwidth.cli.check.limit_report import print_bracket
 
         print_bracket(bracket, loop, arguments.in_full)
-        say_written(save, plot)
+
+    give_out(bracket, save, plot, arguments.json, report, partial(_json, bracket))
     return BOTH if bracket.proved_passive is not None and bracket.proved_active is not None else ONE_OR_NONE
 
 

@@ -31,7 +31,7 @@ from zwidth.model.specification.table import plain, quoted, suggestion
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import shown
 
-_LAWS_IN_A_ROW = ("row storage", "row motion")
+_LAWS_IN_A_CHAIN = ("row storage", "row motion")
 """Documents of a table or of forces: the checker knows no law, and the law is stepped again here."""
 
 _COLOURS = {"VALID": "green", "NOT VALID": "red"}
@@ -80,8 +80,8 @@ def _with_laws(found: Judged) -> tuple[Judged, dict[str, str]]:
     """Laws in a chain stepped again from their parameters: by where each stands, which it is."""
     parts, laws = list[Part](), dict[str, str]()
     for part in found.parts:
-        if part.verification.valid and part.evidence["kind"] in _LAWS_IN_A_ROW:
-            from zwidth.passivity.storage.row_document import law_of  # xarray takes its time
+        if part.verification.valid and part.evidence["kind"] in _LAWS_IN_A_CHAIN:
+            from zwidth.passivity.storage.chain_document import law_of  # xarray takes its time
 
             try:
                 law = law_of(part.evidence)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import json
 import re
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +20,7 @@ from zwidth.cli.options import (
     overrides,
     sheet_option,
 )
-from zwidth.cli.output import print_json, say_written, targets
+from zwidth.cli.output import print_found, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted
 
@@ -85,22 +87,14 @@ def run(arguments: argparse.Namespace) -> int:
         found.save(save, force=True)
     if plot is not None:
         found.plot(plot, force=True)
-    if arguments.json:
-        from zwidth.cli.data.diagnosis_report import command
+    from zwidth.cli.data.diagnosis_report import command, print_diagnosis
 
-        print_json(_json(found, command(found, arguments)))
-    else:
-        from zwidth.cli.data.diagnosis_report import print_diagnosis
+    def document() -> str:
+        whole = {**found.to_dict(), "command": command(found, arguments)}
+        return json.dumps(whole, indent=2, ensure_ascii=False)
 
-        print_diagnosis(found, arguments)
-        say_written(save, plot)
+    print_found(arguments.json, document, partial(print_diagnosis, found, arguments), save, plot)
     return 0 if found.cause is not None else 3
-
-
-def _json(found: Diagnosis | PairDiagnosis, command: str | None) -> str:
-    import json
-
-    return json.dumps({**found.to_dict(), "command": command}, indent=2, ensure_ascii=False)
 
 
 def _diagnosed(arguments: argparse.Namespace) -> Diagnosis | PairDiagnosis:

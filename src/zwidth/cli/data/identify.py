@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from zwidth.cli.data.results import Identification
 from zwidth.cli.decision import decided, exit_status
@@ -19,13 +20,9 @@ from zwidth.cli.options import (
     output,
     pairs_of,
 )
-from zwidth.cli.output import print_json, say_written, targets
+from zwidth.cli.output import print_found, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted
-
-if TYPE_CHECKING:
-    pass
-
 
 QUANTITIES = ("time", "position", "hand_force", "actuator_force")
 """What a column may hold."""
@@ -83,13 +80,13 @@ def run(arguments: argparse.Namespace) -> int:
         found.identified.save(save, confidence, force=True, **found.others)
     if plot is not None:
         found.identified.plot(plot, force=True)
-    if arguments.json:
-        print_json(_json(found))
-    else:
+
+    def report() -> None:
         from zwidth.cli.data.identification_report import print_identified
 
         print_identified(found, arguments.in_full)
-        say_written(save, plot)
+
+    print_found(arguments.json, partial(_json, found), report, save, plot)
     if found.environment is None:
         return 0
     return exit_status("undecided" if found.verdict is None else found.verdict.outcome)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.data.results import FittedTissue, OnDevice
 from zwidth.cli.decision import decided, exit_status
 from zwidth.cli.options import IN_FULL, as_options, device_parameters, given, output, pairs_of
-from zwidth.cli.output import print_json, say_written, targets
+from zwidth.cli.output import print_found, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted, suggestion
 
@@ -74,13 +75,13 @@ def run(arguments: argparse.Namespace) -> int:
         _save(found, save, arguments.scaled)
     if plot is not None:
         found.test.plot(plot)
-    if arguments.json:
-        print_json(_json(found))
-    else:
+
+    def report() -> None:
         from zwidth.cli.data.tissue_report import print_tissue
 
         print_tissue(found, arguments.in_full)
-        say_written(save, plot)
+
+    print_found(arguments.json, partial(_json, found), report, save, plot)
     return 0 if found.wall is None else exit_status(found.wall.verdict.outcome)
 
 

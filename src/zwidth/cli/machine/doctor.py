@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
     device, environment, period = _loop(arguments)
     found = doctor(device, environment, duration=duration, sample_period=period, core=core)
     few = [*found.in_short(), "", "--all shows the rest: what was looked at, finding by finding"]
-    give_out(found, save, plot, arguments.json, None if arguments.in_full else few)
+    give_out(found, save, plot, arguments.json, None if arguments.in_full else lambda: few)
     return 0
 
 

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 from zwidth.cli.decision import exit_status
 from zwidth.cli.options import FORCE, IN_FULL
-from zwidth.cli.output import print_json, say_written, targets
+from zwidth.cli.output import give_out, print_found, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.read import question_time
+from zwidth.quantity.text import save_json, to_json
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
@@ -90,15 +91,13 @@ def run(arguments: argparse.Namespace) -> int:
     )
     if arguments.joint is not None:
         return _of_one(verdict, arguments, plot, save)
-    if save is not None:
-        verdict.save(save)
-    if arguments.json:
-        print_json(verdict.to_json())
-    else:
+
+    def report() -> None:
         from zwidth.cli.pair.gains_report import print_gains
 
         print_gains(verdict, arguments.in_full)
-        say_written(save)
+
+    give_out(verdict, save, None, arguments.json, report)
     return exit_status(verdict.outcome)
 
 
@@ -113,7 +112,6 @@ def _of_controllers(files: list[str]) -> bool:
 def _held(arguments: argparse.Namespace) -> int:
     """The joints of one arm, each held at a target by the spring of its controller."""
     from zwidth.data.gains import check_controllers, passive_gains, read_controllers
-    from zwidth.quantity.text import to_json
 
     for option in ("joint", "plot", "drive_rate", "bilateral_kp", "supply_voltage", "link_delay_back"):
         if getattr(arguments, option) is not None:
@@ -146,13 +144,13 @@ def _held(arguments: argparse.Namespace) -> int:
         better = passive_gains(*asked, **share, stiffest=arguments.stiffest)
     if save is not None:
         (found if better is None else better).save(save)
-    if arguments.json:
-        print_json(to_json(found.to_dict()))
-    else:
+
+    def report() -> None:
         from zwidth.cli.pair.gains_report import print_held
 
         print_held(found, better)
-        say_written(save)
+
+    print_found(arguments.json, lambda: to_json(found.to_dict()), report, save)
     return exit_status(found.outcome)
 
 
@@ -175,14 +173,14 @@ def _target(arguments: argparse.Namespace) -> Path | None:
 
 def _cartesian(controllers: Controllers, arguments: argparse.Namespace) -> int:
     """An impedance at the end: what it is, and which command decides it."""
-    if arguments.json:
-        from zwidth.quantity.text import to_json
 
-        print_json(to_json({"outcome": "undecided", **controllers.to_dict()}))
-    else:
+    def report() -> None:
         from zwidth.cli.pair.gains_report import print_cartesian
 
         print_cartesian(controllers, arguments.files[0])
+
+    document = {"outcome": "undecided", **controllers.to_dict()}
+    print_found(arguments.json, lambda: to_json(document), report)
     return exit_status("undecided")
 
 
@@ -190,20 +188,18 @@ def _of_one(
     verdict: GainsVerdict, arguments: argparse.Namespace, plot: Path | None, save: Path | None
 ) -> int:
     """One joint, with the notes on the gains."""
-    from zwidth.quantity.text import save_json, to_json
-
     pair, notes = verdict.joint(arguments.joint).verdict, {"notes": list(verdict.notes)}
     if save is not None:
         save_json(save, {**pair.saved(), **notes})
     if plot is not None:
         pair.plot(plot)
-    if arguments.json:
-        print_json(to_json({**pair.to_dict(), **notes}))
-    else:
+
+    def report() -> None:
         from zwidth.cli.pair.gains_report import print_joint
 
         print_joint(pair, verdict.notes, arguments.in_full)
-        say_written(save, plot)
+
+    print_found(arguments.json, lambda: to_json({**pair.to_dict(), **notes}), report, save, plot)
     return exit_status(pair.outcome)
 
 
@@ -211,14 +207,13 @@ def _told(gains: ArmGains, as_json: bool, save: Path | None) -> int:
     """Gains of a follower alone: what they are, and no verdict."""
     if save is not None:
         raise InputError("there is no law of both arms, so there is no verdict to save; --both makes one")
-    if as_json:
-        from zwidth.quantity.text import to_json
 
-        print_json(to_json(gains.to_dict()))
-    else:
+    def report() -> None:
         from zwidth.cli.pair.gains_report import print_follower
 
         print_follower(gains)
+
+    print_found(as_json, lambda: to_json(gains.to_dict()), report)
     return exit_status("undecided")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -67,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
         found = compare(loop.device, loop.environment, laws, fastest=fastest)
     else:
         found = _of_a_rim(loop, radius, arguments.laws, yours, fastest)
-    give_out(found, save, plot, arguments.json, None if arguments.in_full else _few(found))
+    give_out(found, save, plot, arguments.json, None if arguments.in_full else partial(_few, found))
     return 0
 
 

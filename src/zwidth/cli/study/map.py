@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.decision import NAMES, named_hands
 from zwidth.cli.options import DEVICE, FORCE, PLOT, device_parameters, given
-from zwidth.cli.output import print_json, print_message, print_report, say_written, targets
+from zwidth.cli.output import print_found, print_message, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.read import LOOP_TABLES, keep_axis, read_tables, specified_device
 from zwidth.model.specification.table import Table, plain, quoted
@@ -83,12 +84,8 @@ def run(arguments: argparse.Namespace) -> int:
         save_z_width(found, plot, overwrite=True)
     if proof is not None:
         _certify(device, found, options.get("velocity_filter"), proof)
-    if arguments.json:
-        print_json(_json(found))
-    else:
-        print_report(_report(found))
-        kept = None if arguments.save is None else Path(arguments.save)
-        say_written(kept, plot, proof)
+    kept = None if arguments.save is None else Path(arguments.save)
+    print_found(arguments.json, partial(_json, found), partial(_report, found), kept, plot, proof)
     return 0
 
 

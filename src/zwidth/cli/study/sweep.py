@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -21,7 +22,7 @@ from zwidth.cli.options import (
     given,
     overrides,
 )
-from zwidth.cli.output import PICTURES, print_json, print_message, print_report, say_written, target
+from zwidth.cli.output import PICTURES, print_found, print_message, target
 from zwidth.cli.parsing import Parameter
 from zwidth.cli.simulate.tables import operator_parameters, simulation_parameters
 from zwidth.errors import InputError
@@ -115,16 +116,11 @@ def run(arguments: argparse.Namespace) -> int:
         raise
     if plot is not None:
         _draw(found, plot)
-    if arguments.json:
-        from zwidth.cli.study.sweep_report import summary
-        from zwidth.quantity.text import to_json
+    from zwidth.cli.study.sweep_report import report, summary
+    from zwidth.quantity.text import to_json
 
-        print_json(to_json(summary(found)))
-    else:
-        from zwidth.cli.study.sweep_report import report
-
-        print_report(report(found))
-        say_written(None if arguments.save is None else Path(arguments.save), plot)
+    kept = None if arguments.save is None else Path(arguments.save)
+    print_found(arguments.json, lambda: to_json(summary(found)), partial(report, found), kept, plot)
     return 0
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import IN_FULL, output
-from zwidth.cli.output import print_json, say_written, targets
+from zwidth.cli.output import print_found, targets
 from zwidth.cli.workspace.arm import (
     JOINTS,
     WALL,
@@ -21,6 +23,7 @@ from zwidth.cli.workspace.arm import (
 )
 from zwidth.cli.workspace.report import print_null_space, print_postures, print_workspace
 from zwidth.errors import InputError
+from zwidth.quantity.text import to_json
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
@@ -93,8 +96,6 @@ def run(arguments: argparse.Namespace) -> int:
             f"--save: a file must end in .json for the verdict with its certificate, or in .nc for the map; "
             f"got {save.name!r}"
         )
-    from zwidth.passivity.scope import TOLD
-
     if arguments.null_stiffness is not None:
         return _null_space(arguments, plot, save)
     refuse_without(arguments)
@@ -104,15 +105,28 @@ def run(arguments: argparse.Namespace) -> int:
     without = left_out(arguments, space.arm.turns)
     if save is not None:
         _save(space, save)
+    report = partial(print_workspace, space, arguments.in_full, without)
+    written = partial(json.dumps, indent=2, ensure_ascii=False)
+    return _give_out(space, arguments, without, report, save, plot, written)
+
+
+def _give_out(
+    found: Workspace | PostureMap | NullSpace,
+    arguments: argparse.Namespace,
+    without: Sequence[str],
+    report: Callable[[], None],
+    save: Path | None,
+    plot: Path | None,
+    written: Callable[[dict[str, Any]], str] = to_json,
+) -> int:
+    """The picture, and what is told; the status says the outcome."""
+    from zwidth.passivity.scope import TOLD
+
     if plot is not None:
-        space.plot(plot)
-    if arguments.json:
-        more = {"wall_leaves_out": without} if without else {}
-        print_json(json.dumps({**space.to_dict(), **more}, indent=2, ensure_ascii=False))
-    else:
-        print_workspace(space, arguments.in_full, without)
-        say_written(save, plot)
-    return TOLD[space.outcome].status
+        found.plot(plot)
+    more = {"wall_leaves_out": without} if without else {}
+    print_found(arguments.json, lambda: written({**found.to_dict(), **more}), report, save, plot)
+    return TOLD[found.outcome].status
 
 
 def _verdict(arguments: argparse.Namespace) -> Workspace:
@@ -139,9 +153,7 @@ def _timing(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def _postures(arguments: argparse.Namespace, plot: Path | None, save: Path | None) -> int:
     """All joints over their ranges: no region is proved, and the report says so."""
-    from zwidth.passivity.scope import TOLD
     from zwidth.passivity.workspace import stiffness_over_postures
-    from zwidth.quantity.text import to_json
 
     for option in ("torque_held_up_to", "largest_force", "points"):
         if getattr(arguments, option) is not None:
@@ -160,15 +172,9 @@ def _postures(arguments: argparse.Namespace, plot: Path | None, save: Path | Non
         better.save(save)
     elif save is not None:
         _save(found, save)
-    if plot is not None:
-        found.plot(plot)
-    if arguments.json:
-        without = left_out(arguments, arm.turns)
-        print_json(to_json({**found.to_dict(), **({"wall_leaves_out": without} if without else {})}))
-    else:
-        print_postures(found, arguments.in_full, left_out(arguments, arm.turns), better)
-        say_written(save, plot)
-    return TOLD[found.outcome].status
+    without = left_out(arguments, arm.turns)
+    report = partial(print_postures, found, arguments.in_full, without, better)
+    return _give_out(found, arguments, without, report, save, plot)
 
 
 def _check_gains(arguments: argparse.Namespace, save: Path | None) -> None:
@@ -204,23 +210,14 @@ def _borne(arguments: argparse.Namespace, arm: Arm) -> BorneImpedance:
 
 def _null_space(arguments: argparse.Namespace, plot: Path | None, save: Path | None) -> int:
     """Wall and null-space spring together; there is no map of it to save."""
-    from zwidth.passivity.scope import TOLD
-    from zwidth.quantity.text import to_json
-
     if save is not None and save.suffix.lower() != ".json":
         raise InputError(f"of a null-space spring there is no map: save as .json, got {save.name!r}")
     found = null_space_of(arguments)
     without = left_out(arguments, found.question.arm.turns)
     if save is not None:
         found.save(save)
-    if plot is not None:
-        found.plot(plot)
-    if arguments.json:
-        print_json(to_json({**found.to_dict(), **({"wall_leaves_out": without} if without else {})}))
-    else:
-        print_null_space(found, arguments.in_full, without)
-        say_written(save, plot)
-    return TOLD[found.outcome].status
+    report = partial(print_null_space, found, arguments.in_full, without)
+    return _give_out(found, arguments, without, report, save, plot)
 
 
 def _save(space: Workspace | PostureMap, path: Path) -> None:

@@ -171,6 +171,12 @@ class _Aligned(NamedTuple):
     cycle: float
     steady: slice
 
+    def drive_after(self, commanded: Array | None) -> Drive | None:
+        """What lies between a command and what was applied, where there are both."""
+        if self.applied is None or commanded is None:
+            return None
+        return drive.account(commanded, self.applied, self.x, self.period, self.loop_period, self.cycle)
+
 
 class _Fitted(NamedTuple):
     """What the forces follow, and what lies between them."""
@@ -222,9 +228,7 @@ def gather(
         apparent_mass=float(np.real(F[0] / X)) / motion.omega**2,
         standing=_standing(x, period, file.cycle),
         distortion=float(np.sqrt((np.abs(xs[1:]) ** 2).sum()) / abs(X)),
-        roles=tuple(
-            name for name, values in (("commanded", commanded), ("applied", applied)) if values is not None
-        ),
+        roles=tuple(name for name, f in (("commanded", commanded), ("applied", applied)) if f is not None),
         known=known,
         rotary=recording.motion == "rotary",
         moves_as=None if known.mass is None or not abs(held[0]) else complex(needed[0] / held[0]),
@@ -250,36 +254,32 @@ def _aligned(recording: Recording, vibration: Vibration, known: Known) -> _Align
 
 def _fitted(file: _Aligned, stated: Environment | None) -> _Fitted:
     """Over all of the file; what an Evidence keeps of it is of the vibration alone."""
-    x, commanded, applied, period, loop_period, cycle, steady = file
-    seen = applied if commanded is None else commanded
-    assert seen is not None
-    found = told = between = by_inside = None
-    if np.ptp(seen):
-        lags = _lags(commanded is not None, cycle, loop_period)
-        found = law.fit(x, seen, period, loop_period, lags)
-        if stated is not None:
-            told = compare(stated, x, seen, period, loop_period, lags, commanded is not None)
-            if commanded is None:
-                told = replace(told, accounted=_accounted(told.asked, seen, x, period, loop_period, cycle))
-    if told is not None and told.holds:
-        commanded = told.asked if commanded is None else commanded
-        found = told.as_law(commanded, loop_period)
-    if found is not None:
-        found = replace(found, compensated=found.compensated[steady])
-    if applied is not None and commanded is not None:
-        between = drive.account(commanded, applied, x, period, loop_period, cycle)
-        between = replace(between, applied=between.applied[steady])
-    elif applied is not None:
-        by_inside = drive.inside(applied, x, period, cycle)
-    return _Fitted(found, told, commanded, between, by_inside)
+    force = file.applied if file.commanded is None else file.commanded
+    assert force is not None
+    seen = file.x, force, file.period, file.loop_period, _lags(file)
+    told = None
+    if stated is not None and np.ptp(force):
+        told = _accounted(file, compare(stated, *seen, file.commanded is not None))
+    if told is None or not told.holds:
+        commanded, found = file.commanded, law.fit(*seen) if np.ptp(force) else None
+    else:
+        commanded = told.asked if file.commanded is None else force
+        found = told.as_law(commanded, file.loop_period)
+    between = file.drive_after(commanded)
+    return _Fitted(
+        found and replace(found, compensated=found.compensated[file.steady]),
+        told,
+        commanded,
+        between and replace(between, applied=between.applied[file.steady]),
+        drive.inside(force, file.x, file.period, file.cycle) if commanded is None else None,
+    )
 
 
-def _accounted(
-    asked: Array, applied: Array, x: Array, period: float, loop_period: float, cycle: float
-) -> float:
-    """Share of a motor's force that its command leaves over, delayed, damped or limited as suits it best."""
-    between = drive.account(asked, applied, x, period, loop_period, cycle)
-    return min(between.by_delay, between.by_damper, between.by_rate)
+def _accounted(file: _Aligned, told: Stated) -> Stated:
+    """With the share of a motor's force alone that the command leaves over, as a drive suits it best."""
+    if file.commanded is not None or (between := file.drive_after(told.asked)) is None:
+        return told
+    return replace(told, accounted=min(between.by_delay, between.by_damper, between.by_rate))
 
 
 class _Motion(NamedTuple):
@@ -365,12 +365,12 @@ def _sign(x: Array, force: Array) -> float:
     return 1.0 if slope >= 0 else -1.0
 
 
-def _lags(commanded: bool, cycle: float, loop_period: float) -> list[float]:
+def _lags(file: _Aligned) -> list[float]:
     """Lags to try: some samples of bookkeeping for a command, most of half a cycle for what was applied."""
-    if commanded:
-        return [k * loop_period for k in range(3)]
-    most = max(2, int(0.45 * cycle / loop_period))
-    return [float(k) * loop_period for k in np.unique(np.linspace(0, most, min(most + 1, 25)).round())]
+    if file.commanded is not None:
+        return [k * file.loop_period for k in range(3)]
+    most = max(2, int(0.45 * file.cycle / file.loop_period))
+    return [float(k) * file.loop_period for k in np.unique(np.linspace(0, most, min(most + 1, 25)).round())]
 
 
 def _delay(known: Known, fitted: _Fitted, commanded: bool) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.loop.pair.kernel import run_pair
 from zwidth.loop.pair.setup import Holder, PairSetup, prepare_pair
-from zwidth.loop.plant import FAULT, POSITION, STOPS, WORK
+from zwidth.loop.plant import FAULT, POSITION, STOPS, TOO_MANY_STOPS, WORK
 from zwidth.loop.trace import (
     UNITS,
     VARIABLES,
@@ -134,10 +134,7 @@ def simulated_pair(
     )
     done = _run(setup, progress)
     if any(arm.state[FAULT] for arm in setup.arms):
-        raise InputError(
-            "the motion has too many stops in one sample to be followed: device, hand and forces differ by "
-            "so many orders of magnitude that rounding decides; scale them closer together"
-        )
+        raise InputError(TOO_MANY_STOPS)
     return build_pair_trace(setup, done)
 
 

@@ -54,12 +54,10 @@ class Line(NamedTuple):
 
     def adds(self, motion: str = "linear") -> str:
         """The mass of a line, or how far the one of a body gives way, in words."""
+        gives = self.keeps == "mass"
         if motion == "rotary":
-            gives = self.keeps == "mass"
             return readable(1 / self.stiffness, "rad/N/m") if gives else readable(self.mass, "kg*m^2")
-        if self.keeps == "mass":
-            return f"{1e3 / self.stiffness:.4g} mm/N"
-        return f"{1e3 * self.mass:.4g} g"
+        return f"{1e3 / self.stiffness:.4g} mm/N" if gives else f"{1e3 * self.mass:.4g} g"
 
     @property
     def mass(self) -> float:
@@ -157,30 +155,22 @@ def cut_scene(
         for name, w in (impedances or {}).items()
     }
     inside: dict[str, list[Element]] = {name: [] for name in parts}
+
+    def end(line: Line) -> None:
+        for part, node in zip(line.parts, line.nodes, strict=True):
+            inside[part].append(LineEnd(node, line.impedance, line.name))
+
     for line in lines:
-        for part, node in zip(line.parts, line.nodes, strict=True):
-            inside[part].append(LineEnd(node, line.impedance, line.name))
+        end(line)
     for title, element in titled:
-        here, there = (home.get(n) for n in element.nodes)
-        owner = here if here is not None else there
-        assert owner is not None  # an element has one end at least that moves
-        if there is None or here is None or here == there:
-            inside[owner].append(element)
+        own = [home[node] for node in element.nodes if node in home]
+        if own[0] == own[-1]:  # one end at least moves, and is at home
+            inside[own[0]].append(element)
             continue
-        first, second = element.nodes
-        is_spring = element.reflection == 1
-        w = given.pop(title, None)
-        if is_spring and w is None:
-            line = Line(title, (here, there), (first, second), Exact(_stiffness(element) * tau), tau, title)
-        else:
-            if w is None:
-                w = _damping_of(element, title)
-            far = f"{second} of {title}"
-            inside[here].append(replace(element, **{"second": far}))
-            line = Line(title, (here, there), (far, second), w, tau, "")
+        line, stays = _crossing(title, element, (own[0], own[1]), given.pop(title, None), tau)
+        inside[own[0]] += stays
         lines.append(line)
-        for part, node in zip(line.parts, line.nodes, strict=True):
-            inside[part].append(LineEnd(node, line.impedance, line.name))
+        end(line)
     if given:
         raise InputError(
             f"{next(iter(given))} is not cut, so no impedance is wanted; cut are: "
@@ -194,6 +184,17 @@ def cut_scene(
         tuple(lines),
         motion,
     )
+
+
+def _crossing(
+    title: str, element: Element, parts: tuple[str, str], w: Exact | None, tau: Fraction
+) -> tuple[Line, list[Element]]:
+    """The line of an element between two parts, and the element where it stays, with the line behind it."""
+    if element.reflection == 1 and w is None:
+        return Line(title, parts, element.nodes, Exact(_stiffness(element) * tau), tau, title), []
+    far = f"{element.nodes[1]} of {title}"
+    w = _damping_of(element, title) if w is None else w
+    return Line(title, parts, (far, element.nodes[1]), w, tau, ""), [replace(element, **{"second": far})]
 
 
 _NO_FORCE = "a wave of no impedance carries no force"
@@ -244,8 +245,7 @@ def _homes(scene: Scene, parts: Mapping[str, Iterable[str]]) -> dict[str, tuple[
                     f'"{node}" of part "{name}" is no node of the scene: {", ".join(scene.nodes)}'
                 )
             home[node] = (*home.get(node, ()), name)
-    left = [n for n in scene.nodes if n not in home]
-    if left:
+    if left := [n for n in scene.nodes if n not in home]:
         raise InputError(f"in no part: {', '.join(left)}; every node must be somewhere")
     return home
 
@@ -295,10 +295,10 @@ def best_parts(scene: Scene, count: int) -> dict[str, tuple[str, ...]]:
     springs = sorted((e for e in joined if e.reflection == 1), key=_stiffness, reverse=True)
     bodies = {e.nodes[0] for e in scene.elements if e.reflection == -1}
     light = [e for n in scene.nodes if n not in bodies for e in [s for s in springs if n in s.nodes][:1]]
-    left = len(group)
-    for element in (*firm, *light, *springs):
+    left, kept = len(group), len(firm) + len(light)
+    for i, element in enumerate((*firm, *light, *springs)):
         a, b = (root(n) for n in element.nodes)
-        if a != b and (left > count or element in firm or element in light):
+        if a != b and (left > count or i < kept):
             group[b] = a
             left -= 1
     if left < count:

@@ -14,9 +14,9 @@ from zwidth.model.environment.environment import Environment
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.result import Result, evidence_of
 from zwidth.passivity.scope import Scope
+from zwidth.passivity.storage.chain_document import ChainStorage
 from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.storage.hand_bounds import HandBounds
-from zwidth.passivity.storage.row_document import RowStorage
 from zwidth.passivity.storage.storage_function import StorageFunction
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
@@ -70,7 +70,7 @@ class Bracket(Result):
     every_hand: tuple[float | None, float | None]
     evaluations: int
     seconds: float
-    storage: StorageFunction | RowStorage | None = None
+    storage: StorageFunction | ChainStorage | None = None
     bounds: HandBounds | None = None
     violation: Violation | None = None
     cut_by_time: bool = False

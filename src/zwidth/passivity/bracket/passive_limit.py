@@ -16,12 +16,12 @@ from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.bracket.bracket import Bracket, parameter_of, refuse_without_part
 from zwidth.passivity.bracket.search import NOTHING, Found, Search, approach, is_stepped
 from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.storage.chain_document import ChainStorage
+from zwidth.passivity.storage.chain_program import ChainProgram, chain_program
+from zwidth.passivity.storage.chain_table import DoesNotClose
 from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.storage.hand_bounds import slow_hands
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of, program_scope
-from zwidth.passivity.storage.row_document import RowStorage
-from zwidth.passivity.storage.row_program import RowProgram, row_program
-from zwidth.passivity.storage.row_table import DoesNotClose
 from zwidth.passivity.storage.storage_function import CELLS, StorageFunction
 from zwidth.passivity.storage.value_iteration import EFFORT, Effort, Until, checked_effort, time_limit
 from zwidth.quantity.exact import Exact, RealLike, ends
@@ -104,39 +104,35 @@ def passive_limit(
     if not iterate:
         return _by_closed_forms(Search(asked, tolerance, Effort(), inf, progress), counted)
     ideal = ends(device.resolution)[1] == 0
-    in_a_row = bool(laws_of(law))
-    if not (ideal or in_a_row or is_stepped(law)):
+    in_a_chain = bool(laws_of(law))
+    if not (ideal or in_a_chain or is_stepped(law)):
         program_of(device, law, *counted)  # what cannot be iterated is refused before anything is searched
     search = Search(asked, tolerance, Effort(time_limit(seconds)), most, progress)
     if friction is not None and asked.name in ("device.damping", "device.coulomb_friction"):
         raise InputError(f"{parameter} plays no part beside a friction curve: leave out one of the two")
     closed = not (force_limit or force_resolution or friction is not None)
     every = (search.by_closed_forms() if closed else None) or NOTHING
-    bounded = penetration is not None or speed is not None
-    settled = every.passive is not None or every.active is not None
-    if not bounded and (search.is_close(every.passive, every.active) or (settled and ideal)):
-        return search.bracket(every, (every.passive, every.active))  # no grid narrows an ideal encoder's
-
+    known = every.passive, every.active
+    settled = ideal and known != (None, None)  # no grid narrows an ideal encoder's
+    if penetration is None and speed is None and (settled or search.is_close(*known)):
+        return search.bracket(every, known)
     if is_stepped(law):
         raise InputError(
             "a scene that is not linear, or of many elements, is decided for every hand, behind a virtual "
             "coupling, and read without encoder steps: give it one, the device resolution=0, and no bounds"
         )
-    # laws in a chain have one grid for all values: that on which they close as they are given
-    grids = (row_program(device, law, *counted).counts,) if in_a_row else ()
+    built: Callable[..., DynamicProgram | ChainProgram] = program_of
+    if in_a_chain:  # one grid for all values: that on which the laws close as they are given
+        built = partial(chain_program, domains=(chain_program(device, law, *counted).counts,))
 
-    def program(value: Exact) -> DynamicProgram | RowProgram:
-        changed, rendered = asked.change(value)
-        if in_a_row:
-            return row_program(changed, rendered, *counted, grids)
-        return program_of(changed, rendered, *counted)
+    def program(value: Exact) -> DynamicProgram | ChainProgram:
+        return built(*asked.change(value), *counted)
 
     def slow(value: Exact) -> Certificate | None:
-        if not closed or in_a_row:
-            return None
         return slow_hands(*asked.change(value), program(value).bounds.speed)
 
-    bounded_search = BoundedSearch(search, program, slow, every)
+    has_closed_form = closed and not in_a_chain
+    bounded_search = BoundedSearch(search, program, slow if has_closed_form else lambda _: None, every)
     left = min(most, time_limit(seconds)) - search.effort.spent
     if told is not None and bounded_search.at_first.takes_long and left > _SOME_SECONDS:
         told(left)
@@ -156,7 +152,7 @@ def _by_closed_forms(search: Search, counted: tuple[Any, ...]) -> Bracket:
 # A bracket of bounded hands: by what covers slow ones, and by value iteration on finer and finer grids.
 
 
-Proof = Certificate | StorageFunction | RowStorage
+Proof = Certificate | StorageFunction | ChainStorage
 
 
 class BoundedSearch:
@@ -169,7 +165,7 @@ class BoundedSearch:
     def __init__(
         self,
         search: Search,
-        program: Callable[[Exact], DynamicProgram | RowProgram],
+        program: Callable[[Exact], DynamicProgram | ChainProgram],
         slow: Callable[[Exact], Certificate | None],
         every: Found,
     ) -> None:

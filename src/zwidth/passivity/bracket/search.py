@@ -13,9 +13,9 @@ from zwidth.passivity.bracket.bracket import Bracket, Parameter
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check, check_by_closed_forms
 from zwidth.passivity.scope import Scope
+from zwidth.passivity.storage.chain_document import ChainStorage
 from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.storage.hand_bounds import HandBounds
-from zwidth.passivity.storage.row_document import RowStorage
 from zwidth.passivity.storage.storage_function import StorageFunction
 from zwidth.passivity.storage.value_iteration import Effort
 from zwidth.passivity.witness.violation import Violation
@@ -106,7 +106,7 @@ class Search:
         found: Found,
         every_hand: tuple[Exact | None, Exact | None],
         bounds: HandBounds | None = None,
-        storage: StorageFunction | RowStorage | None = None,
+        storage: StorageFunction | ChainStorage | None = None,
     ) -> Bracket:
         """What was found, as it is given back."""
         return Bracket(

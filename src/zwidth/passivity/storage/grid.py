@@ -36,7 +36,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zwidth.passivity.storage.domain import Domain, Integers, Losses, inner_costs, outer_costs
-from zwidth.passivity.storage.hull import NOWHERE, sweep, sweep_parts, sweep_turning
+from zwidth.passivity.storage.hull import NOWHERE, ONE_MOVE, sweep, sweep_turning
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.passivity.storage.value_iteration import BestMoves, Move, Sweep
 from zwidth.quantity.text import exact_text
@@ -292,12 +292,12 @@ class Grid:
         tables = self.forces, self.costs, self.nodes, self.places, self.domain.reach
         if self.losses.part == 1:
             work = _BY_ONE_HULL if self.hull_steps else _BY_HULLS
-            return BestMoves(*rest, sweep, (*tables, self.hull_steps), work)
-        tables = *tables, self.later_forces, self.later_costs
+            return BestMoves(*rest, sweep, (*tables, self.hull_steps, *ONE_MOVE), work)
+        later = self.later_forces, self.later_costs
         if self.every == 1:
-            return BestMoves(*rest, sweep_parts, tables, _BY_HULLS)
+            return BestMoves(*rest, sweep, (*tables, 0, *later), _BY_HULLS)
         moves = self.width * self.nodes.size
-        return BestMoves(*rest, sweep_turning, (*tables, *self._turning), _BY_MOVES * moves)
+        return BestMoves(*rest, sweep_turning, (*tables, *later, *self._turning), _BY_MOVES * moves)
 
     @property
     def hull_steps(self) -> int:

@@ -16,6 +16,15 @@ out of this are moves of less than two steps, which cost φ |d| alone, and the
 farthest cells, of which not every point is in reach of every node.
 
 Among equally good moves the one with the least d is taken.
+
+A delay of part of a sample makes each interval two moves.  The force of an older reading acts for a part of
+the interval, the force of the next reading for the rest.  Between them the hand is at some m, which no
+sample sees:
+
+    V(x) ← max( V(x), max over m of  −f (m − x) − C(m − x) + W(m) )
+    W(m) =  max over moves of  −f' (x' − m) − C'(x' − m) + V(x')
+
+All states of a group share f' and W.
 """
 
 from __future__ import annotations
@@ -27,6 +36,9 @@ from zwidth.passivity.storage.domain import Integers
 
 NOWHERE = 2**62
 """In place of the force of a state that is not on the grid."""
+
+ONE_MOVE = np.zeros((0, 0), np.int64), np.zeros(0, np.int64)
+"""In place of later forces and costs where an interval is one move."""
 
 
 @compiled
@@ -41,19 +53,26 @@ def sweep(
     places: Integers,
     reach: int,
     steps: int,
+    later_forces: Integers,
+    later_costs: Integers,
 ) -> int:
     """Improve the states of the groups first … last − 1; returns how many nodes improved.
 
-    value and choice are (cells, histories, nodes); choice holds the flat index of the best move.
+    value and choice are (cells, histories, nodes); choice holds the flat index of the state in which the best
+    move ends.
     The cells begin at the places, a cell has so many steps, and the hand stands on the nodes of it.
-    With cells that are not all as long, or costs that are not φ d + β d², steps is 0 and no point is left
-    out beforehand.
+    With cells that are not all as long, costs that are not φ d + β d², or two moves in an interval, steps is
+    0 and no point is left out beforehand.  Without a second move there are no later costs.
     """
     values, choices = value.reshape(-1), choice.reshape(-1)
     most_points = (2 * reach + 1) * nodes.size
     place, there = np.empty(most_points, np.int64), np.empty(most_points, np.int64)
     gain, move = np.empty(most_points, np.int64), np.empty(most_points, np.int64)
     goal = np.empty(most_points, np.int64)
+    two_moves = later_costs.size > 0
+    more_points = most_points if two_moves else 0
+    best, ends = np.empty(more_points, np.int64), np.empty(more_points, np.int64)
+    itself = np.arange(more_points)
     improved = 0
     for group in range(first, last):
         least, most = extremes(forces, group, reach)
@@ -65,10 +84,19 @@ def sweep(
             )
         else:
             points = targets(values, forces, nodes, places, group, reach, gain, place, there)
+        if not two_moves:
+            for node in range(nodes.size):
+                improved += improve(
+                    values, choices, forces, costs, nodes, group, reach, least, most, points, values, there,
+                    place, there, node, gain, move, goal,
+                )  # fmt: skip
+            continue
+        later, _ = extremes(later_forces, group, reach)  # all of them the same
+        second_moves(gain, place, there, points, later, later_costs, best, ends)
         for node in range(nodes.size):
             improved += improve(
-                values, choices, forces, costs, nodes, group, reach, least, most, points, values, there,
-                place, there, node, gain, move, goal,
+                values, choices, forces, costs, nodes, group, reach, least, most, points, best, itself,
+                place, ends, node, gain, move, goal,
             )  # fmt: skip
     return improved
 
@@ -247,66 +275,10 @@ def improve(
     return improved
 
 
-# One sweep where a delay of part of a sample makes each interval two moves.
-#
-# The force of an older reading acts for a part of the interval, the force of the next
-# reading for the rest.  Between them the hand is at some m, which no sample sees:
-#
-#     V(x) ← max( V(x), max over m of  −f (m − x) − C(m − x) + W(m) )
-#     W(m) =  max over moves of  −f' (x' − m) − C'(x' − m) + V(x')
-#
-# All states of a group, which differ in their oldest reading only, share f' and W.
+# One sweep where a delay of part of a sample makes each interval two moves, the hand anywhere in between.
 #
 # On cells of many counts the hand is at a sample in the first count of a cell, but in between it may be
 # anywhere: m is then sought where it is best, and a cycle that gains so is a motion to be counted exactly.
-
-
-@compiled
-def sweep_parts(
-    value: Integers,
-    choice: Integers,
-    first: int,
-    last: int,
-    forces: Integers,
-    costs: Integers,
-    nodes: Integers,
-    places: Integers,
-    reach: int,
-    later_forces: Integers,
-    later_costs: Integers,
-) -> int:
-    """Improve the states of the groups first … last − 1; returns how many nodes improved.
-
-    value and choice are (cells, histories, nodes); choice holds the flat index of the state
-    in which the best move ends.
-    """
-    values, choices = value.reshape(-1), choice.reshape(-1)
-    histories = forces.shape[1]
-    per_cell = histories // (2 * reach + 1)
-    most_points = (2 * reach + 1) * nodes.size
-    worth, place = np.empty(most_points, np.int64), np.empty(most_points, np.int64)
-    there, best = np.empty(most_points, np.int64), np.empty(most_points, np.int64)
-    ends, gain = np.empty(most_points, np.int64), np.empty(most_points, np.int64)
-    move, goal = np.empty(most_points, np.int64), np.empty(most_points, np.int64)
-    itself = np.arange(most_points)
-    improved = 0
-    for group in range(first, last):
-        least, most = extremes(forces, group, reach)
-        if least > most:
-            continue
-        n, newer = group // per_cell, group % per_cell
-        later = NOWHERE
-        for h in range(newer * (2 * reach + 1), (newer + 1) * (2 * reach + 1)):
-            if later == NOWHERE:
-                later = later_forces[n, h]
-        points = targets(values, forces, nodes, places, group, reach, worth, place, there)
-        second_moves(worth, place, there, points, later, later_costs, best, ends)
-        for node in range(nodes.size):
-            improved += improve(
-                values, choices, forces, costs, nodes, group, reach, least, most, points, best, itself,
-                place, ends, node, gain, move, goal,
-            )  # fmt: skip
-    return improved
 
 
 @compiled

@@ -20,13 +20,13 @@ from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.scope import Contact, Hands, Law, Scope, scope_of
+from zwidth.passivity.storage.chain_program import ChainProgram, chain_program
 from zwidth.passivity.storage.domain import Domain, Losses, domain_for, losses_of, states_of, too_large
 from zwidth.passivity.storage.gain import Gain, gain
 from zwidth.passivity.storage.grid import Approximation, Grid
 from zwidth.passivity.storage.hand_bounds import HandBounds, hand_bounds
 from zwidth.passivity.storage.law import FiniteLaw, finite_law
 from zwidth.passivity.storage.relaxing_grid import RelaxingGrid
-from zwidth.passivity.storage.row_program import RowProgram, row_program
 from zwidth.passivity.storage.storage_function import CELLS, StorageFunction, has_cells, prove_on_cells
 from zwidth.passivity.storage.value_iteration import Progress, Until, freely, value_iteration
 from zwidth.quantity.exact import RealLike
@@ -176,7 +176,7 @@ def program_of(
     force_limit: bool = False,
     force_resolution: bool = False,
     friction: FrictionCurve | None = None,
-) -> DynamicProgram | RowProgram:
+) -> DynamicProgram | ChainProgram:
     """The dynamic program of a loop; arguments as for `available_storage`."""
     if not isinstance(device, Device):
         raise InputError(f"the first argument is a Device, got {type(device).__name__}")
@@ -184,13 +184,13 @@ def program_of(
         raise InputError(f"friction is a FrictionCurve, got {type(friction).__name__}")
     given = as_environment(environment)
     if laws_of(given):
-        return row_program(device, given, penetration, speed, force_limit, force_resolution, friction)
+        return chain_program(device, given, penetration, speed, force_limit, force_resolution, friction)
     law = finite_law(device, given, force_limit=force_limit, force_resolution=force_resolution)
     losses = losses_of(device, friction)
     return DynamicProgram(law, losses, domain_for(law, losses, penetration, speed), device.motion)
 
 
-def program_scope(device: Device, environment: Environment, program: DynamicProgram | RowProgram) -> Scope:
+def program_scope(device: Device, environment: Environment, program: DynamicProgram | ChainProgram) -> Scope:
     """What a proof from a dynamic program is about."""
     losses, (limited, stepped) = program.losses, program.actuator
     curved = losses.curve is not None

@@ -13,10 +13,10 @@ from zwidth.model.environment.transfer_function import as_environment
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
+from zwidth.passivity.storage.chain_program import ChainProgram
 from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.storage.hand_bounds import slow_hands
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of, program_scope
-from zwidth.passivity.storage.row_program import RowProgram
 from zwidth.passivity.storage.storage_function import CELLS, StorageFunction
 from zwidth.passivity.storage.value_iteration import (
     EFFORT,
@@ -189,7 +189,7 @@ def available_storage(
 
 
 def _on_cells(
-    program: DynamicProgram | RowProgram, until: Until, progress: Progress | None
+    program: DynamicProgram | ChainProgram, until: Until, progress: Progress | None
 ) -> Certificate | None:
     """The first proof on cells of many counts."""
     found = (program.prove_on_cells(cells, until, progress) for cells in CELLS)

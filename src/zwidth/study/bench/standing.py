@@ -29,10 +29,10 @@ from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.covering_wall import covering
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.storage import available_storage
+from zwidth.passivity.storage.chain_program import COUNTS, ChainProgram, chain_program
+from zwidth.passivity.storage.chain_table import DoesNotClose
 from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of
-from zwidth.passivity.storage.row_program import COUNTS, RowProgram, row_program
-from zwidth.passivity.storage.row_table import DoesNotClose
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import describe_hands
@@ -278,7 +278,7 @@ def _of_a_row(device: Device, law: Environment) -> tuple[bool, str]:
     return False, "nor does value iteration decide it"
 
 
-def _rounds(program: RowProgram, told: Budget) -> Iterator[bool | Gain | None]:
+def _rounds(program: ChainProgram, told: Budget) -> Iterator[bool | Gain | None]:
     """On finer and finer steps: whether it is proved, or a motion."""
     for steps, fine in zip(STEPS, (*FINE, None, None), strict=True):
         storage = program.prove(steps, progress=told)
@@ -286,12 +286,12 @@ def _rounds(program: RowProgram, told: Budget) -> Iterator[bool | Gain | None]:
         yield None if fine is None else program.refute(fine, progress=told)
 
 
-def _largest(device: Device, law: Environment) -> RowProgram:
+def _largest(device: Device, law: Environment) -> ChainProgram:
     """The dynamic program on the largest domain with no more than `STATES`; a larger one has no fewer."""
     program = None
     for counts in reversed(COUNTS):
         try:
-            program = row_program(device, law, domains=(counts,), most=STATES, **_actuator(device))
+            program = chain_program(device, law, domains=(counts,), most=STATES, **_actuator(device))
         except DoesNotClose:
             if program is None:
                 raise
@@ -305,7 +305,7 @@ def _actuator(device: Device) -> Any:
     return {key: getattr(device, key) is not None for key in ("force_limit", "force_resolution")}
 
 
-def _proved(program: DynamicProgram | RowProgram) -> str:
+def _proved(program: DynamicProgram | ChainProgram) -> str:
     hands = describe_hands(program.hands, program.motion)
     return f"{hands} take no energy out, proved; others may"
 

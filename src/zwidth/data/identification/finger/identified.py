@@ -7,7 +7,7 @@ Gillespie & Cutkosky 1996, as told by others), a whole arm some thousands at the
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -122,9 +122,9 @@ def at_the_stop(log: Log) -> LoadCellError | None:
     return None
 
 
-def doubts(lag: Lag) -> Iterator[Finding]:
+def unseen_lag(lag: Lag) -> Finding:
     """What the lag that may be there makes of the intervals."""
-    yield Finding(
+    return Finding(
         kind="late, or read before the step",
         text="the force of the hand shows the actuator's steps late: either it is read before them, and in "
         f"time, or it is recorded up to {1e3 * lag.most:.2g} ms late; nothing in the log tells which, and "

@@ -38,10 +38,10 @@ from zwidth.data.identification.finger.identified import (
     LoadCellError,
     apart,
     at_the_stop,
-    doubts,
     late,
     refuse_disagreement,
     refuse_scale,
+    unseen_lag,
     widened,
 )
 from zwidth.data.identification.finger.means import (
@@ -264,7 +264,7 @@ def _against_the_other_force(task: _Task, road: _Road) -> tuple[Array, list[Find
     )
     if lag is not None and lag.seen and (lag.sure or (task.known and road.total is not None)):
         raise late(log, lag)
-    said = list(doubts(lag)) if lag is not None and lag.seen else []
+    said = [unseen_lag(lag)] if lag is not None and lag.seen else []
     shift = widened(ways.fit, lag)
     if road.total is None or not task.known:
         return shift, said

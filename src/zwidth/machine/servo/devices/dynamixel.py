@@ -38,7 +38,7 @@ from zwidth.machine.servo.connection import (
     exchanged,
 )
 from zwidth.machine.servo.devices.dynamixel_packets import ALERT, put_read, put_write, receive
-from zwidth.machine.servo.devices.frames import get_signed, unwrapped, unwritten
+from zwidth.machine.servo.devices.frames import counted_on, get_signed, unwritten
 from zwidth.machine.servo.devices.serial_port import BusServo, check_watchdog
 from zwidth.machine.servo.posix import Bytes, discard, write_all
 from zwidth.native.compiled import Array
@@ -103,10 +103,7 @@ def _measure(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
     if inbox[0] != 0 or inbox[5] == _EXPIRED or inbox[6] != 1:  # hardware, watchdog, torque enable
         return REFUSED
     position = float(get_signed(inbox, 1, 4))
-    if memory[SEEN] > 0.0:
-        position = unwrapped(position, memory[BEFORE], COUNTS)
-    memory[BEFORE], memory[SEEN] = position, 1.0
-    memory[READING] = position * (2.0 * math.pi / COUNTS)
+    memory[READING] = counted_on(memory, BEFORE, position, COUNTS) * (2.0 * math.pi / COUNTS)
     return GOOD
 
 

@@ -44,12 +44,12 @@ from zwidth.machine.servo.connection import (
 )
 from zwidth.machine.servo.devices.frames import (
     MOST_READS,
+    counted_on,
     dropped,
     get_unsigned,
     more_bytes,
     put,
     unanswered,
-    unwrapped,
     unwritten,
 )
 from zwidth.machine.servo.devices.serial_port import BusServo
@@ -89,10 +89,7 @@ def _measure(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
     if inbox[0] != 0:
         return REFUSED
     position = float(magnitude(get_unsigned(inbox, 1, 2), _SIGN_OF_POSITION))
-    if memory[SEEN] > 0.0:
-        position = unwrapped(position, memory[BEFORE], COUNTS)
-    memory[BEFORE], memory[SEEN] = position, 1.0
-    memory[READING] = position * (2.0 * math.pi / COUNTS)
+    memory[READING] = counted_on(memory, BEFORE, position, COUNTS) * (2.0 * math.pi / COUNTS)
     return GOOD
 
 

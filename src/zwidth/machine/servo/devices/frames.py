@@ -14,7 +14,7 @@ import numpy as np
 
 from zwidth.machine.servo.connection import CLOSED, GARBLED, SILENT, STALE
 from zwidth.machine.servo.posix import Bytes, now, pause, read_some
-from zwidth.native.compiled import compiled
+from zwidth.native.compiled import Array, compiled
 
 CCITT = 0x1021
 """x¹⁶ + x¹² + x⁵ + 1, of ITU-T V.41."""
@@ -134,9 +134,13 @@ def unwritten(descriptor: int, inbox: Bytes) -> int:
 
 
 @compiled
-def unwrapped(reading: float, before: float, turn: float) -> float:
-    """``reading + n turn`` that is nearest to `before`: a counter that begins anew has not jumped.
+def counted_on(memory: Array, before: int, reading: float, turn: float) -> float:
+    """``reading + n turn`` that is nearest to the one before: a counter that begins anew has not jumped.
 
-    True as long as less than half a turn of the counter passes between two samples.
+    True as long as less than half a turn of the counter passes between two samples.  The one before is
+    remembered in its place, and behind it whether there is one.
     """
-    return reading + turn * floor((before - reading) / turn + 0.5)
+    if memory[before + 1] > 0.0:
+        reading += turn * floor((memory[before] - reading) / turn + 0.5)
+    memory[before], memory[before + 1] = reading, 1.0
+    return reading

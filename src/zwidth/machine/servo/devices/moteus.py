@@ -42,10 +42,10 @@ from zwidth.machine.servo.connection import (
 )
 from zwidth.machine.servo.devices.frames import (
     MOST_READS,
+    counted_on,
     dropped,
     more_bytes,
     unanswered,
-    unwrapped,
     unwritten,
 )
 from zwidth.machine.servo.devices.moteus_frames import (
@@ -127,11 +127,7 @@ def _judged(memory: Array) -> int:
     memory[TOLD] = memory[FAULT]
     if memory[MODE] != OPERATING or not math.isfinite(memory[TURNS]):
         return REFUSED
-    turns = memory[TURNS]
-    if memory[SEEN] > 0.0:
-        turns = unwrapped(turns, memory[BEFORE], _AROUND)
-    memory[BEFORE], memory[SEEN] = turns, 1.0
-    memory[READING] = 2.0 * math.pi * turns
+    memory[READING] = 2.0 * math.pi * counted_on(memory, BEFORE, memory[TURNS], _AROUND)
     return GOOD
 
 

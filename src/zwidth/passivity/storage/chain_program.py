@@ -20,20 +20,20 @@ from zwidth.model.device.friction import FrictionCurve
 from zwidth.model.environment.environment import Environment
 from zwidth.model.operator import PrescribedMotion
 from zwidth.passivity.scope import Contact, Hands, Law
+from zwidth.passivity.storage.chain_document import MOTION, ChainStorage, Run, columns, law_document, same_law
+from zwidth.passivity.storage.chain_table import (
+    MOST_STATES,
+    NO_LAW,
+    ChainGrid,
+    ChainLaw,
+    DoesNotClose,
+    Table,
+    chain_law,
+    tabulate,
+)
 from zwidth.passivity.storage.domain import Domain, Losses, counts_of, losses_of
 from zwidth.passivity.storage.gain import Gain, motion_document
 from zwidth.passivity.storage.hand_bounds import HandBounds, hand_bounds
-from zwidth.passivity.storage.row_document import MOTION, RowStorage, Run, columns, law_document, same_law
-from zwidth.passivity.storage.row_table import (
-    MOST_STATES,
-    NO_LAW,
-    DoesNotClose,
-    RowGrid,
-    RowLaw,
-    Table,
-    row_law,
-    tabulate,
-)
 from zwidth.passivity.storage.value_iteration import Progress, Until, ValueIteration, value_iteration
 from zwidth.passivity.witness.motion import Motion, Repeat
 from zwidth.quantity.exact import RealLike
@@ -46,7 +46,7 @@ USUAL_STATES = 20_000
 
 
 @dataclass(frozen=True, eq=False)
-class RowProgram:
+class ChainProgram:
     """Laws in a chain and one domain, on tables of either approximation; as `DynamicProgram`."""
 
     too_large: ClassVar[None] = None  # a domain that is too large has no table, and no dynamic program
@@ -56,7 +56,7 @@ class RowProgram:
 
     device: Device
     environment: Environment
-    law: RowLaw
+    law: ChainLaw
     losses: Losses
     domain: Domain
     counts: tuple[int, int]
@@ -105,11 +105,11 @@ class RowProgram:
 
     def prove(
         self, steps: int, until: Until | None = None, progress: Progress | None = None
-    ) -> RowStorage | None:
+    ) -> ChainStorage | None:
         """A storage function on so many steps per count, or None."""
-        grid = RowGrid(NO_LAW, self.losses, self.domain, steps, "outer", table=self.table)
+        grid = ChainGrid(NO_LAW, self.losses, self.domain, steps, "outer", table=self.table)
         iteration = value_iteration(grid, until, progress)
-        return None if iteration.value is None else RowStorage(iteration, self.motion, self.law)
+        return None if iteration.value is None else ChainStorage(iteration, self.motion, self.law)
 
     def prove_on_cells(
         self, cells: int, until: Until | None = None, progress: Progress | None = None
@@ -123,12 +123,12 @@ class RowProgram:
             return None
         same = (within.lowest, within.highest) == (self.domain.lowest, self.domain.highest)
         table = self.table if same else tabulate(self.law, within, self.most)
-        grid = RowGrid(NO_LAW, self.losses, within, steps, "inner", table=table)
+        grid = ChainGrid(NO_LAW, self.losses, within, steps, "inner", table=table)
         iteration = value_iteration(grid, until, progress)
         return row_gain(iteration, self.law, self.device, self.environment) if iteration.cycle else None
 
 
-def row_program(
+def chain_program(
     device: Device,
     environment: Environment,
     penetration: RealLike | None = None,
@@ -138,7 +138,7 @@ def row_program(
     friction: FrictionCurve | None = None,
     domains: Sequence[tuple[int, int]] = COUNTS,
     most: int = MOST_STATES,
-) -> RowProgram:
+) -> ChainProgram:
     """The dynamic program of laws in a chain; arguments as for `available_storage`.
 
     `domains` are tried for what is not given: counts on either side, and counts a sample.  On the last
@@ -153,12 +153,12 @@ def row_program(
         highest = max(1, ceil(depth) - 1)
         longest = ceil(max_speed) if max_speed else min(reach, 2 * highest + 1)
         domain = Domain(-highest - 1, highest, longest, depth, max_speed or None)
-        law = row_law(
+        law = chain_law(
             device, environment, domain.lowest, force_limit=force_limit, force_resolution=force_resolution
         )
         last = (far, reach) == tried[-1]
         most_states = most if last else USUAL_STATES
-        program = RowProgram(device, environment, law, losses, domain, (far, reach), most_states)
+        program = ChainProgram(device, environment, law, losses, domain, (far, reach), most_states)
         try:
             _ = program.table
         except DoesNotClose:
@@ -180,7 +180,7 @@ _LONGEST = 2_000_000  # samples that are simulated at most; of a longer motion t
 
 
 def row_gain(
-    iteration: ValueIteration[RowGrid], law: RowLaw, device: Device, environment: Environment
+    iteration: ValueIteration[ChainGrid], law: ChainLaw, device: Device, environment: Environment
 ) -> Gain | None:
     """The cycle of a value iteration as a witness, or None if, run again, it gains nothing.
 
@@ -216,7 +216,7 @@ def row_gain(
 
 
 def _document(
-    grid: RowGrid, cycle: tuple[tuple[int, int], ...], law: RowLaw, halvings: int, motion: str
+    grid: ChainGrid, cycle: tuple[tuple[int, int], ...], law: ChainLaw, halvings: int, motion: str
 ) -> tuple[dict[str, Any], Motion] | None:
     """Way in, one round, and the forces that the law gives; None if no way in is found."""
     resolution, counts = grid.losses.resolution, grid.table.counts
@@ -234,7 +234,7 @@ def _document(
     return {**document, columns(motion)[1]: forces}, path
 
 
-def _way_in(grid: RowGrid, goal: int, end: Fraction, halvings: int) -> list[Fraction] | None:
+def _way_in(grid: ChainGrid, goal: int, end: Fraction, halvings: int) -> list[Fraction] | None:
     """Positions on the shortest way to a state, within each count as near to the next as may be."""
     way = grid.table.way(goal, floor(grid.domain.speed))
     if way is None:
@@ -247,7 +247,7 @@ def _way_in(grid: RowGrid, goal: int, end: Fraction, halvings: int) -> list[Frac
     return [p * grid.losses.resolution for p in reversed(x)]
 
 
-def _slow_way_in(grid: RowGrid, law: RowLaw, round_: list[Fraction]) -> list[Fraction] | None:
+def _slow_way_in(grid: ChainGrid, law: ChainLaw, round_: list[Fraction]) -> list[Fraction] | None:
     """Straight in as fast as may be, then round until the law remembers after a round what it did before."""
     resolution = grid.losses.resolution
     end = round_[0] // resolution
@@ -270,14 +270,14 @@ def _slow_way_in(grid: RowGrid, law: RowLaw, round_: list[Fraction]) -> list[Fra
     return None
 
 
-def _place(grid: RowGrid, node: int, cell: int, halvings: int) -> Fraction:
+def _place(grid: ChainGrid, node: int, cell: int, halvings: int) -> Fraction:
     """Where the hand stands: near an edge a little inside its cell, where no rounding moves the reading."""
     near = Fraction(1, 2**halvings)
     x = Fraction(node, grid.steps)
     return min(max(x, cell + near / 2**8), cell + 1 - near) * grid.losses.resolution
 
 
-def _simulated(path: Motion, law: RowLaw, device: Device, environment: Environment) -> bool:
+def _simulated(path: Motion, law: ChainLaw, device: Device, environment: Environment) -> bool:
     """True if the simulator finds energy coming out: of all of it, or of the last of some rounds."""
     part = path.repeats[0]
     samples = part.last - part.first

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import ceil, floor
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +36,7 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class RowLaw:
+class ChainLaw:
     """Laws in a chain as the simulator runs them."""
 
     packed: Floats  # the numbers of environment and laws, see `loop.law`
@@ -57,7 +57,7 @@ class RowLaw:
         return {n: np.concatenate([row, np.zeros(self.waiting)]) for n, row in self.resting.items()}
 
 
-def row_law(
+def chain_law(
     device: Device,
     environment: Environment,
     lowest: int,
@@ -65,7 +65,7 @@ def row_law(
     only: bool = False,
     force_limit: bool = False,
     force_resolution: bool = False,
-) -> RowLaw:
+) -> ChainLaw:
     """The law of laws in a chain in a device's loop.
 
     `device`, `environment`: without intervals; `lowest`: the first count of the grid: the hand begins at rest
@@ -92,7 +92,7 @@ def row_law(
     packed = setup.law.copy()
     for counted, at in ((force_limit, LIMIT), (force_resolution, STEP)):
         packed[at] = packed[at] if counted else 0.0
-    return RowLaw(
+    return ChainLaw(
         packed=packed,
         resting=resting,
         waiting=ceil(delay) + 1,
@@ -168,7 +168,7 @@ class Table:
         return states[::-1]
 
 
-def tabulate(law: RowLaw, domain: Domain, most: int = MOST_STATES) -> Table:
+def tabulate(law: ChainLaw, domain: Domain, most: int = MOST_STATES) -> Table:
     """All states of a law on a grid."""
     known: dict[bytes, int] = {}
     found = _Found([], [])
@@ -239,10 +239,6 @@ class _Found:
 # a count and a force; within the count the hand stands on a node.
 
 
-if TYPE_CHECKING:
-    pass
-
-
 _MOVE = 2.5e-9  # what a move from a state costs in a round, in the unit of `effort`
 
 NO_LAW = FiniteLaw((), "none")
@@ -250,7 +246,7 @@ NO_LAW = FiniteLaw((), "none")
 
 
 @dataclass(frozen=True, kw_only=True)
-class RowGrid(Grid):
+class ChainGrid(Grid):
     """A grid whose states are those of a table."""
 
     table: Table  # states, forces, and where each reading leads

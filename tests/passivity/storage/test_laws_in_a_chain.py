@@ -19,8 +19,8 @@ from zwidth.loop.kernel import after_every_reading, scratch
 from zwidth.model import rendering
 from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.passivity.storage import same_law
+from zwidth.passivity.storage.chain_document import packed
 from zwidth.passivity.storage.program import program_of
-from zwidth.passivity.storage.row_document import packed
 from zwidth.passivity.witness.motion import saved_motion
 from zwidth.show.plots import storage as storage_figure
 

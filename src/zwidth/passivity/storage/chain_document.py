@@ -23,8 +23,8 @@ from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.specification.write import parsed
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.scope import unit_key
+from zwidth.passivity.storage.chain_table import ChainLaw, DoesNotClose, Table, chain_law, tabulate
 from zwidth.passivity.storage.domain import Domain, losses_of
-from zwidth.passivity.storage.row_table import DoesNotClose, RowLaw, Table, row_law, tabulate
 from zwidth.passivity.storage.storage_function import StorageFunction, loop_document, packed
 
 STORAGE, MOTION = "row storage", "row motion"
@@ -44,7 +44,7 @@ def _raw(value: Any) -> Any:
     return zlib.decompress(base64.b64decode(value)) if isinstance(value, str) else value
 
 
-def law_document(law: RowLaw) -> dict[str, Any]:
+def law_document(law: ChainLaw) -> dict[str, Any]:
     """What the law is, in words and parameters: the table and the forces are its data."""
     return {
         "description": law.description,
@@ -74,7 +74,7 @@ def columns(motion: str) -> tuple[str, str]:
 class Run:
     """Laws in a chain, reading by reading, from a hand that has rested at a count for ever."""
 
-    def __init__(self, law: RowLaw, rest: int) -> None:
+    def __init__(self, law: ChainLaw, rest: int) -> None:
         self._law, self._row = law, law.starts[rest]
 
     def force(self, count: int) -> float:
@@ -113,7 +113,7 @@ def same_law(document: Mapping[str, Any], device: Device, environment: Environme
     if kind == STORAGE:
         grid = document["domain"]
         low, high = int(grid["lowest_count"]), int(grid["highest_count"])
-        law = row_law(device, environment, low, force_limit=limited, force_resolution=stepped)
+        law = chain_law(device, environment, low, force_limit=limited, force_resolution=stepped)
         domain = Domain(low, high, ceil(Fraction(str(grid["largest_move_counts"]))))
         try:
             table = tabulate(law, domain, most=int(document["table"]["states"]))
@@ -154,7 +154,7 @@ def law_of(document: Mapping[str, Any]) -> str | None:
 
 def _work(document: Mapping[str, Any], device: Device, environment: Environment) -> int:
     """Readings that a law has to be stepped through, times the numbers that it remembers."""
-    law = row_law(device, environment, 0)
+    law = chain_law(device, environment, 0)
     remembered = len(law.starts[0])
     if document["kind"] == MOTION:
         return remembered * len(document[columns(device.motion)[0]])
@@ -182,7 +182,7 @@ def _same_motion(
     positions, held = columns(device.motion)
     x = [Fraction(str(v)) for v in document[positions]]
     counts = [int(p // device.exact("resolution")) for p in x]
-    law = row_law(device, environment, counts[0], only=True, force_limit=limited, force_resolution=stepped)
+    law = chain_law(device, environment, counts[0], only=True, force_limit=limited, force_resolution=stepped)
     if counts[0] not in law.resting:
         return False
     run = Run(law, counts[0])
@@ -198,10 +198,10 @@ def _same_motion(
 
 
 @dataclass(frozen=True)
-class RowStorage(StorageFunction):
+class ChainStorage(StorageFunction):
     """The available storage of laws in a chain, from above."""
 
-    law: RowLaw  # the laws as the simulator runs them
+    law: ChainLaw  # the laws as the simulator runs them
 
     def certificate(self) -> Certificate:
         """The proof as data: the table of the law, the losses, the grid, V."""
