@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field
 from functools import cache, cached_property
+from math import isinf
 from pathlib import PurePath
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
@@ -49,7 +50,9 @@ class Told(NamedTuple):
     stands_as
         What of it plain data has, in its place: an attribute by each key.
     optional
-        Left out of plain data where it is None.
+        Left out of plain data where it is None, "", () or False.
+    finite
+        None in plain data, it or an entry of it, where that is infinite.
     only_shown
         No part of plain data.
     """
@@ -63,6 +66,7 @@ class Told(NamedTuple):
     names: tuple[str, ...] = ()
     stands_as: Mapping[str, str] = MappingProxyType({})
     optional: bool = False
+    finite: bool = False
     only_shown: bool = False
 
     def unit_for(self, motion: str) -> str:
@@ -81,11 +85,16 @@ def answered(meaning: str, *, default: Any = ..., **about: Any) -> Any:
     return field(metadata=metadata) if default is ... else field(default=default, metadata=metadata)
 
 
-def answers(meaning: str, **about: Any) -> Callable[[F], F]:
-    """The same of a property, below `@property` or `@cached_property`."""
+def known(meaning: str, **about: Any) -> Any:
+    """The same of a field that plain data has no part of."""
+    return answered(meaning, only_shown=True, **about)
+
+
+def answers(meaning: str = "", **about: Any) -> Callable[[F], F]:
+    """The same of a property, below `@property` or `@cached_property`; "": what its docstring says."""
 
     def declare(function: F) -> F:
-        function.told = Told(meaning, **about)  # type: ignore[attr-defined]
+        function.told = Told(meaning or function.__doc__ or "", **about)  # type: ignore[attr-defined]
         return function
 
     return declare
@@ -114,37 +123,60 @@ def _declared(kind: Any) -> Mapping[str, Told]:
 def data_of(result: object) -> dict[str, Any]:
     """What is declared, as plain data: the unit of each in its key."""
     found: dict[str, Any] = {}
-    motion = getattr(result, "motion", "linear")
+    motion = motion_of(result)
     for name, one in declared(result).items():
-        value = getattr(result, name)
-        if one.only_shown or (one.optional and value is None):
+        if one.only_shown:
             continue
+        value = getattr(result, name)
+        if one.optional and (value is None or value is False or value in ("", ())):
+            continue
+        if one.finite:
+            value = _finite(value)
         if one.stands_as:
-            found |= {key: getattr(value, own, None) for key, own in one.stands_as.items()}
+            found |= {key: plain(getattr(value, own, None)) for key, own in one.stands_as.items()}
         else:
-            found[one.key_for(name, motion)] = plain(value, one.names)
+            found[one.key_for(name, motion)] = plain(value, one.names, motion)
     return found
 
 
-def plain(value: Any, names: Sequence[str] = ()) -> Any:
-    """A value as plain data; entries of a tuple that have names by their names."""
+def motion_of(result: object) -> str:
+    """ "linear" or "rotary": of what a result is about, where it has a scope."""
+    return str(getattr(getattr(result, "scope", result), "motion", "linear"))
+
+
+def plain(value: Any, names: Sequence[str] = (), motion: str = "linear") -> Any:
+    """A value as plain data: entries of a tuple that have names by these, a quantity with its unit."""
     if names and value is not None:
-        return {name: plain(one) for name, one in zip(names, value, strict=True)}
+        return {name: plain(one, (), motion) for name, one in zip(names, value, strict=True)}
+    if isinstance(value, Mapping):
+        return {_keyed(name, motion): plain(one, (), motion) for name, one in value.items()}
     if hasattr(value, "to_dict"):
         return value.to_dict()
     if isinstance(value, (list, tuple)):
-        return [plain(one) for one in value]
+        return [plain(one, (), motion) for one in value]
     return str(value) if isinstance(value, PurePath) else value
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return tuple(map(_finite, value))
+    return None if value is None or isinf(value) else value
+
+
+def _keyed(name: str, motion: str) -> str:
+    return GLOSSARY[name].key_for(motion) if name in GLOSSARY else name
 
 
 def rows_of(result: object) -> Iterator[tuple[str, str]]:
     """What people read: each that has a row, in words and with its unit; a number that is None is "none"."""
-    motion = getattr(result, "motion", "linear")
+    motion = motion_of(result)
     for name, one in declared(result).items():
+        if one.row is None:
+            continue
         value, unit = getattr(result, name), one.unit_for(motion)
         if isinstance(one.row, tuple):
             yield from (
                 (row, shown(part, unit, one.digits)) for row, part in zip(one.row, value, strict=True)
             )
-        elif one.row is not None:
+        else:
             yield one.row, shown(value, unit, one.digits) if unit else str(value)
