@@ -26,7 +26,7 @@ LINES = {
     "machine": 17625,
     "model": 17218,
     "native": 1658,
-    "passivity": 26520,
+    "passivity": 26519,
     "quantity": 1861,
     "show": 8843,
     "study": 5480,

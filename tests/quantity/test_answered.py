@@ -118,4 +118,4 @@ def test_units_are_those_of_the_scope_and_of_quantities_inside() -> None:
         "needs": {"leader": {"damping_N_m_s_per_rad": 1.0}},
     }
     assert _Limits("", (), ("a",)).to_dict()["words"] == ["a"]
-    assert declared(limits)["needs"].meaning == "What is needed."
+    assert declared(limits)["needs"].meaning == "what is needed"

@@ -98,7 +98,7 @@ class FiniteStiffnessReplay(Documented):
         return self.thresholds[_MASSES.index(1.0)]
 
     @property
-    @answers("largest energy of any hand tried, as a part of the ideal one")
+    @answers()
     def best_share(self) -> float:
         """The largest energy of any hand tried, as a part of the ideal one."""
         return max(0.0, *(hand.energy for hand in self.curve)) / self.claimed

@@ -72,8 +72,7 @@ class LinearVerdict(Verdict):
 
     @cached_property
     @answers(
-        "largest passive stiffness, all else as given; null if there is none, if there is no bound, or if "
-        "the law has no stiffness",
+        "largest passive stiffness, all else as given; null if none is, if any is, or if the law has none",
         quantity="stiffness",
     )
     def max_stiffness(self) -> float | None:
@@ -98,7 +97,7 @@ class LinearVerdict(Verdict):
         return parameter_limits.max_gain(self.device, self.environment, self._with_contact_broken)
 
     @cached_property
-    @answers("smallest device damping that would do; null if none would", quantity="damping")
+    @answers(quantity="damping")
     def required_damping(self) -> float | None:
         """Smallest device damping b that hold, delay and law need [N·s/m; N·m·s/rad].
 
@@ -107,7 +106,7 @@ class LinearVerdict(Verdict):
         return parameter_limits.required_damping(self.decision, self._with_contact_broken)
 
     @property
-    @answers("where the linear criterion is tightest", unit="Hz")
+    @answers(unit="Hz")
     def critical_frequency(self) -> float:
         """Frequency at which the linear criterion is tightest [Hz]."""
         return self.budget.frequency

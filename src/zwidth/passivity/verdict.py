@@ -49,9 +49,9 @@ class Verdict(Found):
         return assumptions(self)
 
     @property
-    @answers("the road on which the outcome was found, in a few words")
+    @answers()
     def decided_by(self) -> str:
-        """The road on which the outcome was found."""
+        """The road on which the outcome was found, in a few words."""
         return decided_by(self)
 
     @cached_property
@@ -108,7 +108,10 @@ class Verdict(Found):
             yield Lines(lines)
 
     @property
-    @answers("object: what is left over what is needed, negative if too little")
+    @answers(
+        "object with `damping_N_s_per_m`, and with `coulomb_friction_N` over what the encoder needs: what is "
+        "left over what is needed, negative if too little; null where the need is unbounded"
+    )
     def margins(self) -> Mapping[str, float | None]:
         """What is left of damping and of Coulomb friction over what is needed; < 0 if too little.
 

@@ -91,10 +91,12 @@ def known(meaning: str, **about: Any) -> Any:
 
 
 def answers(meaning: str = "", **about: Any) -> Callable[[F], F]:
-    """The same of a property, below `@property` or `@cached_property`; "": what its docstring says."""
+    """The same of a property, below `@property` or `@cached_property`; by default what its docstring says."""
 
     def declare(function: F) -> F:
-        function.told = Told(meaning or function.__doc__ or "", **about)  # type: ignore[attr-defined]
+        said = " ".join((function.__doc__ or "").partition("\n\n")[0].split()).removesuffix(".")
+        said = said[0].lower() + said[1:] if said[1:2].islower() else said  # "T of the loop" begins with T
+        function.told = Told(meaning or said, **about)  # type: ignore[attr-defined]
         return function
 
     return declare

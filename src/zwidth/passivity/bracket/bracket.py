@@ -68,13 +68,13 @@ class Bracket(Result):
     )
 
     @property
-    @answers("the hands that it is about, in words")
+    @answers()
     def hand(self) -> str:
         """The hands that the bracket is about, in words: "every hand", or bounds."""
         return describe_hands(self.scope.hands, self.scope.motion)
 
     @property
-    @answers("list of texts")
+    @answers()
     def assumptions(self) -> tuple[str, ...]:
         """What the proof covers and takes for granted, line by line."""
         return lines(self.scope)

@@ -79,20 +79,20 @@ class CouplingDesign(Result):
         return check(self.device, self.coupling)
 
     @property
-    @answers("the most that slow motions meet", key="felt_slowly_stiffness", quantity="stiffness")
+    @answers(key="felt_slowly_stiffness", quantity="stiffness")
     def felt_slowly(self) -> float:
         """|Z_c| towards 0 Hz, the most that slow motions meet: K_c [N/m; N·m/rad]."""
         return float(self.stiffness)
 
     @property
-    @answers("the same at half the rate", key="felt_quickly_stiffness", quantity="stiffness")
+    @answers(key="felt_quickly_stiffness", quantity="stiffness")
     def felt_quickly(self) -> float:
         """|Z_c| at half the rate: K_c + 2 B_c/T [N/m; N·m/rad]."""
         period = self.device.exact("sample_period")
         return float(abs(self.stiffness.fraction + 2 * self.damping.fraction / period))
 
     @property
-    @answers("the part of the device damping that is left")
+    @answers()
     def margin(self) -> float:
         """The part of the device damping that is left, (b − need)/b."""
         b, need = self.device.exact("damping"), self.condition.required_damping

@@ -94,7 +94,7 @@ class PassiveMasses(Result):
         return replace(self.verdict.scope, encoder="not counted") if counted else self.verdict.scope
 
     @property
-    @answers("list of texts")
+    @answers()
     def assumptions(self) -> tuple[str, ...]:
         """What is taken for granted, line by line."""
         return (*lines(self.scope), _BETWEEN_ENDS)

@@ -179,8 +179,6 @@ class PairVerdict(PassivityAnswer):
 
     @cached_property
     @answers(
-        "the largest stiffness that is passive, both sides in proportion and all else as given; null if none "
-        "is",
         quantity="stiffness",
     )
     def largest_stiffness(self) -> float | None:
@@ -246,7 +244,7 @@ class PairVerdict(PassivityAnswer):
         return None if largest is None else largest - float(self.pair.felt_stiffness)
 
     @property
-    @answers("what binds")
+    @answers()
     def limit(self) -> str:
         """What binds."""
         if self.outcome == "passive":

@@ -81,7 +81,7 @@ class ToleratedActivity(Result):
     loop: LinearLoop = known("device and H(z), exact")
 
     @property
-    @answers("list of texts")
+    @answers()
     def assumptions(self) -> tuple[str, ...]:
         """What the first number rests on, line by line."""
         return (

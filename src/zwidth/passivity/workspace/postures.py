@@ -94,7 +94,7 @@ class PostureMap(PassivityAnswer):
         return "undecided" if self.motion is None else "active"
 
     @cached_property
-    @answers("the stiffest wall of this kind at every posture tried; null in pose", unit="N/m")
+    @answers(unit="N/m")
     def largest_stiffness(self) -> float | None:
         """The stiffest wall of this kind at every posture tried [N/m]; None of a wall in pose."""
         wall, arm = self.question.wall, self.question.arm

@@ -73,7 +73,7 @@ class Workspace(PassivityAnswer):
         "computed once a sample"
     )
     encoder: str = answered(
-        '`"counted"`: [the claim is of](arms.md#encoders) the wall\'s force and the Jacobian at the '
+        '`"counted"`: the claim is of the wall\'s force and the Jacobian at the '
         'readings; `"ideal"`: of an arm that is read without steps'
     )
     largest_forces: tuple[float, ...] = known(
@@ -94,23 +94,22 @@ class Workspace(PassivityAnswer):
 
     @property
     @answers(
-        "a list: damping that, given to this joint alone, proves the region; null where none does",
         key="addition_to_one",
         unit="N*m*s/rad",
         finite=True,
     )
     def additions(self) -> tuple[float, ...]:
-        """The damping that, given to one joint alone, proves the region; ∞ where none does [N·m·s/rad]."""
+        """The damping that, given to one joint alone, proves the region; ∞, null, where none [N·m·s/rad]."""
         return tuple(addition.enough[joint] for joint, addition in enumerate(self.added.alone))
 
     @property
-    @answers("damping that, given to every joint, proves the region", unit="N*m*s/rad")
+    @answers(unit="N*m*s/rad")
     def addition_to_all(self) -> float:
         """The damping that, given to every joint, proves the region [N·m·s/rad]."""
         return self.added.to_all.enough[0]
 
     @property
-    @answers("a list: damping with the smallest sum that does, for each joint", unit="N*m*s/rad")
+    @answers(unit="N*m*s/rad")
     def least_additions(self) -> tuple[float, ...]:
         """The damping of the joints, of a small sum, that proves the region [N·m·s/rad]."""
         return self.added.least.enough

@@ -178,7 +178,7 @@ class HeldVerdict(PassivityAnswer):
         yield from assumed_of_arms(self.pair)
 
     @cached_property
-    @answers("as of two hands, with just this hand", quantity="stiffness")
+    @answers(quantity="stiffness")
     def largest_stiffness(self) -> float | None:
         """The largest K, both sides in proportion and all else as it is, that is passive; None if none is.
 
@@ -217,7 +217,7 @@ class HeldVerdict(PassivityAnswer):
         return None if largest is None else largest - float(self.pair.felt_stiffness)
 
     @property
-    @answers("what binds")
+    @answers()
     def limit(self) -> str:
         """What binds."""
         criterion, free = HeldCriterion(self.question), self.question.free

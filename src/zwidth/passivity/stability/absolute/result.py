@@ -62,7 +62,7 @@ class AbsoluteStability(Result):
     plant: Plant = known("G, rounded")
 
     @property
-    @answers("what it is about")
+    @answers()
     def scope(self) -> Scope:
         """One plant of a known hand and device, with any spring of the class, touched and left at will."""
         hands = Hands(impedance="the plant G(z)")
