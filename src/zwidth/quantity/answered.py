@@ -122,13 +122,17 @@ def _declared(kind: Any) -> Mapping[str, Told]:
     return found
 
 
+@cache
+def _in_data(kind: Any, motion: str) -> list[tuple[str, str, Told]]:
+    told = _declared(kind).items()
+    return [(name, one.key_for(name, motion), one) for name, one in told if not one.only_shown]
+
+
 def data_of(result: object) -> dict[str, Any]:
     """What is declared, as plain data: the unit of each in its key."""
     found: dict[str, Any] = {}
     motion = motion_of(result)
-    for name, one in declared(result).items():
-        if one.only_shown:
-            continue
+    for name, key, one in _in_data(type(result), motion):
         value = getattr(result, name)
         if one.optional and (value is None or value is False or value in ("", ())):
             continue
@@ -137,7 +141,7 @@ def data_of(result: object) -> dict[str, Any]:
         if one.stands_as:
             found |= {key: plain(getattr(value, own, None)) for key, own in one.stands_as.items()}
         else:
-            found[one.key_for(name, motion)] = plain(value, one.names, motion)
+            found[key] = plain(value, one.names, motion)
     return found
 
 
