@@ -22,7 +22,7 @@ from functools import cache, cached_property
 from math import isinf
 from pathlib import PurePath
 from types import MappingProxyType
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar, cast
 
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import shown
@@ -131,8 +131,8 @@ def _in_data(kind: Any, motion: str) -> list[tuple[str, str, Told]]:
 def data_of(result: object) -> dict[str, Any]:
     """What is declared, as plain data: the unit of each in its key."""
     found: dict[str, Any] = {}
-    motion = motion_of(result)
-    for name, key, one in _in_data(type(result), motion):
+    kind, motion = cast("Any", type(result)), motion_of(result)
+    for name, key, one in _in_data(kind, motion):
         value = getattr(result, name)
         if one.optional and (value is None or value is False or value in ("", ())):
             continue
