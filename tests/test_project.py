@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from json_page import json_page
 from scipy.signal import TransferFunction
 
 import zwidth as zw
@@ -391,7 +392,7 @@ def test_every_option_in_the_help_is_on_the_command_line_page(command: str) -> N
 
 def test_every_key_of_the_json_is_on_its_page() -> None:
     """Whoever reads a verdict by program finds each of its keys explained."""
-    page = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
+    page = json_page()
     paddle = zw.catalogue.device("haptic-paddle")
     delayed = paddle.replace(delay=0.0003)
     solid = zw.StandardLinearSolid(

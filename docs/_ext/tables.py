@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from importlib import import_module
@@ -238,26 +239,40 @@ def plants() -> str:
 
 
 ANSWERS = {
+    "activity": "passivity.stability.active_hand:ToleratedActivity",
     "change": "data.diagnosis.change:Lowered",
     "checkup": "machine.servo.checkup:Checkup",
     "diagnosis": "data.diagnosis.result:Diagnosis",
     "finding": "machine.servo.checkup:Finding",
     "gains": "data.gains.verdict:GainsVerdict",
     "held_joints": "data.gains.held_joints:HeldJoints",
+    "held_pair": "passivity.pairs.held.verdict:HeldVerdict",
     "identified": "data.identification.device.numbers:IdentifiedNumbers",
     "joint_gains": "data.gains.joint:JointGains",
     "joint_verdict": "data.gains.verdict:JointVerdict",
     "lateness": "machine.servo.lateness:Lateness",
+    "limit": "passivity.bracket.bracket:Bracket",
     "link": "machine.network.peer:LinkReport",
     "measured": "machine.servo.proving:Measured",
+    "null_space": "passivity.workspace.null_space:NullSpace",
+    "pair": "passivity.pairs.verdict:PairVerdict",
     "peer": "machine.network.peer:PeerReport",
+    "postures": "passivity.workspace.postures:PostureMap",
+    "ranges": "passivity.interval_devices:OverRanges",
+    "real_hand": "passivity.finite_stiffness:FiniteStiffnessReplay",
     "recorded": "machine.servo.recording.recorder:Recorded",
     "recording": "machine.servo.recording.recording:Recording",
+    "scope": "passivity.scope:Scope",
     "served": "machine.servo.report:ServoReport",
     "served_pair": "machine.servo.report:PairServoReport",
     "served_port": "machine.servo.report:PortReport",
+    "shaking_hand": "passivity.stability.shaking_hand:ShakingHand",
+    "stability": "passivity.stability.known_hand:Stability",
+    "stiffness_at": "passivity.pairs.limits:StiffnessAt",
     "stiffness_cost": "machine.servo.lateness:StiffnessCost",
     "tissue": "data.tissue.result:TissueFit",
+    "verdict": "passivity.linear_verdict:LinearVerdict",
+    "workspace": "passivity.workspace.verdict:Workspace",
 }
 """Results whose keys a page lists: where each is declared."""
 
@@ -271,8 +286,16 @@ def answer(where: str) -> str:
         if not one.only_shown:
             keys = one.stands_as or [one.key_for(name, "linear")]
             parts = f": {', '.join(f'`{part}`' for part in one.names)}" if one.names else ""
-            rows.append((", ".join(f"`{key}`" for key in keys), one.meaning.replace("|", "\\|") + parts))
+            rows.append((", ".join(f"`{key}`" for key in keys), _in_a_cell(one.meaning) + parts))
     return markdown(("key", "value"), rows)
+
+
+def _in_a_cell(meaning: str) -> str:
+    """In the words of a file: what a docstring says too."""
+    text = re.sub(r" \[[^]]*\](?!\()", "", meaning)
+    for python, name in (("None", "null"), ("True", "true"), ("False", "false")):
+        text = re.sub(rf"\b{python}\b", name, text)
+    return text.replace("|", "\\|")
 
 
 def _options(parameters: Iterable[Parameter]) -> str:

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from json_page import json_page
 
 import zwidth as zw
 from zwidth.cli.main import main
@@ -70,7 +71,7 @@ def test_what_is_saved_is_verified(file, argv, words, tmp_path, capsys):
 
 def test_every_key_of_the_json_is_on_its_page(file, capsys):
     """Of both outcomes."""
-    page = (Path(__file__).resolve().parents[2] / "docs" / "json.md").read_text(encoding="utf-8")
+    page = json_page()
     for argv in (KNOWN, ["--follower-operator", "nobody"]):
         told = answer(capsys, file, *argv)
         keys = {*told, *told["held"], *told["required"]["leader"]}

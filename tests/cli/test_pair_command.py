@@ -8,6 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from json_page import json_page
 
 import zwidth as zw
 from zwidth.cli.main import main
@@ -185,7 +186,7 @@ def _changed(pair: zw.Pair, parameter: str, to: float) -> zw.Pair:
 
 def test_every_key_of_the_json_is_on_its_page(files, capsys):
     """Whoever reads it by program finds each key explained, of the proof and of the motion too."""
-    page = Path(__file__).parents[2].joinpath("docs", "json.md").read_text(encoding="utf-8")
+    page = json_page()
 
     def keys(value: object) -> set[str]:
         if isinstance(value, dict):

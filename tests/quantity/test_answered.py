@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from zwidth.quantity.answered import answered, answers, data_of, declared, plain, rows_of
+from zwidth.quantity.answered import answered, answers, data_of, declared, known, plain, rows_of
 from zwidth.quantity.documented import Documented
 
 
@@ -27,7 +27,7 @@ class _Pressed(Documented):
     late: tuple[float, float] = answered("late", unit="s", names=("half", "all"), row=("half", "at most"))
     part: _Part | None = answered("a part", default=None)
     cut: bool | None = answered("only where it was cut", default=None, optional=True)
-    note: str = answered("for a screen", default="", only_shown=True)
+    note: str = known("for a screen", default="")
     file: Path = answered("where it is", default=Path("a", "b"))
 
     @property
@@ -61,10 +61,10 @@ def test_plain_data_has_the_unit_of_the_motion_in_each_key() -> None:
 class _Seen:
     """Neither saved nor shown by itself."""
 
-    silent: float = answered("since it was heard", unit="s")
+    silent: float = answered("since it was heard", unit="s", finite=True)
 
     @property
-    @answers(unit="s")
+    @answers(unit="s", finite=True)
     def twice(self) -> tuple[float, float]:
         """Twice as
         long.
@@ -107,3 +107,44 @@ def test_what_is_declared_is_known_of_class_and_result() -> None:
     """Fields first, then what is computed."""
     names = ["motion", "stiffness", "late", "part", "cut", "note", "file", "twice", "inner"]
     assert list(declared(_Pressed)) == list(declared(_Pressed("linear", 1, (0, 0)))) == names
+
+
+@dataclass(frozen=True)
+class _About:
+    motion: str
+
+
+@dataclass(frozen=True, repr=False)
+class _Limits(Documented):
+    motion: str = known("no unit: how the hand moves")
+    factors: tuple[float | None, ...] = answered("what may be", unit="N", finite=True)
+    words: tuple[str, ...] = answered("if any", optional=True, default=())
+    nothing: float | None = answered("if known", optional=True, default=0.0)
+
+    @property
+    def scope(self) -> _About:
+        return _About("rotary")
+
+    @property
+    @answers(quantities=True)
+    def needs(self) -> dict[str, dict[str, float]]:
+        """What is needed."""
+        return {"leader": {"damping": 1.0}}
+
+    @property
+    @answers("how likely each cause is")
+    def likely(self) -> dict[str, float]:
+        return {"delay": 0.5}
+
+
+def test_units_are_those_of_the_scope_and_of_quantities_inside() -> None:
+    """What is without bound is null, what is empty is left out, a 0 is not; a docstring says what it is."""
+    limits = _Limits("to and fro", (inf, None, 2.0))
+    assert limits.to_dict() == {
+        "factors_N": [None, None, 2.0],
+        "nothing": 0.0,
+        "needs": {"leader": {"damping_N_m_s_per_rad": 1.0}},
+        "likely": {"delay": 0.5},
+    }
+    assert _Limits("", (), ("a",)).to_dict()["words"] == ["a"]
+    assert declared(limits)["needs"].meaning == "what is needed"

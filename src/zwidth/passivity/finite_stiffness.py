@@ -27,6 +27,7 @@ from zwidth.passivity.scope import unit_key
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
+from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.text import told_quantity
 from zwidth.showing import Part, Table
@@ -68,36 +69,28 @@ class Threshold(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class FiniteStiffnessReplay(Documented):
-    """A witness replayed by the ideal hand and by hands of finite stiffness.
-
-    Attributes
-    ----------
-    rounds, rounds_found
-        How often the repeated part of the motion is done here, and in the witness.
-    claimed
-        Energy that the motion, with so many rounds, extracts by exact arithmetic [J].
-    replayed
-        Energy that the simulator finds in the same prescribed motion [J].
-    damping_ratio
-        ζ of the hand on the device's mass.
-    curve
-        Stiffness [N/m; N·m/rad], bandwidth [Hz] and energy got out [J] of each hand tried.
-    thresholds
-        The softest hand that gets anything out, for a quarter, once and four times the mass.
-    motion
-        "linear" or "rotary".
-    """
+    """A witness replayed by the ideal hand and by hands of finite stiffness."""
 
     FORMAT = "zwidth real hand 1"
 
-    rounds: int
-    rounds_found: int
-    claimed: float
-    replayed: float
-    damping_ratio: float
-    curve: tuple[Reached, ...]
-    thresholds: tuple[Threshold, ...]
-    motion: str
+    rounds: int = answered("how often the repeated part of the motion is done here")
+    rounds_found: int = answered("the same in the witness")
+    claimed: float = answered(
+        "energy that the motion, with so many rounds, extracts by exact arithmetic",
+        key="energy_claimed",
+        unit="J",
+    )
+    replayed: float = answered(
+        "energy that the simulator finds in the same prescribed motion", key="energy_replayed", unit="J"
+    )
+    damping_ratio: float = answered("ζ of the hand on the device's mass")
+    curve: tuple[Reached, ...] = known(
+        "stiffness [N/m; N·m/rad], bandwidth [Hz] and energy got out [J] of each hand tried"
+    )
+    thresholds: tuple[Threshold, ...] = known(
+        "the softest hand that gets anything out, for a quarter, once and four times the mass"
+    )
+    motion: str = known('"linear" or "rotary"')
 
     @property
     def softest(self) -> Threshold:
@@ -105,6 +98,7 @@ class FiniteStiffnessReplay(Documented):
         return self.thresholds[_MASSES.index(1.0)]
 
     @property
+    @answers()
     def best_share(self) -> float:
         """The largest energy of any hand tried, as a part of the ideal one."""
         return max(0.0, *(hand.energy for hand in self.curve)) / self.claimed
@@ -113,13 +107,7 @@ class FiniteStiffnessReplay(Documented):
         """Plain data, units in the keys."""
         k, m = (unit_key(name, self.motion) for name in ("stiffness", "mass"))
         return {
-            "format": self.FORMAT,
-            "rounds": self.rounds,
-            "rounds_found": self.rounds_found,
-            "energy_claimed_J": self.claimed,
-            "energy_replayed_J": self.replayed,
-            "damping_ratio": self.damping_ratio,
-            "best_share": self.best_share,
+            **super().to_dict(),
             "hands": [
                 {k: h.stiffness, "bandwidth_Hz": h.bandwidth, "energy_J": h.energy} for h in self.curve
             ],

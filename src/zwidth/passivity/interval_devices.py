@@ -26,6 +26,7 @@ from zwidth.passivity.linear.boundary import COARSER, largest_holding, smallest_
 from zwidth.passivity.parameter_limits import has_stiffness, provable, stiffness_of
 from zwidth.passivity.scope import unit_key
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.answered import answered, data_of, known
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
@@ -49,14 +50,25 @@ class Measure(NamedTuple):
 class OverRanges:
     """What holds over the ranges of a device."""
 
-    name: str  # of the device
-    ranges: Mapping[str, Range]  # what is stated, by parameter of the device
-    motion: str  # "linear" or "rotary"
-    # a stiffness up to which a wall is proved passive for every device in the ranges [N/m; N·m/rad], all else
-    # as asked; 0 where none is, None where the law has no stiffness
-    every: float | None
-    best: float | None  # the same for the most favourable device
-    first: Measure | None  # what to measure first; None where nothing is left to know, or it cannot be told
+    name: str = known("of the device")
+    ranges: Mapping[str, Range] = known("what is stated, by parameter of the device")
+    motion: str = known('"linear" or "rotary"')
+    every: float | None = answered(
+        "a stiffness up to which a wall is proved passive for every device in the ranges, all else as asked; "
+        "0 where none is, null where the law has no stiffness or any is passive",
+        key="passive_for_every_device_stiffness",
+        quantity="stiffness",
+        finite=True,
+    )
+    best: float | None = answered(
+        "the same for the most favourable device",
+        key="passive_for_the_best_device_stiffness",
+        quantity="stiffness",
+        finite=True,
+    )
+    first: Measure | None = known(
+        "what to measure first; None where nothing is left to know, or it cannot be told"
+    )
 
     def rows(self) -> Iterator[tuple[str, str]]:
         """What holds for every device, what to measure first, what is stated."""
@@ -92,12 +104,7 @@ class OverRanges:
             enough = {unit_key(self.first.key, self.motion): self.first.enough}
             times = self.first.times if isfinite(self.first.times) else None
             first = {"parameter": self.first.key, "enough": enough, "times_the_stiffness": times}
-        return {
-            "stated": ranges,
-            f"passive_for_every_device_{unit_key('stiffness', self.motion)}": _finite(self.every),
-            f"passive_for_the_best_device_{unit_key('stiffness', self.motion)}": _finite(self.best),
-            "measure_first": first,
-        }
+        return {"stated": ranges, **data_of(self), "measure_first": first}
 
     def _stiffness(self) -> str:
         assert self.every is not None
@@ -115,10 +122,6 @@ class OverRanges:
             return f"{name}: if it is {side} {enough}, this is passive for every device in the other ranges"
         grows = "from none" if first.times == inf else f"{first.times:.2g} times"
         return f"{name}: over its range the largest stiffness grows {grows}, more than over any other"
-
-
-def _finite(value: float | None) -> float | None:
-    return None if value == inf else value
 
 
 def _key(key: str, own: Range) -> str:

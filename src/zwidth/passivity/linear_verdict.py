@@ -19,27 +19,18 @@ from zwidth.passivity.formulas.diolaiti import admissible_speed
 from zwidth.passivity.loop_advice import Asked, advise
 from zwidth.passivity.scope import Contact
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.glossary import GLOSSARY, unit_suffix
+from zwidth.quantity.answered import answers, known
+from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import at_most, enough, in_unit, in_words
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class LinearVerdict(Verdict):
-    """A verdict on a law that is H(z) inside, with its numbers.
+    """A verdict on a law that is H(z) inside, with its numbers."""
 
-    Attributes
-    ----------
-    decision
-        What is known of the loop, at the worst corner where intervals were given.
-    box
-        The loop with its intervals; None where it was not kept.
-    asked
-        Of which contact.
-    """
-
-    decision: Decision
-    box: Loop | None = None
-    asked: Contact = "made and broken"
+    decision: Decision = known("what is known of the loop, at the worst corner where intervals were given")
+    box: Loop | None = known("the loop with its intervals; None where it was not kept", default=None)
+    asked: Contact = known("of which contact", default="made and broken")
 
     @cached_property
     def budget(self) -> Budget:
@@ -47,6 +38,7 @@ class LinearVerdict(Verdict):
         return budget(self.decision)
 
     @cached_property
+    @answers('the mechanism that binds, such as `"sampling against viscous damping"`')
     def limit(self) -> str:
         """The mechanism that binds: what is violated, or would be first."""
         if self._in_contact_only:
@@ -68,6 +60,7 @@ class LinearVerdict(Verdict):
         return self._in_contact_only or (proved and not self.decision.is_spring)
 
     @property
+    @answers('how a violation shows itself: `"active tactile"`, `"closed-loop instability"`; null if passive')
     def mode(self) -> str | None:
         """How a violation shows itself (Abbott & Okamura 2005, section IV-C).
 
@@ -78,6 +71,10 @@ class LinearVerdict(Verdict):
         return "active tactile" if self.limit == QUANTIZATION else "closed-loop instability"
 
     @cached_property
+    @answers(
+        "largest passive stiffness, all else as given; null if none is, if any is, or if the law has none",
+        quantity="stiffness",
+    )
     def max_stiffness(self) -> float | None:
         """Largest passive stiffness K, all else as given [N/m; N·m/rad].
 
@@ -100,6 +97,7 @@ class LinearVerdict(Verdict):
         return parameter_limits.max_gain(self.device, self.environment, self._with_contact_broken)
 
     @cached_property
+    @answers(quantity="damping")
     def required_damping(self) -> float | None:
         """Smallest device damping b that hold, delay and law need [N·s/m; N·m·s/rad].
 
@@ -108,11 +106,18 @@ class LinearVerdict(Verdict):
         return parameter_limits.required_damping(self.decision, self._with_contact_broken)
 
     @property
+    @answers(unit="Hz")
     def critical_frequency(self) -> float:
         """Frequency at which the linear criterion is tightest [Hz]."""
         return self.budget.frequency
 
     @cached_property
+    @answers(
+        "only for an active spring wall without delay: the speed of the hand up to which Coulomb friction "
+        "still outweighs the leak of the hold, (2f_c − K Δ)/(K T − 2b)",
+        quantity="velocity",
+        optional=True,
+    )
     def admissible_speed(self) -> float | None:
         """Hand speed up to which an active spring wall still gives out no energy [m/s; rad/s].
 
@@ -170,21 +175,9 @@ class LinearVerdict(Verdict):
 
     def numbers(self) -> dict[str, Any]:
         """Limits, margins and advice as plain data, a unit in every key of a physical quantity."""
-        motion = self.device.motion
-
-        def key(prefix: str, quantity: str) -> str:
-            return f"{prefix}_{unit_suffix(GLOSSARY[quantity].unit_for(motion))}"
-
-        document = {**super().numbers(), "limit": self.limit, "mode": self.mode}
-        document[key("max_stiffness", "stiffness")] = self.max_stiffness
-        if not parameter_limits.has_stiffness(self.environment):
-            document["max_gain"] = self.max_gain
-        document[key("required_damping", "damping")] = self.required_damping
-        document["critical_frequency_Hz"] = self.critical_frequency
-        if self.admissible_speed is not None:
-            document[f"admissible_speed_{unit_suffix(self.device.unit('velocity'))}"] = self.admissible_speed
-        document["actuator"] = [{"name": c.name, "ok": c.ok, "text": c.text} for c in self.actuator]
-        return document
+        gain = {} if parameter_limits.has_stiffness(self.environment) else {"max_gain": self.max_gain}
+        checks = [{"name": c.name, "ok": c.ok, "text": c.text} for c in self.actuator]
+        return {**super().numbers(), **gain, "actuator": checks}
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""

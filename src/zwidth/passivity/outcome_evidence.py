@@ -17,6 +17,7 @@ from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import claim_of_passivity, describe_hands, intervals, lines
+from zwidth.quantity.answered import known
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import enough, in_unit, in_words
 
@@ -50,23 +51,30 @@ class Need(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class Found(PassivityAnswer):
-    """What was found of a sampled loop: the outcome, what it is about, and the evidence.
+    """What was found of a sampled loop: the outcome, what it is about, and the evidence."""
 
-    `Verdict` is this in words, and says what each entry is.
-    """
-
-    outcome: Outcome
-    scope: Scope
-    device: Device
-    environment: Environment
-    certificate: Certificate | None = None
-    violation: Violation | EndlessPull | None = None
-    motion: Witness | Gain | None = None
-    available_storage: AvailableStorage | None = None
-    finding: Finding = "open"
-    at_limit: bool = False
-    theorem: str = ""
-    needs: tuple[Need, ...] = ()
+    outcome: Outcome = known(
+        '"passive", "passive in contact", "passive without encoder steps", "theorem", "active" or "undecided"'
+    )
+    scope: Scope = known("what it is about: hands, contact, encoder, actuator")
+    device: Device = known("the one decided: of the worst corner where intervals were given")
+    environment: Environment = known("likewise")
+    certificate: Certificate | None = known('the proof of "passive"; else None', default=None)
+    violation: Violation | EndlessPull | None = known(
+        'what of the linear criterion is violated, a proof of "active"; or so at the worst corner of an '
+        "interval; None for a loop that is active by its encoder, or by contact made and broken",
+        default=None,
+    )
+    motion: Witness | Gain | None = known("where it was needed to decide; see `witness`", default=None)
+    available_storage: AvailableStorage | None = known(
+        "what value iteration adds, where the closed forms leave a gap: a motion, then also the `witness`; "
+        "or a proof for hands within bounds",
+        default=None,
+    )
+    finding: Finding = known("why it is undecided", default="open")
+    at_limit: bool = known("True where the least less of b or f_c would lose the proof", default=False)
+    theorem: str = known('what is proved on paper, where the outcome is "theorem"', default="")
+    needs: tuple[Need, ...] = known("what of the device is proved enough, where that is known", default=())
 
     @property
     def is_proved(self) -> bool:

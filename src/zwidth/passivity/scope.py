@@ -7,7 +7,7 @@ independent checker found in the proof.  With it stand the outcomes, and proofs 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from types import MappingProxyType
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from zwidth.errors import InputError
 from zwidth.passivity.linear.loop import LinearLoop
+from zwidth.quantity.answered import answered, data_of, known
 from zwidth.quantity.exact import Interval, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text
@@ -63,34 +64,27 @@ Also = Literal["springs", "clamped"]
 
 @dataclass(frozen=True, kw_only=True)
 class Hands:
-    """Which hands: every hand, unless a bound stands here.
+    """Which hands: every hand, unless a bound stands here."""
 
-    Parameters
-    ----------
-    speed
-        Largest mean speed over a sample, or over `part` of one [m/s; rad/s].
-    in_each_part
-        True if the bound on speed is for each part of a sample with one force.
-    inside, outside
-        How deep, and how far outside it goes [m; rad]; None: any distance.
-    counts_a_sample, counts_inside
-        The speed and the depth in counts of the encoder, told beside them; None: they are not.
-    impedance
-        The one hand that is known, in words; None for all others.
-    activity, below
-        What a hand gives out at most, as a damping [N·s/m; N·m·s/rad], at frequencies below this [Hz]; None:
-        at all.
-    """
-
-    speed: float | None = None
-    in_each_part: bool = False
-    inside: float | None = None
-    outside: float | None = None
-    counts_a_sample: float | None = None
-    counts_inside: float | None = None
-    impedance: str | None = None
-    activity: float | None = None
-    below: float | None = None
+    speed: float | None = known(
+        "largest mean speed over a sample, or over `part` of one", quantity="speed", default=None
+    )
+    in_each_part: bool = known(
+        "True if the bound on speed is for each part of a sample with one force", default=False
+    )
+    inside: float | None = known("how deep it goes; None: any depth", quantity="position", default=None)
+    outside: float | None = known(
+        "how far outside it goes; None: any distance", quantity="position", default=None
+    )
+    counts_a_sample: float | None = known(
+        "the speed in counts of the encoder, told beside it; None: it is not", default=None
+    )
+    counts_inside: float | None = known("the depth likewise", default=None)
+    impedance: str | None = known("the one hand that is known, in words; None for all others", default=None)
+    activity: float | None = known(
+        "what a hand gives out at most, as a damping; None: no such bound", quantity="damping", default=None
+    )
+    below: float | None = known("at frequencies below this; None: at all", unit="Hz", default=None)
 
     @property
     def every(self) -> bool:
@@ -100,76 +94,94 @@ class Hands:
 
 @dataclass(frozen=True, kw_only=True)
 class Scope:
-    """What a result is about.
+    """What a result is about."""
 
-    Parameters
-    ----------
-    hands
-        Which hands.
-    contact
-        Made and broken, kept, or with a law on both sides.  Of a motion that takes energy out: what it does.
-    encoder
-        Whether the encoder's steps are in it.
-    force_limit, force_steps
-        Whether the actuator's force limit, and its converter's steps, are in it; else the actuator is ideal.
-    largest_force, largest_moment
-        Forces of the wall [N; N·m], and of an arm in pose moments [N·m], up to which it holds; None: any.
-    transmission
-        What is between motor, encoder and hand: no claim counts what gives way there.
-    torque
-        Of an arm: what becomes of the torque within a period; "" for a device of one axis.
-    sampling
-        What is asked of the clock.
-    damping, coulomb_friction
-        b [N·s/m; N·m·s/rad] and f_c [N; N·m] that the device takes out at least; None where `friction` says
-        it, or where there are several joints.
-    friction_speed
-        Speed up to which the device's friction was measured [m/s; rad/s]; None: it is taken for every speed.
-    friction
-        The measured curve in the place of both, or None.
-    fed_with
-        What a law with a memory must be fed with for a proof to hold; "": either.
-    clamped
-        True if the law never pulls: a force below 0 is given as 0.
-    region
-        Where in its workspace an arm is, in words; None for a device of one axis.
-    intervals
-        Parameters that stand for every value in an interval.
-    bounds
-        The ends of those that are the device's: (parameter, low, high), SI.
-    assumed
-        Parameters of the device that were not given and are taken as 0.
-    law
-        What of the law is not exact, or not looked at.
-    also
-        What else a proof covers.
-    motion
-        "linear" or "rotary": the units.
-    """
-
-    hands: Hands = Hands()
-    contact: Contact = "made and broken"
-    encoder: Encoder = "ideal"
-    force_limit: bool = False
-    force_steps: bool = False
-    largest_force: float | None = None
-    largest_moment: float | None = None
-    transmission: Transmission = "rigid"
-    torque: Torque = ""
-    sampling: Sampling = "constant"
-    damping: float | None = None
-    coulomb_friction: float | None = None
-    friction_speed: float | None = None
-    friction: FrictionCurve | None = None
-    fed_with: FedWith = ""
-    clamped: bool = False
-    region: str | None = None
-    intervals: tuple[str, ...] = ()
-    bounds: tuple[tuple[str, float, float], ...] = ()
-    assumed: tuple[str, ...] = ()
-    law: tuple[Law, ...] = ()
-    also: tuple[Also, ...] = ()
-    motion: str = "linear"
+    hands: Hands = known("which hands", default=Hands())
+    contact: Contact = answered(
+        '`"made and broken"` at will, `"kept"`, or `"both sides"`: the law has no surface. Of a motion that '
+        "takes energy out: what it does",
+        default="made and broken",
+    )
+    encoder: Encoder = answered(
+        '`"ideal"`, `"counted"`: its steps are in the proof, or `"not counted"`', default="ideal"
+    )
+    force_limit: bool = answered(
+        "whether the actuator's force limit is in the proof; else it is ideal",
+        key="force_limit_counted",
+        default=False,
+    )
+    force_steps: bool = answered(
+        "the same of its converter's steps", key="force_steps_counted", default=False
+    )
+    largest_force: float | None = answered(
+        "force of the wall up to which it holds; missing for any",
+        quantity="force",
+        key="largest_force",
+        optional=True,
+        default=None,
+    )
+    largest_moment: float | None = answered(
+        "of an arm in pose, its moment likewise", unit="N*m", optional=True, default=None
+    )
+    transmission: Transmission = answered(
+        '`"rigid"`: motor, encoder and hand move as one, no cable, belt or gear gives way between them; no '
+        "claim counts what gives way there. Missing where there is no device",
+        optional=True,
+        default="rigid",
+    )
+    torque: Torque = answered(
+        'of an arm, what becomes of the torque within a period: `"follows the arm"`, `"follows the readings"`'
+        ' or `"held"`',
+        optional=True,
+        default="",
+    )
+    sampling: Sampling = answered('`"constant"`, period and delay; or `"any"`', default="constant")
+    damping: float | None = answered(
+        "b that the device takes out at least; null where a curve says it, where there are several joints, "
+        "or where it is left out",
+        quantity="damping",
+        default=None,
+    )
+    coulomb_friction: float | None = answered("f_c likewise", quantity="coulomb_friction", default=None)
+    friction_speed: float | None = answered(
+        "only where it is known: the speed up to which the friction was measured; else it is taken for every "
+        "speed",
+        quantity="friction_speed",
+        optional=True,
+        default=None,
+    )
+    friction: FrictionCurve | None = known("the measured curve in the place of both, or None", default=None)
+    fed_with: FedWith = answered(
+        "only where it matters: what the law's memory must be fed with for a proof to hold, "
+        '`"position"` or `"penetration"`',
+        optional=True,
+        default="",
+    )
+    clamped: bool = answered("true for a law that never pulls: a force below 0 is given as 0", default=False)
+    region: str | None = answered("of an arm: where it stays, in words", optional=True, default=None)
+    intervals: tuple[str, ...] = answered(
+        "parameters that stand for every value in an interval", optional=True, default=()
+    )
+    bounds: tuple[tuple[str, float, float], ...] = known(
+        "the ends of those that are the device's: (parameter, low, high), SI", default=()
+    )
+    assumed: tuple[str, ...] = answered(
+        "parameters of the device that were not given and are taken as 0", optional=True, default=()
+    )
+    law: tuple[Law, ...] = answered(
+        'what of the law is not exact or not looked at: `"rounded coefficients"`, `"rounded power"`, '
+        '`"table"`, `"doubles"`, `"any before the last"`, `"covered by a wall"`, `"covered with less '
+        'friction"`, `"behind a coupling"`: a scene that gives out no energy, of which the coupling alone is '
+        "proved",
+        optional=True,
+        default=(),
+    )
+    also: tuple[Also, ...] = answered(
+        'what else the proof covers: `"springs"` of any slope from 0 to K, the wall if it is `"clamped"`',
+        optional=True,
+        default=(),
+    )
+    motion: str = known('"linear" or "rotary": the units', default="linear")
 
     def replace(self, **changes: Any) -> Scope:
         """The same record with some entries changed."""
@@ -177,46 +189,13 @@ class Scope:
 
     def to_dict(self) -> dict[str, Any]:
         """The record as plain data, a unit in every key of a physical quantity."""
-        return _document(self)
-
-
-def _document(scope: Scope) -> dict[str, Any]:
-    """See `Scope.to_dict`."""
-    written: dict[str, Any] = {
-        "hands": _hands_document(scope.hands, scope.motion),
-        "contact": scope.contact,
-        "encoder": scope.encoder,
-        "force_limit_counted": scope.force_limit,
-        "force_steps_counted": scope.force_steps,
-        "sampling": scope.sampling,
-        "clamped": scope.clamped,
-    }
-    if scope.fed_with:
-        written["fed_with"] = scope.fed_with
-    for name in ("damping", "coulomb_friction"):
-        written[unit_key(name, scope.motion)] = getattr(scope, name)
-    if scope.friction_speed is not None:
-        written[unit_key("friction_speed", scope.motion)] = scope.friction_speed
-    if scope.largest_force is not None:
-        force = unit_suffix(GLOSSARY["force"].unit_for(scope.motion))
-        written[f"largest_force_{force}"] = scope.largest_force
-    if scope.largest_moment is not None:
-        written["largest_moment_N_m"] = scope.largest_moment
-    if scope.transmission:
-        written["transmission"] = scope.transmission
-    if scope.torque:
-        written["torque"] = scope.torque
-    if scope.friction is not None:
-        written["friction"] = "curve"
-    if scope.region is not None:
-        written["region"] = scope.region
-    if scope.bounds:
-        written["bounds"] = {unit_key(name, scope.motion): [low, high] for name, low, high in scope.bounds}
-    for name in ("intervals", "assumed", "law", "also"):
-        values: Sequence[str] = getattr(scope, name)
-        if values:
-            written[name] = list(values)
-    return written
+        bounds = {unit_key(name, self.motion): [low, high] for name, low, high in self.bounds}
+        return {
+            "hands": _hands_document(self.hands, self.motion),
+            **data_of(self),
+            **({} if self.friction is None else {"friction": "curve"}),
+            **({"bounds": bounds} if bounds else {}),
+        }
 
 
 def _hands_document(hands: Hands, motion: str) -> dict[str, Any]:

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 from zwidth.model.device import Device
 from zwidth.passivity.advice import Advice, in_lines
 from zwidth.passivity.outcome_evidence import Found, assumptions, claim, decided_by
-from zwidth.passivity.scope import unit_key
 from zwidth.passivity.witness.witness import Witness
+from zwidth.quantity.answered import answers
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import enough, in_unit, in_words, save_json, told_quantity
@@ -33,33 +33,6 @@ class Verdict(Found):
     known.
     For parameters given as intervals the verdict holds for every value; the
     numbers below then speak of the worst case (`device`, `environment`).
-
-    Attributes
-    ----------
-    outcome
-        "passive", "passive in contact", "passive without encoder steps", "theorem", "active" or "undecided".
-    scope
-        What it is about: hands, contact, encoder, actuator.
-    device, environment
-        The loop decided: the worst corner where intervals were given.
-    certificate
-        The proof of "passive"; else None.
-    violation
-        What of the linear criterion is violated, a proof of "active"; or so at the worst corner
-        of an interval.  None for a loop that is active by its encoder, or by contact made and broken.
-    motion
-        The motion, where it was needed to decide; see `witness`.
-    available_storage
-        What value iteration adds, where the closed forms leave a gap: a motion,
-        then also the `witness`; or a proof for hands within bounds.
-    finding
-        Why it is undecided.
-    at_limit
-        True where the least less of b or f_c would lose the proof.
-    theorem
-        What is proved on paper, where the outcome is "theorem".
-    needs
-        What of the device is proved to be enough, where that is known.
     """
 
     FORMAT = "zwidth verdict 1"
@@ -76,8 +49,9 @@ class Verdict(Found):
         return assumptions(self)
 
     @property
+    @answers()
     def decided_by(self) -> str:
-        """The road on which the outcome was found."""
+        """The road on which the outcome was found, in a few words."""
         return decided_by(self)
 
     @cached_property
@@ -115,15 +89,8 @@ class Verdict(Found):
         """The assumptions, and what the motion asks of the actuator."""
         return (*self.assumptions, *self.demand)
 
-    def numbers(self) -> dict[str, Any]:
-        """What is needed and what there is, as plain data, a unit in every key of a physical quantity."""
-        margins = {unit_key(name, self.device.motion): left for name, left in self.margins.items()}
-        found: dict[str, Any] = {"decided_by": self.decided_by, "margins": margins}
-        if self.advice:
-            found["advice"] = [advice.to_dict() for advice in self.advice]
-        return found
-
     @cached_property
+    @answers("list of objects, below", optional=True)
     def advice(self) -> tuple[Advice, ...]:
         """The smallest single changes that would do, or the slack of each parameter; () if none is known."""
         if not (self.environment.points and self.device.is_certain):
@@ -141,6 +108,11 @@ class Verdict(Found):
             yield Lines(lines)
 
     @property
+    @answers(
+        "object with `damping_N_s_per_m`, and with `coulomb_friction_N` over what the encoder needs: what is "
+        "left over what is needed, negative if too little; null where the need is unbounded",
+        quantities=True,
+    )
     def margins(self) -> Mapping[str, float | None]:
         """What is left of damping and of Coulomb friction over what is needed; < 0 if too little.
 

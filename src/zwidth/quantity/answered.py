@@ -22,7 +22,7 @@ from functools import cache, cached_property
 from math import isfinite
 from pathlib import PurePath
 from types import MappingProxyType
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar, cast
 
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import shown
@@ -50,9 +50,13 @@ class Told(NamedTuple):
     stands_as
         What of it plain data has, in its place: an attribute by each key.
     optional
-        Left out of plain data where it is None.
+        Left out of plain data where it is None, "", () or False.
+    finite
+        None in plain data, it or an entry of it, where that is infinite or no number.
     only_shown
         No part of plain data.
+    quantities
+        The entries of a mapping are quantities of the glossary: their units stand in the keys.
     """
 
     meaning: str
@@ -64,7 +68,9 @@ class Told(NamedTuple):
     names: tuple[str, ...] = ()
     stands_as: Mapping[str, str] = MappingProxyType({})
     optional: bool = False
+    finite: bool = False
     only_shown: bool = False
+    quantities: bool = False
 
     def unit_for(self, motion: str) -> str:
         """The SI unit for a "linear" or a "rotary" device; "" where it has none."""
@@ -80,6 +86,11 @@ def answered(meaning: str, *, default: Any = ..., **about: Any) -> Any:
     """A field of a data class that is a result; see `Told` for what may be said of it."""
     metadata = {"told": Told(meaning, **about)}
     return field(metadata=metadata) if default is ... else field(default=default, metadata=metadata)
+
+
+def known(meaning: str, **about: Any) -> Any:
+    """The same of a field that plain data has no part of."""
+    return answered(meaning, only_shown=True, **about)
 
 
 def answers(meaning: str = "", **about: Any) -> Callable[[F], F]:
@@ -114,44 +125,68 @@ def _declared(kind: Any) -> Mapping[str, Told]:
     return found
 
 
+@cache
+def _in_data(kind: Any, motion: str) -> list[tuple[str, str, Told]]:
+    told = _declared(kind).items()
+    return [(name, one.key_for(name, motion), one) for name, one in told if not one.only_shown]
+
+
 def data_of(result: object) -> dict[str, Any]:
     """What is declared, as plain data: the unit of each in its key."""
     found: dict[str, Any] = {}
-    motion = getattr(result, "motion", "linear")
-    for name, one in declared(result).items():
+    kind, motion = cast("Any", type(result)), motion_of(result)
+    for name, key, one in _in_data(kind, motion):
         value = getattr(result, name)
-        if one.only_shown or (one.optional and value is None):
+        if one.optional and (value is None or value is False or value in ("", ())):
             continue
+        if one.finite:
+            value = _finite(value)
         if one.stands_as:
-            found |= {key: getattr(value, own, None) for key, own in one.stands_as.items()}
+            found |= {key: plain(getattr(value, own, None)) for key, own in one.stands_as.items()}
         else:
-            found[one.key_for(name, motion)] = plain(value, one.names)
+            found[key] = plain(value, one.names, motion if one.quantities else "")
     return found
 
 
-def plain(value: Any, names: Sequence[str] = ()) -> Any:
-    """A value as plain data; named entries of a tuple by their names; what is not finite is null."""
+def motion_of(result: object) -> str:
+    """ "linear" or "rotary": of what a result is about, where it has a scope."""
+    return str(getattr(getattr(result, "scope", result), "motion", "linear"))
+
+
+def plain(value: Any, names: Sequence[str] = (), motion: str = "") -> Any:
+    """A value as plain data: entries of a tuple by names that they have, quantities with a motion's units."""
     if names and value is not None:
         return {name: plain(one) for name, one in zip(names, value, strict=True)}
+    if isinstance(value, Mapping):
+        return {
+            GLOSSARY[name].key_for(motion) if motion and name in GLOSSARY else name: plain(one, (), motion)
+            for name, one in value.items()
+        }
     if hasattr(value, "to_dict"):
         return value.to_dict()
     if declared(value):
         return data_of(value)
     if isinstance(value, (list, tuple)):
         return [plain(one) for one in value]
-    if isinstance(value, float) and not isfinite(value):
-        return None
     return str(value) if isinstance(value, PurePath) else value
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return tuple(map(_finite, value))
+    return value if value is None or isfinite(value) else None
 
 
 def rows_of(result: object) -> Iterator[tuple[str, str]]:
     """What people read: each that has a row, in words and with its unit; a number that is None is "none"."""
-    motion = getattr(result, "motion", "linear")
+    motion = motion_of(result)
     for name, one in declared(result).items():
+        if one.row is None:
+            continue
         value, unit = getattr(result, name), one.unit_for(motion)
         if isinstance(one.row, tuple):
             yield from (
                 (row, shown(part, unit, one.digits)) for row, part in zip(one.row, value, strict=True)
             )
-        elif one.row is not None:
+        else:
             yield one.row, shown(value, unit, one.digits) if unit else str(value)

@@ -216,13 +216,14 @@ class LinkReport(Documented):
     round_trip: tuple[float, float, float] = answered(
         "there and back; not known before the first echo",
         unit="s",
+        finite=True,
         names=("median", "of_99_percent", "longest"),
     )
     energy_sent: float = answered("that this side has sent in all", unit="J")
     energy_received: float = answered(
         "that the other side has sent to this run in all, as far as this one has heard", unit="J"
     )
-    silent: float = answered("since the last packet came; without end before the first", unit="s")
+    silent: float = answered("since the last packet came; null before the first", unit="s", finite=True)
 
     def report(self) -> Iterable[Part]:
         """Six lines."""

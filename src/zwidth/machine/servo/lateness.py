@@ -195,7 +195,7 @@ class StiffnessCost:
     motion: str = answered('"linear" or "rotary"', only_shown=True)
 
     @property
-    @answers(key="max_stiffness", quantity="stiffness", names=_STAGES)
+    @answers(key="max_stiffness", quantity="stiffness", names=_STAGES, finite=True)
     def largest(self) -> tuple[float | None, ...]:
         """Proved passive as given, with every period longer by L, and with every force later by L too; null
         where none is, or any."""

@@ -21,6 +21,7 @@ from zwidth.passivity.storage.storage_function import StorageFunction
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import describe_hands, lines
+from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import at_least, at_most, in_unit, in_words
@@ -28,64 +29,58 @@ from zwidth.quantity.text import at_least, at_most, in_unit, in_words
 
 @dataclass(frozen=True, repr=False)
 class Bracket(Result):
-    """The last value of a parameter that is proved passive, and the first that is refuted.
-
-    Attributes
-    ----------
-    parameter, unit
-        Which, and its SI unit.
-    proved_passive, proved_active
-        Proved passive; refuted.  None where no such value was found.
-    certificate
-        The proof at the one value.
-    witness
-        The motion at the other.
-    scope
-        What it is about: every hand, or hands within bounds; contact; what of the actuator is counted.
-    every_hand
-        What is known of every hand, where the bracket is about bounded ones: the
-        last value proved passive and the first refuted; None where there is none.
-    evaluations, seconds
-        Loops decided, and the time that took [s].
-    storage
-        The storage function at `proved_passive`, to look at; None where a closed condition proves it.
-    bounds
-        The bounds on the hand, exact; None where the bracket is about every hand.
-    violation
-        What of the linear criterion is violated at `proved_active`, where closed conditions found it.
-    cut_by_time
-        True where a time that was given ended the search: another machine may find a closer one.
-    """
+    """The last value of a parameter that is proved passive, and the first that is refuted."""
 
     FORMAT = "zwidth limit 1"
     PICTURE = "limit_figure"
 
-    parameter: str
-    unit: str
-    proved_passive: float | None
-    proved_active: float | None
-    certificate: Certificate | None
-    witness: Gain | Witness | None
-    scope: Scope
-    every_hand: tuple[float | None, float | None]
-    evaluations: int
-    seconds: float
-    storage: StorageFunction | ChainStorage | None = None
-    bounds: HandBounds | None = None
-    violation: Violation | None = None
-    cut_by_time: bool = False
+    parameter: str = answered('which: `"environment.stiffness"`, `"device.damping"`, …')
+    unit: str = known("its SI unit")
+    proved_passive: float | None = known("proved passive; None where no such value was found")
+    proved_active: float | None = known("refuted; likewise")
+    certificate: Certificate | None = known("the proof at the one value")
+    witness: Gain | Witness | None = known("the motion at the other")
+    scope: Scope = answered(
+        "what it is about: every hand, or hands within bounds; contact; what of the actuator is counted"
+    )
+    every_hand: tuple[float | None, float | None] = known(
+        "what is known of every hand, where the bracket is about bounded ones: the last value proved passive "
+        "and the first refuted; None where there is none"
+    )
+    evaluations: int = answered("loops decided")
+    seconds: float = known("the time that took", unit="s")
+    storage: StorageFunction | ChainStorage | None = known(
+        "the storage function at `proved_passive`, to look at; None where a closed condition proves it",
+        default=None,
+    )
+    bounds: HandBounds | None = known(
+        "the bounds on the hand, exact; None where the bracket is about every hand", default=None
+    )
+    violation: Violation | None = known(
+        "what of the linear criterion is violated at `proved_active`, where closed conditions found it",
+        default=None,
+    )
+    cut_by_time: bool = answered(
+        "true where a time that was given ended the search, and another machine may find a closer one; not "
+        "there otherwise",
+        optional=True,
+        default=False,
+    )
 
     @property
+    @answers()
     def hand(self) -> str:
         """The hands that the bracket is about, in words: "every hand", or bounds."""
         return describe_hands(self.scope.hands, self.scope.motion)
 
     @property
+    @answers()
     def assumptions(self) -> tuple[str, ...]:
         """What the proof covers and takes for granted, line by line."""
         return lines(self.scope)
 
     @property
+    @answers("of the bracket; null where a side is missing", finite=True)
     def relative_width(self) -> float:
         """|proved_active − proved_passive| over the larger of the two; inf where one is missing."""
         if self.proved_passive is None or self.proved_active is None:
@@ -118,17 +113,10 @@ class Bracket(Result):
         """Values, assumptions and evidence as plain data."""
         suffix = unit_suffix(self.unit)
         return {
-            "format": self.FORMAT,
-            "parameter": self.parameter,
+            **super().to_dict(),
             f"proved_passive_{suffix}": self.proved_passive,
             f"proved_active_{suffix}": self.proved_active,
-            "relative_width": None if self.relative_width == inf else self.relative_width,
-            "hand": self.hand,
-            "scope": self.scope.to_dict(),
             f"every_hand_{suffix}": list(self.every_hand),
-            "assumptions": list(self.assumptions),
-            "evaluations": self.evaluations,
-            **({"cut_by_time": True} if self.cut_by_time else {}),
             **evidence_of(self),
         }
 

@@ -42,32 +42,25 @@ from zwidth.passivity.result import Answer
 from zwidth.passivity.scope import Outcome, Scope, unit_key
 from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.witness.witness import Witness
+from zwidth.quantity.answered import known
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import told_quantity
 
 
 @dataclass(frozen=True, repr=False)
 class CouplingCondition(Answer):
-    """Whether a coupling on a device is passive before every passive environment.
-
-    Attributes
-    ----------
-    device
-        The device; its encoder and Coulomb friction play no part.
-    stiffness, damping
-        K_c [N/m; N·m/rad] and B_c [N·s/m; N·m·s/rad].
-    verdict
-        Of the law Ĥ(z) that needs as much as the worst environment, with its certificate;
-        None where no damping would do, K_c T + 2 B_c ≤ 0.
-    """
+    """Whether a coupling on a device is passive before every passive environment."""
 
     FORMAT = "zwidth coupling condition 1"
     YES = "holds"
 
-    device: Device
-    stiffness: Exact
-    damping: Exact
-    verdict: LinearVerdict | None
+    device: Device = known("its encoder and Coulomb friction play no part")
+    stiffness: Exact = known("K_c", quantity="stiffness")
+    damping: Exact = known("B_c", quantity="damping")
+    verdict: LinearVerdict | None = known(
+        "of the law Ĥ(z) that needs as much as the worst environment, with its certificate; None where no "
+        "damping would do, K_c T + 2 B_c ≤ 0"
+    )
 
     @property
     def holds(self) -> bool:

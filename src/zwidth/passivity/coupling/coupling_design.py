@@ -39,8 +39,9 @@ from zwidth.passivity.coupling.coupling import CouplingCondition, coupling_condi
 from zwidth.passivity.formulas.colgate_stanley_brown import needed_damping
 from zwidth.passivity.formulas.hypotheses import number
 from zwidth.passivity.result import Result
-from zwidth.passivity.scope import Scope, unit_key
+from zwidth.passivity.scope import Scope
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.answered import answers, known
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import told_quantity
 from zwidth.showing import Part, Table
@@ -56,24 +57,16 @@ _RATIOS = 400
 
 @dataclass(frozen=True, repr=False)
 class CouplingDesign(Result):
-    """A virtual coupling made for a device.
-
-    Attributes
-    ----------
-    device
-        The device it is for.
-    stiffness, damping
-        K_c [N/m; N·m/rad] and B_c [N·s/m; N·m·s/rad].
-    condition
-        That it is passive before every passive environment, on an ideal encoder, with the certificate.
-    """
+    """A virtual coupling made for a device."""
 
     FORMAT = "zwidth coupling design 1"
 
-    device: Device
-    stiffness: Exact
-    damping: Exact
-    condition: CouplingCondition
+    device: Device = known("the one it is for")
+    stiffness: Exact = known("K_c", quantity="stiffness")
+    damping: Exact = known("B_c", quantity="damping")
+    condition: CouplingCondition = known(
+        "that it is passive before every passive environment, on an ideal encoder, with the certificate"
+    )
 
     @property
     def coupling(self) -> Wall:
@@ -86,17 +79,20 @@ class CouplingDesign(Result):
         return check(self.device, self.coupling)
 
     @property
+    @answers(key="felt_slowly_stiffness", quantity="stiffness")
     def felt_slowly(self) -> float:
         """|Z_c| towards 0 Hz, the most that slow motions meet: K_c [N/m; N·m/rad]."""
         return float(self.stiffness)
 
     @property
+    @answers(key="felt_quickly_stiffness", quantity="stiffness")
     def felt_quickly(self) -> float:
         """|Z_c| at half the rate: K_c + 2 B_c/T [N/m; N·m/rad]."""
         period = self.device.exact("sample_period")
         return float(abs(self.stiffness.fraction + 2 * self.damping.fraction / period))
 
     @property
+    @answers()
     def margin(self) -> float:
         """The part of the device damping that is left, (b − need)/b."""
         b, need = self.device.exact("damping"), self.condition.required_damping
@@ -131,14 +127,7 @@ class CouplingDesign(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """The condition on the coupling with its certificate, and what is felt, as plain data."""
-        motion = self.device.motion
-        return {
-            **self.condition.to_dict(),
-            "format": self.FORMAT,
-            "margin": self.margin,
-            f"felt_slowly_{unit_key('stiffness', motion)}": self.felt_slowly,
-            f"felt_quickly_{unit_key('stiffness', motion)}": self.felt_quickly,
-        }
+        return {**self.condition.to_dict(), **super().to_dict()}
 
     def report(self) -> Iterable[Part]:
         """The numbers."""

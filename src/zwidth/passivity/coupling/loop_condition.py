@@ -20,7 +20,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, isfinite, sqrt
-from typing import Any, Literal
+from typing import Literal
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device
@@ -35,7 +35,8 @@ from zwidth.passivity.coupling.loop_forms import (
 )
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, NO_CLOCK, nonnegative, number, positive
 from zwidth.passivity.result import Answer
-from zwidth.passivity.scope import Outcome, Scope, unit_key
+from zwidth.passivity.scope import Outcome, Scope
+from zwidth.quantity.answered import answered, known
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import told_quantity
 
@@ -44,36 +45,28 @@ Binding = Literal["device damping", "coupling and environment"]
 
 @dataclass(frozen=True, repr=False)
 class TransformedCondition(Answer):
-    """Whether the theorem promises passivity for a device, a coupling and a class of environments.
-
-    Attributes
-    ----------
-    device
-        The device; its encoder and Coulomb friction play no part.
-    environment
-        What is known of the environment.
-    holds
-        True when it is proved, by exact arithmetic.  False says that this theorem does not promise it.
-    required_damping
-        b that is enough, itself proved [N·s/m; N·m·s/rad]; None if none is.
-    binding
-        What would have to change: the damping of the device, against hold and delay; or coupling and
-        environment, which together must be strictly passive whatever the device.
-    critical_frequency
-        Where it is tightest [Hz]; None where a closed form decides.
-    """
+    """Whether the theorem promises passivity for a device, a coupling and a class of environments."""
 
     FORMAT = "zwidth transformed condition 1"
     YES = "holds"
     certificate = None  # the proof is on paper
     witness = None
 
-    device: Device
-    environment: SlopeBounds | PassivityExcess
-    holds: bool
-    required_damping: float | None
-    binding: Binding
-    critical_frequency: float | None
+    device: Device = known("its encoder and Coulomb friction play no part")
+    environment: SlopeBounds | PassivityExcess = known("what is known of the environment")
+    holds: bool = known(
+        "True when it is proved, by exact arithmetic.  False says that this theorem does not promise it"
+    )
+    required_damping: float | None = answered(
+        "b that is enough, itself proved; null if none is", quantity="damping"
+    )
+    binding: Binding = answered(
+        "what would have to change: the damping of the device, against hold and delay; or coupling and "
+        "environment, which together must be strictly passive whatever the device"
+    )
+    critical_frequency: float | None = known(
+        "where it is tightest; None where a closed form decides", unit="Hz"
+    )
 
     @property
     def outcome(self) -> Outcome:
@@ -111,11 +104,6 @@ class TransformedCondition(Answer):
             return f"No promise for {of}."
         counts = "; the counts of the encoder are not in it" if self.scope.encoder == "not counted" else ""
         return f"Passive before {of}, contact made and broken{counts}."
-
-    def numbers(self) -> dict[str, Any]:
-        """What is needed, and what binds, as plain data."""
-        required = f"required_{unit_key('damping', self.device.motion)}"
-        return {required: self.required_damping, "binding": self.binding}
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""

@@ -29,6 +29,7 @@ from zwidth.passivity.result import Result, evidence_of
 from zwidth.passivity.scope import Scope, unit_key
 from zwidth.passivity.witness.sinusoid import simplest_between
 from zwidth.passivity.wording import lines
+from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import one_of
 from zwidth.quantity.text import quantity_unit
@@ -44,40 +45,27 @@ _BETWEEN_ENDS = (
 
 @dataclass(frozen=True)
 class MassLimit:
-    """One end of an interval of masses.
+    """One end of an interval of masses."""
 
-    Attributes
-    ----------
-    passive
-        The verdict at the end, with its certificate.
-    beyond
-        The verdict at a mass a millionth beyond it, with what takes energy out.
-    """
-
-    passive: LinearVerdict
-    beyond: LinearVerdict
+    passive: LinearVerdict = known("the verdict at the end, with its certificate")
+    beyond: LinearVerdict = known("the verdict at a mass a millionth beyond it, with what takes energy out")
 
 
 @dataclass(frozen=True, repr=False)
 class PassiveMasses(Result):
-    """All masses of a body behind a coupling with which the loop is passive, single ones apart.
-
-    Attributes
-    ----------
-    device
-        The device; its encoder and Coulomb friction play no part.
-    body
-        Coupling, body and integrator; `verdict` is about its own mass.
-    intervals
-        (lightest, heaviest) of each interval [kg; kg·m²], ascending: 0 where none is too light, inf where
-        none is too heavy; empty where no mass is passive.
-    """
+    """All masses of a body behind a coupling with which the loop is passive, single ones apart."""
 
     FORMAT = "zwidth passive masses 1"
 
-    device: Device
-    body: CoupledBody
-    intervals: tuple[tuple[float, float], ...]
+    device: Device = known("its encoder and Coulomb friction play no part")
+    body: CoupledBody = known("coupling, body and integrator; `verdict` is about its own mass")
+    intervals: tuple[tuple[float, float], ...] = answered(
+        "(lightest, heaviest) of each interval, ascending: 0 where none is too light, without bound (null) "
+        "where none is too heavy; empty where no mass is passive",
+        quantity="virtual_mass",
+        key="intervals_virtual_mass",
+        finite=True,
+    )
 
     @property
     def smallest(self) -> float | None:
@@ -106,6 +94,7 @@ class PassiveMasses(Result):
         return replace(self.verdict.scope, encoder="not counted") if counted else self.verdict.scope
 
     @property
+    @answers()
     def assumptions(self) -> tuple[str, ...]:
         """What is taken for granted, line by line."""
         return (*lines(self.scope), _BETWEEN_ENDS)
@@ -128,10 +117,8 @@ class PassiveMasses(Result):
         """The intervals, and at each end its proof and violation, as plain data."""
         key = unit_key("virtual_mass", self.device.motion)
         return {
-            "format": self.FORMAT,
+            **super().to_dict(),
             "body": self.body.describe(self.device.motion),
-            f"intervals_{key}": [[low, None if high == inf else high] for low, high in self.intervals],
-            "assumptions": list(self.assumptions),
             "verdicts": [_stated(verdict, key) for verdict in self._verdicts()],
         }
 

@@ -25,9 +25,10 @@ from zwidth.passivity.advice import (
 from zwidth.passivity.linear.boundary import COARSE, COARSER, Holds, largest_holding, smallest_holding
 from zwidth.passivity.linear.loop import HIGH_DEGREE
 from zwidth.passivity.pairs.criterion import PairCriterion, largest_spring, spending
+from zwidth.quantity.answered import answered, known
 from zwidth.quantity.balls import as_fraction
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact
-from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import in_words, told
 
@@ -126,24 +127,14 @@ Change = Callable[[Fraction], Pair]
 
 
 @dataclass(frozen=True)
-class StiffnessAt:
+class StiffnessAt(Documented):
     """The largest passive stiffness, if link delay or rate were so many `times` what they are."""
 
-    parameter: Literal["link_delay", "rate"]
-    times: Fraction
-    stiffness: float | None
-    unit: str
-    text: str
-
-    def to_dict(self) -> dict[str, object]:
-        """As plain data, the unit in the key."""
-        key = f"stiffness_{unit_suffix(self.unit)}"
-        return {
-            "parameter": self.parameter,
-            "times": float(self.times),
-            key: self.stiffness,
-            "text": self.text,
-        }
+    parameter: Literal["link_delay", "rate"] = answered('`"link_delay"` or `"rate"`')
+    times: float = answered("what it is multiplied by")
+    stiffness: float | None = answered("how stiff the coupling could then be", quantity="stiffness")
+    text: str = answered("the same in words")
+    motion: str = known('"linear" or "rotary"')
 
 
 def advise(pair: Pair, passive: bool) -> tuple[Advice, ...]:
@@ -195,10 +186,10 @@ def _stiffness_at(
     largest, unit = largest_stiffness(pair), pair.leader.unit("stiffness")
     if largest is None:
         proved = "proved" if any(pair.compensations) else "passive"
-        return StiffnessAt(parameter, times, None, unit, f"{where} no stiffness is {proved}")
+        return StiffnessAt(parameter, float(times), None, f"{where} no stiffness is {proved}", pair.motion)
     safe = outward(largest, next(_of_the_coupling(pair)), spoken(unit)[0])
     text = f"{where} a stiffness of up to {told(safe, unit, 12)} is passive"
-    return StiffnessAt(parameter, times, largest, unit, text)
+    return StiffnessAt(parameter, float(times), largest, text, pair.motion)
 
 
 def _holds(change: Change) -> Holds:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -35,6 +35,7 @@ from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
 from zwidth.passivity.pairs.slow import refute_compensation
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
+from zwidth.quantity.answered import answers, known
 from zwidth.quantity.text import shown, shown_at_least, shown_at_most
 from zwidth.showing import Lines, Part
 
@@ -116,21 +117,13 @@ def has_and_needs(device: Device, key: str, need: float | None) -> str:
 
 @dataclass(frozen=True, repr=False)
 class PairVerdict(PassivityAnswer):
-    """Whether two hands can take energy out of a pair of arms.
-
-    Attributes
-    ----------
-    pair
-        What was asked.
-    criterion
-        What decided it, encoders and Coulomb friction aside.
-    """
+    """Whether two hands can take energy out of a pair of arms."""
 
     FORMAT: ClassVar[str] = "zwidth pair 1"
     PICTURE: ClassVar[str] = "plot_pair"
 
-    pair: Pair
-    criterion: PairCriterion
+    pair: Pair = known("what was asked")
+    criterion: PairCriterion = known("what decided it, encoders and Coulomb friction aside")
     certificate: PairCertificate | None = None
     violation: PairViolation | None = None
     motion: PairWitness | None = None
@@ -185,6 +178,9 @@ class PairVerdict(PassivityAnswer):
         yield from assumed_of_arms(pair)
 
     @cached_property
+    @answers(
+        quantity="stiffness",
+    )
     def largest_stiffness(self) -> float | None:
         """The largest K, both sides in proportion and all else as it is, that is passive; None if none is."""
         return largest_stiffness(self.pair)
@@ -202,6 +198,18 @@ class PairVerdict(PassivityAnswer):
         """
         return required_friction(self.pair, "leader"), required_friction(self.pair, "follower")
 
+    @property
+    @answers(
+        "object with `leader` and `follower`, each with `damping_N_s_per_m`, the least b with the other's as "
+        "it is, null if none is enough, and `coulomb_friction_N`, the least f_c for the steps of both "
+        "encoders and for what compensates friction, null if none is enough",
+        quantities=True,
+    )
+    def required(self) -> Mapping[str, Mapping[str, float | None]]:
+        """The least b and f_c of either arm, by arm and quantity."""
+        needs = zip(("leader", "follower"), self.required_damping, self.required_friction, strict=True)
+        return {name: {"damping": damping, "coulomb_friction": dry} for name, damping, dry in needs}
+
     @cached_property
     def largest_compensation(self) -> float | None:
         """How much of the compensation of friction is passive, as a multiple of F and C on both sides.
@@ -211,11 +219,16 @@ class PairVerdict(PassivityAnswer):
         return largest_compensation(self.pair)
 
     @cached_property
+    @answers(
+        '`parameter` is `"leader.damping"`, `"follower.resolution"`, … where it is of one arm; `"damping"` '
+        'and `"coulomb_friction"` are of both arms'
+    )
     def advice(self) -> tuple[Advice, ...]:
         """The smallest single changes that would do, or the slack of each number."""
         return advise(self.pair, self.passive)
 
     @cached_property
+    @answers("list of objects, below", key="largest_stiffness_at")
     def stiffness_elsewhere(self) -> tuple[StiffnessAt, ...]:
         """How stiff the coupling could be at half the link delay, and at twice the rate."""
         return stiffness_elsewhere(self.pair)
@@ -232,6 +245,7 @@ class PairVerdict(PassivityAnswer):
         return None if largest is None else largest - float(self.pair.felt_stiffness)
 
     @property
+    @answers()
     def limit(self) -> str:
         """What binds."""
         if self.outcome == "passive":
@@ -258,12 +272,11 @@ class PairVerdict(PassivityAnswer):
             if largest is None
             else f"{shown_at_most(largest, pair.leader.unit('stiffness'))} with all else as it is",
         )
-        needs = zip(("leader", "follower"), self.required_damping, self.required_friction, strict=True)
-        for name, damping, friction in needs:
+        for name, needs in self.required.items():
             device: Device = getattr(pair, name)
-            yield f"damping of the {name}", has_and_needs(device, "damping", damping)
-            if friction != 0:
-                yield f"friction of the {name}", has_and_needs(device, "coulomb_friction", friction)
+            for key, need in needs.items():
+                if key == "damping" or need != 0:
+                    yield f"{key.removeprefix('coulomb_')} of the {name}", has_and_needs(device, key, need)
         yield from compensation_rows(self.criterion, self.largest_compensation)
         evidence = self.witness if self.outcome == "active" else None
         if self.violation is not None:
@@ -281,18 +294,8 @@ class PairVerdict(PassivityAnswer):
 
     def numbers(self) -> dict[str, Any]:
         """The main numbers as plain data, a unit in every key of a physical quantity."""
-        pair = self.pair
-        key = pair.leader.key
-        needs = zip(("leader", "follower"), self.required_damping, self.required_friction, strict=True)
         return {
             **compensation_numbers(self.criterion, self.largest_compensation),
-            "limit": self.limit,
-            "power_ratio": float(pair.power_ratio),
-            f"largest_{key('stiffness')}": self.largest_stiffness,
-            "required": {
-                name: {key("damping"): damping, key("coulomb_friction"): friction}
-                for name, damping, friction in needs
-            },
-            "advice": [advice.to_dict() for advice in self.advice],
-            "largest_stiffness_at": [other.to_dict() for other in self.stiffness_elsewhere],
+            "power_ratio": float(self.pair.power_ratio),
+            **super().numbers(),
         }

@@ -37,6 +37,7 @@ from zwidth.passivity.ports.reading import assumed_period, from_polynomials, rea
 from zwidth.passivity.ports.scattering import RelativeIndex, relative_index
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope, unit_key
+from zwidth.quantity.answered import answered, known
 from zwidth.quantity.balls import as_fmpq
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import told_quantity
@@ -44,25 +45,21 @@ from zwidth.quantity.text import told_quantity
 
 @dataclass(frozen=True, repr=False)
 class PassivityIndices(PassivityAnswer):
-    """What `passivity_indices` found.
-
-    Attributes
-    ----------
-    input, output
-        The input feedforward index ν and the output feedback index ρ.
-    sampled_damping
-        What H(z) needs of a device; None where no sample period is known.
-    assumed
-        What is assumed of the sample period; () where it is said.
-    """
+    """What `passivity_indices` found."""
 
     FORMAT = "zwidth indices 1"
     PICTURE = "indices"
 
-    input: PassivityIndex
-    output: PassivityIndex
-    sampled_damping: SampledDamping | None
-    assumed: tuple[str, ...] = ()
+    input: PassivityIndex = answered(
+        "the input feedforward index ν; null where it is infinite", stands_as={"input_index": "value"}
+    )
+    output: PassivityIndex = answered(
+        "the output feedback index ρ, likewise", stands_as={"output_index": "value"}
+    )
+    sampled_damping: SampledDamping | None = known(
+        "what H(z) needs of a device; None where no sample period is known"
+    )
+    assumed: tuple[str, ...] = known("what is assumed of the sample period; () where it is said", default=())
 
     @cached_property
     def outcome(self) -> Outcome:
@@ -139,8 +136,7 @@ class PassivityIndices(PassivityAnswer):
         damping = self.sampled_damping
         need = {} if damping is None else {unit_key("damping", damping.device.motion): damping.required}
         violated = [[band.low, band.high] for band in self.bands]
-        found = {"input_index": self.input.value, "output_index": self.output.value}
-        return {**found, "violated_Hz": violated, **need}
+        return {**super().numbers(), "violated_Hz": violated, **need}
 
     def __repr__(self) -> str:
         rows = "; ".join(f"{name} {text}" for name, text in self.rows())
@@ -201,21 +197,11 @@ _SAME_PERIOD = Fraction(1, 10**9)
 
 @dataclass(frozen=True)
 class SampledDamping:
-    """The damping that a device must have for H(z), sampled and held, to give out no energy.
+    """The damping that a device must have for H(z), sampled and held, to give out no energy."""
 
-    Attributes
-    ----------
-    required
-        The least b that is proved [N·s/m; N·m·s/rad]; None if none is enough.
-    frequency
-        Where the criterion is tightest [Hz].
-    device
-        The device that was given; without one, one of no damping and no delay.
-    """
-
-    required: float | None
-    frequency: float
-    device: Device
+    required: float | None = known("the least b that is proved; None if none is enough", quantity="damping")
+    frequency: float = known("where the criterion is tightest", unit="Hz")
+    device: Device = known("the one given; without one, one of no damping and no delay")
 
     @property
     def scope(self) -> Scope:

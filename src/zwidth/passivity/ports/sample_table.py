@@ -20,6 +20,7 @@ from zwidth.errors import InputError
 from zwidth.model.environment.system import number_of
 from zwidth.passivity.linear.exact_algebra import negative_direction
 from zwidth.passivity.result import Result
+from zwidth.quantity.answered import known
 from zwidth.quantity.balls import as_fmpq
 from zwidth.quantity.exact import Exact
 from zwidth.showing import Part, Table
@@ -47,23 +48,7 @@ class SampleBand:
 
 @dataclass(frozen=True, repr=False)
 class SampleTable(Result):
-    """What the samples of a table show.
-
-    Attributes
-    ----------
-    frequencies
-        f_k [Hz], ascending.
-    values
-        What the bound is on, to rounding.
-    violated
-        Whether sample k breaks the bound whatever its error, decided exactly: of the decimals of the table.
-    possible
-        Whether it may break the bound within its error.
-    errors
-        By how much a sample may be wrong at most, in the largest singular value.
-    ports
-        How many there are.
-    """
+    """What the samples of a table show."""
 
     PICTURE: ClassVar[str] = "sample_table_figure"
     HEAD: ClassVar[str]
@@ -79,12 +64,16 @@ class SampleTable(Result):
     BEYOND: ClassVar[int]
     """On which side of it they do not: 1 above, −1 below."""
 
-    frequencies: tuple[float, ...]
-    values: tuple[float, ...]
-    violated: tuple[bool, ...]
-    possible: tuple[bool, ...]
-    errors: tuple[float, ...]
-    ports: int
+    frequencies: tuple[float, ...] = known("f_k, ascending", unit="Hz")
+    values: tuple[float, ...] = known("what the bound is on, to rounding")
+    violated: tuple[bool, ...] = known(
+        "whether sample k breaks the bound whatever its error, decided exactly: of the decimals of the table"
+    )
+    possible: tuple[bool, ...] = known("whether it may break the bound within its error")
+    errors: tuple[float, ...] = known(
+        "by how much a sample may be wrong at most, in the largest singular value"
+    )
+    ports: int = known("how many there are")
 
     @classmethod
     def judged(

@@ -36,29 +36,20 @@ from zwidth.passivity.ports.positive_real import OFFSET, Band, bands, in_words, 
 from zwidth.passivity.ports.reading import assumed_period, from_polynomials, read_port
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
+from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.showing import Part, Shown
 
 
 @dataclass(frozen=True, repr=False)
 class ScatteringPassivity(PassivityAnswer):
-    """What `scattering_passivity` found.
-
-    Attributes
-    ----------
-    signs
-        Σ: which sign each b has in u = a − Σb and y = a + Σb.
-    input
-        The input index of u → y; ≥ 0 where S is bounded real.
-    assumed
-        What is assumed of the sample period; () where it is said.
-    """
+    """What `scattering_passivity` found."""
 
     FORMAT = "zwidth scattering 1"
 
-    signs: tuple[int, ...]
-    input: PassivityIndex
-    assumed: tuple[str, ...] = ()
+    signs: tuple[int, ...] = answered("Σ: which sign each b has in u = a − Σb and y = a + Σb")
+    input: PassivityIndex = known("the input index of u → y; ≥ 0 where S is bounded real")
+    assumed: tuple[str, ...] = known("what is assumed of the sample period; () where it is said", default=())
 
     @cached_property
     def outcome(self) -> Outcome:
@@ -80,6 +71,7 @@ class ScatteringPassivity(PassivityAnswer):
         return ("every port has a positive real reference, which S was made with", *self.assumed)
 
     @cached_property
+    @answers("‖S‖; null where it is without bound", stands_as={"largest_gain": "value"})
     def gain(self) -> RelativeIndex:
         """‖S‖∞: how much of a wave comes back, at most."""
         return relative_index(self.input.port)
@@ -139,11 +131,7 @@ class ScatteringPassivity(PassivityAnswer):
 
     def numbers(self) -> dict[str, Any]:
         """The signs Σ, ‖S‖∞ and the bands of violation, as plain data."""
-        return {
-            "signs": list(self.signs),
-            "largest_gain": self.gain.value,
-            "violated_Hz": [[band.low, band.high] for band in self.bands],
-        }
+        return {**super().numbers(), "violated_Hz": [[band.low, band.high] for band in self.bands]}
 
     def __repr__(self) -> str:
         rows = "; ".join(f"{name} {text}" for name, text in self.rows())
@@ -198,25 +186,17 @@ _SMALLEST = Fraction(1, 10**9)
 
 @dataclass(frozen=True, repr=False)
 class RelativeIndex(Shown):
-    """How much of a wave comes back from a port, at most, with where.
+    """How much of a wave comes back from a port, at most, with where."""
 
-    Attributes
-    ----------
-    port
-        G.
-    reference
-        z, in the unit of output over input.
-    bounds
-        Rationals between which R lies, both decided exactly; None where it is without bound: some wave from
-        rest comes back without end.
-    cosine
-        c = cos θ of the frequency at which R is reached, to some digits; None where it is without bound.
-    """
-
-    port: Port
-    reference: Fraction
-    bounds: tuple[Fraction, Fraction] | None
-    cosine: Fraction | None
+    port: Port = known("G")
+    reference: Fraction = known("z, in the unit of output over input")
+    bounds: tuple[Fraction, Fraction] | None = known(
+        "rationals between which R lies, both decided exactly; None where it is without bound: some wave "
+        "from rest comes back without end"
+    )
+    cosine: Fraction | None = known(
+        "c = cos θ of the frequency at which R is reached, to some digits; None where it is without bound"
+    )
 
     @property
     def value(self) -> float:

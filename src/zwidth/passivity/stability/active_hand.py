@@ -16,7 +16,7 @@ Derived in docs/theory/active-hand.md.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
@@ -43,6 +43,7 @@ from zwidth.passivity.stability.shaking_hand import (
     tolerance,
 )
 from zwidth.passivity.wording import if_friction_goes_on, lines
+from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text, told
@@ -53,46 +54,34 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class ToleratedActivity(Result):
-    """How much negative damping a hand may show below a frequency, proved and refuted.
-
-    Parameters
-    ----------
-    claim
-        In words.
-    scope, scope_with_contact_broken
-        What the two numbers are about.
-    below
-        f₀: above it the hand is passive [Hz].
-    activity
-        The largest a that is proved in sustained contact [N·s/m; N·m·s/rad]; None where not even every
-        passive hand is.
-    with_contact_broken
-        The same for hands that touch and leave, at any frequency; None where no proof is known.
-    hand
-        A hand that is slightly more active, and with which the loop grows; None where none was found.
-    certificate, certificate_with_contact_broken
-        The proofs of the two, accepted by the independent checker.
-    unit
-        Of the activities.
-    loop
-        Device and H(z), exact.
-    """
+    """How much negative damping a hand may show below a frequency, proved and refuted."""
 
     FORMAT = "zwidth activity 1"
 
-    claim: str
-    scope: Scope
-    scope_with_contact_broken: Scope
-    below: float
-    activity: float | None
-    with_contact_broken: float | None
-    hand: ShakingHand | None
-    certificate: Certificate | None
-    certificate_with_contact_broken: Certificate | None
-    unit: str
-    loop: LinearLoop = field(repr=False)
+    claim: str = answered("in words")
+    scope: Scope = known("what the first number is about")
+    scope_with_contact_broken: Scope = known("and the second")
+    below: float = answered("f₀: above it the hand is passive", unit="Hz")
+    activity: float | None = known(
+        "the largest a that is proved in sustained contact; None where not even every passive hand is",
+        quantity="damping",
+    )
+    with_contact_broken: float | None = known(
+        "the same for hands that touch and leave, at any frequency; None where no proof is known",
+        quantity="damping",
+    )
+    hand: ShakingHand | None = answered(
+        "a hand that is slightly more active, and with which the loop grows; missing where none was found",
+        key="shaking_hand",
+        optional=True,
+    )
+    certificate: Certificate | None = known("the proof of the first, accepted by the independent checker")
+    certificate_with_contact_broken: Certificate | None = known("of the second, likewise")
+    unit: str = known("of the activities")
+    loop: LinearLoop = known("device and H(z), exact")
 
     @property
+    @answers()
     def assumptions(self) -> tuple[str, ...]:
         """What the first number rests on, line by line."""
         return (
@@ -139,19 +128,13 @@ class ToleratedActivity(Result):
             proof = {} if certificate is None else {"certificate": certificate.to_dict()}
             return {f"activity_{unit}": activity, "scope": scope.to_dict(), **proof}
 
-        document: dict[str, Any] = {
-            "format": self.FORMAT,
-            "claim": self.claim,
-            "assumptions": list(self.assumptions),
-            "below_Hz": self.below,
+        return {
+            **super().to_dict(),
             "contact_kept": part(self.activity, self.scope, self.certificate),
             "contact_broken": part(
                 self.with_contact_broken, self.scope_with_contact_broken, self.certificate_with_contact_broken
             ),
         }
-        if self.hand is not None:
-            document["shaking_hand"] = self.hand.to_dict()
-        return document
 
     def describe(self) -> str:
         """The claim."""

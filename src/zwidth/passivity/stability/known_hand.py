@@ -36,6 +36,7 @@ from zwidth.passivity.stability.characteristic import (
     of_law,
     plain,
 )
+from zwidth.quantity.answered import answered, known
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.glossary import GLOSSARY
@@ -47,47 +48,40 @@ _HALVINGS = 8
 
 @dataclass(frozen=True, repr=False)
 class Stability(Answer):
-    """Whether the loop with a known hand decays, and how far it is from not doing so.
-
-    Parameters
-    ----------
-    outcome
-        "stable", "unstable" or "undecided"; for intervals "stable" holds for every value in them and
-        "unstable" for some.
-    claim
-        The same in a sentence.
-    spectral_radius
-        The largest modulus of a pole in z, for intervals the largest at their corners; what is left of a
-        deviation after one sample.
-    frequency
-        Of that pole, 0 … 1/(2T) [Hz].
-    max_stiffness
-        The largest stable K of this wall, all else as given [N/m; N·m/rad]; None where no K is or the law is
-        no wall. For intervals the largest that was proved for every value in them, below the true one.
-    limit_frequency
-        With which the loop oscillates at that stiffness, for intervals at their worst corner [Hz].
-    scope
-        What it is about: which hand, contact, what is left out.
-    unstable_hand
-        Mass [kg], damping [N·s/m] and stiffness [N/m] of device and hand together that do not decay.
-    certificate
-        What the independent checker accepted, of kind "stability" for the loop and all its intervals or
-        "instability" for the unstable_hand; None where it is undecided.
-    """
+    """Whether the loop with a known hand decays, and how far it is from not doing so."""
 
     FORMAT = "zwidth stability 1"
     YES = "stable"
     witness = None
 
-    outcome: Outcome
-    claim: str
-    spectral_radius: float
-    frequency: float
-    max_stiffness: float | None
-    limit_frequency: float | None
-    scope: Scope
-    unstable_hand: tuple[float, float, float] | None = None
-    certificate: Certificate | None = None
+    outcome: Outcome = known(
+        '"stable", "unstable" or "undecided"; for intervals "stable" holds for every value in them and '
+        '"unstable" for some'
+    )
+    claim: str = known("the same in a sentence")
+    spectral_radius: float = answered(
+        "the largest modulus of a pole in z, for intervals the largest at their corners; what is left of a "
+        "deviation after one sample"
+    )
+    frequency: float = answered("of that pole, 0 … 1/(2T)", unit="Hz")
+    max_stiffness: float | None = answered(
+        "the largest stable K of this wall, all else as given; null where no K is or the law is no wall.  "
+        "For intervals the largest that was proved for every value in them, below the true one",
+        quantity="stiffness",
+    )
+    limit_frequency: float | None = answered(
+        "with which the loop oscillates at that stiffness, for intervals at their worst corner", unit="Hz"
+    )
+    scope: Scope = known("what it is about: which hand, contact, what is left out")
+    unstable_hand: tuple[float, float, float] | None = known(
+        "mass [kg], damping [N·s/m] and stiffness [N/m] of device and hand together that do not decay",
+        default=None,
+    )
+    certificate: Certificate | None = known(
+        'what the independent checker accepted, of kind "stability" for the loop and all its intervals or '
+        '"instability" for the `unstable_hand`; None where it is undecided',
+        default=None,
+    )
 
     @property
     def stable(self) -> bool:
@@ -106,16 +100,6 @@ class Stability(Answer):
     def verify(self) -> bool:
         """True when there is a certificate and the independent checker accepts it."""
         return self.certificate is not None and self.certificate.verify()
-
-    def numbers(self) -> dict[str, Any]:
-        """Spectral radius and limit as plain data, units in the keys."""
-        stiffness = unit_key("stiffness", self.scope.motion)
-        return {
-            "spectral_radius": self.spectral_radius,
-            "frequency_Hz": self.frequency,
-            f"max_{stiffness}": self.max_stiffness,
-            "limit_frequency_Hz": self.limit_frequency,
-        }
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""

@@ -23,9 +23,10 @@ from zwidth.errors import InputError
 from zwidth.loop.sampled_plant import ball
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
-from zwidth.passivity.scope import unit_key
 from zwidth.passivity.stability.characteristic import as_floats, decays
+from zwidth.quantity.answered import answered, known
 from zwidth.quantity.balls import as_fmpq, precision
+from zwidth.quantity.documented import Documented
 from zwidth.quantity.text import told_quantity
 
 EXCESS = 1e-3
@@ -41,47 +42,17 @@ _ALIASES = 2000
 
 
 @dataclass(frozen=True, kw_only=True)
-class ShakingHand:
-    """One hand of bounded activity with which device and wall swing up, contact kept.
+class ShakingHand(Documented):
+    """One hand of bounded activity with which device and wall swing up, contact kept."""
 
-    Parameters
-    ----------
-    mass, stiffness
-        m_h [kg] and k_h [N/m].
-    activity
-        a', the largest −Re Z [N·s/m].
-    frequency
-        f₁, at which it drives [Hz].
-    damping
-        r, what it dissipates away from f₁ [N·s/m].
-    sharpness
-        ζ of its resonance.
-    doubling_time
-        In which the swing grows to twice its size [s].
-    motion
-        "linear", or "rotary": then kg·m², N·m/rad and N·m·s/rad.
-    """
-
-    mass: float
-    stiffness: float
-    activity: float
-    frequency: float
-    damping: float
-    sharpness: float
-    doubling_time: float
-    motion: str = "linear"
-
-    def to_dict(self) -> dict[str, float]:
-        """The hand as plain data, units in the keys."""
-        return {
-            unit_key("mass", self.motion): self.mass,
-            unit_key("stiffness", self.motion): self.stiffness,
-            unit_key("damping", self.motion).replace("damping", "activity"): self.activity,
-            unit_key("damping", self.motion): self.damping,
-            "frequency_Hz": self.frequency,
-            "sharpness": self.sharpness,
-            "doubling_time_s": self.doubling_time,
-        }
+    mass: float = answered("m_h", quantity="mass")
+    stiffness: float = answered("k_h", quantity="stiffness")
+    activity: float = answered("a', the largest −Re Z", quantity="damping")
+    frequency: float = answered("f₁, at which it drives", unit="Hz")
+    damping: float = answered("r, what it dissipates away from f₁", quantity="damping")
+    sharpness: float = answered("ζ of its resonance")
+    doubling_time: float = answered("in which the swing grows to twice its size", unit="s")
+    motion: str = known('"linear" or "rotary"', default="linear")
 
     def describe(self) -> str:
         """The hand in a line."""

@@ -31,7 +31,8 @@ from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.workspace.certificate import largest_certified, needed_at_rest, null_space_certificate
 from zwidth.passivity.workspace.question import Question, asked_of
-from zwidth.passivity.workspace.verdict import arm_document, finite, motion_document, wall_document
+from zwidth.passivity.workspace.verdict import arm_document, motion_document, wall_document
+from zwidth.quantity.answered import answered, known
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
@@ -41,50 +42,55 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class NullSpace(PassivityAnswer):
-    """What is known of a wall and a null-space spring together.
-
-    Parameters
-    ----------
-    question
-        The arm, the wall and the loop.
-    spring
-        The spring.
-    within
-        How far from the rest was asked about, root of the sum of squares of the joints [rad]; None: the
-        ranges of all joints.
-    covered
-        So far from it no motion takes energy out, as the checker has proved: `within` where it proves that,
-        else the largest distance to some 5 %; 0 where it proves nothing [rad].
-    why_not_more
-        What the checker said of a region that is a little larger, or of every region.
-    certificate
-        The proof of the region that was asked about; None: there is none.
-    wall_factor
-        How many times as stiff the wall alone may be at the rest.
-    largest_damping
-        The largest null-space damping that the joints pay for at the rest, beside wall and spring
-        [N·m·s/rad]; 0 where these ask for too much by themselves.
-    fast
-        A small motion to and fro at the rest that takes energy out; None: none was found.
-    loop, slow
-        A slow loop of the joints, and its energy; None: none was found.
-    """
+    """What is known of a wall and a null-space spring together."""
 
     FORMAT = "zwidth null space 1"
     PICTURE = "null_space_figure"
     witness = None  # its motions are reckoned in doubles, and no evidence
 
-    question: Question
-    spring: NullSpaceSpring
-    within: float | None
-    covered: float
-    why_not_more: str
-    wall_factor: float
-    largest_damping: float
-    fast: ArmMotion | None
-    loop: Loop | None
-    slow: ArmMotion | None
-    certificate: Certificate | None = None
+    question: Question = answered(
+        "the arm, the wall and the loop",
+        stands_as={"sample_period_s": "period", "delay_samples": "delay_samples"},
+    )
+    spring: NullSpaceSpring = answered(
+        "the spring",
+        stands_as={
+            "null_stiffness_N_m_per_rad": "stiffness",
+            "null_damping_N_m_s_per_rad": "damping",
+            "null_rest_rad": "rest",
+            "regularization": "regularization",
+        },
+    )
+    within: float | None = answered(
+        "how far from the rest was asked about, root of the sum of squares of the joints; null: the ranges "
+        "of all joints",
+        unit="rad",
+    )
+    covered: float = answered(
+        "so far from it no motion takes energy out, as the checker has proved: `within` where it proves "
+        "that, else the largest distance to some 5 %; 0 where it proves nothing",
+        unit="rad",
+    )
+    why_not_more: str = answered(
+        "what the checker said of a region that is a little larger, or of every region; empty where all that "
+        "was asked is proved"
+    )
+    wall_factor: float = answered("how many times as stiff the wall alone may be at the rest", finite=True)
+    largest_damping: float = answered(
+        "the largest null-space damping that the joints pay for at the rest, beside wall and spring; 0 where "
+        "these ask for too much by themselves",
+        key="largest_null_damping",
+        unit="N*m*s/rad",
+        finite=True,
+    )
+    fast: ArmMotion | None = known(
+        "a small motion to and fro at the rest that takes energy out; None: none was found"
+    )
+    loop: Loop | None = known("a slow loop of the joints; None: none was found")
+    slow: ArmMotion | None = known("its energy")
+    certificate: Certificate | None = known(
+        "the proof of the region that was asked about; None: there is none", default=None
+    )
 
     @property
     def outcome(self) -> Outcome:
@@ -180,23 +186,13 @@ class NullSpace(PassivityAnswer):
 
     def numbers(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
-        arm, spring, turns = self.question.arm, self.spring, self.question.arm.turns
-        size = task_jacobian(arm, spring.rest).shape[0]
+        arm = self.question.arm
+        size = task_jacobian(arm, self.spring.rest).shape[0]
         return {
             **arm_document(arm),
-            "wall": wall_document(self.question.wall, size, turns),
-            "null_stiffness_N_m_per_rad": spring.stiffness,
-            "null_damping_N_m_s_per_rad": spring.damping,
-            "null_rest_rad": list(spring.rest),
-            "regularization": spring.regularization,
-            "sample_period_s": self.question.period,
-            "delay_samples": self.question.delay_samples,
-            "within_rad": self.within,
-            "covered_rad": self.covered,
-            "why_not_more": self.why_not_more,
-            "wall_factor": finite(self.wall_factor),
-            "largest_null_damping_N_m_s_per_rad": finite(self.largest_damping),
-            "fast_motion": None if self.fast is None else motion_document(self.fast, turns),
+            "wall": wall_document(self.question.wall, size, arm.turns),
+            **super().numbers(),
+            "fast_motion": motion_document(self.fast, arm.turns),
             "slow_loop": None if self.loop is None or self.slow is None else _loop(self.loop, self.slow),
         }
 

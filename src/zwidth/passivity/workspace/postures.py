@@ -30,7 +30,8 @@ from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.workspace.mapped import scaled_stiffness, stiffness_factors
 from zwidth.passivity.workspace.question import Question, asked_of
-from zwidth.passivity.workspace.verdict import arm_document, finite, motion_document, wall_document
+from zwidth.passivity.workspace.verdict import arm_document, motion_document, wall_document
+from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import outward_decimal, shown, shown_at_most
 
@@ -49,44 +50,43 @@ _FIRST = 0.05
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class PostureMap(PassivityAnswer):
-    """How stiff a wall may be, at the postures that were tried.
-
-    Parameters
-    ----------
-    question
-        The arm, the wall and the loop.
-    tried
-        How many postures.
-    data
-        By `radius` from the first axis and `height`, the hand's [m]: the smallest and the largest
-        `stiffness_factor` of the postures in a cell, of a wall at a point `largest_stiffness` [N/m] too, and
-        how many there are; nan where none is. With encoder steps the smallest `encoder_factor`, too.
-    stiffness_factor
-        How many times as stiff the wall may be at every posture that was tried.
-    worst
-        The joints at the posture where that is least [rad; m].
-    motion
-        What takes energy out there, if the wall is too stiff and one was found.
-    damping_factor
-        How many times its virtual damping the wall may have, as stiff as it is, at every posture tried; None
-        without virtual damping.
-    encoder_factor
-        How many times as stiff the wall may be with Coulomb friction covering the joints' encoder steps at
-        every posture drawn, to first order and before next to no force; None without steps.
-    """
+    """How stiff a wall may be, at the postures that were tried."""
 
     FORMAT = "zwidth postures 1"
     PICTURE = "postures_figure"
     certificate = witness = None
 
-    question: Question
-    tried: int
-    data: xarray.Dataset
-    stiffness_factor: float
-    worst: tuple[float, ...]
-    motion: ArmMotion | None
-    damping_factor: float | None = None
-    encoder_factor: float | None = None
+    question: Question = answered(
+        "the arm, the wall and the loop",
+        stands_as={"sample_period_s": "period", "delay_samples": "delay_samples"},
+    )
+    tried: int = answered("how many postures were tried", key="postures")
+    data: xarray.Dataset = known(
+        "by `radius` from the first axis and `height`, the hand's [m]: the smallest and the largest "
+        "`stiffness_factor` of the postures in a cell, of a wall at a point `largest_stiffness` [N/m] too, "
+        "and how many there are; nan where none is.  With encoder steps the smallest `encoder_factor`, too"
+    )
+    stiffness_factor: float = answered(
+        "how many times as stiff the wall may be at every posture that was tried", finite=True
+    )
+    worst: tuple[float, ...] = answered(
+        "the joints at the posture where that is least", key="worst_joints", unit="rad"
+    )
+    motion: ArmMotion | None = known(
+        "what takes energy out there, if the wall is too stiff and one was found"
+    )
+    damping_factor: float | None = answered(
+        "how many times its virtual damping the wall may have, as stiff as it is, at every posture tried; "
+        "null without virtual damping",
+        finite=True,
+        default=None,
+    )
+    encoder_factor: float | None = answered(
+        "how many times as stiff the wall may be with Coulomb friction covering the joints' encoder steps at "
+        "every posture drawn, to first order and before next to no force; null without steps",
+        finite=True,
+        default=None,
+    )
 
     @property
     def outcome(self) -> Outcome:
@@ -94,6 +94,7 @@ class PostureMap(PassivityAnswer):
         return "undecided" if self.motion is None else "active"
 
     @cached_property
+    @answers(unit="N/m")
     def largest_stiffness(self) -> float | None:
         """The stiffest wall of this kind at every posture tried [N/m]; None of a wall in pose."""
         wall, arm = self.question.wall, self.question.arm
@@ -173,19 +174,12 @@ class PostureMap(PassivityAnswer):
 
     def numbers(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
-        arm, motion = self.question.arm, self.motion
+        arm = self.question.arm
         return {
             **arm_document(arm),
             "wall": wall_document(self.question.wall, 3 + arm.turns, arm.turns),
-            "sample_period_s": self.question.period,
-            "delay_samples": self.question.delay_samples,
-            "postures": self.tried,
-            "stiffness_factor": finite(self.stiffness_factor),
-            "largest_stiffness_N_per_m": self.largest_stiffness,
-            "worst_joints_rad": list(self.worst),
-            "damping_factor": None if self.damping_factor is None else finite(self.damping_factor),
-            "encoder_factor": None if self.encoder_factor is None else finite(self.encoder_factor),
-            "motion": None if motion is None else motion_document(motion, arm.turns),
+            **super().numbers(),
+            "motion": motion_document(self.motion, arm.turns),
         }
 
 

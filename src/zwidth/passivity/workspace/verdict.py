@@ -23,6 +23,7 @@ from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope, Torque
 from zwidth.passivity.workspace.certificate import arm_certificate
 from zwidth.passivity.workspace.question import Question
+from zwidth.quantity.answered import answered, answers, known
 
 if TYPE_CHECKING:
     import xarray
@@ -32,87 +33,83 @@ if TYPE_CHECKING:
 class Workspace(PassivityAnswer):
     """The answer for an arm: a verdict, the map, and what to change.
 
-    Parameters
-    ----------
-    outcome
-        "passive": the independent checker has shown the condition in the whole region, ``certificate``.
-        "passive without encoder steps": it has of an arm that is read without them, and this one has some.
-        "theorem": it holds in every cell, reckoned in doubles with room for rounding, without a certificate.
-        "active": at one point a motion of the hand takes energy out, `motion`. "undecided": none of these.
-    claim
-        In words, with what was assumed.
-    arm, wall
-        What was asked about.
-    sample_period
-        T [s].
-    delay_samples
-        d, whole samples from reading to force.
-    data
-        The map, an xarray Dataset over the cells; each variable has its unit in `attrs`.
-    added
-        What more damping in the joints would do: `least`, `to_all`, `alone`, each with what is enough and
-        with what still fails; found when it is asked for.
-    stiffness_factor
-        How many times as stiff the wall may be and hold at every point; ∞ if it has no stiffness.
-    largest_stiffness
-        The stiffest wall of this kind that holds at every point, in the largest stiffness of any
-        direction [N/m]; None of a wall in pose, which has two units.
-    region
-        In words: where the claim holds.
-    torque
-        "follows": the torque of each instant is that of the arm then, or of its readings. "held": it is
-        computed once a sample.
-    encoder
-        "counted": the claim is of the wall's force and the Jacobian at the readings. "ideal": of an arm that
-        is read without steps.
-    largest_forces
-        The force of the wall [N], in pose with its moment [N·m], up to which the claim goes; empty: any.
-    encoder_steps
-        What the steps ask of Coulomb friction, up to which force it covers them, and from which on a motion
-        across them takes energy out; None where there are none, or no bound is known.
-    can_be_refuted
-        Whether a hand at the end alone can: False of an arm with more joints than the hand has coordinates.
-        There a `motion` is one of hands that hold the links, too.
-    motion
-        What takes energy out, if one was found.
-    certificate
-        The proof for `zwidth verify`, if "passive", with encoder steps or without.
+    "passive": the independent checker has shown the condition in the whole region, `certificate`.
+    "passive without encoder steps": it has of an arm that is read without them, and this one has some.
+    "theorem": it holds in every cell, reckoned in doubles with room for rounding, without a certificate.
+    "active": at one point a motion of the hand takes energy out, `motion`.  "undecided": none of these.
     """
 
     FORMAT = "zwidth workspace 1"
     PICTURE = "workspace_figure"
     witness = None  # its motion is reckoned in doubles, and no evidence
 
-    outcome: Outcome
-    claim: str
-    arm: Arm
-    wall: Wall | MatrixWall
-    sample_period: float
-    delay_samples: int
-    data: xarray.Dataset
-    added: Additions
-    stiffness_factor: float
-    largest_stiffness: float | None
-    region: str
-    torque: str
-    encoder: str
-    largest_forces: tuple[float, ...]
-    encoder_steps: EncoderSteps | None
-    can_be_refuted: bool
-    motion: ArmMotion | None
-    certificate: Certificate | None = None
+    outcome: Outcome = known("which of these")
+    claim: str = known("in words, with what was assumed")
+    arm: Arm = known("what was asked about")
+    wall: Wall | MatrixWall = known("likewise")
+    sample_period: float = answered("T", unit="s")
+    delay_samples: int = answered("d, whole samples from reading to force")
+    data: xarray.Dataset = known(
+        "the map, an xarray Dataset over the cells; each variable has its unit in `attrs`"
+    )
+    added: Additions = known(
+        "what more damping in the joints would do: `least`, `to_all`, `alone`, each with what is enough and "
+        "with what still fails; found when it is asked for"
+    )
+    stiffness_factor: float = answered(
+        "how many times as stiff the wall may be and hold at every point; null if there is no bound, as of "
+        "one without stiffness",
+        finite=True,
+    )
+    largest_stiffness: float | None = answered(
+        "the stiffest wall of this kind that holds at every point, in the largest stiffness of any "
+        "direction; null if there is no bound, and in pose, which has two units",
+        unit="N/m",
+        finite=True,
+    )
+    region: str = answered("in words: where the claim holds")
+    torque: str = answered(
+        '`"follows"`: that of each instant is that of the arm then, or of its readings; `"held"`: it is '
+        "computed once a sample"
+    )
+    encoder: str = answered(
+        '`"counted"`: the claim is of the wall\'s force and the Jacobian at the '
+        'readings; `"ideal"`: of an arm that is read without steps'
+    )
+    largest_forces: tuple[float, ...] = known(
+        "the force of the wall [N], in pose with its moment [N·m], up to which the claim goes; empty: any"
+    )
+    encoder_steps: EncoderSteps | None = known(
+        "what the steps ask of Coulomb friction, up to which force it covers them, and from which on a "
+        "motion across them takes energy out; None where there are none, or no bound is known"
+    )
+    can_be_refuted: bool = answered(
+        "whether a hand at the end alone can; false of an arm with more joints than the hand has "
+        "coordinates: there a `motion` is one of hands that hold the links, too"
+    )
+    motion: ArmMotion | None = known("what takes energy out, if one was found")
+    certificate: Certificate | None = known(
+        'the proof for `zwidth verify`, if "passive", with encoder steps or without', default=None
+    )
 
     @property
+    @answers(
+        key="addition_to_one",
+        unit="N*m*s/rad",
+        finite=True,
+    )
     def additions(self) -> tuple[float, ...]:
-        """The damping that, given to one joint alone, proves the region; ∞ where none does [N·m·s/rad]."""
+        """The damping that, given to one joint alone, proves the region; ∞, null, where none [N·m·s/rad]."""
         return tuple(addition.enough[joint] for joint, addition in enumerate(self.added.alone))
 
     @property
+    @answers(unit="N*m*s/rad")
     def addition_to_all(self) -> float:
         """The damping that, given to every joint, proves the region [N·m·s/rad]."""
         return self.added.to_all.enough[0]
 
     @property
+    @answers(unit="N*m*s/rad")
     def least_additions(self) -> tuple[float, ...]:
         """The damping of the joints, of a small sum, that proves the region [N·m·s/rad]."""
         return self.added.least.enough
@@ -161,28 +158,24 @@ class Workspace(PassivityAnswer):
 
     def numbers(self) -> dict[str, Any]:
         """What was asked about, and what was found of it, as plain data; the map is in `data`."""
-        data, motion, steps = self.data, self.motion, self.encoder_steps
-        turns, largest = self.arm.turns, self.largest_stiffness
+        data, steps, turns = self.data, self.encoder_steps, self.arm.turns
         return {
             **arm_document(self.arm),
+            **super().numbers(),
             "joint_damping_N_m_s_rad": np.asarray(self.arm.damping).tolist(),
-            "region": self.region,
             "wall": wall_document(self.wall, self.coordinates, turns),
-            "torque": self.torque,
-            "encoder": self.encoder,
             "largest_forces_N": list(self.largest_forces[:1]),
             "largest_moments_N_m": list(self.largest_forces[1:]),
-            "can_be_refuted": self.can_be_refuted,
-            "sample_period_s": self.sample_period,
-            "delay_samples": self.delay_samples,
             "smallest_margin_N_s_per_m": self.margin if "margin" in data else None,
             "smallest_margin_in_joints_N_m_s_per_rad": float(data["margin_in_joints"].min()),
-            "stiffness_factor": finite(self.stiffness_factor),
-            "largest_stiffness_N_per_m": None if largest is None else finite(largest),
             "encoder_steps": None if steps is None else steps_document(steps, turns),
-            **additions_document(self.added),
+            "too_little": {
+                "to_all_N_m_s_per_rad": self.added.to_all.fails[0],
+                "to_one_N_m_s_per_rad": [finite(one.fails[i]) for i, one in enumerate(self.added.alone)],
+                "least_N_m_s_per_rad": list(self.added.least.fails),
+            },
             "proved_part": float(data["proved"].mean()),
-            "motion": None if motion is None else motion_document(motion, turns),
+            "motion": motion_document(self.motion, turns),
         }
 
 
@@ -211,26 +204,14 @@ def steps_document(steps: EncoderSteps, turns: int) -> dict[str, Any]:
         "covered_force_N": steps.covered[0] if steps.covered else None,
         **({"covered_moment_N_m": steps.covered[1] if steps.covered else None} if turns else {}),
         "refuted_force_N": steps.refuted,
-        "motion": None if steps.motion is None else motion_document(steps.motion, turns),
+        "motion": motion_document(steps.motion, turns),
     }
 
 
-def additions_document(added: Additions) -> dict[str, Any]:
-    """What damping would do, and what of it fails at a point; None where none does."""
-    return {
-        "addition_to_all_N_m_s_per_rad": added.to_all.enough[0],
-        "addition_to_one_N_m_s_per_rad": [finite(one.enough[i]) for i, one in enumerate(added.alone)],
-        "least_additions_N_m_s_per_rad": list(added.least.enough),
-        "too_little": {
-            "to_all_N_m_s_per_rad": added.to_all.fails[0],
-            "to_one_N_m_s_per_rad": [finite(one.fails[i]) for i, one in enumerate(added.alone)],
-            "least_N_m_s_per_rad": list(added.least.fails),
-        },
-    }
-
-
-def motion_document(motion: ArmMotion, turns: int) -> dict[str, Any]:
+def motion_document(motion: ArmMotion | None, turns: int) -> dict[str, Any] | None:
     """A motion with its energy; of a hand with turns its rotations apart from its positions."""
+    if motion is None:
+        return None
     point = motion.positions.shape[-1] - turns
     document = {
         "energy_J": motion.energy,

@@ -28,6 +28,7 @@ from zwidth.passivity.pairs.limits import StiffnessAt, grain_of, is_passive, lar
 from zwidth.passivity.pairs.verdict import check_pair, has_and_needs
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Hands, Outcome, Scope
+from zwidth.quantity.answered import answers, known
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import shown, shown_at_most
 
@@ -71,18 +72,12 @@ def check_held_pair(pair: Pair, leader: Any = ANY, follower: Any = ANY) -> HeldV
 
 @dataclass(frozen=True, repr=False)
 class HeldVerdict(PassivityAnswer):
-    """Whether the hand on one arm of a pair can take energy out while a known hand holds the other.
-
-    Attributes
-    ----------
-    question
-        The pair, which arm is held, and by what.
-    """
+    """Whether the hand on one arm of a pair can take energy out while a known hand holds the other."""
 
     FORMAT: ClassVar[str] = "zwidth held pair 1"
     PICTURE: ClassVar[str] = "plot_held_pair"
 
-    question: HeldPair
+    question: HeldPair = known("the pair, which arm is held, and by what")
     certificate: PairCertificate | HeldCertificate | None = None
     violation: HeldViolation | None = None
     advice: tuple[Advice, ...] = ()
@@ -183,6 +178,7 @@ class HeldVerdict(PassivityAnswer):
         yield from assumed_of_arms(self.pair)
 
     @cached_property
+    @answers(quantity="stiffness")
     def largest_stiffness(self) -> float | None:
         """The largest K, both sides in proportion and all else as it is, that is passive; None if none is.
 
@@ -221,6 +217,7 @@ class HeldVerdict(PassivityAnswer):
         return None if largest is None else largest - float(self.pair.felt_stiffness)
 
     @property
+    @answers()
     def limit(self) -> str:
         """What binds."""
         criterion, free = HeldCriterion(self.question), self.question.free
@@ -261,23 +258,15 @@ class HeldVerdict(PassivityAnswer):
 
     def numbers(self) -> dict[str, Any]:
         """The main numbers as plain data, a unit in every key of a physical quantity."""
-        key = self.pair.leader.key
+        key, hand = self.pair.leader.key, self.question.hand
         stiffness = f"largest_{key('stiffness')}"
+        need = {key("damping"): self.required_damping, key("coulomb_friction"): self.required_friction}
         return {
-            "limit": self.limit,
-            "held": {
-                "arm": self.question.held,
-                "hand": "nobody" if self.question.hand.is_nobody else self._hand,
-            },
-            stiffness: self.largest_stiffness,
+            **super().numbers(),
+            "held": {"arm": self.question.held, "hand": "nobody" if hand.is_nobody else self._hand},
             f"{stiffness}_with_any_such_hand": self.largest_stiffness_of_any_such_hand,
             f"{stiffness}_with_two_hands": self.largest_stiffness_of_two_hands,
-            "required": {
-                self.question.free: {
-                    key("damping"): self.required_damping,
-                    key("coulomb_friction"): self.required_friction,
-                }
-            },
+            "required": {self.question.free: need},
         }
 
 

@@ -24,6 +24,7 @@ from zwidth.passivity.stability.absolute.criteria import (
 )
 from zwidth.passivity.stability.absolute.motion import PeriodicMotion, smallest_motion
 from zwidth.passivity.stability.absolute.plant import Plant, given_plant, touched_plant
+from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.exact import Exact
 from zwidth.showing import Table
 
@@ -42,30 +43,26 @@ class Proved:
 
 @dataclass(frozen=True, repr=False)
 class AbsoluteStability(Result):
-    """What `absolute_stability` found.
-
-    Attributes
-    ----------
-    proved
-        By criterion: circle, Tsypkin, Jury–Lee, Zames–Falb for any wall, Zames–Falb for odd ones.
-    linear_limit
-        K at which a linear spring vibrates, and θ = ωT of the vibration: no slope beyond it can be proved.
-    pressing, resting
-        The periodic motion of the smallest slope found with a one-sided wall, for a hand that presses (it
-        rests inside the surface) and for one that rests off the wall; None where none was found.
-    plant
-        G, rounded.
-    """
+    """What `absolute_stability` found."""
 
     FORMAT = "zwidth absolute stability 1"
 
-    proved: tuple[Proved, ...]
-    linear_limit: LinearLimit
-    pressing: PeriodicMotion | None
-    resting: PeriodicMotion | None
-    plant: Plant
+    proved: tuple[Proved, ...] = known(
+        "by criterion: circle, Tsypkin, Jury–Lee, Zames–Falb for any wall, Zames–Falb for odd ones"
+    )
+    linear_limit: LinearLimit = answered(
+        "K at which a linear spring vibrates, and θ = ωT of the vibration: no slope beyond it can be proved",
+        stands_as={"linear_limit": "slope"},
+    )
+    pressing: PeriodicMotion | None = known(
+        "the periodic motion of the smallest slope found with a one-sided wall, for a hand that presses: it "
+        "rests inside the surface; None where none was found"
+    )
+    resting: PeriodicMotion | None = known("the same for a hand that rests off the wall")
+    plant: Plant = known("G, rounded")
 
     @property
+    @answers()
     def scope(self) -> Scope:
         """One plant of a known hand and device, with any spring of the class, touched and left at will."""
         hands = Hands(impedance="the plant G(z)")
@@ -123,10 +120,8 @@ class AbsoluteStability(Result):
     def to_dict(self) -> dict[str, Any]:
         """Slopes, motions and certificates of both as plain data."""
         return {
-            "format": self.FORMAT,
-            "scope": self.scope.to_dict(),
+            **super().to_dict(),
             "slopes": {row.criterion: float(row.slope) for row in self.proved},
-            "linear_limit": self.linear_limit.slope,
             "motions": [{k: v for k, v in m._asdict().items() if k != "source"} for m in self._motions],
             **evidence_of(self),
         }
