@@ -175,7 +175,7 @@ def test_an_arm_and_its_wall():
         zw.check(arm, zw.Wall(100))
     with pytest.raises(zw.InputError, match="of several coordinates"):
         zw.check(PADDLE, zw.arms.MatrixWall([[100.0]]))
-    with pytest.raises(zw.InputError, match="rate: of an arm"):
+    with pytest.raises(zw.InputError, match="no rate: its rate and its delay are in the device"):
         zw.check(PADDLE, zw.Wall(100), rate=1000)
     with pytest.raises(zw.InputError, match="a Device or an arm"):
         zw.check("paddle", zw.Wall(100))

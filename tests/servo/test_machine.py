@@ -7,6 +7,7 @@ import pytest
 from zwidth.machine.servo import checkup
 from zwidth.machine.servo.checkup import Moment, findings
 from zwidth.machine.servo.priority import Answer, Granted
+from zwidth.quantity.answered import data_of
 
 ALL = Granted(
     tuple(Answer(wish, True, "yes") for wish in ("timers", "awake cores", "memory", "one core", "priority"))
@@ -89,7 +90,7 @@ def test_what_makes_a_loop_late_is_told_with_what_helps(about, changes, seen, ad
     one = _told(tmp_path, changes)[about]
     assert seen in one.seen
     assert advice in one.advice
-    assert one.to_dict() == {"about": about, "seen": one.seen, "advice": one.advice}
+    assert data_of(one) == {"about": about, "seen": one.seen, "advice": one.advice}
 
 
 def test_no_usb_port_is_no_unknown_one(tmp_path):

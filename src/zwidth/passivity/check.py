@@ -119,11 +119,11 @@ def check(
         raise InputError("the environment is missing: check(device, zw.Wall(300)) asks for a wall of 300 N/m")
     given = {"contact": as_contact(contact), "iterate": iterate, "progress": progress}
     asked = of_an_arm | {name: told for name, told in given.items() if told != _USUAL[name]}
-    called, takes, answer = next(own for kind, own in _SUBJECTS.items() if isinstance(device, kind))
+    called, takes, answer, why = next(own for kind, own in _SUBJECTS.items() if isinstance(device, kind))
     for name in asked:
         if name not in takes:
-            why = _OF_THE_LAW if name == "discretization" else ""
-            raise InputError(f"check of {called} takes {', '.join(takes)}, and no {name}{why}")
+            why = _OF_THE_LAW if name == "discretization" else why
+            raise InputError(f"check of {called} takes {', '.join(takes)}, and no {name}: {why}")
     verdict: Verdict | Workspace | PairVerdict | HeldVerdict = answer(device, environment, **asked)
     return verdict
 
@@ -175,16 +175,22 @@ def _check_arm(arm: Any, wall: Any, **further: Any) -> Workspace:
 
 _USUAL = {"contact": "made and broken", "iterate": True, "progress": None}
 
-_SUBJECTS: Mapping[type, tuple[str, tuple[str, ...], Callable[..., Any]]] = {
-    Device: ("a device", tuple(_USUAL), _check_device),
-    Pair: ("a pair", ("leader", "follower"), _check_pair),
-    object: ("an arm", ("rate", "delay", "points", "torque_held_up_to", "largest_force"), _check_arm),
-}
-"""What can be asked about, what each takes by name, and who answers: an arm, if it is nothing else."""
+_SUBJECTS: Mapping[type, tuple[str, tuple[str, ...], Callable[..., Any], str]] = {
+    Device: ("a device", tuple(_USUAL), _check_device, "its rate and its delay are in the device itself"),
+    Pair: (
+        "a pair", ("leader", "follower"), _check_pair,
+        "its coupling is in itself; where a known hand holds an arm it is check(pair, follower=hand)",
+    ),
+    object: (
+        "an arm", ("rate", "delay", "points", "torque_held_up_to", "largest_force"), _check_arm,
+        "its wall acts on both sides of where it rests",
+    ),
+}  # fmt: skip
+"""What can be asked about, what each takes by name, who answers, why it takes no more; an arm comes last."""
 
 _OF_THE_LAW = (
-    "; it belongs to the law: check(device, ContinuousTransferFunction(system, discretization=…)); a "
-    "discrete system has its own H(z)"
+    "it belongs to the law: check(device, ContinuousTransferFunction(system, discretization=…)); a discrete "
+    "system has its own H(z)"
 )
 
 

@@ -175,7 +175,7 @@ _DIGITS = 9
 """Of seconds: the clock counts nanoseconds."""
 
 
-_STAGES = ("nominal", "longer_period", "later_force")
+_BOUNDS = ("nominal", "longer_period", "later_force")
 
 
 @dataclass(frozen=True)
@@ -195,7 +195,7 @@ class StiffnessCost:
     motion: str = answered('"linear" or "rotary"', only_shown=True)
 
     @property
-    @answers(key="max_stiffness", quantity="stiffness", names=_STAGES, finite=True)
+    @answers(key="max_stiffness", quantity="stiffness", names=_BOUNDS, finite=True)
     def largest(self) -> tuple[float | None, ...]:
         """Proved passive as given, with every period longer by L, and with every force later by L too; null
         where none is, or any."""
@@ -205,7 +205,7 @@ class StiffnessCost:
     @answers()
     def any_stiffness(self) -> list[str]:
         """Those of the three that have no bound."""
-        return [name for name, value in zip(_STAGES, self.largest, strict=True) if value == inf]
+        return [name for name, value in zip(_BOUNDS, self.largest, strict=True) if value == inf]
 
     def table(self) -> Table:
         """A row for each."""
