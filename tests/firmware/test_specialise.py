@@ -110,7 +110,7 @@ def _quotient(a: float, b: float) -> float:
 
 @needs_c
 @needs_node
-@seeds(4)
+@seeds(2)
 def test_random_functions_have_the_same_bits_in_every_language(
     seed: int, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
