@@ -136,7 +136,7 @@ class Tried:
                 key=lambda item: item.get_closest_marker("soak") is not None
             )  # these last, else as they are
             begun = time.monotonic()
-            outcome, by = self._tried(place, tests) if tests else ("not reached", "")
+            outcome, by = self._tried(place, tests, seconds) if tests else ("not reached", "")
             text = Path(place.file).read_text(encoding="utf-8").splitlines()[place.line - 1].strip()
             ledger.writerow([*key, text, outcome, by, f"{time.monotonic() - begun:.2f}"])
             self.file.flush()
@@ -191,7 +191,7 @@ class Tried:
                 found[item.nodeid] = (time.monotonic() - begun, set(lines))
         return found
 
-    def _tried(self, place: Place, items: list[Any]) -> tuple[str, str]:
+    def _tried(self, place: Place, items: list[Any], seconds: dict[str, float]) -> tuple[str, str]:
         reads, writes = os.pipe()
         child = os.fork()
         if child == 0:
@@ -203,7 +203,9 @@ class Tried:
             if not put_in(place):
                 os.write(writes, b"-")
                 os._exit(0)
+            signal.signal(signal.SIGVTALRM, signal.SIG_DFL)
             for item in items:
+                signal.setitimer(signal.ITIMER_VIRTUAL, 2 + 20 * seconds[item.nodeid])
                 item.config.hook.pytest_runtest_protocol(item=item, nextitem=None)
                 if self.failed:
                     soak = " (soak)" if item.get_closest_marker("soak") else ""
@@ -222,8 +224,8 @@ class Tried:
         if said:
             return "killed", said
         ended = os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
-        if ended == signal.SIGALRM:
-            return "killed", "it waits for ever"
+        if ended in (signal.SIGALRM, signal.SIGVTALRM):
+            return "killed", "a test does not end"
         return ("alive so far", "") if ended == signal.SIGXCPU else ("killed", "the process ended")
 
 
