@@ -24,14 +24,12 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class ServoReport(Documented):
-    """What a served loop did."""
+class Served(Documented):
+    """What is known of a loop and of a pair of loops alike."""
 
-    FORMAT = "zwidth served 1"
-
-    title: str = answered("the law that began last, and the device")
-    verdict: Verdict | None = answered(
-        "of that law, as measured here", stands_as={"outcome": "outcome", "verdict": "claim"}
+    title: str = answered("the law that began last, and the device; of a pair, both devices")
+    verdict: Verdict | PairVerdict | None = answered(
+        "what is claimed of it, as measured here", stands_as={"outcome": "outcome", "verdict": "claim"}
     )
     measured: Measured | None = answered("with what was measured of the loop before")
     granted: Granted | None = answered("what the system granted to the loop's thread")
@@ -39,11 +37,6 @@ class ServoReport(Documented):
     samples: int = answered("samples taken", row="samples taken")
     missed: int = answered(
         "deadlines missed", key="missed_samples", row="missed: the loop came a period late"
-    )
-    later: int = answered(
-        "samples later than 99 % of those measured before, or whose force was: the verdict leaves them out",
-        key="later_than_supposed_samples",
-        row="later than the verdict supposes",
     )
     held: int = answered(
         "samples without a good answer, the force held",
@@ -54,6 +47,19 @@ class ServoReport(Documented):
         "samples whose force the safety cut, of which no verdict speaks",
         key="cut_samples",
         row="force cut by the safety, not in the verdict",
+    )
+
+
+@dataclass(frozen=True, repr=False)
+class ServoReport(Served):
+    """What a served loop did."""
+
+    FORMAT = "zwidth served 1"
+
+    later: int = answered(
+        "samples later than 99 % of those measured before, or whose force was: the verdict leaves them out",
+        key="later_than_supposed_samples",
+        row="later than the verdict supposes",
     )
     laws: int = answered("how often a law began", key="laws_begun")
     lateness: tuple[float, float, float, float] = answered(
@@ -154,30 +160,11 @@ _BOTH = ("leader", "follower")
 
 
 @dataclass(frozen=True, repr=False)
-class PairServoReport(Documented):
+class PairServoReport(Served):
     """What a served pair did; of two numbers the first is the leader's."""
 
     FORMAT = "zwidth served pair 1"
 
-    title: str = answered("what was served")
-    verdict: PairVerdict | None = answered(
-        "on the pair, as measured here", stands_as={"outcome": "outcome", "verdict": "claim"}
-    )
-    measured: Measured | None = answered("with what was measured of the loop before")
-    granted: Granted | None = answered("what the system granted to the loop's thread")
-    ended: str = answered('why the force of both ended; "" before that')
-    samples: int = answered("samples taken", row="samples taken")
-    missed: int = answered("deadlines missed", key="missed_samples", row="missed")
-    held: int = answered(
-        "samples at which an arm gave no good answer, the force of both held",
-        key="held_samples",
-        row="without a good answer, forces held",
-    )
-    cut: int = answered(
-        "samples at which the safety cut a force, of which no verdict speaks",
-        key="cut_samples",
-        row="a force cut by the safety, not in the verdict",
-    )
     lateness: tuple[float, float, float] = answered(
         "how late samples were",
         unit="s",
