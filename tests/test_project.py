@@ -488,3 +488,14 @@ def test_names_that_are_found_and_not_offered_stand_where_they_belong() -> None:
     paddle = zw.catalogue.device("haptic-paddle")
     assert isinstance(zw.check(paddle, zw.Wall(stiffness=300)).certificate, zw.Certificate)
     assert isinstance(zw.check(paddle, zw.Wall(stiffness=9000)).witness, zw.Witness)
+
+
+def test_no_module_bears_the_name_of_what_its_package_offers() -> None:
+    """Whoever imports the module would put it in the place of a function that is found when asked for."""
+    for stub in (ROOT / "src").rglob("__init__.pyi"):
+        package = ".".join(stub.parent.relative_to(ROOT / "src").parts)
+        for line in ast.walk(ast.parse(stub.read_text(encoding="utf-8"))):
+            if isinstance(line, ast.ImportFrom) and line.module != package:
+                inside = {(stub.parent / f"{name.asname or name.name}.py").name for name in line.names}
+                beside = {path.name for path in stub.parent.glob("*.py")}
+                assert not inside & beside, f"{stub}: {inside & beside}"

@@ -129,7 +129,7 @@ def _touch(device: Any, environment: Environment, hand: ParametricOperator) -> T
 
 def region_of(state: State) -> Region:
     """The walls around this one that the device can render."""
-    from zwidth.study.maps.z_width import z_width
+    from zwidth.study.maps.walls import z_width
 
     loop = state.loop()
     wall = loop.environment
