@@ -50,10 +50,10 @@ def test_names_are_those_of_the_glossary() -> None:
     """Names that Python itself gives, such as `__slots__`, are not ours."""
     single = {word for word in ruled_out() if "_" not in word}
     joined = ruled_out() - single
+    where = {name: path for path in sorted((ROOT / "src").rglob("*.py")) for name in names(path)}
     found = [
         f"{path.relative_to(ROOT)}: {name}"
-        for path in sorted((ROOT / "src").rglob("*.py"))
-        for name in set(names(path))
+        for name, path in where.items()
         if not (name.startswith("__") and name.endswith("__"))
         if single & set(words(name)) or any(word in "_".join(words(name)) for word in joined)
     ]

@@ -7,7 +7,7 @@ import pytest
 import zwidth as zw
 
 PADDLE = zw.catalogue.device("haptic-paddle")
-FINE = {"cells": (32, 32), "hands": {}}  # what is passive alone
+FINE = {"cells": (20, 20), "hands": {}}  # what is passive alone
 
 
 def test_effects_are_differences_of_mean_areas() -> None:
