@@ -181,6 +181,22 @@ def test_an_arm_and_its_wall():
         zw.check("paddle", zw.Wall(100))
 
 
+def test_what_a_subject_does_not_take_is_refused():
+    """With what it takes: a name that is ignored would be a claim about another question."""
+    arm = zw.arms.PlanarChain(links=(0.1, 0.1), joint_range=((0.5, 0.6), (0.7, 0.8)), damping=(0.05, 0.05))
+    pair = zw.Pair(PADDLE, PADDLE, stiffness=100)
+    for asked, given, words in (
+        ((pair,), {"contact": "kept"}, "a pair takes leader, follower, and no contact"),
+        ((pair,), {"iterate": False}, "no iterate"),
+        ((arm, zw.Wall(100)), {"rate": "1 kHz", "contact": "kept"}, "an arm takes rate, .*, and no contact"),
+        ((arm, zw.Wall(100)), {"rate": "1 kHz", "speed": 1}, "no speed"),
+        ((PADDLE, zw.Wall(100)), {"discretization": "tustin"}, "no discretization: it belongs to the law"),
+    ):
+        with pytest.raises(zw.InputError, match=words):
+            zw.check(*asked, **given)
+    assert zw.check(pair, contact="made and broken").outcome == zw.check(pair).outcome
+
+
 def test_a_refutation_at_the_worst_of_an_interval_is_not_one_of_the_whole_interval():
     """A pull of 0.5 N beats 0.12 N of Coulomb friction and not 3 N: the interval decides nothing."""
     pulling = zw.NonlinearSpring([-0.01, 0.01], [0.5, 1])
