@@ -60,10 +60,7 @@ CASES = {
     "two samples late": (DEVICE.replace(delay="2 ms"), body(41, "0.0024")),
     "part of a sample late": (DEVICE.replace(delay="0.4 ms"), body(60, "0.03")),
     "another process": (DEVICE, body(10, "0.12", exchange_delay=2)),
-    "through a line": (
-        DEVICE,
-        body(100, "0.05", exchange_delay=3, wave_impedance=1),
-    ),
+    "through a line": (DEVICE, body(100, "0.05", exchange_delay=3, wave_impedance=1)),
 }
 
 
