@@ -184,5 +184,3 @@ def test_the_limit_is_decided_exactly_while_it_is_short(monkeypatch: pytest.Monk
     monkeypatch.setattr(rest, "MOST_EXACT", 10)
     assert not checker.verify(stable).valid
     assert not checker.verify(unstable).valid
-
-

@@ -15,24 +15,19 @@ STOP = zw.NonlinearSpring(positions=["0.01", "0.013"], forces=[0, 3])
 DETENTS = zw.NonlinearSpring.detents(3, "0.01", "0.5")
 """±200 N/m."""
 
-
-def device(**numbers: object) -> zw.Device:
-    """A paddle for which both are too stiff."""
-    given = {"mass": "0.05", "damping": "0.05", "coulomb_friction": "0.1", "resolution": "1e-5", "rate": 1000}
-    return zw.Device(**{**given, **numbers})
+PADDLE = zw.Device(mass="0.05", damping="0.05", coulomb_friction="0.1", resolution="1e-5", rate=1000)
+"""For which both are too stiff."""
 
 
 def is_proved(advice: Advice, at: zw.Device, spring: zw.NonlinearSpring, share: float) -> bool:
     """Whether the checker accepts the loop with an advised value, times a share."""
     value = advice.to * share
     if advice.parameter == "stiffness":
-        scale = value / advice.current
-        forces = [round(float(f) * scale, 12) for f in spring.forces]
-        return (
-            certify_spring(at, zw.NonlinearSpring(positions=spring.positions, forces=forces)).covered()
-            is not None
-        )
-    return certify_spring(at.replace(**{advice.parameter: value}), spring).covered() is not None
+        forces = [round(float(f) * value / advice.current, 12) for f in spring.forces]
+        spring = zw.NonlinearSpring(positions=spring.positions, forces=forces)
+    else:
+        at = at.replace(**{advice.parameter: value})
+    return certify_spring(at, spring).covered() is not None
 
 
 @pytest.mark.parametrize("spring", [STOP, DETENTS], ids=["stop", "detents"])
@@ -41,7 +36,7 @@ def test_each_change_is_proved_and_a_hundredth_less_is_not(
     spring: zw.NonlinearSpring, delay: str | int
 ) -> None:
     """Each of rate, damping and slope alone; no change of the encoder or of Coulomb friction would do."""
-    given = device(delay=delay)
+    given = PADDLE.replace(delay=delay)
     advice = advise_on_spring(given, spring, passive=False)
     assert {one.parameter for one in advice} == {"rate", "damping", "stiffness"}
     for one in advice:
@@ -52,7 +47,7 @@ def test_each_change_is_proved_and_a_hundredth_less_is_not(
 
 def test_the_slack_of_a_spring_that_is_proved() -> None:
     """How far each number may go, 2b/T = 2000 N/m for the slope; the encoder, with f_c, up to 2 f_c/s."""
-    verdict = zw.check(device(damping=1), STOP)
+    verdict = zw.check(PADDLE.replace(damping=1), STOP)
     assert verdict.outcome == "passive"
     assert dict(verdict.rows())["limit"] == "sampling against viscous damping"
     slack = {one.parameter: one.to for one in verdict.advice}
@@ -65,4 +60,4 @@ def test_the_slack_of_a_spring_that_is_proved() -> None:
 def test_where_no_condition_is_known_nothing_is_advised() -> None:
     """Of a spring that pulls away for ever."""
     pulling = zw.NonlinearSpring(positions=[0, "0.01"], forces=[0, -3])
-    assert zw.check(device(), pulling).advice == ()
+    assert zw.check(PADDLE, pulling).advice == ()
