@@ -76,7 +76,6 @@ def _law(rng: random.Random, stiffness: float, damping: float, period: float) ->
 
 
 def turned(loop: Loop, advice: Advice, value: float | Fraction) -> Loop:
-    """The loop with another value of what is advised on."""
     device, law = loop
     key, exact = advice.parameter, Exact(value)
     if key == "stiffness":
@@ -138,7 +137,6 @@ def _of_a_number(loop: Loop, advice: Advice, contact: str, rng: random.Random) -
 
 
 def is_slow(loop: Loop) -> bool:
-    """Whether limits are looked for in larger steps."""
     from zwidth.passivity.corners import worst_corners
     from zwidth.passivity.parameter_limits import is_of_high_degree
 
@@ -183,7 +181,6 @@ ADVISED = {
 
 @pytest.mark.parametrize("name", ADVISED)
 def test_advice_is_enough_and_no_more(name: str) -> None:
-    """At the value advised the loop is passive; a millionth short of it, it is not."""
     advice = check_by_closed_forms(*ADVISED[name], contact="kept").advice
     of_filters = [a for a in advice if a.parameter == "velocity_filter"]
     assert {a.kind for a in advice} == {"slack" if name.startswith("passive") else "change"}
@@ -219,7 +216,6 @@ def test_a_rate_of_whole_samples_stands_alone() -> None:
 
 
 def test_a_negative_damper_is_told_with_its_sign() -> None:
-    """From −0.02 down, not from 0.02 up."""
     verdict = zw.check(zw.Device(damping="0.2", rate="2 kHz"), zw.Wall(150, "-0.02"))
     (told,) = [advice for advice in verdict.advice if advice.parameter == "virtual_damping"]
     assert told.current == -0.02

@@ -57,7 +57,6 @@ def answered(name: str) -> Answer:
 
 @cache
 def page(name: str) -> Html:
-    """As a notebook shows it."""
     return answered(name)._repr_html_()
 
 
@@ -127,7 +126,6 @@ def test_where_there_is_nothing_to_draw_a_notebook_shows_the_claim(name: str) ->
 
 
 def test_a_notebook_shows_what_to_change() -> None:
-    """Beside the claim, and not folded away."""
     shown, folded = page("active").split("<details>", 1)
     for text in ("what to change, any one of:", "lower the stiffness from 770 N/m to 300 N/m"):
         assert text in shown

@@ -61,7 +61,6 @@ def test_the_verdict_says_what_it_rests_on(tmp_path: Path) -> None:
 
 
 def test_with_an_encoder_it_is_proved_without_its_steps() -> None:
-    """Coulomb friction makes no difference to that."""
     for friction in (0, 10):
         found = verdict(740, "0.13", 1, resolution="1e-5", coulomb_friction=friction)
         assert found.outcome == "passive without encoder steps"
@@ -87,7 +86,6 @@ def test_a_large_linear_scene_is_decided_by_its_coupling() -> None:
 
 
 def test_intervals_of_the_device_are_taken_at_their_worst() -> None:
-    """The least damping decides."""
     assert verdict(740, "0.13", ("0.5", "0.7")).outcome == "passive"
     assert verdict(740, "0.13", ("0.49", "0.7")).outcome == "undecided"
 
@@ -100,7 +98,6 @@ def test_couplings_one_behind_the_other() -> None:
 
 
 def test_a_limit_is_found_on_one_side() -> None:
-    """The stiffest coupling that is proved; nothing is refuted."""
     bracket = zw.limit(DEVICE, zw.VirtualCoupling(100, "0.13", SCENE))
     assert bracket.proved_passive == pytest.approx(740, rel=0.01)
     assert float(bracket.proved_passive or 0) <= 740

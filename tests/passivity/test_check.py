@@ -26,7 +26,6 @@ BILLIONTH = Fraction(1, 10**9)
 
 
 def assert_evidence(verdict):
-    """A verdict of either kind stands on evidence that the checker accepts."""
     if verdict.is_proved:
         assert verdict.certificate.verify()
         assert verdict.scope.contact in ("kept", verdict.certificate.covered().contact)
@@ -40,7 +39,6 @@ def assert_evidence(verdict):
 
 
 def kept(device, law):
-    """The verdict on a hand that keeps contact: the linear criterion alone."""
     return zw.check(device, law, contact="kept")
 
 

@@ -72,7 +72,6 @@ def places(value, path=()):
 
 
 def at(document, path):
-    """What stands in a place."""
     for key in path:
         document = document[key]
     return document
@@ -131,12 +130,6 @@ def expanded(document):
     return out_x, out_y or None
 
 
-def independent_energy(document):
-    """The energy of a motion by the plain simulation, in Fractions."""
-    x, y = expanded(document)
-    return plain_loop.energy_out(law_of(document), x, switches=y, **loop_of(document))
-
-
 def criterion_holds(document):
     """b on 4000 frequencies and stability by numpy: is the loop of a proof passive, to rounding?"""
     loop, (n, d) = loop_of(document), ([float(c) for c in part] for part in law_of(document))
@@ -169,7 +162,6 @@ def test_what_says_nothing_of_its_size_is_not_read_without_end(monkeypatch: pyte
 
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_documents_survive_json(name, tmp_path):
-    """Written as JSON and read again, a document means the same and is accepted."""
     path = tmp_path / "evidence.json"
     path.write_text(to_json(DOCUMENTS[name]), encoding="utf-8")
     read = read_document(path)
@@ -244,7 +236,9 @@ def test_tampered_motions(name):
             if found.energy is None:
                 continue
             other["repeats"] = [{k: int(v) for k, v in r.items()} for r in other.get("repeats", [])]
-            assert found.energy == independent_energy(other), path
+            x, y = expanded(other)
+            energy = plain_loop.energy_out(law_of(other), x, switches=y, **loop_of(other))
+            assert found.energy == energy, path
             close = abs(Fraction(other["energy_J"]) - found.energy) <= abs(found.energy) / 10**9
             periods = {Fraction(table["sample_period_s"]) for table in (other, other["loop"])}
             assert found.valid is (found.energy > 0 and close and len(periods) == 1)
@@ -298,13 +292,12 @@ def test_whatever_stands_in_one_place_is_foreseen(name):
 
 @pytest.mark.parametrize("document", [None, [], 7, "text", {}, {"kind": []}, {"kind": "corners"}])
 def test_what_is_no_document(document):
-    """Anything but a document is one input error or a rejection."""
     assert not checker.verify(document).valid
     with pytest.raises(zw.InputError):
         verify_document(document if not isinstance(document, dict) or not document else [])
 
 
-def random_setting(random, unilateral=False):
+def random_setting(random):
     """A loop of every feature at once, its plain description and a law whose forces settle exactly."""
     law = random.choice([([37], [1]), ([25, -11, 7], [1, 0, 0]), ([9, -4], [2, 0])])
     device = zw.Device(
@@ -316,7 +309,7 @@ def random_setting(random, unilateral=False):
     )
     loop = linear_loop(device, zw.PulseTransferFunction(*law))
     friction, resolution = device.exact("coulomb_friction"), device.exact("resolution")
-    return law, Setting(loop, friction, resolution, unilateral)
+    return law, Setting(loop, friction, resolution, False)
 
 
 def plain_energy(law, setting, x, y, kind=Fraction):
@@ -346,57 +339,6 @@ def test_energy_against_plain_simulation(seed):
     assert energy == plain_energy(law, setting, x, y)
     if setting.resolution == 0:
         assert float(energy) == pytest.approx(plain_energy(law, setting, x, y, float), rel=1e-9, abs=1e-12)
-
-
-@seeds(15)
-def test_wall_against_plain_simulation(seed):
-    """A one-sided spring, in and out at will: the same joules."""
-    random = Random(300 + seed)
-    _, setting = random_setting(random, True)
-    k = random.randint(20, 900)
-    loop = linear_loop(zw.Device(damping=setting.loop.damping, rate=500), zw.Wall(k))
-    setting = Setting(loop, setting.coulomb_friction, setting.resolution, True)
-    x = [Fraction(-random.randint(0, 50), 10**4)]
-    x += [Fraction(random.randint(-4000, 4000), 10**5) for _ in range(12)]
-    assert setting.energy(Motion(tuple(x))) == plain_energy(([k], [1]), setting, x, [])
-
-
-@seeds(20)
-def test_repeats_against_listing_every_round(seed):
-    """Repeated parts, closed or advancing, one or several: the same joules as with every round listed."""
-    random = Random(600 + seed)
-    law, setting = random_setting(random)
-    size = random.randint(8, 20)
-    x = [Fraction(0)] + [Fraction(random.randint(0, 4000), 10**5) for _ in range(size)]
-    cuts = sorted(random.sample(range(1, size + 1), 4))
-    repeats = []
-    for first, last in (cuts[:2], cuts[2:]):
-        if random.random() < 0.5:
-            x[last] = x[first]
-        elif setting.resolution:
-            x[last] = x[first] + setting.resolution * random.randint(-3, 5)
-        repeats.append({"first": first, "last": last, "times": random.randint(1, 30)})
-    y = [a + Fraction(random.randint(-900, 900), 10**5) for a in x[1:]] if setting.loop.part_delay else []
-    document = setting.document(Motion(tuple(x), tuple(y)), Fraction(1))
-    document["repeats"] = repeats
-    energy = checker.verify(document).energy
-    assert energy == plain_energy(law, setting, *(expanded(document)))
-
-
-@seeds(15)
-def test_advancing_rounds_behind_a_surface(seed):
-    """A ratchet into or out of a one-sided spring, through the surface too: as with every round listed."""
-    random = Random(900 + seed)
-    _, setting = random_setting(random, True)
-    k, step = random.randint(20, 900), setting.resolution or Fraction(1, 1000)
-    device = zw.Device(damping="0.31", rate=500, delay=random.choice([0, "0.002", "0.0031"]))
-    setting = Setting(linear_loop(device, zw.Wall(k)), Fraction("0.02"), setting.resolution, True)
-    start = Fraction(random.randint(-20, 200), 10**3)
-    x = [Fraction(0), start, start + step / 3, start + random.choice([-2, -1, 1, 2]) * step, Fraction(0)]
-    y = [a + step / 7 for a in x[1:]] if setting.loop.part_delay else []
-    document = setting.document(Motion(tuple(x), tuple(y)), Fraction(1))
-    document["repeats"] = [{"first": 1, "last": 3, "times": random.randint(2, 120)}]
-    assert checker.verify(document).energy == plain_energy(([k], [1]), setting, *expanded(document))
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -450,7 +392,6 @@ def test_absurd_delay_is_rejected(name):
 
 @pytest.mark.parametrize("key", ["corners", "certificate"])
 def test_deeply_nested_documents(key):
-    """A document inside a document, thousands deep, is an input error or a rejection."""
     document = DOCUMENTS["spring"]
     for _ in range(5000):
         document = {"kind": "corners", "corners": [document]} if key == "corners" else {key: document}

@@ -66,7 +66,6 @@ def test_laws_beside_it_are_added():
 
 
 def test_more_than_friction_is_refuted_by_a_motion():
-    """By value iteration, replayed exactly."""
     paddle = zw.catalogue.device("haptic-paddle")
     law = zw.FrictionCompensation(coulomb="0.5", speed="0.01")
     verdict = zw.check(paddle, zw.render(zw.Wall(20), law))

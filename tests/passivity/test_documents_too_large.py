@@ -43,7 +43,6 @@ def motion(system: dict[str, Any], **moved: Any) -> dict[str, Any]:
 
 
 def violation(coefficients: list[str], **proof: str) -> dict[str, Any]:
-    """A criterion violated, of a law 1/Σ c zʲ."""
     law = {"numerator": ["1"], "denominator": coefficients}
     return {"format": "zwidth violation 1", "kind": "violation", "loop": {**LOOP, **law}, "proof": proof}
 
@@ -97,7 +96,6 @@ DOCUMENTS = {
 
 
 def taken_out(denominator: list[str], positions: list[str], **more: Any) -> dict[str, Any]:
-    """A motion before a law 1/D."""
     law = {"numerator": ["1"], "denominator": denominator, "unilateral": False}
     return {"kind": "motion", "loop": {**LOOP, **law}, "energy_J": "1", "positions_m": positions, **more}
 

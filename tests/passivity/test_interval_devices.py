@@ -91,7 +91,6 @@ def test_no_single_number_may_be_enough() -> None:
 
 
 def test_nothing_is_left_to_measure() -> None:
-    """Where every device in the ranges is passive, and where every one is active."""
     for stiffness, outcome in ((1, "passive"), (1e5, "active")):
         found, wall = device_in(**WIDE), zw.Wall(stiffness)
         assert zw.check(found.device, wall).outcome == outcome
@@ -108,7 +107,6 @@ def test_the_corner_that_is_told_is_the_worst() -> None:
 
 
 def test_laws_without_a_stiffness() -> None:
-    """The ranges are told, and nothing else."""
     found = device_in(damping=WIDE["damping"])
     law = zw.PulseTransferFunction((3,), (1,))
     over = over_ranges(found, law, zw.check(found.device, law))

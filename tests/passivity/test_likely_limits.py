@@ -66,7 +66,6 @@ def test_it_is_near_where_decisions_turn(name: str) -> None:
 
 
 def turns(change: Any, likely: float, more: bool) -> None:
-    """Proved on one side of a value and not on the other."""
     below, above = (Exact(likely * (1 + off)).fraction for off in (-1e-9, 1e-9))
     assert provable(change, below) is not more
     assert provable(change, above) is more

@@ -135,7 +135,6 @@ def test_a_spring_that_pulls_away_for_ever():
 
 
 def test_intervals_of_a_device_are_taken_at_their_worst():
-    """Least friction and largest counts decide."""
     exact = device_for(STEEP)
     b, friction = (exact.exact(key) for key in ("damping", "coulomb_friction"))
     wide = exact.replace(

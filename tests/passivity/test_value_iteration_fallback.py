@@ -44,7 +44,6 @@ def test_a_motion_of_the_game_refutes_what_was_undecided() -> None:
 
 
 def test_a_proof_of_bounded_hands_decides_nothing_of_every_hand() -> None:
-    """Undecided stays undecided; the claim says for whom it is proved."""
     verdict = zw.check(PADDLE, CLAMPED)
     assert verdict.outcome == "undecided"
     assert verdict.certificate is None
@@ -79,7 +78,6 @@ def test_a_proof_of_sustained_contact_says_for_whom_contact_is_covered() -> None
     ids=["spring", "active", "contact", "ideal encoder", "part of a sample", "interval", "interval of law"],
 )
 def test_no_game_where_there_is_no_gap(device: zw.Device, law: zw.Wall) -> None:
-    """Decided by closed forms, or not a loop that can be played."""
     assert not has_gap(device, law, check_by_closed_forms(device, law))
     assert zw.check(device, law).available_storage is None
 
@@ -151,20 +149,16 @@ def test_the_json_names_the_game_and_a_saved_file_holds_its_proof(
 
 @pytest.mark.parametrize("delay", [0, "0.001", "0.0003"])
 def test_the_prescribed_motion_takes_out_what_it_claims(delay: float | str) -> None:
-    """In the simulator, with an ideal amplifier and the encoder's edges where the game has them."""
-    device = PADDLE.replace(delay=delay)
-    gain = zw.available_storage(device, zw.Wall(700, 0.05), penetration="0.002", speed="0.5").witness
+    """In the simulator, with an ideal amplifier and the encoder's edges where the game has them.
+
+    The forces of a settled round, which are drawn, are those that the checker multiplies.
+    """
+    device, wall = PADDLE.replace(delay=delay), zw.Wall(700, 0.05)
+    gain = zw.available_storage(device, wall, penetration="0.002", speed="0.5").witness
     hand = zw.operators.WitnessMotion(gain)
     seconds = (hand.intervals + 1) * device.exact("sample_period")
-    ideal = zw.amplifiers.Ideal()
-    trace = zw.simulate(device, zw.Wall(700, 0.05), hand, seconds, amplifier=ideal, encoder_phase=0)
+    trace = zw.simulate(device, wall, hand, seconds, amplifier=zw.amplifiers.Ideal(), encoder_phase=0)
     assert -float(trace.hand_work[-1]) == pytest.approx(gain.energy, rel=1e-9)
-
-
-@pytest.mark.parametrize("delay", [0, "0.001", "0.0003"])
-def test_a_settled_round_gains_what_one_more_round_does(delay: float | str) -> None:
-    """The forces that are drawn are those that the checker multiplies."""
-    gain = zw.available_storage(PADDLE.replace(delay=delay), STIFF).witness
     once = settled_round(gain)
     assert once.energies[-1] == pytest.approx(gain.energy_per_cycle, rel=1e-9)
     assert len(once.forces) + 1 == len(once.positions) == len(once.energies)

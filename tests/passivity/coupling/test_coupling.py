@@ -40,7 +40,6 @@ def need_by_definition(k, b, delay, points=200_001):
 
 
 def needed(k, b, delay=0):
-    """The damping that the condition asks for."""
     return coupling_condition(device(1, delay), k, b).required_damping
 
 
@@ -106,7 +105,6 @@ def test_some_damping_below_0_is_too_much():
 
 
 def test_nothing_needs_nothing():
-    """A coupling of no stiffness and no damping is passive on a device without damping."""
     assert coupling_condition(device(0), 0).holds
     refuted = coupling_condition(device(0), 290)
     assert refuted.counterexample.outcome == "active"
@@ -300,7 +298,6 @@ def test_no_coupling_on_a_grid_is_better(delay):
 
 
 def test_a_wanted_coupling_that_will_do_is_kept():
-    """Exactly as it was asked for, with a delay or without."""
     for delay in (0, Fraction(1, 2)):
         found = design_coupling(device("0.15", delay), zw.Wall(100, "0.02"))
         assert (found.stiffness.fraction, found.damping.fraction) == (100, Fraction(2, 100))
@@ -315,7 +312,6 @@ def test_without_delay_the_stiffness_is_kept_and_the_damping_cut():
 
 
 def test_the_report_says_what_is_felt():
-    """Rows and text carry the numbers; the coupling can be put before an environment."""
     found = design_coupling(PADDLE)
     assert dict(found.rows())["felt slowly"] == "270 N/m"
     assert "passive before every passive environment" in repr(found.condition)

@@ -138,7 +138,6 @@ def test_the_closed_form_of_semi_implicit_euler(seed):
 
 @pytest.mark.parametrize("integrator", EXPLICIT)
 def test_a_spring_alone_before_an_explicit_integrator(integrator):
-    """No mass, however much the device damps."""
     for damping in ("0.15", 15):
         assert masses(20, 0, DEVICE.replace(damping=damping), integrator=integrator).intervals == ()
 
@@ -180,7 +179,6 @@ def test_no_damping_of_the_device_makes_up_for_a_naive_exchange():
 
 @pytest.mark.parametrize("case", ["semi-implicit", "another process"])
 def test_a_motion_gains_in_the_program_itself(case):
-    """The verdict's motion in the loop that a program steps: the hand gets energy out."""
     device, law = CASES[case]
     light = law.replace(virtual_mass=passive_masses(device, law).smallest * 0.9)
     positions = [Fraction(x) for x in zw.check(device, light).witness.positions]
@@ -210,7 +208,6 @@ def test_the_stiffest_coupling_before_heavy_bodies(lag, integrator, exchange):
 
 
 def test_the_limit_of_the_mass_is_the_lightest():
-    """`zw.limit` looks downward for it."""
     bracket = zw.limit(DEVICE, body(150, "0.0375"), "virtual_mass", tolerance=1e-3)
     assert bracket.proved_active < 2.25e-4 <= bracket.proved_passive < 2.26e-4
 

@@ -21,13 +21,11 @@ TINY = Fraction(1, 10**12)
 
 
 def draw(random, low, high):
-    """A decimal of four digits, as a person types it, spread over the decades."""
     value = low * (high / low) ** random.random()
     return Fraction(f"{value:.3e}")
 
 
 def proved(environment, damping, period, delay=Fraction(0)):
-    """Does the exact engine prove the linear criterion at this damping?"""
     h = environment.pulse_transfer_function(period)
     decision = decide_linear(loop_from(h, damping, period, delay))
     assert isinstance(decision, (LinearProof, LinearRefutation))
@@ -219,6 +217,5 @@ def test_chattering_friction_is_the_one_norm(seed):
     ],
 )
 def test_outside_the_hypotheses(call, message):
-    """A formula outside its hypotheses raises and names the number."""
     with pytest.raises(zw.InputError, match=message):
         call()

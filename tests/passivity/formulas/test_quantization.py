@@ -22,7 +22,6 @@ IDEAL = PADDLE.replace(resolution=0)
 
 
 def draw(random, low, high):
-    """A decimal of four digits, spread over the decades."""
     return Fraction(f"{low * (high / low) ** random.random():.3e}")
 
 
@@ -36,13 +35,11 @@ def device(random):
 
 
 def limits(dev):
-    """2b/T and 2f_c/Δ."""
     b, t, friction, step = (dev.exact(key) for key in KEYS)
     return 2 * b / t, 2 * friction / step
 
 
 def gained(dev, stiffness, positions, repeats=()):
-    """Energy the hand takes out, by the independent checker."""
     loop = linear_loop(dev, zw.Wall(stiffness))
     setting = Setting(loop, dev.exact("coulomb_friction"), dev.exact("resolution"), True)
     return setting.energy(Motion(tuple(positions), (), repeats))
@@ -112,7 +109,6 @@ def test_fast_press_gains_what_it_says(seed):
 
 @seeds(20)
 def test_edge_straddle_gains_what_it_says(seed):
-    """Above 2f_c/Δ every round over the first edge gains its closed form of energy."""
     random = Random(seed)
     dev = device(random)
     k = limits(dev)[1] * (1 + draw(random, 1e-4, 10))
