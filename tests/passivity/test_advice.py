@@ -1,10 +1,11 @@
-"""Advice is the bound of the outcome that is printed: each value is asked of `check` again, on both sides."""
+"""Advice is the bound of the outcome that is printed, a limit is one as printed: both are asked again."""
 
 from __future__ import annotations
 
 import random
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -12,10 +13,15 @@ import pytest
 from strategies import seeds
 
 import zwidth as zw
+from zwidth.cli.check.limit_report import _claim
 from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering import OnePole, Window
 from zwidth.passivity.advice import Advice
+from zwidth.passivity.bracket import Bracket, passive_limit
+from zwidth.passivity.bracket.bracket import parameter_of
 from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.formulas.nonlinear_spring import certify_spring
+from zwidth.passivity.loop_advice import advise_on_spring
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.units import parse_number
 
@@ -228,3 +234,103 @@ def test_advice_is_the_bound_of_the_outcome_that_is_printed(seed: int) -> None:
     """At its value, and as it is printed, `check` says the same; just beyond it, it does not."""
     rng = random.Random(seed)
     assert list(faults(*drawn(rng), rng.choice(["made and broken"] * 3 + ["kept"]), rng)) == []
+
+
+_END = re.compile(r"(-?[\d.]+(?:e[+-]?\d+)? ?[^\s,;]*?) is (proved passive|active)")
+
+
+def printed(bracket: Bracket) -> set[tuple[str, str]]:
+    """(value, "proved passive" or "active") of both sentences that name them."""
+    return {*_END.findall(_claim(bracket)), *_END.findall(bracket.describe())}
+
+
+@pytest.mark.parametrize(
+    ("parameter", "unit", "proved", "refuted"),
+    [
+        ("environment.stiffness", "N/m", "123.456", "123.458"),
+        ("device.damping", "N*s/m", "123.458", "123.456"),
+    ],
+)
+def test_an_end_is_rounded_to_its_own_side(parameter: str, unit: str, proved: str, refuted: str) -> None:
+    """A proved stiffness down and a refuted one up, damping the other way; with the other end and without."""
+    found = passive_limit(zw.Device(damping="0.2", rate="1 kHz"), zw.Wall(100), iterate=False)
+    values = sorted((123.4568, 123.4572), reverse=parameter == "device.damping")
+    bracket = replace(
+        found, parameter=parameter, unit=unit, proved_passive=values[0], proved_active=values[1]
+    )
+    said = {text: value.split()[0] for value, text in printed(bracket)}
+    assert said == {"proved passive": proved, "active": refuted}
+    for missing in ("proved_passive", "proved_active"):
+        (alone,) = printed(replace(bracket, **{missing: None}))
+        assert alone[0].split()[0] == said[alone[1]]
+
+
+@seeds(4)
+def test_both_ends_hold_as_they_are_printed(seed: int) -> None:
+    """Given to `check`, the one is passive and the other active."""
+    rng = random.Random(seed)
+    loop = drawn(rng)
+    while not (loop[0].is_certain and loop[1].is_certain):
+        loop = drawn(rng)
+    names = ["device.damping", "device.coulomb_friction", "device.resolution", "device.delay", "device.rate"]
+    name = rng.choice([*names, "gain", *(["stiffness"] * 4 if hasattr(loop[1], "stiffness") else [])])
+    bracket = passive_limit(*loop, name, iterate=False, tolerance=rng.choice([0.1, 0.01, 0.001]))
+    assert bool(printed(bracket)) == (bracket.proved_passive is not None or bracket.proved_active is not None)
+    change = parameter_of(*loop, name).change
+    for value, said in printed(bracket):
+        turned = change(Exact(parse_number(value.strip(), bracket.unit, name)))
+        assert zw.check(*turned, iterate=False).outcome == said.removeprefix("proved ")
+
+
+STOP = zw.NonlinearSpring(positions=["0.01", "0.013"], forces=[0, 3])
+"""A bump stop of 1000 N/m, 10 mm away."""
+
+DETENTS = zw.NonlinearSpring.detents(3, "0.01", "0.5")
+"""±200 N/m."""
+
+LIGHT = zw.Device(mass="0.05", damping="0.05", coulomb_friction="0.1", resolution="1e-5", rate=1000)
+"""For which both are too stiff."""
+
+
+def is_proved(advice: Advice, at: zw.Device, spring: zw.NonlinearSpring, share: float) -> bool:
+    """Whether the checker accepts the loop with an advised value, times a share."""
+    value = advice.to * share
+    if advice.parameter == "stiffness":
+        forces = [round(float(f) * value / advice.current, 12) for f in spring.forces]
+        spring = zw.NonlinearSpring(positions=spring.positions, forces=forces)
+    else:
+        at = at.replace(**{advice.parameter: value})
+    return certify_spring(at, spring).covered() is not None
+
+
+@pytest.mark.parametrize("spring", [STOP, DETENTS], ids=["stop", "detents"])
+@pytest.mark.parametrize("delay", [0, "0.00003"])
+def test_each_change_is_proved_and_a_hundredth_less_is_not(
+    spring: zw.NonlinearSpring, delay: str | int
+) -> None:
+    """Each of rate, damping and slope alone; no change of the encoder or of Coulomb friction would do."""
+    given = LIGHT.replace(delay=delay)
+    advice = advise_on_spring(given, spring, passive=False)
+    assert {one.parameter for one in advice} == {"rate", "damping", "stiffness"}
+    for one in advice:
+        assert is_proved(one, given, spring, 1.0), one.text
+        less = 1.01 if one.parameter == "stiffness" else 0.99
+        assert not is_proved(one, given, spring, less), one.text
+
+
+def test_the_slack_of_a_spring_that_is_proved() -> None:
+    """How far each number may go, 2b/T = 2000 N/m for the slope; the encoder, with f_c, up to 2 f_c/s."""
+    verdict = zw.check(LIGHT.replace(damping=1), STOP)
+    assert verdict.outcome == "passive"
+    assert dict(verdict.rows())["limit"] == "sampling against viscous damping"
+    slack = {one.parameter: one.to for one in verdict.advice}
+    assert slack == pytest.approx(
+        {"stiffness": 2000, "damping": 0.5, "rate": 500, "resolution": 2e-4, "coulomb_friction": 0.005},
+        rel=1e-3,
+    )
+
+
+def test_where_no_condition_is_known_nothing_is_advised() -> None:
+    """Of a spring that pulls away for ever."""
+    pulling = zw.NonlinearSpring(positions=[0, "0.01"], forces=[0, -3])
+    assert zw.check(LIGHT, pulling).advice == ()

@@ -24,6 +24,9 @@ from zwidth.showing import Html
 PADDLE = zw.catalogue.device("haptic-paddle")
 HEAVY = PADDLE.replace(mass=0.04)
 HAND = zw.stability.HandImpedance(mass=0.1, stiffness=100, damping=1)
+BOUNDED = zw.render(zw.Wall(2000), zw.rendering.ForceBounding())
+ARM = zw.arms.built_in("two-link", damping=(1.0, 1.0))
+SLOPES = zw.coupling.SlopeBounds(0, 100, bounded_below=True)
 s = control.tf("s")
 
 
@@ -31,20 +34,16 @@ ASKED: dict[str, Callable[[], Answer]] = {
     "passive": lambda: zw.check(PADDLE, zw.Wall(250)),
     "active": lambda: zw.check(PADDLE, zw.Wall(770)),
     "spring": lambda: zw.check(PADDLE, zw.NonlinearSpring([0, 0.001, 0.002], [0, 0.1, 0.35])),
-    "bounding": lambda: zw.formulas.check_bounding(
-        PADDLE, zw.render(zw.Wall(2000), zw.rendering.ForceBounding())
-    ),
+    "bounding": lambda: zw.formulas.check_bounding(PADDLE, BOUNDED),
     "worst hand": lambda: zw.available_storage(PADDLE, zw.Wall(250), penetration=0.001, speed=0.1),
-    "arm": lambda: zw.workspace(zw.arms.built_in("two-link", damping=(1.0, 1.0)), zw.Wall(1), rate=1000),
+    "arm": lambda: zw.workspace(ARM, zw.Wall(1), rate=1000),
     "port": lambda: zw.ports.passivity_indices((s + 2) / (s + 1)),
     "active port": lambda: zw.ports.passivity_indices((s - 2) / (s * s + s + 1)),
     "stable": lambda: zw.stability.coupled_stability(HEAVY, zw.Wall(500), HAND),
     "unstable": lambda: zw.stability.coupled_stability(HEAVY, zw.Wall(50_000, -1), HAND),
     "coupling": lambda: zw.coupling.coupling_condition(PADDLE, 100, 0.02),
     "poor coupling": lambda: zw.coupling.coupling_condition(PADDLE, 1000, 0.2),
-    "springs": lambda: zw.coupling.transformed_condition(
-        PADDLE, zw.coupling.SlopeBounds(0, 100, bounded_below=True)
-    ),
+    "springs": lambda: zw.coupling.transformed_condition(PADDLE, SLOPES),
 }
 OF_STABILITY = {"stable", "unstable", "coupling", "poor coupling", "springs"}
 YES = {"passive", "spring", "bounding", "worst hand", "arm", "port", "stable", "coupling", "springs"}

@@ -104,25 +104,28 @@ def test_a_credit_of_a_billionth_too_much_is_refused_and_taken_out():
             assert 5e-10 * stored < out < 2e-9 * stored
 
 
-def test_a_friction_of_a_billionth_too_much_is_refused_and_taken_out():
-    """A hand that creeps out against no more than the friction that was credited."""
-    device = plain(friction="0.12")
-    creep = np.array([1e-3, *(1e-3 - 4e-13 * np.arange(1, 200))])
-    for stage, gains in ((ForceBounding(), False), (crediting(1, 1 + 1e-9, 1, 1), True)):
-        out, forces = energy_out(device, stage, creep)
-        assert float(forces[-1]) == pytest.approx(0.12, rel=1e-6)
-        assert (out > 0) is gains
-        assert (check_bounding(device, zw.render(zw.Wall(5000), stage)).outcome == "passive") is not gains
+ROUGH = plain(friction="0.0001", resolution="0.00005")
+EDGE = -5e-5 + 5e-11 * np.where(np.arange(400) % 2, 1, -1)
 
 
-def test_without_its_counts_it_is_refused_and_refuted():
-    """A law that takes the counts for a hundredth of what they are: to and fro over an edge, then a leap."""
-    device = plain(friction="0.0001", resolution="0.00005")
-    jitter = -5e-5 + 5e-11 * np.where(np.arange(400) % 2, 1, -1)
-    force = 2 * 150 * 5e-5 * 20
-    motion = np.array([*jitter, 1.25e-4, 1.25e-4 - force / 300])
-    for stage, gains in ((ForceBounding(), False), (crediting(1, 1, 0.01, 1), True)):
-        out, _ = energy_out(device, stage, motion)
+@pytest.mark.parametrize(
+    ("device", "wrong", "motion"),
+    [
+        # a hand that creeps out against no more than the friction that was credited
+        (
+            plain(friction="0.12"),
+            crediting(1, 1 + 1e-9, 1, 1),
+            [1e-3, *(1e-3 - 4e-13 * np.arange(1, 200))],
+        ),
+        # counts taken for a hundredth of what they are: to and fro over an edge, then a leap
+        (ROUGH, crediting(1, 1, 0.01, 1), [*EDGE, 1.25e-4, 1.25e-4 - 2 * 150 * 5e-5 * 20 / 300]),
+    ],
+    ids=["friction", "counts"],
+)
+def test_what_is_credited_too_much_is_refused_and_taken_out(device, wrong, motion):
+    for stage, gains in ((ForceBounding(), False), (wrong, True)):
+        out, forces = energy_out(device, stage, np.array(motion))
+        assert device == ROUGH or float(forces[-1]) == pytest.approx(0.12, rel=1e-6)
         assert (out > 0) is gains
         assert (check_bounding(device, zw.render(zw.Wall(5000), stage)).outcome == "passive") is not gains
 

@@ -11,6 +11,7 @@ import scipy.signal
 
 import zwidth as zw
 from zwidth import checker
+from zwidth.model.rendering import OnePole, VelocityFilter, Window
 from zwidth.passivity import value_iteration_fallback as gap
 from zwidth.passivity.advice import in_lines
 from zwidth.passivity.certificate import verify_document
@@ -20,7 +21,8 @@ from zwidth.quantity.text import to_json
 PADDLE = zw.Device(
     mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, sample_period=1e-3, name="paddle"
 )
-COARSE = PADDLE.replace(resolution=22.4e-4)
+COARSE, IDEAL = PADDLE.replace(resolution=22.4e-4), PADDLE.replace(resolution=0)
+TIMED = PADDLE.replace(sample_period=(0.0005, 0.001))
 ROUGH = zw.Device(damping="0.6", coulomb_friction=0, resolution="0.0005", sample_period="0.001")
 BILLIONTH = Fraction(1, 10**9)
 
@@ -71,16 +73,12 @@ def test_paddle_beyond_its_limit():
     assert found["coulomb_friction"] is None
 
 
-def test_encoder_limit_of_the_paddle():
-    """2f_c/Δ ≈ 10 700 N/m does not bind: with damping enough for it, it is the limit."""
+def test_other_numbers_of_the_paddle():
+    """2f_c/Δ ≈ 10 700 N/m binds with damping enough for it alone; a fit without f_c, b = 0.41, says 820."""
     verdict = zw.check(PADDLE.replace(damping=20), zw.Wall(300))
     assert verdict.max_stiffness == pytest.approx(2 * 0.12 / 22.4e-6, rel=1e-15)
     assert verdict.max_stiffness == pytest.approx(10_700, rel=2e-3)
     assert verdict.limit == "quantization against Coulomb friction"
-
-
-def test_mass_damper_fit():
-    """A fit without Coulomb friction, b = 0.41, would have said 820 N/m."""
     assert zw.check(PADDLE.replace(damping=0.41), zw.Wall(300)).max_stiffness == 820
 
 
@@ -110,36 +108,35 @@ CLASSES = {
     "spring": zw.Wall(1),
     "damped wall": zw.Wall(1, 0.05),
     "negative virtual damping": zw.Wall(1, -0.04),
-    "window": zw.Wall(1, 0.06, zw.rendering.Window(5)),
-    "one pole": zw.Wall(1, 0.01, zw.rendering.OnePole(0.01)),
-    "filter": zw.Wall(1, 0.02, zw.rendering.VelocityFilter([0.3, 0.1], [1, -0.6])),
+    "window": zw.Wall(1, 0.06, Window(5)),
+    "one pole": zw.Wall(1, 0.01, OnePole(0.01)),
+    "filter": zw.Wall(1, 0.02, VelocityFilter([0.3, 0.1], [1, -0.6])),
     "solid, backward": zw.StandardLinearSolid(1, 20, 0.1),
     "solid, Tustin": zw.StandardLinearSolid(1, 20, 0.1, "tustin"),
     "solid, zero-order hold": zw.StandardLinearSolid(1, 20, 0.1, "zoh"),
     "Prony": zw.GeneralizedMaxwell(1, [(20, 0.1), (9, 1)], "matched"),
     "coupling": zw.VirtualCoupling(1, 0.02, zw.Wall(500, 0.01)),
 }
-DELAYS = ["0", "0.001", "0.0022"]
 
 
-@pytest.mark.parametrize("delay", DELAYS)
+@pytest.mark.parametrize("delay", ["0", "0.001", "0.0022"])
 @pytest.mark.parametrize("name", CLASSES)
 def test_both_sides_of_the_largest_stiffness(name, delay):
     """Passive with a certificate at max_stiffness, a billionth above not proved, a hundredth above active."""
-    device = PADDLE.replace(resolution=0, delay=delay)
-    law = CLASSES[name]
+    device, law = IDEAL.replace(delay=delay), CLASSES[name]
     top = kept(device, law).max_stiffness
     if top is None:
         assert not kept(device, law.replace(stiffness=0)).is_proved
         return
-    at = Fraction(repr(top))
-    assert assert_evidence(kept(device, law.replace(stiffness=zw.Exact(at)))).is_proved
-    above = kept(device, law.replace(stiffness=zw.Exact(at * (1 + BILLIONTH))))
+    at, above, clearly = (
+        kept(device, law.replace(stiffness=zw.Exact(Fraction(repr(top)) * factor)))
+        for factor in (1, 1 + BILLIONTH, Fraction("1.01"))
+    )
+    assert assert_evidence(at).is_proved
     assert not above.is_proved
     if above.outcome == "active":
         assert_evidence(above)
-    clearly = assert_evidence(kept(device, law.replace(stiffness=zw.Exact(at * Fraction("1.01")))))
-    assert clearly.outcome == "active"
+    assert assert_evidence(clearly).outcome == "active"
 
 
 @pytest.mark.parametrize("delay", ["0", "0.0014"])
@@ -246,7 +243,7 @@ def test_friction_bounds_of_a_damped_wall_with_an_encoder():
 
 def test_undecided_between_the_bounds(monkeypatch):
     """With a one-pole filter there is a gap between the proved bounds: undecided, and both are named."""
-    device, law = ROUGH, zw.Wall(100, "0.1", zw.rendering.OnePole("0.02"))
+    device, law = ROUGH, zw.Wall(100, "0.1", OnePole("0.02"))
     monkeypatch.setattr(gap, "EFFORT", 0.2)  # more would not decide it either
     decision = zw.check(device, law).decision
     low, high = decision.necessary_friction, float(decision.sufficient_friction)
@@ -261,42 +258,26 @@ def test_undecided_between_the_bounds(monkeypatch):
     assert assert_evidence(zw.check(device.replace(coulomb_friction=low * 0.4), law)).outcome == "active"
 
 
+SOLID = (50, 80), (20, 90), (0.01, 0.5)
 INTERVALS = {
     "device all passive": (
         PADDLE.replace(damping=(0.2, 0.4), coulomb_friction=(0.1, 0.2)), zw.Wall(380), "passive"
     ),
     "at the worst end": (PADDLE.replace(damping=(0.15, 0.4)), zw.Wall(300), "passive"),
     "wall all passive": (PADDLE, zw.Wall((100, 200), (-0.05, 0.05)), "passive"),
-    "timing, spring": (
-        PADDLE.replace(sample_period=(0.0005, 0.001), delay=(0, "0.0002")), zw.Wall(150), "passive"
-    ),
+    "timing, spring": (TIMED.replace(delay=(0, "0.0002")), zw.Wall(150), "passive"),
     "filter and timing": (
-        PADDLE.replace(resolution=0, sample_period=(0.0005, 0.001)),
-        zw.Wall((50, 80), (0.01, 0.1), zw.rendering.OnePole((0.001, 0.004))), "passive",
+        TIMED.replace(resolution=0), zw.Wall((50, 80), (0.01, 0.1), OnePole((0.001, 0.004))), "passive"
     ),
-    "window and timing": (
-        PADDLE.replace(sample_period=(0.0005, 0.001)),
-        zw.Wall((50, 80), (0.01, 0.05), zw.rendering.Window(4)), "passive",
-    ),
-    "any H(z) and timing": (
-        PADDLE.replace(sample_period=(0.0005, 0.001)),
-        zw.PulseTransferFunction([90, -20], [1, "-0.3"]), "passive",
-    ),
-    "every part of a solid": (
-        PADDLE.replace(resolution=0, sample_period=(0.0005, 0.001)),
-        zw.StandardLinearSolid((50, 80), (20, 90), (0.01, 0.5)), "passive",
-    ),
-    "every part of a solid, Tustin": (
-        PADDLE.replace(resolution=0),
-        zw.StandardLinearSolid((50, 80), (20, 90), (0.01, 0.5), "tustin"), "passive",
-    ),
-    "every part of a solid, mixed": (
-        PADDLE.replace(resolution=0), zw.StandardLinearSolid((200, 280), (20, 90), (0.01, 0.5)), "undecided"
-    ),
-    "timing, damped": (PADDLE.replace(sample_period=(0.0005, 0.001)), zw.Wall(100, 0.1), "passive"),
+    "window and timing": (TIMED, zw.Wall((50, 80), (0.01, 0.05), Window(4)), "passive"),
+    "any H(z) and timing": (TIMED, zw.PulseTransferFunction([90, -20], [1, "-0.3"]), "passive"),
+    "every part of a solid": (TIMED.replace(resolution=0), zw.StandardLinearSolid(*SOLID), "passive"),
+    "every part of a solid, Tustin": (IDEAL, zw.StandardLinearSolid(*SOLID, "tustin"), "passive"),
+    "every part of a solid, mixed": (IDEAL, zw.StandardLinearSolid((200, 280), *SOLID[1:]), "undecided"),
+    "timing, damped": (TIMED, zw.Wall(100, 0.1), "passive"),
     "solid": (PADDLE, zw.StandardLinearSolid((10, 150), 20, 0.1), "passive"),
     "device all active": (PADDLE.replace(damping=(0.1, 0.2)), zw.Wall(500), "active"),
-    "wall all active": (PADDLE.replace(resolution=0), zw.Wall((500, 900), (0.01, 0.1)), "active"),
+    "wall all active": (IDEAL, zw.Wall((500, 900), (0.01, 0.1)), "active"),
     "mixed damping": (PADDLE.replace(damping=(0.1, 0.2)), zw.Wall(290), "undecided"),
     "mixed stiffness": (PADDLE, zw.Wall((200, 400)), "undecided"),
     "mixed period": (PADDLE.replace(sample_period=(0.0005, 0.002)), zw.Wall(250), "undecided"),
@@ -331,17 +312,13 @@ def box(device, law):
     return loops
 
 
+LATE = PADDLE.replace(delay="0.0001")
 UNPROVED = {
-    "timing of a filter with a delay": (
-        PADDLE.replace(sample_period=(0.0005, 0.001), delay="0.0002"),
-        zw.Wall(80, 0.02, zw.rendering.OnePole("0.003")),
-    ),
-    "filter with a delay": (
-        PADDLE.replace(delay="0.0001"), zw.Wall(80, 0.02, zw.rendering.OnePole((0.001, 0.002)))
-    ),
-    "branch with a delay": (PADDLE.replace(delay="0.0001"), zw.StandardLinearSolid(10, (20, 30), 0.1)),
-    "a Prony series": (PADDLE.replace(resolution=0), zw.GeneralizedMaxwell(10, [((20, 30), 0.1), (9, 1)])),
-}  # fmt: skip
+    "timing of a filter with a delay": (TIMED.replace(delay="0.0002"), zw.Wall(80, 0.02, OnePole("0.003"))),
+    "filter with a delay": (LATE, zw.Wall(80, 0.02, OnePole((0.001, 0.002)))),
+    "branch with a delay": (LATE, zw.StandardLinearSolid(10, (20, 30), 0.1)),
+    "a Prony series": (IDEAL, zw.GeneralizedMaxwell(10, [((20, 30), 0.1), (9, 1)])),
+}
 
 
 @pytest.mark.parametrize("name", UNPROVED)
@@ -393,7 +370,7 @@ def test_energy_out_of_a_spring_at_rest_on_a_count():
 
 def test_assumptions_name_what_was_not_given():
     """Parameters taken as zero, the ideal sensor, sustained contact, and intervals are all said."""
-    loop = zw.Device(damping="0.3", rate=1000), zw.Wall(100, "0.44", zw.rendering.Window(2))
+    loop = zw.Device(damping="0.3", rate=1000), zw.Wall(100, "0.44", Window(2))
     bare = zw.check(*loop, contact="kept")
     text = "\n".join(bare.assumptions)
     for line in ("Coulomb friction was not given", "resolution was not given", "delay was not given"):
@@ -413,9 +390,8 @@ def test_assumptions_name_what_was_not_given():
 
 def test_rounded_coefficients_are_said():
     """A discretization through exponentials has rounded coefficients: an assumption."""
-    device = PADDLE.replace(resolution=0)
-    exact = zw.check(device, zw.StandardLinearSolid(50, 20, 0.1, "tustin"))
-    rounded = zw.check(device, zw.StandardLinearSolid(50, 20, 0.1, "zoh"))
+    exact = zw.check(IDEAL, zw.StandardLinearSolid(50, 20, 0.1, "tustin"))
+    rounded = zw.check(IDEAL, zw.StandardLinearSolid(50, 20, 0.1, "zoh"))
     assert not any("rounded" in line for line in exact.assumptions)
     assert any("rounded" in line for line in rounded.assumptions)
 
@@ -431,8 +407,7 @@ def test_rounding_does_not_make_a_solid_active(discretization):
 @pytest.mark.parametrize("delay", ["0", "0.0007"])
 def test_budget_adds_up(delay):
     """Hold, law and delay add up to what is required at the critical frequency, where contact lasts."""
-    device = PADDLE.replace(delay=delay, resolution=0)
-    verdict = zw.check(device, zw.Wall(90, "0.03", zw.rendering.OnePole("0.001")))
+    verdict = zw.check(IDEAL.replace(delay=delay), zw.Wall(90, "0.03", OnePole("0.001")))
     account = verdict.budget
     assert account.hold + account.dynamics + account.delay == pytest.approx(account.required, rel=1e-12)
     frequencies, needs = verdict.curve(2000)

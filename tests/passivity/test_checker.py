@@ -14,7 +14,6 @@ import numpy as np
 import plain_loop
 import pytest
 from scipy.optimize import minimize_scalar
-from strategies import seeds
 from tampered import tampered
 
 import zwidth as zw
@@ -295,50 +294,6 @@ def test_what_is_no_document(document):
     assert not checker.verify(document).valid
     with pytest.raises(zw.InputError):
         verify_document(document if not isinstance(document, dict) or not document else [])
-
-
-def random_setting(random):
-    """A loop of every feature at once, its plain description and a law whose forces settle exactly."""
-    law = random.choice([([37], [1]), ([25, -11, 7], [1, 0, 0]), ([9, -4], [2, 0])])
-    device = zw.Device(
-        damping=Fraction(random.randint(1, 90), 100),
-        coulomb_friction=Fraction(random.randint(0, 30), 100),
-        resolution=random.choice([Fraction(0), Fraction(3, 1000), Fraction(1, 700)]),
-        sample_period=Fraction(1, 500),
-        delay=random.choice([0, "0.002", "0.005", "0.0007", "0.00431"]),
-    )
-    loop = linear_loop(device, zw.PulseTransferFunction(*law))
-    friction, resolution = device.exact("coulomb_friction"), device.exact("resolution")
-    return law, Setting(loop, friction, resolution, False)
-
-
-def plain_energy(law, setting, x, y, kind=Fraction):
-    loop = setting.loop
-    return plain_loop.energy_out(
-        tuple([kind(c) for c in part] for part in law),
-        [kind(v) for v in x],
-        damping=kind(loop.damping),
-        friction=kind(setting.coulomb_friction),
-        period=kind(loop.period),
-        resolution=kind(setting.resolution) if setting.resolution else 0,
-        whole=loop.whole_delay,
-        part=kind(loop.part_delay) if loop.part_delay else 0,
-        switches=[kind(v) for v in y] if y else None,
-        unilateral=setting.unilateral,
-    )
-
-
-@seeds(20)
-def test_energy_against_plain_simulation(seed):
-    """Random motions: the same joules in Fractions exactly, in floats to rounding."""
-    random = Random(seed)
-    law, setting = random_setting(random)
-    x = [Fraction(0)] + [Fraction(random.randint(-4000, 4000), 100000) for _ in range(random.randint(1, 25))]
-    y = [a + Fraction(random.randint(-900, 900), 10**5) for a in x[1:]] if setting.loop.part_delay else []
-    energy = setting.energy(Motion(tuple(x), tuple(y)))
-    assert energy == plain_energy(law, setting, x, y)
-    if setting.resolution == 0:
-        assert float(energy) == pytest.approx(plain_energy(law, setting, x, y, float), rel=1e-9, abs=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(6))
