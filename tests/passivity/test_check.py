@@ -209,7 +209,6 @@ def test_json_of_an_active_verdict(tmp_path):
 
 
 def test_json_of_a_rotary_device():
-    """Torques and angles: N·m, rad and N·m·s/rad in every key."""
     knob = zw.Device(damping=0.002, coulomb_friction=0.004, resolution=0.0015, rate=2000, motion="rotary")
     passive = json.loads(zw.check(knob, zw.Wall(2)).to_json())
     assert passive["outcome"] == "passive"
@@ -331,7 +330,6 @@ def test_intervals_without_a_proof_between(name):
 
 
 def test_too_many_intervals_are_refused():
-    """Seven intervals of law and timing have too many corners: one clear message."""
     device = PADDLE.replace(delay=(0, "0.0001"), sample_period=("0.0005", "0.001"))
     branches = [((20, 30), ("0.1", "0.2")), ((9, 10), (1, 2))]
     with pytest.raises(zw.InputError, match="corners"):
@@ -339,7 +337,6 @@ def test_too_many_intervals_are_refused():
 
 
 def test_hidden_unstable_mode_is_not_passive():
-    """A controller that carries a growing mode which its port does not show is not called passive."""
     hidden = zw.PulseTransferFunction([200, -260], [1, "-1.3"])
     verdict = zw.check(PADDLE, hidden)
     assert verdict.outcome == "undecided"

@@ -20,7 +20,7 @@ import zwidth as zw
 from zwidth import checker
 from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.passivity.linear.loop import linear_loop
-from zwidth.passivity.witness.motion import Motion, Pattern, realize
+from zwidth.passivity.witness.motion import Motion, Pattern, Repeat, realize
 from zwidth.passivity.witness.witness import Setting
 from zwidth.quantity.text import to_json
 
@@ -111,22 +111,10 @@ def law_of(document):
 
 def expanded(document):
     """Positions and switch positions with every round of every repeat listed."""
-    x = [Fraction(v) for v in document["positions_m"]]
-    y = [Fraction(v) for v in document.get("switch_positions_m", [])]
-    out_x, out_y, ahead, at = [], [], Fraction(0), 0
-    for part in document.get("repeats", []):
-        first, last, times = part["first"], part["last"], part["times"]
-        out_x += [v + ahead for v in x[at:first]]
-        out_y += [v + ahead for v in y[at:first]]
-        for turn in range(times):
-            out_x += [v + ahead for v in x[first:last]]
-            out_y += [v + ahead for v in y[first:last]]
-            if turn < times - 1:
-                ahead += x[last] - x[first]
-        at = last
-    out_x += [v + ahead for v in x[at:]]
-    out_y += [v + ahead for v in y[at:]]
-    return out_x, out_y or None
+    x, y = (tuple(map(Fraction, document.get(key, []))) for key in ("positions_m", "switch_positions_m"))
+    rounds = tuple(Repeat(part["first"], part["last"], part["times"]) for part in document.get("repeats", []))
+    motion = Motion(x, y, rounds).listed()
+    return motion.positions, motion.switch_positions or None
 
 
 def criterion_holds(document):
@@ -192,7 +180,6 @@ def test_tampered_proofs(name):
 
 @pytest.mark.parametrize("name", [n for n in PROOFS if "proof" in DOCUMENTS[n]])
 def test_proof_numbers_bind(name):
-    """Each coefficient of the factor and the square is needed: a different one is rejected."""
     document = DOCUMENTS[name]
     for part in ("factor", "square"):
         values = document["proof"]["positivity"][part]
@@ -214,7 +201,6 @@ def test_shortened_lists(name):
 
 @pytest.mark.parametrize("name", PROOFS)
 def test_swapped_kinds(name):
-    """A proof of one kind does not pass for another, unless it proves that too."""
     honest = DOCUMENTS[name]["kind"]
     for kind in ("spring", "contact", "linear", "quantized", "motion", "corners", "", None, 3):
         other = {**DOCUMENTS[name], "kind": kind}

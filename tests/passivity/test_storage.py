@@ -45,7 +45,6 @@ class Hand:
         return total
 
     def changed(self, x, size):
-        """The motion with one place moved, put beside an encoder edge, or stretched as a whole."""
         i, other, chance = self.random.randrange(1, len(x)), list(x), self.random.random()
         if chance < 0.1:
             stretch = self.random.uniform(0.5, 1.5)
