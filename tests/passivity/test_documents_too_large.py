@@ -47,23 +47,25 @@ def violation(coefficients: list[str], **proof: str) -> dict[str, Any]:
     return {"format": "zwidth violation 1", "kind": "violation", "loop": {**LOOP, **law}, "proof": proof}
 
 
+def linear(numerator: list[str], denominator: list[str], at_both: int = 0, factor: Any = ("1",)) -> Any:
+    """A line proved by a square that is 1."""
+    positivity = {"at_one": at_both, "at_minus_one": at_both, "square": ["1"], "factor": list(factor)}
+    proof = {"positivity": positivity, "stability": {"kind": "open loop"}}
+    law = {"numerator": numerator, "denominator": denominator}
+    return {"kind": "linear", "loop": {**LOOP, **law}, "proof": proof}
+
+
 BURST = {"kind": "burst", "cycles": 10**9, "power": 400}
 ACROSS = {"cosine": ["1", "1"], "sine": ["1", "1"]}
-CONSTANT = {
-    "positivity": {"at_one": 0, "at_minus_one": 0, "square": ["1"], "factor": ["1"]},
-    "stability": {"kind": "open loop"},
-}
 LONG = {"numerator": ONES, "denominator": ONES}
 LONG_MATRIX = {"numerators": [[ONES, ONES], [ONES, ONES]], "denominator": ONES}
 SPREAD = {"kind": "polynomial", "duration_s": "1.3", "lowest_power": 2000}
-DOCUMENTS = {
+DOCUMENTS: dict[str, Any] = {
     "rest": {"kind": "stability", "loop": {**HAND, **LAW}},
     "no rest": {"kind": "instability", "loop": {**HAND, **LAW}},
     "slope": {
-        "kind": "absolute stability",
-        "nonlinearity": "monotone",
-        "plant": LAW,
-        **{"slope": "1", "center": "1", "taps": [], "convexity": "0", "smoothness": "0"},
+        "kind": "absolute stability", "nonlinearity": "monotone", "plant": LAW, "slope": "1", "center": "1",
+        "taps": [], "convexity": "0", "smoothness": "0",
     },
     "violation of many digits": violation(ONES, kind="criterion", cosine="0." + "123456789" * 500),
     "violation of many coefficients": violation(
@@ -74,11 +76,7 @@ DOCUMENTS = {
     "ports": motion(
         {"numerators": [[LAW["numerator"]]], "denominator": LAW["denominator"]}, **SPREAD, coefficients=[ONES]
     ),
-    "line": {
-        "kind": "linear",
-        "loop": {**LOOP, "numerator": ratios(31, 3), "denominator": ratios(31, 4)},
-        "proof": CONSTANT,
-    },
+    "line": linear(ratios(31, 3), ratios(31, 4)),
     "burst of many digits": motion(LONG, **BURST, step_rad_per_s="1." + "3" * 130),
     "bursts of many digits": motion(LONG_MATRIX, **BURST, **ACROSS, step_rad_per_s="1." + "3" * 130),
     "burst of many lines": motion(LONG, **BURST, step_rad_per_s="1." + "3" * 110),
@@ -86,13 +84,10 @@ DOCUMENTS = {
     "many powers": motion(LONG, **SPREAD, coefficients=ONES),
     "many powers of two axes": motion(LONG_MATRIX, **SPREAD, coefficients=[ONES, ONES]),
     "long motion": {
-        "kind": "vibration",
-        "plant": {"numerator": ["1"] * 40, "denominator": ["1", *["0.001"] * 40]},
-        "slope": "1",
-        "gap": "1",
-        "inside": [True, False] * 500,
+        "kind": "vibration", "plant": {"numerator": ["1"] * 40, "denominator": ["1", *["0.001"] * 40]},
+        "slope": "1", "gap": "1", "inside": [True, False] * 500,
     },
-}
+}  # fmt: skip
 
 
 def taken_out(denominator: list[str], positions: list[str], **more: Any) -> dict[str, Any]:
@@ -104,11 +99,7 @@ FOREVER = {"repeats": [{"first": 1, "last": 3, "times": 10**4000}]}
 DOCUMENTS |= {
     "motion that never settles": taken_out(["1", "-0.5"], ["0", "0.1", "0.3", "0.1"], **FOREVER),
     "motion of many coefficients": taken_out(ratios(100, 5), ["0", "0.1"] * 5000),
-    "law of high order and many digits": {
-        "kind": "linear",
-        "loop": {**LOOP, "numerator": ["1"] * 1999, "denominator": ["1", *["0." + "1" * 400] * 1998]},
-        "proof": CONSTANT,
-    },
+    "law of high order and many digits": linear(["1"] * 1999, ["1", *["0." + "1" * 400] * 1998]),
 }
 
 
@@ -131,14 +122,11 @@ DOCUMENTS |= {
     "storage of 14 taps": stored(14),
     "storage of 16 taps": stored(16),
     "motion of a law that relaxes slowly": {
-        "kind": "contact motion",
-        "loop": COUNTED,
-        "law": SLOW,
+        "kind": "contact motion", "loop": COUNTED, "law": SLOW, "energy_J": "1",
         "positions_m": ["-0.0001", "0.0003", "0.00015", "0.0003"],
         "repeats": {"first": 1, "last": 3, "times": 10**12},
-        "energy_J": "1",
     },
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", DOCUMENTS)
@@ -153,10 +141,7 @@ def test_refused_for_its_size(name: str, monkeypatch: pytest.MonkeyPatch) -> Non
 
 def test_factors_of_a_higher_degree_than_the_criterion() -> None:
     """They are not multiplied: their degrees say enough."""
-    positivity = {"at_one": 1000, "at_minus_one": 1000, "square": ["1"], "factor": ["1e-5000", "1"]}
-    proof = {"positivity": positivity, "stability": {"kind": "open loop"}}
-    loop = {**LOOP, "numerator": ["300"], "denominator": ["1"]}
-    found = checker.verify({"kind": "linear", "loop": loop, "proof": proof})
+    found = checker.verify(linear(["300"], ["1"], 1000, ["1e-5000", "1"]))
     assert (found.valid, found.reason) == (False, "the factors have a higher degree than the criterion")
 
 

@@ -25,13 +25,12 @@ def draw(random, low, high):
     return Fraction(f"{low * (high / low) ** random.random():.3e}")
 
 
-def device(random):
-    return zw.Device(
-        damping=draw(random, 0.01, 2),
-        coulomb_friction=draw(random, 0.001, 1),
-        resolution=draw(random, 1e-6, 1e-3),
-        sample_period=draw(random, 1e-4, 0.01),
-    )
+def drawn(seed):
+    """A device of typical numbers, and where more are drawn from."""
+    random = Random(seed)
+    ends = {"damping": (0.01, 2), "coulomb_friction": (0.001, 1), "resolution": (1e-6, 1e-3)}
+    numbers = {key: draw(random, *pair) for key, pair in ends.items()}
+    return random, zw.Device(**numbers, sample_period=draw(random, 1e-4, 0.01))
 
 
 def limits(dev):
@@ -55,8 +54,7 @@ def per_cycle(dev, stiffness, cycle):
 @seeds(20)
 def test_worst_case_is_the_minimum_over_encoder_phases(seed):
     """J from its definition, with the real encoder, is never below J* and comes arbitrarily near."""
-    random = Random(seed)
-    dev = device(random)
+    random, dev = drawn(seed)
     k = draw(random, 1, 1e5)
     b, t, friction, step = (dev.exact(key) for key in KEYS)
 
@@ -79,8 +77,8 @@ def test_worst_case_is_the_minimum_over_encoder_phases(seed):
 @seeds(20)
 def test_linear_worst_case(seed):
     """Below J* exactly where K ≤ 2b/T; in and out by one distance loses (2f_c − K Δ) λ."""
-    random = Random(seed)
-    dev, distance = device(random), draw(random, 1e-6, 1e-2)
+    random, dev = drawn(seed)
+    distance = draw(random, 1e-6, 1e-2)
     sampling, _ = limits(dev)
     for k, below in ((sampling, True), (sampling * Fraction(9, 10), True), (sampling * 2, False)):
         for displacement in (distance, -distance):
@@ -93,8 +91,7 @@ def test_linear_worst_case(seed):
 @seeds(20)
 def test_fast_press_gains_what_it_says(seed):
     """Above 2b/T the press gains its closed form of energy; one count less gains none."""
-    random = Random(seed)
-    dev = device(random)
+    random, dev = drawn(seed)
     k = limits(dev)[0] * (1 + draw(random, 1e-4, 10))
     press = q.fast_press(dev, k)
     assert press.energy > 0
@@ -109,8 +106,7 @@ def test_fast_press_gains_what_it_says(seed):
 
 @seeds(20)
 def test_edge_straddle_gains_what_it_says(seed):
-    random = Random(seed)
-    dev = device(random)
+    random, dev = drawn(seed)
     k = limits(dev)[1] * (1 + draw(random, 1e-4, 10))
     straddle = q.edge_crossing(dev, k)
     assert straddle.energy > 0
@@ -159,8 +155,8 @@ def test_regions(viscous, dry, region):
 @seeds(20)
 def test_globally_stable_is_passive(seed):
     """The first region is K ≤ min(2b/T, 2f_c/Δ); outside it there is a counterexample."""
-    random = Random(seed)
-    dev, k = device(random), draw(random, 1, 1e5)
+    random, dev = drawn(seed)
+    k = draw(random, 1, 1e5)
     sampling, quantization = limits(dev)
     region = q.plane_point(dev, k).region
     assert (region == "globally stable") == (k <= min(sampling, quantization))
@@ -173,8 +169,8 @@ def test_globally_stable_is_passive(seed):
 @seeds(20)
 def test_cycle_loss(seed):
     """2 K Δ² ξ [(β − ½) ξ + …] is what the checker finds for one sample in, one out."""
-    random = Random(seed)
-    dev, k, n = device(random), draw(random, 1, 1e5), random.randint(1, 50)
+    random, dev = drawn(seed)
+    k, n = draw(random, 1, 1e5), random.randint(1, 50)
     step = dev.exact("resolution")
     point, unit = q.plane_point(dev, k), 2 * k * step**2 * n
     loss = -gained(dev, k, (Fraction(0), n * step, Fraction(0)))
@@ -188,8 +184,7 @@ def test_cycle_loss(seed):
 @seeds(20)
 def test_admissible_speed_is_safe(seed):
     """No motion that stays at or below it in every sample gains, although the wall is active."""
-    random = Random(seed)
-    dev = device(random)
+    random, dev = drawn(seed)
     sampling, quantization = limits(dev)
     if quantization <= sampling:
         dev = dev.replace(coulomb_friction=dev.exact("resolution") * sampling)
@@ -206,8 +201,8 @@ def test_admissible_speed_is_safe(seed):
 @seeds(20)
 def test_admissible_speed_is_reached(seed):
     """A whole number of counts a sample gains just above the limit and not at it."""
-    random = Random(seed)
-    dev, n = device(random), random.randint(1, 40)
+    random, dev = drawn(seed)
+    n = random.randint(1, 40)
     b, t, _, step = (dev.exact(key) for key in KEYS)
     k = limits(dev)[0] * (1 + draw(random, 1e-3, 5))
     # Coulomb friction that makes n the largest step inside
