@@ -29,6 +29,7 @@ def verdict(k: object, b: object, need: object, delay: object = 0, **more: objec
     ("k", "b", "delay", "need"),
     [
         (740, "0.13", 0, "0.5"),  # K T/2 + B
+        (0, "0.4", 0, "0.4"),
         (300, 0, "0.001", "0.6"),  # (d + 1)² K T/2
         (300, 0, "0.002", "1.35"),
         (400, "-0.1", 0, "0.4"),  # (K T)²/(2 (K T − 2 |B|))
