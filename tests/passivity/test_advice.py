@@ -239,7 +239,7 @@ def test_advice_is_the_bound_of_the_outcome_that_is_printed(seed: int) -> None:
 _END = re.compile(r"(-?[\d.]+(?:e[+-]?\d+)? ?[^\s,;]*?) is (proved passive|active)")
 
 
-def printed(bracket: Bracket) -> set[tuple[str, str]]:
+def ends(bracket: Bracket) -> set[tuple[str, str]]:
     """(value, "proved passive" or "active") of both sentences that name them."""
     return {*_END.findall(_claim(bracket)), *_END.findall(bracket.describe())}
 
@@ -258,10 +258,10 @@ def test_an_end_is_rounded_to_its_own_side(parameter: str, unit: str, proved: st
     bracket = replace(
         found, parameter=parameter, unit=unit, proved_passive=values[0], proved_active=values[1]
     )
-    said = {text: value.split()[0] for value, text in printed(bracket)}
+    said = {text: value.split()[0] for value, text in ends(bracket)}
     assert said == {"proved passive": proved, "active": refuted}
     for missing in ("proved_passive", "proved_active"):
-        (alone,) = printed(replace(bracket, **{missing: None}))
+        (alone,) = ends(replace(bracket, **{missing: None}))
         assert alone[0].split()[0] == said[alone[1]]
 
 
@@ -275,9 +275,9 @@ def test_both_ends_hold_as_they_are_printed(seed: int) -> None:
     names = ["device.damping", "device.coulomb_friction", "device.resolution", "device.delay", "device.rate"]
     name = rng.choice([*names, "gain", *(["stiffness"] * 4 if hasattr(loop[1], "stiffness") else [])])
     bracket = passive_limit(*loop, name, iterate=False, tolerance=rng.choice([0.1, 0.01, 0.001]))
-    assert bool(printed(bracket)) == (bracket.proved_passive is not None or bracket.proved_active is not None)
+    assert bool(ends(bracket)) == (bracket.proved_passive is not None or bracket.proved_active is not None)
     change = parameter_of(*loop, name).change
-    for value, said in printed(bracket):
+    for value, said in ends(bracket):
         turned = change(Exact(parse_number(value.strip(), bracket.unit, name)))
         assert zw.check(*turned, iterate=False).outcome == said.removeprefix("proved ")
 
