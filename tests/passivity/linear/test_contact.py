@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 from fractions import Fraction
 from itertools import accumulate
 from random import Random
@@ -11,7 +10,6 @@ import pytest
 from strategies import seeds
 
 import zwidth as zw
-from zwidth import checker
 from zwidth.passivity import formulas as forms
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.check import check_by_closed_forms
@@ -86,9 +84,8 @@ def test_both_bounds_are_necessary_for_the_backward_difference(seed):
     friction = forms.damped_wall_friction(k, b, step, T).fraction
     assert damping / (k * T) == Fraction(1, 2) + b / (k * T)  # β ≥ ½ + β_v
     assert friction / (k * step) == Fraction(1, 2) + b / (k * T)  # σ ≥ ½ + β_v
-    assert (
-        check_by_closed_forms(device(damping, friction, step, 0), zw.Wall(k, b)).certificate.kind == "contact"
-    )
+    enough = check_by_closed_forms(device(damping, friction, step, 0), zw.Wall(k, b))
+    assert enough.certificate.kind == "contact"
     short = 1 - Fraction(1, 1000)
     for active in (device(damping * short, friction, step, 0), device(damping, friction * short, step, 0)):
         verdict = check_by_closed_forms(active, zw.Wall(k, b))
@@ -100,11 +97,8 @@ def test_both_bounds_are_necessary_for_the_backward_difference(seed):
 def test_closed_forms(seed):
     """Both bounds by hand: any delay in whole samples, windows and one pole by the span of their memory."""
     random = Random(seed)
-    k, b, step = (
-        draw(random, 1, 1e4),
-        random.choice([-1, 1]) * draw(random, 1e-3, 9),
-        draw(random, 1e-6, 1e-2),
-    )
+    k, b = draw(random, 1, 1e4), random.choice([-1, 1]) * draw(random, 1e-3, 9)
+    step = draw(random, 1e-6, 1e-2)
     delay, samples, tau = random.randint(0, 5), random.randint(1, 30), draw(random, 1e-4, 1)
     for velocity, memory in (
         (zw.rendering.BackwardDifference(), T),
@@ -133,7 +127,6 @@ def test_closed_forms(seed):
     ],
 )
 def test_outside_the_hypotheses(call, message):
-    """A formula outside its hypotheses raises and names the number."""
     with pytest.raises(zw.InputError, match=message):
         call()
 
@@ -223,7 +216,6 @@ def touch(seed, surface):
 @pytest.mark.parametrize("surface", SURFACES)
 @pytest.mark.parametrize("seed", range(6))
 def test_no_hand_takes_energy_out_of_a_certified_wall(seed, surface):
-    """At the bounds no step of a greedy hand, in and out at will, takes out more than the storage loses."""
     hand, (damping, friction), law = touch(seed, surface)
     verdict = check_by_closed_forms(device(damping, friction, hand.step, hand.delay), law)
     assert (verdict.outcome, verdict.certificate.kind) == ("passive", "contact")
@@ -235,24 +227,20 @@ def test_no_hand_takes_energy_out_of_a_certified_wall(seed, surface):
 @pytest.mark.parametrize("share", [(Fraction("0.9"), 1), (1, Fraction("0.3"))])
 def test_the_same_hand_is_not_blind(share):
     """With less damping, or less friction where there is an encoder, some step breaks the storage."""
-    found = []
-    for seed in range(12):
+
+    def least(seed):
         hand, (damping, friction), _ = touch(seed, "anything allowed")
-        found.append(hand.least_left(damping * share[0], friction * share[1], 60)[0])
-    assert min(found) < 0
+        return hand.least_left(damping * share[0], friction * share[1], 60)[0]
+
+    assert any(least(seed) < 0 for seed in range(12))
 
 
 @pytest.mark.parametrize("clamped", [False, True])
 @pytest.mark.parametrize("seed", range(3))
 def test_simulated_hands_take_nothing_out(seed, clamped):
-    """A bouncing dowel, a finger, a recorded and wild motion on certified walls: nothing comes out."""
     random = Random(seed)
-    k, b, name = (
-        draw(random, 50, 400),
-        draw(random, 0.02, 0.3),
-        random.choice(["backward difference", "window"]),
-    )
-    step = Fraction("0.0001")
+    k, b, step = draw(random, 50, 400), draw(random, 0.02, 0.3), Fraction("0.0001")
+    name = random.choice(["backward difference", "window"])
     damping, friction = bounds(k, b, name, step, 1)
     held = device(damping, friction, step, 1).replace(mass="0.05")
     wall = zw.Wall(k, b, FILTERS[name][0], clamped=clamped)
@@ -266,84 +254,6 @@ def test_simulated_hands_take_nothing_out(seed, clamped):
 
 
 DEVICE = device("0.5", "0.2", "0.0005", 1)
-DOCUMENTS = {
-    "backward difference": check_by_closed_forms(DEVICE, zw.Wall("180", "0.04")),
-    "window": check_by_closed_forms(DEVICE, zw.Wall("180", "-0.06", zw.rendering.Window(3))),
-    "one pole": check_by_closed_forms(
-        DEVICE, zw.Wall("180", "0.07", zw.rendering.OnePole("0.004"), clamped=True)
-    ),
-}
-
-
-@pytest.mark.parametrize("name", DOCUMENTS)
-def test_every_number_of_a_certificate_binds(name):
-    """Any number of the law or of H(z) changed, and any of the loop for the worse: rejected."""
-    honest = DOCUMENTS[name].certificate.to_dict()
-    assert checker.verify(honest).valid
-    for key in ("stiffness_N_per_m", "virtual_damping_N_s_per_m"):
-        for change in ("1.001", "0.999", "-1", "0"):
-            tampered = copy.deepcopy(honest)
-            tampered["law"][key] = str(Fraction(honest["law"][key]) * Fraction(change))
-            assert not checker.verify(tampered).valid, (key, change)
-    for place, value in _numbers(honest["law"]["weights"]):
-        tampered = copy.deepcopy(honest)
-        tampered["law"]["weights"][place] = str(Fraction(value) + Fraction(1, 1000))
-        assert not checker.verify(tampered).valid
-    for part in ("numerator", "denominator"):
-        for place, value in enumerate(honest["loop"][part]):
-            tampered = copy.deepcopy(honest)
-            tampered["loop"][part][place] = str(Fraction(value) + 1)
-            assert not checker.verify(tampered).valid
-    for key, value in {
-        "damping_N_s_per_m": "0.2",
-        "coulomb_friction_N": "0.04",
-        "resolution_m": "0.01",
-        "sample_period_s": "0.0011",
-        "delay_s": "0.003",
-        "unilateral": False,
-    }.items():
-        tampered = copy.deepcopy(honest)
-        tampered["loop"][key] = value
-        assert not checker.verify(tampered).valid, key
-
-
-def _numbers(weights):
-    return weights.items() if isinstance(weights, dict) else enumerate(weights)
-
-
-@pytest.mark.parametrize(
-    ("place", "value", "said"),
-    [
-        (("law",), None, "law must be an object"),
-        (("law", "weights"), {"pole": "1"}, "pole must be < 1"),
-        (("law", "weights"), {"pole": "-0.2"}, "pole must be ≥ 0"),
-        (("law", "weights"), [], "H(z) is not the wall"),
-        (("law", "weights"), "1", "weights must be a list"),
-        (("law", "stiffness_N_per_rad"), "3", "unit of stiffness"),
-        (("loop", "delay_s"), "0.0024", "damping is below"),
-        (("loop", "damping_N_s_per_m"), "0.3099", "damping is below"),
-        (("loop", "coulomb_friction_N"), "0.0649", "Coulomb friction is below"),
-    ],
-)
-def test_what_the_checker_says(place, value, said):
-    """Each hypothesis that fails is named."""
-    tampered = copy.deepcopy(DOCUMENTS["backward difference"].certificate.to_dict())
-    inner = tampered
-    for key in place[:-1]:
-        inner = inner[key]
-    inner[place[-1]] = value
-    verification = checker.verify(tampered)
-    assert not verification.valid
-    assert said in verification.reason
-
-
-def test_a_negative_spring_is_no_wall():
-    """K < 0 in law and H(z) alike is rejected."""
-    document = copy.deepcopy(DOCUMENTS["backward difference"].certificate.to_dict())
-    document["law"]["stiffness_N_per_m"] = "-180"
-    rate = Fraction(document["law"]["virtual_damping_N_s_per_m"]) / T
-    document["loop"] |= {"numerator": [str(rate - 180), str(-rate)], "denominator": ["1", "0"]}
-    assert "stiffness_N_per_m must be ≥ 0" in checker.verify(document).reason
 
 
 def test_rotary_certificate():
@@ -358,19 +268,14 @@ def test_rotary_certificate():
     assert verdict.certificate.verify()
 
 
-STILL_SUSTAINED = {
-    "a filter that needs less": (
-        device("0.2", "0.2", "0.0005", 0),
-        zw.Wall(180, "0.25", zw.rendering.Window(4)),
-    ),
-    "a solid with delay": (device("0.2", "0.2", "0.0005", 1), zw.StandardLinearSolid(100, 20, "0.1")),
-}
-
-
-@pytest.mark.parametrize("name", STILL_SUSTAINED)
-def test_where_it_does_not_apply(name):
+@pytest.mark.parametrize(
+    ("law", "delay"),
+    [(zw.Wall(180, "0.25", zw.rendering.Window(4)), 0), (zw.StandardLinearSolid(100, 20, "0.1"), 1)],
+    ids=["a filter that needs less", "a solid with delay"],
+)
+def test_where_it_does_not_apply(law, delay):
     """The linear proof stays, for sustained contact; clamped, the same law is undecided and says why."""
-    loop, law = STILL_SUSTAINED[name]
+    loop = device("0.2", "0.2", "0.0005", delay)
     verdict = check_by_closed_forms(loop, law)
     assert (verdict.outcome, verdict.certificate.kind) == ("passive in contact", "quantized")
     assert verdict.scope.contact == "kept"
@@ -378,6 +283,8 @@ def test_where_it_does_not_apply(name):
     assert (clamped.outcome, clamped.certificate, clamped.witness) == ("undecided", None, None)
     assert clamped.claim.startswith("The linear criterion does not cover a law whose force is clamped")
     assert clamped.scope.contact == "made and broken"
+    assert " N·s/m, the device has 0.2 N·s/m; Coulomb friction of " in clamped.claim
+    assert clamped.claim.endswith(" N, it has 0.2 N.")
 
 
 def test_an_active_clamped_wall_has_a_motion_of_its_own():
@@ -402,7 +309,6 @@ def test_a_clamped_spring_is_the_spring():
 
 @pytest.mark.parametrize(("short", "limited"), [(0, True), (TINY, False)])
 def test_the_limit_of_a_clamped_wall(short, limited):
-    """At the bound on b, and only there, the claim says that nothing is left."""
     loop = device(Fraction("0.25"), 1, 0, 0)
     verdict = check_by_closed_forms(loop, zw.Wall(300, Fraction("0.1") - short, clamped=True))
     assert verdict.outcome == "passive"
@@ -449,11 +355,3 @@ def test_intervals(name):
     assert verdict.certificate.covered().contact == ("made and broken" if covered else "kept")
     assert verdict.scope.contact == verdict.certificate.covered().contact
     assert verify_document(verdict.certificate.to_dict()).valid
-
-
-def test_what_is_enough_is_said_with_its_unit():
-    """Of a clamped wall that is not proved: damping and friction, asked for and there."""
-    loop, law = STILL_SUSTAINED["a filter that needs less"]
-    claim = check_by_closed_forms(loop, law.replace(clamped=True)).claim
-    assert " N·s/m, the device has 0.2 N·s/m; Coulomb friction of " in claim
-    assert claim.endswith(" N, it has 0.2 N.")

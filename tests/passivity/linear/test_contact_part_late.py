@@ -61,14 +61,6 @@ def test_proved_from_the_bound_on(name, late, clamped):
             assert verify_document(verdict.certificate.to_dict()).valid
 
 
-def test_a_spring_is_the_spring():
-    """Without virtual damping it is b* = (KT/4)(2d + 1 + 2α + √((2d + 1)² + 8α(d + 1)))."""
-    for late in DELAYS:
-        d, alpha = int(late), float(late % 1)
-        star = 0.3 / 4 * (2 * d + 1 + 2 * alpha + sqrt((2 * d + 1) ** 2 + 8 * alpha * (d + 1)))
-        assert need(300, 0, "window", late) == pytest.approx(star, rel=1e-14)
-
-
 def forces(x, k, b, weights, step, surface):
     """f(k) of a wall that acts inside only, or never pulls, or whatever |r| ≤ |B v| allows; in floats."""
     out = []

@@ -1,4 +1,4 @@
-"""Signs on [−1, 1] decided exactly, against polynomials of known roots and against mpmath's roots."""
+"""Signs and real roots on [−1, 1], exactly: of polynomials of known roots, and by all complex roots."""
 
 from __future__ import annotations
 
@@ -15,15 +15,14 @@ from hypothesis import strategies as st
 from strategies import seeds
 
 from zwidth.passivity.linear import positivity
+from zwidth.passivity.linear.exact_algebra import rational_roots_inside, real_roots, roots_inside
 from zwidth.passivity.linear.positivity import Positivity, TooClose, prove_nonnegative
 
 
 def product(*factors):
     """The product of factors in ascending rational coefficients, as an integer polynomial."""
     total = polynomials.product(*factors)
-    scale = 1
-    for c in total:
-        scale = lcm(scale, c.denominator)
+    scale = lcm(*(c.denominator for c in total))
     return fmpz_poly([int(c * scale) for c in total])
 
 
@@ -57,6 +56,7 @@ def root(r):
 
 
 TINY = Fraction(1, 10**30)
+NEAR = Fraction(1, 2**120)
 NONNEGATIVE = {
     "touches inside": [root("0.37"), root("0.37")],
     "touches both ends": [(1, -1), (1, 1)],
@@ -86,20 +86,12 @@ NEGATIVE = {
 }
 
 
-@pytest.mark.parametrize("name", NONNEGATIVE)
-def test_nonnegative(name):
-    """Polynomials that are never negative on [−1, 1] are proved, however closely they touch."""
-    assert_sound(product(*NONNEGATIVE[name]), True)
-
-
-@pytest.mark.parametrize("name", NEGATIVE)
-def test_negative_somewhere(name):
-    """Polynomials that are negative somewhere get a point inside where they are."""
-    assert_sound(product(*NEGATIVE[name]), False)
+@pytest.mark.parametrize("name", [*NONNEGATIVE, *NEGATIVE])
+def test_a_sign_that_is_known(name):
+    assert_sound(product(*(NONNEGATIVE | NEGATIVE)[name]), name in NONNEGATIVE)
 
 
 def test_zero():
-    """The zero polynomial is nonnegative."""
     assert isinstance(prove_nonnegative(fmpz_poly([])), Positivity)
 
 
@@ -203,3 +195,50 @@ def test_a_valley_narrower_than_the_digits_of_its_lowest_point(sign):
     on_unit = (half**2 + Fraction(sign, 2**700), -4 * half**2, 4 * half**2)  # c = low + 2 half t
     answer = positivity._valley(product(dip), product(on_unit), low, high)
     assert answer is True if sign > 0 else value(product(dip), answer) < 0
+
+
+PLACED = {
+    "none": [],
+    "dyadic, where halving meets them": ["0", "0.5", "-0.5", "0.25"],
+    "thirds": ["1/3", "-2/3"],
+    "next to each other": [Fraction("0.3"), Fraction("0.3") + Fraction(1, 10**25)],
+    "next to the ends": [1 - TINY, TINY - 1],
+    "beyond the ends": ["1.5", "-7", "0.1"],
+    "at the ends": ["1", "-1", "0.7"],
+    "more than once": ["0.4"] * 3 + ["-0.25"] * 2,
+}
+
+
+@pytest.mark.parametrize("name", PLACED)
+def test_placed_roots(name):
+    """Each root inside is found once, to 120 bits, and those at the ends and beyond are not."""
+    places = {Fraction(r) for r in PLACED[name]}
+    expected = sorted(r for r in places if -1 < r < 1)
+    found = sorted(roots_inside(product(*map(root, PLACED[name]), (7, 0, 3))))
+    assert len(found) == len(expected)
+    assert all(abs(a - b) < NEAR for a, b in zip(found, expected, strict=True))
+
+
+@seeds(12)
+def test_random_polynomials(seed):
+    """The same as from all complex roots."""
+    random = Random(seed)
+    cosines = [random.randint(-(10**6), 10**6) for _ in range(random.randint(2, 40))]
+    p = sum((c * fmpz_poly.chebyshev_t(j) for j, c in enumerate(cosines)), fmpz_poly([]))
+    expected = sorted(c for c in real_roots(p) if -1 < c < 1)
+    found = sorted(roots_inside(p))
+    assert len(found) == len(expected)
+    assert all(abs(a - b) < NEAR for a, b in zip(found, expected, strict=True))
+
+
+def test_rational_roots():
+    """The rational ones alone, and of these the simple ones inside."""
+    p = product(root("0.123456789"), root("-2/7"), *[root("0.5")] * 2, root(3), (-2, 0, 7), (1, 1, 1))
+    assert sorted(rational_roots_inside(p)) == [Fraction(-2, 7), Fraction("0.123456789")]
+
+
+def test_a_root_that_is_nearly_rational():
+    """What agrees with a short fraction to 40 digits and is another number is told apart."""
+    near = Fraction(1, 3) + Fraction(1, 10**40)
+    assert rational_roots_inside(product(root(near))) == [near]
+    assert rational_roots_inside(product((Fraction(-1, 9) - Fraction(1, 10**40), 0, 1))) == []
