@@ -33,7 +33,6 @@ def draw(random, low, high):
 
 
 def pole(k, b, tau, **more):
-    """A wall of stiffness k and damping b behind one pole."""
     return zw.Wall(k, b, zw.rendering.OnePole(tau), **more)
 
 
