@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from itertools import accumulate
 from random import Random
 
 import pytest
@@ -75,7 +74,7 @@ def test_proved_at_each_bound_and_not_below_it(name, delay, clamped):
             assert verdict.scope.contact == "kept"
 
 
-@seeds(12)
+@seeds(8)
 def test_both_bounds_are_necessary_for_the_backward_difference(seed):
     """B ≥ 0 without delay: a thousandth below either bound a motion takes energy out."""
     random = Random(seed)
@@ -235,29 +234,10 @@ def test_the_same_hand_is_not_blind(share):
     assert any(least(seed) < 0 for seed in range(12))
 
 
-@pytest.mark.parametrize("clamped", [False, True])
-@pytest.mark.parametrize("seed", range(3))
-def test_simulated_hands_take_nothing_out(seed, clamped):
-    random = Random(seed)
-    k, b, step = draw(random, 50, 400), draw(random, 0.02, 0.3), Fraction("0.0001")
-    name = random.choice(["backward difference", "window"])
-    damping, friction = bounds(k, b, name, step, 1)
-    held = device(damping, friction, step, 1).replace(mass="0.05")
-    wall = zw.Wall(k, b, FILTERS[name][0], clamped=clamped)
-    assert check_by_closed_forms(held, wall).certificate.kind == "contact"
-    wild = list(accumulate((random.gauss(0, 2e-3) for _ in range(300)), initial=-1e-3))
-    hands = (zw.operators.Dowel(), zw.operators.TypicalTouch(), zw.operators.PrescribedMotion(wild))
-    for hand in hands:
-        duration = 0.3 if isinstance(hand, zw.operators.PrescribedMotion) else 0.6
-        energy = zw.simulate(held, wall, hand, duration=duration).zwidth.energy
-        assert energy.extracted <= 1e-9 * energy.moved
-
-
 DEVICE = device("0.5", "0.2", "0.0005", 1)
 
 
 def test_rotary_certificate():
-    """A knob's law has N·m in its keys, and is accepted."""
     knob = zw.Device(
         damping="0.004", coulomb_friction="0.01", resolution="0.0015", rate=2000, motion="rotary"
     )
@@ -300,7 +280,6 @@ def test_an_active_clamped_wall_has_a_motion_of_its_own():
 
 
 def test_a_clamped_spring_is_the_spring():
-    """Without virtual damping there is nothing to clamp: the same verdict, the same motion."""
     for k in (300, 770):
         loop = device("0.15", "0.12", "0.0000224", 0)
         plain, clamped = (check_by_closed_forms(loop, zw.Wall(k, clamped=c)) for c in (False, True))

@@ -121,7 +121,6 @@ def work_out(early, x, switches, part, *, damping, friction, period):
 
 @pytest.mark.parametrize("surface", ["masked", "clamped", "anything allowed"])
 def test_no_hand_gets_energy_out_at_the_bound(surface):
-    """In and out in rhythms, at the best place where the force changes: never anything."""
     for seed in range(60):
         energy, most = got(seed, surface, 1.0)
         assert energy <= 1e-12 * most

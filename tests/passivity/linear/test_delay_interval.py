@@ -8,8 +8,6 @@ from random import Random
 import pytest
 
 import zwidth as zw
-from zwidth.passivity.linear.criterion import LinearProof, prove_delays
-from zwidth.passivity.linear.loop import linear_loop
 
 PADDLE = zw.Device(damping="0.15", coulomb_friction="0.12", resolution="22.4 um", rate="1 kHz")
 LAWS = {
@@ -37,7 +35,6 @@ def test_every_delay_of_a_proved_interval_is_passive(name):
 
 @pytest.mark.parametrize("name", LAWS)
 def test_an_interval_that_reaches_too_far_is_not_proved(name):
-    """An interval of delays with an active end is never passive."""
     law, _ = LAWS[name]
     verdict = zw.check(PADDLE.replace(delay=("0.0001", "0.02")), law, contact="kept")
     assert verdict.outcome == "undecided"
@@ -45,7 +42,6 @@ def test_an_interval_that_reaches_too_far_is_not_proved(name):
 
 
 def test_a_worse_delay_between_passive_ends_is_found():
-    """Passive ends do not make an interval passive: with an active delay between them nothing is claimed."""
     law = zw.PulseTransferFunction([90, 0], [1, "0.8"])
     ends = ("0.001", "0.003")
     needs = [
@@ -56,15 +52,3 @@ def test_a_worse_delay_between_passive_ends_is_found():
     assert all(zw.check(device.replace(delay=d), law, contact="kept").outcome == "passive" for d in ends)
     assert zw.check(device.replace(delay="0.002"), law, contact="kept").outcome == "active"
     assert zw.check(device.replace(delay=ends), law, contact="kept").outcome == "undecided"
-
-
-def test_pieces_cover_the_interval_and_none_crosses_a_sample():
-    """The pieces run from the first delay to the last, each within one sample."""
-    loop = linear_loop(PADDLE.replace(delay="0.0003"), LAWS["filtered"][0])
-    proof = zw.check(PADDLE.replace(delay="0.0003"), LAWS["filtered"][0]).decision.viscous
-    assert isinstance(proof, LinearProof)
-    pieces = prove_delays(loop, proof, Fraction("0.0021"))
-    assert pieces[0].low == Fraction(3, 10)
-    assert pieces[-1].high == Fraction(21, 10)
-    assert all(a.high == b.low for a, b in zip(pieces, pieces[1:], strict=False))
-    assert all(p.high <= p.low // 1 + 1 for p in pieces)

@@ -28,7 +28,6 @@ def test_what_is_likely_changes_no_answer(limit: float, guess: float, likely: fl
 
 @given(limit=ANYWHERE, guess=ANYWHERE, off=st.floats(-1e-9, 1e-9))
 def test_in_coarse_steps_it_holds_and_is_near(limit: float, guess: float, off: float) -> None:
-    """On the side that holds, within a grain."""
     at = Fraction(repr(limit))
     near = limit * (1 + off)
     low = largest_holding(lambda value: value <= at, guess, COARSE, near)
@@ -38,7 +37,6 @@ def test_in_coarse_steps_it_holds_and_is_near(limit: float, guess: float, off: f
 
 @pytest.mark.parametrize("likely", [None, 0.0, 3.0, inf])
 def test_where_all_or_nothing_holds_it_is_said(likely: float | None) -> None:
-    """inf, 0 and None, whatever was likely."""
     assert largest_holding(lambda value: True, 2.0, likely=likely) == inf
     assert largest_holding(lambda value: value == 0, 2.0, likely=likely) == 0
     assert largest_holding(lambda value: False, 2.0, likely=likely) is None
@@ -63,46 +61,39 @@ BOTH_SIDES = zw.PulseTransferFunction([1], [1])
 
 
 def device(delay):
-    """b = 0.15 N·s/m at 1 kHz, with so many samples of delay."""
     return zw.Device(damping="0.15", sample_period=T, delay=delay * T)
 
 
-def spring(m):
-    """H = m."""
-    return RationalFunction((m,), (Fraction(1),))
+def h(numerator, denominator):
+    """H(z) of descending coefficients."""
+    return RationalFunction(tuple(map(Fraction, numerator)), tuple(map(Fraction, denominator)))
 
 
-def damper(m):
-    """H = 40 + m (z − 1)/(T z)."""
-    return RationalFunction((40 * T + m, -m), (T, Fraction(0)))
-
-
-def relaxing(m):
-    """H = 90 (z − 1)/(z − m): a pole that leaves the circle at m = 1."""
-    return RationalFunction((Fraction(90), Fraction(-90)), (Fraction(1), -m))
-
-
-def sinking(m):
-    """H = m − 100, which is a negative spring below 100."""
-    return RationalFunction((m - 100,), (Fraction(1),))
+LAWS = {
+    "spring": lambda m: ((m,), (1,)),
+    "damper": lambda m: ((40 * T + m, -m), (T, 0)),
+    "relaxing": lambda m: ((90, -90), (1, -m)),
+    "sinking": lambda m: ((m - 100,), (1,)),
+}
+"""H = m; 40 + m (z − 1)/(T z); 90 (z − 1)/(z − m), a pole that leaves the circle at m = 1; m − 100."""
 
 
 @pytest.mark.parametrize(
     ("law", "delay", "limit"),
     [
-        (spring, Fraction(0), 300.0),
-        (spring, Fraction(2), 60.0),
-        (spring, Fraction(1, 2), float(zw.check(device(Fraction(1, 2)), zw.Wall(1)).max_stiffness)),
-        (damper, Fraction(0), 0.13),
-        (relaxing, Fraction(0), 1.0),
-        (sinking, Fraction(0), 100.0),
-        (sinking, Fraction(0), 400.0),
+        ("spring", 0, 300.0),
+        ("spring", 2, 60.0),
+        ("spring", Fraction(1, 2), float(zw.check(device(Fraction(1, 2)), zw.Wall(1)).max_stiffness)),
+        ("damper", 0, 0.13),
+        ("relaxing", 0, 1.0),
+        ("sinking", 0, 100.0),
+        ("sinking", 0, 400.0),
     ],
 )
 def test_a_limit_that_is_known_is_found(law, delay, limit):
     """Of a spring 2b/((2d + 1) T), of a damper b − K T/2, of a pole 1, of a sum 0."""
     loop = linear_loop(device(delay), BOTH_SIDES)
-    found = critical_values(law, 1, loop, Fraction(10))
+    found = critical_values(lambda m: h(*LAWS[law](m)), 1, loop, Fraction(10))
     assert any(abs(float(value) - limit) <= 1e-12 * limit for value in found)
     assert found == sorted(found)
     assert all(value > 0 for value in found)
@@ -110,7 +101,6 @@ def test_a_limit_that_is_known_is_found(law, delay, limit):
 
 def test_where_nothing_changes_there_is_none_or_one_to_spare():
     """H = 1/m is passive from some m on; the degree may be given too high."""
-    found = critical_values(
-        lambda m: RationalFunction((Fraction(1),), (m,)), 3, linear_loop(device(0), BOTH_SIDES), Fraction(1)
-    )
+    loop = linear_loop(device(0), BOTH_SIDES)
+    found = critical_values(lambda m: h((1,), (m,)), 3, loop, Fraction(1))
     assert [float(value) for value in found] == pytest.approx([1 / 300])

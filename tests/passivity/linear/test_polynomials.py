@@ -1,8 +1,9 @@
-"""Signs and real roots on [−1, 1], exactly: of polynomials of known roots, and by all complex roots."""
+"""Signs and real roots on [−1, 1] and stability, exactly: of known roots, and by another road."""
 
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import product as choices
 from math import lcm
 from random import Random
 
@@ -14,16 +15,22 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import seeds
 
+from zwidth.checker.exact.roots import inside_unit_circle
 from zwidth.passivity.linear import positivity
-from zwidth.passivity.linear.exact_algebra import rational_roots_inside, real_roots, roots_inside
+from zwidth.passivity.linear.exact_algebra import is_schur, rational_roots_inside, real_roots, roots_inside
 from zwidth.passivity.linear.positivity import Positivity, TooClose, prove_nonnegative
 
 
-def product(*factors):
-    """The product of factors in ascending rational coefficients, as an integer polynomial."""
+def integers(*factors):
+    """The product of factors in rational coefficients, made whole."""
     total = polynomials.product(*factors)
     scale = lcm(*(c.denominator for c in total))
-    return fmpz_poly([int(c * scale) for c in total])
+    return [int(c * scale) for c in total]
+
+
+def product(*factors):
+    """The same of ascending coefficients, as a polynomial."""
+    return fmpz_poly(integers(*factors))
 
 
 def value(p, c):
@@ -113,7 +120,6 @@ def test_degree_sixty(seed):
 @pytest.mark.filterwarnings("ignore:Descending")
 @seeds(20)
 def test_against_roots(seed):
-    """Random polynomials agree with the sign between the real roots that mpmath finds."""
     random = Random(seed)
     degree = random.randint(1, 14)
     p = fmpz_poly([random.randint(-50, 50) for _ in range(degree)] + [random.choice([-3, 2, 17])])
@@ -221,7 +227,6 @@ def test_placed_roots(name):
 
 @seeds(12)
 def test_random_polynomials(seed):
-    """The same as from all complex roots."""
     random = Random(seed)
     cosines = [random.randint(-(10**6), 10**6) for _ in range(random.randint(2, 40))]
     p = sum((c * fmpz_poly.chebyshev_t(j) for j, c in enumerate(cosines)), fmpz_poly([]))
@@ -242,3 +247,82 @@ def test_a_root_that_is_nearly_rational():
     near = Fraction(1, 3) + Fraction(1, 10**40)
     assert rational_roots_inside(product(root(near))) == [near]
     assert rational_roots_inside(product((Fraction(-1, 9) - Fraction(1, 10**40), 0, 1))) == []
+
+
+def pair(radius, cosine):
+    """z² − 2 r cos φ z + r²: a complex pair."""
+    r = Fraction(radius)
+    return (1, -2 * r * Fraction(cosine), r * r)
+
+
+def assert_stable(descending, expected):
+    assert is_schur(descending[::-1]) is expected
+    assert inside_unit_circle([Fraction(c) for c in descending]) is expected
+
+
+HAIR = Fraction(1, 10**12)
+KNOWN = {
+    "real, a hair inside": ([(1, HAIR - 1)], True),
+    "real, a hair outside": ([(1, -1 - HAIR)], False),
+    "pair, a hair inside": ([pair(1 - HAIR, "0.3")], True),
+    "pair, a hair outside": ([pair(1 + HAIR, "0.3")], False),
+    "at 1": ([(1, -1), (1, "-0.4")], False),
+    "at −1": ([(1, 1), (1, "-0.4")], False),
+    "pair on the circle": ([pair(1, "-0.7"), (1, "0.2")], False),
+    "double pair on the circle": ([pair(1, "0.6"), pair(1, "0.6")], False),
+    "reciprocal pair": ([(1, "-0.4"), (1, "-2.5")], False),
+    "reciprocal complex pairs": ([pair("0.8", "0.1"), pair("1.25", "0.1")], False),
+    "reciprocal with opposite signs": ([(1, "-0.5"), (1, 2)], False),
+    "product of roots −1": ([(1, "-0.5"), (1, 2), (1, "0.1")], False),
+    "roots at zero": ([(1, 0), (1, 0), (1, "0.9")], True),
+    "a constant": ([(7,)], True),
+    "negative leading coefficient": ([(-3, 2)], True),
+    "order 40, all close to the circle": ([pair("0.9999", Fraction(k, 21)) for k in range(1, 21)], True),
+    "order 40, one pair outside": (
+        [pair("0.9999", Fraction(k, 21)) for k in range(1, 20)] + [pair("1.0001", "0.95")],
+        False,
+    ),
+    "order 40, one pair on the circle": (
+        [pair("0.99", Fraction(k, 21)) for k in range(1, 20)] + [pair(1, "0.95")],
+        False,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_known_roots(name):
+    factors, expected = KNOWN[name]
+    assert_stable(integers(*factors), expected)
+
+
+def test_zero_is_not_stable():
+    assert not is_schur([])
+    assert not is_schur([0, 0])
+
+
+@seeds(20)
+def test_random_roots(seed):
+    random = Random(seed)
+    factors, stable = [], True
+    for _ in range(random.randint(1, 6)):
+        radius = Fraction(f"{random.choice([random.uniform(0, 1), random.uniform(0.99, 1.005)]):.4f}")
+        cosine = Fraction(f"{random.uniform(-1, 1):.3f}")
+        factors.append(
+            pair(radius, cosine) if random.random() < 0.6 else (1, random.choice([1, -1]) * radius)
+        )
+        stable &= radius < 1
+    assert_stable(integers((Fraction("-2.3"),), *factors), stable)
+
+
+def test_every_small_cubic():
+    """Small whole numbers make a reflection of exactly 1 on the way, which no balls decide."""
+    for descending in choices(range(-3, 4), repeat=4):
+        if descending[0]:
+            expected = inside_unit_circle([Fraction(c) for c in descending])
+            assert is_schur(descending[::-1]) is expected, descending
+
+
+@pytest.mark.parametrize(("furthest", "expected"), [(1 - HAIR, True), (1 + HAIR, False)])
+def test_order_one_hundred_and_ten(furthest, expected):
+    """A cluster of poles near 1 and one pole a hair inside or outside: decided, whatever the digits."""
+    assert is_schur(integers(*[(1, Fraction("-0.99"))] * 109, (1, -furthest))[::-1]) is expected
