@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import pairwise
+from math import sqrt
 from random import Random
 
 import pytest
+from plain_loop import best_switch
 from strategies import seeds
 
 import zwidth as zw
@@ -232,6 +235,96 @@ def test_the_same_hand_is_not_blind(share):
         return hand.least_left(damping * share[0], friction * share[1], 60)[0]
 
     assert any(least(seed) < 0 for seed in range(12))
+
+
+LATE = [Fraction(1, 2), Fraction(1, 10), Fraction("1.4"), Fraction("2.75")]
+"""Delays of part of a sample, in samples."""
+WEIGHTS = {"backward difference": [1.0], "window": [0.2] * 5, "finite response": [0.0, 1.5, -0.5]}
+
+
+def need(k, b, name, late):
+    """½ (Q + √(Q² + α(1 − α) S²)), Q = (2d + 1 + 2α) K T/2 + |B| Σ|w|, S = K T + 2 |B| Σ|w|."""
+    asked, alpha = abs(b) * FILTERS[name][1], float(late % 1)
+    linear = float(2 * late + 1) * k * float(T) / 2 + asked
+    return (linear + sqrt(linear**2 + alpha * (1 - alpha) * (k * float(T) + 2 * asked) ** 2)) / 2
+
+
+def encoded(seed, name):
+    """K, B, the encoder's step and the Coulomb friction that pays for it, in floats."""
+    random = Random(f"{seed} {name}")
+    k, b = random.uniform(10, 900), random.choice([-1, 1]) * random.uniform(0.01, 1)
+    step = random.choice([0, 2e-4])
+    return k, b, step, bounds(k, b, name, step, 0)[1] * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("clamped", [False, True])
+@pytest.mark.parametrize("late", LATE)
+@pytest.mark.parametrize("name", WEIGHTS)
+def test_part_of_a_sample_late_it_is_proved_from_the_root_on(name, late, clamped):
+    """A billionth above it the checker accepts contact made and broken; a billionth below, nothing."""
+    k, b, step, friction = encoded(late, name)
+    law = zw.Wall(k, b, FILTERS[name][0], clamped=clamped)
+    above, below = (
+        check_by_closed_forms(device(need(k, b, name, late) * share, friction, step, late), law)
+        for share in (1 + 1e-9, 1 - 1e-9)
+    )
+    assert (above.outcome, above.certificate.kind) == ("passive", "contact")
+    assert verify_document(above.certificate.to_dict()).valid
+    assert below.outcome != "passive"
+
+
+def forces(x, k, b, weights, step, surface):
+    """f(k) of a wall that acts inside only, or never pulls, or whatever |r| ≤ |B v| allows; in floats."""
+    out = []
+    random = Random(len(x))
+    read = [x[0]] * len(weights) + [step * (v // step) if step else v for v in x]
+    for place in range(len(weights), len(read)):
+        moves = [read[place - j] - read[place - j - 1] for j in range(len(weights))]
+        damper = b * sum(w * move for w, move in zip(weights, moves, strict=True)) / float(T)
+        q = read[place]
+        if surface == "anything allowed":
+            out.append(k * max(q, 0) + damper * random.choice([-1, 0, 1]))
+        else:
+            force = k * q + damper if q > 0 else 0.0
+            out.append(max(force, 0.0) if surface == "clamped" else force)
+    return out
+
+
+def motion(random, samples=60):
+    """From rest outside: in and out in a rhythm, with some chance, and out again."""
+    size = random.choice([1e-3, 3e-2, 1.0])
+    centre, rhythm = random.uniform(-1, 1) * size, random.choice([[1, -1], [1, 1, -1, -1], [1, 0, -1]])
+    inside = [
+        centre + size * rhythm[n % len(rhythm)] * random.uniform(0.7, 1) + random.gauss(0, size / 9)
+        for n in range(samples)
+    ]
+    return [-2 * size] * 3 + inside + [-2 * size] * 9
+
+
+def got(seed, surface, share):
+    """What a hand gets out along a motion at `share` of the damping of the theorem, and its largest work."""
+    random = Random(f"{seed} {surface}")
+    name, late = random.choice(list(WEIGHTS)), random.choice(LATE)
+    k, b, step, friction = encoded(seed, name)
+    x, part = motion(random), float(late % 1)
+    held = {"damping": need(k, b, name, late) * share, "friction": friction, "period": float(T)}
+    force = [0.0] * (int(late) + 1) + forces(x, k, b, WEIGHTS[name], step, surface)
+    total, most = 0.0, 0.0
+    for n, (here, there) in enumerate(pairwise(x)):
+        turn = best_switch(here, there, force[n], force[n + 1], part=part, **held)
+        for acting, way, time in ((force[n], turn - here, part), (force[n + 1], there - turn, 1 - part)):
+            work = acting * way + friction * abs(way) + held["damping"] * way * way / (time * held["period"])
+            total, most = total - work, max(most, abs(work))
+    return total, most
+
+
+@pytest.mark.parametrize("surface", ["masked", "clamped", "anything allowed"])
+def test_part_of_a_sample_late_no_hand_gets_energy_out_at_the_bound(surface):
+    """And with a third of the damping some hands do."""
+    for seed in range(60):
+        energy, most = got(seed, surface, 1.0)
+        assert energy <= 1e-12 * most
+    assert max(energy - 1e-9 * most for energy, most in (got(seed, surface, 0.33) for seed in range(60))) > 0
 
 
 DEVICE = device("0.5", "0.2", "0.0005", 1)

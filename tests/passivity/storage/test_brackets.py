@@ -228,15 +228,6 @@ def test_virtual_damping_below_zero():
     assert bracket.proved_active > bracket.proved_passive > 0
 
 
-def test_a_motion_keeps_to_the_bounds_that_were_given():
-    """Deeper or faster than was asked for is no answer to the question."""
-    wall = zw.Wall(400, "0.1")
-    found = available_storage(device("0.2", "0.03"), wall, penetration="0.00042", speed="0.42")
-    assert found.outcome == "active"
-    assert found.witness.depth <= 0.00042
-    assert found.witness.peak_speed <= 0.42
-
-
 @pytest.mark.parametrize("name", ["stiffness", "stiffness beside damping", "friction", "virtual damping"])
 @pytest.mark.parametrize("speed", ["0.123", "0.237", "0.4599"])
 def test_a_speed_between_two_counts_is_bounded_as_given(name, speed):
