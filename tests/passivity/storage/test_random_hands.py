@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from counted_device import device
+from counted_device import counted, device
 
 import zwidth as zw
 from zwidth.passivity.storage import available_storage
@@ -139,10 +139,6 @@ SLOW = {"spring, slow hand": "0.237", "damped, slow hand": "0.13"}
 
 def bounds(name):
     return {**BOUNDS, "speed": SLOW.get(name, BOUNDS["speed"])}
-
-
-def counted(loop):
-    return {f"force_{key}": getattr(loop, f"force_{key}") is not None for key in ("limit", "resolution")}
 
 
 @cache

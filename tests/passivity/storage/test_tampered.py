@@ -11,7 +11,7 @@ from random import Random
 
 import numpy as np
 import pytest
-from counted_device import device
+from counted_device import counted, device
 from plain_iteration import exact_force
 from tampered import tampered
 
@@ -44,8 +44,7 @@ LOOPS = {
 def least(name):
     """The smallest storage function there is, every value of it attained by a move; and its document."""
     loop, law = LOOPS[name]
-    counted = {f"force_{key}": getattr(loop, f"force_{key}") is not None for key in ("limit", "resolution")}
-    program = program_of(loop, law, **counted, **BOUNDS)
+    program = program_of(loop, law, **counted(loop), **BOUNDS)
 
     class FromNothing(Grid):
         """A grid whose search starts at 0."""
