@@ -125,8 +125,7 @@ def test_a_kelvin_voigt_wall_is_one_by_backward_difference():
 
 
 @pytest.mark.parametrize(
-    "law",
-    [zw.PulseTransferFunction(NUM, DEN, 1e-3), zw.ContinuousTransferFunction(NUM, DEN, "tustin")],
+    "law", [zw.PulseTransferFunction(NUM, DEN, 1e-3), zw.ContinuousTransferFunction(NUM, DEN, "tustin")]
 )
 def test_scaling_is_exact(law):
     """Only the numerator changes, by exactly the factor."""

@@ -191,10 +191,7 @@ def test_intervals_are_kept_and_not_evaluated():
     [
         (lambda: zw.StandardLinearSolid(-1, 2, 3), "stiffness must be ≥ 0"),
         (lambda: zw.StandardLinearSolid(1, (-2, 2), 3), "branch_stiffness must be ≥ 0"),
-        (
-            lambda: zw.StandardLinearSolid(1, 2, "x"),
-            r"branch_damping is in N\*s/m; got .x.: expected",
-        ),
+        (lambda: zw.StandardLinearSolid(1, 2, "x"), r"branch_damping is in N\*s/m; got .x.: expected"),
         (lambda: zw.StandardLinearSolid(1, 2, 3, "euler"), 'one of "backward"'),
         (lambda: zw.Maxwell(float("nan"), 3), "stiffness is in N/m: expected a finite number"),
         (lambda: zw.Maxwell(1, 3, None), 'one of "backward"'),

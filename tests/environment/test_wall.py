@@ -46,10 +46,7 @@ def test_every_text_with_a_unit_is_read_where_a_number_is() -> None:
 @pytest.mark.parametrize(
     ("make", "said"),
     [
-        (
-            lambda: zw.Wall(-1),
-            "stiffness must be ≥ 0, got -1: a negative spring pulls the hand in and gives",
-        ),
+        (lambda: zw.Wall(-1), "stiffness must be ≥ 0, got -1: a negative spring pulls the hand in and gives"),
         (lambda: zw.Wall((-1, 2)), "stiffness must be ≥ 0, got -1 … 2: a negative spring"),
         (lambda: zw.Wall("3 N"), 'stiffness is in N/m; got "3 N", a force'),
         (lambda: zw.Wall(True), "stiffness is in N/m; got true or false where a number belongs"),

@@ -9,15 +9,7 @@ import pytest
 
 from zwidth.errors import InputError
 from zwidth.quantity import Exact, Interval
-from zwidth.quantity.parameter import (
-    Parametric,
-    flag,
-    listed,
-    parameter,
-    parameters_of,
-    plain,
-    word,
-)
+from zwidth.quantity.parameter import Parametric, flag, listed, parameter, parameters_of, plain, word
 from zwidth.quantity.text import unit_text
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tempting import FORCE, LENGTH, TIME, device, energy_in, follow, same_in_other_units, tempt, wall
+from tempting import device, energy_in, follow, tempt, wall
 
 import zwidth as zw
 from zwidth.model.rendering import EnergyTank
@@ -88,33 +88,3 @@ def test_an_unlimited_damper_gives_out_without_end():
         law = EnergyTank(level="0.002", refill="150", largest_damping=most)
         energy = energy_in(follow(device(), zw.render(zw.Wall(5000), law), positions))
         assert energy[-1] >= 0 if most is None else energy[-1] < least
-
-
-def test_units_do_not_matter():
-    """Length, force and time in other units: the same loop, with defaults and without."""
-    positions, _ = tempt(tank(wall(2048), 2e-3, 100, 0.15), device(), 300, 4)
-    elsewhere, limited = zw.Wall(2048 * FORCE / LENGTH), device(force_limit=4)
-    default = EnergyTank()
-    assert same_in_other_units(limited, default, default, zw.Wall(2048), elsewhere, positions)
-    here = EnergyTank(level="0.002", refill=70, largest_damping="0.1")
-    unit = FORCE * TIME / LENGTH
-    there = EnergyTank(
-        level=here.level.fraction * FORCE * LENGTH,
-        refill=70 * unit / (FORCE * LENGTH),
-        largest_damping=here.largest_damping.fraction * unit,
-    )
-    assert same_in_other_units(device(), here, there, zw.Wall(2048), elsewhere, positions)
-
-
-def test_messages():
-    """What is wrong is said."""
-    with pytest.raises(zw.InputError, match="level must be > 0 J, got -1: it is the energy that the tank"):
-        EnergyTank(level=-1)
-    with pytest.raises(zw.InputError, match="refill must be > 0, got 0: without it the tank never fills"):
-        EnergyTank(refill=0)
-    with pytest.raises(zw.InputError, match="has no force_limit or the environment no stiffness; give level"):
-        follow(device(), zw.render(zw.Wall(300), EnergyTank()), [0.0, 0.001])
-    with pytest.raises(zw.InputError, match="largest_damping pays for the force with the device's damping"):
-        follow(device(damping=0), zw.render(zw.Wall(300), EnergyTank(level=1)), [0.0, 0.001])
-    said = EnergyTank(level="0.002", refill=3).describe("rotary")
-    assert said == "energy tank (to 0.002 J, refill 3 N·m·s/rad per J)"

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from prescribed import DEVICE, PERIOD, commands, touched, wandering
+from prescribed import DEVICE, PERIOD, commands, wandering
 
 import zwidth as zw
-from zwidth.model.rendering import AdaptiveWindow, BrakingPulse, EventTransient, Kalman
+from zwidth.model.rendering import AdaptiveWindow, BrakingPulse, EventTransient
 
 ONE = AdaptiveWindow(longest=1)
 FREE = zw.Device(mass=0.07, damping=0, sample_period=PERIOD)
@@ -125,53 +125,3 @@ def test_by_default_they_take_the_momentum(stage):
     inside = trace.position.values[40:]
     assert inside.min() > 0
     assert float(trace.velocity[-1]) == pytest.approx(0, abs=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        (lambda: BrakingPulse(0), "mass must be > 0"),
-        (lambda: BrakingPulse(1, -1), "limit must be > 0"),
-        (lambda: BrakingPulse(velocity=3), "velocity is AdaptiveWindow"),
-        (
-            lambda: touched([0, 0], BrakingPulse(), device=zw.Device(damping=1, rate=1000)),
-            "mass was not given",
-        ),
-        (
-            lambda: touched([0, 0], BrakingPulse(), environment=zw.PulseTransferFunction([1], [1])),
-            "no surface",
-        ),
-        (lambda: EventTransient("square"), "kind is one of 'decaying', 'fixed'"),
-        (lambda: EventTransient("fixed", frequency=100), "frequency is not of the fixed transient"),
-        (lambda: EventTransient("acceleration", amplitude=1), "amplitude is not of the acceleration"),
-        (lambda: EventTransient("acceleration", record=[1], duration=1), "either record or duration"),
-        (lambda: EventTransient("acceleration", record=[]), "from 1 to 10000 samples, got 0"),
-        (lambda: EventTransient("acceleration", record=["a"]), "record is one deceleration"),
-        (lambda: EventTransient(time_constant=0), "time_constant must be > 0"),
-        (lambda: touched([0, 0], EventTransient(frequency=500)), "below half the rate, 500 Hz"),
-        (lambda: touched([0, 0], EventTransient(duration=11)), "from 1 to 10000 samples"),
-        (lambda: touched([0, 0], EventTransient(duration=PERIOD)), "no amplitude of this transient"),
-        (
-            lambda: touched([0, 0], EventTransient(), environment=zw.PulseTransferFunction([1], [1])),
-            "no surface",
-        ),
-    ],
-)
-def test_bad_input(wrong, message):
-    """What was given, and what is wanted."""
-    with pytest.raises(zw.InputError, match=message):
-        wrong()
-
-
-def test_descriptions():
-    """What is known of them."""
-    assert BrakingPulse(2, 3, Kalman()).describe() == (
-        "braking pulse that stops 2 kg, at most 3 N on Kalman filter for a count in ten samples"
-    )
-    assert (
-        EventTransient("fixed", amplitude=2)
-        .describe("rotary")
-        .startswith("transient at entry (fixed, 2 N·m·s/rad, for 0.01 s) on ")
-    )
-    assert "(decaying, 100 Hz, 0.01 s)" in EventTransient().describe()
-    assert "(acceleration, record of 2 samples)" in EventTransient("acceleration", record=[1, 2]).describe()

@@ -76,33 +76,6 @@ def test_the_width_pays_for_the_hold_up_to_its_speed():
     assert work_out(k, 0.07, depth, law) == pytest.approx(work_out(k, 0.07, depth, explicit), rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        (lambda: Hysteresis(), "give either force .* got neither"),
-        (lambda: Hysteresis(1, fastest=1), "give either force .* got both"),
-        (lambda: Hysteresis(-1), "force must be > 0"),
-        (lambda: Hysteresis(1, 0), "stiffness must be > 0"),
-        (lambda: Hysteresis(fastest=0), "fastest must be > 0"),
-        (lambda: Hysteresis(1, clamped="yes"), "clamped is True for a sum"),
-        (lambda: touched([0, 0], Hysteresis(fastest=1)), "has no K"),
-        (lambda: touched([0, 0], Hysteresis(1), environment=zw.HuntCrossley(100)), "has no K"),
-    ],
-)
-def test_bad_input(wrong, message):
-    """What was given, and what is wanted."""
-    with pytest.raises(zw.InputError, match=message):
-        wrong()
-
-
-def test_descriptions():
-    """What is known of it."""
-    assert Hysteresis("0.2").describe() == "hysteresis of ±0.2 N"
-    assert Hysteresis(fastest=3, stiffness=5, clamped=True).describe("rotary") == (
-        "hysteresis of the width for 3 rad/s, spring of 5 N·m/rad, never pulls"
-    )
-
-
 def test_a_hand_to_and_fro_finds_the_same_forces_to_the_bit():
     """Where the spring sticks nothing adds up: after a thousand rounds no rounding has gathered."""
     x = np.tile([0.00031, 0.00037, 0.00034, 0.00029], 1000)

@@ -10,7 +10,6 @@ import zwidth as zw
 from zwidth.model.rendering import Dither, Saturation, SlewLimit
 
 WALL = zw.Wall(3000)
-BARE = zw.Device(damping=1, rate=1000)
 
 
 def wall_force(read):
@@ -107,41 +106,3 @@ def test_dither_averages_the_steps_of_the_converter_out():
     assert wrong["none"] == pytest.approx(0.01, rel=1e-6)
     assert wrong["alternating"] == pytest.approx(0.005, rel=1e-6)
     assert wrong["random"] < 5e-4
-
-
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        (lambda: SlewLimit(0), "rate must be > 0"),
-        (lambda: touched([0, 0], SlewLimit(), device=BARE), "rate was not given .* motor_inductance"),
-        (lambda: Saturation(-1), "limit must be > 0"),
-        (lambda: touched([0, 0], Saturation(), device=BARE), "limit was not given .* force_limit"),
-        (lambda: Dither(0), "amplitude must be > 0"),
-        (lambda: Dither(1, "white"), "kind is one of 'alternating', 'random'"),
-        (lambda: Dither(1, "random", 0), "seed must be > 0"),
-        (lambda: Dither(1, "random", 2**31 - 1), "seed is a whole number"),
-        (lambda: Dither(1, "random", 1.5), "seed is a whole number"),
-        (lambda: touched([0, 0], Dither(), device=BARE), "amplitude was not given .* force_resolution"),
-        (
-            lambda: touched([0, 0], Saturation(), device=DEVICE.replace(force_limit=(8, 9))),
-            "force_limit, which is not certain",
-        ),
-    ],
-)
-def test_bad_input(wrong, message):
-    """What was given, and what is wanted."""
-    with pytest.raises(zw.InputError, match=message):
-        wrong()
-
-
-def test_descriptions():
-    """What is known of them."""
-    stages = (SlewLimit(5), SlewLimit(), Dither(2), Dither(kind="random"), Saturation(3), Saturation())
-    assert [s.describe("rotary") for s in stages] == [
-        "slew limit of 5 N·m/s",
-        "slew limit of the motor",
-        "alternating dither of 2 N·m",
-        "random dither of part of a converter step",
-        "saturation at 3 N·m",
-        "saturation at the force limit",
-    ]

@@ -223,21 +223,3 @@ def test_the_cap_has_its_price():
     capped = ParallelController(largest_mobility="0.03")
     assert (pushed(body, turns).hand_work.values[1:] + spent >= -1e-15).all()
     assert pushed(body, turns, capped).hand_work.values[-1] + spent[-1] < -0.001
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        ({"observer": "other"}, "observer is one of 'sampled', 'published'"),
-        ({"largest_mobility": 0}, "largest_mobility must be > 0"),
-        ({"largest_mobility": "none"}, "largest_mobility is in m/N/s; got .none.: expected"),
-        ({"largest_velocity": -1}, "largest_velocity must be > 0"),
-        ({"weakest": "x"}, "weakest is in N; got .x.: expected a number"),
-        ({"resets": 1}, "resets is True to count anew in each touch"),
-        ({"ceiling": -1}, "ceiling must be ≥ 0"),
-    ],
-)
-def test_what_it_refuses(options, said):
-    """One clear line."""
-    with pytest.raises(zw.InputError, match=said):
-        ParallelController(**options)

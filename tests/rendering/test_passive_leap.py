@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tempting import FORCE, LENGTH, device, energy_in, follow, same_in_other_units, tempt, wall
+from tempting import device, energy_in, follow, tempt, wall
 
 import zwidth as zw
 from zwidth.model.rendering import PassiveLeap
@@ -45,16 +45,6 @@ def test_it_owes_at_most_one_leap_and_every_force_is_that_of_a_plain_loop(stiffn
         assert (energy[1:] >= -owed(forces, stiffness)[:-1] - 1e-12 * energy.max()).all()
 
 
-def test_a_wall_that_the_device_can_pay_is_not_changed():
-    """K ≤ 2b/T, from outside: the wall's own force."""
-    positions = np.concatenate([[-1e-3], np.random.default_rng(5).normal(0, 1e-3, 800)])
-    alone, behind = (
-        follow(device(), law, positions).commanded_force.to_numpy()
-        for law in (zw.Wall(300), zw.render(zw.Wall(300), PassiveLeap()))
-    )
-    assert behind == pytest.approx(alone, rel=1e-9)
-
-
 def leaping(stiffness):
     """Slowly in and then the best leap out."""
     press = np.linspace(-1e-3, 1e-3, 2000)
@@ -87,27 +77,3 @@ def test_after_a_leap_the_wall_is_gone_until_friction_has_paid():
     assert (f[n - 1 : n + len(slow) - 1] == 0).all()
     assert f[-1] > 1
     assert energy.min() == pytest.approx(energy[n - 1], rel=1e-9)
-
-
-def test_units_do_not_matter():
-    """Length, force and time in other units: the same loop."""
-    paddle = device(friction="0.0625")
-    positions, _ = tempt(leapt(wall(2048), 2048), paddle, 300, 3)
-    elsewhere = zw.Wall(2048 * FORCE / LENGTH)
-    assert same_in_other_units(paddle, PassiveLeap(), PassiveLeap(), zw.Wall(2048), elsewhere, positions)
-    given = PassiveLeap(stiffness=500), PassiveLeap(stiffness=500 * FORCE / LENGTH)
-    assert same_in_other_units(paddle, *given, zw.Wall(2048), elsewhere, positions)
-
-
-def test_messages():
-    """What is wrong is said."""
-    with pytest.raises(zw.InputError, match="stiffness must be > 0, got 0: the spring keeps the energy"):
-        PassiveLeap(stiffness=0)
-    with pytest.raises(zw.InputError, match="resets is True to forget credit where there was no"):
-        PassiveLeap(resets=2)
-    loop = zw.render(zw.PulseTransferFunction([310, -250], [1, 0]), PassiveLeap())
-    with pytest.raises(zw.InputError, match="stiffness has no default here"):
-        follow(device(), loop, [0.0, 0.001])
-    with pytest.raises(zw.InputError, match="a passive leap pays for the force with the device's damping"):
-        follow(device(damping=0), zw.render(zw.Wall(300), PassiveLeap()), [0.0, 0.001])
-    assert PassiveLeap(stiffness=5, resets=True).describe() == "passive leap (a spring of 5 N/m, resets)"

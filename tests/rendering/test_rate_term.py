@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from prescribed import wandering
-from tempting import FORCE, LENGTH, TIME, device, follow, same_in_other_units
+from tempting import device, follow
 
 import zwidth as zw
 from zwidth.model.rendering import PassivityController, RateTerm
@@ -28,14 +28,6 @@ def test_it_is_the_formula(lead):
     expected = force + share * np.diff(force, prepend=force[0])
     trace = follow(device(), zw.render(zw.Wall(K), RateTerm(lead)), positions)
     np.testing.assert_allclose(trace.commanded_force, expected, rtol=1e-12, atol=1e-14)
-
-
-def test_in_contact_it_is_virtual_damping():
-    """A wall of K with damping K τ, to rounding, from the third sample on."""
-    positions = 5e-3 + wandering()
-    rate = follow(device(), zw.render(zw.Wall(K), RateTerm("0.0007")), positions).commanded_force.values
-    damped = follow(device(), zw.Wall(K, damping="0.56"), positions).commanded_force.values
-    np.testing.assert_allclose(rate[2:], damped[2:], rtol=1e-9)
 
 
 @pytest.mark.parametrize("lead", [None, "0.0002", "0.003"])
@@ -71,19 +63,6 @@ def test_no_hand_takes_out_more_than_stated(positions, lead):
     assert (trace.actuator_work.values <= bound * (1 + 1e-9)).all()
 
 
-@settings(max_examples=100, deadline=None)
-@given(paths)
-def test_half_a_sample_of_lead_leaves_the_change_of_speed(positions):
-    """In contact, from rest: Σ f Δx = Φ − (K/4) Σ (Δx_k − Δx_{k−1})² − (K/4) Δx_n², exactly."""
-    positions = np.concatenate([[0.01], 0.01 + positions])
-    trace = follow(device(), zw.render(zw.Wall(K), RateTerm()), positions)
-    moves = np.diff(positions, prepend=positions[0])
-    change = np.cumsum(np.diff(moves, prepend=0.0) ** 2)
-    spring = K / 2 * (positions**2 - positions[0] ** 2)
-    expected = spring - K / 4 * (change + moves**2)
-    np.testing.assert_allclose(-trace.actuator_work.values, expected, rtol=1e-9, atol=1e-12)
-
-
 def test_behind_another_law_nothing_is_proved_of_it():
     """The force that comes in then changes by more than K |Δx|; the other way round both are covered."""
     capped = PassivityController(largest_damping="0.05")
@@ -97,17 +76,3 @@ def test_an_uncertain_period_or_wall_is_not_guessed():
     law = RateTerm()
     assert law.most_damping(PADDLE.replace(sample_period=("0.001", "0.002")), zw.Wall(9).stiffness) is None
     assert zw.check(PADDLE, zw.render(zw.Wall((9, 10)), law)).outcome != "passive"
-
-
-def test_other_units_change_nothing():
-    """Metres, newtons and seconds scaled by powers of two: the same forces to the last bit."""
-    walls = zw.Wall(1500), zw.Wall(1500 * FORCE / LENGTH)
-    here, there = RateTerm("0.0015"), RateTerm(Fraction("0.0015") * TIME)
-    assert same_in_other_units(device(), here, there, *walls, wandering())
-
-
-@pytest.mark.parametrize("lead", [0, -1, "soon"])
-def test_what_it_refuses(lead):
-    """One clear line."""
-    with pytest.raises(zw.InputError, match="time_constant"):
-        RateTerm(lead)

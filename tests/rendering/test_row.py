@@ -76,3 +76,16 @@ def test_a_batch_has_the_bits_of_single_loops():
         alone = zw.simulate(DEVICE.replace(damping=damping), LAW, HAND, 0.2)
         assert float(batch.position.sel(damping=damping)) == float(alone.position[-1])
     assert float(batch.samples_inside.min()) > 20
+
+
+@pytest.mark.parametrize("speed", ["0", "0.03"])
+def test_compensation_of_friction_is_its_formula(speed):
+    """f − F tanh(Δx/(T v_s)) − C Δx/T; of no speed v_s the sign; nothing at rest."""
+    wall, law = zw.Wall(800), zw.FrictionCompensation(coulomb="0.4", viscous="0.7", speed=speed)
+    x, force = commands(wandering(), law, environment=wall)
+    v = np.diff(x, prepend=x[0]) / float(DEVICE.sample_period)
+    bent = np.tanh(v / float(speed)) if float(speed) else np.sign(v)
+    expected = 800 * np.maximum(x, 0) - 0.4 * bent - 0.7 * v
+    assert force == pytest.approx(expected, abs=1e-9)
+    assert np.abs(bent[x < 0]).max() > 0.1
+    assert not zw.FrictionCompensation(speed=1)

@@ -67,14 +67,6 @@ def test_the_window_is_that_of_its_definition(noise, longest, fit):
     assert len(np.unique(np.round(v, 9))) > 20
 
 
-def test_a_window_of_one_sample_is_the_backward_difference():
-    """As a wall's damper."""
-    x = wandering()
-    _, force = commands(x, Damper("2.3", AdaptiveWindow(longest=1)))
-    _, wall = commands(x, zw.rendering.Saturation(100), environment=zw.Wall(0, "2.3"))
-    assert force == pytest.approx(wall, abs=1e-12)
-
-
 def test_ticks_are_timed():
     """Edges over the time since the last one, decaying, none counted twice at a turn."""
     x = wandering(speed=0.02)
@@ -185,36 +177,3 @@ def test_inside_only_and_pushing_only():
     assert expected.min() < -0.01
     _, clamped = commands(x, Damper(4, TickTime(), clamped=True), environment=zw.Wall(300))
     assert clamped == pytest.approx(np.maximum(expected, 0), abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        (lambda: Damper(-1), "damping must be ≥ 0"),
-        (lambda: Damper(1, zw.rendering.Window(3)), "velocity is AdaptiveWindow"),
-        (lambda: Damper(1, clamped=1), "clamped is True for a sum"),
-        (lambda: AdaptiveWindow(-1e-6), "noise must be ≥ 0"),
-        (lambda: AdaptiveWindow(longest=0), "longest must be > 0"),
-        (lambda: AdaptiveWindow(longest=2.5), "whole number of samples"),
-        (lambda: AdaptiveWindow(longest=1001), "whole number of samples"),
-        (lambda: AdaptiveWindow(fit="worst"), "fit is one of 'end', 'best'"),
-        (lambda: Kalman(0), "acceleration must be > 0"),
-    ],
-)
-def test_bad_input(wrong, message):
-    """What was given, and what is wanted."""
-    with pytest.raises(zw.InputError, match=message):
-        wrong()
-
-
-def test_descriptions():
-    """Numbers with the unit of the motion."""
-    words = [e.describe("rotary") for e in (AdaptiveWindow(1e-4), Kalman(30), TickTime())]
-    assert words == [
-        "adaptive window of up to 15 samples within 0.0001 rad, end fit",
-        "Kalman filter for 30 (rad/s²)/√Hz",
-        "time between ticks",
-    ]
-    assert Damper(2, TickTime(), clamped=True).describe() == (
-        "damper of 2 N·s/m on time between ticks, never pulls"
-    )
