@@ -15,8 +15,6 @@ PADDLE = zw.catalogue.device("haptic-paddle")
 def test_the_paddle_s_numbers() -> None:
     """13 times finer at 300 N/m, and a rise of 0.15 ms, 15 % of a sample."""
     resolution, rise = actuator_checks(PADDLE, 300)
-    assert resolution.ratio is not None
-    assert rise.ratio is not None
     assert resolution.ratio.fraction == 300 * Fraction("22.4e-6") / (Fraction(20, 65536) * Fraction("1.65"))
     assert int(resolution.ratio) == 13
     assert rise.value == pytest.approx(0.15e-3, rel=0.01)
@@ -48,7 +46,6 @@ def test_both_sides_of_the_bounds() -> None:
     ],
 )
 def test_what_is_unknown_is_said(device: zw.Device, stiffness: float | None, part: str) -> None:
-    """Neither passed nor failed, and the missing number is named."""
     check = actuator_checks(device, stiffness)[0]
     assert check.ok is None
     assert check.ratio is None
@@ -56,7 +53,6 @@ def test_what_is_unknown_is_said(device: zw.Device, stiffness: float | None, par
 
 
 def test_unknown_motor() -> None:
-    """The three numbers of motor and amplifier are needed together."""
     check = actuator_checks(PADDLE.replace(motor_inductance=None), 300)[1]
     assert check.ok is None
     assert "motor_inductance" in check.text
@@ -64,13 +60,12 @@ def test_unknown_motor() -> None:
 
 
 def test_intervals_take_their_worst_ends() -> None:
-    """The check holds for every value in them."""
     wide = PADDLE.replace(supply_voltage=(6, 12), resolution=("11.2e-6", "22.4e-6"))
     fine, quick = actuator_checks(wide, (300, 600)), actuator_checks(PADDLE, 300)
     assert fine[0].ratio is not None
     assert quick[0].ratio is not None
     assert fine[0].ratio.fraction * 2 == quick[0].ratio.fraction
-    assert fine[1].value == 2 * quick[1].value  # type: ignore[operator]
+    assert fine[1].value == 2 * quick[1].value
     assert fine[1].ok is False
 
 

@@ -41,13 +41,11 @@ RANGED = [name for name in NAMES if zw.catalogue.entry(name).ranges]
 
 
 def test_names() -> None:
-    """The devices, in the order of the file."""
     assert list(zw.catalogue.names()) == NAMES
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_value_has_a_source_and_a_unit(name: str) -> None:
-    """And every quantity of a device is listed, known or not."""
     entry = zw.catalogue.entry(name)
     assert entry.name == name
     assert entry.title
@@ -61,9 +59,8 @@ def test_every_value_has_a_source_and_a_unit(name: str) -> None:
 
 
 def test_entries_cannot_be_changed() -> None:
-    """They are shared by everyone who asks."""
     with pytest.raises(TypeError):
-        zw.catalogue.entry("phantom").values["mass"] = None  # type: ignore[index]
+        zw.catalogue.entry("phantom").values["mass"] = None
 
 
 def test_the_paddle_is_the_paper_s() -> None:
@@ -78,7 +75,6 @@ def test_the_paddle_is_the_paper_s() -> None:
 
 
 def test_what_the_phantom_lacks_is_assumed_aloud() -> None:
-    """Only damping and rate of it are published."""
     phantom = zw.catalogue.device("phantom")
     assert phantom.exact("damping") == Fraction(27, 100)
     assert phantom.exact("rate") == 1000
@@ -96,7 +92,6 @@ def test_what_the_phantom_lacks_is_assumed_aloud() -> None:
     ],
 )
 def test_needed_numbers_that_nobody_published(name: str, missing: list[str]) -> None:
-    """They are listed together, with the way to give them; and no others."""
     with pytest.raises(zw.InputError) as caught:
         zw.catalogue.device(name)
     assert [option for option in ("--damping", "--rate") if option in str(caught.value)] == missing
@@ -106,7 +101,6 @@ def test_needed_numbers_that_nobody_published(name: str, missing: list[str]) -> 
 
 
 def test_overrides() -> None:
-    """A rate replaces the published period, and texts carry units."""
     paddle = zw.catalogue.device("haptic-paddle", rate="3 kHz", resolution=["1 um", "2 um"], name="mine")
     assert paddle.exact("sample_period") == Fraction(1, 3000)
     assert paddle.resolution == zw.Interval("1e-6", "2e-6")
@@ -126,7 +120,6 @@ def test_overrides() -> None:
     ],
 )
 def test_slips_are_refused(name: str, overrides: dict[str, Any], part: str) -> None:
-    """With the nearest name, or all of them."""
     with pytest.raises(zw.InputError, match=part):
         zw.catalogue.device(name, **overrides)
 
@@ -140,7 +133,6 @@ def test_a_recommendation_is_called_one() -> None:
 
 @pytest.mark.parametrize("name", RANGED)
 def test_a_device_in_its_ranges_can_be_decided(name: str) -> None:
-    """Every range says why; nothing that a verdict needs is missing, and nothing published is widened."""
     found, entry = zw.catalogue.in_range(name), zw.catalogue.entry(name)
     assert set(found.ranges) == {
         {"rate": "sample_period", "counts_per_turn": "resolution"}.get(key, key) for key in entry.ranges
@@ -156,7 +148,6 @@ def test_a_device_in_its_ranges_can_be_decided(name: str) -> None:
 
 
 def test_no_device_is_without_an_answer() -> None:
-    """What a verdict needs is published, or has a range: `zwidth check NAME` never asks for it."""
     for name in zw.catalogue.names():
         device = zw.catalogue.in_range(name).device
         assert device.damping
@@ -164,7 +155,6 @@ def test_no_device_is_without_an_answer() -> None:
 
 
 def test_what_is_given_needs_no_range() -> None:
-    """Under any name that it has; a rate then is one number, and counts are a resolution."""
     found = zw.catalogue.in_range(
         "simucube-2-pro", rate="1 kHz", counts_per_turn=65536, inertia="0.05 kg*m^2"
     )
@@ -176,7 +166,6 @@ def test_what_is_given_needs_no_range() -> None:
 
 
 def test_a_range_is_no_value() -> None:
-    """`device` still asks for what nobody published, and says who answers without it."""
     with pytest.raises(zw.InputError, match="zwidth check moza-r9 answers for a stated range"):
         zw.catalogue.device("moza-r9")
     with pytest.raises(zw.InputError, match="no source gives the damping"):
@@ -186,7 +175,6 @@ def test_a_range_is_no_value() -> None:
 
 
 def test_units_of_a_rotary_entry() -> None:
-    """A damping of newton metres; at a radius it is a linear device."""
     entry = zw.catalogue.entry("dynamixel-mx-64")
     assert entry.values["damping"].unit == "N*m*s/rad"
     assert entry.key("mass") == "inertia"

@@ -57,7 +57,6 @@ def test_bounds_that_exclude_zero(key: str) -> None:
     ],
 )
 def test_messages_name_the_argument(arguments: dict[str, Any], part: str) -> None:
-    """Each refusal is an InputError."""
     with pytest.raises(zw.InputError, match=part):
         zw.Device(**arguments)
 
@@ -74,7 +73,6 @@ def test_what_was_not_given_is_remembered() -> None:
 
 
 def test_replace_keeps_what_was_assumed() -> None:
-    """Only what is given anew is no longer assumed."""
     device = zw.Device(**NEEDED, coulomb_friction=0.1)
     assert device.replace(mass=1).assumed == ("resolution", "delay")
     assert device.replace(delay=0).assumed == ("resolution",)
@@ -93,7 +91,6 @@ def test_mass_may_be_unknown() -> None:
 
 @given(devices())
 def test_replace_without_changes_is_the_same_device(device: zw.Device) -> None:
-    """In value, in what is assumed and in what is printed."""
     twin = device.replace()
     assert twin == device
     assert repr(twin) == repr(device)
@@ -103,6 +100,5 @@ def test_replace_without_changes_is_the_same_device(device: zw.Device) -> None:
 
 
 def test_a_name_is_text_in_a_notebook() -> None:
-    """Not HTML: what looks like a tag is shown as it was typed."""
     shown = zw.Device(**NEEDED, name="<b>x</b> & y")._repr_html_()
     assert "<caption>&lt;b&gt;x&lt;/b&gt; &amp; y</caption>" in shown

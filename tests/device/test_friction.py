@@ -45,7 +45,6 @@ def stiffness(model: tuple[Any, Any], period: Fraction, delta: Fraction) -> Frac
 
 
 def test_stiction_and_bends() -> None:
-    """The corners of a curve with stiction, a dip and a rise, computed by hand."""
     assert [tuple(map(str, corner)) for corner in STRIBECK.minorants()] == [
         ("0.15", "0.0"),
         ("0.14", "0.2"),
@@ -65,7 +64,6 @@ def test_a_straight_curve_is_its_own_model() -> None:
 @settings(max_examples=80)
 @given(curves())
 def test_corners_lie_below_and_cannot_grow(curve: zw.FrictionCurve) -> None:
-    """Each is a model below the curve, and neither of its numbers can be enlarged alone."""
     corners = curve.minorants()
     step = Fraction(1, 10**9)
     for friction, damping in corners:
@@ -80,7 +78,6 @@ def test_corners_lie_below_and_cannot_grow(curve: zw.FrictionCurve) -> None:
 @settings(max_examples=80)
 @given(curves(), st.fractions(0, 1, max_denominator=50))
 def test_the_largest_friction_for_a_damping(curve: zw.FrictionCurve, part: Fraction) -> None:
-    """Below the curve, and not below it when a little larger; refused beyond the largest damping."""
     limit = curve.largest_damping.fraction
     friction = curve.largest_coulomb_friction(part * limit).fraction
     assert below(curve, friction, part * limit)
@@ -94,7 +91,6 @@ def test_the_largest_friction_for_a_damping(curve: zw.FrictionCurve, part: Fract
 @settings(max_examples=80)
 @given(curves(), st.fractions("0.001", 1, max_denominator=1000), st.fractions(0, 1, max_denominator=1000))
 def test_the_best_model_against_a_search(curve: zw.FrictionCurve, period: Fraction, delta: Fraction) -> None:
-    """No model on a fine grid of dampings proves a stiffer wall."""
     best = curve.best(period, delta)
     assert below(curve, best.coulomb_friction.fraction, best.damping.fraction)
     limit = curve.largest_damping.fraction
@@ -128,7 +124,6 @@ def test_the_best_model_balances_both_limits() -> None:
     ],
 )
 def test_what_is_no_curve_is_refused(speeds: Any, forces: Any) -> None:
-    """With an InputError that speaks of the friction curve."""
     with pytest.raises(zw.InputError, match="friction curve"):
         zw.FrictionCurve(speeds, forces)
 

@@ -20,7 +20,7 @@ def test_without_a_radius_it_is_rotary() -> None:
     wheel = zw.rotary(**WHEEL, counts_per_turn=4096, coulomb_friction=0.1)
     assert wheel.motion == "rotary"
     assert wheel.exact("mass") == Fraction(2, 100)
-    assert float(wheel.resolution) == 2 * math.pi / 4096  # type: ignore[arg-type]
+    assert float(wheel.resolution) == 2 * math.pi / 4096
     assert wheel.assumed == ("delay",)
 
 
@@ -49,7 +49,6 @@ def test_the_equivalent_at_the_handle(
 
 
 def test_intervals_take_their_worst_ends() -> None:
-    """A radius known only between two values gives intervals that hold for all of them."""
     handle = zw.rotary(damping=(1, 2), resolution=0.001, rate=1000, handle_radius=(0.1, 0.2))
     assert handle.damping == zw.Interval(25, 200)
     assert handle.resolution == zw.Interval("0.0001", "0.0002")
@@ -58,7 +57,6 @@ def test_intervals_take_their_worst_ends() -> None:
 
 
 def test_what_was_not_given_stays_assumed_at_the_handle() -> None:
-    """A conversion does not turn an assumption into a statement."""
     handle = zw.rotary(damping=1, rate=1000, handle_radius=0.1)
     assert handle.assumed == ("coulomb_friction", "resolution", "delay")
     assert handle.mass is None
@@ -76,6 +74,5 @@ def test_what_was_not_given_stays_assumed_at_the_handle() -> None:
     ],
 )
 def test_slips_are_refused(arguments: dict[str, Any], part: str) -> None:
-    """By the name that the person used."""
     with pytest.raises(zw.InputError, match=part):
         zw.rotary(**{**WHEEL, **arguments})

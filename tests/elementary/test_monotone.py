@@ -49,7 +49,6 @@ PLACES = [
 
 @pytest.mark.parametrize(("function", "draw", "least"), PLACES)
 def test_rising(function, draw, least):
-    """Among the neighbours of random numbers, and across every seam."""
     random = Random(41)
     seams = [sign * seam for seam in SEAMS for sign in (1.0, -1.0)]
     for place in [*(draw(random) for _ in range(60)), *(s for s in seams if s > least)]:
@@ -58,7 +57,6 @@ def test_rising(function, draw, least):
 
 @pytest.mark.parametrize("n", [0.25, 0.3, 0.5, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 10.0])
 def test_powers_rise(n):
-    """In the number that is raised, also where its power of two changes."""
     random = Random(42)
     draw = wide(1e-29, 1e6)
     for place in [*(draw(random) for _ in range(40)), *SEAMS, *(2.0**k * SEAMS[1] for k in range(-40, 20))]:

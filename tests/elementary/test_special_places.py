@@ -58,7 +58,6 @@ VALUES = [
 
 @pytest.mark.parametrize(("function", "x", "value"), VALUES)
 def test_values(function, x, value):
-    """Ends of the range, limits, and arguments whose result is one double alone."""
     assert function(x) == value
 
 
@@ -80,7 +79,6 @@ def test_powers_of_two_have_their_logarithm():
 
 
 def test_no_number_stays_none():
-    """And what has no real value is none."""
     for function in (exp, expm1, log, log1p, tanh):
         assert isnan(function(nan))
     assert isnan(power(nan, 2.5))

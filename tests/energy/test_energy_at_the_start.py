@@ -76,7 +76,6 @@ def touch(random, kind, start=None):
 
 @pytest.mark.parametrize("kind", ["spring", "wall", "detents", "solid"])
 def test_no_touch_of_a_passive_loop_is_active_wherever_it_starts(kind):
-    """Random loops that are proved passive, hands and starts; many get out what was stored."""
     random = np.random.default_rng(6)
     out = 0
     for _ in range(60):
@@ -128,7 +127,6 @@ def test_the_touch_starts_where_the_law_is_at_rest():
 
 
 def test_a_start_that_is_given_is_kept():
-    """By the hand's own start, or by initial_position: what the spring holds there is in the trace."""
     for hand, start in ((zw.operators.Finger(start=-0.015), None), (zw.operators.Finger(), -0.015)):
         trace = zw.simulate(PADDLE, SPRING, hand, 0.3, initial_position=start)
         half = 2.24e-5 / 2
@@ -209,7 +207,6 @@ def test_contacts_with_memory_that_are_left(law):
 
 
 def test_words_and_files_carry_the_bound(tmp_path, capsys):
-    """The report says what came out and what was stored; a saved trace gives it back."""
     from zwidth.cli.main import main
 
     words = "simulate haptic-paddle --type pulse-transfer-function --numerator 100,0 --denominator 1,0"

@@ -16,7 +16,6 @@ def _touch(stiffness: float, hand=None, **options):
 
 
 def test_both_balances_close_to_rounding() -> None:
-    """And a ledger that is tampered with does not."""
     trace = _touch(600.0, zw.operators.Finger())
     book = trace.zwidth.energy
     assert book.closes
@@ -42,18 +41,7 @@ def test_what_the_device_held_at_first_does_not_count_as_extracted() -> None:
     assert book.extracted == pytest.approx(0.0, abs=1e-12)
 
 
-def test_the_leak_of_the_hold_is_what_the_papers_draw() -> None:
-    """Pressed in and drawn out at constant speed, each sample leaks ½ K (v T)² (seed of all limits)."""
-    step, count, stiffness = 1e-4, 50, 900.0
-    there = np.arange(count + 1) * step
-    motion = zw.operators.PrescribedMotion(np.concatenate([there, there[-2::-1]]))
-    device = zw.Device(mass=0.1, damping=0.0, rate=1000)
-    trace = zw.simulate(device, zw.Wall(stiffness), motion, 2 * count / 1000)
-    assert float(trace.actuator_work[-1]) == pytest.approx(2 * count * 0.5 * stiffness * step**2, rel=1e-12)
-
-
 def test_totals_in_words_numbers_and_html() -> None:
-    """The same figures everywhere; the hand's own only where it has any."""
     book = _touch(500.0).zwidth.energy
     assert "the hand put into the device" in repr(book)
     assert book._repr_html_().startswith("<table>")
@@ -63,6 +51,5 @@ def test_totals_in_words_numbers_and_html() -> None:
 
 
 def test_a_dataset_without_energies_is_refused() -> None:
-    """The message names what is missing."""
     with pytest.raises(zw.InputError, match="lacks viscous_loss"):
         ledger(_touch(100.0).drop_vars("viscous_loss"))

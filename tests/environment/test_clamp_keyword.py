@@ -22,7 +22,6 @@ NAMES = {name: getattr(zw.rendering, name) for name in zw.rendering.__all__} | v
 
 @pytest.mark.parametrize("law", LAWS)
 def test_a_clamped_law_is_another_law_with_the_same_pulse_transfer_function(law) -> None:
-    """In sustained contact, pushing, nothing changes; the line for a person says the rest."""
     clamped = law.replace(clamped=True)
     period = Fraction(1, 1000)
     assert (law.clamped, clamped.clamped) == (False, True)
@@ -43,7 +42,6 @@ def test_only_a_bool_says_whether_a_law_is_clamped(law, value) -> None:
 
 
 def test_laws_without_the_keyword_may_pull() -> None:
-    """A transfer function is what it is."""
     assert not zw.PulseTransferFunction([1], [1]).clamped
 
 

@@ -125,7 +125,6 @@ POLES = [mpmath.mpf(-20), mpmath.mpc(-150, 470), mpmath.mpc(-150, -470)]
 
 
 def test_impulse_is_the_sampled_impulse_response():
-    """Each term is T h(kT), computed here from partial fractions in mpmath."""
     with mpmath.workdps(50):
         num, den = _mp(NUM), _mp(DEN)
         for k, term in enumerate(_series(discretize(NUM, DEN, "impulse", T), 8)):
@@ -134,7 +133,6 @@ def test_impulse_is_the_sampled_impulse_response():
 
 
 def test_zero_order_hold_is_the_sampled_step_response():
-    """The step response of H(z) is that of H(s) at the samples, by integration of h."""
     with mpmath.workdps(40):
         num, den = _mp(NUM), _mp(DEN)
         response = np.cumsum([float(c) for c in _series(discretize(NUM, DEN, "zoh", T), 6)])
@@ -235,7 +233,6 @@ def test_a_pole_sent_to_infinity_is_refused(method, pole):
 
 
 def test_extremes_end_in_a_message_or_a_result():
-    """Very fast modes decay to exact zeros; very fast growth is refused; high order is refused."""
     fast = discretize(exact([1e12]), exact([1.0, 1e12]), "zoh", T)
     assert fast == ((Fraction(1),), (Fraction(1), Fraction(0)))
     with pytest.raises(InputError, match="no double holds"):
@@ -255,6 +252,5 @@ def test_precision_of_the_caller_is_restored():
 
 @pytest.mark.parametrize("name", ["euler", "", None, 3, ["zoh"]])
 def test_unknown_names_are_refused_with_the_choices(name):
-    """The message lists all six."""
     with pytest.raises(InputError, match=r'"backward", .*"matched"'):
         as_discretization(name)

@@ -57,7 +57,6 @@ def test_a_sphere_on_a_plane_by_default() -> None:
 
 
 def test_what_it_is_and_says() -> None:
-    """describe() for a person, linear or rotary; repr() to type again."""
     contact = zw.HuntCrossley(2e4, "1.5", 2)
     assert contact.unilateral
     assert contact.clamped
@@ -75,7 +74,6 @@ def test_what_it_is_and_says() -> None:
 
 
 def test_there_is_no_pulse_transfer_function() -> None:
-    """The message says what takes the law."""
     contact = zw.HuntCrossley(1000)
     with pytest.raises(zw.InputError, match=r"no H\(z\): .*zwidth\.check"):
         contact.pulse_transfer_function(Fraction(1, 1000))
@@ -84,7 +82,6 @@ def test_there_is_no_pulse_transfer_function() -> None:
 
 
 def test_it_is_loaded_when_it_is_first_used() -> None:
-    """Few loops have one."""
     code = (
         "import sys, zwidth as zw; assert 'zwidth.model.environment.nonlinear' not in sys.modules; "
         "zw.HuntCrossley(1); assert 'zwidth.model.environment.nonlinear' in sys.modules"
@@ -107,7 +104,6 @@ def test_it_is_loaded_when_it_is_first_used() -> None:
     ],
 )
 def test_bad_input(arguments: tuple, said: str) -> None:
-    """One line that names what was given."""
     with pytest.raises(zw.InputError, match=said) as error:
         zw.HuntCrossley(*arguments)
     assert "\n" not in str(error.value)

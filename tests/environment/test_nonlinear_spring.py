@@ -22,7 +22,6 @@ tables = st.lists(places, min_size=2, max_size=12, unique=True).flatmap(
 
 @given(tables, st.fractions(-3, 3, max_denominator=999))
 def test_the_force_is_linear_between_points_and_constant_beyond(table, x) -> None:
-    """As numpy.interp has it in doubles."""
     positions, forces = table
     spring = zw.NonlinearSpring(positions, forces)
     expected = np.interp(float(x), [float(p) for p in positions], [float(f) for f in forces])
@@ -41,7 +40,6 @@ def test_the_largest_slope_bounds_every_secant(table) -> None:
 
 
 def test_the_force_is_exact() -> None:
-    """A third of the way of a third of a newton is a ninth, not a double near to it."""
     spring = zw.NonlinearSpring([0, "0.03"], [0, Fraction(1, 3)])
     assert spring.force("0.01").fraction == Fraction(1, 9)
     assert spring.largest_slope.fraction == Fraction(100, 9)
@@ -74,7 +72,6 @@ def test_a_bump_stop_hardens_and_its_chords_are_as_near_as_promised() -> None:
 
 
 def test_it_is_bilateral_nonlinear_and_says_its_numbers() -> None:
-    """describe() for a person, linear or rotary; repr() to type again."""
     spring = zw.NonlinearSpring([-0.01, 0, 0.02], [-1, 0, 4])
     assert not any([spring.unilateral, spring.linear, spring.spring, spring.clamped])
     assert spring.is_certain
@@ -89,7 +86,6 @@ def test_it_is_bilateral_nonlinear_and_says_its_numbers() -> None:
 
 
 def test_there_is_no_pulse_transfer_function() -> None:
-    """The message says what takes the law."""
     spring = zw.NonlinearSpring([0, 1], [0, 1])
     with pytest.raises(zw.InputError, match=r"no H\(z\): .*zwidth\.check"):
         spring.pulse_transfer_function(Fraction(1, 1000))
@@ -98,7 +94,6 @@ def test_there_is_no_pulse_transfer_function() -> None:
 
 
 def test_it_is_loaded_when_it_is_first_used() -> None:
-    """Few loops have one."""
     code = (
         "import sys, zwidth; assert 'zwidth.model.environment.nonlinear' not in sys.modules; "
         "from zwidth.model.environment import NonlinearSpring as same; assert zwidth.NonlinearSpring is same"
@@ -138,6 +133,5 @@ def test_it_is_loaded_when_it_is_first_used() -> None:
     ],
 )
 def test_bad_input_has_one_clear_message(make, message) -> None:
-    """What was given and what is wanted."""
     with pytest.raises(zw.InputError, match=message):
         make()

@@ -145,7 +145,6 @@ def test_rest_of_a_solid_is_where_it_stays():
 
 
 def test_bad_input():
-    """What is no material, no sample, no rest is said."""
     for solid, said in (
         (zw.HuntCrossley(100), "springs and dashpots side by side are those of"),
         (zw.Wall(100, -0.1), "a material has no damping below 0"),

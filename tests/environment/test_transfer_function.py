@@ -46,7 +46,6 @@ SYSTEMS = [
 
 @pytest.mark.parametrize("system", SYSTEMS, ids=lambda s: type(s).__name__)
 def test_discrete_systems_keep_their_frequency_response_and_period(system):
-    """The system's own library evaluates the same H."""
     law = as_environment(system)
     z = np.exp(1j * np.array([0.2, 1.1, 3.0]))
     if isinstance(system, control.lti.LTI):
@@ -128,7 +127,6 @@ def test_a_kelvin_voigt_wall_is_one_by_backward_difference():
     "law", [zw.PulseTransferFunction(NUM, DEN, 1e-3), zw.ContinuousTransferFunction(NUM, DEN, "tustin")]
 )
 def test_scaling_is_exact(law):
-    """Only the numerator changes, by exactly the factor."""
     factor = Fraction(3, 7)
     scaled = law.scaled(factor)
     assert type(scaled) is type(law)
@@ -147,7 +145,6 @@ def test_a_sample_period_that_disagrees_is_refused():
 
 
 def test_numbers_are_read_in_one_line():
-    """describe() shows the ratio, or the order where it is long; repr() can be typed again."""
     law = zw.PulseTransferFunction([1, 0, -0.5], [1, 0.2, -1, 0.03], 1e-3)
     assert law.describe() == "H(z) = (z² − 0.5)/(z³ + 0.2 z² − 1 z + 0.03), T = 0.001 s"
     assert eval(repr(law), vars(zw)) == law
@@ -158,7 +155,6 @@ def test_numbers_are_read_in_one_line():
 
 
 def test_environments_pass_through_and_constants_need_no_time():
-    """A gain is the same in continuous and discrete time."""
     wall = zw.Wall(300)
     assert as_environment(wall) is wall
     for gain in (control.tf([5], [1]), control.ss([], [], [], [[5.0]]), scipy.signal.lti([5], [1])):
@@ -213,6 +209,5 @@ TWO_LAGS = control.tf([[[1], [0]], [[0], [1]]], [[[1, -0.5], [1]], [[1], [1, -0.
     ],
 )
 def test_bad_input_has_one_clear_message(make, message):
-    """What was given and what to give instead."""
     with pytest.raises(zw.InputError, match=message):
         make()

@@ -49,7 +49,6 @@ def response(transfer, inputs):
 @settings(deadline=None)
 @given(positive, positive, positive, st.sampled_from(["backward", "forward", "tustin"]))
 def test_standard_linear_solid_is_the_closed_form_exactly(mu0, mu1, eta1, method):
-    """For every rational parameter, at a rational z off the poles, without rounding."""
     solid = zw.StandardLinearSolid(mu0, mu1, eta1, method)
     for z in (Fraction(-1), Fraction(7, 3), Fraction(-13, 5)):
         if method == "forward" and eta1 * (z - 1) + mu1 * T == 0:
@@ -94,7 +93,6 @@ def test_zero_order_hold_relaxes_as_the_solid_itself():
 
 @pytest.mark.parametrize("method", CHOICES)
 def test_one_branch_is_the_standard_linear_solid(method):
-    """The Prony series with one branch, and Maxwell's body beside no spring, are special cases."""
     solid = zw.StandardLinearSolid(290, 731, 40, method).pulse_transfer_function(T)
     assert zw.GeneralizedMaxwell(290, [(731, 40)], method).pulse_transfer_function(T) == solid
     without = zw.StandardLinearSolid(0, 731, 40, method).pulse_transfer_function(T)
@@ -104,7 +102,6 @@ def test_one_branch_is_the_standard_linear_solid(method):
 @settings(deadline=None)
 @given(st.lists(st.tuples(positive, positive), min_size=1, max_size=4))
 def test_branches_add(branches):
-    """H of the series is the sum of spring and branches, exactly."""
     z = Fraction(-17, 6)
     series = zw.GeneralizedMaxwell(57, branches).pulse_transfer_function(T)
     apart = sum(at(zw.Maxwell(*b).pulse_transfer_function(T), z) for b in branches)
@@ -140,7 +137,6 @@ def test_void_branches_leave_a_spring():
 
 
 def test_solids_are_touched_and_left():
-    """All three are unilateral; rounding is known from the discretization."""
     for solid in (
         zw.StandardLinearSolid(290, 731, 40),
         zw.GeneralizedMaxwell(290, [(731, 40)]),
@@ -161,7 +157,6 @@ def test_negative_damping_has_an_unstable_pole_or_no_transfer_function():
 
 
 def test_numbers_are_read_in_one_line_with_units():
-    """describe() for a person, linear or rotary; repr() to type again."""
     solid = zw.StandardLinearSolid(290, (731, 740), 0.5)
     assert solid.describe() == (
         "standard linear solid, 290 N/m beside (731 … 740 N/m in series with 0.5 N·s/m), "
@@ -177,7 +172,6 @@ def test_numbers_are_read_in_one_line_with_units():
 
 
 def test_intervals_are_kept_and_not_evaluated():
-    """An uncertain parameter, also inside a branch, has no single H(z); the message names it."""
     series = zw.GeneralizedMaxwell(290, [(731, 40), (5, (1, 2))])
     assert not series.is_certain
     with pytest.raises(zw.InputError, match=r"branches\[1\] damping is the interval 1 … 2"):
@@ -203,6 +197,5 @@ def test_intervals_are_kept_and_not_evaluated():
     ],
 )
 def test_bad_input_has_one_clear_message(make, message):
-    """What was given and what is wanted."""
     with pytest.raises(zw.InputError, match=message):
         make()

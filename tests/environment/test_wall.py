@@ -26,12 +26,10 @@ def test_a_number_is_one_or_a_text_with_its_unit(given) -> None:
 
 @pytest.mark.parametrize("given", [(300, 400), "300 .. 400 N/m", ["0.3 N/mm", 400], zw.Interval(300, 400)])
 def test_a_number_may_be_an_interval(given) -> None:
-    """Its ends are as exact as one number."""
     assert zw.Wall(given).stiffness == zw.Interval(300, 400)
 
 
 def test_every_text_with_a_unit_is_read_where_a_number_is() -> None:
-    """In solids, couplings, springs and filters as in a wall."""
     assert zw.Maxwell("0.7 N/mm", "5 N*s/m") == zw.Maxwell(700, 5)
     assert zw.GeneralizedMaxwell(1, [("0.7 N/mm", "5 N*s/m")]) == zw.GeneralizedMaxwell(1, [(700, 5)])
     assert zw.HuntCrossley(3, dissipation="0.2 s/m") == zw.HuntCrossley(3, dissipation="0.2")
@@ -58,13 +56,11 @@ def test_every_text_with_a_unit_is_read_where_a_number_is() -> None:
     ],
 )
 def test_a_slip_is_one_clear_message(make, said) -> None:
-    """What was given, the bound, why the physics wants it."""
     with pytest.raises(zw.InputError, match=said):
         make()
 
 
 def test_a_wall_is_a_value() -> None:
-    """Frozen, equal, hashable, rebuilt by its repr and from a pickle, changed by `replace`."""
     wall = zw.Wall("0.3 N/mm", (1, 2), zw.rendering.Window(3), clamped=True)
     assert wall == eval(
         repr(wall), {name: getattr(zw.rendering, name) for name in zw.rendering.__all__} | vars(zw)
@@ -77,7 +73,6 @@ def test_a_wall_is_a_value() -> None:
 
 
 def test_every_parameter_says_what_it_is() -> None:
-    """Whoever asks for the fields finds unit, bound, reason and meaning."""
     stiffness, damping, velocity_filter, clamped = parameters_of(zw.Wall).values()
     assert (stiffness.required, damping.required) == (True, False)
     assert (stiffness.bound, stiffness.unit_for("linear"), stiffness.unit_for("rotary")) == (

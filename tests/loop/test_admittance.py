@@ -88,7 +88,6 @@ def controlled(rules, energy, reading, before, held, own, period):
 @pytest.mark.parametrize("sensor", ["mean", "point"])
 @pytest.mark.parametrize("name", CONTROLLERS)
 def test_it_does_what_a_plain_loop_does(name, sensor, integration):
-    """Position, velocities, reading and both energies, sample by sample, to rounding."""
     mp.dps = 60
     rules, period = CONTROLLERS[name], mpf("0.002")
     body = zw.simulation.VirtualBody("0.03", "0.07", "11", integration)
@@ -117,7 +116,6 @@ def test_it_does_what_a_plain_loop_does(name, sensor, integration):
     st.sampled_from(sorted(CONTROLLERS)),
 )
 def test_the_hands_ledger_closes(path, stiffness, damping, mass, sensor, name):
-    """What the muscles spent is in the port, the spring and the damper, whatever is rendered."""
     rules = CONTROLLERS[name]
     trace = zw.simulation.simulate_admittance(
         zw.simulation.VirtualBody(mass),
@@ -146,8 +144,6 @@ def test_a_pushed_mass():
 
 @pytest.mark.parametrize("scale", [(1e-3, 1.0, 1.0), (1.0, 1e-3, 1.0), (10.0, 100.0, 0.1)])
 def test_other_units_change_nothing(scale):
-    """Lengths, forces and times scaled: the same motion and the same energies, scaled."""
-
     def run(le, fo, ti):
         trace = zw.simulation.simulate_admittance(
             zw.simulation.VirtualBody(0.05 * fo * ti**2 / le, 0.02 * fo * ti / le, 3 * fo / le),
@@ -165,7 +161,6 @@ def test_other_units_change_nothing(scale):
 
 
 def test_a_motion_without_bound_ends_the_record():
-    """A light body in a stiff hand: every number of the record is finite, and it says when it ended."""
     trace = zw.simulation.simulate_admittance(
         zw.simulation.VirtualBody("0.001"),
         zw.operators.Tracking([0, 0.001], stiffness=20_000, damping=2),
@@ -204,7 +199,6 @@ PUSH = zw.operators.ConstantForce(1.0)
     ],
 )
 def test_what_it_refuses(make, said):
-    """One clear line."""
     with pytest.raises(zw.InputError, match=said):
         make()
 

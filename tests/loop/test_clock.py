@@ -36,7 +36,6 @@ def test_without_delay_the_force_of_sample_0_acts_at_t_0() -> None:
 
 @pytest.mark.parametrize(("delay", "shift"), [(0.001, 1.0), (0.0003, 0.3), (0.0024, 2.4)])
 def test_a_delay_moves_every_force_by_as_much(delay: float, shift: float) -> None:
-    """Before the first force arrives the actuator gives none."""
     trace = _forces(INSIDE.replace(delay=delay))
     expected = [(round(k + shift, 9), k + 1.0) for k in range(7) if k + shift <= 6]
     assert _applied(trace) == expected
@@ -44,7 +43,6 @@ def test_a_delay_moves_every_force_by_as_much(delay: float, shift: float) -> Non
 
 
 def test_the_command_stands_at_its_sample_and_the_energy_before_its_jump() -> None:
-    """`commanded_force` and `measured_position` are those of the newest sample."""
     trace = _forces(INSIDE.replace(delay=0.0003))
     at_samples = trace.isel(time=trace.sampled.values)
     assert at_samples.measured_position.values == pytest.approx(_ramp(6))
@@ -70,7 +68,6 @@ def test_a_missed_sample_leaves_the_force_as_it_was() -> None:
 
 @pytest.mark.parametrize("delay", [0.0, 0.0003, 0.0017])
 def test_lateness_of_nearly_nothing_is_no_lateness(delay: float) -> None:
-    """The irregular clock, driven by a regular one, gives the same motion."""
     device = zw.catalogue.device("haptic-paddle").replace(delay=delay)
     late = np.zeros(301)
     late[150] = 1e-17
@@ -105,6 +102,5 @@ def test_the_encoder_counts_from_its_phase(phase: float) -> None:
     ],
 )
 def test_a_clock_that_cannot_be_is_refused(given: dict, says: str) -> None:
-    """One message: what was given and what the bound is."""
     with pytest.raises(zw.InputError, match=says):
         _forces(INSIDE, timing=zw.simulation.Timing(**given))

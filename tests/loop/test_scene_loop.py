@@ -19,7 +19,6 @@ HAND = zw.operators.Finger()
 
 @seeds(8)
 def test_a_linear_scene_is_simulated_as_its_transfer_function(seed: int) -> None:
-    """The compiled step of coupling and scene against the direct form of the exact H(z)."""
     scene = random_scene(seed, 3 + seed % 5, LINEAR)
     law = zw.VirtualCoupling(400, "0.1", scene)
     h = law.pulse_transfer_function(DEVICE.exact("sample_period"))
@@ -31,7 +30,6 @@ def test_a_linear_scene_is_simulated_as_its_transfer_function(seed: int) -> None
 
 
 def test_the_energy_of_a_touch_balances_with_contact_and_friction() -> None:
-    """What the hand gave is in device, hand and scene; it got nothing out."""
     scene = zw.Scene(
         [
             Mass("handle", "0.05"),
@@ -68,7 +66,6 @@ def test_no_hand_gains_at_the_limit_of_the_coupling(seed: int) -> None:
 
 
 def test_a_scene_without_a_port_is_refused() -> None:
-    """There is nothing to hold."""
     alone = zw.Scene([Mass("m", 1)], port="")
     with pytest.raises(InputError, match="port"):
         zw.VirtualCoupling(100, 0, alone)
@@ -87,7 +84,6 @@ def test_a_touch_begins_where_the_scene_is_at_rest() -> None:
 
 
 def test_positions_are_those_of_the_prescribed_motion() -> None:
-    """Slow pushing against a wall behind a gap: two springs in series from the gap on."""
     scene = zw.Scene([Mass("handle", "0.01"), Contact("handle", "ground", 900, 1, "0.002")])
     motion = zw.operators.PrescribedMotion(np.linspace(0, 0.006, 4001))
     law = zw.VirtualCoupling(600, "0.3", scene)

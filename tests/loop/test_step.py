@@ -99,8 +99,15 @@ def test_dry_friction_alone_stops_a_mass_after_m_v_over_f() -> None:
     assert state[COULOMB] == pytest.approx(0.5 * 0.036 * 0.09, rel=4 * EPS)
 
 
+def test_both_frictions_stop_a_free_mass() -> None:
+    """It stops after (m/b)(v₀ − (f_c/b) ln(1 + b v₀/f_c))."""
+    state = _go(_plant(coulomb=0.12, stiction=0.12), _state(v=0.3), 0.2)
+    way = 0.036 / 0.15 * (0.3 - 0.12 / 0.15 * math.log1p(0.15 * 0.3 / 0.12))
+    assert state[POSITION] == pytest.approx(way, rel=100 * EPS)
+    assert (state[VELOCITY], state[STOPS]) == (0.0, 1)
+
+
 def test_stiction_holds_up_to_its_force_and_not_beyond() -> None:
-    """At rest a force of f_s is held; the next larger one moves the mass, against f_c only."""
     plant = _plant(coulomb=0.1, stiction=0.25)
     assert _go(plant, _state(), 0.01, force=0.25)[POSITION] == 0.0
     state = _go(plant, _state(), 0.01, force=math.nextafter(0.25, 1.0))
@@ -118,7 +125,6 @@ def test_a_moving_anchor_breaks_the_mass_away_when_its_spring_reaches_the_sticti
 
 
 def test_a_turn_is_found_even_if_both_ends_move_the_same_way() -> None:
-    """An oscillator that turns round twice inside one stretch has two stops."""
     plant = _plant(damping=0.01, stiffness=500.0, coulomb=0.001, stiction=0.001)
     period = 2 * math.pi * math.sqrt(0.036 / 500.0)
     state = _go(plant, _state(x=0.01, v=0.05), 1.003 * period)
@@ -127,7 +133,6 @@ def test_a_turn_is_found_even_if_both_ends_move_the_same_way() -> None:
 
 
 def test_a_grazing_stop_against_a_receding_force_is_no_turn() -> None:
-    """A mass whose velocity nearly touches zero goes on, and the ledger closes."""
     plant = _plant(damping=0.0, stiffness=100.0, mass=0.01)
     x0 = 0.01
     speed = x0 * 100.0  # the anchor's speed lifts the lowest velocity just above 0
@@ -207,7 +212,6 @@ def _typed(low: float, high: float) -> st.SearchStrategy[float]:
 def test_both_energy_balances_close(
     h, mass, hand_mass, damping, coulomb, extra, stiffness, hand_damping, drive, x, v, force, speed, goal
 ) -> None:
-    """Whatever the plant: what goes in is stored or lost, in the device and in the hand."""
     plant = _plant(
         mass=mass, hand_mass=hand_mass, damping=damping, coulomb=coulomb, stiction=coulomb + extra,
         stiffness=stiffness, hand_damping=hand_damping,
@@ -238,7 +242,6 @@ def test_both_energy_balances_close(
     speed=st.floats(-0.3, 0.3),
 )
 def test_a_stretch_in_two_parts_ends_where_it_ends_in_one(h, cut, stiffness, lag, v, force, speed) -> None:
-    """The motion does not know how it is cut: no step error."""
     plant = _plant(coulomb=0.12, stiction=0.17, stiffness=stiffness, hand_damping=0.8, lag=lag)
     once = _go(plant, _state(v=v, goal=1.0 if lag else 0.0), h, force, 0.001, speed)
     twice = _go(plant, _state(v=v, goal=1.0 if lag else 0.0), cut * h, force, 0.001, speed)

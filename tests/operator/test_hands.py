@@ -25,9 +25,7 @@ TIMES = np.arange(601) * 0.001
 
 
 def test_a_constant_force_is_the_same_in_every_interval() -> None:
-    """N intervals, one value, no hand behind it."""
     signals = ConstantForce(0.7).signals(TIMES)
-    assert signals.force is not None
     assert signals.force.tolist() == [0.7] * 600
     assert ConstantForce(0.7).hand == (0, 0, 0)
 
@@ -36,7 +34,6 @@ def test_a_finger_approaches_and_stops_where_it_presses() -> None:
     """At 0.25 m/s from −30 mm it is at −5 mm after 0.1 s, and stops 1.5 N / 300 N/m = 5 mm inside."""
     finger = Finger(stiffness=300, force=1.5, speed=0.25, start=-0.03)
     anchor = finger.signals(TIMES).anchor
-    assert anchor is not None
     assert anchor[100] == pytest.approx(-0.005, abs=1e-15)
     arrival = round((0.03 + 0.005) / 0.25 / 0.001)
     assert anchor[arrival - 1] < 0.005
@@ -49,7 +46,6 @@ def test_a_finger_presses_with_its_force_on_a_rigid_wall() -> None:
     """k (x_a − 0) = F in the end; on a wall of stiffness K the balance k(x_a − x) = K x gives F K/(K + k)."""
     finger = Finger(stiffness=420, force=2.3)
     anchor = finger.signals(np.arange(1001) * 0.001).anchor
-    assert anchor is not None
     k, end = finger.hand.stiffness, float(anchor[-1])
     assert k * end == pytest.approx(2.3, rel=1e-15)
     wall = 300.0
@@ -65,7 +61,6 @@ def test_the_finger_has_the_published_numbers_and_the_chosen_damping_ratio() -> 
 
 
 def test_the_typical_touch_is_the_finger_at_moderate_speed() -> None:
-    """Same body; a touch of another name is another operator."""
     typical = TypicalTouch()
     assert typical.hand == Finger().hand
     assert typical.describe().startswith("typical touch")
@@ -82,20 +77,15 @@ def test_the_malicious_touch_is_tuned_to_the_paddle_on_its_stiff_wall() -> None:
 
 
 def test_a_soft_touch_grows_and_stays() -> None:
-    """A quarter of the force after a quarter of the rise, taken when the interval begins."""
     force, anchor, _, _ = SoftTouch(force=0.2, rise=0.4, start=-0.002).signals(TIMES)
-    assert force is not None
     assert force[0] == 0
     assert force[100] == pytest.approx(0.05, rel=1e-14)
     assert set(force[400:]) == {0.2}
-    assert anchor is not None
     assert set(anchor) == {-0.002}
 
 
 def test_a_soft_touch_without_a_rise_is_there_at_once() -> None:
-    """No division by zero."""
     force = SoftTouch(force=0.2, rise=0).signals(TIMES).force
-    assert force is not None
     assert set(force) == {0.2}
 
 
@@ -119,20 +109,16 @@ def test_a_dowel_weighs_what_its_wood_weighs() -> None:
 
 @pytest.mark.parametrize("size", [(0, 0.008), (0.15, -0.008), (float("nan"), 0.008), (0.15, float("inf"))])
 def test_a_dowel_has_a_size(size: tuple[float, float]) -> None:
-    """A rod without length or thickness is refused."""
     with pytest.raises(InputError, match="must be > 0 and finite"):
         Dowel.of_size(*size)
 
 
 def test_a_dowel_only_pushes() -> None:
-    """Mass and force; a grip that damps is held to a hand at rest."""
     force, anchor, _, _ = Dowel(force=3.5).signals(TIMES)
-    assert force is not None
     assert set(force) == {3.5}
     assert anchor is None
     assert Dowel().hand == (0.0049, 0, 0)
     gripped = Dowel(damping=0.05, start=-0.01).signals(TIMES).anchor
-    assert gripped is not None
     assert set(gripped) == {-0.01}
 
 
@@ -140,7 +126,6 @@ def test_a_guide_pushes_at_constant_speed_and_holds() -> None:
     """From −4 mm at 0.05 m/s: at the surface after 0.08 s, at 9 mm from 0.26 s on."""
     signals = Guide(start=-0.004, speed=0.05, depth=0.009).signals(TIMES)
     position = signals.position
-    assert position is not None
     assert position[80] == pytest.approx(0, abs=1e-17)
     assert position[259] < 0.009
     assert set(position[261:]) == {0.009}
@@ -148,9 +133,7 @@ def test_a_guide_pushes_at_constant_speed_and_holds() -> None:
 
 
 def test_a_cycle_is_one_sample_in_and_one_out() -> None:
-    """low at even samples, high at odd ones."""
     position = Cycle(low=-2e-6, high=3e-4).signals(TIMES).position
-    assert position is not None
     assert position[:4].tolist() == [-2e-6, 3e-4, -2e-6, 3e-4]
 
 

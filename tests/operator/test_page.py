@@ -19,7 +19,6 @@ def _section(title: str) -> str:
 
 @pytest.mark.parametrize("name", OPERATORS)
 def test_every_number_stands_on_the_page_with_its_default(name: str) -> None:
-    """A default that changes changes its line, and no line is left over."""
     kind = OPERATORS[name]
     rows = re.findall(
         r"^\| `(\w+)` \| (\S+ \S+) \| \S", _section(f"{kind.__name__} (`{name}`)"), re.MULTILINE
@@ -32,7 +31,6 @@ def test_every_number_stands_on_the_page_with_its_default(name: str) -> None:
 
 
 def test_every_hand_has_a_section() -> None:
-    """Whatever can be imported and used is explained."""
     titles = {title.split(" ")[0] for title in re.findall(r"^## (.+)$", PAGE, re.MULTILINE)}
     hands = {
         n
@@ -43,7 +41,6 @@ def test_every_hand_has_a_section() -> None:
 
 
 def test_the_links_of_the_table_lead_to_sections() -> None:
-    """Each hand named for a purpose is found on the page."""
     titles = re.findall(r"^## (.+)$", PAGE, re.MULTILINE)
     anchors = {re.sub(r"[^\w -]", "", title).lower().replace(" ", "-") for title in titles}
     links = re.findall(r"\]\(#([\w-]+)\)", PAGE)

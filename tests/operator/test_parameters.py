@@ -23,7 +23,6 @@ EACH = pytest.mark.parametrize("kind", OPERATORS.values(), ids=list(OPERATORS))
 
 @EACH
 def test_works_as_it_is(kind: type[ParametricOperator]) -> None:
-    """Every hand of the registry needs no argument and gives finite signals of the right lengths."""
     hand = kind()
     force, anchor, position, switches = hand.signals(TIMES)
     assert force is None or force.shape == (800,)
@@ -38,7 +37,6 @@ def test_works_as_it_is(kind: type[ParametricOperator]) -> None:
 
 @EACH
 def test_a_spring_or_damper_has_an_anchor(kind: type[ParametricOperator]) -> None:
-    """The loop is told where the spring and the damper end, and only where there is one."""
     hand = kind()
     tied = hand.hand.stiffness > 0 or hand.hand.damping > 0
     assert (hand.signals(TIMES).anchor is not None) == tied
@@ -55,7 +53,6 @@ def test_starts_where_its_signals_start(kind: type[ParametricOperator]) -> None:
 
 @EACH
 def test_every_number_has_units_a_meaning_and_a_place_in_the_docstring(kind: type[Any]) -> None:
-    """A command line can offer each number with its unit; a reader finds it in a docstring."""
     text = "".join(inspect.getdoc(k) or "" for k in kind.__mro__)
     for field in dataclasses.fields(kind):
         quantity = kind.parameters()[field.name]
@@ -68,7 +65,6 @@ def test_every_number_has_units_a_meaning_and_a_place_in_the_docstring(kind: typ
 
 @EACH
 def test_equal_numbers_are_equal_hands(kind: type[Any]) -> None:
-    """Hands are values: equal, hashable, and rebuilt by their repr."""
     if not dataclasses.fields(kind):
         assert (kind(), hash(kind())) == (kind(), hash(kind()))
         return
@@ -83,7 +79,6 @@ def test_equal_numbers_are_equal_hands(kind: type[Any]) -> None:
 
 @EACH
 def test_describes_itself_with_every_number(kind: type[ParametricOperator]) -> None:
-    """One line, in linear or rotary units."""
     hand = kind()
     for motion in ("linear", "rotary"):
         line = hand.describe(motion)
@@ -104,7 +99,6 @@ def test_a_number_must_be_finite(kind: type[Any], bad: object) -> None:
 
 @EACH
 def test_each_bound_holds_from_both_sides(kind: type[Any]) -> None:
-    """The bound itself is allowed where it says so; just past it the message says why."""
     for field in dataclasses.fields(kind):
         bound = parameters_of(kind)[field.name].bound
         if not bound:
@@ -121,13 +115,12 @@ def test_each_bound_holds_from_both_sides(kind: type[Any]) -> None:
 
 def test_a_number_may_carry_its_unit() -> None:
     """ "250 mN" is 0.25 N; for a rotary device a torque is taken; a length is refused."""
-    assert operators.Dowel(force="250 mN").force == 0.25  # type: ignore[arg-type]
-    assert operators.Dowel(force="30 mN*m").force == 0.03  # type: ignore[arg-type]
+    assert operators.Dowel(force="250 mN").force == 0.25
+    assert operators.Dowel(force="30 mN*m").force == 0.03
     with pytest.raises(InputError, match="force is in N"):
-        operators.Dowel(force="250 mm")  # type: ignore[arg-type]
+        operators.Dowel(force="250 mm")
 
 
 def test_the_registry_cannot_be_changed() -> None:
-    """Whoever adds a hand adds a line to the package."""
     with pytest.raises(TypeError):
-        OPERATORS["mine"] = operators.Dowel  # type: ignore[index]
+        OPERATORS["mine"] = operators.Dowel

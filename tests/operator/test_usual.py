@@ -28,7 +28,6 @@ def turning(inertia: object) -> zw.Device:
     ],
 )
 def test_what_turns_is_a_knob_or_a_wheel(inertia: object, kind: type[Finger]) -> None:
-    """By its inertia; where it may be that of a wheel it is one.  What slides is held by a finger."""
     assert type(usual_hand(turning(inertia))) is kind
     assert OPERATORS[usual_kind(turning(inertia))] is kind
     assert type(usual_hand(zw.catalogue.device("haptic-paddle"))) is Finger
@@ -43,7 +42,6 @@ def test_fingers_on_a_knob_are_two_fingers_at_its_edge() -> None:
 
 
 def test_explore_and_play_hold_a_wheel_with_two_hands() -> None:
-    """Where nobody chose another hand."""
     wheel = turning("0.006 kg*m^2")
     state = State.of(wheel, zw.Wall("0.3 N*m/deg"))
     assert hand_kind_of(state) == "hands-on"

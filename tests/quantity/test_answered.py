@@ -42,7 +42,6 @@ class _Pressed(Documented):
 
 
 def test_plain_data_has_the_unit_of_the_motion_in_each_key() -> None:
-    """A field by its name or key, a tuple by its names, a part as its own data, a path as text."""
     pressed = _Pressed("rotary", 2.0, (0.1, 0.2), _Part(7))
     assert pressed.to_dict() == {
         "format": "zwidth pressed 1",
@@ -75,7 +74,6 @@ class _Seen:
 
 
 def test_a_part_says_what_it_declares_and_a_number_without_bound_is_null() -> None:
-    """JSON has no infinity, in a list as little as alone; a property means what its docstring says first."""
     assert plain([_Seen(inf)]) == [{"silent_s": None, "twice_s": [None, 1.0]}]
     assert declared(_Seen)["twice"].meaning == "twice as long"
 
@@ -89,7 +87,6 @@ def test_a_part_that_is_missing_is_null() -> None:
 
 
 def test_rows_are_what_has_words_and_each_number_has_its_unit() -> None:
-    """A number that is None is none; one without bound is any."""
     assert list(rows_of(_Pressed("linear", None, (1e-3, inf)))) == [
         ("largest stiffness", "none"),
         ("half", "1 ms"),
@@ -100,11 +97,10 @@ def test_rows_are_what_has_words_and_each_number_has_its_unit() -> None:
 def test_names_and_entries_of_a_tuple_must_be_as_many() -> None:
     """One name too few would leave a number out of every file."""
     with pytest.raises(ValueError, match="zip"):
-        data_of(_Pressed("linear", 1.0, (0.0, 1.0, 2.0)))  # type: ignore[arg-type]
+        data_of(_Pressed("linear", 1.0, (0.0, 1.0, 2.0)))
 
 
 def test_what_is_declared_is_known_of_class_and_result() -> None:
-    """Fields first, then what is computed."""
     names = ["motion", "stiffness", "late", "part", "cut", "note", "file", "twice", "inner"]
     assert list(declared(_Pressed)) == list(declared(_Pressed("linear", 1, (0, 0)))) == names
 

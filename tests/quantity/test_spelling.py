@@ -12,10 +12,8 @@ from zwidth.quantity.units import spelled, unit_of
     [("msec", "ms"), (" µm ", "um"), ("°", "deg"), ("Nm", "N*m"), ("mN·m", "mN*m"), ("N mm", "N*mm")],
 )
 def test_a_spelling_is_the_unit_that_is_meant(written, meant):
-    """The same scale and dimension."""
     assert unit_of(spelled(written)) == unit_of(meant)
 
 
 def test_what_is_no_unit_is_left_as_it_is():
-    """It is for whoever reads it to refuse."""
     assert spelled("parsec") == "parsec"

@@ -16,7 +16,6 @@ ROTARY = ("rad", "rad/s", "N*m/rad", "N·m·s/rad", "s/rad", "N*m*s/rad/J", "N*m
 
 
 def test_nobody_asked() -> None:
-    """In Python, and where no angle was typed, it is radians."""
     assert all(spoken(unit) == (1.0, unit) for unit in ROTARY)
     with answers_as_typed():
         parse_number("0.3 N*m/rad", "N*m/rad", "stiffness")
@@ -39,14 +38,12 @@ def test_whoever_types_degrees() -> None:
 
 
 def test_an_interval_of_degrees() -> None:
-    """Both ends are read by the same reader; the sign ° is one too."""
     with answers_as_typed():
         parse("5 .. 10 °", "rad", "position")
         assert spoken("rad") == (180 / pi, "deg")
 
 
 def test_what_was_refused_was_not_typed() -> None:
-    """A value of another dimension leaves the answers as they are."""
     with answers_as_typed():
         with pytest.raises(InputError, match="damping is in"):
             parse_number("3 deg", "N*m*s/rad", "damping")
@@ -54,7 +51,6 @@ def test_what_was_refused_was_not_typed() -> None:
 
 
 def test_turns_and_rpm() -> None:
-    """Speeds in rpm where one was typed so, and the rest in what else was typed."""
     with answers_in("rpm"):
         assert told(pi, "rad/s") == "30 rpm"
         assert told(pi, "rad") == f"{pi:.6g} rad"
@@ -67,7 +63,6 @@ def test_turns_and_rpm() -> None:
 
 
 def test_an_unknown_angle() -> None:
-    """It says which there are."""
     with pytest.raises(InputError, match="rad, deg or turn"), answers_in("gon"):
         pass
 

@@ -41,12 +41,10 @@ from zwidth.quantity.text import (
     ],
 )
 def test_a_value_with_its_unit(value: float | None, unit: str, text: str) -> None:
-    """Four digits, a prefix where people use one."""
     assert shown(value, unit) == text
 
 
 def test_a_value_in_a_unit_that_is_kept() -> None:
-    """Six digits; a tiny one has a prefix, and what is no number is a word."""
     assert in_unit(0.0123456789, "N*s/m") == "0.0123457 N·s/m"
     assert in_unit(-2.39684e-05, "N*m") == "-23.9684 µN·m"
     assert in_unit(7.123456e-05, "N*m*s/rad") == "71.2346 µN·m·s/rad"
@@ -54,7 +52,6 @@ def test_a_value_in_a_unit_that_is_kept() -> None:
 
 
 def test_units_and_keys_in_words() -> None:
-    """Of a rotary device its own unit; Coulomb is a name."""
     assert unit_text("kg*m^2") == "kg·m²"
     assert quantity_unit("damping") == "N·s/m"
     assert quantity_unit("stiffness", "rotary") == "N·m/rad"
@@ -62,7 +59,6 @@ def test_units_and_keys_in_words() -> None:
 
 
 def test_a_number_in_a_table() -> None:
-    """Whole where there are more digits before the point, up to a million."""
     numbers = (1234567.0, 12345.6, 999.96, 0.00012345)
     assert [in_a_table(number) for number in numbers] == ["1.235e+06", "12346", "1000", "0.0001234"]
     assert in_a_table(0.98765, 3) == "0.988"
@@ -86,7 +82,6 @@ def test_a_number_in_a_table() -> None:
     ],
 )
 def test_a_prefix_takes_the_place_of_an_exponent(value: float, unit: str, text: str) -> None:
-    """Where the unit has prefixes; of a number that is read easily the unit stays as it is."""
     assert readable(value, unit) == text
 
 
@@ -100,7 +95,6 @@ def test_values_of_one_line_have_one_prefix() -> None:
 
 
 def test_a_limit_is_rounded_to_the_side_on_which_it_holds() -> None:
-    """Also a tiny one with a prefix, and one in degrees."""
     assert shown_at_most(416.96, "N/m") == "416.9 N/m"
     assert shown_at_least(416.92, "N/m") == "417 N/m"
     assert enough(7.12345612e-05, "N*m*s/rad") == "71.2346 µN·m·s/rad"

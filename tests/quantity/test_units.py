@@ -146,7 +146,6 @@ def attempt(value: object, unit: str) -> tuple[Exact | Interval | None, str]:
 
 @pytest.mark.parametrize(("given_value", "unit", "expected"), EXACT)
 def test_values_are_exact(given_value: object, unit: str, expected: str) -> None:
-    """The typed decimal times an exact scale, without a rounding."""
     parsed = parse(given_value, unit, "value")
     assert isinstance(parsed, Exact)
     assert parsed.fraction == Fraction(expected)
@@ -174,7 +173,6 @@ def test_degrees_and_turns_are_rounded_once(text: str, unit: str, expected: Call
     "text", ["500", "500 counts", "500 count", "500 steps", "500 counts/turn", "500 cpr", "500 /rev"]
 )
 def test_counts_may_be_called_counts(text: str) -> None:
-    """Where counts are wanted, and nowhere else."""
     assert parse_number(text, "1", "counts_per_turn").fraction == 500
 
 
@@ -192,13 +190,11 @@ def test_counts_may_be_called_counts(text: str) -> None:
     ],
 )
 def test_intervals(value: object, low: str, high: str) -> None:
-    """Two ends in a list, or a text with two points between them."""
     assert parse(value, "N", "friction") == Interval(low, high)
 
 
 @pytest.mark.parametrize(("value", "unit", "part"), WRONG)
 def test_wrong_values_are_refused(value: object, unit: str, part: str) -> None:
-    """One line that names the quantity and says what is wrong."""
     with pytest.raises(InputError) as caught:
         parse(value, unit, "stiffness")
     message = str(caught.value)
@@ -209,7 +205,7 @@ def test_wrong_values_are_refused(value: object, unit: str, part: str) -> None:
 
 
 @pytest.mark.parametrize("quantity", GLOSSARY.values(), ids=GLOSSARY.keys())
-def test_every_unit_of_the_glossary_is_understood(quantity) -> None:  # type: ignore[no-untyped-def]
+def test_every_unit_of_the_glossary_is_understood(quantity) -> None:
     """Otherwise its own unit could not be typed."""
     for unit in (quantity.unit, quantity.rotary_unit):
         assert parse_number(f"2 {unit}", unit, quantity.name).fraction == 2
@@ -217,7 +213,6 @@ def test_every_unit_of_the_glossary_is_understood(quantity) -> None:  # type: ig
 
 @given(decimals("-1000", "1000"), st.sampled_from(["um", "mm", "cm", "m", "km"]))
 def test_a_prefix_is_a_power_of_ten(number: Decimal, unit: str) -> None:
-    """For every decimal, by rational arithmetic."""
     power = {"um": -6, "mm": -3, "cm": -2, "m": 0, "km": 3}[unit]
     assert parse_number(f"{number:f} {unit}", "m", "x").fraction == Fraction(number) * Fraction(10) ** power
 
@@ -233,7 +228,6 @@ def test_a_number_too_long_to_print_is_refused() -> None:
 @example("1 .. 2 ..", "m")
 @example("1 " + "m*" * 40, "m")
 def test_any_text_gives_a_value_or_an_input_error(text: str, unit: str) -> None:
-    """No other exception, and what is returned is finite."""
     value, message = attempt(text, unit)
     assert isinstance(value, (Exact, Interval)) if not message else message.isprintable()
 
@@ -241,14 +235,12 @@ def test_any_text_gives_a_value_or_an_input_error(text: str, unit: str) -> None:
 @settings(max_examples=80)
 @given(toml_values())
 def test_any_toml_value_gives_a_value_or_an_input_error(value: object) -> None:
-    """Tables, lists, booleans and huge numbers included."""
     assert len(attempt(value, "m")[1]) < 400
 
 
 @settings(max_examples=80)
 @given(st.text(alphabet="kmNsHzgrad*/^-+123µ ", max_size=12))
 def test_units_never_break(text: str) -> None:
-    """A product of units or an InputError."""
     try:
         unit = unit_of(text)
     except InputError:

@@ -46,7 +46,6 @@ def test_a_braking_pulse_is_one_sample_of_force():
 
 
 def test_the_device_says_mass_and_limit():
-    """Where they are not given; without a force limit there is none."""
     x = np.array([-2e-3, -1e-3, 1e-3, 3e-3])
     assert commands(x, BrakingPulse(velocity=ONE))[1] == pytest.approx([0, 0, 9, 0])
     free = DEVICE.replace(force_limit=None)
@@ -54,7 +53,6 @@ def test_the_device_says_mass_and_limit():
 
 
 def test_a_braking_pulse_stops_the_device():
-    """A free mass without friction, its velocity known: at rest after one sample."""
     law = zw.render(zw.Wall(0), BrakingPulse())
     trace = zw.simulate(FREE, law, NO_HAND, 0.1, initial_position=-0.0042, initial_velocity=0.13)
     v = trace.velocity.values
@@ -89,7 +87,6 @@ TABLES = {
 
 @pytest.mark.parametrize("law", TABLES)
 def test_the_transients_are_those_of_the_law(law):
-    """After each entry, until the hand leaves or it is over, scaled by the speed of entry."""
     stage, table = TABLES[law]
     read, force = commands(wandering(900), stage, environment=zw.Wall(150))
     expected = transients(read, table)
@@ -119,7 +116,6 @@ def test_armed_again_only_outside():
     ],
 )
 def test_by_default_they_take_the_momentum(stage):
-    """A free mass without friction that enters a wall of nothing is at rest when the transient is over."""
     law = zw.render(zw.Wall(0), stage)
     trace = zw.simulate(FREE, law, NO_HAND, 0.3, initial_position=-0.0042, initial_velocity=0.13)
     inside = trace.position.values[40:]

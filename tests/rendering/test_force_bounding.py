@@ -1,4 +1,4 @@
-"""Force bounding by a plain loop, against hands that tempt it; computed in doubles, never a digit too high."""
+"""Force bounding by a plain loop, against hands that tempt it; in doubles, never a digit too high."""
 
 from __future__ import annotations
 
@@ -63,7 +63,6 @@ def test_no_hand_takes_energy_out_and_every_force_is_that_of_a_plain_loop(stiffn
 
 
 def test_the_bound_is_reached():
-    """The best move of one sample after a touch takes out all that was put in, to the last digits."""
     paddle = device()
     rest = np.linspace(-1e-3, 4e-4, 9)
     law = bounded(wall(1e5), paddle)
@@ -121,7 +120,6 @@ def test_nor_do_resets_help_against_counts(resets):
 
 
 def test_converter_steps_are_kept_below_the_bound():
-    """Rounding to the device's own steps does not take energy out either, nor between samples."""
     paddle = device(force_resolution="0.05")
     loop = zw.render(zw.Wall(5000), ForceBounding())
     for seed in range(20):

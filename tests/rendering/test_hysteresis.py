@@ -25,7 +25,6 @@ def slipping(readings, width, stiffness):
 
 @pytest.mark.parametrize("clamped", [False, True])
 def test_the_commands_are_those_of_the_law(clamped):
-    """Sample by sample, in and out of a wall; clamped, they never pull."""
     read, force = commands(wandering(), Hysteresis("0.31", 870, clamped=clamped), environment=zw.Wall(400))
     slip = slipping(read, 0.31, 870)
     expected = np.where(read > 0, 400 * read + slip, 0)
@@ -35,7 +34,6 @@ def test_the_commands_are_those_of_the_law(clamped):
 
 
 def test_without_a_surface_it_acts_everywhere():
-    """On the reading itself."""
     x = wandering()
     read, force = commands(x, Hysteresis("0.2", 500), environment=zw.PulseTransferFunction([70], [1]))
     s, expected = 0.0, []
@@ -47,7 +45,6 @@ def test_without_a_surface_it_acts_everywhere():
 
 @pytest.mark.parametrize("speed", [0.02, 0.1])
 def test_the_force_depends_on_the_way_and_not_on_the_speed(speed):
-    """The same positions at the same forces, sampled closely or not."""
     x = np.concatenate((np.arange(1, 101), np.arange(99, 0, -1))) * 1e-4
     slow = np.repeat(x, round(0.1 / speed))
     _, quick_force = commands(x, Hysteresis("0.3", 900), device=IDEAL)
@@ -77,7 +74,6 @@ def test_the_width_pays_for_the_hold_up_to_its_speed():
 
 
 def test_a_hand_to_and_fro_finds_the_same_forces_to_the_bit():
-    """Where the spring sticks nothing adds up: after a thousand rounds no rounding has gathered."""
     x = np.tile([0.00031, 0.00037, 0.00034, 0.00029], 1000)
     _, force = commands(x, Hysteresis("0.31", 870), device=IDEAL)
     rounds = np.reshape(force[4:], (-1, 4))

@@ -27,7 +27,6 @@ def slewed(force, most):
 
 @pytest.mark.parametrize("begin", [-1e-3, 2e-3])
 def test_the_force_changes_by_a_step_at_most(begin):
-    """Sample by sample; a hand that begins inside has its force from the first sample on."""
     x = begin + wandering() - wandering()[0]
     read, force = commands(x, SlewLimit(130), environment=WALL)
     expected = slewed(wall_force(read), 0.13)
@@ -43,7 +42,6 @@ def test_the_motor_says_how_fast():
 
 
 def test_saturation_goes_before_what_remembers():
-    """Without it the force first comes down from where it never was."""
     x = np.array([-1e-3, *[0.02] * 9, *[1e-3] * 9])
     alone, behind = (
         touched(x, *stages, environment=WALL, amplifier=None).actuator_force.values
@@ -55,7 +53,6 @@ def test_saturation_goes_before_what_remembers():
 
 
 def test_saturation():
-    """Both ways, at the device's force limit or below."""
     both = zw.PulseTransferFunction([9000], [1])
     for stage, limit in ((Saturation(), 9), (Saturation("0.7"), 0.7)):
         read, force = commands(wandering(), stage, environment=both)
@@ -79,7 +76,6 @@ def test_the_generator_is_the_published_one():
 
 
 def test_dither_is_the_documented_sequence():
-    """Running on outside, felt inside only."""
     x = wandering()
     read, force = commands(x, Dither("0.4"), environment=WALL)
     signs = np.where(np.arange(len(x)) % 2, -1, 1)

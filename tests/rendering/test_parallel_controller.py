@@ -68,7 +68,6 @@ def test_it_owes_one_sample_at_most(body, newtons):
     st.floats(0.001, 3),
 )
 def test_it_owes_one_sample_at_most_to_spring_hands(path, stiffness, damping, mass):
-    """The same with a hand that yields: its mean force changes with every move of the display."""
     trace = zw.simulation.simulate_admittance(
         zw.simulation.VirtualBody(mass),
         zw.operators.Tracking(path, stiffness=stiffness, damping=damping),

@@ -64,7 +64,6 @@ def test_the_best_leap_takes_out_just_that(stiffness, sign):
 
 
 def test_after_a_leap_the_wall_is_gone_until_friction_has_paid():
-    """No force inside while it owes; the hand that goes on pays, and the wall is there again."""
     positions, _ = leaping(5000)
     slow = np.linspace(positions[-1], 1e-3, 3000)
     quick = np.tile([-1e-2, 1e-3], 8)

@@ -67,7 +67,6 @@ OPTIONS = {
 
 @pytest.mark.parametrize("name", OPTIONS)
 def test_it_does_what_a_plain_loop_does(name):
-    """Sample by sample, from the readings: the commanded force to rounding."""
     options = OPTIONS[name]
     law = zw.render(zw.Wall(1500), PassivityController(**options))
     hand = zw.operators.MaliciousTouch(speed=0.4)
@@ -149,7 +148,6 @@ def test_a_hand_that_turns_back_in_time_takes_energy_out():
 
 
 def test_a_row_of_laws_is_one_environment():
-    """Laws are added behind; the text says all of them."""
     one = zw.render(zw.Wall(300), PassivityController())
     two = zw.render(one, PassivityController(largest_force=1))
     assert len(two.laws) == 2

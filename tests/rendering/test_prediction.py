@@ -80,7 +80,6 @@ def test_half_sample_prediction_sample_by_sample():
 
 
 def test_at_the_first_sample_the_hand_is_taken_to_be_at_rest():
-    """One reading tells no velocity, and which force acted before is not known: none."""
     f = simulated(zw.render(zw.Wall(1900), HalfSamplePrediction(**FINGER)), start=0.006)[2]
     phi, gamma = hold(T / 2)
     assert f[0] == pytest.approx(1900 * (phi @ [0.006, 0] + gamma * SPRING * REST)[0], rel=1e-12)
@@ -105,7 +104,6 @@ def matched_by_numpy(stiffness, damping):
 
 @pytest.mark.parametrize("damping", [0, 4.1])
 def test_matched_poles_sample_by_sample(damping):
-    """The gains are Ackermann's and act on the true state."""
     wall, law = zw.Wall(2300, damping), PoleMatched(**FINGER)
     gains = matched_by_numpy(2300, damping)
     assert law.gains(LoopContext(DEVICE, wall)) == pytest.approx(gains, rel=1e-10)
@@ -121,7 +119,6 @@ def test_matched_poles_of_a_free_mass():
 
 
 def test_matched_poles_of_a_clamped_wall_never_pull():
-    """As the wall; without the word they do."""
     smallest = [
         np.min(simulated(zw.render(zw.Wall(2300, 4.1, clamped=c), PoleMatched(**FINGER)))[2])
         for c in (True, False)
@@ -190,7 +187,6 @@ def correcting(stiffness, damping=0.0, clamped=False, throughout=False):
 @pytest.mark.parametrize("throughout", [False, True])
 @pytest.mark.parametrize("stiffness", [900, 4100])
 def test_correction_sample_by_sample(stiffness, throughout):
-    """Two held forces after each crossing; between them the wall, or two more."""
     law = CrossingCorrection(throughout=throughout, **FINGER)
     assert_same(zw.render(zw.Wall(stiffness), law), correcting(stiffness, throughout=throughout), 1e-8, 60)
 
@@ -227,7 +223,6 @@ def bounces(law):
 
 
 def test_bounces_grow_are_bounded_and_are_kept():
-    """The three figures: original, prediction, correction."""
     wall = zw.Wall(5000)
     assert np.max(bounces(wall)) > 1
     predicted = bounces(zw.render(wall, HalfSamplePrediction(**UNDAMPED)))
@@ -240,7 +235,6 @@ def test_bounces_grow_are_bounded_and_are_kept():
 
 @pytest.mark.parametrize("stiffness", [500, 1300, 2000, 9000])
 def test_throughout_keeps_the_height_on_any_wall(stiffness):
-    """Also where the contact lasts for many samples."""
     law = zw.render(zw.Wall(stiffness), CrossingCorrection(throughout=True, **UNDAMPED))
     assert bounces(law) == pytest.approx(0.02, abs=1e-9)
 

@@ -42,7 +42,6 @@ def test_each_law_changes_the_force_of_the_one_before():
 
 
 def test_every_law_has_its_own_code():
-    """Two with one code would run the same step."""
     codes = [stage.code for stage in (*ROW[2:], rendering.PassivityController())]
     assert len(set(codes)) == len(codes)
     kinds = [e.kind for e in (rendering.AdaptiveWindow(), TickTime(), Kalman())]
@@ -50,7 +49,6 @@ def test_every_law_has_its_own_code():
 
 
 def test_the_ledger_closes():
-    """With a delay and in between samples."""
     trace = zw.simulate(DEVICE.replace(delay=4e-4), LAW, HAND, 0.4, initial_velocity=0.1, points_per_sample=3)
     assert trace.zwidth.energy.closes
     assert trace.attrs["environment"] == LAW.describe()
@@ -58,7 +56,6 @@ def test_the_ledger_closes():
 
 
 def test_a_missed_sample_leaves_the_laws_as_they_were():
-    """The same numbers from the samples that are taken."""
     damper = Damper(2, rendering.AdaptiveWindow(longest=1))
     law = zw.render(zw.Wall(0), damper)
     motion = zw.operators.PrescribedMotion(np.array([0, 1e-3, 3e-3, 4e-3, 4e-3]))
@@ -68,7 +65,6 @@ def test_a_missed_sample_leaves_the_laws_as_they_were():
 
 
 def test_a_batch_has_the_bits_of_single_loops():
-    """On two threads."""
     batch = zw.simulation.simulate_batch(
         DEVICE, LAW, HAND, 0.2, vary={"device.damping": [0.1, 0.4]}, workers=2
     )

@@ -111,7 +111,6 @@ def test_jumps_at_updates_are_not_passive():
 
 @pytest.mark.parametrize(("share", "sign"), [("299.9", 1), ("300.1", -1)])
 def test_slopes_beyond_the_device_are_not_passive(share, sign):
-    """One sample in, one out, on one local spring."""
     positions = np.array([1e-4, *([1e-4, 1e-3] * 50), 1e-4])
     loop = zw.render(zw.Wall(5000), DualRate(samples=1000, slope=share))
     assert np.sign(energy_in(follow(device(), loop, positions))[-1]) == sign

@@ -59,7 +59,6 @@ def ticks(readings, count, period):
 @pytest.mark.parametrize("fit", ["end", "best"])
 @pytest.mark.parametrize(("noise", "longest"), [(None, 15), (3.3e-5, 7), (1e-4, 40)])
 def test_the_window_is_that_of_its_definition(noise, longest, fit):
-    """The longest line from the newest reading that passes all others within the noise."""
     x = wandering()
     read, v = estimated(x, AdaptiveWindow(noise, longest, fit))
     expected = adaptive(read, COUNT if noise is None else noise, longest, fit == "best")
@@ -68,7 +67,6 @@ def test_the_window_is_that_of_its_definition(noise, longest, fit):
 
 
 def test_ticks_are_timed():
-    """Edges over the time since the last one, decaying, none counted twice at a turn."""
     x = wandering(speed=0.02)
     read, v = estimated(x, TickTime())
     assert v == pytest.approx(ticks(read, COUNT, PERIOD), abs=1e-9)
@@ -93,7 +91,6 @@ def test_trembling_about_an_edge_has_no_velocity():
 
 @pytest.mark.parametrize("density", [0.02, 1.0, 50.0, 3e4])
 def test_the_kalman_gains_are_those_of_the_riccati_equation(density):
-    """SciPy's solution for the same model."""
     a = np.array([[1, PERIOD], [0, 1]])
     q = density**2 * np.array([[PERIOD**3 / 3, PERIOD**2 / 2], [PERIOD**2 / 2, PERIOD]])
     scale = np.diag([1 / COUNT, PERIOD / COUNT])  # in counts per sample, so that SciPy keeps its digits
@@ -167,7 +164,6 @@ def test_a_fast_hand_is_followed_by_a_short_window():
 
 
 def test_inside_only_and_pushing_only():
-    """Behind a wall: nothing outside; clamped, the sum never pulls."""
     x = wandering()
     read, v = estimated(x, TickTime())
     spring = 300 * np.maximum(read, 0)

@@ -64,13 +64,11 @@ def test_a_passive_environment_needs_no_more_than_the_coupling_alone(k, mu, eta)
 
 
 def test_a_rigid_environment_needs_what_the_coupling_alone_needs():
-    """The bound is met in the limit of a stiff wall."""
     law = zw.VirtualCoupling(820, 0.3, zw.Wall(1e12))
     assert required_damping(evaluate(law)) == pytest.approx(820 * 5e-4 + 0.3, rel=1e-6)
 
 
 def test_surface_and_rounding_follow_the_environment():
-    """Unilateral, rounded and uncertain exactly as what lies behind."""
     wall, free = zw.Wall(290, 1.3), zw.PulseTransferFunction([1], [1, 0.5])
     assert zw.VirtualCoupling(820, 2, wall).unilateral
     assert not zw.VirtualCoupling(820, 2, free).unilateral
@@ -81,7 +79,6 @@ def test_surface_and_rounding_follow_the_environment():
 
 
 def test_foreign_systems_are_accepted():
-    """A discrete python-control system lies behind the coupling as its transfer function."""
     system = control.tf([310.0, -250.0], [0.7, -0.5], 1e-3)
     law = zw.VirtualCoupling(820, 2.1, system)
     assert law.environment == zw.PulseTransferFunction(system)

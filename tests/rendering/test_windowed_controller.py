@@ -43,7 +43,6 @@ def plain(positions, stiffness, window=30, slowest=0.01, share=0.9, largest_damp
 
 @pytest.mark.parametrize("name", OPTIONS)
 def test_it_does_what_a_plain_loop_does(name):
-    """Sample by sample, in and out of a wall."""
     options, positions = OPTIONS[name], wandering()
     trace = follow(DEVICE, zw.render(zw.Wall(1500), WindowedController(**options)), positions)
     expected = np.array(list(plain(positions, 1500.0, **options)))
@@ -71,7 +70,6 @@ def test_what_was_lost_long_ago_does_not_hide_what_comes_out_now():
 
 
 def test_what_the_spring_stores_is_never_forgotten():
-    """A hand that rests in the wall for longer than the window may go out slowly: nothing is added."""
     inside = np.concatenate([np.linspace(-1e-3, 2e-3, 400), np.full(500, 2e-3), np.linspace(2e-3, 3e-4, 400)])
     trace = follow(DEVICE, zw.render(zw.Wall(100), WindowedController(window=5)), inside)
     added = trace.commanded_force.values - 100 * np.maximum(inside, 0)

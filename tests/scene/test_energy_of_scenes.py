@@ -30,7 +30,6 @@ def motion(seed: int, samples: int = 150) -> np.ndarray:
 
 @seeds(12)
 def test_the_energy_of_random_scenes_balances_to_rounding(seed: int) -> None:
-    """Element by element, with contact and friction; no loss is negative."""
     scene = random_scene(seed, 3 + seed % 40)
     run = SceneRun(scene, 0.001)
     x = motion(seed)
@@ -70,7 +69,6 @@ def test_kinetic_and_elastic_energy_are_those_of_the_textbook() -> None:
 
 
 def test_a_mass_left_alone_swings_for_ever() -> None:
-    """A million steps at a tenth of the rate lose nothing, and gain nothing."""
     run = SceneRun(zw.Scene([Spring("handle", "m", 3900), Mass("m", "0.1")]), 0.0063)
     run.step(0.01)
     before = float(run.account().stored.sum())
@@ -79,7 +77,6 @@ def test_a_mass_left_alone_swings_for_ever() -> None:
 
 
 def test_a_ball_between_two_walls_keeps_its_energy() -> None:
-    """Contacts of springs alone, stiffer than the step can follow, bounce without loss."""
     scene = zw.Scene(
         [
             Spring("handle", "m", 10),
@@ -111,7 +108,6 @@ def test_contact_never_pulls_and_its_damper_only_takes() -> None:
 
 @pytest.mark.parametrize(("pull", "slides"), [(0.99, False), (1.01, True)])
 def test_friction_holds_up_to_its_force(pull: float, slides: bool) -> None:
-    """A spring that pulls with less than F does not move the mass at all; with more it does."""
     scene = zw.Scene([Spring("handle", "m", 100), Mass("m", "0.1"), CoulombFriction("m", "ground", 2)])
     run = SceneRun(scene, 0.001)
     run.follow(np.linspace(0, pull * 2 / 100, 200)[1:])
@@ -122,7 +118,6 @@ def test_friction_holds_up_to_its_force(pull: float, slides: bool) -> None:
 
 
 def test_points_on_a_line_are_a_spring() -> None:
-    """A nonlinear spring whose points lie on K d does what the linear one does."""
     rest = [Mass("m", "0.05"), Damper("m", "ground", "0.2")]
     line = [k * 0.01 for k in range(-5, 6)]
     curved = NonlinearSpring("handle", "m", line, [300 * x for x in line])
@@ -136,7 +131,6 @@ def test_points_on_a_line_are_a_spring() -> None:
 
 @seeds(15)
 def test_forces_of_several_contacts_and_frictions_answer_their_laws(seed: int) -> None:
-    """However many meet at one node, what the solution leaves over is rounding."""
     scene = random_scene(seed, 30, ("contact", "friction", "points", "mass", "damper"))
     run = SceneRun(scene, 0.001)
     x = motion(seed, 200)

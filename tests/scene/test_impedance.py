@@ -64,7 +64,6 @@ def test_it_is_that_of_the_node_equations(seed: int) -> None:
 
 @seeds(12)
 def test_the_step_is_the_filter(seed: int) -> None:
-    """Impulse response of the compiled step, and that of H(z) in exact arithmetic."""
     scene = random_scene(seed, 3 + seed % 8, LINEAR)
     num, den = scene.pulse_transfer_function(T)
     num = (Fraction(0),) * (len(den) - len(num)) + num
@@ -144,7 +143,6 @@ def test_levers_may_close_a_loop() -> None:
 
 
 def test_a_hidden_part_cancels() -> None:
-    """What hangs on the ground alone is not felt."""
     seen = [Spring("handle", "a", 300), Mass("a", "0.2"), Damper("a", "ground", "0.1")]
     more = [Mass("far", "0.3"), Spring("far", "ground", 20)]
     assert zw.Scene([*seen, *more]).impedance(T) == zw.Scene(seen).impedance(T)
@@ -161,9 +159,8 @@ def test_a_hidden_part_cancels() -> None:
     ],
 )
 def test_what_is_no_scene_is_refused(elements: object, says: str) -> None:
-    """With one message, that says what to do."""
     with pytest.raises(InputError, match=says):
-        zw.Scene(elements)  # type: ignore[arg-type]
+        zw.Scene(elements)
 
 
 def test_a_node_that_nothing_holds_is_named() -> None:

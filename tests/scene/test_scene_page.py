@@ -12,7 +12,6 @@ PAGE = Path(__file__).parents[2] / "docs" / "scenes.md"
 
 
 def test_the_examples_of_the_page_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One after the other, with the numbers that it names."""
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {}
     page = PAGE.read_text(encoding="utf-8")

@@ -38,11 +38,10 @@ def checked(scene: zw.Scene) -> object:
             "lever a–b lies between two parts: give impedances",
         ),
         (lambda: best_parts(TWO, 0), "a whole number from 1 on, got 0"),
-        (lambda: best_parts(TWO, 1.5), "a whole number from 1 on, got 1.5"),  # type: ignore[arg-type]
+        (lambda: best_parts(TWO, 1.5), "a whole number from 1 on, got 1.5"),
         (lambda: best_parts(TWO, 9), "count must be from 1 to 2"),
     ],
 )
 def test_the_message_says_what_is_wrong(asked: Callable[[], object], said: str) -> None:
-    """What was given, and what is wanted."""
     with pytest.raises(InputError, match=said):
         asked()

@@ -20,7 +20,6 @@ def written(folder: Path, text: str, name: str = "a.toml") -> Path:
 
 
 def test_device_and_environment_in_files_of_their_own(tmp_path: Path) -> None:
-    """Both together are the arguments of `check`."""
     loop = zw.load(written(tmp_path, WHEEL), written(tmp_path, STOP, "b.toml"))
     assert loop.device == zw.rotary(inertia="0.006", damping="0.02", sample_period="0.001", name="a")
     assert loop.environment == zw.Wall(20)
@@ -28,7 +27,6 @@ def test_device_and_environment_in_files_of_their_own(tmp_path: Path) -> None:
 
 
 def test_a_name_of_the_catalogue_and_a_law(tmp_path: Path) -> None:
-    """As `zwidth check haptic-paddle file.toml`."""
     law = written(tmp_path, STOP.replace("20 N*m/rad", "20 N/m") + '[[law]]\ntype = "force-bounding"\n')
     loop = zw.load("haptic-paddle", law)
     assert loop.environment == zw.render(zw.Wall(20), zw.rendering.ForceBounding())
@@ -36,7 +34,6 @@ def test_a_name_of_the_catalogue_and_a_law(tmp_path: Path) -> None:
 
 
 def test_a_device_alone(tmp_path: Path) -> None:
-    """There is no environment then, and a law without one is refused."""
     assert zw.load("haptic-paddle") == (zw.catalogue.device("haptic-paddle"), None)
     with pytest.raises(zw.InputError, match=r"no file has an \[environment\]"):
         zw.load("haptic-paddle", written(tmp_path, '[[law]]\ntype = "force-bounding"\n'))
@@ -52,12 +49,10 @@ def test_a_device_alone(tmp_path: Path) -> None:
     ],
 )
 def test_what_cannot_be_used_is_said(text: str, message: str, tmp_path: Path) -> None:
-    """In one message, with the name of the file or of what is missing."""
     with pytest.raises(zw.InputError, match=message):
         zw.load(written(tmp_path, text))
 
 
 def test_nothing_is_no_specification() -> None:
-    """Not an empty answer."""
     with pytest.raises(zw.InputError, match="no file is given"):
         zw.load()

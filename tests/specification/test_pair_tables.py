@@ -21,7 +21,6 @@ def read(folder: Path, text: str) -> zw.Pair:
 
 
 def test_every_key_is_an_argument_of_a_pair(tmp_path: Path) -> None:
-    """A plain number is SI, a text has its unit."""
     more = (
         'damping = "20 mN*s/m"\nlocal_damping = 0.03\nfollower_stiffness = 120\nfollower_damping = -0.01\n'
         'follower_local_damping = "0.04 N*s/m"\nlink_delay = "2 ms"\nlink_delay_back = 0.003\n'
@@ -36,7 +35,6 @@ def test_every_key_is_an_argument_of_a_pair(tmp_path: Path) -> None:
 
 
 def test_one_link_delay_is_for_both_ways(tmp_path: Path) -> None:
-    """And the virtual damping may be called so."""
     pair = read(tmp_path, ARMS + COUPLING + 'virtual_damping = 0.02\nlink_delay = "2 ms"\n')
     assert pair.delay == (zw.Exact("0.002"), zw.Exact("0.002"))
     assert pair.damping == zw.Exact("0.02")
@@ -73,13 +71,11 @@ def test_one_device_is_both_arms_and_may_turn(tmp_path: Path) -> None:
     ],
 )  # fmt: skip
 def test_what_cannot_be_used_is_said(text: str, message: str, tmp_path: Path) -> None:
-    """In one message that says where it stands and what there may be."""
     with pytest.raises(zw.InputError, match=message):
         read(tmp_path, text)
 
 
 def test_a_pair_is_read_alone(tmp_path: Path) -> None:
-    """A second file would be ignored."""
     (tmp_path / "two.toml").write_text(ARMS + COUPLING, encoding="utf-8")
     with pytest.raises(zw.InputError, match="read alone"):
         zw.load("haptic-paddle", tmp_path / "two.toml")

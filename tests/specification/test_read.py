@@ -59,7 +59,6 @@ def outcome(call: Callable[[], object]) -> str:
 
 
 def test_numbers_are_exact(read: Load) -> None:
-    """A third of a millisecond, and TOML floats as they were typed."""
     device, wall = (s := read(DEVICE + "resolution = 22.4e-6\n" + WALL)).device, s.environment
     assert device.exact("sample_period") == Fraction(1, 3000)
     assert device.exact("resolution") == Fraction(224, 10**7)
@@ -69,7 +68,6 @@ def test_numbers_are_exact(read: Load) -> None:
 
 
 def test_one_file_or_two_or_a_catalogue_name(read: Load) -> None:
-    """In any order."""
     both = read(DEVICE + WALL)
     assert read(WALL, DEVICE.replace("[device]", '[device]\nname = "file0"')) == both
     paddle = load(["haptic-paddle"], {"stiffness": "0.3 N/mm"})
@@ -77,13 +75,11 @@ def test_one_file_or_two_or_a_catalogue_name(read: Load) -> None:
 
 
 def test_the_command_line_alone() -> None:
-    """A device and a wall without a file."""
     s = load([], {"damping": "0.15", "sample-period": "1 ms", "stiffness": "300", "virtual-damping": "-0.1"})
     assert s == Specification(zw.Device(damping=0.15, rate=1000), zw.Wall(300, -0.1))
 
 
 def test_overrides_replace_the_file(read: Load) -> None:
-    """Rate stands for the period, `damping` is the device's and `virtual_damping` the wall's."""
     text = (
         "[device]\ndamping = 1\nsample_period = 0.001\n"
         '[environment]\ntype = "wall"\nstiffness = 1\ndamping = 2\n'
@@ -98,7 +94,6 @@ def test_overrides_replace_the_file(read: Load) -> None:
 
 
 def test_a_catalogue_device_as_a_base(read: Load) -> None:
-    """Keys beside `catalogue` replace the published ones."""
     device = read('[device]\ncatalogue = "haptic-paddle"\nrate = "5 kHz"\n' + WALL).device
     assert device == zw.catalogue.device("haptic-paddle", rate=5000)
     named = read('[device]\ncatalogue = "phantom"\nname = "ours"\n' + WALL).device
@@ -106,7 +101,6 @@ def test_a_catalogue_device_as_a_base(read: Load) -> None:
 
 
 def test_intervals(read: Load) -> None:
-    """Lists in TOML, two points on the command line."""
     s = read(DEVICE + 'mass = ["10 g", 0.02]\n' + WALL, resolution="10 .. 20 um", stiffness="100..200")
     assert s.device.mass == zw.Interval(0.01, 0.02)
     assert s.device.resolution == zw.Interval("1e-5", "2e-5")
@@ -114,7 +108,6 @@ def test_intervals(read: Load) -> None:
 
 
 def test_rotary_devices(read: Load) -> None:
-    """Rotary units throughout; linear ones once there is a handle."""
     wheel = '[device]\ninertia = "100 g*cm^2"\ndamping = "1e-3 N*m*s"\nrate = 1000\ncounts_per_turn = 4096\n'
     s = read(wheel, '[environment]\ntype = "wall"\nstiffness = "2 N*m/rad"\n')
     assert s.device == zw.rotary(inertia=1e-5, damping=1e-3, rate=1000, counts_per_turn=4096, name="file0")
@@ -177,7 +170,6 @@ ENVIRONMENTS: list[tuple[str, Callable[[], Any]]] = [
 
 @pytest.mark.parametrize(("text", "expected"), ENVIRONMENTS)
 def test_every_type_of_environment(read: Load, text: str, expected: Callable[[], Any]) -> None:
-    """As its class makes it from the same numbers."""
     assert read(DEVICE, "[environment]\n" + text).environment == expected()
 
 
@@ -186,7 +178,6 @@ WITH_A_ROW = {text.split('"')[1] for text, _ in ENVIRONMENTS}
 
 @pytest.mark.parametrize("name", ["wall", *sorted(set(TYPES) - WITH_A_ROW)])
 def test_every_other_type(read: Load, name: str) -> None:
-    """One that has no row above, from its fields: as its class makes it from the same texts."""
     given = needed(TYPES[name])
     table = "".join(f'{key} = "{value}"\n' for key, value in given.items())
     found = read(DEVICE, f'[environment]\ntype = "{name}"\n{table}').environment
@@ -212,14 +203,12 @@ FILTERS: list[tuple[str, str, Any]] = [
 
 @pytest.mark.parametrize(("table", "text", "expected"), FILTERS)
 def test_velocity_filters(read: Load, table: str, text: str, expected: Any) -> None:
-    """As a table in the file and as a text on the command line."""
     wall = zw.Wall(300, 0.1, expected)
     assert read(DEVICE + WALL + f"damping = 0.1\nvelocity_filter = {table}\n").environment == wall
     assert read(DEVICE + WALL, virtual_damping="0.1", velocity_filter=text).environment == wall
 
 
 def test_a_clamped_law_on_the_command_line() -> None:
-    """True or false as a word, over what the file says."""
     given = {"stiffness": "300", "virtual-damping": "0.1"}
     assert load(["phantom"], {**given, "clamped": "true"}).environment == zw.Wall(300, 0.1, clamped=True)
     assert load(["phantom"], {**given, "clamped": "false"}).environment == zw.Wall(300, 0.1)
@@ -227,7 +216,6 @@ def test_a_clamped_law_on_the_command_line() -> None:
 
 
 def test_lists_on_the_command_line(read: Load) -> None:
-    """Coefficients, branches, the type itself, and what lies behind a coupling."""
     s = load(["phantom"], {"type": "pulse-transfer-function", "numerator": "0.1", "denominator": "[1, -0.5]"})
     assert s.environment == zw.PulseTransferFunction([0.1], [1, -0.5])
     points = {"positions": "-1 mm, 0, 2 mm", "forces": "[-1, 0, 0.5 N]"}
@@ -348,7 +336,6 @@ BAD: list[tuple[str | bytes, str]] = [
 
 @pytest.mark.parametrize(("content", "part"), BAD, ids=range(len(BAD)))
 def test_slips_in_a_file(read: Load, content: str | bytes, part: str) -> None:
-    """One message that names the place, the key, what was given and what is allowed."""
     assert part in message(lambda: read(content))
 
 
@@ -362,7 +349,6 @@ def test_slips_in_a_file(read: Load, content: str | bytes, part: str) -> None:
     ],
 )
 def test_what_another_command_reads_is_sent_there(tmp_path: Path, name: str, part: str) -> None:
-    """By its ending, or as a built-in arm, which is no file."""
     path = tmp_path / name
     if path.suffix:
         path.write_text("<robot/>: 1\n", encoding="utf-8")
@@ -386,12 +372,10 @@ def test_what_another_command_reads_is_sent_there(tmp_path: Path, name: str, par
     ],
 )
 def test_slips_on_the_command_line(overrides: dict[str, str], part: str) -> None:
-    """They are said to stand there."""
     assert part in message(lambda: load(["haptic-paddle"], overrides))
 
 
 def test_slips_in_the_sources(tmp_path: Path, read: Load) -> None:
-    """What is no file is one line, not a traceback."""
     wall = {"stiffness": "1"}
     assert 'did you mean "haptic-paddle"' in message(lambda: load(["haptic-padle"], wall))
     assert "there is no file" in message(lambda: load(["missing.toml"], wall))
@@ -405,7 +389,6 @@ def test_slips_in_the_sources(tmp_path: Path, read: Load) -> None:
 
 
 def test_command_line_names_are_not_shared() -> None:
-    """No name means one thing for the device and another for the environment."""
     assert not set(option_keys()) & set(DEVICE_KEYS)
     for row in TYPES.values():
         for key in row.keys.values():
@@ -420,7 +403,6 @@ VALUES = toml_values() | st.sampled_from([1, Decimal("0.5"), "1 ms", [1, 2], *TY
 @settings(max_examples=100, deadline=None)
 @given(st.dictionaries(KEYS, VALUES, max_size=6))
 def test_any_device_table_is_a_device_or_an_input_error(values: dict[str, Any]) -> None:
-    """Whatever stands in it; and a device that is accepted has a period and a damping."""
     assert outcome(lambda: build_device(Table("x", {"damping": 1, "rate": 1000, **values}))).isprintable()
 
 
@@ -429,7 +411,6 @@ def test_any_device_table_is_a_device_or_an_input_error(values: dict[str, Any]) 
 def test_any_environment_table_is_one_or_an_input_error(
     name: str, values: dict[str, Any], data: st.DataObject
 ) -> None:
-    """With the keys of its own type, so that the values are reached."""
     own = {key: data.draw(VALUES) for key in TYPES[name].keys}
     assert outcome(lambda: build_environment(Table("x", {"type": name, **own}), "linear")).isprintable()
     assert outcome(lambda: build_environment(Table("x", {"type": name, **values}), "rotary")).isprintable()
@@ -438,7 +419,6 @@ def test_any_environment_table_is_one_or_an_input_error(
 @settings(max_examples=100, deadline=None)
 @given(st.dictionaries(KEYS, texts(), max_size=5), st.sampled_from([[], ["haptic-paddle"], ["phantom"]]))
 def test_any_command_line_is_read_or_an_input_error(overrides: dict[str, str], sources: list[str]) -> None:
-    """Names and values at random."""
     assert outcome(lambda: load(sources, overrides)).isprintable()
 
 
@@ -462,7 +442,6 @@ PIECES = st.sampled_from(
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.binary(max_size=200) | st.lists(PIECES | texts(), max_size=12).map(lambda p: "".join(p).encode()))
 def test_any_file_is_read_or_an_input_error(tmp_path: Path, content: bytes) -> None:
-    """Bytes at random, and TOML with pieces out of order."""
     path = tmp_path / "fuzz.toml"
     path.write_bytes(content)
     assert outcome(lambda: load([path], {})).isprintable()

@@ -29,20 +29,17 @@ SPRING = {"type": "spring", "first": "handle", "second": "ground", "stiffness": 
     ],
 )
 def test_a_mistake_is_named_with_its_place(elements: object, says: str) -> None:
-    """The element by its number, and what it may be."""
     with pytest.raises(InputError, match=says):
         build_environment(Table("[environment]", {"type": "scene", "elements": elements}), "linear")
 
 
 def test_a_rotary_device_has_rotary_scenes() -> None:
-    """The units are those of its motion."""
     element = {**SPRING, "stiffness": "2 N*m/rad"}
     found = build_environment(Table("x", {"type": "scene", "elements": [element]}), "rotary")
     assert found == zw.Scene([zw.scene.Spring("handle", "ground", 2)])
 
 
 def test_every_element_of_the_package_has_a_name() -> None:
-    """Whatever can be built can be written down."""
     from zwidth.model import scene
 
     made = {kind.made for kind in ELEMENTS.values()}
@@ -54,7 +51,6 @@ def test_every_element_of_the_package_has_a_name() -> None:
 
 
 def test_a_file_is_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`zwidth check` takes a scene behind a coupling as it takes a wall, and says by what it is passive."""
     from zwidth.cli.main import main
 
     path = tmp_path / "world.toml"

@@ -85,7 +85,6 @@ def same(device: zw.Device, environment: object) -> None:
 
 @pytest.mark.parametrize("name", sorted({*TYPES, *ENVIRONMENTS}))
 def test_every_environment_is_read_as_it_was(name: str) -> None:
-    """Every type; also numbers that are no decimals, intervals, and a name with quotation marks."""
     environment = ENVIRONMENTS.get(name) or TYPES[name].made(**needed(TYPES[name]))
     same(DEVICE, environment)
     assert parsed(written(DEVICE, environment)).device.name == DEVICE.name
@@ -93,20 +92,17 @@ def test_every_environment_is_read_as_it_was(name: str) -> None:
 
 @pytest.mark.parametrize("name", LAWS)
 def test_every_law_is_read_as_it_was(name: str) -> None:
-    """With what was chosen; what was left to the device is left to it again."""
     chosen = CHOSEN.get(name) or needed(LAWS[name])
     same(DEVICE, zw.render(zw.Wall(300), LAWS[name].made(**chosen)))
 
 
 def test_no_limit_is_a_word() -> None:
-    """A key that has a number may have it in its place."""
     law = rendering.PassivityController(observer="past", largest_damping="unlimited")
     assert 'largest_damping = "unlimited"' in written(DEVICE, zw.render(zw.Wall(300), law))
     same(DEVICE, zw.render(zw.Wall(300), law))
 
 
 def test_laws_keep_their_order() -> None:
-    """And a coupling behind them stays behind them."""
     laws = rendering.Saturation("0.5"), rendering.SlewLimit(100), rendering.Saturation("0.25")
     same(DEVICE, zw.render(zw.VirtualCoupling(1000, 2, zw.Wall(100)), *laws))
 
@@ -121,14 +117,11 @@ def test_a_wheel_is_written_in_its_own_units() -> None:
 
 
 def test_the_command_line_reads_it(tmp_path) -> None:
-    """It is the file that every command takes."""
     (tmp_path / "loop.toml").write_text(written(DEVICE, zw.Wall(300)), encoding="utf-8")
     assert load([tmp_path / "loop.toml"]).environment == zw.Wall(300)
 
 
 def test_what_has_no_words_is_refused() -> None:
-    """A law of one's own is in nobody else's program."""
-
     class Own(zw.Wall):
         """Somebody's wall."""
 
@@ -147,6 +140,5 @@ def test_what_has_no_words_is_refused() -> None:
     ],
 )
 def test_what_is_no_loop_is_refused(text: str, said: str) -> None:
-    """In one message that says where."""
     with pytest.raises(zw.InputError, match=said):
         parsed(text, "here")
