@@ -15,13 +15,15 @@ import zwidth as zw
 WHEEL: dict[str, Any] = {"inertia": 0.02, "damping": 0.05, "rate": 1000}
 
 
-def test_without_a_radius_it_is_rotary() -> None:
+def test_without_a_radius_it_is_rotary_and_what_was_not_given_stays_assumed() -> None:
     """In N·m and rad."""
     wheel = zw.rotary(**WHEEL, counts_per_turn=4096, coulomb_friction=0.1)
     assert wheel.motion == "rotary"
     assert wheel.exact("mass") == Fraction(2, 100)
     assert float(wheel.resolution) == 2 * math.pi / 4096
     assert wheel.assumed == ("delay",)
+    handle = zw.rotary(damping=1, rate=1000, handle_radius=0.1)
+    assert (handle.assumed, handle.mass) == (("coulomb_friction", "resolution", "delay"), None)
 
 
 @given(fractions(), fractions(), fractions(), fractions(), fractions("0.01", "1"))
@@ -54,12 +56,6 @@ def test_intervals_take_their_worst_ends() -> None:
     assert handle.resolution == zw.Interval("0.0001", "0.0002")
     counts = zw.rotary(damping=1, rate=1, counts_per_turn=(1000, 2000)).resolution
     assert counts == zw.Interval(math.pi / 1000, math.pi / 500)
-
-
-def test_what_was_not_given_stays_assumed_at_the_handle() -> None:
-    handle = zw.rotary(damping=1, rate=1000, handle_radius=0.1)
-    assert handle.assumed == ("coulomb_friction", "resolution", "delay")
-    assert handle.mass is None
 
 
 @pytest.mark.parametrize(

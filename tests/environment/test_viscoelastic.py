@@ -67,13 +67,6 @@ def test_required_damping_at_nyquist_is_the_published_one(mu0, mu1, eta1):
     assert half * at(tustin, -1) == half * (mu0 + mu1)
 
 
-def test_first_order_form_of_the_regression():
-    """Tustin: F(k) = −p F(k−1) + b0 u(k) + b1 u(k−1) with p = (μ1 T − 2 η1)/(μ1 T + 2 η1)."""
-    mu1, eta1 = Fraction(731), Fraction(13, 10)
-    den = zw.StandardLinearSolid(290, mu1, eta1, "tustin").pulse_transfer_function(T).denominator
-    assert den[1] / den[0] == (mu1 * T - 2 * eta1) / (mu1 * T + 2 * eta1)
-
-
 @pytest.mark.parametrize("method", ["backward", "tustin", "zoh", "matched"])
 def test_a_held_step_relaxes_from_both_springs_to_one(method):
     """The force starts near μ0 + μ1 and ends at μ0."""
@@ -136,18 +129,6 @@ def test_void_branches_leave_a_spring():
     assert not zw.StandardLinearSolid(290, 731, 40).spring
 
 
-def test_solids_are_touched_and_left():
-    for solid in (
-        zw.StandardLinearSolid(290, 731, 40),
-        zw.GeneralizedMaxwell(290, [(731, 40)]),
-        zw.Maxwell(731, 40),
-    ):
-        assert solid.unilateral
-        assert not solid.coefficients_rounded
-        assert solid.replace(discretization="zoh").coefficients_rounded
-        assert pickle.loads(pickle.dumps(solid)) == solid
-
-
 def test_negative_damping_has_an_unstable_pole_or_no_transfer_function():
     """η1 < 0 puts the pole η1/(μ1 T + η1) outside the unit circle; at η1 = −μ1 T there is none."""
     den = zw.StandardLinearSolid(290, 731, -40).pulse_transfer_function(T).denominator
@@ -156,7 +137,7 @@ def test_negative_damping_has_an_unstable_pole_or_no_transfer_function():
         zw.StandardLinearSolid(290, 731, "-0.731").pulse_transfer_function(T)
 
 
-def test_numbers_are_read_in_one_line_with_units():
+def test_solids_are_values_that_say_their_numbers():
     solid = zw.StandardLinearSolid(290, (731, 740), 0.5)
     assert solid.describe() == (
         "standard linear solid, 290 N/m beside (731 … 740 N/m in series with 0.5 N·s/m), "
@@ -168,7 +149,10 @@ def test_numbers_are_read_in_one_line_with_units():
     )
     series = zw.GeneralizedMaxwell(290, [(731, 40)])
     assert series.describe().startswith("generalized Maxwell, 290 N/m beside (731 N/m")
-    assert eval(repr(series), vars(zw)) == series
+    assert eval(repr(series), vars(zw)) == pickle.loads(pickle.dumps(series)) == series
+    for own in (solid, zw.Maxwell(7, 2), series):
+        assert (own.unilateral, own.coefficients_rounded) == (True, False)
+        assert own.replace(discretization="zoh").coefficients_rounded
 
 
 def test_intervals_are_kept_and_not_evaluated():

@@ -1,4 +1,4 @@
-"""What each hand does in time, against values worked out by another road."""
+"""What each hand does in time, by values worked out on another road; and which hand is the usual one."""
 
 from __future__ import annotations
 
@@ -7,20 +7,28 @@ import math
 import numpy as np
 import pytest
 
-from zwidth import catalogue
+import zwidth as zw
 from zwidth.errors import InputError
 from zwidth.model.operator import (
+    OPERATORS,
     ConstantForce,
     Cycle,
     Dowel,
     Finger,
+    FingersOn,
     Guide,
+    HandsOn,
     MaliciousTouch,
     SoftTouch,
     TypicalTouch,
+    usual_hand,
 )
+from zwidth.model.operator.named import usual_kind
+from zwidth.show.explorer.computing import hand_kind_of, operator_of
+from zwidth.show.explorer.play import played
+from zwidth.show.explorer.state import State
 
-PADDLE = catalogue.device("haptic-paddle")
+PADDLE = zw.catalogue.device("haptic-paddle")
 TIMES = np.arange(601) * 0.001
 
 
@@ -82,11 +90,7 @@ def test_a_soft_touch_grows_and_stays() -> None:
     assert force[100] == pytest.approx(0.05, rel=1e-14)
     assert set(force[400:]) == {0.2}
     assert set(anchor) == {-0.002}
-
-
-def test_a_soft_touch_without_a_rise_is_there_at_once() -> None:
-    force = SoftTouch(force=0.2, rise=0).signals(TIMES).force
-    assert set(force) == {0.2}
+    assert set(SoftTouch(force=0.2, rise=0).signals(TIMES).force) == {0.2}
 
 
 def test_the_soft_touch_lies_in_the_window_where_the_coarse_encoder_buzzes() -> None:
@@ -107,10 +111,19 @@ def test_a_dowel_weighs_what_its_wood_weighs() -> None:
     assert thick.force == 3
 
 
-@pytest.mark.parametrize("size", [(0, 0.008), (0.15, -0.008), (float("nan"), 0.008), (0.15, float("inf"))])
-def test_a_dowel_has_a_size(size: tuple[float, float]) -> None:
-    with pytest.raises(InputError, match="must be > 0 and finite"):
-        Dowel.of_size(*size)
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        *(
+            (lambda size=size: Dowel.of_size(*size), "must be > 0 and finite")
+            for size in ((0, 0.008), (0.15, -0.008), (float("nan"), 0.008), (0.15, float("inf")))
+        ),
+        (lambda: Cycle(low=1e-3, high=1e-3), "low must be < high"),
+    ],
+)
+def test_a_hand_that_cannot_be_is_refused(make, said) -> None:
+    with pytest.raises(InputError, match=said):
+        make()
 
 
 def test_a_dowel_only_pushes() -> None:
@@ -137,7 +150,39 @@ def test_a_cycle_is_one_sample_in_and_one_out() -> None:
     assert position[:4].tolist() == [-2e-6, 3e-4, -2e-6, 3e-4]
 
 
-def test_a_cycle_goes_in_before_it_comes_out() -> None:
-    """low ≥ high is no cycle."""
-    with pytest.raises(InputError, match="low must be < high"):
-        Cycle(low=1e-3, high=1e-3)
+def turning(inertia: object) -> zw.Device:
+    """A device that turns, of this inertia."""
+    return zw.rotary(inertia=inertia, damping="2 mN*m*s/rad", rate="1 kHz")
+
+
+@pytest.mark.parametrize(
+    ("inertia", "kind"),
+    [
+        ("2e-5 kg*m^2", FingersOn),
+        ("0.000299 kg*m^2", FingersOn),
+        ("0.0003 kg*m^2", HandsOn),
+        (("2e-5", "0.006"), HandsOn),
+        (None, HandsOn),
+    ],
+)
+def test_what_turns_is_a_knob_or_a_wheel(inertia: object, kind: type[Finger]) -> None:
+    assert type(usual_hand(turning(inertia))) is kind
+    assert OPERATORS[usual_kind(turning(inertia))] is kind
+    assert type(usual_hand(zw.catalogue.device("haptic-paddle"))) is Finger
+
+
+def test_fingers_on_a_knob_are_two_fingers_at_its_edge() -> None:
+    """At the edge, 15 mm from the axis, each has the mass, spring, damper and force of a finger."""
+    one, both, r = Finger(), FingersOn(), 0.015
+    for name in ("mass", "stiffness", "damping"):
+        assert getattr(both, name) / r**2 / 2 == pytest.approx(getattr(one, name), rel=1e-9)
+    assert both.force / r / 2 == pytest.approx(one.force)
+
+
+def test_explore_and_play_hold_a_wheel_with_two_hands() -> None:
+    wheel = turning("0.006 kg*m^2")
+    state = State.of(wheel, zw.Wall("0.3 N*m/deg"))
+    assert hand_kind_of(state) == "hands-on"
+    assert operator_of(state) == HandsOn()
+    assert operator_of(state.with_extra("operator", {"type": "finger", "force": "1 N*m"})) == Finger(force=1)
+    assert played(wheel, zw.Wall("0.3 N*m/deg")).hand == HandsOn().hand

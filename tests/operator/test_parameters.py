@@ -1,10 +1,11 @@
-"""Operators that are a few numbers: units, bounds, comparison."""
+"""Operators that are a few numbers: units, bounds, comparison, and the page on them."""
 
 from __future__ import annotations
 
 import dataclasses
 import inspect
 import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 
 from zwidth.errors import InputError
 from zwidth.model import operator as operators
-from zwidth.model.operator import OPERATORS, ParametricOperator
+from zwidth.model.operator import OPERATORS, Operator, ParametricOperator
 from zwidth.quantity.parameter import parameters_of
 from zwidth.quantity.text import unit_text
 from zwidth.quantity.units import parse_number
@@ -22,7 +23,7 @@ EACH = pytest.mark.parametrize("kind", OPERATORS.values(), ids=list(OPERATORS))
 
 
 @EACH
-def test_works_as_it_is(kind: type[ParametricOperator]) -> None:
+def test_works_as_it_is_and_starts_where_its_signals_start(kind: type[ParametricOperator]) -> None:
     hand = kind()
     force, anchor, position, switches = hand.signals(TIMES)
     assert force is None or force.shape == (800,)
@@ -33,22 +34,9 @@ def test_works_as_it_is(kind: type[ParametricOperator]) -> None:
     assert given
     assert all(np.isfinite(signal).all() and signal.dtype == np.float64 for signal in given)
     assert hand.kinematic == (position is not None)
-
-
-@EACH
-def test_a_spring_or_damper_has_an_anchor(kind: type[ParametricOperator]) -> None:
-    hand = kind()
-    tied = hand.hand.stiffness > 0 or hand.hand.damping > 0
-    assert (hand.signals(TIMES).anchor is not None) == tied
-
-
-@EACH
-def test_starts_where_its_signals_start(kind: type[ParametricOperator]) -> None:
-    """At t = 0 the anchor, or the prescribed position, is at the handle: no force comes from nowhere."""
-    hand = kind()
-    signals = hand.signals(TIMES)
-    for start in (s[0] for s in (signals.anchor, signals.position) if s is not None):
-        assert start == hand.initial_position
+    assert (anchor is not None) == (hand.hand.stiffness > 0 or hand.hand.damping > 0)
+    # no force comes from nowhere: anchor and prescribed position begin at the handle
+    assert {s[0] for s in (anchor, position) if s is not None} <= {hand.initial_position}
 
 
 @EACH
@@ -124,3 +112,41 @@ def test_a_number_may_carry_its_unit() -> None:
 def test_the_registry_cannot_be_changed() -> None:
     with pytest.raises(TypeError):
         OPERATORS["mine"] = operators.Dowel
+
+
+PAGE = (Path(__file__).parents[2] / "docs" / "operators.md").read_text(encoding="utf-8")
+
+
+def _section(title: str) -> str:
+    return PAGE.split(f"\n## {title}\n", 1)[1].split("\n## ", 1)[0]
+
+
+@pytest.mark.parametrize("name", OPERATORS)
+def test_every_number_stands_on_the_page_with_its_default(name: str) -> None:
+    kind = OPERATORS[name]
+    rows = re.findall(
+        r"^\| `(\w+)` \| (\S+ \S+) \| \S", _section(f"{kind.__name__} (`{name}`)"), re.MULTILINE
+    )
+    hand = kind()
+    expected = [
+        (key, f"{getattr(hand, key):.6g} {q.unit_for(kind.motion)}") for key, q in kind.parameters().items()
+    ]
+    assert sorted(rows) == sorted(expected)
+
+
+def test_every_hand_has_a_section() -> None:
+    titles = {title.split(" ")[0] for title in re.findall(r"^## (.+)$", PAGE, re.MULTILINE)}
+    hands = {
+        n
+        for n in operators.__all__
+        if isinstance(k := getattr(operators, n), type) and issubclass(k, Operator)
+    }
+    assert hands - {"Operator", "ParametricOperator"} <= titles
+
+
+def test_the_links_of_the_table_lead_to_sections() -> None:
+    titles = re.findall(r"^## (.+)$", PAGE, re.MULTILINE)
+    anchors = {re.sub(r"[^\w -]", "", title).lower().replace(" ", "-") for title in titles}
+    links = re.findall(r"\]\(#([\w-]+)\)", PAGE)
+    assert len(links) > 9
+    assert set(links) <= anchors

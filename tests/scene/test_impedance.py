@@ -11,9 +11,8 @@ from scipy.linalg import eigh
 from strategies import seeds
 
 import zwidth as zw
-from zwidth import InputError
 from zwidth.model.environment import RationalFunction
-from zwidth.model.scene import Contact, Damper, Lever, Mass, SceneRun, Spring
+from zwidth.model.scene import Damper, Lever, Mass, SceneRun, Spring
 
 T = Fraction(1, 1000)
 
@@ -146,27 +145,3 @@ def test_a_hidden_part_cancels() -> None:
     seen = [Spring("handle", "a", 300), Mass("a", "0.2"), Damper("a", "ground", "0.1")]
     more = [Mass("far", "0.3"), Spring("far", "ground", 20)]
     assert zw.Scene([*seen, *more]).impedance(T) == zw.Scene(seen).impedance(T)
-
-
-@pytest.mark.parametrize(
-    ("elements", "says"),
-    [
-        ([], "one element at least"),
-        ([Spring("a", "a", 1)], "both ends"),
-        ([Spring("a", "b", 1)], 'port "handle" is no node'),
-        ([Lever("handle", "ground"), Mass("handle", 1)], "tied to the ground"),
-        ("spring", "zwidth.scene"),
-    ],
-)
-def test_what_is_no_scene_is_refused(elements: object, says: str) -> None:
-    with pytest.raises(InputError, match=says):
-        zw.Scene(elements)
-
-
-def test_a_node_that_nothing_holds_is_named() -> None:
-    """A node between two contacts has more than one velocity."""
-    loose = zw.Scene(
-        [Contact("handle", "a", 100), Contact("a", "ground", 100), Damper("handle", "ground", 1)]
-    )
-    with pytest.raises(InputError, match='holds the node "a"'):
-        SceneRun(loose, T)

@@ -35,6 +35,8 @@ def test_a_name_of_the_catalogue_and_a_law(tmp_path: Path) -> None:
 
 def test_a_device_alone(tmp_path: Path) -> None:
     assert zw.load("haptic-paddle") == (zw.catalogue.device("haptic-paddle"), None)
+    with pytest.raises(zw.InputError, match="no file is given"):
+        zw.load()
     with pytest.raises(zw.InputError, match=r"no file has an \[environment\]"):
         zw.load("haptic-paddle", written(tmp_path, '[[law]]\ntype = "force-bounding"\n'))
 
@@ -51,8 +53,3 @@ def test_a_device_alone(tmp_path: Path) -> None:
 def test_what_cannot_be_used_is_said(text: str, message: str, tmp_path: Path) -> None:
     with pytest.raises(zw.InputError, match=message):
         zw.load(written(tmp_path, text))
-
-
-def test_nothing_is_no_specification() -> None:
-    with pytest.raises(zw.InputError, match="no file is given"):
-        zw.load()

@@ -32,19 +32,10 @@ def test_every_key_is_an_argument_of_a_pair(tmp_path: Path) -> None:
         follower_stiffness=120, follower_damping="-0.01", follower_local_damping="0.04",
         delay=("0.002", "0.003"),
     )  # fmt: skip
-
-
-def test_one_link_delay_is_for_both_ways(tmp_path: Path) -> None:
-    pair = read(tmp_path, ARMS + COUPLING + 'virtual_damping = 0.02\nlink_delay = "2 ms"\n')
-    assert pair.delay == (zw.Exact("0.002"), zw.Exact("0.002"))
-    assert pair.damping == zw.Exact("0.02")
-
-
-def test_one_device_is_both_arms_and_may_turn(tmp_path: Path) -> None:
-    """A rotary device has a spring in N·m/rad, and its name from the file."""
-    pair = read(tmp_path, ALIKE + '[coupling]\nstiffness = "3 N*m/rad"\n')
+    coupling = '[coupling]\nstiffness = "3 N*m/rad"\nvirtual_damping = 0.02\nlink_delay = "2 ms"\n'
+    pair = read(tmp_path, ALIKE + coupling)
     wheel = zw.rotary(inertia="0.006", damping="0.02", rate=1000, name="two")
-    assert pair == zw.Pair(wheel, wheel, stiffness=3)
+    assert pair == zw.Pair(wheel, wheel, stiffness=3, damping="0.02", delay=("0.002", "0.002"))
 
 
 @pytest.mark.parametrize(

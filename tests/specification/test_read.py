@@ -422,21 +422,10 @@ def test_any_command_line_is_read_or_an_input_error(overrides: dict[str, str], s
     assert outcome(lambda: load(sources, overrides)).isprintable()
 
 
-PIECES = st.sampled_from(
-    [
-        "[device]\n",
-        "[environment]\n",
-        "damping=",
-        "rate=",
-        "type=",
-        '"wall"',
-        "stiffness=",
-        "1",
-        "\n",
-        "[",
-        "]",
-    ]
-)
+PIECES = st.sampled_from([
+    "[device]\n", "[environment]\n", "damping=", "rate=", "type=", '"wall"', "stiffness=",
+    "1", "\n", "[", "]",
+])  # fmt: skip
 
 
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -50,42 +50,32 @@ def test_every_element_of_the_package_has_a_name() -> None:
     }
 
 
-def test_a_file_is_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    from zwidth.cli.main import main
-
-    path = tmp_path / "world.toml"
-    path.write_text(
-        """
+WORLD = """
 [device]
 damping = "0.5 N*s/m"
-coulomb_friction = "0 N"
-resolution = "0 m"
+coulomb_friction = 0
+resolution = 0
 rate = "1 kHz"
-delay = "0 s"
-
+delay = 0
 [environment]
 type = "virtual-coupling"
 stiffness = "600 N/m"
 damping = "0.1 N*s/m"
-
 [environment.environment]
 type = "scene"
 port = "tool"
+elements = [
+  {type = "mass", node = "tool", mass = "50 g"},
+  {type = "contact", first = "tool", second = "ground", stiffness = "2 N/mm", gap = "5 mm"},
+]
+"""
 
-[[environment.environment.elements]]
-type = "mass"
-node = "tool"
-mass = "50 g"
 
-[[environment.environment.elements]]
-type = "contact"
-first = "tool"
-second = "ground"
-stiffness = "2 N/mm"
-gap = "5 mm"
-""",
-        encoding="utf-8",
-    )
+def test_a_file_is_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from zwidth.cli.main import main
+
+    path = tmp_path / "world.toml"
+    path.write_text(WORLD, encoding="utf-8")
     assert main(["check", str(path)]) == 0
     assert "coupling" in capsys.readouterr().out
     assert main(["check", str(path), "--stiffness", "1200"]) == 3

@@ -11,7 +11,6 @@ import zwidth as zw
 from zwidth.model import rendering, scene
 from zwidth.model.rendering import LAWS
 from zwidth.model.specification.environments import TYPES
-from zwidth.model.specification.read import load
 from zwidth.model.specification.write import parsed, written
 
 THIRD = Fraction(1, 3)
@@ -114,11 +113,6 @@ def test_a_wheel_is_written_in_its_own_units() -> None:
     text = written(wheel, zw.render(zw.Wall(30), rendering.SlewLimit(50)))
     assert 'inertia = "0.01 kg*m^2"' in text
     assert 'rate = "50 N*m/s"' in text
-
-
-def test_the_command_line_reads_it(tmp_path) -> None:
-    (tmp_path / "loop.toml").write_text(written(DEVICE, zw.Wall(300)), encoding="utf-8")
-    assert load([tmp_path / "loop.toml"]).environment == zw.Wall(300)
 
 
 def test_what_has_no_words_is_refused() -> None:
