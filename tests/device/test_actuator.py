@@ -1,7 +1,5 @@
 """The actuator checks of Abbott & Okamura 2005, section IV-B."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest
@@ -12,7 +10,7 @@ from zwidth.model.device import actuator_checks
 PADDLE = zw.catalogue.device("haptic-paddle")
 
 
-def test_the_paddle_s_numbers() -> None:
+def test_the_paddle_s_numbers():
     """13 times finer at 300 N/m, and a rise of 0.15 ms, 15 % of a sample."""
     resolution, rise = actuator_checks(PADDLE, 300)
     assert resolution.ratio.fraction == 300 * Fraction("22.4e-6") / (Fraction(20, 65536) * Fraction("1.65"))
@@ -26,7 +24,7 @@ def test_the_paddle_s_numbers() -> None:
     assert actuator_checks(knob, 1)[0].unit == "N*m"
 
 
-def test_both_sides_of_the_bounds() -> None:
+def test_both_sides_of_the_bounds():
     """Fine from 10 to 1 on, quick up to a fifth of a sample."""
     step = PADDLE.exact("force_resolution")
     stiffness = 10 * step / PADDLE.exact("resolution")
@@ -48,7 +46,7 @@ def test_both_sides_of_the_bounds() -> None:
         (PADDLE.replace(resolution=0), 300, "an ideal encoder"),
     ],
 )
-def test_what_is_unknown_is_said(device: zw.Device, stiffness: float | None, part: str) -> None:
+def test_what_is_unknown_is_said(device, stiffness, part):
     check = actuator_checks(device, stiffness)[part == "motor_inductance"]
     assert check.ok is None
     assert check.ratio is None
@@ -56,7 +54,7 @@ def test_what_is_unknown_is_said(device: zw.Device, stiffness: float | None, par
     assert "supply_voltage" not in check.text
 
 
-def test_intervals_take_their_worst_ends() -> None:
+def test_intervals_take_their_worst_ends():
     wide = PADDLE.replace(supply_voltage=(6, 12), resolution=("11.2e-6", "22.4e-6"))
     fine, quick = actuator_checks(wide, (300, 600)), actuator_checks(PADDLE, 300)
     assert fine[0].ratio is not None

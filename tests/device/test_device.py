@@ -18,7 +18,7 @@ NOT_NEGATIVE = ("damping", "coulomb_friction", "resolution", "delay")
 TINY = Fraction(1, 10**40)
 
 
-def test_rate_and_period_are_exact_reciprocals() -> None:
+def test_rate_and_period_are_exact_reciprocals():
     """3 kHz is a third of a millisecond, which no float is."""
     device = zw.Device(damping=0.15, rate=3000)
     assert device.exact("sample_period") == Fraction(1, 3000)
@@ -27,7 +27,7 @@ def test_rate_and_period_are_exact_reciprocals() -> None:
 
 
 @pytest.mark.parametrize("key", NOT_NEGATIVE)
-def test_bounds_that_include_zero(key: str) -> None:
+def test_bounds_that_include_zero(key):
     """0 is accepted, the next number below is not."""
     assert getattr(zw.Device(**{**NEEDED, key: 0}), key) == 0
     with pytest.raises(zw.InputError, match=f"{key} must be ≥ 0"):
@@ -37,7 +37,7 @@ def test_bounds_that_include_zero(key: str) -> None:
 
 
 @pytest.mark.parametrize("key", POSITIVE)
-def test_bounds_that_exclude_zero(key: str) -> None:
+def test_bounds_that_exclude_zero(key):
     """The smallest positive number is accepted, 0 is not."""
     assert zw.Device(**{**NEEDED, key: TINY}).exact(key) == TINY
     with pytest.raises(zw.InputError, match=f"{key} must be > 0"):
@@ -56,12 +56,12 @@ def test_bounds_that_exclude_zero(key: str) -> None:
         ({"damping": 1, "rate": 1000, "motion": "both"}, "motion"),
     ],
 )
-def test_messages_name_the_argument(arguments: dict[str, Any], part: str) -> None:
+def test_messages_name_the_argument(arguments, part):
     with pytest.raises(zw.InputError, match=part):
         zw.Device(**arguments)
 
 
-def test_what_was_not_given_is_remembered() -> None:
+def test_what_was_not_given_is_remembered():
     """An ideal encoder that was assumed is not one that was stated."""
     assumed = zw.Device(**NEEDED)
     stated = zw.Device(**NEEDED, coulomb_friction=0, resolution=0, delay=0)
@@ -72,7 +72,7 @@ def test_what_was_not_given_is_remembered() -> None:
     assert "assumed" not in repr(assumed)
 
 
-def test_replace_keeps_what_was_assumed() -> None:
+def test_replace_keeps_what_was_assumed():
     device = zw.Device(**NEEDED, coulomb_friction=0.1)
     assert device.replace(mass=1).assumed == ("resolution", "delay")
     assert device.replace(delay=0).assumed == ("resolution",)
@@ -80,7 +80,7 @@ def test_replace_keeps_what_was_assumed() -> None:
     assert pickle.loads(pickle.dumps(device)).assumed == device.assumed
 
 
-def test_mass_may_be_unknown() -> None:
+def test_mass_may_be_unknown():
     """No criterion depends on it."""
     device = zw.Device(**NEEDED)
     assert device.mass is None
@@ -90,7 +90,7 @@ def test_mass_may_be_unknown() -> None:
 
 
 @given(devices())
-def test_replace_without_changes_is_the_same_device(device: zw.Device) -> None:
+def test_replace_without_changes_is_the_same_device(device):
     twin = device.replace()
     assert twin == device
     assert repr(twin) == repr(device)
@@ -99,6 +99,6 @@ def test_replace_without_changes_is_the_same_device(device: zw.Device) -> None:
     assert not device.replace(damping=(0, 1)).is_certain
 
 
-def test_a_name_is_text_in_a_notebook() -> None:
+def test_a_name_is_text_in_a_notebook():
     shown = zw.Device(**NEEDED, name="<b>x</b> & y")._repr_html_()
     assert "<caption>&lt;b&gt;x&lt;/b&gt; &amp; y</caption>" in shown

@@ -15,7 +15,7 @@ import zwidth as zw
 WHEEL: dict[str, Any] = {"inertia": 0.02, "damping": 0.05, "rate": 1000}
 
 
-def test_without_a_radius_it_is_rotary_and_what_was_not_given_stays_assumed() -> None:
+def test_without_a_radius_it_is_rotary_and_what_was_not_given_stays_assumed():
     """In N·m and rad."""
     wheel = zw.rotary(**WHEEL, counts_per_turn=4096, coulomb_friction=0.1)
     assert wheel.motion == "rotary"
@@ -27,9 +27,7 @@ def test_without_a_radius_it_is_rotary_and_what_was_not_given_stays_assumed() ->
 
 
 @given(fractions(), fractions(), fractions(), fractions(), fractions("0.01", "1"))
-def test_the_equivalent_at_the_handle(
-    inertia: Fraction, damping: Fraction, friction: Fraction, angle: Fraction, radius: Fraction
-) -> None:
+def test_the_equivalent_at_the_handle(inertia, damping, friction, angle, radius):
     """m = J/r², b/r², f_c/r, rΔθ; and both stiffness limits scale as K = K_θ/r²."""
     given_values: dict[str, Any] = {
         "inertia": inertia,
@@ -50,7 +48,7 @@ def test_the_equivalent_at_the_handle(
         assert k(handle) * radius**2 == k(turning)
 
 
-def test_intervals_take_their_worst_ends() -> None:
+def test_intervals_take_their_worst_ends():
     handle = zw.rotary(damping=(1, 2), resolution=0.001, rate=1000, handle_radius=(0.1, 0.2))
     assert handle.damping == zw.Interval(25, 200)
     assert handle.resolution == zw.Interval("0.0001", "0.0002")
@@ -69,6 +67,6 @@ def test_intervals_take_their_worst_ends() -> None:
         ({"damping": -1}, r"damping must be ≥ 0 N\*m\*s/rad"),
     ],
 )
-def test_slips_are_refused(arguments: dict[str, Any], part: str) -> None:
+def test_slips_are_refused(arguments, part):
     with pytest.raises(zw.InputError, match=part):
         zw.rotary(**{**WHEEL, **arguments})

@@ -1,7 +1,5 @@
 """The elementary functions against mpmath, in units of the last place, over their whole range."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from random import Random
 

@@ -30,7 +30,6 @@ def neighbours(x: float) -> list[float]:
 
 
 def turns(values: Array) -> bool:
-    """Whether a value is below the one before it."""
     return bool((np.diff(values) < 0.0).any())
 
 

@@ -1,7 +1,5 @@
 """What the loop holds where a touch starts: a bound that every passive loop keeps, and no active one."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -133,15 +131,6 @@ def test_a_start_that_is_given_is_kept():
         assert trace.attrs["stored_at_start_J"] == pytest.approx(50 * (0.015 + half) ** 2, rel=1e-12)
         assert not trace.zwidth.energy.active
         assert trace.zwidth.energy.got_out > 0.005
-
-
-def test_a_wheel_holds_as_much():
-    """½ K θ² in N·m/rad, at a start of 0.3 rad."""
-    wheel = zw.Device(mass=1e-4, damping="0.001", coulomb_friction="0.001", rate=1000, motion="rotary")
-    hand = zw.operators.ConstantForce(0.0)
-    trace = zw.simulate(wheel, zw.PulseTransferFunction(["0.5"], [1]), hand, 0.3, initial_position=0.3)
-    assert trace.attrs["stored_at_start_J"] == pytest.approx(0.25 * 0.09)
-    assert not trace.zwidth.energy.active
 
 
 def test_late_forces_let_the_hand_go_further_in_for_nothing():

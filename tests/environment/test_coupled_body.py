@@ -1,7 +1,5 @@
 """A body behind a coupling: H(z) against the program that steps it, and what is refused."""
 
-from __future__ import annotations
-
 import random
 from fractions import Fraction
 from typing import get_args

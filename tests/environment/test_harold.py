@@ -1,7 +1,5 @@
 """Systems as harold 1.0.2 holds them, made here without it: its arrays and names."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import control

@@ -1,7 +1,5 @@
 """Relaxation, creep and the responses between: against inverse Laplace transforms and an integrator."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import mpmath

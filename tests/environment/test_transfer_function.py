@@ -1,7 +1,5 @@
 """H(s), H(z) and systems of python-control and scipy.signal."""
 
-from __future__ import annotations
-
 import pickle
 from fractions import Fraction
 

@@ -17,7 +17,7 @@ from zwidth.quantity.parameter import parameters_of
 @pytest.mark.parametrize(
     "given", [300, 300.0, "300", "0.3 N/mm", "300 N*m/rad", Fraction(300), Decimal(300), np.int64(300)]
 )
-def test_a_number_is_one_or_a_text_with_its_unit(given) -> None:
+def test_a_number_is_one_or_a_text_with_its_unit(given):
     """All mean 300 N/m, or N·m/rad, exactly."""
     wall = zw.Wall(given)
     assert isinstance(wall.stiffness, zw.Exact)
@@ -26,11 +26,11 @@ def test_a_number_is_one_or_a_text_with_its_unit(given) -> None:
 
 
 @pytest.mark.parametrize("given", [(300, 400), "300 .. 400 N/m", ["0.3 N/mm", 400], zw.Interval(300, 400)])
-def test_a_number_may_be_an_interval(given) -> None:
+def test_a_number_may_be_an_interval(given):
     assert zw.Wall(given).stiffness == zw.Interval(300, 400)
 
 
-def test_every_text_with_a_unit_is_read_where_a_number_is() -> None:
+def test_every_text_with_a_unit_is_read_where_a_number_is():
     assert zw.Maxwell("0.7 N/mm", "5 N*s/m") == zw.Maxwell(700, 5)
     assert zw.GeneralizedMaxwell(1, [("0.7 N/mm", "5 N*s/m")]) == zw.GeneralizedMaxwell(1, [(700, 5)])
     assert zw.HuntCrossley(3, dissipation="0.2 s/m") == zw.HuntCrossley(3, dissipation="0.2")
@@ -56,12 +56,12 @@ def test_every_text_with_a_unit_is_read_where_a_number_is() -> None:
         (lambda: zw.rendering.VelocityFilter([1, 2, 3], [1, 2]), "cannot have more zeros"),
     ],
 )
-def test_a_slip_is_one_clear_message(make, said) -> None:
+def test_a_slip_is_one_clear_message(make, said):
     with pytest.raises(zw.InputError, match=said):
         make()
 
 
-def test_a_wall_is_a_value() -> None:
+def test_a_wall_is_a_value():
     wall = zw.Wall("0.3 N/mm", (1, 2), zw.rendering.Window(3), clamped=True)
     assert wall == eval(repr(wall), NAMES)
     assert pickle.loads(pickle.dumps(wall)) == wall
@@ -71,7 +71,7 @@ def test_a_wall_is_a_value() -> None:
         wall.stiffness = 3
 
 
-def test_every_parameter_says_what_it_is() -> None:
+def test_every_parameter_says_what_it_is():
     stiffness, damping, velocity_filter, clamped = parameters_of(zw.Wall).values()
     assert (stiffness.required, damping.required) == (True, False)
     assert (stiffness.bound, stiffness.unit_for("linear"), stiffness.unit_for("rotary")) == (
@@ -93,7 +93,7 @@ NAMES = {name: getattr(zw.rendering, name) for name in zw.rendering.__all__} | v
 
 
 @pytest.mark.parametrize("law", CLAMPABLE)
-def test_a_clamped_law_is_another_law_with_the_same_pulse_transfer_function(law) -> None:
+def test_a_clamped_law_is_another_law_with_the_same_pulse_transfer_function(law):
     clamped = law.replace(clamped=True)
     period = Fraction(1, 1000)
     assert (law.clamped, clamped.clamped) == (False, True)
@@ -107,17 +107,17 @@ def test_a_clamped_law_is_another_law_with_the_same_pulse_transfer_function(law)
 
 @pytest.mark.parametrize("law", CLAMPABLE)
 @pytest.mark.parametrize("value", [1, 0, None, "true", 1.0])
-def test_only_a_bool_says_whether_a_law_is_clamped(law, value) -> None:
+def test_only_a_bool_says_whether_a_law_is_clamped(law, value):
     """1 or "true" could be a slip for another argument."""
     with pytest.raises(zw.InputError, match="clamped is True for a law that never pulls, or False; got"):
         law.replace(clamped=value)
 
 
-def test_laws_without_the_keyword_may_pull() -> None:
+def test_laws_without_the_keyword_may_pull():
     assert not zw.PulseTransferFunction([1], [1]).clamped
 
 
-def test_no_clamped_law_stands_behind_a_coupling() -> None:
+def test_no_clamped_law_stands_behind_a_coupling():
     """The joint of the two would come loose: their H(z) does not say how."""
     with pytest.raises(zw.InputError, match=r"must be linear, .* never pulls"):
         zw.VirtualCoupling(100, 1, zw.Wall(300, clamped=True))
@@ -134,7 +134,7 @@ SCALABLE = {
 
 
 @pytest.mark.parametrize("name", SCALABLE)
-def test_the_pulse_transfer_function_is_times_the_factor(name: str) -> None:
+def test_the_pulse_transfer_function_is_times_the_factor(name):
     law = SCALABLE[name]
     scaled = law.scaled(FACTOR)
     assert scaled.clamped == law.clamped
@@ -148,7 +148,7 @@ def test_the_pulse_transfer_function_is_times_the_factor(name: str) -> None:
     assert value(scaled) == FACTOR * value(law)
 
 
-def test_a_contact_gives_the_force_times_the_factor() -> None:
+def test_a_contact_gives_the_force_times_the_factor():
     contact = zw.HuntCrossley("5000", "1.5", "3")
     there = ("0.004", "0.02")
     assert float(contact.scaled(FACTOR).force(*there)) == pytest.approx(
@@ -156,13 +156,13 @@ def test_a_contact_gives_the_force_times_the_factor() -> None:
     )
 
 
-def test_both_ends_of_an_interval_are_scaled() -> None:
+def test_both_ends_of_an_interval_are_scaled():
     scaled = zw.StandardLinearSolid((300, 320), 145, (10, 12)).scaled(Fraction(2))
     assert scaled.stiffness == Interval(600, 640)
     assert scaled.branch_damping == Interval(20, 24)
 
 
-def test_the_largest_gain_of_a_solid_is_that_of_its_closed_form() -> None:
+def test_the_largest_gain_of_a_solid_is_that_of_its_closed_form():
     """b/(μ0 T/2 + μ1 η1 T/(2 η1 + μ1 T)), bracketed within 1 %."""
     solid, device = zw.StandardLinearSolid(310, 145, 11), zw.Device(damping=0.3, sample_period="1 ms")
     bracket = zw.limit(device, solid, "gain")

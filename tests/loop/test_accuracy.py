@@ -107,7 +107,6 @@ LOOPS = {
 
 
 def simulated(loop):
-    """The same loop by `zw.simulate`."""
     known = {"force_limit": loop.force_limit, "force_resolution": loop.converter_step}
     if loop.slew:
         known |= {

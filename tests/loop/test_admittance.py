@@ -1,7 +1,5 @@
 """The display of admittance in time: by arithmetic of many digits, by its ledger, in other units."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np
@@ -204,5 +202,4 @@ def test_what_it_refuses(make, said):
 
 
 def run(body=BODY, hand=PUSH, duration=1, **options):
-    """A display with one argument wrong."""
     return zw.simulation.simulate_admittance(body, hand, duration, **{"sample_period": "0.001", **options})

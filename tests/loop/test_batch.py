@@ -15,7 +15,6 @@ PADDLE = zw.catalogue.device("haptic-paddle")
 
 
 def _same(batch, trace) -> None:
-    """A loop of a batch against its trace, to the last bit."""
     for kept in ("position", "velocity", *(key for key in trace if key.endswith(("_work", "_loss")))):
         assert float(batch[kept]) == float(trace[kept][-1]), kept
     assert float(batch.deepest_position) == trace.position.values.max()
@@ -27,7 +26,7 @@ def _same(batch, trace) -> None:
 
 
 @pytest.mark.parametrize("delay", [0.0, 2e-3])
-def test_free_loops_have_the_bits_of_each_alone(delay: float) -> None:
+def test_free_loops_have_the_bits_of_each_alone(delay):
     count = BLOCK + 9
     rng = np.random.default_rng(5)
     vary = {
@@ -82,7 +81,7 @@ OTHERS = {
 
 
 @pytest.mark.parametrize("name", OTHERS)
-def test_loops_of_every_other_kind_have_the_bits_of_each_alone(name: str) -> None:
+def test_loops_of_every_other_kind_have_the_bits_of_each_alone(name):
     """One by one, on two threads."""
     changes, law, hand, vary = OTHERS[name]
     device = PADDLE.replace(**changes)
@@ -97,7 +96,7 @@ def test_loops_of_every_other_kind_have_the_bits_of_each_alone(name: str) -> Non
         _same(batch.sel(chosen), zw.simulate(*parts.values(), 0.3))
 
 
-def test_threads_do_not_change_a_bit() -> None:
+def test_threads_do_not_change_a_bit():
     vary = {"stiffness": np.linspace(50.0, 1500.0, 3 * BLOCK + 1)}
     one, three = (
         zw.simulation.simulate_batch(PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 0.3, vary=vary, workers=n)
@@ -121,7 +120,7 @@ def test_threads_do_not_change_a_bit() -> None:
         ({"stiffness": {100.0, 200.0}}, "'stiffness' is varied over single values"),
     ],
 )
-def test_what_cannot_be_varied_is_refused(vary: dict, says: str) -> None:
+def test_what_cannot_be_varied_is_refused(vary, says):
     with pytest.raises(zw.InputError, match=says):
         zw.simulation.simulate_batch(PADDLE, zw.Wall(300.0), zw.operators.Finger(), 0.1, vary=vary)
 
@@ -134,12 +133,12 @@ def test_what_cannot_be_varied_is_refused(vary: dict, says: str) -> None:
         (zw.NonlinearSpring([0, 0.01], [0, 3]), {"forces": np.array([[0, 3], [0, 4]])}),
     ],
 )
-def test_a_parameter_that_is_a_list_is_not_varied(environment, vary: dict) -> None:
+def test_a_parameter_that_is_a_list_is_not_varied(environment, vary):
     with pytest.raises(zw.InputError, match="simulate each value on its own"):
         zw.simulation.simulate_batch(PADDLE, environment, zw.operators.Finger(), 0.1, vary=vary)
 
 
-def test_free_loops_at_the_edge_of_friction_have_the_bits_of_each_alone() -> None:
+def test_free_loops_at_the_edge_of_friction_have_the_bits_of_each_alone():
     """Hands that push with the stiction, give or take the last digits: they rest, or creep onwards."""
     count = 3 * BLOCK
     rng = np.random.default_rng(3)
@@ -159,7 +158,7 @@ def test_free_loops_at_the_edge_of_friction_have_the_bits_of_each_alone() -> Non
         assert float(general.velocity[-1]) == pytest.approx(float(batch.velocity[i]), rel=1e-12, abs=1e-17)
 
 
-def test_values_varied_together_are_equally_many() -> None:
+def test_values_varied_together_are_equally_many():
     with pytest.raises(zw.InputError, match="stiffness 2, force 3"):
         zw.simulation.simulate_batch(
             PADDLE, zw.Wall(1.0), zw.operators.ConstantForce(1.0), 0.1,
@@ -167,7 +166,7 @@ def test_values_varied_together_are_equally_many() -> None:
         )  # fmt: skip
 
 
-def test_ctrl_c_keeps_the_loops_that_are_finished() -> None:
+def test_ctrl_c_keeps_the_loops_that_are_finished():
     def stop(done: int, total: int) -> None:
         raise KeyboardInterrupt
 

@@ -21,14 +21,12 @@ DOWEL = zw.operators.Dowel()
 
 
 def moved(law: object, positions: np.ndarray, **device):
-    """The trace of a prescribed motion."""
     loop = zw.Device(**{"damping": 0.1, "sample_period": PERIOD, **device})
     motion = zw.operators.PrescribedMotion(positions)
     return zw.simulate(loop, law, motion, PERIOD * (len(positions) - 1), amplifier=IDEAL)
 
 
 def commands(law: object, positions, **device) -> np.ndarray:
-    """The force commanded at each sample."""
     return moved(law, np.asarray(positions), **device).commanded_force.values
 
 
@@ -55,7 +53,7 @@ CLAMPABLE = list(LINEAR)[:-2]
 
 
 @pytest.mark.parametrize("name", LINEAR)
-def test_each_law_is_run_as_its_pulse_transfer_function_says(name: str) -> None:
+def test_each_law_is_run_as_its_pulse_transfer_function_says(name):
     """In contact, from rest at the surface, the commands are those of scipy's lfilter."""
     x = np.abs(np.cumsum(np.random.default_rng(3).normal(size=400))) * 1e-4 + 1e-5
     x[0] = 0.0
@@ -66,14 +64,14 @@ def test_each_law_is_run_as_its_pulse_transfer_function_says(name: str) -> None:
     assert np.abs(commands(LINEAR[name], x) - expected)[1:].max() < 1e-9 * np.abs(expected).max()
 
 
-def test_a_wall_pushes_inside_only_and_its_estimator_runs_outside_too() -> None:
+def test_a_wall_pushes_inside_only_and_its_estimator_runs_outside_too():
     """f = K x + B v for x > 0; at entry v is the difference to the position outside."""
     x = [-2e-3, -1e-3, 1e-3, 2e-3, 0.0, -1e-3]
     expected = [0.0, 0.0, 300e-3 + 2.0 * 2e-3 / 0.002, 600e-3 + 2.0 * 1e-3 / 0.002, 0.0, 0.0]
     assert commands(LINEAR["damped wall"], x) == pytest.approx(expected, abs=1e-12)
 
 
-def test_a_solid_feels_the_penetration_only() -> None:
+def test_a_solid_feels_the_penetration_only():
     """A viscoelastic solid that is left relaxes; it does not follow the hand outside."""
     x = np.array([-5e-3, -1e-3, 1e-3, 2e-3, -4e-3, -4e-3, 1e-3])
     solid = LINEAR["standard linear solid"]
@@ -83,14 +81,14 @@ def test_a_solid_feels_the_penetration_only() -> None:
 
 
 @pytest.mark.parametrize(("name", "force"), [("window", 0.45), ("Prony", 0.03)])
-def test_a_law_begins_at_rest_where_the_hand_is(name: str, force: float) -> None:
+def test_a_law_begins_at_rest_where_the_hand_is(name, force):
     """Held still 1.5 mm inside, the force is K x from the first sample on."""
     assert commands(LINEAR[name], np.full(20, 1.5e-3)) == pytest.approx(np.full(20, force), abs=1e-12)
 
 
 @pytest.mark.parametrize("resolution", [0.0, 1e-4])
 @pytest.mark.parametrize("name", CLAMPABLE)
-def test_a_clamped_law_commands_the_positive_part_of_the_law(name: str, resolution: float) -> None:
+def test_a_clamped_law_commands_the_positive_part_of_the_law(name, resolution):
     """Sample by sample, in and out of contact; the memory is that of the law without a clamp."""
     law, steps = LINEAR[name], np.random.default_rng(7).normal(size=600)
     motion = 1e-3 + 4e-3 * np.sin(np.arange(600) / 20) + 2e-4 * np.cumsum(steps)
@@ -100,7 +98,7 @@ def test_a_clamped_law_commands_the_positive_part_of_the_law(name: str, resoluti
 
 
 @pytest.mark.parametrize("name", CLAMPABLE)
-def test_the_ledger_of_a_clamped_law_closes_and_no_sample_pulls(name: str) -> None:
+def test_the_ledger_of_a_clamped_law_closes_and_no_sample_pulls(name):
     trace = zw.simulate(PADDLE, LINEAR[name].replace(clamped=True), DOWEL, 0.4)
     assert trace.zwidth.energy.closes
     assert float(trace.actuator_force.min()) >= 0
@@ -108,7 +106,7 @@ def test_the_ledger_of_a_clamped_law_closes_and_no_sample_pulls(name: str) -> No
 
 
 @pytest.mark.parametrize("solid", [zw.Wall(500.0), zw.StandardLinearSolid(500.0, 0, 3.0)])
-def test_a_clamped_spring_is_run_as_the_spring_that_it_is(solid) -> None:
+def test_a_clamped_spring_is_run_as_the_spring_that_it_is(solid):
     """It never pulls anyway: the quick path, and the same bits."""
     clamped = solid.replace(clamped=True)
     assert prepare(PADDLE, clamped, DOWEL, 0.1).plain
@@ -116,7 +114,7 @@ def test_a_clamped_spring_is_run_as_the_spring_that_it_is(solid) -> None:
     assert (one.position.values == other.position.values).all()
 
 
-def test_a_clamp_acts_before_the_converter() -> None:
+def test_a_clamp_acts_before_the_converter():
     """The nearest step to no force is no force."""
     x = np.array([0.0, 5e-3, 4e-3, 1e-3, 0.5e-3])
     loop = zw.Device(damping=0.1, sample_period=PERIOD, force_resolution=0.05, force_limit=1.0)
@@ -134,7 +132,7 @@ NONLINEAR = {
 
 @settings(max_examples=40, deadline=None)
 @given(st.data(), st.sampled_from([0.0, 1e-4, 2.24e-3]))
-def test_a_spring_through_points_is_read_off_them(data: st.DataObject, resolution: float) -> None:
+def test_a_spring_through_points_is_read_off_them(data, resolution):
     """Two points or many, at what the encoder reads: at them, between them and beyond the ends."""
     counts = data.draw(st.lists(st.integers(-50, 50), min_size=2, max_size=17, unique=True).map(sorted))
     forces = data.draw(st.lists(st.integers(-40, 40), min_size=len(counts), max_size=len(counts)))
@@ -147,7 +145,7 @@ def test_a_spring_through_points_is_read_off_them(data: st.DataObject, resolutio
     assert trace.commanded_force.values == pytest.approx(expected, abs=1e-12)
 
 
-def test_a_handle_let_go_comes_to_rest_in_a_detent() -> None:
+def test_a_handle_let_go_comes_to_rest_in_a_detent():
     """A quarter of the way up its edge and no hand: it slides back into the detent."""
     device = zw.Device(mass=0.05, damping=2.0, sample_period=1e-4)
     free = zw.operators.ConstantForce(0.0)
@@ -158,7 +156,7 @@ def test_a_handle_let_go_comes_to_rest_in_a_detent() -> None:
 @pytest.mark.parametrize("clamped", [True, False])
 @pytest.mark.parametrize("exponent", [1, 1.5, 2, 3.7])
 @pytest.mark.parametrize("resolution", [0.0, 1e-4])
-def test_a_contact_commands_its_law(exponent: float, clamped: bool, resolution: float) -> None:
+def test_a_contact_commands_its_law(exponent, clamped, resolution):
     """K uⁿ (1 + λ v), v from the readings before, on both sides of the surface."""
     contact = zw.HuntCrossley(5e3, exponent, 1.7, clamped)
     trace = moved(contact, 0.002 + 0.006 * np.sin(np.arange(400) * 0.37), resolution=resolution)
@@ -188,7 +186,7 @@ def parting_speed(dissipation: float, speed: float) -> float:
 
 @pytest.mark.parametrize("exponent", [1, 1.5, 3])
 @pytest.mark.parametrize(("dissipation", "speed"), [(0.3, 0.2), (2.0, 0.2), (2.0, 1.5)])
-def test_a_body_bounces_as_hunt_and_crossley_say(exponent: float, dissipation: float, speed: float) -> None:
+def test_a_body_bounces_as_hunt_and_crossley_say(exponent, dissipation, speed):
     """Free of friction and hands, sampled finely; for slow ones v_o ≈ (1 − ⅔ λ v_i) v_i."""
     loop = zw.Device(mass=0.05, damping=0, sample_period=1e-6)
     stiffness = 0.05 * speed**2 / 0.002 ** (exponent + 1)
@@ -202,14 +200,14 @@ def test_a_body_bounces_as_hunt_and_crossley_say(exponent: float, dissipation: f
         assert expected == pytest.approx((1 - 2 / 3 * dissipation * speed) * speed, rel=5e-3)
 
 
-def test_a_touch_that_begins_inside_a_contact_begins_at_rest() -> None:
+def test_a_touch_that_begins_inside_a_contact_begins_at_rest():
     contact = zw.HuntCrossley(2e4, 2, 3)
     trace = zw.simulate(PADDLE, contact, zw.operators.ConstantForce(0.1), 0.01, initial_position=0.004)
     read = float(trace.measured_position[0])
     assert float(trace.commanded_force[0]) == pytest.approx(2e4 * read**2, abs=0.0005)
 
 
-def test_a_missed_sample_leaves_the_contact_as_it_was() -> None:
+def test_a_missed_sample_leaves_the_contact_as_it_was():
     """The sample after it sees the way of two periods over one."""
     loop = zw.Device(damping=0.1, sample_period=0.001)
     timing = zw.simulation.Timing(missed=[0, 0, 1, 0, 0])
@@ -220,7 +218,7 @@ def test_a_missed_sample_leaves_the_contact_as_it_was() -> None:
 
 @pytest.mark.parametrize("name", NONLINEAR)
 @pytest.mark.parametrize("hand", [zw.operators.Finger(), zw.operators.ConstantForce(1.0)])
-def test_the_ledger_closes(name: str, hand) -> None:
+def test_the_ledger_closes(name, hand):
     """Every joule is accounted for, with a delay and in between samples."""
     law, device = NONLINEAR[name], PADDLE.replace(delay=4e-4)
     trace = zw.simulate(device, law, hand, 0.4, initial_position=-2e-3, points_per_sample=3)

@@ -1,7 +1,5 @@
 """What the papers report, as simulations: each statement from both sides."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -13,7 +11,7 @@ HANDS = zw.operators
 
 
 @pytest.mark.parametrize("hand", [HANDS.TypicalTouch(), HANDS.MaliciousTouch(), HANDS.Dowel()])
-def test_only_a_dowel_sustains_a_vibration_and_only_at_770(hand) -> None:
+def test_only_a_dowel_sustains_a_vibration_and_only_at_770(hand):
     """Abbott & Okamura (2005), figures 8 and 9; the malicious touch turns more often on the stiffer wall."""
     soft, stiff = (zw.simulate(PADDLE, zw.Wall(k), hand, 2.0) for k in (300.0, 770.0))
     swings = [float(np.ptp(trace.position.values[-trace.sizes["time"] // 4 :])) for trace in (soft, stiff)]
@@ -26,7 +24,7 @@ def test_only_a_dowel_sustains_a_vibration_and_only_at_770(hand) -> None:
 @pytest.mark.parametrize(
     ("stiffness", "buzzes"), [(240.0, True), (120.0, True), (90.0, False), (80.0, False)]
 )
-def test_the_coarse_encoder_buzzes_above_its_bound_only(stiffness: float, buzzes: bool) -> None:
+def test_the_coarse_encoder_buzzes_above_its_bound_only(stiffness, buzzes):
     """Figure 10: 240 and 120 N/m buzz, 80 does not; 90 N/m is below 2f_c/Δ = 107, so the model is still."""
     trace = zw.simulate(COARSE, zw.Wall(stiffness), HANDS.SoftTouch(), 3.0)
     changes = np.count_nonzero(np.diff(trace.actuator_force.values[-1000:]))
@@ -34,7 +32,7 @@ def test_the_coarse_encoder_buzzes_above_its_bound_only(stiffness: float, buzzes
 
 
 @pytest.mark.parametrize("force", [0.125, 0.15, 0.2])
-def test_a_push_buzzes_where_it_is_thrown_back_over_the_edge(force: float) -> None:
+def test_a_push_buzzes_where_it_is_thrown_back_over_the_edge(force):
     """K Δ − F > f_c, on both sides of the stiffness where both are equal."""
     edge = (force + 0.12) / 2.24e-3
     hand = HANDS.SoftTouch(force=force)
@@ -43,7 +41,7 @@ def test_a_push_buzzes_where_it_is_thrown_back_over_the_edge(force: float) -> No
     assert loud.attrs["stops"] > 200
 
 
-def test_the_two_modes_do_not_know_of_each_other() -> None:
+def test_the_two_modes_do_not_know_of_each_other():
     k = np.arange(540.0, 661.0, 10.0)
     limits = []
     for device in (PADDLE, COARSE):
@@ -56,7 +54,7 @@ def test_the_two_modes_do_not_know_of_each_other() -> None:
     assert stops[0] < 10 < 100 < stops[1]
 
 
-def test_each_bounce_of_the_sampled_ball_is_higher_than_the_last() -> None:
+def test_each_bounce_of_the_sampled_ball_is_higher_than_the_last():
     """Gillespie & Cutkosky (1996): 0.35 kg, finger 0.006 kg and 500 N/m, wall 5000 N/m, 100 Hz, undamped."""
     ball = zw.Device(mass=0.35, damping=0, sample_period=0.010)
     finger = HANDS.Tracking([0.004], stiffness=500, damping=0, mass=0.006)
@@ -75,7 +73,7 @@ def test_each_bounce_of_the_sampled_ball_is_higher_than_the_last() -> None:
 
 
 @pytest.mark.parametrize("speed", [0.05, 0.2, 1.0])
-def test_the_staircase_leaks_half_k_v_t_squared_per_sample(speed: float) -> None:
+def test_the_staircase_leaks_half_k_v_t_squared_per_sample(speed):
     """Colgate & Schenkel's picture, and b = K T/2 pays for it exactly."""
     period, stiffness, count = 1e-3, 800.0, 7
     path = speed * period * np.concatenate([np.arange(count + 1), np.arange(count - 1, -1, -1)])

@@ -1,7 +1,5 @@
 """A scene in the loop: stepped as its H(z) says, and no hand gains behind a coupling that fits the device."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np
@@ -18,7 +16,7 @@ HAND = zw.operators.Finger()
 
 
 @seeds(8)
-def test_a_linear_scene_is_simulated_as_its_transfer_function(seed: int) -> None:
+def test_a_linear_scene_is_simulated_as_its_transfer_function(seed):
     scene = random_scene(seed, 3 + seed % 5, LINEAR)
     law = zw.VirtualCoupling(400, "0.1", scene)
     h = law.pulse_transfer_function(DEVICE.exact("sample_period"))
@@ -29,7 +27,7 @@ def test_a_linear_scene_is_simulated_as_its_transfer_function(seed: int) -> None
     assert float(apart) <= 1e-7 * float(np.abs(stepped.commanded_force).max())
 
 
-def test_the_energy_of_a_touch_balances_with_contact_and_friction() -> None:
+def test_the_energy_of_a_touch_balances_with_contact_and_friction():
     scene = zw.Scene(
         [
             Mass("handle", "0.05"),
@@ -44,7 +42,7 @@ def test_the_energy_of_a_touch_balances_with_contact_and_friction() -> None:
 
 
 @seeds(15)
-def test_no_hand_gains_at_the_limit_of_the_coupling(seed: int) -> None:
+def test_no_hand_gains_at_the_limit_of_the_coupling(seed):
     """Random scenes, b = K T/2 + B exactly: more than was in the scene at first."""
     rng = np.random.default_rng(seed)
     k, damping, t = 10 ** rng.uniform(1, 3.5), 10 ** rng.uniform(-3, 0.5), 1e-3
@@ -65,7 +63,7 @@ def test_no_hand_gains_at_the_limit_of_the_coupling(seed: int) -> None:
     assert work + run.energy_at_first >= -1e-11 * largest
 
 
-def test_a_scene_without_a_port_is_refused() -> None:
+def test_a_scene_without_a_port_is_refused():
     alone = zw.Scene([Mass("m", 1)], port="")
     with pytest.raises(InputError, match="port"):
         zw.VirtualCoupling(100, 0, alone)
@@ -73,7 +71,7 @@ def test_a_scene_without_a_port_is_refused() -> None:
         zw.simulate(DEVICE, alone, HAND, "0.1")
 
 
-def test_a_touch_begins_where_the_scene_is_at_rest() -> None:
+def test_a_touch_begins_where_the_scene_is_at_rest():
     """Wherever the hand is at first; one that is loaded there says that its energy is not known."""
     scene = zw.Scene([Spring("handle", "ground", 100)])
     trace = zw.simulate(DEVICE, scene, HAND, "0.05", initial_position=0.02)
@@ -83,7 +81,7 @@ def test_a_touch_begins_where_the_scene_is_at_rest() -> None:
     assert "stored_at_start_J" not in held.attrs
 
 
-def test_positions_are_those_of_the_prescribed_motion() -> None:
+def test_positions_are_those_of_the_prescribed_motion():
     scene = zw.Scene([Mass("handle", "0.01"), Contact("handle", "ground", 900, 1, "0.002")])
     motion = zw.operators.PrescribedMotion(np.linspace(0, 0.006, 4001))
     law = zw.VirtualCoupling(600, "0.3", scene)

@@ -14,7 +14,7 @@ PADDLE = zw.catalogue.device("haptic-paddle")
 IDEAL = zw.amplifiers.Ideal()
 
 
-def test_the_converter_rounds_and_the_actuator_saturates() -> None:
+def test_the_converter_rounds_and_the_actuator_saturates():
     device = {"force_resolution": 0.05, "force_limit": 1.0, "mass": 0.1}
     x = np.array([0.0, 1.13e-3, 2.0e-3, 9e-3])
     motion = zw.operators.PrescribedMotion(x)
@@ -25,7 +25,7 @@ def test_the_converter_rounds_and_the_actuator_saturates() -> None:
     assert ideal.actuator_force.values[-1] == pytest.approx(2.7)
 
 
-def test_a_limited_voltage_raises_the_force_at_u_over_l() -> None:
+def test_a_limited_voltage_raises_the_force_at_u_over_l():
     """Abbott & Okamura's motor: 16.5 N in 0.15 ms, not at once."""
     x = np.array([0.0, 0.0, 20e-3, 20e-3, 20e-3])
     wall = zw.Wall(1000.0)
@@ -38,7 +38,7 @@ def test_a_limited_voltage_raises_the_force_at_u_over_l() -> None:
     assert np.diff(force).max() == pytest.approx(16.5 / 3.3 * 12.0 / 0.55e-3 * 1e-6, rel=1e-6)
 
 
-def test_a_lagging_force_comes_nearer_by_the_same_part_each_time() -> None:
+def test_a_lagging_force_comes_nearer_by_the_same_part_each_time():
     """τ df/dt = f_command − f: after τ it has gone 1 − 1/e of the way."""
     x = np.array([0.0, 5e-3, 5e-3, 5e-3])
     motion = zw.operators.PrescribedMotion(x)
@@ -50,7 +50,7 @@ def test_a_lagging_force_comes_nearer_by_the_same_part_each_time() -> None:
 
 @pytest.mark.parametrize("amplifier", ["Ideal", "VoltageLimited", "FirstOrderLag"])
 @pytest.mark.parametrize("hand", [zw.operators.Dowel(), zw.operators.Finger()])
-def test_the_motion_does_not_depend_on_how_many_points_are_recorded(amplifier, hand) -> None:
+def test_the_motion_does_not_depend_on_how_many_points_are_recorded(amplifier, hand):
     """Nothing is integrated in steps: 1 point per sample or 7, the same loop."""
     drive = getattr(zw.amplifiers, amplifier)(*([2e-4] if amplifier == "FirstOrderLag" else []))
     device = PADDLE.replace(delay=4e-4, stiction=0.15)
@@ -71,7 +71,7 @@ def test_the_motion_does_not_depend_on_how_many_points_are_recorded(amplifier, h
     push=st.integers(-3000, 3000).map(lambda n: n / 1000),
     finger=st.booleans(),
 )
-def test_the_ledger_closes_in_every_loop(stiffness, delay, resolution, mass, limit, push, finger) -> None:
+def test_the_ledger_closes_in_every_loop(stiffness, delay, resolution, mass, limit, push, finger):
     device = PADDLE.replace(mass=mass, delay=delay, resolution=resolution, force_limit=limit)
     hand = zw.operators.Finger() if finger else zw.operators.ConstantForce(push)
     t = zw.simulate(device, zw.Wall(stiffness), hand, 0.3, initial_position=-2e-3, initial_velocity=0.1)
@@ -83,7 +83,7 @@ def test_the_ledger_closes_in_every_loop(stiffness, delay, resolution, mass, lim
     assert float(abs(residual).max()) <= 1e-12 * moved
 
 
-def test_a_prescribed_motion_needs_the_work_that_the_proofs_count() -> None:
+def test_a_prescribed_motion_needs_the_work_that_the_proofs_count():
     """Energy out is −Σ f Δx − f_c Σ|Δx| − (b/T) Σ Δx²: the sum of the witness."""
     x = np.array([0.0, 2.0187e-3, 1e-3, 1.7e-3, 0.0, 0.0])
     trace = zw.simulate(PADDLE, zw.Wall(770.0), zw.operators.PrescribedMotion(x), 0.005, amplifier=IDEAL)
@@ -116,7 +116,7 @@ def test_a_prescribed_motion_needs_the_work_that_the_proofs_count() -> None:
         ({"operator": zw.operators.PrescribedMotion(np.zeros(101)), "initial_velocity": 1.0}, "prescribed"),
     ],
 )
-def test_what_cannot_be_simulated_is_refused_in_one_message(change: dict, says: str) -> None:
+def test_what_cannot_be_simulated_is_refused_in_one_message(change, says):
     call = {
         "device": PADDLE,
         "environment": zw.Wall(300.0),
@@ -128,7 +128,7 @@ def test_what_cannot_be_simulated_is_refused_in_one_message(change: dict, says: 
     assert "\n" not in str(caught.value)
 
 
-def test_ctrl_c_keeps_what_is_finished(monkeypatch) -> None:
+def test_ctrl_c_keeps_what_is_finished(monkeypatch):
     import zwidth.loop.simulate as module
 
     monkeypatch.setattr(module, "_STRIDE", 40)
@@ -144,7 +144,7 @@ def test_ctrl_c_keeps_what_is_finished(monkeypatch) -> None:
     assert (part.position.values == whole.position.values[:80]).all()
 
 
-def test_a_motion_that_grows_without_bound_is_cut_and_says_when() -> None:
+def test_a_motion_that_grows_without_bound_is_cut_and_says_when():
     loop = zw.Device(mass=0.036, damping=0.1, sample_period=1e-3)
     spring = zw.PulseTransferFunction([1e9], [1.0])
     trace = zw.simulate(loop, spring, zw.operators.ConstantForce(1.0), 2.0, amplifier=IDEAL)
@@ -155,14 +155,14 @@ def test_a_motion_that_grows_without_bound_is_cut_and_says_when() -> None:
     assert trace.zwidth.energy.closes
 
 
-def test_a_delay_longer_than_the_simulation_leaves_the_hand_alone() -> None:
+def test_a_delay_longer_than_the_simulation_leaves_the_hand_alone():
     far = zw.Device(mass=0.036, damping=0.1, sample_period=1e-3, delay="1e9 s")
     trace = zw.simulate(far, zw.Wall(1e3), zw.operators.ConstantForce(1.0), 0.1)
     assert float(trace.position[-1]) > 0
     assert not trace.actuator_force.values.any()
 
 
-def test_switch_positions_need_a_delay_that_ends_within_a_sample() -> None:
+def test_switch_positions_need_a_delay_that_ends_within_a_sample():
     motion = zw.operators.PrescribedMotion([0, 1e-3, 2e-3], switch_positions=[0.5e-3, 1.5e-3])
     with pytest.raises(zw.InputError, match=r"switch positions.*delay of 0 s"):
         zw.simulate(PADDLE, zw.Wall(300.0), motion, 0.002)
@@ -171,7 +171,7 @@ def test_switch_positions_need_a_delay_that_ends_within_a_sample() -> None:
     assert float(trace.position[-1]) == 2e-3
 
 
-def test_python_control_and_scipy_systems_are_environments() -> None:
+def test_python_control_and_scipy_systems_are_environments():
     wall = zw.simulate(PADDLE, zw.PulseTransferFunction([300.0], [1.0]), zw.operators.Dowel(), 0.05)
     system = scipy.signal.dlti([300.0], [1.0], dt=0.001)
     same = zw.simulate(PADDLE, system, zw.operators.Dowel(), 0.05)

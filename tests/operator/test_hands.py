@@ -32,13 +32,13 @@ PADDLE = zw.catalogue.device("haptic-paddle")
 TIMES = np.arange(601) * 0.001
 
 
-def test_a_constant_force_is_the_same_in_every_interval() -> None:
+def test_a_constant_force_is_the_same_in_every_interval():
     signals = ConstantForce(0.7).signals(TIMES)
     assert signals.force.tolist() == [0.7] * 600
     assert ConstantForce(0.7).hand == (0, 0, 0)
 
 
-def test_a_finger_approaches_and_stops_where_it_presses() -> None:
+def test_a_finger_approaches_and_stops_where_it_presses():
     """At 0.25 m/s from −30 mm it is at −5 mm after 0.1 s, and stops 1.5 N / 300 N/m = 5 mm inside."""
     finger = Finger(stiffness=300, force=1.5, speed=0.25, start=-0.03)
     anchor = finger.signals(TIMES).anchor
@@ -50,7 +50,7 @@ def test_a_finger_approaches_and_stops_where_it_presses() -> None:
     assert finger.initial_position == -0.03
 
 
-def test_a_finger_presses_with_its_force_on_a_rigid_wall() -> None:
+def test_a_finger_presses_with_its_force_on_a_rigid_wall():
     """k (x_a − 0) = F in the end; on a wall of stiffness K the balance k(x_a − x) = K x gives F K/(K + k)."""
     finger = Finger(stiffness=420, force=2.3)
     anchor = finger.signals(np.arange(1001) * 0.001).anchor
@@ -61,21 +61,21 @@ def test_a_finger_presses_with_its_force_on_a_rigid_wall() -> None:
     assert wall * depth == pytest.approx(2.3 * wall / (wall + 420), rel=1e-14)
 
 
-def test_the_finger_has_the_published_numbers_and_the_chosen_damping_ratio() -> None:
+def test_the_finger_has_the_published_numbers_and_the_chosen_damping_ratio():
     """0.006 kg and 500 N/m (Gillespie & Cutkosky 1996); the damping is half of critical."""
     mass, stiffness, damping = Finger().hand
     assert (mass, stiffness) == (0.006, 500)
     assert damping / (2 * math.sqrt(mass * stiffness)) == pytest.approx(0.5, abs=0.01)
 
 
-def test_the_typical_touch_is_the_finger_at_moderate_speed() -> None:
+def test_the_typical_touch_is_the_finger_at_moderate_speed():
     typical = TypicalTouch()
     assert typical.hand == Finger().hand
     assert typical.describe().startswith("typical touch")
     assert typical.speed < MaliciousTouch().speed
 
 
-def test_the_malicious_touch_is_tuned_to_the_paddle_on_its_stiff_wall() -> None:
+def test_the_malicious_touch_is_tuned_to_the_paddle_on_its_stiff_wall():
     """√(k/m_h) is √(K/m) at 770 N/m, and c is above K T/2 − b by less than a third."""
     touch = MaliciousTouch()
     mass, damping, period = (float(PADDLE.exact(key)) for key in ("mass", "damping", "sample_period"))
@@ -84,7 +84,7 @@ def test_the_malicious_touch_is_tuned_to_the_paddle_on_its_stiff_wall() -> None:
     assert least < touch.damping < least * 4 / 3
 
 
-def test_a_soft_touch_grows_and_stays() -> None:
+def test_a_soft_touch_grows_and_stays():
     force, anchor, _, _ = SoftTouch(force=0.2, rise=0.4, start=-0.002).signals(TIMES)
     assert force[0] == 0
     assert force[100] == pytest.approx(0.05, rel=1e-14)
@@ -93,7 +93,7 @@ def test_a_soft_touch_grows_and_stays() -> None:
     assert set(SoftTouch(force=0.2, rise=0).signals(TIMES).force) == {0.2}
 
 
-def test_the_soft_touch_lies_in_the_window_where_the_coarse_encoder_buzzes() -> None:
+def test_the_soft_touch_lies_in_the_window_where_the_coarse_encoder_buzzes():
     """f_c < F < K Δ − f_c at 240 and 120 N/m with Δ = 2.24 mm; no force does so at 80 and 90 N/m."""
     friction, edge = float(PADDLE.exact("coulomb_friction")), 100 * float(PADDLE.exact("resolution"))
     for stiffness in (240, 120):
@@ -102,7 +102,7 @@ def test_the_soft_touch_lies_in_the_window_where_the_coarse_encoder_buzzes() -> 
         assert stiffness * edge - friction < friction
 
 
-def test_a_dowel_weighs_what_its_wood_weighs() -> None:
+def test_a_dowel_weighs_what_its_wood_weighs():
     """A rod of 8 mm and 150 mm: 7.540 cm³, at 0.65 g/cm³ 4.90 g, the default; twice as thick, four times."""
     assert Dowel.of_size(0.15, 0.008).mass == pytest.approx(7.5398e-6 * 650, rel=1e-4)
     assert Dowel().mass == pytest.approx(Dowel.of_size(0.15, 0.008).mass, rel=1e-3)
@@ -121,12 +121,12 @@ def test_a_dowel_weighs_what_its_wood_weighs() -> None:
         (lambda: Cycle(low=1e-3, high=1e-3), "low must be < high"),
     ],
 )
-def test_a_hand_that_cannot_be_is_refused(make, said) -> None:
+def test_a_hand_that_cannot_be_is_refused(make, said):
     with pytest.raises(InputError, match=said):
         make()
 
 
-def test_a_dowel_only_pushes() -> None:
+def test_a_dowel_only_pushes():
     force, anchor, _, _ = Dowel(force=3.5).signals(TIMES)
     assert set(force) == {3.5}
     assert anchor is None
@@ -135,7 +135,7 @@ def test_a_dowel_only_pushes() -> None:
     assert set(gripped) == {-0.01}
 
 
-def test_a_guide_pushes_at_constant_speed_and_holds() -> None:
+def test_a_guide_pushes_at_constant_speed_and_holds():
     """From −4 mm at 0.05 m/s: at the surface after 0.08 s, at 9 mm from 0.26 s on."""
     signals = Guide(start=-0.004, speed=0.05, depth=0.009).signals(TIMES)
     position = signals.position
@@ -145,7 +145,7 @@ def test_a_guide_pushes_at_constant_speed_and_holds() -> None:
     assert signals.switch_position is None
 
 
-def test_a_cycle_is_one_sample_in_and_one_out() -> None:
+def test_a_cycle_is_one_sample_in_and_one_out():
     position = Cycle(low=-2e-6, high=3e-4).signals(TIMES).position
     assert position[:4].tolist() == [-2e-6, 3e-4, -2e-6, 3e-4]
 
@@ -165,13 +165,13 @@ def turning(inertia: object) -> zw.Device:
         (None, HandsOn),
     ],
 )
-def test_what_turns_is_a_knob_or_a_wheel(inertia: object, kind: type[Finger]) -> None:
+def test_what_turns_is_a_knob_or_a_wheel(inertia, kind):
     assert type(usual_hand(turning(inertia))) is kind
     assert OPERATORS[usual_kind(turning(inertia))] is kind
     assert type(usual_hand(zw.catalogue.device("haptic-paddle"))) is Finger
 
 
-def test_fingers_on_a_knob_are_two_fingers_at_its_edge() -> None:
+def test_fingers_on_a_knob_are_two_fingers_at_its_edge():
     """At the edge, 15 mm from the axis, each has the mass, spring, damper and force of a finger."""
     one, both, r = Finger(), FingersOn(), 0.015
     for name in ("mass", "stiffness", "damping"):
@@ -179,7 +179,7 @@ def test_fingers_on_a_knob_are_two_fingers_at_its_edge() -> None:
     assert both.force / r / 2 == pytest.approx(one.force)
 
 
-def test_explore_and_play_hold_a_wheel_with_two_hands() -> None:
+def test_explore_and_play_hold_a_wheel_with_two_hands():
     wheel = turning("0.006 kg*m^2")
     state = State.of(wheel, zw.Wall("0.3 N*m/deg"))
     assert hand_kind_of(state) == "hands-on"

@@ -6,14 +6,13 @@ import dataclasses
 import inspect
 import re
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from zwidth.errors import InputError
 from zwidth.model import operator as operators
-from zwidth.model.operator import OPERATORS, Operator, ParametricOperator
+from zwidth.model.operator import OPERATORS, Operator
 from zwidth.quantity.parameter import parameters_of
 from zwidth.quantity.text import unit_text
 from zwidth.quantity.units import parse_number
@@ -23,7 +22,7 @@ EACH = pytest.mark.parametrize("kind", OPERATORS.values(), ids=list(OPERATORS))
 
 
 @EACH
-def test_works_as_it_is_and_starts_where_its_signals_start(kind: type[ParametricOperator]) -> None:
+def test_works_as_it_is_and_starts_where_its_signals_start(kind):
     hand = kind()
     force, anchor, position, switches = hand.signals(TIMES)
     assert force is None or force.shape == (800,)
@@ -40,7 +39,7 @@ def test_works_as_it_is_and_starts_where_its_signals_start(kind: type[Parametric
 
 
 @EACH
-def test_every_number_has_units_a_meaning_and_a_place_in_the_docstring(kind: type[Any]) -> None:
+def test_every_number_has_units_a_meaning_and_a_place_in_the_docstring(kind):
     text = "".join(inspect.getdoc(k) or "" for k in kind.__mro__)
     for field in dataclasses.fields(kind):
         quantity = kind.parameters()[field.name]
@@ -52,7 +51,7 @@ def test_every_number_has_units_a_meaning_and_a_place_in_the_docstring(kind: typ
 
 
 @EACH
-def test_equal_numbers_are_equal_hands(kind: type[Any]) -> None:
+def test_equal_numbers_are_equal_hands(kind):
     if not dataclasses.fields(kind):
         assert (kind(), hash(kind())) == (kind(), hash(kind()))
         return
@@ -66,7 +65,7 @@ def test_equal_numbers_are_equal_hands(kind: type[Any]) -> None:
 
 
 @EACH
-def test_describes_itself_with_every_number(kind: type[ParametricOperator]) -> None:
+def test_describes_itself_with_every_number(kind):
     hand = kind()
     for motion in ("linear", "rotary"):
         line = hand.describe(motion)
@@ -78,7 +77,7 @@ def test_describes_itself_with_every_number(kind: type[ParametricOperator]) -> N
 
 @EACH
 @pytest.mark.parametrize("bad", [float("nan"), float("inf"), "soon", None, True, [1, 2]])
-def test_a_number_must_be_finite(kind: type[Any], bad: object) -> None:
+def test_a_number_must_be_finite(kind, bad):
     """What is no finite number is refused by the name of the argument."""
     for name in kind.parameters():
         with pytest.raises(InputError, match=name):
@@ -86,7 +85,7 @@ def test_a_number_must_be_finite(kind: type[Any], bad: object) -> None:
 
 
 @EACH
-def test_each_bound_holds_from_both_sides(kind: type[Any]) -> None:
+def test_each_bound_holds_from_both_sides(kind):
     for field in dataclasses.fields(kind):
         bound = parameters_of(kind)[field.name].bound
         if not bound:
@@ -101,7 +100,7 @@ def test_each_bound_holds_from_both_sides(kind: type[Any]) -> None:
             assert getattr(kind(**{field.name: 0}), field.name) == 0
 
 
-def test_a_number_may_carry_its_unit() -> None:
+def test_a_number_may_carry_its_unit():
     """ "250 mN" is 0.25 N; for a rotary device a torque is taken; a length is refused."""
     assert operators.Dowel(force="250 mN").force == 0.25
     assert operators.Dowel(force="30 mN*m").force == 0.03
@@ -109,7 +108,7 @@ def test_a_number_may_carry_its_unit() -> None:
         operators.Dowel(force="250 mm")
 
 
-def test_the_registry_cannot_be_changed() -> None:
+def test_the_registry_cannot_be_changed():
     with pytest.raises(TypeError):
         OPERATORS["mine"] = operators.Dowel
 
@@ -122,7 +121,7 @@ def _section(title: str) -> str:
 
 
 @pytest.mark.parametrize("name", OPERATORS)
-def test_every_number_stands_on_the_page_with_its_default(name: str) -> None:
+def test_every_number_stands_on_the_page_with_its_default(name):
     kind = OPERATORS[name]
     rows = re.findall(
         r"^\| `(\w+)` \| (\S+ \S+) \| \S", _section(f"{kind.__name__} (`{name}`)"), re.MULTILINE
@@ -134,7 +133,7 @@ def test_every_number_stands_on_the_page_with_its_default(name: str) -> None:
     assert sorted(rows) == sorted(expected)
 
 
-def test_every_hand_has_a_section() -> None:
+def test_every_hand_has_a_section():
     titles = {title.split(" ")[0] for title in re.findall(r"^## (.+)$", PAGE, re.MULTILINE)}
     hands = {
         n
@@ -144,7 +143,7 @@ def test_every_hand_has_a_section() -> None:
     assert hands - {"Operator", "ParametricOperator"} <= titles
 
 
-def test_the_links_of_the_table_lead_to_sections() -> None:
+def test_the_links_of_the_table_lead_to_sections():
     titles = re.findall(r"^## (.+)$", PAGE, re.MULTILINE)
     anchors = {re.sub(r"[^\w -]", "", title).lower().replace(" ", "-") for title in titles}
     links = re.findall(r"\]\(#([\w-]+)\)", PAGE)

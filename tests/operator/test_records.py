@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import pickle
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,7 +26,7 @@ RECORDERS = pytest.mark.parametrize("make", [RecordedForce, PrescribedMotion, tr
 
 
 @RECORDERS
-def test_takes_any_row_of_numbers(make: Any) -> None:
+def test_takes_any_row_of_numbers(make):
     expected = make([0.5, 0.25, 1.0])
     for values in [(0.5, 0.25, 1), np.array([0.5, 0.25, 1], dtype=np.float32), [Fraction(1, 2), 0.25, 1]]:
         assert make(values) == expected
@@ -37,7 +36,7 @@ def test_takes_any_row_of_numbers(make: Any) -> None:
 
 
 @RECORDERS
-def test_a_record_is_its_own(make: Any) -> None:
+def test_a_record_is_its_own(make):
     values = np.array([1.0, 2.0, 3.0, 4.0])
     hand = make(values)
     times = TIMES if make is RecordedForce else TIMES[:4]
@@ -53,7 +52,7 @@ def test_a_record_is_its_own(make: Any) -> None:
 
 
 @RECORDERS
-def test_a_record_shows_its_length_only(make: Any) -> None:
+def test_a_record_shows_its_length_only(make):
     assert "<100000 values>" in repr(make(np.zeros(100_000)))
     assert len(make(np.zeros(100_000)).describe()) < 200
 
@@ -73,12 +72,12 @@ def test_a_record_shows_its_length_only(make: Any) -> None:
         ([10**400], "one number per sample"),
     ],
 )
-def test_refuses_what_is_no_row_of_finite_numbers(make: Any, bad: object, message: str) -> None:
+def test_refuses_what_is_no_row_of_finite_numbers(make, bad, message):
     with pytest.raises(InputError, match=message):
         make(bad)
 
 
-def test_records_are_taken_as_they_are() -> None:
+def test_records_are_taken_as_they_are():
     """N + 1 positions, N positions of switching and N forces for N intervals."""
     motion = PrescribedMotion([0, 1, 2, 1, 0], switch_positions=[0.5, 1.5, 1.5, 0.5])
     signals = motion.signals(TIMES)
@@ -88,7 +87,7 @@ def test_records_are_taken_as_they_are() -> None:
     assert RecordedForce([0.1, -0.2, 0.3, 0.4]).signals(TIMES).force.tolist() == [0.1, -0.2, 0.3, 0.4]
 
 
-def test_a_function_of_time_prescribes_positions() -> None:
+def test_a_function_of_time_prescribes_positions():
     """It is asked at each sample instant, and at 0 for the start."""
     motion = PrescribedMotion(lambda t: 0.002 - 3 * t)
     position = motion.signals(TIMES).position
@@ -96,19 +95,19 @@ def test_a_function_of_time_prescribes_positions() -> None:
     assert motion.initial_position == 0.002
 
 
-def test_tracking_holds_the_last_position() -> None:
+def test_tracking_holds_the_last_position():
     for positions, expected in [([1, 2, 3], [1, 2, 3, 3, 3]), (range(9), [0, 1, 2, 3, 4])]:
         anchor = tracking(list(positions)).signals(TIMES).anchor
         assert anchor.tolist() == expected
 
 
-def test_a_hand_tied_by_nothing_has_no_anchor() -> None:
+def test_a_hand_tied_by_nothing_has_no_anchor():
     hand = Tracking([0.0], stiffness=0, damping=0, mass=0.01)
     assert hand.signals(TIMES).anchor is None
     assert hand.hand == (0.01, 0, 0)
 
 
-def test_bandwidth_gives_stiffness_and_damping() -> None:
+def test_bandwidth_gives_stiffness_and_damping():
     """0.05 kg at 20 Hz: the undamped frequency is √(k/M), the damping ratio c/(2√(kM))."""
     hand = Tracking.of_bandwidth([0.0], frequency=20, moved_mass=0.05, damping_ratio=0.3, mass=0.01).hand
     assert np.sqrt(hand.stiffness / 0.05) / (2 * np.pi) == pytest.approx(20, rel=1e-14)
@@ -129,7 +128,7 @@ def _repeating() -> zw.Witness:
     return _witness(240, 0, resolution=2.24e-3, coulomb_friction=0.12)
 
 
-def test_a_witness_is_replayed_position_by_position() -> None:
+def test_a_witness_is_replayed_position_by_position():
     witness = _witness()
     hand = WitnessMotion(witness)
     times = np.arange(hand.intervals + 4) * 0.001
@@ -141,7 +140,7 @@ def test_a_witness_is_replayed_position_by_position() -> None:
     assert hash(hand) == hash(WitnessMotion(witness))
 
 
-def test_the_energy_of_a_replayed_witness_is_what_it_claims() -> None:
+def test_the_energy_of_a_replayed_witness_is_what_it_claims():
     """−Σ f Δx − f_c Σ|Δx| − (b/T) Σ Δx² with the wall's force worked out here, on the replayed positions."""
     witness = _witness()
     hand = WitnessMotion(witness)
@@ -153,7 +152,7 @@ def test_the_energy_of_a_replayed_witness_is_what_it_claims() -> None:
     assert out == pytest.approx(witness.energy, rel=1e-9)
 
 
-def test_rounds_of_a_witness_can_be_limited() -> None:
+def test_rounds_of_a_witness_can_be_limited():
     witness = _repeating()
     assert witness.motion.rounds > 3
     hand = WitnessMotion(witness, rounds=3)
@@ -163,7 +162,7 @@ def test_rounds_of_a_witness_can_be_limited() -> None:
     assert anchor.tolist() == position.tolist()
 
 
-def test_switch_positions_of_a_witness_are_replayed() -> None:
+def test_switch_positions_of_a_witness_are_replayed():
     witness = _witness(900, 0, delay=0.0003)
     hand = WitnessMotion(witness, rounds=2)
     listed = witness.motion.repeated(2).listed()
@@ -176,7 +175,7 @@ def test_switch_positions_of_a_witness_are_replayed() -> None:
 
 
 @pytest.mark.parametrize("make", [WitnessMotion, tracking])
-def test_a_witness_is_replayed_at_its_own_period(make: Any) -> None:
+def test_a_witness_is_replayed_at_its_own_period(make):
     with pytest.raises(InputError, match=r"period of 0\.001 s and is replayed at 0\.002 s"):
         make(_witness()).signals(np.arange(9) * 0.002)
 
@@ -191,7 +190,7 @@ def test_a_witness_is_replayed_at_its_own_period(make: Any) -> None:
         ("\ufefft f\r\n0 0.5\r\n1 -1e-3\r\n2 2\r\n", "f"),
     ],
 )
-def test_a_force_is_read_from_a_file(text: str, column: str | int | None, tmp_path: Path) -> None:
+def test_a_force_is_read_from_a_file(text, column, tmp_path):
     path = tmp_path / "force.csv"
     path.write_bytes(text.encode())
     assert RecordedForce.from_file(path, column) == RecordedForce([0.5, -1e-3, 2])
@@ -214,9 +213,7 @@ def test_a_force_is_read_from_a_file(text: str, column: str | int | None, tmp_pa
         (bytes(2**20 + 1), None, "line of more than"),
     ],
 )
-def test_a_file_of_another_shape_is_refused(
-    text: bytes, column: str | int | None, message: str, tmp_path: Path
-) -> None:
+def test_a_file_of_another_shape_is_refused(text, column, message, tmp_path):
     path = tmp_path / "force.csv"
     path.write_bytes(text)
     with pytest.raises(InputError, match=message):
@@ -263,6 +260,6 @@ TIED = {"stiffness": 1, "damping": 1}
         (lambda: RecordedForce.from_file("."), "cannot be read"),
     ],
 )
-def test_what_does_not_fit_the_touch_is_refused(make, said) -> None:
+def test_what_does_not_fit_the_touch_is_refused(make, said):
     with pytest.raises(InputError, match=said):
         make().signals(TIMES)

@@ -1,7 +1,5 @@
 """Answers in the unit of angle in which the question was asked."""
 
-from __future__ import annotations
-
 from math import pi
 
 import pytest
@@ -15,14 +13,14 @@ from zwidth.quantity.units import parse, parse_number
 ROTARY = ("rad", "rad/s", "N*m/rad", "N·m·s/rad", "s/rad", "N*m*s/rad/J", "N*m/rad^1.5")
 
 
-def test_nobody_asked() -> None:
+def test_nobody_asked():
     assert all(spoken(unit) == (1.0, unit) for unit in ROTARY)
     with answers_as_typed():
         parse_number("0.3 N*m/rad", "N*m/rad", "stiffness")
         assert all(spoken(unit) == (1.0, unit) for unit in ROTARY)
 
 
-def test_whoever_types_degrees() -> None:
+def test_whoever_types_degrees():
     """Every angle of the answer is in degrees once one was typed so, above and below the bar."""
     with answers_as_typed():
         value = parse_number("0.4 N*m/deg", "N*m/rad", "stiffness")
@@ -37,20 +35,20 @@ def test_whoever_types_degrees() -> None:
     assert shown(pi, "rad") == "3.142 rad"
 
 
-def test_an_interval_of_degrees() -> None:
+def test_an_interval_of_degrees():
     with answers_as_typed():
         parse("5 .. 10 °", "rad", "position")
         assert spoken("rad") == (180 / pi, "deg")
 
 
-def test_what_was_refused_was_not_typed() -> None:
+def test_what_was_refused_was_not_typed():
     with answers_as_typed():
         with pytest.raises(InputError, match="damping is in"):
             parse_number("3 deg", "N*m*s/rad", "damping")
         assert spoken("rad") == (1.0, "rad")
 
 
-def test_turns_and_rpm() -> None:
+def test_turns_and_rpm():
     with answers_in("rpm"):
         assert told(pi, "rad/s") == "30 rpm"
         assert told(pi, "rad") == f"{pi:.6g} rad"
@@ -62,12 +60,12 @@ def test_turns_and_rpm() -> None:
         assert (spoken("rad/s")[1], spoken("rad")[1]) == ("rpm", "deg")
 
 
-def test_an_unknown_angle() -> None:
+def test_an_unknown_angle():
     with pytest.raises(InputError, match="rad, deg or turn"), answers_in("gon"):
         pass
 
 
-def test_counts_are_no_turns() -> None:
+def test_counts_are_no_turns():
     """65 536 counts per turn is no answer in turns."""
     with answers_as_typed():
         parse_number("65536 counts/turn", "1", "counts_per_turn")

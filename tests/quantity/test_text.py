@@ -1,7 +1,5 @@
 """Numbers and units as people read them."""
 
-from __future__ import annotations
-
 from math import inf
 
 import pytest
@@ -40,25 +38,25 @@ from zwidth.quantity.text import (
         (None, "N/m", "none"),
     ],
 )
-def test_a_value_with_its_unit(value: float | None, unit: str, text: str) -> None:
+def test_a_value_with_its_unit(value, unit, text):
     assert shown(value, unit) == text
 
 
-def test_a_value_in_a_unit_that_is_kept() -> None:
+def test_a_value_in_a_unit_that_is_kept():
     assert in_unit(0.0123456789, "N*s/m") == "0.0123457 N·s/m"
     assert in_unit(-2.39684e-05, "N*m") == "-23.9684 µN·m"
     assert in_unit(7.123456e-05, "N*m*s/rad") == "71.2346 µN·m·s/rad"
     assert (in_unit(None, "N/m"), in_unit(inf, "N/m")) == ("none", "any")
 
 
-def test_units_and_keys_in_words() -> None:
+def test_units_and_keys_in_words():
     assert unit_text("kg*m^2") == "kg·m²"
     assert quantity_unit("damping") == "N·s/m"
     assert quantity_unit("stiffness", "rotary") == "N·m/rad"
     assert in_words("coulomb_friction") == "Coulomb friction"
 
 
-def test_a_number_in_a_table() -> None:
+def test_a_number_in_a_table():
     numbers = (1234567.0, 12345.6, 999.96, 0.00012345)
     assert [in_a_table(number) for number in numbers] == ["1.235e+06", "12346", "1000", "0.0001234"]
     assert in_a_table(0.98765, 3) == "0.988"
@@ -81,11 +79,11 @@ def test_a_number_in_a_table() -> None:
         (5e-5, "1", "5e-05"),
     ],
 )
-def test_a_prefix_takes_the_place_of_an_exponent(value: float, unit: str, text: str) -> None:
+def test_a_prefix_takes_the_place_of_an_exponent(value, unit, text):
     assert readable(value, unit) == text
 
 
-def test_values_of_one_line_have_one_prefix() -> None:
+def test_values_of_one_line_have_one_prefix():
     """Torques and angles that of the smallest, unless another is far above; lengths each their own."""
     assert alike("N*m*s/rad", (0, 3.781e-5), (4, 6)) == ("0 µN·m·s/rad", "37.81 µN·m·s/rad")
     assert alike("N*m*s/rad", (0.00125, 3.7e-5), (4, 6)) == ("1250 µN·m·s/rad", "37 µN·m·s/rad")
@@ -94,7 +92,7 @@ def test_values_of_one_line_have_one_prefix() -> None:
     assert alike("m", (0.3, 0.0001), (4, 4)) == ("0.3 m", "100 µm")
 
 
-def test_a_limit_is_rounded_to_the_side_on_which_it_holds() -> None:
+def test_a_limit_is_rounded_to_the_side_on_which_it_holds():
     assert shown_at_most(416.96, "N/m") == "416.9 N/m"
     assert shown_at_least(416.92, "N/m") == "417 N/m"
     assert enough(7.12345612e-05, "N*m*s/rad") == "71.2346 µN·m·s/rad"

@@ -1,7 +1,5 @@
 """The commands of laws in a chain at prescribed positions, sample by sample."""
 
-from __future__ import annotations
-
 import numpy as np
 
 import zwidth as zw
@@ -31,7 +29,6 @@ def touched(positions, *stages, environment=None, device=DEVICE, **options):
 
 
 def commands(positions, *stages, **options):
-    """(readings, commanded forces)."""
     trace = touched(positions, *stages, **options)
     return trace.measured_position.values, trace.commanded_force.values
 

@@ -1,7 +1,5 @@
 """Prescribed hands for the laws: a plain loop that tempts a law, and the simulator's account of it."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import floor
 
@@ -25,12 +23,10 @@ def device(damping="0.15", friction=0, resolution=0, **more):
 
 
 def read(x, resolution):
-    """The encoder."""
     return resolution * floor(x / resolution) if resolution > 0 else x
 
 
 def wall(stiffness):
-    """K x inside."""
     return lambda x: max(stiffness * x, 0.0)
 
 
@@ -69,7 +65,6 @@ def tempt(law, device, samples, seed, depth=0.003):
 
 
 def follow(device, environment, positions, **more):
-    """The simulated loop of a prescribed motion."""
     duration = (len(positions) - 1) * device.exact("sample_period")
     return zw.simulate(device, environment, zw.operators.PrescribedMotion(positions), duration, **more)
 

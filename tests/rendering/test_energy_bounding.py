@@ -1,7 +1,5 @@
 """Energy bounding: sample by sample, its promise, force bounding without credit, and what counts break."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from tempting import device, energy_in, follow, tempt, wall

@@ -1,7 +1,5 @@
 """The energy tank: sample by sample, what it may owe, and the hands that make it owe."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from tempting import device, energy_in, follow, tempt, wall

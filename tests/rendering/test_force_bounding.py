@@ -1,7 +1,5 @@
 """Force bounding by a plain loop, against hands that tempt it; in doubles, never a digit too high."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

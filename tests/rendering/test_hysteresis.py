@@ -1,7 +1,5 @@
 """The spring that slips: its law, its loop, what it pays for."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from prescribed import DEVICE, PERIOD, commands, touched, wandering

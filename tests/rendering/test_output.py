@@ -1,7 +1,5 @@
 """The last laws before the converter: slew limit, dither, saturation."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from prescribed import DEVICE, commands, touched, wandering
@@ -13,7 +11,6 @@ WALL = zw.Wall(3000)
 
 
 def wall_force(read):
-    """K x inside."""
     return np.where(read > 0, 3000 * read, 0)
 
 

@@ -1,7 +1,5 @@
 """The parallel passivity controller: what it keeps, what it does not see, and a hand that refutes it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -30,7 +28,6 @@ bodies = st.builds(
 
 
 def pushed(body, newtons, controller=None, **options):
-    """The display under a recorded force."""
     return zw.simulation.simulate_admittance(
         body,
         zw.operators.RecordedForce(newtons),

@@ -1,7 +1,5 @@
 """The passive leap: sample by sample, what it may owe, and the leap that makes it owe just that."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from tempting import device, energy_in, follow, tempt, wall

@@ -1,7 +1,5 @@
 """The passivity observer and controller: by a plain loop, on a published plant, against a bad hand."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The controller that absorbs what has come out: a plain loop, what it owes, and what it does not promise."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st

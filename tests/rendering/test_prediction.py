@@ -1,7 +1,5 @@
 """Laws that look ahead, against plain loops in numpy and an adaptive integrator."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -20,7 +18,6 @@ HAND = zw.operators.Tracking([REST], stiffness=SPRING, damping=1.3, mass=0.011)
 
 
 def simulated(law, duration=0.9, device=DEVICE, start=-0.017):
-    """Positions, velocities and commands at the samples."""
     trace = zw.simulate(device, law, HAND, duration, initial_position=start)
     return trace.position.values, trace.velocity.values, trace.commanded_force.values
 
@@ -44,7 +41,6 @@ def plain_loop(law, samples, start=-0.017):
 
 
 def assert_same(law, reference, tolerance=1e-9, samples=100):
-    """Positions and commands, sample by sample."""
     x, _, f = simulated(law)
     position, _, force = plain_loop(reference, samples)
     assert x[:samples] == pytest.approx(position, abs=tolerance * np.max(np.abs(position)))

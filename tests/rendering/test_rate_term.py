@@ -1,7 +1,5 @@
 """The term in the rate of the force: a damper in contact, what it pays for, and where a proof ends."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

@@ -1,7 +1,5 @@
 """All laws in one row: simulated alone, side by side; every joule accounted for."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from prescribed import DEVICE, commands, wandering

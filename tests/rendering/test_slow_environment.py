@@ -1,7 +1,5 @@
 """Environments updated every N samples, held or with a local spring in between."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

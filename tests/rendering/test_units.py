@@ -1,7 +1,5 @@
 """Length, force and time in other units, by powers of two: the same loop, to the last bit."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

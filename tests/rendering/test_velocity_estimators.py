@@ -1,7 +1,5 @@
 """Dampers on estimators that are not linear: each against its law written plainly, and against the truth."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np
@@ -18,7 +16,6 @@ FREE = zw.PulseTransferFunction([0], [1])
 
 
 def estimated(positions, estimator, **options):
-    """(readings, estimated velocities)."""
     return commands(positions, Damper(1, estimator), environment=FREE, **options)
 
 

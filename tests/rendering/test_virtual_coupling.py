@@ -1,7 +1,5 @@
 """The coupling: series stiffness, its own bound, bad input."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import control
@@ -17,7 +15,6 @@ Z = np.exp(1j * np.linspace(0.05, np.pi, 60))
 
 
 def evaluate(law, z=Z):
-    """H(z) in floats."""
     top, bottom = ([float(c) for c in p] for p in law.pulse_transfer_function(T))
     return np.polyval(top, z) / np.polyval(bottom, z)
 

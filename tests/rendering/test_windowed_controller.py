@@ -1,7 +1,5 @@
 """The windowed controller: by a plain loop, what it forgets and what it never does, in other units."""
 
-from __future__ import annotations
-
 from collections import deque
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What every law of a chain says of itself, and what it refuses."""
 
-from __future__ import annotations
-
 import control
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Hands that turn, and step small, then large: what no controller gives out by default."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

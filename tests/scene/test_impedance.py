@@ -18,7 +18,6 @@ T = Fraction(1, 1000)
 
 
 def at(z: complex, function: RationalFunction) -> complex:
-    """The value at one z."""
     num, den = ([float(c) for c in side] for side in function)
     return complex(np.polyval(num, z) / np.polyval(den, z))
 
@@ -52,7 +51,7 @@ def node_matrix_impedance(scene: zw.Scene, z: complex) -> complex:
 
 
 @seeds(20)
-def test_it_is_that_of_the_node_equations(seed: int) -> None:
+def test_it_is_that_of_the_node_equations(seed):
     """Levers, loops and all, at points around the unit circle; E(z) is that of positions."""
     scene = random_scene(seed, 3 + seed % 12, LINEAR)
     z = np.exp(1j * (0.1 + seed % 1000 / 330)) * 1.05
@@ -62,7 +61,7 @@ def test_it_is_that_of_the_node_equations(seed: int) -> None:
 
 
 @seeds(12)
-def test_the_step_is_the_filter(seed: int) -> None:
+def test_the_step_is_the_filter(seed):
     scene = random_scene(seed, 3 + seed % 8, LINEAR)
     num, den = scene.pulse_transfer_function(T)
     num = (Fraction(0),) * (len(den) - len(num)) + num
@@ -76,7 +75,7 @@ def test_the_step_is_the_filter(seed: int) -> None:
 
 
 @seeds(12)
-def test_it_is_positive_real_by_the_exact_checker(seed: int) -> None:
+def test_it_is_positive_real_by_the_exact_checker(seed):
     """ν ≥ 0 with a certificate, from velocity to force."""
     scene = random_scene(seed, 3 + seed % 8, LINEAR)
     port = zw.PulseTransferFunction(*scene.impedance(T), sample_period=T)
@@ -90,7 +89,7 @@ def chain(masses: int) -> zw.Scene:
     return zw.Scene([*springs, *(Mass(f"m{i}", "0.01") for i in range(1, masses + 1))], port="m0")
 
 
-def test_a_chain_of_a_hundred_masses_swings_as_its_modes_do() -> None:
+def test_a_chain_of_a_hundred_masses_swings_as_its_modes_do():
     """A mode of scipy's generalized eigenproblem, held and let go, goes round at tan(ωT/2) = ω_c T/2."""
     n, t = 100, 0.001
     stiffness = 400 * (2 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))
@@ -112,7 +111,7 @@ def test_a_chain_of_a_hundred_masses_swings_as_its_modes_do() -> None:
     assert np.abs(error).max() <= 1e-11 * np.abs(modal).max()
 
 
-def test_it_converges_with_the_square_of_the_step() -> None:
+def test_it_converges_with_the_square_of_the_step():
     """Mass on a spring pulled at constant speed: x − y = v sin(ω t)/ω, the force K times that."""
     k, m, v, end = 390.0, 0.1, 0.2, 0.4
     omega = np.sqrt(k / m)
@@ -126,7 +125,7 @@ def test_it_converges_with_the_square_of_the_step() -> None:
     assert errors[1] / errors[2] == pytest.approx(4, rel=0.05)
 
 
-def test_levers_may_close_a_loop() -> None:
+def test_levers_may_close_a_loop():
     """Ties that agree are one tie; ties that contradict each other hold the node."""
     body = [
         Spring("handle", "a", 300),
@@ -141,7 +140,7 @@ def test_levers_may_close_a_loop() -> None:
     assert held.impedance(T) == zw.Scene([Spring("handle", "ground", 300)]).impedance(T)
 
 
-def test_a_hidden_part_cancels() -> None:
+def test_a_hidden_part_cancels():
     seen = [Spring("handle", "a", 300), Mass("a", "0.2"), Damper("a", "ground", "0.1")]
     more = [Mass("far", "0.3"), Spring("far", "ground", 20)]
     assert zw.Scene([*seen, *more]).impedance(T) == zw.Scene(seen).impedance(T)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -42,7 +41,6 @@ def cut(parts: dict[str, list[str]], **more: object) -> object:
 
 
 def checked(scene: zw.Scene) -> object:
-    """Behind a coupling."""
     return zw.check(DEVICE, zw.VirtualCoupling(800, "0.05", scene))
 
 
@@ -82,7 +80,7 @@ def checked(scene: zw.Scene) -> object:
         (lambda: cut(HALVES, impedances={"spring m0–m1": 0}), "impedance of spring"),
     ],
 )
-def test_the_message_says_what_is_wrong(asked: Callable[[], object], said: str) -> None:
+def test_the_message_says_what_is_wrong(asked, said):
     with pytest.raises(InputError, match=said):
         asked()
 
@@ -90,7 +88,7 @@ def test_the_message_says_what_is_wrong(asked: Callable[[], object], said: str) 
 PAGE = Path(__file__).parents[2] / "docs" / "scenes.md"
 
 
-def test_the_examples_of_the_page_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_examples_of_the_page_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {}
     page = PAGE.read_text(encoding="utf-8")

@@ -14,13 +14,12 @@ COUPLING = '[coupling]\nstiffness = "0.1 N/mm"\n'
 
 
 def read(folder: Path, text: str) -> zw.Pair:
-    """What `load` makes of a text."""
     path = folder / "two.toml"
     path.write_text(text, encoding="utf-8")
     return zw.load(path)
 
 
-def test_every_key_is_an_argument_of_a_pair(tmp_path: Path) -> None:
+def test_every_key_is_an_argument_of_a_pair(tmp_path):
     more = (
         'damping = "20 mN*s/m"\nlocal_damping = 0.03\nfollower_stiffness = 120\nfollower_damping = -0.01\n'
         'follower_local_damping = "0.04 N*s/m"\nlink_delay = "2 ms"\nlink_delay_back = 0.003\n'
@@ -61,18 +60,18 @@ def test_every_key_is_an_argument_of_a_pair(tmp_path: Path) -> None:
         ("[leeder]\ndamping = 1\n" + COUPLING, 'did you mean "leader"'),
     ],
 )  # fmt: skip
-def test_what_cannot_be_used_is_said(text: str, message: str, tmp_path: Path) -> None:
+def test_what_cannot_be_used_is_said(text, message, tmp_path):
     with pytest.raises(zw.InputError, match=message):
         read(tmp_path, text)
 
 
-def test_a_pair_is_read_alone(tmp_path: Path) -> None:
+def test_a_pair_is_read_alone(tmp_path):
     (tmp_path / "two.toml").write_text(ARMS + COUPLING, encoding="utf-8")
     with pytest.raises(zw.InputError, match="read alone"):
         zw.load("haptic-paddle", tmp_path / "two.toml")
 
 
-def test_compensation_of_friction_is_of_both_sides_unless_told(tmp_path: Path) -> None:
+def test_compensation_of_friction_is_of_both_sides_unless_told(tmp_path):
     """A number that the follower has none of is the leader's; 0 where it has none of that."""
     law = 'compensation_coulomb = "80 mN"\ncompensation_viscous = 0.01\ncompensation_speed = "2 cm/s"\n'
     both = zw.FrictionCompensation(coulomb="0.08", viscous="0.01", speed="0.02")

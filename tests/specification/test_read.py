@@ -40,7 +40,6 @@ def read(tmp_path: Path) -> Load:
 
 
 def message(call: Callable[[], object]) -> str:
-    """The message of the InputError that a call must raise."""
     with pytest.raises(zw.InputError) as caught:
         call()
     text = str(caught.value)
@@ -50,7 +49,6 @@ def message(call: Callable[[], object]) -> str:
 
 
 def outcome(call: Callable[[], object]) -> str:
-    """The message of an InputError, or nothing where all is well."""
     try:
         call()
     except zw.InputError as error:
@@ -58,7 +56,7 @@ def outcome(call: Callable[[], object]) -> str:
     return ""
 
 
-def test_numbers_are_exact(read: Load) -> None:
+def test_numbers_are_exact(read):
     device, wall = (s := read(DEVICE + "resolution = 22.4e-6\n" + WALL)).device, s.environment
     assert device.exact("sample_period") == Fraction(1, 3000)
     assert device.exact("resolution") == Fraction(224, 10**7)
@@ -67,19 +65,19 @@ def test_numbers_are_exact(read: Load) -> None:
     assert wall == zw.Wall(300)
 
 
-def test_one_file_or_two_or_a_catalogue_name(read: Load) -> None:
+def test_one_file_or_two_or_a_catalogue_name(read):
     both = read(DEVICE + WALL)
     assert read(WALL, DEVICE.replace("[device]", '[device]\nname = "file0"')) == both
     paddle = load(["haptic-paddle"], {"stiffness": "0.3 N/mm"})
     assert paddle == Specification(zw.catalogue.device("haptic-paddle"), zw.Wall(300))
 
 
-def test_the_command_line_alone() -> None:
+def test_the_command_line_alone():
     s = load([], {"damping": "0.15", "sample-period": "1 ms", "stiffness": "300", "virtual-damping": "-0.1"})
     assert s == Specification(zw.Device(damping=0.15, rate=1000), zw.Wall(300, -0.1))
 
 
-def test_overrides_replace_the_file(read: Load) -> None:
+def test_overrides_replace_the_file(read):
     text = (
         "[device]\ndamping = 1\nsample_period = 0.001\n"
         '[environment]\ntype = "wall"\nstiffness = 1\ndamping = 2\n'
@@ -93,21 +91,21 @@ def test_overrides_replace_the_file(read: Load) -> None:
     assert alias.environment == zw.Wall(1, 2)
 
 
-def test_a_catalogue_device_as_a_base(read: Load) -> None:
+def test_a_catalogue_device_as_a_base(read):
     device = read('[device]\ncatalogue = "haptic-paddle"\nrate = "5 kHz"\n' + WALL).device
     assert device == zw.catalogue.device("haptic-paddle", rate=5000)
     named = read('[device]\ncatalogue = "phantom"\nname = "ours"\n' + WALL).device
     assert named.name == "ours"
 
 
-def test_intervals(read: Load) -> None:
+def test_intervals(read):
     s = read(DEVICE + 'mass = ["10 g", 0.02]\n' + WALL, resolution="10 .. 20 um", stiffness="100..200")
     assert s.device.mass == zw.Interval(0.01, 0.02)
     assert s.device.resolution == zw.Interval("1e-5", "2e-5")
     assert s.environment == zw.Wall((100, 200))
 
 
-def test_rotary_devices(read: Load) -> None:
+def test_rotary_devices(read):
     wheel = '[device]\ninertia = "100 g*cm^2"\ndamping = "1e-3 N*m*s"\nrate = 1000\ncounts_per_turn = 4096\n'
     s = read(wheel, '[environment]\ntype = "wall"\nstiffness = "2 N*m/rad"\n')
     assert s.device == zw.rotary(inertia=1e-5, damping=1e-3, rate=1000, counts_per_turn=4096, name="file0")
@@ -169,7 +167,7 @@ ENVIRONMENTS: list[tuple[str, Callable[[], Any]]] = [
 
 
 @pytest.mark.parametrize(("text", "expected"), ENVIRONMENTS)
-def test_every_type_of_environment(read: Load, text: str, expected: Callable[[], Any]) -> None:
+def test_every_type_of_environment(read, text, expected):
     assert read(DEVICE, "[environment]\n" + text).environment == expected()
 
 
@@ -177,7 +175,7 @@ WITH_A_ROW = {text.split('"')[1] for text, _ in ENVIRONMENTS}
 
 
 @pytest.mark.parametrize("name", ["wall", *sorted(set(TYPES) - WITH_A_ROW)])
-def test_every_other_type(read: Load, name: str) -> None:
+def test_every_other_type(read, name):
     given = needed(TYPES[name])
     table = "".join(f'{key} = "{value}"\n' for key, value in given.items())
     found = read(DEVICE, f'[environment]\ntype = "{name}"\n{table}').environment
@@ -202,20 +200,20 @@ FILTERS: list[tuple[str, str, Any]] = [
 
 
 @pytest.mark.parametrize(("table", "text", "expected"), FILTERS)
-def test_velocity_filters(read: Load, table: str, text: str, expected: Any) -> None:
+def test_velocity_filters(read, table, text, expected):
     wall = zw.Wall(300, 0.1, expected)
     assert read(DEVICE + WALL + f"damping = 0.1\nvelocity_filter = {table}\n").environment == wall
     assert read(DEVICE + WALL, virtual_damping="0.1", velocity_filter=text).environment == wall
 
 
-def test_a_clamped_law_on_the_command_line() -> None:
+def test_a_clamped_law_on_the_command_line():
     given = {"stiffness": "300", "virtual-damping": "0.1"}
     assert load(["phantom"], {**given, "clamped": "true"}).environment == zw.Wall(300, 0.1, clamped=True)
     assert load(["phantom"], {**given, "clamped": "false"}).environment == zw.Wall(300, 0.1)
     assert "clamped is true or false" in message(lambda: load(["phantom"], {**given, "clamped": "TRUE"}))
 
 
-def test_lists_on_the_command_line(read: Load) -> None:
+def test_lists_on_the_command_line(read):
     s = load(["phantom"], {"type": "pulse-transfer-function", "numerator": "0.1", "denominator": "[1, -0.5]"})
     assert s.environment == zw.PulseTransferFunction([0.1], [1, -0.5])
     points = {"positions": "-1 mm, 0, 2 mm", "forces": "[-1, 0, 0.5 N]"}
@@ -239,7 +237,6 @@ SPRING = '[environment]\ntype = "nonlinear-spring"\n'
 
 
 def bad(device: str, environment: str = WALL) -> str:
-    """A specification whose [device] has these lines."""
     return f"[device]\n{device}\n{environment}"
 
 
@@ -335,7 +332,7 @@ BAD: list[tuple[str | bytes, str]] = [
 
 
 @pytest.mark.parametrize(("content", "part"), BAD, ids=range(len(BAD)))
-def test_slips_in_a_file(read: Load, content: str | bytes, part: str) -> None:
+def test_slips_in_a_file(read, content, part):
     assert part in message(lambda: read(content))
 
 
@@ -348,7 +345,7 @@ def test_slips_in_a_file(read: Load, content: str | bytes, part: str) -> None:
         ("two-link", "an arm of several joints"),
     ],
 )
-def test_what_another_command_reads_is_sent_there(tmp_path: Path, name: str, part: str) -> None:
+def test_what_another_command_reads_is_sent_there(tmp_path, name, part):
     path = tmp_path / name
     if path.suffix:
         path.write_text("<robot/>: 1\n", encoding="utf-8")
@@ -371,11 +368,11 @@ def test_what_another_command_reads_is_sent_there(tmp_path: Path, name: str, par
         ({}, "no environment is given"),
     ],
 )
-def test_slips_on_the_command_line(overrides: dict[str, str], part: str) -> None:
+def test_slips_on_the_command_line(overrides, part):
     assert part in message(lambda: load(["haptic-paddle"], overrides))
 
 
-def test_slips_in_the_sources(tmp_path: Path, read: Load) -> None:
+def test_slips_in_the_sources(tmp_path, read):
     wall = {"stiffness": "1"}
     assert 'did you mean "haptic-paddle"' in message(lambda: load(["haptic-padle"], wall))
     assert "there is no file" in message(lambda: load(["missing.toml"], wall))
@@ -388,7 +385,7 @@ def test_slips_in_the_sources(tmp_path: Path, read: Load) -> None:
     assert "no device is given" in message(lambda: load([], wall))
 
 
-def test_command_line_names_are_not_shared() -> None:
+def test_command_line_names_are_not_shared():
     assert not set(option_keys()) & set(DEVICE_KEYS)
     for row in TYPES.values():
         for key in row.keys.values():
@@ -402,15 +399,13 @@ VALUES = toml_values() | st.sampled_from([1, Decimal("0.5"), "1 ms", [1, 2], *TY
 
 @settings(max_examples=100, deadline=None)
 @given(st.dictionaries(KEYS, VALUES, max_size=6))
-def test_any_device_table_is_a_device_or_an_input_error(values: dict[str, Any]) -> None:
+def test_any_device_table_is_a_device_or_an_input_error(values):
     assert outcome(lambda: build_device(Table("x", {"damping": 1, "rate": 1000, **values}))).isprintable()
 
 
 @settings(max_examples=120, deadline=None)
 @given(st.sampled_from(sorted(TYPES)), st.dictionaries(KEYS, VALUES, max_size=4), st.data())
-def test_any_environment_table_is_one_or_an_input_error(
-    name: str, values: dict[str, Any], data: st.DataObject
-) -> None:
+def test_any_environment_table_is_one_or_an_input_error(name, values, data):
     own = {key: data.draw(VALUES) for key in TYPES[name].keys}
     assert outcome(lambda: build_environment(Table("x", {"type": name, **own}), "linear")).isprintable()
     assert outcome(lambda: build_environment(Table("x", {"type": name, **values}), "rotary")).isprintable()
@@ -418,7 +413,7 @@ def test_any_environment_table_is_one_or_an_input_error(
 
 @settings(max_examples=100, deadline=None)
 @given(st.dictionaries(KEYS, texts(), max_size=5), st.sampled_from([[], ["haptic-paddle"], ["phantom"]]))
-def test_any_command_line_is_read_or_an_input_error(overrides: dict[str, str], sources: list[str]) -> None:
+def test_any_command_line_is_read_or_an_input_error(overrides, sources):
     assert outcome(lambda: load(sources, overrides)).isprintable()
 
 
@@ -430,7 +425,7 @@ PIECES = st.sampled_from([
 
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.binary(max_size=200) | st.lists(PIECES | texts(), max_size=12).map(lambda p: "".join(p).encode()))
-def test_any_file_is_read_or_an_input_error(tmp_path: Path, content: bytes) -> None:
+def test_any_file_is_read_or_an_input_error(tmp_path, content):
     path = tmp_path / "fuzz.toml"
     path.write_bytes(content)
     assert outcome(lambda: load([path], {})).isprintable()
@@ -445,9 +440,7 @@ def test_any_file_is_read_or_an_input_error(tmp_path: Path, content: bytes) -> N
         ("300", "linear", 1.0),
     ],
 )
-def test_a_question_in_angles_keeps_a_device_about_its_axis(
-    stiffness: str, motion: str, friction: float, tmp_path: Path
-) -> None:
+def test_a_question_in_angles_keeps_a_device_about_its_axis(stiffness, motion, friction, tmp_path):
     """The radius says where one looks: at the hand in newtons, about the axis where one asks in angles."""
     file = tmp_path / "wheel.toml"
     friction_row = 'damping = "0.02 N*m*s/rad"\ncoulomb_friction = "0.14 N*m"'

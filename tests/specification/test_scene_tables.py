@@ -1,9 +1,5 @@
 """A scene in a file: what it may say, and what is said of a mistake."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import pytest
 
 import zwidth as zw
@@ -28,18 +24,18 @@ SPRING = {"type": "spring", "first": "handle", "second": "ground", "stiffness": 
         ([{**SPRING, "first": "ground"}], "both ends"),
     ],
 )
-def test_a_mistake_is_named_with_its_place(elements: object, says: str) -> None:
+def test_a_mistake_is_named_with_its_place(elements, says):
     with pytest.raises(InputError, match=says):
         build_environment(Table("[environment]", {"type": "scene", "elements": elements}), "linear")
 
 
-def test_a_rotary_device_has_rotary_scenes() -> None:
+def test_a_rotary_device_has_rotary_scenes():
     element = {**SPRING, "stiffness": "2 N*m/rad"}
     found = build_environment(Table("x", {"type": "scene", "elements": [element]}), "rotary")
     assert found == zw.Scene([zw.scene.Spring("handle", "ground", 2)])
 
 
-def test_every_element_of_the_package_has_a_name() -> None:
+def test_every_element_of_the_package_has_a_name():
     from zwidth.model import scene
 
     made = {kind.made for kind in ELEMENTS.values()}
@@ -71,7 +67,7 @@ elements = [
 """
 
 
-def test_a_file_is_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_is_checked(tmp_path, capsys):
     from zwidth.cli.main import main
 
     path = tmp_path / "world.toml"

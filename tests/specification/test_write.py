@@ -75,7 +75,6 @@ CHOSEN = {
 
 
 def same(device: zw.Device, environment: object) -> None:
-    """What is read of what was written is the same."""
     found = parsed(written(device, environment))
     assert found.device.parameters() == device.parameters()
     assert (found.device.motion, found.device.assumed) == (device.motion, device.assumed)
@@ -83,30 +82,30 @@ def same(device: zw.Device, environment: object) -> None:
 
 
 @pytest.mark.parametrize("name", sorted({*TYPES, *ENVIRONMENTS}))
-def test_every_environment_is_read_as_it_was(name: str) -> None:
+def test_every_environment_is_read_as_it_was(name):
     environment = ENVIRONMENTS.get(name) or TYPES[name].made(**needed(TYPES[name]))
     same(DEVICE, environment)
     assert parsed(written(DEVICE, environment)).device.name == DEVICE.name
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_every_law_is_read_as_it_was(name: str) -> None:
+def test_every_law_is_read_as_it_was(name):
     chosen = CHOSEN.get(name) or needed(LAWS[name])
     same(DEVICE, zw.render(zw.Wall(300), LAWS[name].made(**chosen)))
 
 
-def test_no_limit_is_a_word() -> None:
+def test_no_limit_is_a_word():
     law = rendering.PassivityController(observer="past", largest_damping="unlimited")
     assert 'largest_damping = "unlimited"' in written(DEVICE, zw.render(zw.Wall(300), law))
     same(DEVICE, zw.render(zw.Wall(300), law))
 
 
-def test_laws_keep_their_order() -> None:
+def test_laws_keep_their_order():
     laws = rendering.Saturation("0.5"), rendering.SlewLimit(100), rendering.Saturation("0.25")
     same(DEVICE, zw.render(zw.VirtualCoupling(1000, 2, zw.Wall(100)), *laws))
 
 
-def test_a_wheel_is_written_in_its_own_units() -> None:
+def test_a_wheel_is_written_in_its_own_units():
     """N·m and rad, an inertia in the place of a mass."""
     wheel = zw.rotary(inertia="0.01", damping="0.02", counts_per_turn=65536, rate=1000, delay="0.002")
     same(wheel, zw.render(zw.Wall(30, damping="0.1"), rendering.SlewLimit(50)))
@@ -115,7 +114,7 @@ def test_a_wheel_is_written_in_its_own_units() -> None:
     assert 'rate = "50 N*m/s"' in text
 
 
-def test_what_has_no_words_is_refused() -> None:
+def test_what_has_no_words_is_refused():
     class Own(zw.Wall):
         """Somebody's wall."""
 
@@ -133,6 +132,6 @@ def test_what_has_no_words_is_refused() -> None:
         ("[operator]\ntype = 'finger'", "zwidth simulate"),
     ],
 )
-def test_what_is_no_loop_is_refused(text: str, said: str) -> None:
+def test_what_is_no_loop_is_refused(text, said):
     with pytest.raises(zw.InputError, match=said):
         parsed(text, "here")
