@@ -54,13 +54,6 @@ def test_stiction_and_bends():
     assert "last chord" in STRIBECK.assumption
 
 
-def test_a_straight_curve_is_its_own_model():
-    """f_c + b v, with stiction above or without."""
-    for stiction in (0.12, 0.5):
-        curve = zw.FrictionCurve([0, 1, 2, 3], [stiction, 0.27, 0.42, 0.57])
-        assert curve.minorants()[-1] == (zw.Exact("0.12"), zw.Exact("0.15"))
-
-
 @settings(max_examples=80)
 @given(curves())
 def test_corners_lie_below_and_cannot_grow(curve):

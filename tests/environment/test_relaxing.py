@@ -40,16 +40,6 @@ def test_relaxation_and_creep_are_inverse_laplace_transforms(solid, time):
     assert creep(solid, time) == pytest.approx(float(position), rel=1e-11)
 
 
-def test_creep_of_the_standard_linear_solid_has_its_closed_form():
-    """The retardation time is η1 (μ0 + μ1)/(μ0 μ1), longer than the relaxation time η1/μ1."""
-    mu0, mu1, eta = 90.0, 41.0, 1.7
-    retardation = eta * (mu0 + mu1) / (mu0 * mu1)
-    t = np.linspace(0, 1, 40)
-    closed = 1 / mu0 - mu1 / (mu0 * (mu0 + mu1)) * np.exp(-t / retardation)
-    assert creep(zw.StandardLinearSolid(mu0, mu1, eta), t) == pytest.approx(closed, rel=1e-14)
-    assert retardation > eta / mu1
-
-
 def test_before_the_step_there_is_nothing():
     """Zero for t < 0; the jump is at 0, after which the solid is at its stiffest."""
     solid = zw.StandardLinearSolid(90, 41, 1.7)

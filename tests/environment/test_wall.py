@@ -25,11 +25,6 @@ def test_a_number_is_one_or_a_text_with_its_unit(given):
     assert wall == zw.Wall(stiffness=300)
 
 
-@pytest.mark.parametrize("given", [(300, 400), "300 .. 400 N/m", ["0.3 N/mm", 400], zw.Interval(300, 400)])
-def test_a_number_may_be_an_interval(given):
-    assert zw.Wall(given).stiffness == zw.Interval(300, 400)
-
-
 def test_every_text_with_a_unit_is_read_where_a_number_is():
     assert zw.Maxwell("0.7 N/mm", "5 N*s/m") == zw.Maxwell(700, 5)
     assert zw.GeneralizedMaxwell(1, [("0.7 N/mm", "5 N*s/m")]) == zw.GeneralizedMaxwell(1, [(700, 5)])

@@ -96,46 +96,39 @@ def test_loops_of_every_other_kind_have_the_bits_of_each_alone(name):
         _same(batch.sel(chosen), zw.simulate(*parts.values(), 0.3))
 
 
-def test_threads_do_not_change_a_bit():
-    vary = {"stiffness": np.linspace(50.0, 1500.0, 3 * BLOCK + 1)}
-    one, three = (
-        zw.simulation.simulate_batch(PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 0.3, vary=vary, workers=n)
-        for n in (1, 3)
-    )
-    assert one.identical(three)
+ALONE = "simulate each value on its own"
+TABLE = zw.NonlinearSpring([0, 0.01], [0, 3])
 
 
 @pytest.mark.parametrize(
-    ("vary", "says"),
+    ("vary", "says", "options"),
     [
-        ({}, "vary needs"),
-        ({"stiffness": []}, "vary needs"),
-        ({"stifness": [1.0]}, "no parameter 'stifness'"),
-        ({"damping": [0.1]}, "ambiguous"),
-        ({"device.stiffness": [1.0]}, "no parameter 'device.stiffness'"),
-        ({"environment.stiffness": [-1.0]}, "stiffness must be"),
-        ({"device.mass": [0.0]}, "mass must be > 0"),
-        ({"stiffness": [[100.0, 200.0], [300.0, 400.0]]}, "'stiffness' is varied over single values"),
-        ({"stiffness": [[100.0], [300.0, 400.0]]}, "'stiffness' is varied over single values"),
-        ({"stiffness": {100.0, 200.0}}, "'stiffness' is varied over single values"),
+        ({}, "vary needs", {}),
+        ({"stiffness": []}, "vary needs", {}),
+        ({"stifness": [1.0]}, "no parameter 'stifness'", {}),
+        ({"damping": [0.1]}, "ambiguous", {}),
+        ({"device.stiffness": [1.0]}, "no parameter 'device.stiffness'", {}),
+        ({"environment.stiffness": [-1.0]}, "stiffness must be", {}),
+        ({"device.mass": [0.0]}, "mass must be > 0", {}),
+        *(
+            ({"stiffness": values}, "'stiffness' is varied over single values", {})
+            for values in ([[100.0, 200.0], [300.0, 400.0]], [[100.0], [300.0, 400.0]], {100.0, 200.0})
+        ),
+        ({"stiffness": [1, 2], "force": [1, 2, 3]}, "stiffness 2, force 3", {"together": True}),
+        (
+            {"branches": [[(800, 3)], [(200, 20), (50, 1)]]},
+            ALONE,
+            {"environment": zw.GeneralizedMaxwell(0, branches=[(800, 3)])},
+        ),
+        ({"positions": [[0, 0.01], [0, 0.02]]}, ALONE, {"environment": TABLE}),
+        ({"forces": np.array([[0, 3], [0, 4]])}, ALONE, {"environment": TABLE}),
     ],
 )
-def test_what_cannot_be_varied_is_refused(vary, says):
+def test_what_cannot_be_varied_is_refused(vary, says, options):
+    given = {"environment": zw.Wall(300.0), **options}
+    hand = zw.operators.ConstantForce(1.0) if "together" in options else zw.operators.Finger()
     with pytest.raises(zw.InputError, match=says):
-        zw.simulation.simulate_batch(PADDLE, zw.Wall(300.0), zw.operators.Finger(), 0.1, vary=vary)
-
-
-@pytest.mark.parametrize(
-    ("environment", "vary"),
-    [
-        (zw.GeneralizedMaxwell(0, branches=[(800, 3)]), {"branches": [[(800, 3)], [(200, 20), (50, 1)]]}),
-        (zw.NonlinearSpring([0, 0.01], [0, 3]), {"positions": [[0, 0.01], [0, 0.02]]}),
-        (zw.NonlinearSpring([0, 0.01], [0, 3]), {"forces": np.array([[0, 3], [0, 4]])}),
-    ],
-)
-def test_a_parameter_that_is_a_list_is_not_varied(environment, vary):
-    with pytest.raises(zw.InputError, match="simulate each value on its own"):
-        zw.simulation.simulate_batch(PADDLE, environment, zw.operators.Finger(), 0.1, vary=vary)
+        zw.simulation.simulate_batch(device=PADDLE, operator=hand, duration=0.1, vary=vary, **given)
 
 
 def test_free_loops_at_the_edge_of_friction_have_the_bits_of_each_alone():
@@ -156,14 +149,6 @@ def test_free_loops_at_the_edge_of_friction_have_the_bits_of_each_alone():
         _same(batch.isel(case=i), zw.simulate(own, wall, push, 0.003, **start))
         general = zw.simulate(own, wall, push, 0.003, points_per_sample=2, **start)
         assert float(general.velocity[-1]) == pytest.approx(float(batch.velocity[i]), rel=1e-12, abs=1e-17)
-
-
-def test_values_varied_together_are_equally_many():
-    with pytest.raises(zw.InputError, match="stiffness 2, force 3"):
-        zw.simulation.simulate_batch(
-            PADDLE, zw.Wall(1.0), zw.operators.ConstantForce(1.0), 0.1,
-            vary={"stiffness": [1, 2], "force": [1, 2, 3]}, together=True,
-        )  # fmt: skip
 
 
 def test_ctrl_c_keeps_the_loops_that_are_finished():

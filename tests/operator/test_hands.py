@@ -50,17 +50,6 @@ def test_a_finger_approaches_and_stops_where_it_presses():
     assert finger.initial_position == -0.03
 
 
-def test_a_finger_presses_with_its_force_on_a_rigid_wall():
-    """k (x_a − 0) = F in the end; on a wall of stiffness K the balance k(x_a − x) = K x gives F K/(K + k)."""
-    finger = Finger(stiffness=420, force=2.3)
-    anchor = finger.signals(np.arange(1001) * 0.001).anchor
-    k, end = finger.hand.stiffness, float(anchor[-1])
-    assert k * end == pytest.approx(2.3, rel=1e-15)
-    wall = 300.0
-    depth = k * end / (k + wall)
-    assert wall * depth == pytest.approx(2.3 * wall / (wall + 420), rel=1e-14)
-
-
 def test_the_finger_has_the_published_numbers_and_the_chosen_damping_ratio():
     """0.006 kg and 500 N/m (Gillespie & Cutkosky 1996); the damping is half of critical."""
     mass, stiffness, damping = Finger().hand

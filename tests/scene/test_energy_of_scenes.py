@@ -129,16 +129,6 @@ def test_points_on_a_line_are_a_spring():
     assert np.abs(linear - through_points).max() < 1e-12
 
 
-@seeds(15)
-def test_forces_of_several_contacts_and_frictions_answer_their_laws(seed):
-    scene = random_scene(seed, 30, ("contact", "friction", "points", "mass", "damper"))
-    run = SceneRun(scene, 0.001)
-    x = motion(seed, 200)
-    run.follow(x)
-    account = run.account()
-    assert abs(account.attrs["left_over_J"]) <= 1e-12 * float(np.abs(account.work).sum())
-
-
 def test_frictions_in_a_row_slide_where_the_weakest_gives_way():
     """A drag of some micrometres against 2 kN: the force is the weakest one's, at once and to rounding."""
     scene = zw.Scene(
