@@ -1,4 +1,4 @@
-"""Devices: valid, exact, what was assumed of them; at a handle; actuators by Abbott & Okamura 2005, section IV-B."""
+"""Devices: valid, exact, what was assumed of them; at a handle; actuators by Abbott & Okamura 2005, IV-B."""
 
 from __future__ import annotations
 

@@ -66,21 +66,13 @@ def test_no_number_stays_none():
     assert isnan(power(-2.5, 0.3))
 
 
-@pytest.mark.parametrize("n", [0.25, 0.5, 1.0, 1.5, 2.0, 2.2, 10.0])
-def test_powers_at_the_ends(n):
-    """0ⁿ = 0, 1ⁿ = 1, ∞ⁿ = ∞."""
-    assert (power(0.0, n), power(1.0, n), power(inf, n)) == (0.0, 1.0, inf)
-
-
-def test_powers_that_leave_the_range():
-    """They are ∞ above it and 0 below."""
-    assert (power(1e6, 60.0), power(1e-6, 60.0)) == (inf, 0.0)
-    assert (power(1e300, 1.5), power(1e-300, 1.5)) == (inf, 0.0)
-    assert (power(1e300, 2.0), power(1e-300, 2.0)) == (inf, 0.0)
+def test_powers_that_are_exact():
+    """0ⁿ = 0, 1ⁿ = 1, ∞ⁿ = ∞; beyond the range ∞ and 0; x, x², √x are those of the machine."""
+    for n in (0.25, 0.5, 1.0, 1.5, 2.0, 2.2, 10.0):
+        assert (power(0.0, n), power(1.0, n), power(inf, n)) == (0.0, 1.0, inf)
+    for x, n in ((1e6, 60.0), (1e300, 1.5), (1e300, 2.0)):
+        assert power(x, n) == inf
+        assert power(1e-6 if x == 1e6 else 1e-300, n) == 0.0
     assert (power(0.0, -0.5), power(inf, -0.5), power(7.3, 0.0)) == (inf, 0.0, 1.0)
-
-
-def test_first_powers_and_squares_round_once():
-    """x, x², √x are those of the machine."""
     for x in (1e-300, 3.7e-5, 0.1, 0.7, 1.1, 123.456):
         assert (power(x, 1.0), power(x, 2.0), power(x, 0.5)) == (x, x * x, x**0.5)

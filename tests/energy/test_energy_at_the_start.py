@@ -19,19 +19,16 @@ def passive_loop(random, kind):
     count = float(random.choice([0.0, 1e-5, 1e-4]))
     k = float(10 ** random.uniform(1, 3.3))
     slack = 1 + float(random.choice([1e-9, 0.05]))
-    if kind == "spring":
-        law, need, steepest = zw.PulseTransferFunction([k], [1]), (delay + 0.5) * k * period, k
-    elif kind == "wall":
-        law, need, steepest = zw.Wall(k), (delay + 0.5) * k * period, k
-    elif kind == "detents":
+    need, steepest = (delay + 0.5) * k * period, k
+    if kind == "detents":
         pitch = float(random.uniform(0.002, 0.02))
         law = zw.NonlinearSpring.detents(int(random.integers(1, 6)), pitch, k * pitch / 4)
-        need, steepest = (delay + 0.5) * k * period, k
-    else:
+    elif kind == "solid":
         pole, part = float(random.uniform(0, 0.99)), float(random.uniform(0, 3))
         law = zw.PulseTransferFunction([k * (1 + part), -k * (pole + part)], [1, -pole])
-        need = None
-        steepest = k * (1 + part) * (1 + (pole + part) / (1 - pole))
+        need, steepest = None, k * (1 + part) * (1 + (pole + part) / (1 - pole))
+    else:
+        law = zw.Wall(k) if kind == "wall" else zw.PulseTransferFunction([k], [1])
     device = zw.Device(
         mass=float(10 ** random.uniform(-2, 0)),
         damping=0 if need is None else need * slack,

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from tempting import device, energy_in, follow, tempt, wall
+from prescribed import device, energy_in, follow, tempt, wall
 
 import zwidth as zw
 from zwidth.model.rendering import ForceBounding, PassiveLeap

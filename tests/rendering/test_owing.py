@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tempting import device, energy_in, follow, tempt, wall
+from prescribed import device, energy_in, follow, tempt, wall
 
 import zwidth as zw
 from zwidth.model.rendering import EnergyBounding, EnergyTank, PassiveLeap

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from prescribed import wandering
-from tempting import follow
+from prescribed import follow, wandering
 
 import zwidth as zw
 from zwidth.model.rendering import PassivityController

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from prescribed import DEVICE, commands, wandering
-from tempting import device, follow
+from prescribed import DEVICE, commands, device, follow, wandering
 
 import zwidth as zw
 from zwidth.model import rendering

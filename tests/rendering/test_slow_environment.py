@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from tempting import T, device, energy_in, follow, tempt, wall
+from prescribed import T, device, energy_in, follow, tempt, wall
 
 import zwidth as zw
 from zwidth.model.rendering import DualRate, EnergyBounding, ForceBounding, Held

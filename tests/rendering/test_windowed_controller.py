@@ -4,8 +4,7 @@ from collections import deque
 
 import numpy as np
 import pytest
-from prescribed import wandering
-from tempting import device, follow
+from prescribed import device, follow, wandering
 
 import zwidth as zw
 from zwidth.model.rendering import Hysteresis, PassivityController, WindowedController

@@ -3,8 +3,7 @@
 import control
 import numpy as np
 import pytest
-from prescribed import DEVICE, PERIOD, touched
-from tempting import device
+from prescribed import DEVICE, PERIOD, device, touched
 
 import zwidth as zw
 from zwidth.model.rendering import (

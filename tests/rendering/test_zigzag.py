@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tempting import device as loop
-from tempting import follow
+from prescribed import device as loop
+from prescribed import follow
 
 import zwidth as zw
 from zwidth.model.rendering import PassivityController, WindowedController

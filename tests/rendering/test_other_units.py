@@ -4,8 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from prescribed import wandering
-from tempting import FORCE, LENGTH, TIME, device, same_in_other_units, tempt, wall
+from prescribed import device, follow, tempt, wall, wandering
 
 import zwidth as zw
 from zwidth.model.rendering import (
@@ -19,6 +18,9 @@ from zwidth.model.rendering import (
     RateTerm,
     WindowedController,
 )
+
+LENGTH, FORCE, TIME = Fraction(2**9), Fraction(1, 2**5), Fraction(2**3)
+"""Powers of two: every float of the loop is the same but for its exponent."""
 
 STIFF, DAMP, ENERGY = FORCE / LENGTH, FORCE * TIME / LENGTH, FORCE * LENGTH
 SCALED = {
@@ -50,11 +52,27 @@ LAWS = [
 ]
 
 
+def scaled(device):
+    """The device with metre, newton and second worth 1/LENGTH, 1/FORCE, 1/TIME of them."""
+    scales = {
+        "mass": DAMP * TIME,
+        "damping": DAMP,
+        "coulomb_friction": FORCE,
+        "resolution": LENGTH,
+        "sample_period": TIME,
+        "force_limit": FORCE,
+    }
+    return zw.Device(**{key: device.exact(key) * scale for key, scale in scales.items()})
+
+
 @pytest.mark.parametrize(("law", "options"), LAWS)
 @pytest.mark.parametrize(("friction", "resolution"), [(0, 0), ("0.0625", "0.00005")])
 def test_units_do_not_matter(law, options, friction, resolution):
     paddle = device(friction=friction, resolution=resolution, force_limit=4)
     there = {k: Fraction(v) * SCALED[k] if k in SCALED else v for k, v in options.items()}
     positions = np.concatenate([tempt(wall(2048), paddle, 300, 3)[0], wandering(300)])
-    walls = zw.Wall(2048), zw.Wall(2048 * STIFF)
-    assert same_in_other_units(paddle, law(**options), law(**there), *walls, positions)
+    here = follow(paddle, zw.render(zw.Wall(2048), law(**options)), positions)
+    elsewhere = zw.render(zw.Wall(2048 * STIFF), law(**there))
+    force = follow(scaled(paddle), elsewhere, positions * float(LENGTH)).commanded_force.to_numpy()
+    assert np.array_equal(here.commanded_force.to_numpy() * float(FORCE), force)
+    assert np.abs(force).max() > 0
