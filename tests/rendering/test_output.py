@@ -135,15 +135,6 @@ def test_without_a_surface_it_acts_everywhere():
     assert force == pytest.approx(np.array(expected), abs=1e-12)
 
 
-@pytest.mark.parametrize("speed", [0.02, 0.1])
-def test_the_force_depends_on_the_way_and_not_on_the_speed(speed):
-    x = np.concatenate((np.arange(1, 101), np.arange(99, 0, -1))) * 1e-4
-    slow = np.repeat(x, round(0.1 / speed))
-    _, quick_force = commands(x, Hysteresis("0.3", 900), device=IDEAL)
-    _, slow_force = commands(slow, Hysteresis("0.3", 900), device=IDEAL)
-    assert np.unique(np.round(slow_force, 9)) == pytest.approx(np.unique(np.round(quick_force, 9)))
-
-
 def work_out(stiffness, speed, depth, *stages):
     """Energy that a hand puts in on the way to a depth and back, behind a hold, friction aside [J]."""
     x = np.arange(0, depth, speed * PERIOD)

@@ -201,11 +201,8 @@ def test_the_same_zigzag_without_a_limit_has_no_bound():
 @given(forces, st.floats(0.002, 1), st.floats(0.0001, 0.5), zero_or(0.001, 1), zero_or(0.01, 500))
 def test_capped_before_a_soft_damper_no_hand_gains(newtons, mass, mobility, damping, stiffness):
     """1/b_s = T/2M + β_max in series with the source: W_h + Σ T f²/b_s ≥ 0 at every sample."""
-    trace = pushed(
-        zw.simulation.VirtualBody(mass, damping, stiffness),
-        newtons,
-        ParallelController(largest_mobility=mobility),
-    )
+    body = zw.simulation.VirtualBody(mass, damping, stiffness)
+    trace = pushed(body, newtons, ParallelController(largest_mobility=mobility))
     softness = T / (2 * mass) + mobility
     total = trace.hand_work.values[1:] + softness * T * np.cumsum(newtons**2)
     assert (total >= -1e-12 * np.abs(total).max()).all()

@@ -48,15 +48,6 @@ def assert_same(law, reference, tolerance=1e-9, samples=100):
     assert np.sum(np.diff(np.sign(position)) != 0) >= 4  # contact is made and broken
 
 
-def test_half_a_sample_is_virtual_damping():
-    """Extrapolated by ½ inside a wall K: the wall K with B = KT/2."""
-    ahead = simulated(zw.render(zw.Wall(731), Extrapolation()), 0.2, start=0.002)
-    damped = simulated(zw.Wall(731, 731 * T / 2), 0.2, start=0.002)
-    assert np.min(ahead[0]) > 0
-    assert ahead[0] == pytest.approx(damped[0], rel=1e-12)
-    assert ahead[2] == pytest.approx(damped[2], rel=1e-11)
-
-
 def test_extrapolations_in_a_row():
     """Each extrapolates what the one before it gives; the surface is where the last says."""
     x, _, f = simulated(zw.render(zw.Wall(731), Extrapolation(samples="0.3"), Extrapolation(samples="0.9")))

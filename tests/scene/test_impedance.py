@@ -111,20 +111,6 @@ def test_a_chain_of_a_hundred_masses_swings_as_its_modes_do():
     assert np.abs(error).max() <= 1e-11 * np.abs(modal).max()
 
 
-def test_it_converges_with_the_square_of_the_step():
-    """Mass on a spring pulled at constant speed: x − y = v sin(ω t)/ω, the force K times that."""
-    k, m, v, end = 390.0, 0.1, 0.2, 0.4
-    omega = np.sqrt(k / m)
-    errors = []
-    for steps in (200, 400, 800):
-        run = SceneRun(zw.Scene([Spring("handle", "m", k), Mass("m", "0.1")]), Fraction(str(end)) / steps)
-        forces = run.follow(v * end * np.arange(1, steps + 1) / steps)
-        middle = (np.arange(steps) + 0.5) * end / steps
-        errors.append(np.abs(forces - k * v * np.sin(omega * middle) / omega).max())
-    assert errors[0] / errors[1] == pytest.approx(4, rel=0.05)
-    assert errors[1] / errors[2] == pytest.approx(4, rel=0.05)
-
-
 def test_levers_may_close_a_loop():
     """Ties that agree are one tie; ties that contradict each other hold the node."""
     body = [

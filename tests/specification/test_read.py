@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from needed import needed
 from strategies import texts, toml_values
 
 import zwidth as zw
+from zwidth.model.kind import Kind
 from zwidth.model.specification.environments import TYPES, build_environment, option_keys
 from zwidth.model.specification.read import DEVICE_KEYS, LARGEST_FILE, Specification, build_device, load
 from zwidth.model.specification.table import Table
@@ -168,6 +168,16 @@ ENVIRONMENTS: list[tuple[str, Callable[[], Any]]] = [
 @pytest.mark.parametrize(("text", "expected"), ENVIRONMENTS)
 def test_every_type_of_environment(read, text, expected):
     assert read(DEVICE, "[environment]\n" + text).environment == expected()
+
+
+def needed(kind: Kind) -> dict[str, str]:
+    """A number with its unit for each key that has no default; what is more than numbers needs an example."""
+    keys = {key: own for key, own in kind.keys.items() if own.required}
+    assert all(own.is_number for own in keys.values()), f"give an example of {kind.class_name}"
+    return {
+        key: f"{value} {own.unit_for('linear')}".removesuffix(" 1")
+        for value, (key, own) in enumerate(keys.items(), start=2)
+    }
 
 
 WITH_A_ROW = {text.split('"')[1] for text, _ in ENVIRONMENTS}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
-from needed import needed
+from test_read import needed
 
 import zwidth as zw
 from zwidth.model import rendering, scene

@@ -1,7 +1,8 @@
-"""Each law in the simulator: its commands sample by sample, its ledger; a clamped one never pulls."""
+"""Each law in the simulator, scenes too: commands sample by sample, ledger; a clamped one never pulls."""
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import log1p
 
 import numpy as np
@@ -9,10 +10,14 @@ import pytest
 import scipy.signal
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from random_scenes import LINEAR, random_scene
 from scipy.optimize import brentq
+from strategies import seeds
 
 import zwidth as zw
+from zwidth import InputError
 from zwidth.loop.setup import prepare
+from zwidth.model.scene import Contact, CoulombFriction, Damper, Mass, SceneRun, Spring
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 IDEAL = zw.amplifiers.Ideal()
@@ -30,7 +35,7 @@ def commands(law: object, positions, **device) -> np.ndarray:
     return moved(law, np.asarray(positions), **device).commanded_force.values
 
 
-LINEAR = {
+LAWS = {
     "damped wall": zw.Wall(300.0, damping=2.0),
     "negative damping": zw.Wall(300.0, damping=-2.0),
     "window": zw.Wall(300.0, damping=2.0, velocity_filter=zw.rendering.Window(5)),
@@ -48,33 +53,33 @@ LINEAR = {
     "coupling": zw.VirtualCoupling(500.0, 0.5, zw.Wall(2000.0)),
     "transfer function": zw.PulseTransferFunction([3.0, -1.0, 0.2], [1.0, -0.5, 0.06]),
 }
-CLAMPABLE = list(LINEAR)[:-2]
+CLAMPABLE = list(LAWS)[:-2]
 """The others have no such keyword."""
 
 
-@pytest.mark.parametrize("name", LINEAR)
+@pytest.mark.parametrize("name", LAWS)
 def test_each_law_is_run_as_its_pulse_transfer_function_says(name):
     """In contact, from rest at the surface, the commands are those of scipy's lfilter."""
     x = np.abs(np.cumsum(np.random.default_rng(3).normal(size=400))) * 1e-4 + 1e-5
     x[0] = 0.0
-    h = LINEAR[name].pulse_transfer_function(zw.Exact("0.002").fraction)
+    h = LAWS[name].pulse_transfer_function(zw.Exact("0.002").fraction)
     b, a = [float(c) for c in h.numerator], [float(c) for c in h.denominator]
     b = [0.0] * (len(a) - len(b)) + b
     expected = scipy.signal.lfilter(b, a, x)
-    assert np.abs(commands(LINEAR[name], x) - expected)[1:].max() < 1e-9 * np.abs(expected).max()
+    assert np.abs(commands(LAWS[name], x) - expected)[1:].max() < 1e-9 * np.abs(expected).max()
 
 
 def test_a_wall_pushes_inside_only_and_its_estimator_runs_outside_too():
     """f = K x + B v for x > 0; at entry v is the difference to the position outside."""
     x = [-2e-3, -1e-3, 1e-3, 2e-3, 0.0, -1e-3]
     expected = [0.0, 0.0, 300e-3 + 2.0 * 2e-3 / 0.002, 600e-3 + 2.0 * 1e-3 / 0.002, 0.0, 0.0]
-    assert commands(LINEAR["damped wall"], x) == pytest.approx(expected, abs=1e-12)
+    assert commands(LAWS["damped wall"], x) == pytest.approx(expected, abs=1e-12)
 
 
 def test_a_solid_feels_the_penetration_only():
     """A viscoelastic solid that is left relaxes; it does not follow the hand outside."""
     x = np.array([-5e-3, -1e-3, 1e-3, 2e-3, -4e-3, -4e-3, 1e-3])
-    solid = LINEAR["standard linear solid"]
+    solid = LAWS["standard linear solid"]
     inside, got = commands(solid, np.maximum(x, 0.0)), commands(solid, x)
     assert got[x > 0] == pytest.approx(inside[x > 0], abs=1e-12)
     assert (got[x <= 0] == 0.0).all()
@@ -83,14 +88,14 @@ def test_a_solid_feels_the_penetration_only():
 @pytest.mark.parametrize(("name", "force"), [("window", 0.45), ("Prony", 0.03)])
 def test_a_law_begins_at_rest_where_the_hand_is(name, force):
     """Held still 1.5 mm inside, the force is K x from the first sample on."""
-    assert commands(LINEAR[name], np.full(20, 1.5e-3)) == pytest.approx(np.full(20, force), abs=1e-12)
+    assert commands(LAWS[name], np.full(20, 1.5e-3)) == pytest.approx(np.full(20, force), abs=1e-12)
 
 
 @pytest.mark.parametrize("resolution", [0.0, 1e-4])
 @pytest.mark.parametrize("name", CLAMPABLE)
 def test_a_clamped_law_commands_the_positive_part_of_the_law(name, resolution):
     """Sample by sample, in and out of contact; the memory is that of the law without a clamp."""
-    law, steps = LINEAR[name], np.random.default_rng(7).normal(size=600)
+    law, steps = LAWS[name], np.random.default_rng(7).normal(size=600)
     motion = 1e-3 + 4e-3 * np.sin(np.arange(600) / 20) + 2e-4 * np.cumsum(steps)
     whole = commands(law, motion, resolution=resolution)
     assert whole.min() < 0
@@ -99,7 +104,7 @@ def test_a_clamped_law_commands_the_positive_part_of_the_law(name, resolution):
 
 @pytest.mark.parametrize("name", CLAMPABLE)
 def test_the_ledger_of_a_clamped_law_closes_and_no_sample_pulls(name):
-    trace = zw.simulate(PADDLE, LINEAR[name].replace(clamped=True), DOWEL, 0.4)
+    trace = zw.simulate(PADDLE, LAWS[name].replace(clamped=True), DOWEL, 0.4)
     assert trace.zwidth.energy.closes
     assert float(trace.actuator_force.min()) >= 0
     assert "never pulls" in trace.attrs["environment"]
@@ -224,3 +229,81 @@ def test_the_ledger_closes(name, hand):
     trace = zw.simulate(device, law, hand, 0.4, initial_position=-2e-3, points_per_sample=3)
     assert trace.zwidth.energy.closes
     assert trace.attrs["environment"] == law.describe()
+
+
+DEVICE = zw.Device(mass="0.1", damping="0.5", rate=1000, resolution=0)
+HAND = zw.operators.Finger()
+
+
+@seeds(8)
+def test_a_linear_scene_is_simulated_as_its_transfer_function(seed):
+    scene = random_scene(seed, 3 + seed % 5, LINEAR)
+    law = zw.VirtualCoupling(400, "0.1", scene)
+    h = law.pulse_transfer_function(DEVICE.exact("sample_period"))
+    stepped = zw.simulate(DEVICE, law, HAND, "0.3", initial_position=0)
+    by_filter = zw.PulseTransferFunction(*h)
+    filtered = zw.simulate(DEVICE, by_filter, HAND, "0.3", initial_position=0)
+    apart = np.abs(stepped.commanded_force - filtered.commanded_force).max()
+    assert float(apart) <= 1e-7 * float(np.abs(stepped.commanded_force).max())
+
+
+def test_the_energy_of_a_touch_balances_with_contact_and_friction():
+    scene = zw.Scene(
+        [
+            Mass("handle", "0.05"),
+            Contact("handle", "ground", 2000, 1, "0.005"),
+            CoulombFriction("handle", "ground", "0.1"),
+        ]
+    )
+    trace = zw.simulate(DEVICE, zw.VirtualCoupling(500, "0.05", scene), HAND, "0.5")
+    assert float(trace.commanded_force.max()) > 0.2
+    assert trace.attrs["stored_at_start_J"] == 0
+    assert trace.zwidth.energy.extracted == 0
+
+
+@seeds(15)
+def test_no_hand_gains_at_the_limit_of_the_coupling(seed):
+    """Random scenes, b = K T/2 + B exactly: more than was in the scene at first."""
+    rng = np.random.default_rng(seed)
+    k, damping, t = 10 ** rng.uniform(1, 3.5), 10 ** rng.uniform(-3, 0.5), 1e-3
+    inside = random_scene(seed, 3 + seed % 20)
+    coupling = [
+        Spring("hand", "port", k, name="coupling"),
+        Damper("hand", "port", damping + k * t / 2, name="loss"),
+    ]
+    run = SceneRun(zw.Scene([*coupling, *inside.elements], port="hand"), t)
+    b = k * t / 2 + damping
+    work, force, largest = 0.0, 0.0, 0.0
+    for i in range(200):
+        greedy = -t * force / (2 * b)  # the most that f D + b D²/T can give
+        move = greedy if i % 20 > 4 else float(rng.normal()) * 1e-3
+        work += force * move + b / t * move * move
+        largest = max(largest, abs(work))
+        force = run.step(move)
+    assert work + run.energy_at_first >= -1e-11 * largest
+
+
+def test_a_scene_without_a_port_is_refused():
+    alone = zw.Scene([Mass("m", 1)], port="")
+    with pytest.raises(InputError, match="port"):
+        zw.VirtualCoupling(100, 0, alone)
+    with pytest.raises(InputError, match="port"):
+        zw.simulate(DEVICE, alone, HAND, "0.1")
+
+
+def test_a_touch_begins_where_the_scene_is_at_rest():
+    """Wherever the hand is at first; one that is loaded there says that its energy is not known."""
+    scene = zw.Scene([Spring("handle", "ground", 100)])
+    trace = zw.simulate(DEVICE, scene, HAND, "0.05", initial_position=0.02)
+    assert float(trace.commanded_force[0]) == 0
+    loaded = zw.Scene([Damper("handle", "ground", 1), Contact("handle", "ground", 100, 0, "-0.01")])
+    held = zw.simulate(DEVICE, loaded, HAND, "0.05")
+    assert "stored_at_start_J" not in held.attrs
+
+
+def test_positions_are_those_of_the_prescribed_motion():
+    scene = zw.Scene([Mass("handle", "0.01"), Contact("handle", "ground", 900, 1, "0.002")])
+    motion = zw.operators.PrescribedMotion(np.linspace(0, 0.006, 4001))
+    law = zw.VirtualCoupling(600, "0.3", scene)
+    trace = zw.simulate(DEVICE, law, motion, Fraction(4))
+    assert float(trace.commanded_force[-1]) == pytest.approx(0.004 * 600 * 900 / 1500, rel=0.01)
