@@ -161,7 +161,7 @@ def test_intervals_take_their_worst_ends():
         ({"damping": -1}, r"damping must be ≥ 0 N\*m\*s/rad"),
     ],
 )
-def test_slips_are_refused(arguments, part):
+def test_slips_of_a_rotary_device_are_refused(arguments, part):
     with pytest.raises(zw.InputError, match=part):
         zw.rotary(**{**WHEEL, **arguments})
 

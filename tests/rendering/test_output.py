@@ -8,6 +8,7 @@ import zwidth as zw
 from zwidth.model.rendering import Dither, Hysteresis, Saturation, SlewLimit
 
 WALL = zw.Wall(3000)
+IDEAL = DEVICE.replace(resolution=0)
 
 
 def wall_force(read):
@@ -88,20 +89,16 @@ def test_dither_averages_the_steps_of_the_converter_out():
     """Steps of 0.02 N: the mean is wrong by half of one without, a quarter alternating, nothing random."""
     wrong = {"none": 0.0, "alternating": 0.0, "random": 0.0}
     stages = {"none": Saturation(), "alternating": Dither(), "random": Dither(kind="random")}
-    ideal = DEVICE.replace(resolution=0)
     for force in 1 + 0.02 * np.linspace(0, 1, 21):
         for name, stage in stages.items():
             trace = touched(
-                np.full(4001, force / 3000), stage, environment=WALL, device=ideal, amplifier=None
+                np.full(4001, force / 3000), stage, environment=WALL, device=IDEAL, amplifier=None
             )
             mean = float(trace.commanded_force[:4000].mean())
             wrong[name] = max(wrong[name], abs(mean - force))
     assert wrong["none"] == pytest.approx(0.01, rel=1e-6)
     assert wrong["alternating"] == pytest.approx(0.005, rel=1e-6)
     assert wrong["random"] < 5e-4
-
-
-IDEAL = DEVICE.replace(resolution=0)
 
 
 def slipping(readings, width, stiffness):
@@ -116,7 +113,7 @@ def slipping(readings, width, stiffness):
 
 
 @pytest.mark.parametrize("clamped", [False, True])
-def test_the_commands_are_those_of_the_law(clamped):
+def test_the_spring_that_slips_commands_its_law(clamped):
     read, force = commands(wandering(), Hysteresis("0.31", 870, clamped=clamped), environment=zw.Wall(400))
     slip = slipping(read, 0.31, 870)
     expected = np.where(read > 0, 400 * read + slip, 0)
@@ -125,7 +122,7 @@ def test_the_commands_are_those_of_the_law(clamped):
     assert force == pytest.approx(np.maximum(expected, 0) if clamped else expected, abs=1e-12)
 
 
-def test_without_a_surface_it_acts_everywhere():
+def test_without_a_surface_the_spring_acts_everywhere():
     x = wandering()
     read, force = commands(x, Hysteresis("0.2", 500), environment=zw.PulseTransferFunction([70], [1]))
     s, expected = 0.0, []
@@ -143,7 +140,7 @@ def work_out(stiffness, speed, depth, *stages):
     return float(-trace.actuator_work[-1])
 
 
-def test_the_width_pays_for_the_hold_up_to_its_speed():
+def test_the_width_of_the_spring_pays_for_the_hold_up_to_its_speed():
     """½ K v T D leaks each way; h D each way is paid: a gain above v_max, a loss below."""
     k, fastest, depth = 2000, 0.1, 0.01
     law = Hysteresis(fastest=fastest)

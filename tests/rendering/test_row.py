@@ -88,7 +88,7 @@ paths = st.lists(st.floats(-1, 1), min_size=3, max_size=80).map(lambda v: 3e-3 *
 
 
 @pytest.mark.parametrize("lead", [None, "0.0003", "0.004"])
-def test_it_is_the_formula(lead):
+def test_the_rate_term_is_its_formula(lead):
     """f + τ (f − f_{k−1})/T, the first force without a rate."""
     positions = wandering()
     force = K * np.maximum(positions, 0)
@@ -99,7 +99,7 @@ def test_it_is_the_formula(lead):
 
 
 @pytest.mark.parametrize("lead", [None, "0.0002", "0.003"])
-def test_it_is_proved_up_to_the_limit_and_no_further(lead):
+def test_the_rate_term_is_proved_up_to_the_limit_and_no_further(lead):
     """b = K T/2 + K τ is passive with a certificate; a millionth more stiffness is not."""
     tau = Fraction(1, 2000) if lead is None else Fraction(lead)
     limit = Fraction("0.15") / (Fraction(1, 2000) + tau)
@@ -131,7 +131,7 @@ def test_no_hand_takes_out_more_than_stated(positions, lead):
     assert (trace.actuator_work.values <= bound * (1 + 1e-9)).all()
 
 
-def test_behind_another_law_nothing_is_proved_of_it():
+def test_behind_another_law_nothing_is_proved_of_the_rate_term():
     """The force that comes in then changes by more than K |Δx|; the other way round both are covered."""
     capped = PassivityController(largest_damping="0.05")
     first = zw.check(PADDLE, zw.render(zw.Wall(90), RateTerm(), capped))
