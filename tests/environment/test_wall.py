@@ -85,6 +85,7 @@ CLAMPABLE = [
     zw.GeneralizedMaxwell(290, [(731, 40), (5, 2)]),
 ]
 NAMES = {name: getattr(zw.rendering, name) for name in zw.rendering.__all__} | vars(zw)
+NAMES["Interval"] = zw.Interval
 
 
 @pytest.mark.parametrize("law", CLAMPABLE)
