@@ -67,3 +67,15 @@ def refused(run):
         return err
 
     return runner
+
+
+@pytest.fixture
+def answer(run):
+    """What `zwidth pair` prints with --json; the exit status is that of its outcome."""
+
+    def runner(line: str) -> Any:
+        result = run(f"pair {line} --json", None)
+        assert result.status == {"passive": 0, "active": 1, "undecided": 3}[result.json["outcome"]]
+        return result.json
+
+    return runner

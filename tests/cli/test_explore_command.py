@@ -13,11 +13,11 @@ import pytest
 
 from zwidth.cli.main import main
 
-COMMAND = [sys.executable, "-m", "zwidth", "explore", "--no-browser", "--port", "0"]
+COMMAND = f"{sys.executable} -m zwidth explore --no-browser --port 0"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
-def test_it_says_where_it_is_and_ends_at_ctrl_c() -> None:
+def test_it_says_where_it_is_and_ends_at_ctrl_c():
     """The page answers at the address that is said; the status is 130, as of what else is served."""
     with subprocess.Popen(
         [*COMMAND, "haptic-paddle"],
@@ -42,7 +42,7 @@ def test_it_says_where_it_is_and_ends_at_ctrl_c() -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
-def test_ctrl_c_is_heard_by_whichever_thread_takes_it() -> None:
+def test_ctrl_c_is_heard_by_whichever_thread_takes_it(run):
     """The system may hand a signal to any thread of the process; the main one waits, and hears of it."""
     program = (
         "import signal, threading, time\n"
@@ -64,27 +64,21 @@ def test_ctrl_c_is_heard_by_whichever_thread_takes_it() -> None:
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (["--port", "70000"], "--port is a port"),
-        (["--token", "short"], "16 characters or more"),
-        (["no-such-device"], "neither a file nor a device"),
+        ("--port 70000", "--port is a port"),
+        ("--token short", "16 characters or more"),
+        ("no-such-device", "neither a file nor a device"),
     ],
 )
-def test_what_cannot_be_explored_is_one_line(
-    given: list[str], said: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_cannot_be_explored_is_one_line(refused, given, said):
     """Status 2, and a message that says what to give."""
-    assert main(["explore", "--no-browser", *given]) == 2
-    error = capsys.readouterr().err
+    error = refused(f"explore --no-browser {given}")
     assert said in error
     assert error.count("\n") == 1
 
 
-def test_without_its_libraries_it_says_what_to_install(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_without_its_libraries_it_says_what_to_install(refused, monkeypatch):
     """One line that names the extra."""
     monkeypatch.setattr("zwidth.show.explorer.notebook.find_spec", lambda _: None)
-    assert main(["explore", "--no-browser"]) == 2
-    error = capsys.readouterr().err
+    error = refused("explore --no-browser")
     assert "pip install 'zwidth[explore]'" in error
     assert error.count("\n") == 1

@@ -13,9 +13,9 @@ from zwidth.cli.main import main
 from zwidth.cli.start import tour
 
 
-def test_zwidth_alone_says_what_to_type(capsys: pytest.CaptureFixture[str]) -> None:
+def test_zwidth_alone_says_what_to_type(run, capsys):
     """A few commands, each with a line; no complaint."""
-    assert main([]) == 0
+    run("")
     told = capsys.readouterr()
     named = re.findall(r"^  zwidth (\w+)", told.out, re.MULTILINE)
     assert 3 <= len(named) <= 4
@@ -24,14 +24,11 @@ def test_zwidth_alone_says_what_to_type(capsys: pytest.CaptureFixture[str]) -> N
     assert told.err == ""
 
 
-def test_the_tour_tells_its_story_and_writes_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_tour_tells_its_story_and_writes_nothing(run, tmp_path, monkeypatch):
     """Passive, active with its motion, touched, what would do, passive again; no pause where nobody sits."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("builtins.input", lambda *_: pytest.fail("waits for Enter"))
-    assert main(["tour"]) == 0
-    said = capsys.readouterr().out
+    said = run("tour").out
     assert re.findall(r"^ (PASSIVE|ACTIVE) ", said, re.MULTILINE) == [
         "PASSIVE",
         "ACTIVE",
@@ -44,13 +41,13 @@ def test_the_tour_tells_its_story_and_writes_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_each_step_shows_what_its_command_finds(capsys: pytest.CaptureFixture[str]) -> None:
+def test_each_step_shows_what_its_command_finds(run, capsys):
     """The badge of the step is that of the report; the numbers of the motion and of the touch too."""
-    main(["tour", "--no-pause"])
+    run("tour --no-pause")
     said = capsys.readouterr().out
     for step in tour.STEPS:
         shown = said.partition(f"$ {step.command}\n")[2].partition("$ ")[0]
-        main(shlex.split(step.command)[1:])
+        run(shlex.split(step.command)[1:])
         report = capsys.readouterr().out
         if badge := re.search(r"^ (PASSIVE|ACTIVE) ", shown, re.MULTILINE):
             assert report.startswith(badge.group())
@@ -59,19 +56,14 @@ def test_each_step_shows_what_its_command_finds(capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.parametrize(("answers", "steps"), [([""] * 9, 5), (["", "q"], 2)])
-def test_in_a_terminal_it_waits_and_q_ends_it(
-    answers: list[str],
-    steps: int,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_in_a_terminal_it_waits_and_q_ends_it(run, answers, steps, monkeypatch, capsys):
     typed = iter(answers)
     monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
     monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
     monkeypatch.setattr("builtins.input", lambda *_: next(typed))
-    assert main(["tour"]) == 0
+    run("tour")
     assert capsys.readouterr().out.count("$ zwidth") == steps
 
 
-def test_the_commands_it_ends_with_exist() -> None:
+def test_the_commands_it_ends_with_exist():
     assert set(re.findall(r"zwidth (\w+)", tour.THEN)) <= set(COMMANDS)
