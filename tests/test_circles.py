@@ -92,12 +92,12 @@ def imported() -> Imports:
 
 
 @pytest.mark.parametrize("folder", list(folders()))
-def test_no_folder_has_a_circle(folder: str, imported: Imports) -> None:
+def test_no_folder_has_a_circle(folder, imported):
     """Its files and folders can be put into an order in which each needs the ones before it alone."""
     assert circle(folded(imported, folder)) == []
 
 
-def test_a_circle_would_be_seen() -> None:
+def test_a_circle_would_be_seen():
     """Of two files that name each other, at the top, in a function or by a text, and of two folders."""
     known = ("p.a", "p.b.c", "p.b.d", "p.b")
     graph = {

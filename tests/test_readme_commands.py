@@ -6,8 +6,6 @@ import re
 import shlex
 from pathlib import Path
 
-import pytest
-
 from zwidth.cli.main import _parser, main
 from zwidth.cli.parsing import joined
 
@@ -25,13 +23,11 @@ def commands() -> list[str]:
     return [line for line in lines if line.startswith("zwidth ") and "--help" not in line]
 
 
-def test_there_are_commands() -> None:
+def test_there_are_commands():
     assert len(commands()) > 30
 
 
-def test_each_command_works_as_typed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_each_command_works_as_typed(tmp_path, monkeypatch, capsys):
     """Its options exist, and the files that it reads are samples, or were written by a line above."""
     monkeypatch.chdir(tmp_path)
     assert main(["examples", "."]) == 0

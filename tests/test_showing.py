@@ -38,7 +38,7 @@ SOURCE = sorted(Path(zw.__file__).parent.rglob("*.py"))
 DEVICE = zw.Device(mass=0.04, damping=0.15, sample_period=0.001, name=HOSTILE)
 
 
-def test_only_html_becomes_a_part_of_html() -> None:
+def test_only_html_becomes_a_part_of_html():
     """Text is escaped wherever it stands, attributes too; what was escaped is not escaped again."""
     assert element("p", "a < b") == "<p>a &lt; b</p>"
     assert element("p", element("b", "&")) == "<p><b>&amp;</b></p>"
@@ -48,7 +48,7 @@ def test_only_html_becomes_a_part_of_html() -> None:
     )
 
 
-def test_a_picture_stands_within_the_page() -> None:
+def test_a_picture_stands_within_the_page():
     """Its file in the address, what it shows as text; of its own markup nothing is a part of the page."""
     drawn = Picture(b"<svg/>", "svg+xml", 'a "curve" <b>', "below it")
     assert drawn.html == (
@@ -73,7 +73,7 @@ class Shows(Shown):
         yield Lines(["beware"], mark="!")
 
 
-def test_what_is_said_once_is_shown_in_both_places() -> None:
+def test_what_is_said_once_is_shown_in_both_places():
     """In a terminal in columns, set left or right; in a notebook in elements, and no blank lines."""
     assert repr(Shows()) == (
         "passive: No <motion>.\n\nin words\n"
@@ -90,7 +90,7 @@ def test_what_is_said_once_is_shown_in_both_places() -> None:
     )
 
 
-def test_rows_without_headings_have_a_name_first() -> None:
+def test_rows_without_headings_have_a_name_first():
     """The first cell says what the others are."""
     assert Table(rows=[["K", "1 N/m"]]).html == (
         '<table><tbody><tr><th scope="row" style="text-align:left">K</th>'
@@ -98,7 +98,7 @@ def test_rows_without_headings_have_a_name_first() -> None:
     )
 
 
-def test_what_a_terminal_obeys_is_not_printed() -> None:
+def test_what_a_terminal_obeys_is_not_printed():
     """Escapes, carriage returns, C1 controls, a change of direction; line ends and Greek letters stay."""
     assert printable("a\x1b[31m\rb\x9bc\u202ed\ue000") == "a?[31m?b?c?d\ue000"
     assert printable("2b/T ≥ K·s²\n\tμ") == "2b/T ≥ K·s²\n\tμ"
@@ -115,7 +115,7 @@ def _pages() -> list[tuple[str, ast.FunctionDef]]:
     ]
 
 
-def test_every_page_of_a_notebook_is_made_of_escaped_parts() -> None:
+def test_every_page_of_a_notebook_is_made_of_escaped_parts():
     """By its type: `Html` comes from one module only, and a text or an f-string is none."""
     pages = _pages()
     assert {name for name, _ in pages} == {"showing.py", "device.py"}
@@ -137,7 +137,7 @@ def trace() -> Any:
     return zw.simulate(DEVICE, zw.Wall(200), zw.operators.ConstantForce(1), 0.02)
 
 
-def test_names_are_escaped_in_notebooks(trace: Any) -> None:
+def test_names_are_escaped_in_notebooks(trace):
     """Whatever can hold a name of a user shows it as it was typed."""
     verdict = zw.check(DEVICE, zw.Wall(200))
     active = zw.check(DEVICE, zw.Wall(2000))
@@ -153,7 +153,7 @@ def test_names_are_escaped_in_notebooks(trace: Any) -> None:
     assert "&lt;script&gt;" in DEVICE._repr_html_()
 
 
-def test_what_xarray_shows_is_not_obeyed_either(trace: Any, tmp_path: Path) -> None:
+def test_what_xarray_shows_is_not_obeyed_either(trace, tmp_path):
     """A Dataset says its attributes as they are: those of a device, and those of a file of others."""
     for suffix in (".nc", ".csv", ".parquet"):
         path = tmp_path / f"touch{suffix}"
@@ -166,7 +166,7 @@ def test_what_xarray_shows_is_not_obeyed_either(trace: Any, tmp_path: Path) -> N
 
 
 @given(st.text(), st.text())
-def test_no_name_and_no_message_holds_what_is_obeyed(name: str, more: str) -> None:
+def test_no_name_and_no_message_holds_what_is_obeyed(name, more):
     """Whoever made the text: a device, an arm, a message that quotes it."""
     device = zw.Device(mass=1, damping=1, sample_period=1, name=name)
     arm = replace(built_in("two-link", damping=0.1), name=name)
@@ -176,7 +176,7 @@ def test_no_name_and_no_message_holds_what_is_obeyed(name: str, more: str) -> No
 
 
 @pytest.mark.parametrize("draw", ["trace", "traces", "verdict", "law"])
-def test_names_are_drawn_as_they_are(draw: str, trace: Any, tmp_path: Path) -> None:
+def test_names_are_drawn_as_they_are(draw, trace, tmp_path):
     """Neither markup nor mathematics; the picture is whole XML without a script."""
     path = tmp_path / "picture.svg"
     if draw == "trace":
@@ -209,7 +209,7 @@ stiffness = 200
 """
 
 
-def test_a_file_cannot_command_the_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_cannot_command_the_terminal(tmp_path, capsys):
     """What a specification calls its device is printed without what a terminal obeys."""
     path = tmp_path / "loop.toml"
     path.write_text(TOML.format(name='"bad \\u001b[2J \\u009b31m \\u202e"'), encoding="utf-8")
@@ -221,13 +221,7 @@ def test_a_file_cannot_command_the_terminal(tmp_path: Path, capsys: pytest.Captu
 
 @pytest.mark.skipif(os.name != "posix", reason="no such names of files")
 @pytest.mark.parametrize("options", [[], ["--json"]])
-def test_the_name_of_a_file_cannot_command_the_terminal(
-    options: list[str],
-    trace: Any,
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_the_name_of_a_file_cannot_command_the_terminal(options, trace, tmp_path, capsys, monkeypatch):
     """A trace is called by it, in the table and in JSON, where it can be read back."""
     monkeypatch.chdir(tmp_path)
     name = "\x1b[2J\x7f\x9btouch.nc"

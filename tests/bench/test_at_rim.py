@@ -23,7 +23,7 @@ KNOB = zw.rotary(
 WALL = zw.Wall(14, 0.01)
 
 
-def test_the_same_touch_about_the_axis() -> None:
+def test_the_same_touch_about_the_axis():
     """Simulated there, with a finger whose numbers are turned by hand, it has the scores that are told."""
     there = at_rim(KNOB, WALL, RADIUS)
     found = zw.compare(*there, {"wall": there[1]}).about_axis(KNOB, WALL, RADIUS)
@@ -51,7 +51,7 @@ def test_the_same_touch_about_the_axis() -> None:
     assert found.to_dict()["touched_at_radius_m"] == 0.13
 
 
-def test_what_is_refused() -> None:
+def test_what_is_refused():
     """No radius, one of nothing, one where nothing turns, and laws whose numbers are not of the rim."""
     for given, part in ((None, "how far from the axis"), (0, "handle_radius must be > 0")):
         with pytest.raises(zw.InputError, match=part):

@@ -15,7 +15,7 @@ PADDLE = zw.catalogue.device("haptic-paddle")
 
 
 @pytest.mark.parametrize(("steps", "felt"), [(1, 1230.0), (2, 1512.9), (-1, 813.0081300813008), (0, 1000.0)])
-def test_steps_of_23_percent(steps: int, felt: float):
+def test_steps_of_23_percent(steps, felt):
     """Each is 23 % of the one before, up and down."""
     assert noticeable_differences(felt, 1000) == pytest.approx(steps, abs=1e-12)
 
@@ -30,13 +30,13 @@ def test_just_below_a_step_and_just_above():
 
 
 @pytest.mark.parametrize("felt", [0.0, -20.0, float("nan"), float("inf")])
-def test_what_was_not_felt_has_no_number(felt: float):
+def test_what_was_not_felt_has_no_number(felt):
     """A wall that was not touched, or that pulled."""
     assert isnan(noticeable_differences(felt, 1000))
 
 
 @pytest.mark.parametrize(("wanted", "weber"), [(0, 0.2), (-1, 0.2), (float("inf"), 0.2), (9, 0), (9, -0.1)])
-def test_nothing_to_compare_with_is_refused(wanted: float, weber: float):
+def test_nothing_to_compare_with_is_refused(wanted, weber):
     """One message."""
     with pytest.raises(InputError, match="must be finite and > 0"):
         noticeable_differences(100, wanted, weber)

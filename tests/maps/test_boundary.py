@@ -13,7 +13,7 @@ BARE = zw.Device(mass=0.036, damping=0, rate=1000)
 K_SCALE, B_SCALE = 1e-6 / 0.036, 1e-3 / 0.036
 
 
-def test_the_curve_without_delay_is_the_closed_form() -> None:
+def test_the_curve_without_delay_is_the_closed_form():
     """κ = 2β(2 − β)/(2 + β) on every point that bounds; the largest near κ = 0.68629 at β = 0.82843."""
     found = zw.maps.stability_boundary(BARE, points=4000)
     here = found["bounds"].values & (found["stiffness"].values > 1e-3)
@@ -25,7 +25,7 @@ def test_the_curve_without_delay_is_the_closed_form() -> None:
     assert beta[kappa.argmax()] == pytest.approx(2 * np.sqrt(2) - 2, abs=1e-2)
 
 
-def test_one_sample_of_delay_in_the_plane_of_salcudean_and_vlaar() -> None:
+def test_one_sample_of_delay_in_the_plane_of_salcudean_and_vlaar():
     """k = T²K/2m, b = TB/2m: z²(z − 1)² + (z + 1)[k z + b (z − 1)] has its outermost root on the circle."""
     found = zw.maps.stability_boundary(BARE, delay=0.001, points=400)
     here = found["bounds"].values & (found["stiffness"].values > 1)
@@ -40,7 +40,7 @@ def test_one_sample_of_delay_in_the_plane_of_salcudean_and_vlaar() -> None:
 
 @pytest.mark.parametrize("delay", [0, 0.0003, 0.001, 0.0025, 0.004])
 @pytest.mark.parametrize("hand", [None, Finger()])
-def test_both_sides_of_the_curve(delay: float, hand: object) -> None:
+def test_both_sides_of_the_curve(delay, hand):
     """Bisection's answer: a thousandth below a bounding point is stable, a thousandth above is not."""
     found = zw.maps.stability_boundary(PADDLE, hand, delay, points=150)
     device = PADDLE.replace(delay=delay)
@@ -57,7 +57,7 @@ def test_both_sides_of_the_curve(delay: float, hand: object) -> None:
         assert zw.stability.coupled_stability(device, outward, hand).outcome == "unstable"
 
 
-def test_frequencies_are_those_of_the_poles() -> None:
+def test_frequencies_are_those_of_the_poles():
     """At a bounding point the pole nearest to the circle has the frequency that stands there."""
     found = zw.maps.stability_boundary(PADDLE, Finger(), points=40)
     for n in np.flatnonzero(found["bounds"].values[:40] & (found["stiffness"].values[:40] > 100)):
@@ -69,7 +69,7 @@ def test_frequencies_are_those_of_the_poles() -> None:
         assert there.spectral_radius == pytest.approx(1, abs=1e-8)
 
 
-def test_what_has_no_boundary() -> None:
+def test_what_has_no_boundary():
     """An interval, no mass, one point."""
     with pytest.raises(zw.InputError, match="one device and one hand"):
         zw.maps.stability_boundary(PADDLE, zw.stability.HandImpedance(mass=(0, 1)))

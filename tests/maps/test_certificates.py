@@ -30,7 +30,7 @@ def told(document: dict) -> tuple[float, float]:
 
 @pytest.mark.parametrize("delay", ["0", "0.002", "0.0014"])
 @pytest.mark.parametrize("name", list(FILTERS))
-def test_each_column_has_its_stiffest_passive_wall(name: str, delay: str) -> None:
+def test_each_column_has_its_stiffest_passive_wall(name, delay):
     """K and B of the certificates are the last passive cell of each column that has one; all are accepted."""
     device, velocity = PADDLE.replace(delay=delay), FILTERS[name]
     found = zw.z_width(device, (0, 400), ("-0.1", "0.3"), (80, 12), velocity_filter=velocity, hands={})
@@ -48,7 +48,7 @@ def test_each_column_has_its_stiffest_passive_wall(name: str, delay: str) -> Non
 
 
 @pytest.mark.parametrize("name", list(FILTERS))
-def test_below_a_certified_wall_all_softer_ones_are_passive(name: str) -> None:
+def test_below_a_certified_wall_all_softer_ones_are_passive(name):
     """20 walls below the stiffest of a column are proved too; a hundredth beyond the limit none is, so."""
     velocity = FILTERS[name]
     found = zw.z_width(PADDLE, (0, 400), ("0.01", "0.02"), (400, 1), velocity_filter=velocity, hands={})
@@ -61,14 +61,14 @@ def test_below_a_certified_wall_all_softer_ones_are_passive(name: str) -> None:
     assert beyond is None or beyond.kind not in ("spring", "contact")
 
 
-def test_nothing_passive_nothing_certified() -> None:
+def test_nothing_passive_nothing_certified():
     """None for a map without a passive wall."""
     device = PADDLE.replace(damping=0)
     found = zw.z_width(device, (0, 400), (0, "0.1"), (20, 4), hands={})
     assert zw.maps.z_width_certificate(device, found) is None
 
 
-def test_a_map_of_another_device_is_refused() -> None:
+def test_a_map_of_another_device_is_refused():
     """With less damping than the map's device had its walls are not passive, and that is said."""
     found = zw.z_width(PADDLE, (0, 400), (0, "0.1"), (20, 4), hands={})
     with pytest.raises(zw.InputError, match="another device"):
@@ -79,7 +79,7 @@ def test_a_map_of_another_device_is_refused() -> None:
         )
 
 
-def test_progress_is_told() -> None:
+def test_progress_is_told():
     """Once for each column with a passive cell."""
     seen: list[tuple[int, int]] = []
     found = zw.z_width(PADDLE, (0, 400), (0, "0.1"), (20, 4), hands={})

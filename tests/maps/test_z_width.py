@@ -9,7 +9,6 @@ import subprocess
 import sys
 from contextlib import ExitStack
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -44,7 +43,7 @@ def same(a: xr.Dataset, b: xr.Dataset) -> bool:
     return all(a[name].values.tobytes() == b[name].values.tobytes() for name in LAYERS)
 
 
-def test_every_number_has_its_unit() -> None:
+def test_every_number_has_its_unit():
     """In the attribute `units`, coordinates too; of the limits that of stiffness."""
     found = zw.z_width(PADDLE, *WIDE, cells=(3, 3))
     numbers = {name: one for name, one in found.variables.items() if one.dtype.kind == "f"}
@@ -53,7 +52,7 @@ def test_every_number_has_its_unit() -> None:
     assert {found[name].attrs["units"] for name in ("limit_passive", "limit_none", "stiffness")} == {"N/m"}
 
 
-def test_stable_cells_are_those_that_stability_proves() -> None:
+def test_stable_cells_are_those_that_stability_proves():
     """On a coarse grid every cell of every hand is as `zw.stability.coupled_stability` says, one by one."""
     found = zw.z_width(PADDLE, *WIDE, cells=(9, 11))
     hands = {"none": None, "finger": Finger(), "dowel": Dowel(force=1)}
@@ -65,7 +64,7 @@ def test_stable_cells_are_those_that_stability_proves() -> None:
 
 
 @pytest.mark.parametrize("delay", ["0", "0.0004", "0.002"])
-def test_stable_cells_end_at_the_boundary(delay: str) -> None:
+def test_stable_cells_end_at_the_boundary(delay):
     """At each virtual damping the last stable cell is the last one below the curve."""
     device = PADDLE.replace(delay=delay)
     found = zw.z_width(device, *WIDE, cells=(300, 40))
@@ -76,7 +75,7 @@ def test_stable_cells_end_at_the_boundary(delay: str) -> None:
             assert found[f"stable_{name}"].values[:, j].sum() == count
 
 
-def test_passive_cells_are_those_that_check_proves() -> None:
+def test_passive_cells_are_those_that_check_proves():
     """Near both edges of the passive region, each cell as `zw.check` says; both kinds occur."""
     found = zw.z_width(PADDLE, (0, 360), (-0.2, 0.2), cells=(12, 10))
     outcomes = set()
@@ -101,7 +100,7 @@ def test_passive_cells_are_those_that_check_proves() -> None:
         ({"resolution": "0.001"}, zw.rendering.Window(3)),
     ],
 )
-def test_sustained_cells_are_those_that_the_criterion_proves(changes: dict, velocity: object) -> None:
+def test_sustained_cells_are_those_that_the_criterion_proves(changes, velocity):
     """Each cell as the exact decision says; more of them than with contact broken, and not all."""
     device = PADDLE.replace(**changes)
     found = zw.z_width(device, (0, 330), (-0.3, 0.6), (24, 17), velocity_filter=velocity, hands={})
@@ -115,7 +114,7 @@ def test_sustained_cells_are_those_that_the_criterion_proves(changes: dict, velo
 
 
 @pytest.mark.parametrize(("first", "past"), [(0, 20), (3, 17), (9, 10), (1, 19), (0, 1), (19, 20), (4, 9)])
-def test_ends_of_an_interval_are_found(first: int, past: int) -> None:
+def test_ends_of_an_interval_are_found(first, past):
     """Wherever it lies in the range that floats allow, if one of the three cells tried first is in it."""
     seen: set[int] = set()
 
@@ -128,7 +127,7 @@ def test_ends_of_an_interval_are_found(first: int, past: int) -> None:
     assert seen <= set(range(20))
 
 
-def test_a_cell_exactly_on_the_limit_is_passive_and_the_next_double_is_not() -> None:
+def test_a_cell_exactly_on_the_limit_is_passive_and_the_next_double_is_not():
     """K = 2b/T = 300 N/m at B = 0 is met exactly, although 0.15 is no double."""
     on = zw.z_width(PADDLE, (299, 301), ("-0.1", "0.1"), cells=(1, 1))
     above = zw.z_width(PADDLE, (299, "301.0000000000002"), ("-0.1", "0.1"), cells=(1, 1))
@@ -139,7 +138,7 @@ def test_a_cell_exactly_on_the_limit_is_passive_and_the_next_double_is_not() -> 
     assert not bool(above["passive"])
 
 
-def test_the_encoder_limits_what_is_passive() -> None:
+def test_the_encoder_limits_what_is_passive():
     """With a coarse encoder f_c ≥ (K/2 + B/T) Δ binds: K = 2f_c/Δ − 2B/T."""
     coarse = PADDLE.replace(resolution="0.001")
     found = zw.z_width(coarse, (0, 300), (0, "0.12"), cells=(150, 60))
@@ -149,7 +148,7 @@ def test_the_encoder_limits_what_is_passive() -> None:
     assert 0 < expected.sum() < (k * 0.0005 + b <= 0.15).sum()
 
 
-def test_the_admissible_speed_of_a_spring_is_that_of_the_plane() -> None:
+def test_the_admissible_speed_of_a_spring_is_that_of_the_plane():
     """v = (2f_c − KΔ)/(KT − 2b), never above it, and within 1e-12."""
     found = zw.z_width(PADDLE, (0, 20000), ("-1e-12", "1e-12"), cells=(40, 1))
     seen = set()
@@ -161,7 +160,7 @@ def test_the_admissible_speed_of_a_spring_is_that_of_the_plane() -> None:
     assert seen == {"inf", "finite", "0"}
 
 
-def test_no_fast_motion_below_the_admissible_speed_gains_energy() -> None:
+def test_no_fast_motion_below_the_admissible_speed_gains_energy():
     """A thousand motions of 60 samples, random and to and fro, at that speed; at 30 times it some gain."""
     k, b = 500.0, 0.08
     found = zw.z_width(PADDLE, (k - 1, k + 1), (b - 0.01, b + 0.01), cells=(1, 1))
@@ -183,7 +182,7 @@ def test_no_fast_motion_below_the_admissible_speed_gains_energy() -> None:
         assert (work.min() < 0) == gains
 
 
-def test_the_kernel_never_believes_a_sign_that_rounding_made() -> None:
+def test_the_kernel_never_believes_a_sign_that_rounding_made():
     """Within 1e-13 of the boundary it leaves the cell to exact arithmetic; 1e-9 away it decides rightly."""
     ready = plan(request(PADDLE, *WIDE, (10, 10), None, {"finger": Finger()}))
     hand = ready.hands[0]
@@ -208,7 +207,7 @@ def test_the_kernel_never_believes_a_sign_that_rounding_made() -> None:
         assert answers[0.0] == UNKNOWN
 
 
-def test_a_filter_without_end_is_not_called_passive() -> None:
+def test_a_filter_without_end_is_not_called_passive():
     """No condition for contact made and broken covers it; stability is decided all the same."""
     filtered = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
     found = zw.z_width(PADDLE, (0, 300), (0, 1), cells=(5, 5), velocity_filter=filtered)
@@ -219,7 +218,7 @@ def test_a_filter_without_end_is_not_called_passive() -> None:
 
 
 @pytest.mark.parametrize("delay", ["0.0005", "0.0014"])
-def test_a_delay_of_part_of_a_sample_ends_where_check_does(delay: str) -> None:
+def test_a_delay_of_part_of_a_sample_ends_where_check_does(delay):
     """The curve is where `check` stops proving contact made and broken; slow hands are proved beyond it."""
     device = PADDLE.replace(delay=delay)
     found = zw.z_width(device, (0, 300), (-0.1, 0.2), cells=(60, 6), hands={})
@@ -243,7 +242,7 @@ def test_a_delay_of_part_of_a_sample_ends_where_check_does(delay: str) -> None:
     assert json.loads(found["quiet"].attrs["scope"])["hands"]["in_each_part_of_a_sample"]
 
 
-def test_regions_and_free_air() -> None:
+def test_regions_and_free_air():
     """The passive area is the triangle ½ (2b/T) b, to a cell; the lower end is the device itself."""
     found = zw.z_width(PADDLE, (0, 600), (0, "0.3"), cells=(400, 400))
     assert found["area"].sel(region="passive").item() == pytest.approx(0.5 * 300 * 0.15, rel=0.01)
@@ -252,13 +251,13 @@ def test_regions_and_free_air() -> None:
     assert found["quiet"].values[found["passive"].values].all()
 
 
-def test_threads_do_not_change_a_bit() -> None:
+def test_threads_do_not_change_a_bit():
     """One thread or four."""
     one, four = (zw.z_width(PADDLE, *WIDE, cells=(300, 300), workers=n) for n in (1, 4))
     assert same(one, four)
 
 
-def test_a_store_is_gone_on_with(tmp_path: Path) -> None:
+def test_a_store_is_gone_on_with(tmp_path):
     """The chunks that are there are not computed again; the layers are those of a map in memory."""
     cells, path = (300, 300), tmp_path / "map.zarr"
     told: list[int] = []
@@ -295,7 +294,7 @@ zw.z_width(device, *walls, cells=(260, 260), path=sys.argv[1], progress=stopped)
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="there is no SIGKILL here")
-def test_a_map_killed_twice_loses_nothing(tmp_path: Path) -> None:
+def test_a_map_killed_twice_loses_nothing(tmp_path):
     """SIGKILL at chunk 2, and again at chunk 5: what was done stays, and the end is the same to the bit."""
     path = tmp_path / "killed.zarr"
     for at in (2, 5):
@@ -315,7 +314,7 @@ def test_a_map_killed_twice_loses_nothing(tmp_path: Path) -> None:
     assert same(found, zw.z_width(PADDLE, *WIDE, cells=(260, 260)))
 
 
-def test_a_store_stopped_before_its_arrays_were_there(tmp_path: Path) -> None:
+def test_a_store_stopped_before_its_arrays_were_there(tmp_path):
     """A group that says which map was begun, and nothing else: it is begun again."""
     import zarr
 
@@ -326,7 +325,7 @@ def test_a_store_stopped_before_its_arrays_were_there(tmp_path: Path) -> None:
     assert same(found, zw.z_width(PADDLE, *WIDE, cells=(5, 5)))
 
 
-def test_a_full_disk_keeps_what_is_finished(tmp_path: Path) -> None:
+def test_a_full_disk_keeps_what_is_finished(tmp_path):
     """One message, and the same map goes on when there is room."""
     path = tmp_path / "map"
 
@@ -340,7 +339,7 @@ def test_a_full_disk_keeps_what_is_finished(tmp_path: Path) -> None:
     assert left == [2]
 
 
-def test_a_store_that_leads_elsewhere_is_refused(tmp_path: Path) -> None:
+def test_a_store_that_leads_elsewhere_is_refused(tmp_path):
     """Neither read nor written is what a link in it names."""
     path, other = tmp_path / "map", tmp_path / "other"
     zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
@@ -350,7 +349,7 @@ def test_a_store_that_leads_elsewhere_is_refused(tmp_path: Path) -> None:
         zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
 
 
-def test_a_store_that_declares_more_than_its_map_is_refused(tmp_path: Path) -> None:
+def test_a_store_that_declares_more_than_its_map_is_refused(tmp_path):
     """Cells that were never written are filled in, as many as are declared."""
     path = tmp_path / "map"
     zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
@@ -362,7 +361,7 @@ def test_a_store_that_declares_more_than_its_map_is_refused(tmp_path: Path) -> N
         zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
 
 
-def test_a_store_of_another_map_is_refused(tmp_path: Path) -> None:
+def test_a_store_of_another_map_is_refused(tmp_path):
     """Another range, or a directory with something else in it; neither is touched."""
     path = tmp_path / "map.zarr"
     zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
@@ -375,7 +374,7 @@ def test_a_store_of_another_map_is_refused(tmp_path: Path) -> None:
     assert (tmp_path / "else" / "notes.txt").read_text(encoding="utf-8") == "mine"
 
 
-def test_a_cluster_gives_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cluster_gives_the_same_bits(monkeypatch):
     """Two workers, each a process of its own, against the threads of this one."""
     import distributed
 
@@ -387,7 +386,7 @@ def test_a_cluster_gives_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
     assert same(there, zw.z_width(PADDLE, *WIDE, cells=(150, 150)))
 
 
-def test_chunks_tile_the_map() -> None:
+def test_chunks_tile_the_map():
     """The last chunk is the rest: no cell twice, none missing."""
     asked = request(PADDLE, *WIDE, (CHUNK + 3, 5), None, {"none": None})
     ready = plan(asked)
@@ -409,14 +408,14 @@ def test_chunks_tile_the_map() -> None:
         ({"speed": 0}, "speed"),
     ],
 )
-def test_what_cannot_be_mapped(change: dict[str, object], message: str) -> None:
+def test_what_cannot_be_mapped(change, message):
     """One clear message each."""
     given = {"device": PADDLE, "stiffness": (0, 10), "virtual_damping": (0, 1), "cells": (3, 3), **change}
     with pytest.raises(zw.InputError, match=message):
         zw.z_width(**given)
 
 
-def test_what_no_condition_covers_is_said_and_springs_are_decided() -> None:
+def test_what_no_condition_covers_is_said_and_springs_are_decided():
     """Of a filter without end the column at B = 0 ends where `check` does, from both sides."""
     device = PADDLE.replace(delay="0.0005", coulomb_friction=1)
     filtered = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
@@ -437,7 +436,7 @@ def test_what_no_condition_covers_is_said_and_springs_are_decided() -> None:
     assert zw.z_width(PADDLE, (0, 300), (0, 1), cells=(4, 4), hands={}).attrs["not_covered"] == ""
 
 
-def test_no_spring_is_passive_without_damping_of_the_device() -> None:
+def test_no_spring_is_passive_without_damping_of_the_device():
     """A filter whose response does not end leaves springs alone, and b = 0 holds none but that of K = 0."""
     filtered = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
     for damping, passive in ((0, [False, False]), (0.15, [True, False])):

@@ -6,7 +6,6 @@ import signal
 import sys
 from collections.abc import Callable
 from math import inf, nextafter
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -46,7 +45,7 @@ WINDOWED = zw.Wall(100, "0.03", zw.rendering.Window(2))
         (["1 ms", 0.5], (0.001, 0.5)),
     ],
 )
-def test_values_are_read(given: object, values: tuple[float, ...]) -> None:
+def test_values_are_read(given, values):
     """Ranges, ranges of equal ratios and lists; each number the double nearest to what is meant."""
     assert axis("delay", given, "s").values == values
 
@@ -70,7 +69,7 @@ def test_values_are_read(given: object, values: tuple[float, ...]) -> None:
         ((1, 2, 3, "lin"), "may come"),
     ],
 )
-def test_bad_values_are_refused(given: object, message: str) -> None:
+def test_bad_values_are_refused(given, message):
     """One message each."""
     with pytest.raises(zw.InputError, match=message):
         axis("delay", given, "s")
@@ -88,7 +87,7 @@ def one_by_one(asked: requests.Request) -> dict[str, Any]:
 
 
 @seeds(4)
-def test_springs_are_decided_as_by_check(seed: int) -> None:
+def test_springs_are_decided_as_by_check(seed):
     """Whatever is varied, at the limit and a double beyond it too: the same words and largest spring."""
     drawn = np.random.default_rng(seed)
     device = PADDLE.replace(
@@ -126,7 +125,7 @@ def test_springs_are_decided_as_by_check(seed: int) -> None:
         ("0.0003", zw.rendering.OnePole("0.002")),
     ],
 )
-def test_walls_are_decided_as_by_check(delay: str, velocity: Any) -> None:
+def test_walls_are_decided_as_by_check(delay, velocity):
     """A line of stiffnesses, in no order, at both limits and beside them too: the same words and numbers."""
     device, wall = PADDLE.replace(delay=delay), zw.Wall(1, "0.05", velocity)
     limits = [
@@ -142,7 +141,7 @@ def test_walls_are_decided_as_by_check(delay: str, velocity: Any) -> None:
         np.testing.assert_array_equal(layers[name], expected, err_msg=name)
 
 
-def test_of_a_line_of_walls_few_are_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_of_a_line_of_walls_few_are_asked(monkeypatch):
     """All but the first of each part, and those about which doubles are in doubt."""
     module = sys.modules["zwidth.study.sweeps.questions"]
     asked = request("check", Loop(PADDLE, zw.Wall(1, "0.05")), {"stiffness": "10:400:200"})
@@ -160,7 +159,7 @@ def test_of_a_line_of_walls_few_are_asked(monkeypatch: pytest.MonkeyPatch) -> No
     assert len(told) < 10
 
 
-def test_the_largest_spring_is_a_double_at_its_limit() -> None:
+def test_the_largest_spring_is_a_double_at_its_limit():
     """Passive there and not at the next, with and without friction as the limit; none without damping."""
     period, count = PADDLE.exact("sample_period"), PADDLE.exact("resolution")
     numbers = PADDLE.exact("damping"), PADDLE.exact("coulomb_friction"), count, period
@@ -193,7 +192,7 @@ def stopped_after(chunks: int) -> Callable[[int, int], None]:
 
 
 @pytest.mark.parametrize("name", ["sweep.zarr", "sweep.parquet"])
-def test_a_sweep_goes_on(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_sweep_goes_on(tmp_path, name, monkeypatch):
     """Stopped twice and gone on with, from the file again, from the file alone: the same bits."""
     monkeypatch.setattr(requests, "BY_CLOSED_FORMS", 6)
     whole = zw.sweep(PADDLE, WALL, vary=GRID, workers=1)
@@ -218,7 +217,7 @@ def test_a_sweep_goes_on(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPa
 
 
 @pytest.mark.parametrize("name", ["sweep.zarr", "sweep.parquet", "map.zarr"])
-def test_one_process_at_a_time_writes_a_file(tmp_path: Path, name: str) -> None:
+def test_one_process_at_a_time_writes_a_file(tmp_path, name):
     """A second one is told so and harms nothing; the lock of one that is gone holds nobody up."""
     path = tmp_path / name
     (tmp_path / f".{name}.lock").touch()
@@ -241,14 +240,14 @@ def test_one_process_at_a_time_writes_a_file(tmp_path: Path, name: str) -> None:
     xr.testing.assert_identical(computed(lambda done, total: None), found)
 
 
-def test_processes_compute_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_processes_compute_the_same_bits(monkeypatch):
     """Two of them, chunks in whatever order."""
     monkeypatch.setattr(requests, "BY_CLOSED_FORMS", 6)
     alone, two = (zw.sweep(PADDLE, WALL, vary=GRID, workers=workers) for workers in (1, 2))
     assert arrays(alone) == arrays(two)
 
 
-def test_a_worker_that_is_gone_is_told() -> None:
+def test_a_worker_that_is_gone_is_told():
     """One that was killed: a message, and no waiting for ever; one that nobody asks any more ends."""
     asked = request("check", Loop(PADDLE, WALL), {"stiffness": "1, 2"})
     worker = Worker(compute, asked)
@@ -265,7 +264,7 @@ def test_a_worker_that_is_gone_is_told() -> None:
     other.dismiss()
 
 
-def test_every_question_is_answered_as_by_itself() -> None:
+def test_every_question_is_answered_as_by_itself():
     """A law with memory, a limit, a touch, a pair: the numbers of the function that answers one."""
     soft = zw.Maxwell(stiffness=100, damping=3)
     found = zw.sweep(PADDLE, soft, vary={"stiffness": [100, 2000]}, workers=1)
@@ -290,7 +289,7 @@ def test_every_question_is_answered_as_by_itself() -> None:
     assert pairs.max_stiffness.values[1, 0] == verdict_of_two.largest_stiffness
 
 
-def test_a_touch_is_simulated_as_by_itself() -> None:
+def test_a_touch_is_simulated_as_by_itself():
     """The measures of the traces, energy got out among them."""
     hand = zw.operators.Dowel(force=1)
     touches = zw.sweep(
@@ -310,7 +309,7 @@ LAWS = (
 )
 
 
-def test_numbers_of_laws_in_a_chain_are_varied() -> None:
+def test_numbers_of_laws_in_a_chain_are_varied():
     """Also those that the device filled in, whole ones, and those of a law's velocity."""
     hand = zw.operators.Dowel(force=1)
     vary = {"law.2.largest-damping": "0.03, 0.2", "law.3.window": "3, 9", "law.1.velocity.longest": [2, 4]}
@@ -372,9 +371,7 @@ def test_numbers_of_laws_in_a_chain_are_varied() -> None:
         ),
     ],
 )
-def test_what_a_law_is_made_of_is_varied(
-    wall: zw.Environment, name: str, values: Any, changed_wall: zw.Environment
-) -> None:
+def test_what_a_law_is_made_of_is_varied(wall, name, values, changed_wall):
     """Filters of a velocity, what is behind a coupling, a law in a chain: each as by itself."""
     found = zw.sweep(PADDLE, wall, vary={name: values}, workers=1)
     verdict = zw.check(PADDLE, changed_wall, iterate=False)
@@ -386,7 +383,7 @@ def test_what_a_law_is_made_of_is_varied(
     )
 
 
-def test_the_limit_behind_a_law_whose_number_is_varied() -> None:
+def test_the_limit_behind_a_law_whose_number_is_varied():
     """As `passive_limit` has it of each."""
     chain = zw.render(zw.Wall(100), zw.rendering.RateTerm())
     found = zw.sweep(PADDLE, chain, of="limit", vary={"law.time_constant": "0.1, 1 ms"}, workers=1)
@@ -396,7 +393,7 @@ def test_the_limit_behind_a_law_whose_number_is_varied() -> None:
         assert found.proved_passive.values[k] == one.proved_passive
 
 
-def test_what_an_outcome_is_about_stands_beside_it() -> None:
+def test_what_an_outcome_is_about_stands_beside_it():
     """No claim without its contact and encoder; what all have in common is in the scope."""
     found = zw.sweep(
         PADDLE, zw.Wall(90, "0.03", zw.rendering.OnePole("1 ms")), vary={"delay": "0, 1 ms"}, workers=1
@@ -408,7 +405,7 @@ def test_what_an_outcome_is_about_stands_beside_it() -> None:
     assert "by closed forms" in found.attrs["answers"]
 
 
-def test_a_wheel_in_degrees() -> None:
+def test_a_wheel_in_degrees():
     """Counts in a turn, degrees and revolutions, as options have them."""
     wheel = zw.rotary(
         inertia="6 g*m^2", damping="0.05", coulomb_friction="0.02", counts_per_turn=65536, rate=1000
@@ -426,7 +423,7 @@ def test_a_wheel_in_degrees() -> None:
     assert coarse.resolution.values[1] == pytest.approx(np.pi / 180)
 
 
-def test_a_loop_that_cannot_be_is_said_to_be_refused() -> None:
+def test_a_loop_that_cannot_be_is_said_to_be_refused():
     """Two rates that do not go into each other: no answer, and why of the first."""
     pair = zw.Pair(PADDLE, PADDLE, stiffness=50)
     found = zw.sweep(pair, of="pair", vary={"leader.rate": [1000, 1500, 2000]}, workers=1)
@@ -459,15 +456,13 @@ def test_a_loop_that_cannot_be_is_said_to_be_refused() -> None:
         ({"stiffness": "1, 2"}, {"path": "nowhere/sweep.zarr"}, "no directory"),
     ],
 )  # fmt: skip
-def test_bad_input_is_refused_before_work_starts(
-    vary: dict[str, object], more: dict[str, Any], message: str
-) -> None:
+def test_bad_input_is_refused_before_work_starts(vary, more, message):
     """One message each."""
     with pytest.raises(zw.InputError, match=message):
         zw.sweep(PADDLE, **{"environment": WALL, **more}, vary=vary)
 
 
-def test_a_file_that_is_no_sweep(tmp_path: Path) -> None:
+def test_a_file_that_is_no_sweep(tmp_path):
     """Neither read nor written over."""
     foreign = tmp_path / "x.parquet"
     foreign.write_bytes(b"no table")
@@ -482,7 +477,7 @@ def test_a_file_that_is_no_sweep(tmp_path: Path) -> None:
         zw.load_sweep(tmp_path / "y.nc")
 
 
-def test_of_hands_that_are_known_it_says_what_stability_says() -> None:
+def test_of_hands_that_are_known_it_says_what_stability_says():
     """Of each by its name, beside the verdict about every hand."""
     hands = {"none": None, "finger": zw.operators.Finger()}
     grid = {"stiffness": "100, 3000", "delay": "0, 2 ms"}
@@ -508,13 +503,13 @@ def test_of_hands_that_are_known_it_says_what_stability_says() -> None:
         ([None], "hands are given by their names"),
     ],
 )
-def test_a_hand_that_cannot_be_is_refused_before_the_work(hands: Any, message: str) -> None:
+def test_a_hand_that_cannot_be_is_refused_before_the_work(hands, message):
     """Its name becomes that of a column."""
     with pytest.raises(zw.InputError, match=message):
         zw.sweep(PADDLE, WALL, vary={"delay": "0, 1 ms"}, hands=hands, workers=1)
 
 
-def test_without_a_mass_nothing_is_said_of_hands() -> None:
+def test_without_a_mass_nothing_is_said_of_hands():
     """Refused before the work, not once for each loop."""
     with pytest.raises(zw.InputError, match="mass"):
         zw.sweep(PADDLE.replace(mass=None), WALL, vary={"delay": "0, 1 ms"}, hands={"none": None}, workers=1)
