@@ -1,7 +1,5 @@
 """The boundary of stability in the plane of walls, by two roads."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -30,10 +28,9 @@ def test_one_sample_of_delay_in_the_plane_of_salcudean_and_vlaar():
     found = zw.maps.stability_boundary(BARE, delay=0.001, points=400)
     here = found["bounds"].values & (found["stiffness"].values > 1)
     assert here.sum() > 50
-    for k, b in zip(
-        found["stiffness"].values[here][::5], found["virtual_damping"].values[here][::5], strict=True
-    ):
-        k, b = k * K_SCALE / 2, b * B_SCALE / 2
+    walls = (found[name].values[here][::5] for name in ("stiffness", "virtual_damping"))
+    for stiffness, damping in zip(*walls, strict=True):
+        k, b = stiffness * K_SCALE / 2, damping * B_SCALE / 2
         p = np.polyadd(np.polymul([1, 0, 0], [1, -2, 1]), np.polymul([1, 1], [k + b, -b]))
         assert np.abs(np.roots(p)).max() == pytest.approx(1, abs=1e-7)
 
@@ -62,18 +59,21 @@ def test_frequencies_are_those_of_the_poles():
     found = zw.maps.stability_boundary(PADDLE, Finger(), points=40)
     for n in np.flatnonzero(found["bounds"].values[:40] & (found["stiffness"].values[:40] > 100)):
         one = found.isel(point=n)
-        there = zw.stability.coupled_stability(
-            PADDLE, zw.Wall(one["stiffness"].item(), one["virtual_damping"].item()), Finger()
-        )
+        wall = zw.Wall(one["stiffness"].item(), one["virtual_damping"].item())
+        there = zw.stability.coupled_stability(PADDLE, wall, Finger())
         assert there.frequency == pytest.approx(one["frequency"].item(), rel=1e-6)
         assert there.spectral_radius == pytest.approx(1, abs=1e-8)
 
 
-def test_what_has_no_boundary():
-    """An interval, no mass, one point."""
-    with pytest.raises(zw.InputError, match="one device and one hand"):
-        zw.maps.stability_boundary(PADDLE, zw.stability.HandImpedance(mass=(0, 1)))
-    with pytest.raises(zw.InputError, match="mass of the device"):
-        zw.maps.stability_boundary(zw.Device(damping=1, rate=1000))
-    with pytest.raises(zw.InputError, match="two ends"):
-        zw.maps.stability_boundary(PADDLE, points=1)
+@pytest.mark.parametrize(
+    ("device", "hand", "points", "message"),
+    [
+        (PADDLE, zw.stability.HandImpedance(mass=(0, 1)), 9, "one device and one hand"),
+        (zw.Device(damping=1, rate=1000), None, 9, "mass of the device"),
+        (PADDLE, None, 1, "two ends"),
+    ],
+    ids=["an interval", "no mass", "one point"],
+)
+def test_what_has_no_boundary(device, hand, points, message):
+    with pytest.raises(zw.InputError, match=message):
+        zw.maps.stability_boundary(device, hand, points=points)

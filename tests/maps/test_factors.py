@@ -1,7 +1,5 @@
 """The 2⁴ design: effects against areas that have a closed form."""
 
-from __future__ import annotations
-
 import pytest
 
 import zwidth as zw

@@ -1,7 +1,5 @@
 """The boundary that holds for every hand within intervals."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -60,9 +58,9 @@ def test_nothing_is_proved_where_a_hand_is_shaken_at_any_stiffness():
     assert np.isnan(found["guaranteed"].values[-1])
 
 
-def test_bad_ranges():
-    """From smaller to larger, at two points at least."""
-    with pytest.raises(zw.InputError, match="smaller to its larger"):
-        zw.maps.robust_boundary(PADDLE, BOX, (2, 1))
-    with pytest.raises(zw.InputError, match="2 points"):
-        zw.maps.robust_boundary(PADDLE, BOX, (1, 2), points=1)
+@pytest.mark.parametrize(
+    ("ends", "points", "message"), [((2, 1), 3, "smaller to its"), ((1, 2), 1, "2 points")]
+)
+def test_bad_ranges(ends, points, message):
+    with pytest.raises(zw.InputError, match=message):
+        zw.maps.robust_boundary(PADDLE, BOX, ends, points=points)

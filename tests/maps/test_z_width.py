@@ -1,7 +1,5 @@
 """The Z-width map: each layer against another road, stores that are killed and gone on with, clusters."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal
@@ -27,20 +25,15 @@ from zwidth.study.maps.request import CHUNK, FORMAT, request
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 WIDE = ((0, 30000), (0, 90))
-LAYERS = (
-    "passive",
-    "passive_sustained",
-    "quiet",
-    "admissible_speed",
-    "stable_none",
-    "stable_finger",
-    "stable_dowel",
-)
+LAYERS = ("passive", "passive_sustained", "quiet", "admissible_speed")
+FILTERED = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
+"""Its response does not end."""
 
 
-def same(a: xr.Dataset, b: xr.Dataset) -> bool:
+def same(a, b):
     """Every layer has the same bytes."""
-    return all(a[name].values.tobytes() == b[name].values.tobytes() for name in LAYERS)
+    names = (*LAYERS, "stable_none", "stable_finger", "stable_dowel")
+    return all(a[name].values.tobytes() == b[name].values.tobytes() for name in names)
 
 
 def test_every_number_has_its_unit():
@@ -116,9 +109,9 @@ def test_sustained_cells_are_those_that_the_criterion_proves(changes, velocity):
 @pytest.mark.parametrize(("first", "past"), [(0, 20), (3, 17), (9, 10), (1, 19), (0, 1), (19, 20), (4, 9)])
 def test_ends_of_an_interval_are_found(first, past):
     """Wherever it lies in the range that floats allow, if one of the three cells tried first is in it."""
-    seen: set[int] = set()
+    seen = set()
 
-    def proved(i: int) -> bool:
+    def proved(i):
         seen.add(i)
         return first <= i < past
 
@@ -188,29 +181,14 @@ def test_the_kernel_never_believes_a_sign_that_rounding_made():
     hand = ready.hands[0]
     for b in (1.0, 20.0, 60.0):
         limit = zw.stability.coupled_stability(PADDLE, zw.Wall(10, b), Finger()).max_stiffness
-        assert limit is not None
-        answers = {
-            off: decide_cell(
-                hand.free,
-                hand.stiff,
-                hand.damped,
-                limit * (1 + off),
-                b,
-                hand.slack,
-                np.zeros((2, 9)),
-                np.zeros((2, 9)),
-            )
-            for off in (-1e-9, -1e-16, 0.0, 1e-16, 1e-9)
-        }
-        assert answers[-1e-9] == STABLE
-        assert answers[1e-9] == UNSTABLE
-        assert answers[0.0] == UNKNOWN
+        for off, answer in ((-1e-9, STABLE), (0.0, UNKNOWN), (1e-9, UNSTABLE)):
+            cell, room = (limit * (1 + off), b, hand.slack), (np.zeros((2, 9)), np.zeros((2, 9)))
+            assert decide_cell(hand.free, hand.stiff, hand.damped, *cell, *room) == answer
 
 
 def test_a_filter_without_end_is_not_called_passive():
     """No condition for contact made and broken covers it; stability is decided all the same."""
-    filtered = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
-    found = zw.z_width(PADDLE, (0, 300), (0, 1), cells=(5, 5), velocity_filter=filtered)
+    found = zw.z_width(PADDLE, (0, 300), (0, 1), cells=(5, 5), velocity_filter=FILTERED)
     assert not found["passive"].any()
     assert (found["admissible_speed"] == 0).all()
     assert found["stable_finger"].any()
@@ -252,7 +230,6 @@ def test_regions_and_free_air():
 
 
 def test_threads_do_not_change_a_bit():
-    """One thread or four."""
     one, four = (zw.z_width(PADDLE, *WIDE, cells=(300, 300), workers=n) for n in (1, 4))
     assert same(one, four)
 
@@ -260,16 +237,15 @@ def test_threads_do_not_change_a_bit():
 def test_a_store_is_gone_on_with(tmp_path):
     """The chunks that are there are not computed again; the layers are those of a map in memory."""
     cells, path = (300, 300), tmp_path / "map.zarr"
-    told: list[int] = []
+    told, again = [], []
 
-    def stop(done: int, total: int) -> None:
+    def stop(done, total):
         told.append(done)
         if done == 4:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         zw.z_width(PADDLE, *WIDE, cells=cells, path=path, progress=stop, workers=1)
-    again: list[int] = []
     found = zw.z_width(PADDLE, *WIDE, cells=cells, path=path, progress=lambda done, total: again.append(done))
     assert told == [1, 2, 3, 4]
     assert again == [5, 6, 7, 8, 9]
@@ -300,7 +276,6 @@ def test_a_map_killed_twice_loses_nothing(tmp_path):
     for at in (2, 5):
         command = [sys.executable, "-c", STOPPED, str(path), str(at)]
         process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-        assert process.stdout is not None
         for line in process.stdout:
             if int(line) == at:
                 os.kill(process.pid, signal.SIGKILL)
@@ -308,7 +283,7 @@ def test_a_map_killed_twice_loses_nothing(tmp_path):
         assert process.wait() == -signal.SIGKILL
         process.stdout.close()
         assert xr.open_zarr(path, consolidated=False)["done"].values.sum() == at
-    left: list[int] = []
+    left = []
     found = zw.z_width(PADDLE, *WIDE, cells=(260, 260), path=path, progress=lambda n, total: left.append(n))
     assert left == list(range(6, 10))
     assert same(found, zw.z_width(PADDLE, *WIDE, cells=(260, 260)))
@@ -329,49 +304,50 @@ def test_a_full_disk_keeps_what_is_finished(tmp_path):
     """One message, and the same map goes on when there is room."""
     path = tmp_path / "map"
 
-    def full(done: int, total: int) -> None:
+    def full(done, total):
         disk.enter_context(full_disk(largest=0))
 
     with ExitStack() as disk, pytest.raises(zw.InputError, match=r"map cannot be written: .*goes on with it"):
         zw.z_width(PADDLE, *WIDE, cells=(CHUNK, CHUNK + 1), path=path, progress=full, workers=1)
-    left: list[int] = []
+    left = []
     zw.z_width(PADDLE, *WIDE, cells=(CHUNK, CHUNK + 1), path=path, progress=lambda n, total: left.append(n))
     assert left == [2]
 
 
-def test_a_store_that_leads_elsewhere_is_refused(tmp_path):
+def leads_elsewhere(path):
     """Neither read nor written is what a link in it names."""
-    path, other = tmp_path / "map", tmp_path / "other"
-    zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
-    (path / "passive").rename(other)
-    (path / "passive").symlink_to(other)
-    with pytest.raises(zw.InputError, match="passive in it is a link"):
-        zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
+    (path / "passive").rename(path.parent / "other")
+    (path / "passive").symlink_to(path.parent / "other")
 
 
-def test_a_store_that_declares_more_than_its_map_is_refused(tmp_path):
+def declares_more(path):
     """Cells that were never written are filled in, as many as are declared."""
-    path = tmp_path / "map"
-    zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
     about = path / "passive" / "zarr.json"
     document = json.loads(about.read_text(encoding="utf-8"))
-    document["shape"] = [2**40, 2**40]
-    about.write_text(json.dumps(document), encoding="utf-8")
-    with pytest.raises(zw.InputError, match="holds another map"):
-        zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
+    about.write_text(json.dumps({**document, "shape": [2**40, 2**40]}), encoding="utf-8")
 
 
-def test_a_store_of_another_map_is_refused(tmp_path):
-    """Another range, or a directory with something else in it; neither is touched."""
-    path = tmp_path / "map.zarr"
-    zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
-    with pytest.raises(zw.InputError, match="holds another map"):
-        zw.z_width(PADDLE, (0, 1), (0, 1), cells=(5, 5), path=path)
-    (tmp_path / "else").mkdir()
-    (tmp_path / "else" / "notes.txt").write_text("mine")
+@pytest.mark.parametrize(
+    ("changed", "stiffness", "message"),
+    [
+        (leads_elsewhere, (0, 30000), "passive in it is a link"),
+        (declares_more, (0, 30000), "holds another map"),
+        (lambda path: None, (0, 1), "holds another map"),
+    ],
+    ids=["a link", "more", "another range"],
+)
+def test_a_store_of_another_map_is_refused(changed, stiffness, message, tmp_path):
+    zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=tmp_path / "map")
+    changed(tmp_path / "map")
+    with pytest.raises(zw.InputError, match=message):
+        zw.z_width(PADDLE, stiffness, WIDE[1], cells=(5, 5), path=tmp_path / "map")
+
+
+def test_a_folder_with_something_else_is_not_touched(tmp_path):
+    (tmp_path / "notes.txt").write_text("mine")
     with pytest.raises(zw.InputError, match="holds"):
-        zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=tmp_path / "else")
-    assert (tmp_path / "else" / "notes.txt").read_text(encoding="utf-8") == "mine"
+        zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=tmp_path)
+    assert (tmp_path / "notes.txt").read_text(encoding="utf-8") == "mine"
 
 
 def test_a_cluster_gives_the_same_bits(monkeypatch):
@@ -409,7 +385,6 @@ def test_chunks_tile_the_map():
     ],
 )
 def test_what_cannot_be_mapped(change, message):
-    """One clear message each."""
     given = {"device": PADDLE, "stiffness": (0, 10), "virtual_damping": (0, 1), "cells": (3, 3), **change}
     with pytest.raises(zw.InputError, match=message):
         zw.z_width(**given)
@@ -418,8 +393,8 @@ def test_what_cannot_be_mapped(change, message):
 def test_what_no_condition_covers_is_said_and_springs_are_decided():
     """Of a filter without end the column at B = 0 ends where `check` does, from both sides."""
     device = PADDLE.replace(delay="0.0005", coulomb_friction=1)
-    filtered = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
-    found = zw.z_width(device, (0, 300), ("-0.5", "0.5"), cells=(300, 3), hands={}, velocity_filter=filtered)
+    given = {"hands": {}, "velocity_filter": FILTERED}
+    found = zw.z_width(device, (0, 300), ("-0.5", "0.5"), cells=(300, 3), **given)
     middle = found["passive"].values[:, 1]
     k = found["stiffness"].values
     limit = float(found["spring_limit"])
@@ -430,7 +405,7 @@ def test_what_no_condition_covers_is_said_and_springs_are_decided():
     for share, outcome in ((1 - 1e-9, "passive"), (1 + 1e-6, "active")):
         assert check_by_closed_forms(device, zw.Wall(limit * share)).outcome == outcome
     assert "does not end" in found.attrs["not_covered"]
-    assert zw.maps.z_width_certificate(device, found, velocity_filter=filtered) is not None
+    assert zw.maps.z_width_certificate(device, found, velocity_filter=FILTERED) is not None
     coarse = zw.z_width(device.replace(coulomb_friction="0.001"), (0, 300), (0, 1), cells=(4, 4), hands={})
     assert float(coarse["spring_limit"]) == pytest.approx(2 * 0.001 / 2.24e-5)
     assert zw.z_width(PADDLE, (0, 300), (0, 1), cells=(4, 4), hands={}).attrs["not_covered"] == ""
@@ -438,10 +413,8 @@ def test_what_no_condition_covers_is_said_and_springs_are_decided():
 
 def test_no_spring_is_passive_without_damping_of_the_device():
     """A filter whose response does not end leaves springs alone, and b = 0 holds none but that of K = 0."""
-    filtered = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
     for damping, passive in ((0, [False, False]), (0.15, [True, False])):
-        found = zw.z_width(
-            PADDLE.replace(damping=damping), (0, 500), (-1, 1), (2, 1), velocity_filter=filtered, hands={}
-        )
+        device = PADDLE.replace(damping=damping)
+        found = zw.z_width(device, (0, 500), (-1, 1), (2, 1), velocity_filter=FILTERED, hands={})
         assert found["virtual_damping"].values.tolist() == [0]
         assert found["passive"].values[:, 0].tolist() == passive
