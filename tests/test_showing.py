@@ -1,7 +1,5 @@
 """Text of others is shown, never obeyed: in a notebook, in a picture, on a terminal."""
 
-from __future__ import annotations
-
 import ast
 import json
 import os

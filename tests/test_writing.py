@@ -1,7 +1,5 @@
 """Files are written whole or not at all, whatever stands in their place."""
 
-from __future__ import annotations
-
 import csv
 import errno
 import os

@@ -1,7 +1,5 @@
 """Just-noticeable differences of stiffness, and where they are said."""
 
-from __future__ import annotations
-
 from math import isnan
 
 import numpy as np
@@ -23,9 +21,8 @@ def test_steps_of_23_percent(steps, felt):
 def test_just_below_a_step_and_just_above():
     """The step lies at 1 + w, whatever w is."""
     for weber in (0.07, WEBER, 0.5):
-        below, above = (
-            noticeable_differences(400 * (1 + weber) * by, 400, weber) for by in (1 - 1e-9, 1 + 1e-9)
-        )
+        step = 400 * (1 + weber)
+        below, above = (noticeable_differences(step * by, 400, weber) for by in (1 - 1e-9, 1 + 1e-9))
         assert below < 1 < above
 
 
@@ -54,9 +51,7 @@ def test_a_trace_says_what_was_felt():
 
 def test_the_bench_says_it_with_its_source():
     """A column of the table, in steps of the stiffness that is wanted."""
-    wall = zw.Wall(600)
-    laws = {"wall": wall, "softer": zw.Wall(300)}
-    found = zw.compare(PADDLE, wall, laws)
+    found = zw.compare(PADDLE, zw.Wall(600), {"wall": zw.Wall(600), "softer": zw.Wall(300)})
     steps = found.scores["stiffness_jnds"]
     expected = np.log(found.scores["static_stiffness"] / 600) / np.log(1.23)
     assert np.allclose(steps, expected)
