@@ -35,19 +35,16 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     ],
 )
 def test_commands_name_the_file_that_is_there(folder, capsys, words, meant):
-    """Of the same ending, or of the catalogue."""
     (folder / "wheel.toml").write_text("[device]\ndamping = 1\nrate = 1000\n", encoding="utf-8")
     assert main(words.split()) == 2
     assert capsys.readouterr().err.endswith(f'did you mean "{meant}"?\n')
 
 
 def test_a_file_is_named_as_one_would_type_it(folder):
-    """With the folder in which it was sought."""
     assert near_file(Path("..") / folder.name / "wheal.toml") == str(Path("..") / folder.name / "wheel.toml")
     assert near_file(folder / "wheal.toml") == str(folder / "wheel.toml")
 
 
 @pytest.mark.parametrize("name", ["quite-another.toml", "wheel.csv", "none/wheel.toml", "\0.toml"])
 def test_nothing_is_said_where_nothing_is_near(folder, name):
-    """Another ending, a folder that is not there, a name that cannot be."""
     assert did_you_mean(folder / name) == ""

@@ -80,7 +80,6 @@ def test_every_public_name_is_documented(name):
 
 @pytest.mark.parametrize("name", [*CLASSES, "check", "rotary"])
 def test_every_argument_is_documented(name):
-    """Each argument of a public class or function stands in its docstring."""
     thing = getattr(zw, name)
     text = inspect.getdoc(thing) or ""
     arguments = [p for p in inspect.signature(thing).parameters if p != "self"]
@@ -106,7 +105,6 @@ def test_a_room_is_one_under_both_of_its_names():
 
 
 def test_version_is_the_one_of_the_distribution():
-    """What is installed is what pyproject.toml declares, and the changelog has an entry for it."""
     from importlib.metadata import version
 
     declared = PYPROJECT["project"]["version"]
@@ -144,7 +142,6 @@ def test_no_file_names_a_path_of_some_machine():
 
 
 def test_the_readme_has_two_commands():
-    """One sets up a virtual environment and does the main job, the other sets up and tests."""
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     job, tests = (line for line in readme.splitlines() if line.startswith("python3 -m venv"))
     assert "zwidth check" in job
@@ -217,7 +214,6 @@ def _blocks(page: str, language: str) -> list[str]:
 
 
 def test_the_readme_example_says_what_comes_out():
-    """The Python example of the README runs, and its comments are true."""
     names = {}
     for example in _blocks("README.md", "python"):
         exec(example, names)
@@ -231,7 +227,6 @@ def test_the_readme_example_says_what_comes_out():
 
 
 def test_the_quickstart_example_says_what_comes_out(tmp_path, monkeypatch):
-    """The Python example of the quickstart runs, and its comments are true."""
     monkeypatch.chdir(tmp_path)
     names = {}
     (example,) = _blocks("docs/quickstart.md", "python")
@@ -295,7 +290,6 @@ def _help(*command: str) -> str:
 
 
 def test_every_parameter_is_on_the_command_line_page():
-    """Every parameter that `zwidth check` takes stands on its page, and every type of environment."""
     from zwidth.model.rendering import LAWS
     from zwidth.model.specification.environments import TYPES, option_keys
     from zwidth.model.specification.read import DEVICE_KEYS
@@ -309,7 +303,6 @@ def test_every_parameter_is_on_the_command_line_page():
 
 @pytest.mark.parametrize("command", [name for name in COMMANDS if name != "workspace"])
 def test_every_option_in_the_help_is_on_the_command_line_page(command):
-    """What `--help` offers, the page explains."""
     page = _command_line_page()
     assert f"zwidth {command}" in page
     options = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", _help(command)))
@@ -319,7 +312,6 @@ def test_every_option_in_the_help_is_on_the_command_line_page(command):
 
 
 def test_every_key_of_the_json_is_on_its_page():
-    """Whoever reads a verdict by program finds each of its keys explained."""
     page = json_page()
     paddle = zw.catalogue.device("haptic-paddle")
     delayed = paddle.replace(delay=0.0003)

@@ -89,7 +89,6 @@ def test_what_is_said_once_is_shown_in_both_places():
 
 
 def test_rows_without_headings_have_a_name_first():
-    """The first cell says what the others are."""
     assert Table(rows=[["K", "1 N/m"]]).html == (
         '<table><tbody><tr><th scope="row" style="text-align:left">K</th>'
         '<td style="text-align:left">1 N/m</td></tr></tbody></table>'

@@ -5,11 +5,9 @@ import errno
 import os
 import re
 import secrets
-from collections.abc import Callable, Iterator
 from io import StringIO
 from pathlib import Path
 from stat import S_IMODE
-from typing import Any
 
 import pytest
 from full_disk import full_disk
@@ -25,12 +23,11 @@ LOOP = zw.Device(mass=0.04, damping=0.15, sample_period=0.001), zw.Wall(200)
 
 
 def test_what_fails_half_way_leaves_the_old_file(tmp_path):
-    """The new text is nowhere, not even under another name."""
     path = tmp_path / "proof.json"
     save_json(path, {"whole": 1})
     old = path.read_text(encoding="utf-8")
 
-    def half() -> None:
+    def half():
         with writing_whole(path) as file:
             file.write(b"{")
             raise KeyboardInterrupt
@@ -42,7 +39,6 @@ def test_what_fails_half_way_leaves_the_old_file(tmp_path):
 
 
 def test_a_link_stays_a_link(tmp_path):
-    """The file that it names is written."""
     link, file = tmp_path / "link.json", tmp_path / "file.json"
     link.symlink_to(file)
     save_json(link, {"whole": 1})
@@ -52,14 +48,12 @@ def test_a_link_stays_a_link(tmp_path):
 
 @pytest.mark.skipif(not Path("/dev/null").is_char_device(), reason="there is no /dev/null")
 def test_a_device_stays_a_device():
-    """Nothing is put in the place of /dev/null."""
     save_json("/dev/null", {"whole": 1})
     assert Path("/dev/null").is_char_device()
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device to write to")
 def test_a_full_device_is_one_message():
-    """As for a full disk."""
     with pytest.raises(zw.InputError, match=f"/dev/full cannot be written: {os.strerror(errno.ENOSPC)}"):
         save_json("/dev/full", {"whole": 1})
 
@@ -67,7 +61,6 @@ def test_a_full_device_is_one_message():
 def test_a_place_that_is_not_there_is_said(tmp_path):
     """Of verdicts, certificates, maps of arms and pictures alike."""
     verdict = zw.check(*LOOP)
-    assert verdict.certificate is not None
     for save in (verdict.save, verdict.certificate.save):
         with pytest.raises(zw.InputError, match=f"cannot be written: {os.strerror(errno.ENOENT)}"):
             save(tmp_path / "none" / "proof.json")
@@ -76,18 +69,9 @@ def test_a_place_that_is_not_there_is_said(tmp_path):
 
 
 def test_a_directory_is_one_message(tmp_path):
-    """It keeps its place."""
     with pytest.raises(zw.InputError, match="cannot be written"):
         save_json(tmp_path, {"whole": 1})
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_link_that_leads_nowhere_is_there(tmp_path):
-    """Somebody may have laid it where a file was about to be made."""
-    link = tmp_path / "link.json"
-    link.symlink_to(tmp_path / "chosen by another")
-    with pytest.raises(zw.InputError, match="exists"):
-        check_target(link, force=False)
 
 
 def test_nobody_knows_the_name_before(tmp_path):
@@ -123,24 +107,19 @@ def test_a_link_in_the_way_is_not_followed(tmp_path, monkeypatch):
     assert not path.exists()
 
 
-@pytest.fixture
-def umask() -> Iterator[None]:
-    """The group may read what is written, others may not."""
-    before = os.umask(0o027)
-    yield
-    os.umask(before)
-
-
 @pytest.mark.skipif(os.name != "posix", reason="permissions are those of POSIX")
-@pytest.mark.usefixtures("umask")
 def test_permissions_are_those_of_the_umask(tmp_path):
-    """A private file stays private when it is replaced."""
+    """The group may read what is written; a private file stays private when it is replaced."""
     path = tmp_path / "proof.json"
-    save_json(path, {"whole": 1})
-    assert S_IMODE(path.stat().st_mode) == 0o640
-    path.chmod(0o600)
-    save_json(path, {"whole": 2})
-    assert S_IMODE(path.stat().st_mode) == 0o600
+    before = os.umask(0o027)
+    try:
+        save_json(path, {"whole": 1})
+        assert S_IMODE(path.stat().st_mode) == 0o640
+        path.chmod(0o600)
+        save_json(path, {"whole": 2})
+        assert S_IMODE(path.stat().st_mode) == 0o600
+    finally:
+        os.umask(before)
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write everywhere")
@@ -170,10 +149,12 @@ def test_a_pipe_is_written_itself():
         assert pipe.read() == '{\n  "whole": 1\n}\n'
 
 
-FORMATS: dict[str, Callable[[Any, Path], None]] = {
-    "touch.nc": lambda trace, path: trace.zwidth.save(path, force=True),
-    "touch.parquet": lambda trace, path: trace.zwidth.save(path, force=True),
-    "touch.csv": lambda trace, path: trace.zwidth.save(path, force=True),
+def _saved(trace, path):
+    trace.zwidth.save(path, force=True)
+
+
+FORMATS = {
+    **dict.fromkeys(("touch.nc", "touch.parquet", "touch.csv"), _saved),
     "touch.wav": lambda trace, path: trace.zwidth.sound(path, force=True),
     "touch.png": lambda trace, path: trace.zwidth.plot(path),
     "touch.svg": lambda trace, path: trace.zwidth.plot(path),
@@ -183,7 +164,7 @@ FORMATS: dict[str, Callable[[Any, Path], None]] = {
 
 
 @pytest.fixture(scope="module")
-def trace() -> Any:
+def trace():
     """A short touch."""
     return zw.simulate(*LOOP, zw.operators.ConstantForce(1), 0.02)
 

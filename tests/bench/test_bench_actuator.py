@@ -185,10 +185,8 @@ def random_loop(rng):
     limit = None if rng.random() < 0.5 else step * rng.uniform(3, 300)
     device = made(step, friction, damping=b, sample_period=period, force_limit=limit)
     stiffness = 2 * b / period * rng.uniform(0.2, 0.9)
-    dual, controller = (
-        DualRate(samples=int(rng.integers(1, 4))),
-        PassivityController(largest_damping=0.09 * b),
-    )
+    dual = DualRate(samples=int(rng.integers(1, 4)))
+    controller = PassivityController(largest_damping=0.09 * b)
     stages = (PassiveLeap(), dual, controller, EnergyBounding(), ForceBounding())
     stage = stages[int(rng.integers(len(stages)))]
     return device, zw.render(zw.Wall(stiffness), stage), step / stiffness
@@ -225,11 +223,8 @@ def test_rounds_are_what_the_simulator_makes_of_them(delay):
     """Walls and laws that remember, with delays of part of a sample: gain and total of all rounds."""
     device = PADDLE.replace(delay=delay)
     rng = np.random.default_rng(4)
-    wall, stages = (
-        zw.Wall(2000),
-        (PassivityController(), ForceBounding(), zw.rendering.Hysteresis(fastest="0.2")),
-    )
-    for law in (wall, *(zw.render(wall, stage) for stage in stages)):
+    stages = PassivityController(), ForceBounding(), zw.rendering.Hysteresis(fastest="0.2")
+    for law in (zw.Wall(2000), *(zw.render(zw.Wall(2000), stage) for stage in stages)):
         play, motions = _player(device, law), list(fixed_motions(device, 10, law).values())
         for index in rng.choice(len(motions), 4, replace=False):
             quick, slow = play(motions[index], 40), _taken(device, law, motions[index], 40)
@@ -249,7 +244,6 @@ def test_nothing_depends_on_the_time_that_it_takes(monkeypatch):
 
 
 def test_a_theorem_is_never_called_passive():
-    """In the table, the page of a notebook, the advice, the evidence and the JSON."""
     device = PADDLE.replace(resolution=0)
     found = zw.compare(device, zw.Wall(2000), {"energy": zw.render(zw.Wall(2000), EnergyBounding())})
     assert found.scores["status"].item() == "theorem"

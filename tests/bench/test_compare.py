@@ -66,17 +66,10 @@ def test_the_bench_says_what_check_says(stiff):
 
 
 def test_the_table_of_the_docs_is_what_the_bench_says(stiff):
-    """Status and numbers of the page, to the digits that it shows."""
     page = (Path(__file__).parents[2] / "docs" / "laws.md").read_text(encoding="utf-8")
     table = page[page.index("| law | status | felt") :].split("\n\n")[0].splitlines()[2:]
-    variables = {
-        "static_stiffness": 1,
-        "tap_chatter": 1e3,
-        "bounces": 1,
-        "settling_time": 1e3,
-        "peak_force": 1,
-    }
-    variables |= {"generated_energy": 1e3, "dowel_energy": 1e3, "gain": 1e3}
+    variables = {"static_stiffness": 1, "tap_chatter": 1e3, "bounces": 1, "settling_time": 1e3}
+    variables |= {"peak_force": 1, "generated_energy": 1e3, "dowel_energy": 1e3, "gain": 1e3}
     assert len(table) >= 18
     for line in table:
         name, status, *cells = (cell.strip(" `") for cell in line.strip("|").split("|"))
@@ -93,7 +86,6 @@ def test_the_table_of_the_docs_is_what_the_bench_says(stiff):
 
 
 def test_every_key_of_the_json_is_on_its_page(stiff):
-    """Whoever reads scores by program finds each of them explained."""
     page = (Path(__file__).parents[2] / "docs" / "json.md").read_text(encoding="utf-8")
     document = json.loads(stiff.to_json())
     keys = {*document, *document["laws"]["wall"]}
@@ -155,7 +147,6 @@ def test_a_passive_wall_is_never_attacked_with_success():
 
 
 def test_its_faces(stiff, tmp_path):
-    """Table, paragraph, notebook, picture, units."""
     text = repr(stiff)
     assert "wall, 2000 N/m on haptic-paddle" in text
     assert "force-bounding" in stiff.advice
@@ -178,7 +169,6 @@ def test_its_faces(stiff, tmp_path):
     ],
 )
 def test_what_it_refuses(device, wall, options, said):
-    """One clear line."""
     with pytest.raises(zw.InputError, match=said):
         zw.compare(device, wall, **options)
 

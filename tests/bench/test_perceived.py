@@ -14,7 +14,6 @@ PADDLE = zw.catalogue.device("haptic-paddle")
 
 @pytest.mark.parametrize(("steps", "felt"), [(1, 1230.0), (2, 1512.9), (-1, 813.0081300813008), (0, 1000.0)])
 def test_steps_of_23_percent(steps, felt):
-    """Each is 23 % of the one before, up and down."""
     assert noticeable_differences(felt, 1000) == pytest.approx(steps, abs=1e-12)
 
 
@@ -34,7 +33,6 @@ def test_what_was_not_felt_has_no_number(felt):
 
 @pytest.mark.parametrize(("wanted", "weber"), [(0, 0.2), (-1, 0.2), (float("inf"), 0.2), (9, 0), (9, -0.1)])
 def test_nothing_to_compare_with_is_refused(wanted, weber):
-    """One message."""
     with pytest.raises(InputError, match="must be finite and > 0"):
         noticeable_differences(100, wanted, weber)
 
@@ -50,7 +48,6 @@ def test_a_trace_says_what_was_felt():
 
 
 def test_the_bench_says_it_with_its_source():
-    """A column of the table, in steps of the stiffness that is wanted."""
     found = zw.compare(PADDLE, zw.Wall(600), {"wall": zw.Wall(600), "softer": zw.Wall(300)})
     steps = found.scores["stiffness_jnds"]
     expected = np.log(found.scores["static_stiffness"] / 600) / np.log(1.23)

@@ -56,7 +56,6 @@ def test_json_has_them(run):
 
 
 def test_an_active_hand(run):
-    """A section of its own, with both numbers and the hand that is too active; the same as JSON."""
     out = run(DAMPED).out
     for part in (
         "an active hand",

@@ -66,7 +66,6 @@ def test_another_shell_is_refused_with_those_there_are(refused):
 
 
 def test_without_a_shell_the_line_for_that_of_the_user_is_said(refused, monkeypatch):
-    """As the environment names it; bash where it names one of which there is none."""
     for path, shell in (("/usr/bin/fish", "fish"), ("/bin/tcsh", "bash")):
         monkeypatch.setenv("SHELL", path)
         assert f"zwidth completion {shell}" in refused("completion")

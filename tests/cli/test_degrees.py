@@ -82,7 +82,6 @@ def test_what_the_page_says(run):
 
 
 def test_documents_are_si(run):
-    """The unit stands in the key, and is that of SI."""
     found = run("check wheel.toml --json").json
     assert found["max_stiffness_N_m_per_rad"] == pytest.approx(26.7034, rel=1e-5)
 
@@ -96,7 +95,6 @@ def test_a_saved_trace_remembers_the_question(run):
 
 
 def test_who_types_radians(run):
-    """Reads radians, from the next command on."""
     assert "N·m/rad" not in run("check wheel.toml").out
     said = run("check plain.toml --stiffness '5 N*m/rad'").out
     assert "5 N·m/rad" in said
@@ -126,7 +124,6 @@ def test_what_cannot_be_is_said(refused, line, part):
 
 
 def test_a_device_in_its_ranges(run):
-    """Undecided: what to measure first; passive for every device."""
     said = run("check moza-r9 --stiffness '2 N*m/deg'", 3).words
     for part in ("measure first damping", "for every device in the ranges: up to 0.034", "delay 0 … 2 ms"):
         assert part in said

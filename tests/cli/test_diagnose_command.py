@@ -36,7 +36,6 @@ def test_without_a_device_it_asks_for_one(run):
 
 
 def test_the_law_as_it_was_programmed(run):
-    """It is held beside the file, and the line to type has its numbers."""
     said = run("diagnose shaking.csv wheel.toml --stiffness '20 N*m/rad'").out
     assert "the command is that of the law as stated" in said
     assert "$ zwidth check wheel.toml --stiffness '20 N*m/rad'" in said
@@ -45,7 +44,6 @@ def test_the_law_as_it_was_programmed(run):
 
 
 def test_json_says_the_same(run):
-    """The cause, the change and the command, in the angle of the log."""
     document = run("diagnose shaking.csv wheel.toml --json").json
     assert document["cause"] == "delay"
     assert document["command"].startswith("zwidth check wheel.toml --stiffness '0.349066 N*m/deg'")
@@ -53,7 +51,6 @@ def test_json_says_the_same(run):
 
 
 def test_the_loop_and_the_picture_are_written(run):
-    """The line to type is then about the file."""
     said = run("diagnose shaking.csv wheel.toml -o mended.toml --plot why.png").out
     assert "$ zwidth check mended.toml" in said
     assert Path("why.png").exists()
@@ -61,7 +58,6 @@ def test_the_loop_and_the_picture_are_written(run):
 
 
 def test_columns_are_named_as_typed(run, refused):
-    """A log with names of its own."""
     text = Path("shaking.csv").read_text(encoding="utf-8").replace("commanded_torque_N_m", "u")
     Path("mine.csv").write_text(text, encoding="utf-8")
     named = "--column commanded_force=u --unit 'commanded_force=N*m'"

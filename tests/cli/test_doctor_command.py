@@ -33,7 +33,6 @@ def doctor(monkeypatch, run):
 
 
 def test_without_a_device_a_minute_at_a_kilohertz(doctor):
-    """Or as often and as long as is typed, with a unit."""
     asked, told = doctor()
     assert asked == {"period": 1e-3, "duration": 60, "core": None}
     assert "a loop at 1 kHz" in told

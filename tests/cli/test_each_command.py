@@ -59,7 +59,6 @@ def test_what_was_measured_stands_beside_it(run):
 
 
 def test_saved_verdicts_are_checked(run):
-    """All of them, each by itself."""
     run(f"{KITS} --stiffness 30 -o class.json")
     assert run("verify class.json").out.count("VALID") >= 3
     saved = json.loads(Path("class.json").read_text(encoding="utf-8"))

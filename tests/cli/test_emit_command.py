@@ -22,7 +22,6 @@ TRAVEL = "--travel '-60 .. 60 mm'"
     ],
 )
 def test_what_is_written_for_a_target(run, target, files):
-    """The law, its certificate, and the main program that the target has."""
     run(f"{PADDLE} --target {target} -o wall")
     assert {path.name for path in Path("wall").iterdir()} == files | {"law.certificate.json"}
 
@@ -44,7 +43,6 @@ def test_the_exit_status(run, loop, status):
 
 
 def test_anyway(run):
-    """What is refuted is written where somebody insists; report and header say so."""
     assert "ACTIVE" in run("emit haptic-paddle --stiffness 770 --anyway -o wall").out
     assert "NOT PROVED" in Path("wall", "law.h").read_text(encoding="utf-8")
 
@@ -63,7 +61,6 @@ def test_the_report_is_short(run, loop, target):
 
 
 def test_the_report_as_json(run):
-    """Units in the keys, the files by their SHA-256, the verdict as `check` gives it."""
     found = run(f"{PADDLE} {TRAVEL} --target arduino --json -o wall").json
     keys = "format prefix target number outcome statement error_N rounding_N stiffness_cost_N_per_m"
     assert set(found) == {*keys.split(), "certificate_sha256", "files", "verdict"}
@@ -100,7 +97,6 @@ def test_bad_input(refused, more, said):
 
 
 def test_where_the_files_go(run, refused):
-    """A directory is needed, no file; what is there is replaced only where that is asked for."""
     assert "-o DIRECTORY" in refused(PADDLE)
     Path("file").write_text("mine")
     assert "exists and is no directory" in refused(f"{PADDLE} -o file")
@@ -114,7 +110,6 @@ def test_where_the_files_go(run, refused):
 
 
 def test_a_changed_certificate_is_noticed(run):
-    """`zwidth verify` accepts the one that is written, and not one whose number is another."""
     run(f"{PADDLE} -o .")
     certificate = Path("law.certificate.json")
     named = sha256(certificate.read_bytes()).hexdigest()

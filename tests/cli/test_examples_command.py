@@ -65,7 +65,6 @@ def test_the_list_fits_80_columns_and_names_every_file_and_command(run):
 
 
 def test_every_file_of_the_folder_is_listed_and_says_where_its_numbers_come_from():
-    """Text says so in its first lines, a lesson in its first cell."""
     package = zw.samples.path("wheel.toml").parent
     there = {path.name for path in package.iterdir() if path.is_file()} - {"__init__.py"}
     assert there == set(zw.samples.names())
@@ -76,7 +75,6 @@ def test_every_file_of_the_folder_is_listed_and_says_where_its_numbers_come_from
 
 
 def test_nothing_is_replaced_without_force(run, refused):
-    """A file of one's own stays, and no other is written."""
     mine = Path("wheel.toml")
     mine.write_text("mine", encoding="utf-8")
     assert "wheel.toml exists" in refused("examples .")

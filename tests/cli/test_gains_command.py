@@ -28,7 +28,6 @@ def _files(run):
 
 
 def test_it_says_what_python_says(run):
-    """The same JSON; the exit status is that of the worst joint."""
     told = run(f"gains leader.yaml follower.yaml --plant plant.toml {LINK} --json").json
     gains = zw.read_gains("leader.yaml", "follower.yaml")
     found = zw.check_gains(gains, plant="plant.toml", delay=("0.002", "0.003"), drive_rate=10_000)
@@ -40,7 +39,6 @@ def test_it_says_what_python_says(run):
 
 
 def test_the_report_has_a_row_for_each_joint(run):
-    """Gains, verdict, what is passive, and what was assumed."""
     said = run(ARMS)
     for part in (
         "PASSIVE Of 2 joints, each by itself: 2 passive.",
@@ -85,7 +83,6 @@ def test_what_is_saved_is_verified(run, refused, outcome):
 
 
 def test_one_joint_has_the_report_of_its_pair(run):
-    """The same numbers, the notes on the gains, a file that is verified, a picture."""
     joint = f"{ARMS} {LINK} --joint J2"
     said = run(f"{joint} -o pair.json --plot pair.png").words
     for part in ("PASSIVE No motion of two hands", "stiffness may go up to", "of the gains", "FREQUENCY"):

@@ -22,7 +22,6 @@ def _file(run):
 
 
 def test_a_hand_is_that_of_python(answer):
-    """On the follower with its intervals, and nobody on the leader."""
     pair = zw.load("pair.toml")
     hand = zw.stability.HandImpedance(mass="50 g", stiffness=100, damping=(2, "2.01"))
     held = answer(f"pair.toml {KNOWN}")
@@ -54,7 +53,6 @@ def test_what_is_saved_is_verified(run, hand, status, words):
 
 
 def test_every_key_of_the_json_is_on_its_page(answer):
-    """Of both outcomes."""
     page = json_page()
     for hand in (KNOWN, NOBODY):
         told = answer(f"pair.toml {hand}")

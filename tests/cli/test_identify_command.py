@@ -36,7 +36,6 @@ def _logs(run, logs):
 
 
 def test_the_report(run):
-    """What the log is, the numbers with intervals, the stiffest wall, what to do next."""
     result = run("identify plain.csv --all")
     assert result.err == ""
     assert result.out.startswith(" IDENTIFIED  Spring walls up to ")
@@ -77,7 +76,6 @@ def test_the_saved_device_is_what_check_reads(run):
 
 
 def test_an_environment_is_checked_at_once(run):
-    """For how much of what the data allow it is passive; the status is that of check."""
     limit = run("identify plain.csv --json").json["stiffest_by_damping_N_per_m"]
     easy = run(f"identify plain.csv --stiffness {0.5 * limit['interval'][0]:g}").words
     assert "passive for 99.9999 % or more of what the data allow" in easy
@@ -98,7 +96,6 @@ def test_the_confidence_is_the_stated_one(run):
 
 
 def test_an_environment_from_a_file(run):
-    """Its parameters can be overridden."""
     Path("wall.toml").write_text('[environment]\ntype = "wall"\nstiffness = 1\n', encoding="utf-8")
     assert "K = 1 N/m" in run("identify plain.csv wall.toml").words
     assert "K = 2 N/m" in run("identify plain.csv wall.toml --stiffness 2").words
@@ -125,7 +122,6 @@ def test_the_wrong_model_is_the_headline(run, refused):
 
 
 def test_several_logs_are_one(run, refused):
-    """Runs of one device are identified together; a log of another rate is refused."""
     header, *lines = Path("plain.csv").read_text(encoding="utf-8").splitlines(keepends=True)
     half = len(lines) // 2
     Path("one.csv").write_text(header + "".join(lines[:half]), encoding="utf-8")
@@ -139,7 +135,6 @@ def test_several_logs_are_one(run, refused):
 
 
 def test_files_are_not_replaced_unasked(run, refused):
-    """Plot and device are kept; with --force both are written anew."""
     for option, path in (("-o", "mine.toml"), ("--plot", "fig.png")):
         Path(path).write_text("old", encoding="utf-8")
         assert "exists" in refused(f"identify plain.csv {option} {path}")

@@ -52,7 +52,6 @@ def test_every_law_can_be_named(kinds, base):
 
 
 def test_laws_are_read_with_their_units_and_in_their_order():
-    """As Python would have made them."""
     text = (
         '[[law]]\ntype = "crossing-correction"\nthroughout = true\nfinger_mass = "20 g"\n'
         'finger_position = "4 mm"\n'
@@ -93,7 +92,6 @@ def test_laws_of_a_rotary_device_have_its_units():
 
 
 def test_laws_of_the_command_line_have_their_defaults_and_replace_those_of_a_file():
-    """Repeated, or with commas between them."""
     text = '[[law]]\ntype = "saturation"\n'
     two = zw.render(WALL, rendering.Extrapolation(), rendering.PassivityController())
     assert read(text, "extrapolation, passivity-controller") == two
@@ -103,7 +101,6 @@ def test_laws_of_the_command_line_have_their_defaults_and_replace_those_of_a_fil
 
 
 def test_simulate_takes_laws(run):
-    """The trace is Python's."""
     Path("loop.toml").write_text(LOOP + '[[law]]\ntype = "hysteresis"\nfastest = 0.2\n', encoding="utf-8")
     assert "with hysteresis of the width for 0.2 m/s" in run(f"simulate loop.toml {TOUCH} -o file.nc").out
     run(f"simulate loop.toml --law extrapolation {TOUCH} -o typed.nc")
@@ -142,7 +139,6 @@ def test_limit_plays_the_game_against_laws_in_a_row(run):
 
 
 def test_check_decides_laws_in_a_row(run):
-    """From a file and from the command line."""
     Path("loop.toml").write_text(LOOP + '[[law]]\ntype = "force-bounding"\n', encoding="utf-8")
     assert "force bounding, the last law in the row" in run("check loop.toml --all").words
     run("check haptic-paddle --stiffness 770 --law force-bounding")
@@ -184,7 +180,6 @@ BAD = [
 
 @pytest.mark.parametrize(("text", "said"), BAD, ids=[said for _, said in BAD])
 def test_a_slip_is_one_clear_message(text, said):
-    """It says where it stands and what is allowed."""
     with pytest.raises(zw.InputError) as caught:
         read(text)
     message = str(caught.value)

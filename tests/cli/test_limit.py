@@ -51,7 +51,6 @@ def test_the_closed_limit_of_every_hand(run):
 
 
 def test_a_bounded_hand_stands_beside_every_hand(run):
-    """Slow hands allow stiffer walls; the report says how slow, and what every hand allows."""
     text = run(f"{BOUNDED} --all").words
     assert "this hand every hand" in text
     assert "0.3 m/s over one sample (13.39 counts a sample), up to 515.2 µm (23 counts)" in text
@@ -114,7 +113,6 @@ def test_one_side_is_status_three(run):
 
 
 def test_a_search_that_time_ended_says_so(run):
-    """In the report, short and in full, and in the document."""
     cut = f"{BOUNDED} --seconds 1e-9"
     assert "the time given was over first" in run(cut, None).out
     assert "the time given was over first" in run(f"{cut} --all", None).out
@@ -141,7 +139,6 @@ def test_the_converter_is_counted_in(run, refused):
 
 
 def test_a_contact(run):
-    """K in its own unit, and λ as a parameter."""
     contact = "haptic-paddle --type hunt-crossley --stiffness 1e4 --dissipation '1 s/m'"
     loop = f"limit {contact} --speed '0.2 m/s' --penetration '0.5 mm'"
     found = run(loop)
@@ -184,7 +181,6 @@ def test_a_spring_given_by_points_has_a_gain(run):
 
 
 def test_an_environment_without_a_stiffness_asks_which_limit(refused):
-    """What can be asked of the stop and of the device."""
     Path("stop.toml").write_text(
         '[environment]\ntype = "nonlinear-spring"\npositions = [0, "1 cm"]\nforces = [0, "4 N"]\n',
         encoding="utf-8",
@@ -202,7 +198,6 @@ def test_the_commands_of_the_page_find_both_sides(command, run):
 
 
 def test_the_python_of_the_page_says_what_comes_out(tmp_path, monkeypatch):
-    """Its comments and the table of speeds are true."""
     monkeypatch.chdir(tmp_path)
     names = {}
     exec("".join(re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)), names)

@@ -29,7 +29,6 @@ def test_the_report_and_the_json_say_the_same(run):
 
 
 def test_options_reach_the_map(run):
-    """Units, cells, a filter, a hand, a speed, the damping of the device itself."""
     ranges = "--stiffness '0:0.6 kN/m' --virtual-damping -0.1:0.3 --cells 30x20 --workers 1"
     device = "--damping 0.3 --rate '2 kHz'"
     asked = "--velocity-filter 'one-pole 30 ms' --hands finger --speed '1 m/s'"
@@ -47,7 +46,6 @@ def test_options_reach_the_map(run):
 
 
 def test_a_store_and_a_picture(run, refused):
-    """Both are written; the picture is not replaced without --force, the store is gone on with."""
     command = f"{MAP} --cells 40x40 -o map.zarr --plot map.png"
     first = run(command)
     assert Path("map.png").stat().st_size > 10_000

@@ -237,7 +237,6 @@ delay = "0.4 ms"
 
 
 def test_a_scene_that_turns(run):
-    """Its numbers are read and told about the axis; forces wait for whole samples."""
     Path("wheel.toml").write_text(WHEEL, encoding="utf-8")
     write(WHEEL_SCENE + NETWORK.replace('"haptic-paddle"', '"wheel.toml"\nhold_back = true'))
     out = run("network room.toml --plan").out

@@ -151,7 +151,6 @@ def test_a_plan_says_how_a_device_is_reached_and_reaches_none(run, refused, monk
 
 
 def test_a_place_and_a_longest_period_stand_with_the_connection():
-    """And are of the run; the port keeps account of that period."""
     kit = KIT.replace("count", 'origin = "1 mm", sense = -1, longest_period = "9 ms", count')
     write(kit)
     port_run = plan()

@@ -74,7 +74,6 @@ def piped(run, monkeypatch):
 
 
 def test_options_make_the_device_that_they_say(run, make):
-    """And the next command is one that can be typed."""
     out = make(WHEEL, "device my-wheel.toml")
     found = load_device(["my-wheel.toml"], {})
     numbers = {"inertia": 0.006, "damping": 0.02, "coulomb_friction": 0.05, "rate": 1000, "delay": 0.0003}
@@ -183,7 +182,6 @@ SHEET = {"--torque-constant": "0.9 Nm/A", "--motor-friction": "0.2 A", "--force-
     ],
 )
 def test_an_answer_that_cannot_be_used_is_one_message(unusable, answers, part):
-    """Of the device's own words, and no file."""
     assert part in unusable(answers)
     assert not Path("my-device.toml").exists()
 
@@ -298,7 +296,6 @@ def test_back_leads_to_the_question_before(tmp_path):
 
 
 def test_enter_at_what_must_be_known_ends(tmp_path):
-    """Not asked for ever."""
     done = in_a_terminal(tmp_path, "\n\n\n", "device")
     assert done.returncode == 2
     assert "must be known" in done.stderr
@@ -383,7 +380,6 @@ def test_the_largest_torque_says_nothing_of_a_device_that_slides(make, unusable)
 
 
 def test_what_to_type_next_can_be_typed(run, make):
-    """With a guess of what the device lacks."""
     wall = {"--type": "wall", "--stiffness": "20 Nm/rad"}
     assert "zwidth new device" in make({**wall, "--motion": "wheel"}, "environment")
     make({"--motion": "wheel", "--rate": "1 kHz", "--damping": "unknown"})
@@ -409,7 +405,6 @@ def test_a_guess_has_its_unit(run, make, known, damping, stiffness):
 
 
 def test_a_stop_keeps_the_degrees_that_were_typed(make):
-    """From 450° to 470°, in degrees."""
     angles = {
         "--start": "450 deg",
         "--depth": "20 deg",

@@ -32,7 +32,6 @@ def _files(run):
 
 
 def test_one_file_is_the_pair_of_python(answer):
-    """The same numbers as `zw.check(zw.Pair(…))`, units converted."""
     pair = zw.Pair(LEADER, FOLLOWER, stiffness=50, damping="0.01", delay="0.002")
     told = answer("pair.toml")
     assert told == json.loads(zw.check(pair).to_json())
@@ -87,7 +86,6 @@ def test_one_device_is_both_arms(run):
 
 
 def test_the_report_of_an_active_pair(run):
-    """The limit, what each arm needs, the frequency, the motion of both hands, and what to change."""
     said = run(f"pair {TWO} --stiffness 300 --all", 1).out
     for part in (" ACTIVE ", "leader    b = 0.2", "follower  b = 0.4", "damping of the arms",
                  "largest stiffness", "some motion of both hands gains", "the motion", "extracts",
@@ -131,7 +129,6 @@ def test_the_stiffness_elsewhere_is_the_largest_there(more):
 
 
 def test_every_key_of_the_json_is_on_its_page(answer):
-    """Whoever reads it by program finds each key explained, of the proof and of the motion too."""
     page = json_page()
 
     def keys(value):
@@ -177,5 +174,4 @@ def test_bad_input_ends_in_one_line(refused, line, parts):
 
 @pytest.mark.parametrize("command", ["check", "limit", "plan"])
 def test_other_commands_point_to_it(refused, command):
-    """Whoever gives them a pair is told who reads one."""
     assert "zwidth pair" in refused(f"{command} pair.toml")

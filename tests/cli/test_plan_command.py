@@ -10,7 +10,6 @@ PADDLE = "plan haptic-paddle --force-noise '0.1 N'"
 
 
 def test_it_prints_the_plan(run):
-    """The same words as in Python, units on the command line converted."""
     device = zw.catalogue.device("haptic-paddle")
     plan = zw.plan(device, force_noise=0.1, length=0.08, fast=0.3, precision=0.04)
     said = run(f"{PADDLE} --length '8 cm' --fast '300 ms' --precision 0.04").out

@@ -21,7 +21,6 @@ def test_a_page_is_saved(run):
 
 
 def test_no_browser_opens_where_none_is_wanted(run, monkeypatch):
-    """It is said where the page is."""
     monkeypatch.setattr("webbrowser.open", lambda _: pytest.fail("a browser was opened"))
     outcome, written = run(f"{PADDLE} --no-browser").out.splitlines()
     assert outcome == "ACTIVE: wall, 770 N/m"
@@ -29,7 +28,6 @@ def test_no_browser_opens_where_none_is_wanted(run, monkeypatch):
 
 
 def test_the_loops_to_begin_with_are_one_line(run):
-    """How many there are of each outcome, and where the page is."""
     count, _ = run("play -o page.html").out.splitlines()
     assert count.startswith("11 loops to play: ")
     assert sum(map(int, re.findall(r"(\d+) \w", count.partition(":")[2]))) == 11

@@ -37,7 +37,6 @@ def recorded(run):
 
 
 def test_what_is_in_it(run, recorded):
-    """Samples, missed ones, the law, and that its forces are these; nothing that a terminal obeys."""
     out = run("replay run.mcap").out
     assert "\x1b" not in out
     assert "missed by the loop  2" in out
@@ -61,7 +60,6 @@ def test_a_law_that_is_not_told_is_no_fault(run):
 
 
 def test_a_picture_and_a_file(run, refused, recorded):
-    """Written where asked, and never over something else without a word."""
     assert "written" in run("replay run.mcap --plot run.png -o run.nc").out
     assert Path("run.png").read_bytes().startswith(b"\x89PNG")
     with xr.open_dataset("run.nc", engine="h5netcdf", decode_times=False) as data:
@@ -82,6 +80,5 @@ def test_what_the_picture_shows(recorded):
 
 
 def test_nothing_to_draw_is_refused(refused):
-    """A recording without rows has no picture."""
     Recorder(WrittenRows(drawn(1)), Path("run.mcap")).close()
     assert "nothing to draw" in refused("replay run.mcap --plot run.png")

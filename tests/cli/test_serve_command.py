@@ -41,7 +41,6 @@ def test_what_is_active_is_not_served(run):
 
 
 def test_records(run):
-    """Into a file that is not replaced unless it is said."""
     assert "touch.mcap: " in run(f"{SOFT} -o touch.mcap").out
     assert Path("touch.mcap").stat().st_size > 1000
     run(f"{SOFT} -o touch.mcap", 2)
@@ -91,7 +90,6 @@ def served(*more, **pipes):
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signals")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_it_without_force(number, tmp_path):
-    """The report is printed, and says who ended it."""
     path = tmp_path / "touch.mcap"
     with served("-o", str(path)) as running:
         while not path.exists() or path.stat().st_size < 20_000:  # it runs and is recorded

@@ -111,7 +111,6 @@ def test_a_narrow_and_a_wide_terminal(shown, name, columns):
 
 @pytest.mark.parametrize("name", ["passive", "pair"])
 def test_json_is_the_same_with_all_and_without(shown, name):
-    """--all is of the report alone."""
     line, _ = SHORT[name]
     assert shown(f"{line} --json") == shown(f"{line} --json --all")
 
@@ -126,7 +125,6 @@ def test_a_served_loop_and_its_recording(shown):
 
 
 def test_saved_touches_beside_each_other(shown):
-    """A column for each."""
     shown(f"{TOUCH} -o one.nc")
     shown(f"{TOUCH} -o another_with_a_name_that_is_rather_long.nc")
     shown("traces one.nc another_with_a_name_that_is_rather_long.nc")
@@ -141,7 +139,6 @@ def test_a_saved_proof_is_verified_in_the_same_width(shown):
 
 
 def test_workspace_says_what_it_wrote(shown):
-    """The verdict and the map, a line each."""
     line, _ = OTHERS["workspace"]
     assert shown(f"{line} -o arm.json --plot arm.svg")[-2:] == ["written: arm.json", "written: arm.svg"]
 

@@ -37,7 +37,6 @@ def test_the_report_says_what_came_out(run):
 
 
 def test_json_carries_units_in_its_keys(run):
-    """The summary is what Python gives."""
     document = run(f"{DOWEL} --json").json
     trace = zw.simulate(zw.catalogue.device("haptic-paddle"), zw.Wall(770), zw.operators.Dowel(), 0.2)
     assert document["deepest_position_m"] == trace.position.values.max()
@@ -98,7 +97,6 @@ def test_sound_and_pictures_are_written_and_named(run):
 
 
 def test_saved_traces_are_compared(run):
-    """A table with a column per trace, JSON, a picture."""
     run(f"{DOWEL} -o dowel.nc")
     run(f"{WALL} --operator malicious --duration 0.2 -o finger.csv")
     table = run("traces dowel.nc finger.csv --plot both.png").out
@@ -166,7 +164,6 @@ def test_a_record_that_cannot_be_used_is_refused(refused, content, says):
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device to write to")
 @pytest.mark.parametrize("suffix", [".nc", ".csv", ".parquet", ".wav", ".png"])
 def test_a_full_disk_is_one_line(refused, monkeypatch, suffix):
-    """Whatever is written: no traceback, nothing half-written."""
     real = os.replace
 
     def full(source, target):
@@ -181,7 +178,6 @@ def test_a_full_disk_is_one_line(refused, monkeypatch, suffix):
 
 
 def test_ctrl_c_keeps_what_is_finished_and_says_so(run, monkeypatch):
-    """Status 130, the trace is saved up to there."""
     import zwidth.loop.simulate as module
 
     monkeypatch.setattr(module, "_STRIDE", 50)
@@ -234,7 +230,6 @@ def test_a_hand_that_met_nothing_says_so(run, refused):
 
 
 def test_hands_are_named_with_a_word_and_one_to_begin_with(refused):
-    """Where none is given, and where there is none of that name."""
     error = refused(f"{WALL} --duration 1")
     assert "begin with --operator typical" in error
     for name, hand in operators.OPERATORS.items():

@@ -92,7 +92,6 @@ def test_bad_input_in_one_line(refused, more, message):
 
 
 def test_what_was_finished_is_kept(run, monkeypatch):
-    """After Ctrl-C the same command goes on, and says so."""
 
     def stop(*_, **__):
         raise KeyboardInterrupt

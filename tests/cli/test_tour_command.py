@@ -32,7 +32,6 @@ def test_the_tour_tells_its_story_and_writes_nothing(run, tmp_path, monkeypatch)
 
 
 def test_each_step_shows_what_its_command_finds(run):
-    """The badge of the step is that of the report; the numbers of the motion and of the touch too."""
     said = run("tour --no-pause").out
     for step in tour.STEPS:
         shown = said.partition(f"$ {step.command}\n")[2].partition("$ ")[0]

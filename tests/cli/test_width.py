@@ -34,12 +34,10 @@ def test_text_is_broken_and_nothing_is_lost(text, width):
 
 @pytest.mark.parametrize("text", ["plain", "力覚 wide", "e\u0301 accent", "N·s/m → µ"])
 def test_columns_are_those_of_a_terminal(text):
-    """As another library counts them."""
     assert width_of(text) == cell_len(text)
 
 
 def test_an_item_goes_on_under_its_own_beginning():
-    """Of lists with marks and with numbers."""
     assert list(wrapped("· one two three", 9)) == ["· one two", "  three"]
     assert list(wrapped("12. one two", 8)) == ["12. one", "    two"]
 

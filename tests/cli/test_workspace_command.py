@@ -26,7 +26,6 @@ def test_a_wall_that_holds_everywhere(run):
 
 
 def test_a_wall_that_fails_says_what_to_change(run):
-    """Status 1, the motion, and damping with which the status is 0."""
     found = run(f"{HAPLY} --stiffness 800 --json", 1).json
     assert found["outcome"] == "active"
     assert found["motion"]["energy_J"] < 0
@@ -46,7 +45,6 @@ def test_just_below_the_limit_is_undecided(run):
 
 
 def test_the_certificate_is_saved_and_verified(run):
-    """A file .json takes the verdict; `zwidth verify` accepts it, and refuses it once changed."""
     run(f"{HAPLY} --stiffness 300 -o proof.json")
     words = run("verify proof.json").words
     assert "VALID The arm below is passive, proved: no motion of the hand" in words
@@ -63,7 +61,6 @@ def test_the_certificate_is_saved_and_verified(run):
 
 
 def test_the_map_is_saved_and_drawn(run, refused):
-    """NetCDF with units, a picture; neither is replaced unasked."""
     line = f"{HAPLY} --stiffness 800 --plot map.png -o map.nc"
     run(line, 1)
     with xarray.open_dataset("map.nc", engine="h5netcdf") as data:
@@ -111,7 +108,6 @@ COUNTED = (
 
 
 def test_encoder_steps_are_counted_up_to_a_force(run):
-    """In words, as data, in the certificate; between what is covered and what is refuted: status 3."""
     words = run(f"{COUNTED} -o proof.json --all").words
     assert "for wall forces up to 28.6 N, proved. Encoder steps are counted" in words
     assert re.search(r"0.005774 N·m, 0.002954 N·m in joint 1, 2, and .* more for each newton", words)
@@ -132,13 +128,11 @@ def test_encoder_steps_are_counted_up_to_a_force(run):
 
 
 def test_a_delay_is_reported_with_its_unit(run):
-    """A number without one is in seconds."""
     out = run("workspace two-link --joint-damping 0.05 --stiffness 20 --delay 0.003", None).out
     assert "3 ms, 3 samples" in out
 
 
 def test_a_description_from_the_command_line(run):
-    """A URDF with its own damping; one joint held."""
     joint = (
         '<joint name="{0}" type="revolute"><parent link="{1}"/><child link="{2}"/><origin xyz="{3} 0 0"/>'
         '<axis xyz="0 0 1"/><limit lower="0.2" upper="1.2" effort="1" velocity="1"/>'
@@ -163,7 +157,6 @@ def six():
 
 
 def test_a_wall_in_pose(run, six):
-    """Its factor, the least damping, the motion with its turns; a wall of that factor holds."""
     wall = "--stiffness {} --rotational-stiffness '{} N*m/rad' --json"
     found = run(f"{POSED} {wall.format(40000, 400)}", 1).json
     assert found["outcome"] == "active"
@@ -225,13 +218,11 @@ def test_a_wall_by_matrices(run, six):
     ],
 )
 def test_a_file_that_is_no_wall(refused, text, words):
-    """The place, and what is expected."""
     Path("wall.toml").write_text(text)
     assert re.search(words, refused(f"workspace {CHAIN} --wall wall.toml"))
 
 
 def test_the_least_damping_is_shown(run):
-    """Which joints, how much each, and how much together."""
     words = run(f"{HAPLY} --stiffness 800 --all", 1).words
     assert "what to change" in words
     assert "all joints" in words
@@ -241,7 +232,6 @@ def test_the_least_damping_is_shown(run):
 
 
 def test_a_wall_in_pose_is_reported_and_drawn(run):
-    """A planar chain: the margin in the joints, the factor, a picture."""
     wall = "--stiffness 900 --rotational-stiffness '0.5 N*m/rad' --plot map.png"
     words = run(f"workspace two-link --joint-damping 0.02 --pose --points 20 {wall} --all", 1).words
     assert "in the worst direction of the joints" in words
@@ -258,7 +248,6 @@ TWO_LINK = "workspace two-link --points 10 --stiffness 200 --joints joints.toml"
 
 
 def test_joints_that_damp_each_other_come_from_a_file(run):
-    """A matrix in [joints], in the report and in JSON; the proof is of it."""
     Path("joints.toml").write_text(JOINTS, encoding="utf-8")
     words = run(f"{TWO_LINK} -o proof.json").words
     assert "joint damping [[0.02, 0.005], [0.005, 0.01]] N·m·s/rad" in words
@@ -291,7 +280,6 @@ def test_files_of_joints_that_cannot_be_used(refused, text, options, words):
 
 
 def test_joints_by_file_and_by_options(run):
-    """What the file leaves out may come from options."""
     Path("joints.toml").write_text("[joints]\ncoulomb_friction = [0.01, 0.01]", encoding="utf-8")
     words = run(f"{TWO_LINK} --joint-damping 0.02,0.01").words
     assert "joint damping 0.02, 0.01 N·m·s/rad" in words

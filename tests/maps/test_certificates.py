@@ -59,7 +59,6 @@ def test_below_a_certified_wall_all_softer_ones_are_passive(name):
 
 
 def test_nothing_passive_nothing_certified():
-    """None for a map without a passive wall."""
     device = PADDLE.replace(damping=0)
     found = zw.z_width(device, (0, 400), (0, "0.1"), (20, 4), hands={})
     assert zw.maps.z_width_certificate(device, found) is None

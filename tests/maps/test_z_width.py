@@ -37,7 +37,6 @@ def same(a, b):
 
 
 def test_every_number_has_its_unit():
-    """In the attribute `units`, coordinates too; of the limits that of stiffness."""
     found = zw.z_width(PADDLE, *WIDE, cells=(3, 3))
     numbers = {name: one for name, one in found.variables.items() if one.dtype.kind == "f"}
     assert {"limit_passive", "limit_dowel", "admissible_speed", "stiffness"} <= set(numbers)
@@ -235,7 +234,6 @@ def test_threads_do_not_change_a_bit():
 
 
 def test_a_store_is_gone_on_with(tmp_path):
-    """The chunks that are there are not computed again; the layers are those of a map in memory."""
     cells, path = (300, 300), tmp_path / "map.zarr"
     told, again = [], []
 
@@ -301,7 +299,6 @@ def test_a_store_stopped_before_its_arrays_were_there(tmp_path):
 
 
 def test_a_full_disk_keeps_what_is_finished(tmp_path):
-    """One message, and the same map goes on when there is room."""
     path = tmp_path / "map"
 
     def full(done, total):
@@ -363,7 +360,6 @@ def test_a_cluster_gives_the_same_bits(monkeypatch):
 
 
 def test_chunks_tile_the_map():
-    """The last chunk is the rest: no cell twice, none missing."""
     asked = request(PADDLE, *WIDE, (CHUNK + 3, 5), None, {"none": None})
     ready = plan(asked)
     assert asked.layout.chunks == (2, 1)

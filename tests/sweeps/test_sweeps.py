@@ -220,7 +220,6 @@ def test_one_process_at_a_time_writes_a_file(tmp_path, name):
 
 
 def test_processes_compute_the_same_bits(monkeypatch):
-    """Two of them, chunks in whatever order."""
     monkeypatch.setattr(requests, "BY_CLOSED_FORMS", 6)
     alone, two = (zw.sweep(PADDLE, WALL, vary=GRID, workers=workers) for workers in (1, 2))
     assert arrays(alone) == arrays(two)
@@ -264,7 +263,6 @@ def test_every_question_is_answered_as_by_itself():
 
 
 def test_a_touch_is_simulated_as_by_itself():
-    """The measures of the traces, energy got out among them."""
     hand = zw.operators.Dowel(force=1)
     vary = {"operator.force": "1, 2", "stiffness": [770]}
     touches = swept(PADDLE, zw.Wall(770), of="simulate", operator=hand, duration="0.05 s", vary=vary)
@@ -343,7 +341,6 @@ def test_what_a_law_is_made_of_is_varied(wall, name, values, changed_wall):
 
 
 def test_the_limit_behind_a_law_whose_number_is_varied():
-    """As `passive_limit` has it of each."""
     chain = zw.render(zw.Wall(100), zw.rendering.RateTerm())
     found = swept(PADDLE, chain, of="limit", vary={"law.time_constant": "0.1, 1 ms"})
     for k in (0, 1):
@@ -422,7 +419,6 @@ def test_bad_input_is_refused_before_work_starts(vary, more, message):
 
 
 def test_a_file_that_is_no_sweep(tmp_path):
-    """Neither read nor written over."""
     foreign = tmp_path / "x.parquet"
     foreign.write_bytes(b"no table")
     with pytest.raises(zw.InputError, match="no sweep that can be read"):
