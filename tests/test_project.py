@@ -7,6 +7,7 @@ import dataclasses
 import inspect
 import math
 import re
+import shlex
 import subprocess
 import sys
 import tomllib
@@ -25,6 +26,8 @@ from scipy.signal import TransferFunction
 import zwidth as zw
 from zwidth import checker
 from zwidth.cli.commands import COMMANDS
+from zwidth.cli.main import _parser, main
+from zwidth.cli.parsing import joined
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "src" / "zwidth"
@@ -411,3 +414,35 @@ def test_no_module_bears_the_name_of_what_its_package_offers():
                 inside = {(stub.parent / f"{name.asname or name.name}.py").name for name in line.names}
                 beside = {path.name for path in stub.parent.glob("*.py")}
                 assert not inside & beside, f"{stub}: {inside & beside}"
+
+
+RUN = ("--plan", "identify", "verify", "workspace arm.urdf", "check")
+"""What is run here; the rest is read, or run in tests/documentation, or by the tests of its command."""
+
+
+def _readme_commands():
+    """The lines of the README that begin with zwidth, as typed."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```sh\n(.*?)```", text, re.DOTALL)
+    lines = [line for block in blocks for line in block.splitlines()]
+    return [line for line in lines if line.startswith("zwidth ") and "--help" not in line]
+
+
+def test_each_command_of_the_readme_works_as_typed(tmp_path, monkeypatch, capsys):
+    """Its options exist, and the files that it reads are samples, or were written by a line above."""
+    monkeypatch.chdir(tmp_path)
+    lines = _readme_commands()
+    assert len(lines) > 30
+    assert main(["examples", "."]) == 0
+    there = {path.name for path in tmp_path.iterdir()}
+    for line in lines:
+        argv = shlex.split(line, comments=True)[1:]
+        _, unknown = _parser(argv).parse_known_args(joined(argv))
+        assert not unknown, line
+        written = {argv[k + 1] for k, word in enumerate(argv) if word in ("-o", "--plot")}
+        read = {word for word in argv if re.fullmatch(r"[a-z][\w-]*\.\w{3,5}", word)} - written
+        assert read <= there, line
+        there |= written
+        if read | written and any(mark in line for mark in RUN) and "--replay" not in line:
+            status = main(argv)
+            assert status in (0, 1, 3, 4), f"{line}\n{capsys.readouterr().err}"

@@ -73,29 +73,6 @@ def test_the_report_as_json(run):
     assert found["verdict"]["outcome"] == "passive"
 
 
-@pytest.mark.parametrize(
-    ("more", "said"),
-    [
-        ("--target toaster", "target is one of c99, arduino"),
-        ("--target arduino --number double", "double has 32 bits on an AVR"),
-        ("--number half", "number is double or float or fixed"),
-        ("--travel '60 .. -60 mm'", "travel"),
-        ("--travel '60 mm'", "travel"),
-        ("--travel '-1000 .. 1000 km'", "more than 32 bits hold"),
-        ("--prefix 9walls", "prefix begins names in C"),
-        ("--target arduino --prefix guard", "guard.h is a file of the main program"),
-        ("--number fixed --resolution unknown", "resolution"),
-        ("--rate '990 .. 1010 Hz'", "interval"),
-        ("--delay '0 .. 0.2 ms' --law passivity-controller", "give one number"),
-        ("--force-unit -1", "--force-unit must be > 0"),
-    ],
-)
-def test_bad_input(refused, more, said):
-    """Nothing is written."""
-    assert said in refused(f"{PADDLE} {more} -o wall")
-    assert not Path("wall").exists()
-
-
 def test_where_the_files_go(run, refused):
     assert "-o DIRECTORY" in refused(PADDLE)
     Path("file").write_text("mine")

@@ -52,18 +52,6 @@ def test_ctrl_c_is_heard_by_whichever_thread_takes_it(run):
     assert ran.stdout == "heard\n"
 
 
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        ("--port 70000", "--port is a port"),
-        ("--token short", "16 characters or more"),
-        ("no-such-device", "neither a file nor a device"),
-    ],
-)
-def test_what_cannot_be_explored_is_one_line(refused, given, said):
-    assert said in refused(f"explore --no-browser {given}")
-
-
 def test_without_its_libraries_it_says_what_to_install(refused, monkeypatch):
     monkeypatch.setattr("zwidth.show.explorer.notebook.find_spec", lambda _: None)
     assert "pip install 'zwidth[explore]'" in refused("explore --no-browser")

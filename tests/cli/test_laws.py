@@ -1,6 +1,7 @@
 """Laws in a chain in a specification and on the command line."""
 
 import inspect
+import json
 import re
 from pathlib import Path
 
@@ -120,6 +121,16 @@ def test_compare_puts_the_row_on_the_bench(run):
     own = zw.render(WALL, rendering.Extrapolation(), rendering.PassivityController())
     again = zw.compare(zw.catalogue.device("haptic-paddle"), WALL, {"yours": own}).scores
     assert scores["yours"]["generated_energy_J"] == float(again["generated_energy"][0])
+
+
+def test_laws_are_compared_in_a_table_and_in_files(run):
+    wall = "compare haptic-paddle --stiffness 400 --laws"
+    assert "virtual-damping" in run(f"{wall} 'wall, virtual-damping' --plot a.png -o a.json").out
+    saved = json.loads(Path("a.json").read_text(encoding="utf-8"))["laws"]
+    assert list(saved) == ["wall", "virtual-damping"]
+    assert saved["wall"]["static_stiffness_N_per_m"] == pytest.approx(400, rel=0.05)
+    told = run(f"{wall} passivity-controller-published --fastest '1 m/s' --json").json["laws"]
+    assert told["passivity-controller-published"]["status"] == "undecided"
 
 
 def test_limit_plays_the_game_against_laws_in_a_row(run):

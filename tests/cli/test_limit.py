@@ -148,26 +148,6 @@ def test_a_contact(run):
     assert document["proved_passive_s_per_m"] < document["proved_active_s_per_m"]
 
 
-@pytest.mark.parametrize(
-    ("argv", "part"),
-    [
-        ("--parameter stifness", 'did you mean "stiffness"'),
-        ("--parameter velocity-filter", "not one number"),
-        ("--speed -1", "speed must be > 0"),
-        ("--speed '3 N'", "speed is in m/s"),
-        ("--seconds 0", "seconds must be > 0"),
-        ("--effort 0", "effort must be > 0"),
-        ("--tolerance 2", "tolerance must be a number from"),
-        ("--resolution 0 --penetration '1 mm'", "resolution is 0"),
-        ("--damping '0.1 .. 0.2'", "no single value"),
-        ("--plot limit.txt", ".png"),
-        ("--plot same.svg -o same.svg", "same file"),
-    ],
-)
-def test_bad_input_is_one_line(refused, argv, part):
-    assert part in refused(f"{WALL} {argv}")
-
-
 def test_a_spring_given_by_points_has_a_gain(run):
     """The parameter of a law without a stiffness of its own."""
     Path("detent.toml").write_text(

@@ -104,48 +104,6 @@ def test_a_name_is_text_and_never_markup(run):
     assert "[red]:smile:[/red] ?[31m" in out
 
 
-@pytest.mark.parametrize(
-    ("line", "parts"),
-    [
-        ("chek", ["no command", "check"]),
-        ("check haptic-paddle --stifness 3", ["--stifness", "did you mean --stiffness"]),
-        ("check haptic-paddle --coulomb_friction=3", ["did you mean --coulomb-friction"]),
-        ("check haptic-paddle --stiff 3", ["no option --stiff"]),
-        ("check haptic-paddle --stiffness '-0.1 N/m'", ["stiffness must be ≥ 0"]),
-        (f"{PASSIVE} --stiffness 400", ["twice"]),
-        ("check haptic-paddle --stiffness", ["expected one argument"]),
-        ("check haptic-padle --stiffness 3", ["haptic-paddle"]),
-        ("check missing.toml", ["no file"]),
-        ("check haptic-paddle", ["no environment"]),
-        # --damping is the device's: what a Maxwell solid lacks is --virtual-damping
-        ("check haptic-paddle --type maxwell --stiffness 300", ["needs --virtual-damping [N*s/m]"]),
-        ("limit excalibur --stiffness 3", ["damping", "zwidth check excalibur answers"]),
-        ("check", ["no device"]),
-        (f"{PASSIVE} --rate '1 kg'", ["rate is in Hz"]),
-        (
-            f"{PASSIVE} --delay 3",
-            ['delay 3 without a unit is 3 s between sample and force; write "3 ms", or "3 s"'],
-        ),
-        (f"{PASSIVE} --environment.stiffness 3", ["behind a coupling"]),
-        (f"{PASSIVE} --plot a.txt", [".png"]),
-        (f"{PASSIVE} --plot no/such/folder/a.png", ["no directory"]),
-        (f"{PASSIVE} -o .", ["directory"]),
-        (f"{PASSIVE} -o a.svg --plot a.svg", ["same file"]),
-        (f"{PASSIVE} -o a.PNG", ["--save", "the name of a picture", "give --plot"]),
-        (f"{PASSIVE} -o 'a\0b'", ["cannot be written"]),
-        ("devices phanton", ["phantom"]),
-        ("devices phantom falcon", ["too many"]),
-        ("verify", ["FILE"]),
-        ("verify missing.json", ["missing.json"]),
-        ("verify --schema sprong", ["no kind of document", 'did you mean "spring"?']),
-        ("verify a.json --schema spring", ["--schema", "no FILE"]),
-    ],
-)
-def test_bad_input_is_one_line(refused, line, parts):
-    message = refused(line)
-    assert all(part in message for part in parts), message
-
-
 def test_a_long_delay_is_taken_with_its_unit(run):
     assert "without a unit" not in run(f"{PASSIVE} --delay '3 s'", None).err
     assert run(f"{PASSIVE} --delay 0.003", None).status != 2

@@ -83,26 +83,6 @@ def test_certificates_of_the_columns(run, refused):
     run("verify walls.json", 1)
 
 
-@pytest.mark.parametrize(
-    ("line", "message"),
-    [
-        ("map haptic-paddle --virtual-damping 0:1", "--stiffness LOW:HIGH is missing"),
-        ("map haptic-paddle --stiffness 300 --virtual-damping 0:1", "--stiffness is a range"),
-        (f"{MAP} --damping 0:1", "--virtual-damping LOW:HIGH"),
-        (f"{MAP} --cells 40", "--cells is written NxM"),
-        (f"{MAP} --cells 40xmany", "whole numbers"),
-        (f"{MAP} --hands fingr", "did you mean"),
-        (f"{MAP} --plot map.gif", "must end in"),
-        (f"{MAP} --plot a.png --certify a.png", "--plot and --certify"),
-        ("map haptic-paddle --stiffness 400:900 --virtual-damping 0:9 --certify c.json", "no wall"),
-        ("map --stiffness 0:1 --virtual-damping 0:1", "no device is given"),
-        (f"{MAP} --velocity-filter wavelet", "no type"),
-    ],
-)
-def test_bad_input_is_one_line(refused, line, message):
-    assert message in refused(line)
-
-
 def test_a_region_without_walls_has_no_largest_one(run):
     """None, not 0 N/m."""
     area = "--stiffness 400:600 --virtual-damping 0:1 --cells 5x5 --hands finger"

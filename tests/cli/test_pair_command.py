@@ -22,12 +22,17 @@ FOLLOWER = zw.Device(damping="0.4", coulomb_friction="0.08", resolution="20 um",
 
 
 TWO = "leader.toml follower.toml"
+HELD_ARM = 'damping = 0.3\nmass = "20 g"\ncoulomb_friction = 0\nresolution = 0\ndelay = 0\nrate = "1 kHz"\n'
+HELD = f'[leader]\n{HELD_ARM}[follower]\n{HELD_ARM}[coupling]\nstiffness = "250 N/m"\nlink_delay = "2 ms"\n'
+HAND = "--follower-operator impedance --follower-operator.mass 50g --follower-operator.stiffness"
+KNOWN = f"{HAND} '0.1 N/mm' --follower-operator.damping '2 .. 2.01'"
+NOBODY = "--follower-operator nobody"
 
 
 @pytest.fixture(autouse=True)
 def _files(run):
-    """Two arms, and a pair in one file."""
-    for name, text in {"leader": ARM, "follower": OTHER, "pair": PAIR}.items():
+    """Two arms, a pair in one file, and one that needs a hand to be passive."""
+    for name, text in {"leader": ARM, "follower": OTHER, "pair": PAIR, "held": HELD}.items():
         Path(f"{name}.toml").write_text(text, encoding="utf-8")
 
 
@@ -128,6 +133,37 @@ def test_the_stiffness_elsewhere_is_the_largest_there(more):
         assert not zw.check(changed.replace(stiffness=at.stiffness * 1.001)).passive
 
 
+def test_a_hand_is_that_of_python(answer):
+    pair = zw.load("held.toml")
+    hand = zw.stability.HandImpedance(mass="50 g", stiffness=100, damping=(2, "2.01"))
+    held = answer(f"held.toml {KNOWN}")
+    assert held == json.loads(zw.check(pair, follower=hand).to_json())
+    assert held["outcome"] == "passive"
+    alone = answer("held.toml --operator nobody")
+    assert alone == json.loads(zw.check(pair, leader=None).to_json())
+    assert (alone["outcome"], alone["held"]) == ("active", {"arm": "leader", "hand": "nobody"})
+
+
+@pytest.mark.parametrize(
+    ("hand", "status", "words"),
+    [
+        (KNOWN, 0, "A hand on the arm that is not held takes no energy out"),
+        (NOBODY, 1, "A hand can take any amount of energy out of the arms below"),
+    ],
+)
+def test_what_is_saved_of_a_known_hand_is_verified(run, hand, status, words):
+    """As what it is: as evidence about two hands that do what they like it is refused."""
+    saved = Path("held.json")
+    assert "known" not in run(f"pair held.toml {hand} -o held.json", status).err
+    assert words in run("verify held.json").words
+    told = {**json.loads(saved.read_text(encoding="utf-8")), "format": "zwidth pair 1"}
+    saved.write_text(json.dumps(told), encoding="utf-8")
+    assert "no document of this format has: held" in run("verify held.json", 1).words
+    del told["held"]
+    saved.write_text(json.dumps(told), encoding="utf-8")
+    assert "of which a known hand holds one" in run("verify held.json", 1).words
+
+
 def test_every_key_of_the_json_is_on_its_page(answer):
     page = json_page()
 
@@ -138,6 +174,9 @@ def test_every_key_of_the_json_is_on_its_page(answer):
 
     law = "--compensation-coulomb 0.01 --compensation-speed 0.1"
     found = keys(answer(f"pair.toml {law}")) | keys(answer("pair.toml --stiffness 400"))
+    for hand in (KNOWN, NOBODY):
+        told = answer(f"held.toml {hand}")
+        found |= {*told, *told["held"], *told["required"]["leader"]}
     assert {"leader_positions_m", "largest_stiffness_at", "cosine", "both"} <= found
     assert not [key for key in sorted(found) if f"`{key}`" not in page]
 
@@ -162,6 +201,11 @@ def test_every_key_of_the_json_is_on_its_page(answer):
         ("pair.toml -o there.json", ["--force"]),
         ("no-such-arm --stiffness 9", ["neither a file nor a device"]),
         ("touch --stiffness 9", ["damping"]),
+        ("held.toml --follower-operator finger", ['"finger" is no known hand']),
+        ("held.toml --follower-operator.mass 3", ["says what the numbers are of"]),
+        ("held.toml --operator nobody --operator.mass 3", ["nobody has no mass"]),
+        ("held.toml --operator impedance --operator.damping -3", ["damping must be ≥ 0"]),
+        (f"held.toml --operator nobody {NOBODY}", ["nobody is left"]),
     ],
 )
 def test_bad_input_ends_in_one_line(refused, line, parts):

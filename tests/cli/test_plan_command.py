@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import pytest
-
 import zwidth as zw
 
 PADDLE = "plan haptic-paddle --force-noise '0.1 N'"
@@ -28,18 +26,3 @@ def test_a_file_of_a_device_in_intervals_is_a_guess(run):
         "resolution = 2.24e-05\nsample_period = 0.001\n"
     )
     assert "To know b within" in run("plan mine.toml --force-noise 0.1").out
-
-
-@pytest.mark.parametrize(
-    ("argv", "message"),
-    [
-        ("plan haptic-paddle", "--force-noise"),
-        ("plan --force-noise 0.1", "no device"),
-        (f"{PADDLE} --slow 0.1", "longer"),
-        (f"{PADDLE} --length '3 N'", "length"),
-        ("plan phantom --force-noise 0.1", "mass"),
-        ("plan --inertia 2e-4 --damping 1e-3 --rate 1000 --force-noise 1e-3", "90 deg"),
-    ],
-)
-def test_bad_input_ends_in_one_line(refused, argv, message):
-    assert message in refused(argv)

@@ -47,34 +47,6 @@ def test_records(run):
     run(f"{SOFT} -o touch.mcap --force")
 
 
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        ("--connection odrve", 'did you mean "odrive"'),
-        ("--connection odrive", "needs port"),
-        ("--connection odrive --connection.port x --connection.count '1 mm'", "has no"),
-        ("--connection odrive --connection.port x --connection.axis 1.5", "whole number"),
-        ("--connection odrive --connection.port /dev/none", "rotary"),
-        (f"{HAPKIT} '1 s'", "count"),
-        (f"{HAPKIT} 1e-5 --connection.sense 1.5", "sense is 1 or -1"),  # it is not rounded
-        (f"{HAPKIT} '1 um' --operator finger", "held by a person"),  # that of a simulated one is not
-        ("--connection.origin '1 mm'", "leave out origin"),
-        ("--safety.force '-1 N'", "> 0"),
-        ("--safety.bad-answers 1.5", "number of samples"),
-        ("--watch wall", "terminal, browser, foxglove"),
-        ("--watch terminal --watch-port 1", "--watch-port goes with"),
-        ("--watch browser --watch-origin https://app.example", "goes with --watch foxglove"),
-        ("--watch foxglove --watch-origin null", "is no origin of pages"),
-        ("--operator fingr", "did you mean"),
-        ("-o session.csv", "ends in .mcap"),
-        ("-o session.parquet", "zwidth replay run.mcap -o run.nc"),
-        ("--duration '0 s'", "> 0"),
-    ],
-)
-def test_bad_input_is_one_message(refused, given, said):
-    assert said in refused(f"serve haptic-paddle --stiffness 50 {given}")
-
-
 def served(*more, **pipes):
     """The command in a process of its own, once it says that it serves."""
     command = [sys.executable, "-m", "zwidth", "serve", "haptic-paddle", "--stiffness", "50"]

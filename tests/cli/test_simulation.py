@@ -108,43 +108,6 @@ def test_saved_traces_are_compared(run):
 
 
 @pytest.mark.parametrize(
-    ("line", "parts"),
-    [
-        (f"{WALL} --duration 0.2 --operator glove", ['no hand "glove"']),
-        (f"{WALL} --duration 0.2 --operator finger --operator.mass -1", ["mass must be"]),
-        (f"{WALL} --duration 0.2 --operator force-record", ["needs the file"]),
-        (f"{WALL} --duration 0.2 --operator force-record --operator.file none.csv", ["none.csv"]),
-        (f"{WALL} --duration 0.2 --operator witness --operator.file none.json", ["none.json"]),
-        (f"{WALL} --operator dowel --duration 0", ["duration must be > 0"]),
-        (f"{WALL} --operator dowel --duration nan", ["duration"]),
-        (f"{WALL} --operator dowel --duration 1e9", ["GiB"]),
-        (f"{WALL} --operator dowel --duration '3 m'", ["duration"]),
-        (f"{DOWEL} --operator.force '4 kg'", ["force", "kg"]),
-        (f"{DOWEL} --operator.stiffness 3", ['hand "dowel" has no "stiffness"']),
-        (f"{DOWEL} --mass 0", ["mass must be > 0"]),
-        (f"{DOWEL} --sample-period 0", ["--sample-period must be > 0"]),
-        (f"{DOWEL} --amplifier valve", ["no amplifier"]),
-        (f"{DOWEL} --amplifier lag", ["amplifier_time_constant"]),
-        (f"{DOWEL} --amplifier-time-constant '1 ms'", ["belong together"]),
-        (f"{DOWEL} --seed 3", ["seed goes with"]),
-        (f"{DOWEL} --missed 2", ["probability"]),
-        (f"{DOWEL} --points-per-sample 1.5", ["whole number"]),
-        (f"{DOWEL} --encoder-phase 1", ["--encoder-phase"]),
-        (f"{DOWEL} --initial-position up", ["--initial-position"]),
-        (f"{DOWEL} -o touch.xlsx", [".nc, .parquet, .csv"]),
-        (f"{DOWEL} --plot touch.gif", [".png"]),
-        (f"{DOWEL} --sound touch.mp3", [".wav"]),
-        (f"{DOWEL} -o no/touch.nc", ["no directory"]),
-    ],
-)
-def test_bad_input_is_one_line_and_no_file(refused, line, parts):
-    """What was given and what to do; nothing is left behind."""
-    error = refused(line if " -o " in line else f"{line} -o kept.nc")
-    assert all(part in error for part in parts), error
-    assert not list(Path().iterdir())
-
-
-@pytest.mark.parametrize(
     ("content", "says"),
     [
         ("1\nnan\n2\n", "nan"),

@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import pytest
-
 import zwidth as zw
 
 SWEEP = "sweep haptic-paddle --vary stiffness=50:600:12 --vary 'delay=0:2 ms:5' --workers 1"
@@ -64,31 +62,6 @@ def test_a_law_of_the_command_line_gets_its_number(run):
     for more in ("", "--of limit", "--of simulate --operator dowel --duration '5 ms'"):
         found = run(f"sweep haptic-paddle {law} --workers 1 --json {more}").json
         assert found["axes"] == {"law.damping_N_s_per_m": [0.01, 0.02]}
-
-
-@pytest.mark.parametrize(
-    ("more", "message"),
-    [
-        ("", "nothing is varied"),
-        ("--vary window=4 --stiffness 9", "to vary in this loop. What can be varied: coulomb"),
-        ("--vary type=wall,maxwell --stiffness 9", 'no number "type" to vary'),
-        ("--vary law.2.limit=1,2 --law saturation --stiffness 9", 'mean "law.limit"'),
-        ("--vary stiffness", "--vary is NAME=VALUES"),
-        ("--vary stifness=1,2", 'did you mean "stiffness"'),
-        ("--vary rate=1,2 --vary rate=3,4", "given twice"),
-        ("--vary stiffness=1,2 --stiffness 3", "--stiffness is given and varied"),
-        ("--vary stiffness=1,2 --operator.force 3", "--operator.force is no option of check"),
-        ("--vary stiffness=1,2 --parameter rate", "--parameter is of limit"),
-        ("--vary stiffness=1,2 --of serve", "--of is one of check"),
-        ("--vary stiffness=1,2 --workers many", "--workers takes a whole number"),
-        ("--vary stiffness=1,2 --plot a.txt", "must end in .png"),
-        ("--vary stiffness=1,2 -o a.nc", "ends in .zarr or .parquet"),
-        ("--vary stiffness=-1,2", "stiffness must be"),
-        ("--vary delay=0:5:3 --stiffness 9", "5 without a unit is 5 s"),
-    ],
-)
-def test_bad_input_in_one_line(refused, more, message):
-    assert message in refused(f"sweep haptic-paddle {more}")
 
 
 def test_what_was_finished_is_kept(run, monkeypatch):

@@ -73,34 +73,6 @@ def test_the_map_is_saved_and_drawn(run, refused):
 CHAIN = "two-link --joint-damping 0.1"
 
 
-@pytest.mark.parametrize(
-    ("arm", "words"),
-    [
-        ("haply-2diy --stiffness 100", "no source gives the joint damping"),
-        ("haply-2diy --joint-damping 0.1", "which wall"),
-        ("haply-2diy --joint-damping 0.1,0.2,0.3 --stiffness 1", "one for each"),
-        ("haply-2diy --joint-damping 0.1 --stiffness 1 --hold a=1", "for descriptions"),
-        ("haply-2diy --joint-damping 0.1 --stiffness 1 --pose", "has no pose"),
-        ("phantom --joint-damping 0.1 --stiffness 1", "built in are"),
-        ("missing.urdf --stiffness 1", "missing.urdf"),
-        (f"{CHAIN} --rotational-stiffness 1", "add --pose"),
-        (f"{CHAIN} --pose", "which wall"),
-        (f"{CHAIN} --wall w.toml", "no file"),
-        (f"{CHAIN} --wall w.toml --stiffness 1", "leave out --stiffness"),
-        (f"{CHAIN} --stiffness 1 --points 2.5", "whole number"),
-        (f"{CHAIN} --stiffness 1 --rest a=1", "add --pose"),
-        (f"{CHAIN} --stiffness 1 --torque-held-up-to 1,2,3", "a moment"),
-        (f"{CHAIN} --stiffness 1 -o proof.jsn", "a file must end in .json for the verdict"),
-        (f"{CHAIN} --stiffness 1 --delay '0.3 ms'", "whole number of samples"),
-        (f"{CHAIN} --stiffness 1 --delay 3", "delay is 3 s, 3000 samples"),
-        (f"{CHAIN} --stiffness 1 --largest-force 3", "--joint-resolution 0.001"),
-        (f"{CHAIN} --stiffness 1 --largest-force 1,2,3", "--largest-force: a force"),
-    ],
-)
-def test_bad_input_is_one_line(refused, arm, words):
-    assert words in refused(f"workspace {arm}")
-
-
 COUNTED = (
     "workspace two-link --joint-damping 0.05 --stiffness 200 --joint-resolution 0.001 "
     "--joint-friction 0.01 --points 20"

@@ -1,23 +1,19 @@
 """A file that is not there: one near it in name is told, and never one of another folder or kind."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
 
-from zwidth.cli.main import main
 from zwidth.missing import did_you_mean, near_file
 
 HERE = ("bumpstop.toml", "wheel.toml", "session.csv", "verdict.json", "leader.yaml", "arm.urdf", "touch.nc")
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(run, tmp_path):
     """With one file of each kind, and the process in it."""
     for name in HERE:
-        (tmp_path / name).touch()
-    monkeypatch.chdir(tmp_path)
+        Path(name).touch()
     return tmp_path
 
 
@@ -34,10 +30,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("traces tuoch.nc", "touch.nc"),
     ],
 )
-def test_commands_name_the_file_that_is_there(folder, capsys, words, meant):
+def test_commands_name_the_file_that_is_there(refused, folder, words, meant):
     (folder / "wheel.toml").write_text("[device]\ndamping = 1\nrate = 1000\n", encoding="utf-8")
-    assert main(words.split()) == 2
-    assert capsys.readouterr().err.endswith(f'did you mean "{meant}"?\n')
+    assert refused(words).endswith(f'did you mean "{meant}"?\n')
 
 
 def test_a_file_is_named_as_one_would_type_it(folder):
