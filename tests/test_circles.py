@@ -47,17 +47,6 @@ def _named(given: ast.expr) -> Iterator[str]:
         yield start.value.rstrip(".")
 
 
-def imports() -> Imports:
-    """Of the whole package, with what the stubs name."""
-    files = modules()
-    found = {}
-    for name, path in files.items():
-        pages = [page for page in (path, path.with_suffix(".pyi")) if page.exists()]
-        text = "\n".join(page.read_text(encoding="utf-8") for page in pages)
-        found[name] = imports_of(name, text, path.name == "__init__.py", files)
-    return found
-
-
 def folded(imported: Imports, folder: str) -> Imports:
     """What the files and folders of one folder take from each other."""
     found: dict[str, set[str]] = {}
@@ -75,23 +64,26 @@ def circle(graph: Imports) -> list[str]:
     try:
         TopologicalSorter(graph).prepare()
     except CycleError as error:
-        names: list[str] = error.args[1]
-        return names
+        return list(error.args[1])
     return []
 
 
-def folders() -> Iterator[str]:
-    """Every folder with a first page."""
-    return (name for name, path in modules().items() if path.name == "__init__.py")
+FOLDERS = [name for name, path in modules().items() if path.name == "__init__.py"]
 
 
 @pytest.fixture(scope="module")
 def imported() -> Imports:
-    """Read once."""
-    return imports()
+    """Of the whole package, with what the stubs name."""
+    files = modules()
+    found = {}
+    for name, path in files.items():
+        pages = [page for page in (path, path.with_suffix(".pyi")) if page.exists()]
+        text = "\n".join(page.read_text(encoding="utf-8") for page in pages)
+        found[name] = imports_of(name, text, path.name == "__init__.py", files)
+    return found
 
 
-@pytest.mark.parametrize("folder", list(folders()))
+@pytest.mark.parametrize("folder", FOLDERS)
 def test_no_folder_has_a_circle(folder, imported):
     """Its files and folders can be put into an order in which each needs the ones before it alone."""
     assert circle(folded(imported, folder)) == []
@@ -109,7 +101,5 @@ def test_a_circle_would_be_seen():
     assert graph == {"p.a": {"p.b.c"}, "p.b.c": {"p.b.d"}, "p.b.d": {"p.a"}, "p.b": {"p.b.c"}}
     assert sorted(set(circle(folded(graph, "p")))) == ["a", "b"]
     assert circle(folded(graph, "p.b")) == []
-    assert imports_of("p.a", 'f(import_module("p.b.c"), import_module(f"p.b.{x}"))', False, known) == {
-        "p.b.c",
-        "p.b",
-    }
+    by_name = 'f(import_module("p.b.c"), import_module(f"p.b.{x}"))'
+    assert imports_of("p.a", by_name, False, known) == {"p.b.c", "p.b"}

@@ -38,6 +38,11 @@ class Result(NamedTuple):
         """The report on one line."""
         return " ".join(self.out.split())
 
+    def says(self, *parts: str) -> None:
+        """Each part stands in the report, in whatever lines."""
+        for part in parts:
+            assert part in self.out or part in self.words, f"{part}\n{self.out}"
+
     @property
     def json(self) -> Any:
         """The document that was printed."""

@@ -39,8 +39,7 @@ def test_the_law_as_it_was_programmed(run):
     said = run("diagnose shaking.csv wheel.toml --stiffness '20 N*m/rad'").out
     assert "the command is that of the law as stated" in said
     assert "$ zwidth check wheel.toml --stiffness '20 N*m/rad'" in said
-    twice = run("diagnose shaking.csv wheel.toml --stiffness '40 N*m/rad'").words
-    assert "0.5 times that of the law" in twice
+    run("diagnose shaking.csv wheel.toml --stiffness '40 N*m/rad'").says("0.5 times that of the law")
 
 
 def test_json_says_the_same(run):
@@ -51,8 +50,7 @@ def test_json_says_the_same(run):
 
 
 def test_the_loop_and_the_picture_are_written(run):
-    said = run("diagnose shaking.csv wheel.toml -o mended.toml --plot why.png").out
-    assert "$ zwidth check mended.toml" in said
+    run("diagnose shaking.csv wheel.toml -o mended.toml --plot why.png").says("$ zwidth check mended.toml")
     assert Path("why.png").exists()
     run("check mended.toml")
 

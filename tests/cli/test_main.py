@@ -100,8 +100,7 @@ def test_two_files(run):
 
 
 def test_a_name_is_text_and_never_markup(run):
-    out = run(f"{PASSIVE} --name '[red]:smile:[/red] \x1b[31m'").out
-    assert "[red]:smile:[/red] ?[31m" in out
+    run(f"{PASSIVE} --name '[red]:smile:[/red] \x1b[31m'").says("[red]:smile:[/red] ?[31m")
 
 
 def test_a_long_delay_is_taken_with_its_unit(run):

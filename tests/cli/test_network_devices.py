@@ -21,23 +21,11 @@ SCENE = """
 [environment]
 type = "scene"
 port = ""
-
-[[environment.elements]]
-type = "line-end"
-node = "tool"
-impedance = "0.5 N*s/m"
-name = "paddle"
-
-[[environment.elements]]
-type = "mass"
-node = "tool"
-mass = "50 g"
-
-[[environment.elements]]
-type = "spring"
-first = "tool"
-second = "ground"
-stiffness = "40 N/m"
+elements = [
+  { type = "line-end", node = "tool", impedance = "0.5 N*s/m", name = "paddle" },
+  { type = "mass", node = "tool", mass = "50 g" },
+  { type = "spring", first = "tool", second = "ground", stiffness = "40 N/m" },
+]
 """
 
 NETWORK = """

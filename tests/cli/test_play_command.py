@@ -12,9 +12,7 @@ PADDLE = "play haptic-paddle --stiffness 770"
 
 def test_a_page_is_saved(run):
     """It holds the loop that was asked for; the outcome and the file are named; nobody's browser opens."""
-    said = run(f"{PADDLE} -o wall.html").out
-    assert "ACTIVE: wall, 770 N/m" in said
-    assert "written: wall.html" in said
+    run(f"{PADDLE} -o wall.html").says("ACTIVE: wall, 770 N/m", "written: wall.html")
     assert "wall, 770 N/m" in Path("wall.html").read_text(encoding="utf-8")
     run(f"{PADDLE} --law force-bounding -o bounded.html")
     assert "force bounding" in Path("bounded.html").read_text(encoding="utf-8")

@@ -32,8 +32,7 @@ def test_the_report_says_what_came_out(run):
     """An active touch, a quiet one, and one that began inside, each in words."""
     assert "ACTIVE" in run(DOWEL).out
     assert "got no energy out" in run(f"{DOWEL} --force-limit 0.5").out
-    inside = run(f"{DOWEL} --initial-position '20 mm'").words
-    assert "were stored at the start: nothing was gained" in inside
+    run(f"{DOWEL} --initial-position '20 mm'").says("were stored at the start: nothing was gained")
 
 
 def test_json_carries_units_in_its_keys(run):
@@ -99,9 +98,7 @@ def test_sound_and_pictures_are_written_and_named(run):
 def test_saved_traces_are_compared(run):
     run(f"{DOWEL} -o dowel.nc")
     run(f"{WALL} --operator malicious --duration 0.2 -o finger.csv")
-    table = run("traces dowel.nc finger.csv --plot both.png").out
-    assert "dowel.nc" in table
-    assert "deepest [m]" in table
+    run("traces dowel.nc finger.csv --plot both.png").says("dowel.nc", "deepest [m]")
     assert Path("both.png").exists()
     document = run("traces dowel.nc finger.csv --json").json
     assert document["dowel.nc"]["energy_extracted_J"] > 0

@@ -27,9 +27,7 @@ def test_the_report_and_the_json_say_the_same(run):
 def test_hands_that_are_known(run, refused):
     """Of each so many loops that come to rest, in the report and as JSON; of another question refused."""
     few = "sweep haptic-paddle --vary stiffness=100,3000 --hands none,finger --workers 1"
-    report = run(few).words
-    assert "with finger" in report
-    assert "dry friction and encoder steps left out" in report
+    run(few).says("with finger", "dry friction and encoder steps left out")
     assert run(f"{few} --json").json["stability"]["none"] == {"stable": 1, "unstable": 1}
     assert "--hands is of check" in refused(f"{few} --of limit")
 

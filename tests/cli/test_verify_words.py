@@ -28,27 +28,16 @@ def proof_of(wall):
 
 
 SPRING, DAMPED = proof_of(zw.Wall(100)), proof_of(zw.Wall(100, 0.05))
-STABLE = {
-    "kind": "stability",
-    "loop": {
-        "mass_kg": "0.05",
-        "damping_N_s_per_m": "0.7",
-        "stiffness_N_per_m": "350",
-        "sample_period_s": "0.001",
-        "delay_s": "0",
-        "numerator": ["1200", "-400"],
-        "denominator": ["1", "0"],
-    },
-}
+LAW = {"numerator": ["1200", "-400"], "denominator": ["1", "0"], "sample_period_s": "0.001", "delay_s": "0"}
+HELD = {"mass_kg": "0.05", "damping_N_s_per_m": "0.7", "stiffness_N_per_m": "350"}
+STABLE = {"kind": "stability", "loop": {**HELD, **LAW}}
+POSITIVE = {"at_one": 0, "at_minus_one": 0, "square": ["1"], "factor": ["1"]}
 PORT = {
     "kind": "positive real",
     "system": {"time": "discrete", "numerator": ["-4"], "denominator": ["1"]},
     "index": "input",
     "level": "-5",
-    "proof": {
-        "offset": "1",
-        "positivity": {"at_one": 0, "at_minus_one": 0, "square": ["1"], "factor": ["1"]},
-    },
+    "proof": {"offset": "1", "positivity": POSITIVE},
 }
 
 

@@ -86,8 +86,7 @@ def test_encoder_steps_are_counted_up_to_a_force(run):
     assert re.search(
         r"encoder steps covered up to 28.6 N; from 89[.0-9]* N on a motion takes energy out", words
     )
-    words = run("verify proof.json").words
-    assert "its encoder steps counted: force and Jacobian are those of the readings" in words
+    run("verify proof.json").says("its encoder steps counted: force and Jacobian are those of the readings")
     found = run(f"{COUNTED} --json").json
     assert (found["encoder"], found["torque"], found["can_be_refuted"]) == ("counted", "follows", True)
     steps = found["encoder_steps"]
@@ -100,8 +99,7 @@ def test_encoder_steps_are_counted_up_to_a_force(run):
 
 
 def test_a_delay_is_reported_with_its_unit(run):
-    out = run("workspace two-link --joint-damping 0.05 --stiffness 20 --delay 0.003", None).out
-    assert "3 ms, 3 samples" in out
+    run("workspace two-link --joint-damping 0.05 --stiffness 20 --delay 0.003", None).says("3 ms, 3 samples")
 
 
 def test_a_description_from_the_command_line(run):
@@ -221,8 +219,7 @@ TWO_LINK = "workspace two-link --points 10 --stiffness 200 --joints joints.toml"
 
 def test_joints_that_damp_each_other_come_from_a_file(run):
     Path("joints.toml").write_text(JOINTS, encoding="utf-8")
-    words = run(f"{TWO_LINK} -o proof.json").words
-    assert "joint damping [[0.02, 0.005], [0.005, 0.01]] N·m·s/rad" in words
+    run(f"{TWO_LINK} -o proof.json").says("joint damping [[0.02, 0.005], [0.005, 0.01]] N·m·s/rad")
     told = json.loads(Path("proof.json").read_text(encoding="utf-8"))
     assert told["joint_damping_N_m_s_rad"] == [[0.02, 0.005], [0.005, 0.01]]
     assert told["certificate"]["arm"]["damping_N_m_s_rad"] == [["0.02", "0.005"], ["0.005", "0.01"]]
@@ -253,5 +250,4 @@ def test_files_of_joints_that_cannot_be_used(refused, text, options, words):
 
 def test_joints_by_file_and_by_options(run):
     Path("joints.toml").write_text("[joints]\ncoulomb_friction = [0.01, 0.01]", encoding="utf-8")
-    words = run(f"{TWO_LINK} --joint-damping 0.02,0.01").words
-    assert "joint damping 0.02, 0.01 N·m·s/rad" in words
+    run(f"{TWO_LINK} --joint-damping 0.02,0.01").says("joint damping 0.02, 0.01 N·m·s/rad")
