@@ -101,7 +101,7 @@ def test_a_plan_says_what_runs_where_and_what_a_line_adds(run):
         (SCENE + NETWORK.replace('"far"', '"paddle"'), '"paddle" is a part and a device'),
         (SCENE + NETWORK.replace("[network]", '[network]\ndelay = "4 ms"', 1), "delay must be ≥ 5 ms, got 4"),
         (SCENE.replace('port = ""', 'port = "bed"') + NETWORK, 'nobody would move the port "bed"'),
-        (SCENE.replace("]\n", f"{SECOND_END}\n") + NETWORK, 'two line ends are called "paddle"'),
+        (SCENE.replace("\n]", f"\n{SECOND_END}") + NETWORK, 'two line ends are called "paddle"'),
         (SCENE + NETWORK.replace("haptic-paddle", "rotary.toml"), r"impedance is in N\*m\*s/rad"),
         (SCENE + NETWORK + line("paddle", 1, 2) + line("paddle", 3, 4), 'line 2].*two of the name "paddle"'),
         (  # a radius would tell both at their handles
