@@ -47,6 +47,17 @@ def _named(given: ast.expr) -> Iterator[str]:
         yield start.value.rstrip(".")
 
 
+def imports() -> Imports:
+    """Of the whole package, with what the stubs name."""
+    files = modules()
+    found = {}
+    for name, path in files.items():
+        pages = [page for page in (path, path.with_suffix(".pyi")) if page.exists()]
+        text = "\n".join(page.read_text(encoding="utf-8") for page in pages)
+        found[name] = imports_of(name, text, path.name == "__init__.py", files)
+    return found
+
+
 def folded(imported: Imports, folder: str) -> Imports:
     """What the files and folders of one folder take from each other."""
     found: dict[str, set[str]] = {}
@@ -72,15 +83,8 @@ FOLDERS = [name for name, path in modules().items() if path.name == "__init__.py
 
 
 @pytest.fixture(scope="module")
-def imported() -> Imports:
-    """Of the whole package, with what the stubs name."""
-    files = modules()
-    found = {}
-    for name, path in files.items():
-        pages = [page for page in (path, path.with_suffix(".pyi")) if page.exists()]
-        text = "\n".join(page.read_text(encoding="utf-8") for page in pages)
-        found[name] = imports_of(name, text, path.name == "__init__.py", files)
-    return found
+def imported():
+    return imports()
 
 
 @pytest.mark.parametrize("folder", FOLDERS)

@@ -31,7 +31,13 @@ from zwidth.cli.parsing import joined
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "src" / "zwidth"
-PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+
+
+def _text(name):
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+PYPROJECT = tomllib.loads(_text("pyproject.toml"))
 RESULTS = {"FrictionModel", "Identified", "InputError", "Log", "Verdict", "Witness"}
 """Classes that zwidth makes and a person only reads."""
 
@@ -112,7 +118,7 @@ def test_version_is_the_one_of_the_distribution():
 
     declared = PYPROJECT["project"]["version"]
     assert version("zwidth") == declared
-    assert f"## {declared}" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert f"## {declared}" in _text("CHANGELOG.md")
 
 
 def test_what_is_shipped_beside_the_code():
@@ -145,8 +151,7 @@ def test_no_file_names_a_path_of_some_machine():
 
 
 def test_the_readme_has_two_commands():
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    job, tests = (line for line in readme.splitlines() if line.startswith("python3 -m venv"))
+    job, tests = (line for line in _text("README.md").splitlines() if line.startswith("python3 -m venv"))
     assert "zwidth check" in job
     assert "pytest" in tests
 
@@ -163,10 +168,8 @@ def _pole_of_the_readme(stiffness: float, damping: float) -> float:
 
 def test_the_readme_table_is_what_comes_out():
     """Its numbers are computed, not remembered; device and walls alone are passive, as it says."""
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    table = re.findall(
-        r"^\| (\d+) \| ([\d.]+) \| ([\d.]+) \| (\w+) \| ([\d.]+)(.*?) \| True", readme, re.MULTILINE
-    )
+    row = r"^\| (\d+) \| ([\d.]+) \| ([\d.]+) \| (\w+) \| ([\d.]+)(.*?) \| True"
+    table = re.findall(row, _text("README.md"), re.MULTILINE)
     assert len(table) == 4
     device = zw.Device(mass=0.1, damping=0.1, sample_period=0.001)
     assert zw.ports.passivity_indices(TransferFunction([1], [0.1, 0.1])).passive
@@ -194,7 +197,7 @@ def _bounds():
 
 def test_the_oldest_versions_that_are_tested_are_the_lower_bounds():
     """Whoever has the oldest that pyproject.toml admits has what `.ci/oldest` tests."""
-    lines = (ROOT / ".ci" / "oldest.txt").read_text(encoding="utf-8").splitlines()
+    lines = _text(".ci/oldest.txt").splitlines()
     pins = dict(line.split("==") for line in lines if line and not line.startswith("#"))
     for name, bounds in _bounds().items():
         (bound,) = bounds
@@ -203,17 +206,16 @@ def test_the_oldest_versions_that_are_tested_are_the_lower_bounds():
 
 def test_what_is_run_with_the_oldest_versions_exists():
     """Every test that the list names: one that has moved would be no test."""
-    listed = re.findall(r"^  (tests/\S+)", (ROOT / ".ci" / "oldest").read_text(encoding="utf-8"), re.M)
+    listed = re.findall(r"^  (tests/\S+)", _text(".ci/oldest"), re.M)
     assert len(listed) > 10
     for name in listed:
         file, _, test = name.partition("::")
         assert (ROOT / file).exists(), name
-        assert not test or f"\ndef {test}(" in (ROOT / file).read_text(encoding="utf-8"), name
+        assert not test or f"\ndef {test}(" in _text(file), name
 
 
 def _blocks(page: str, language: str) -> list[str]:
-    text = (ROOT / page).read_text(encoding="utf-8")
-    return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
+    return re.findall(rf"```{language}\n(.*?)```", _text(page), re.DOTALL)
 
 
 def test_the_readme_example_says_what_comes_out():
@@ -278,7 +280,7 @@ def _command_line_page() -> str:
         import tables
     finally:
         sys.path.pop(0)
-    page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    page = _text("docs/command-line.md")
     included = re.findall(r"\{include\} _generated/(.+)\.md", page)
     return "\n".join([page, *(tables.TABLES[name]() for name in included)])
 
@@ -335,9 +337,8 @@ def test_every_key_of_the_json_is_on_its_page():
 
 
 def _unrolled_as_documented(positions, repeats):
-    page = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
     names = {}
-    exec(re.search(r"```python\n(def unrolled.+?)```", page, re.DOTALL)[1], names)
+    exec(re.search(r"```python\n(def unrolled.+?)```", _text("docs/json.md"), re.DOTALL)[1], names)
     return names["unrolled"](positions, repeats)
 
 
@@ -375,8 +376,7 @@ def _keys(document: object) -> set[str]:
 
 def test_every_file_that_the_newcomers_page_names_exists():
     """One contact through every floor: a file that moves takes its line along."""
-    page = (ROOT / "docs" / "one-contact.md").read_text(encoding="utf-8")
-    named = set(re.findall(r"`([a-z_]+/[a-z_/]*(?:\.py|/))`", page))
+    named = set(re.findall(r"`([a-z_]+/[a-z_/]*(?:\.py|/))`", _text("docs/one-contact.md")))
     assert len(named) > 40
     assert {name for name in named if not (SOURCE / name).exists() and not (ROOT / name).exists()} == set()
 
@@ -422,9 +422,7 @@ RUN = ("--plan", "identify", "verify", "workspace arm.urdf", "check")
 
 def _readme_commands():
     """The lines of the README that begin with zwidth, as typed."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    blocks = re.findall(r"```sh\n(.*?)```", text, re.DOTALL)
-    lines = [line for block in blocks for line in block.splitlines()]
+    lines = [line for block in _blocks("README.md", "sh") for line in block.splitlines()]
     return [line for line in lines if line.startswith("zwidth ") and "--help" not in line]
 
 

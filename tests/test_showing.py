@@ -6,7 +6,6 @@ import os
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -101,35 +100,28 @@ def test_what_a_terminal_obeys_is_not_printed():
     assert printable("2b/T ≥ K·s²\n\tμ") == "2b/T ≥ K·s²\n\tμ"
 
 
-def _pages() -> list[tuple[str, ast.FunctionDef]]:
-    texts = [(path.name, path.read_text(encoding="utf-8")) for path in SOURCE]
-    return [
-        (name, node)
-        for name, text in texts
-        if "Html" in text
-        for node in ast.walk(ast.parse(text))
-        if isinstance(node, ast.FunctionDef) and node.name in ("_repr_html_", "html")
-    ]
+def _pages():
+    for path in SOURCE:
+        text = path.read_text(encoding="utf-8")
+        for node in ast.walk(ast.parse(text)) if "Html" in text else ():
+            if isinstance(node, ast.FunctionDef) and node.name in ("_repr_html_", "html"):
+                yield path.name, node
 
 
 def test_every_page_of_a_notebook_is_made_of_escaped_parts():
     """By its type: `Html` comes from one module only, and a text or an f-string is none."""
-    pages = _pages()
+    pages = list(_pages())
     assert {name for name, _ in pages} == {"showing.py", "device.py"}
     for name, page in pages:
-        assert page.returns is not None
         assert ast.unparse(page.returns) == "Html", name
-        assert not [part for part in ast.walk(page) if isinstance(part, ast.Return) and _is_text(part)], name
+        answers = [part.value for part in ast.walk(page) if isinstance(part, ast.Return)]
+        assert not [one for one in answers if isinstance(one, (ast.JoinedStr, ast.Constant, ast.BinOp))], name
     makers = {path.name for path in SOURCE if re.search(r"\bHtml\(", path.read_text(encoding="utf-8"))}
     assert makers == {"showing.py"}
 
 
-def _is_text(answer: ast.Return) -> bool:
-    return isinstance(answer.value, (ast.JoinedStr, ast.Constant, ast.BinOp))
-
-
 @pytest.fixture(scope="module")
-def trace() -> Any:
+def trace():
     """Of a device whose name is hostile."""
     return zw.simulate(DEVICE, zw.Wall(200), zw.operators.ConstantForce(1), 0.02)
 
@@ -172,25 +164,21 @@ def test_no_name_and_no_message_holds_what_is_obeyed(name, more):
     assert one_line(name).isprintable()
 
 
-@pytest.mark.parametrize("draw", ["trace", "traces", "verdict", "law"])
+DRAWN = {
+    "trace": lambda trace, path: trace.zwidth.plot(path),
+    "traces": lambda trace, path: zw.traces.compare_traces({HOSTILE: trace}).plot(path),
+    "verdict": lambda _, path: zw.check(DEVICE, zw.Wall(200)).plot(path),
+    "law": lambda _, path: zw.compare(DEVICE, zw.Wall(200), {HOSTILE: zw.Wall(200)}).plot(path),
+}
+
+
+@pytest.mark.parametrize("draw", DRAWN)
 def test_names_are_drawn_as_they_are(draw, trace, tmp_path):
     """Neither markup nor mathematics; the picture is whole XML without a script."""
     path = tmp_path / "picture.svg"
-    if draw == "trace":
-        trace.zwidth.plot(path)
-    elif draw == "traces":
-        zw.traces.compare_traces({HOSTILE: trace}).plot(path)
-    elif draw == "verdict":
-        zw.check(DEVICE, zw.Wall(200)).plot(path)
-    else:
-        _with_law(trace).plot(path)
+    DRAWN[draw](trace, path)
     tree = ElementTree.parse(path)
     assert not [part for part in tree.iter() if "script" in str(part.tag)]
-
-
-def _with_law(trace: Any) -> Any:
-    wall = zw.Wall(200)
-    return zw.compare(DEVICE, wall, {HOSTILE: wall})
 
 
 TOML = """

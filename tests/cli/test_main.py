@@ -202,7 +202,7 @@ def test_help_names_every_parameter_with_its_unit(run):
 # --- the process --------------------------------------------------------------
 
 
-@pytest.mark.parametrize("line", [PASSIVE, f"{ACTIVE} --json", "devices", "check --help"])
+@pytest.mark.parametrize("line", [PASSIVE, ACTIVE, f"{ACTIVE} --json", "devices", "check --help"])
 def test_ascii_terminal(line):
     result = process(line, PYTHONIOENCODING="ascii", LC_ALL="C")
     assert result.stderr == b""

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from contextlib import ExitStack
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 import pytest
@@ -36,6 +37,11 @@ def same(a, b):
     return all(a[name].values.tobytes() == b[name].values.tobytes() for name in names)
 
 
+def cells(found):
+    """Stiffness and virtual damping of each."""
+    return product(found["stiffness"].values, found["virtual_damping"].values)
+
+
 def test_every_number_has_its_unit():
     found = zw.z_width(PADDLE, *WIDE, cells=(3, 3))
     numbers = {name: one for name, one in found.variables.items() if one.dtype.kind == "f"}
@@ -49,10 +55,9 @@ def test_stable_cells_are_those_that_stability_proves():
     found = zw.z_width(PADDLE, *WIDE, cells=(9, 11))
     hands = {"none": None, "finger": Finger(), "dowel": Dowel(force=1)}
     for name, hand in hands.items():
-        for k in found["stiffness"].values:
-            for b in found["virtual_damping"].values:
-                expected = zw.stability.coupled_stability(PADDLE, zw.Wall(k, b), hand).outcome == "stable"
-                assert bool(found[f"stable_{name}"].sel(stiffness=k, virtual_damping=b)) == expected
+        for k, b in cells(found):
+            expected = zw.stability.coupled_stability(PADDLE, zw.Wall(k, b), hand).outcome == "stable"
+            assert bool(found[f"stable_{name}"].sel(stiffness=k, virtual_damping=b)) == expected
 
 
 @pytest.mark.parametrize("delay", ["0", "0.0004", "0.002"])
@@ -71,13 +76,12 @@ def test_passive_cells_are_those_that_check_proves():
     """Near both edges of the passive region, each cell as `zw.check` says; both kinds occur."""
     found = zw.z_width(PADDLE, (0, 360), (-0.2, 0.2), cells=(12, 10))
     outcomes = set()
-    for k in found["stiffness"].values:
-        for b in found["virtual_damping"].values:
-            mine = bool(found["passive"].sel(stiffness=k, virtual_damping=b))
-            assert not mine or zw.check(PADDLE, zw.Wall(k, b)).outcome == "passive"
-            # without delay the condition for contact made and broken is also necessary for B ≥ 0
-            assert b < 0 or mine == (k * 0.0005 + b <= 0.15)
-            outcomes.add(mine)
+    for k, b in cells(found):
+        mine = bool(found["passive"].sel(stiffness=k, virtual_damping=b))
+        assert not mine or zw.check(PADDLE, zw.Wall(k, b)).outcome == "passive"
+        # without delay the condition for contact made and broken is also necessary for B ≥ 0
+        assert b < 0 or mine == (k * 0.0005 + b <= 0.15)
+        outcomes.add(mine)
     assert outcomes == {True, False}
 
 
@@ -96,13 +100,12 @@ def test_sustained_cells_are_those_that_the_criterion_proves(changes, velocity):
     """Each cell as the exact decision says; more of them than with contact broken, and not all."""
     device = PADDLE.replace(**changes)
     found = zw.z_width(device, (0, 330), (-0.3, 0.6), (24, 17), velocity_filter=velocity, hands={})
-    cells = found["passive_sustained"]
-    for k in found["stiffness"].values:
-        for b in found["virtual_damping"].values:
-            expected = decide(device, zw.Wall(k, b, velocity_filter=velocity)).is_provable
-            assert bool(cells.sel(stiffness=k, virtual_damping=b)) == expected
-    assert (found["passive"] <= cells).all()
-    assert found["passive"].sum() < cells.sum() < cells.size
+    sustained = found["passive_sustained"]
+    for k, b in cells(found):
+        expected = decide(device, zw.Wall(k, b, velocity_filter=velocity)).is_provable
+        assert bool(sustained.sel(stiffness=k, virtual_damping=b)) == expected
+    assert (found["passive"] <= sustained).all()
+    assert found["passive"].sum() < sustained.sum() < sustained.size
 
 
 @pytest.mark.parametrize(("first", "past"), [(0, 20), (3, 17), (9, 10), (1, 19), (0, 1), (19, 20), (4, 9)])

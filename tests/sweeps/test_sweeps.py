@@ -366,12 +366,11 @@ def test_a_wheel_in_degrees():
     wall = zw.Wall("2 N*m/rad")
     found = zw.sweep(wheel, wall, vary={"counts_per_turn": [4096, 65536], "stiffness": "1, 5 N*m/deg"})
     assert found.stiffness.attrs["units"] == "N*m/rad"
-    for n in (0, 1):
-        for k in (0, 1):
-            loop = Loop(wheel, wall)
-            own = [parameter(loop, name) for name in found.dims]
-            at = changed(loop, {own[0]: found.counts_per_turn.values[n], own[1]: found.stiffness.values[k]})
-            assert found.outcome.values[n, k] == check_by_closed_forms(at.subject, at.environment).outcome
+    loop = Loop(wheel, wall)
+    own = [parameter(loop, name) for name in found.dims]
+    for n, k in np.ndindex(2, 2):
+        at = changed(loop, {own[0]: found.counts_per_turn.values[n], own[1]: found.stiffness.values[k]})
+        assert found.outcome.values[n, k] == check_by_closed_forms(at.subject, at.environment).outcome
     coarse = zw.sweep(wheel, wall, vary={"resolution": "0.1, 1 deg"})
     assert coarse.resolution.values[1] == pytest.approx(np.pi / 180)
 
