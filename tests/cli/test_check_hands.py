@@ -39,10 +39,8 @@ def test_saved_proofs_are_checked(run):
     run("verify proof.json").says("do not come to rest", "come to rest after every disturbance")
     document = json.loads(Path("proof.json").read_text(encoding="utf-8"))
     hands = document["known_hands"]
-    assert {name: hand["outcome"] for name, hand in hands.items()} == {
-        "none": "unstable",
-        "hands-on": "stable",
-    }
+    found = [(name, hand["outcome"]) for name, hand in hands.items()]
+    assert found == [("none", "unstable"), ("hands-on", "stable")]
     hands["none"]["certificate"] = hands["hands-on"]["certificate"]
     Path("proof.json").write_text(json.dumps(document), encoding="utf-8")
     assert "shows something else" in run("verify proof.json", 1).words

@@ -73,8 +73,6 @@ def test_without_a_shell_the_line_for_that_of_the_user_is_said(refused, monkeypa
 
 def test_the_library_is_imported_at_the_tab_key_only():
     """A command that is run does not wait for it."""
-    code = (
-        "import sys; from zwidth.cli.main import main; main(['devices']); "
-        "assert 'argcomplete' not in sys.modules"
-    )
+    run = "import sys; from zwidth.cli.main import main; main(['devices'])"
+    code = f"{run}; assert 'argcomplete' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)

@@ -234,9 +234,8 @@ def test_the_file_says_what_was_understood(make, answers, line):
 
 def test_enter_at_the_gear_ratio_is_1(piped):
     """What the motor's data sheet says is not lost in silence."""
-    unknown = dict.fromkeys(
-        ("--inertia", "--encoder", "--delay", "--handle-radius", "--coulomb-friction"), "unknown"
-    )
+    asked = ("--inertia", "--encoder", "--delay", "--handle-radius", "--coulomb-friction")
+    unknown = dict.fromkeys(asked, "unknown")
     piped([""], f"new device {options({**LITTLE, **unknown, **SHEET})}")
     assert float(load_device(["my-device.toml"], {}).coulomb_friction) == pytest.approx(0.18)
 
@@ -262,10 +261,8 @@ def in_a_terminal(folder, answers, kind):
     pty = pytest.importorskip("pty")
     here, there = pty.openpty()
     os.write(here, answers.encode())
-    command, environment = (
-        [sys.executable, "-m", "zwidth", "new", kind],
-        {**os.environ, "PYTHONIOENCODING": "utf-8"},
-    )
+    command = [sys.executable, "-m", "zwidth", "new", kind]
+    environment = {**os.environ, "PYTHONIOENCODING": "utf-8"}
     run = {"capture_output": True, "encoding": "utf-8", "timeout": 120, "cwd": folder, "env": environment}
     done = subprocess.run(command, stdin=there, **run)
     os.close(here)

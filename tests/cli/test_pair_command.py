@@ -72,9 +72,8 @@ def test_friction_is_compensated_on_both_sides_unless_told(run, answer):
     line = f"{TWO} --stiffness 40 {law} --follower-compensation-coulomb 0"
     told = answer(line)
     law = zw.FrictionCompensation(coulomb="0.06", viscous="0.01", speed="0.02")
-    pair = zw.Pair(
-        LEADER, FOLLOWER, stiffness=40, compensation=law, follower_compensation=law.replace(coulomb=0)
-    )
+    laws = {"compensation": law, "follower_compensation": law.replace(coulomb=0)}
+    pair = zw.Pair(LEADER, FOLLOWER, stiffness=40, **laws)
     assert told == json.loads(zw.check(pair).to_json())
     assert told["largest_compensation"] > 0
     said = run(f"pair {line} --all", None).out

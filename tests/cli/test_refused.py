@@ -181,11 +181,9 @@ REFUSED = {
         "--token short": "16 characters or more",
         "no-such-device": "neither a file nor a device",
     },
-    "compare haptic-paddle --stiffness 400 --laws": {
-        "wall --fastest fast": "fastest",
-        "magic": 'no law "magic"',
-    },
     "compare haptic-paddle": {
+        "--stiffness 400 --laws wall --fastest fast": "fastest",
+        "--stiffness 400 --laws magic": 'no law "magic"',
         "--type maxwell --branch-stiffness 3 --branch-damping 1": "",
     },
     "workspace": {

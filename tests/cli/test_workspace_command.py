@@ -83,9 +83,8 @@ def test_encoder_steps_are_counted_up_to_a_force(run):
     words = run(f"{COUNTED} -o proof.json --all").words
     assert "for wall forces up to 28.6 N, proved. Encoder steps are counted" in words
     assert re.search(r"0.005774 N·m, 0.002954 N·m in joint 1, 2, and .* more for each newton", words)
-    assert re.search(
-        r"encoder steps covered up to 28.6 N; from 89[.0-9]* N on a motion takes energy out", words
-    )
+    covered = r"encoder steps covered up to 28.6 N; from 89[.0-9]* N on a motion takes energy out"
+    assert re.search(covered, words)
     run("verify proof.json").says("its encoder steps counted: force and Jacobian are those of the readings")
     found = run(f"{COUNTED} --json").json
     assert (found["encoder"], found["torque"], found["can_be_refuted"]) == ("counted", "follows", True)
@@ -169,9 +168,8 @@ def test_a_wall_by_matrices(run, six):
     rows[0][4] = rows[4][0] = "20"
     write()
     assert "say where it rests" in run(f"{POSED} --wall wall.toml --json", 2).err
-    rests = [
-        run(f"{POSED} --wall wall.toml --json --rest {rest}", None).json for rest in ("middle", "j0=0.2")
-    ]
+    by = f"{POSED} --wall wall.toml --json --rest"
+    rests = [run(f"{by} {rest}", None).json for rest in ("middle", "j0=0.2")]
     assert "at rest with the joints at" in rests[0]["region"]
     assert rests[0]["region"] != rests[1]["region"]
 

@@ -45,7 +45,6 @@ def test_what_colgate_and_brown_found():
 
 def test_two_equal_levels_are_refused():
     """An effect is a difference."""
+    levels = {"rate": (1000, "1 kHz"), "damping": (1, 2), "resolution": (0, 1e-5)}
     with pytest.raises(zw.InputError, match="twice"):
-        zw.maps.z_width_factors(
-            PADDLE, (0, 1), (0, 1), rate=(1000, "1 kHz"), damping=(1, 2), resolution=(0, 1e-5)
-        )
+        zw.maps.z_width_factors(PADDLE, (0, 1), (0, 1), **levels)

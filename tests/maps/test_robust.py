@@ -59,7 +59,7 @@ def test_nothing_is_proved_where_a_hand_is_shaken_at_any_stiffness():
 
 
 @pytest.mark.parametrize(
-    ("ends", "points", "message"), [((2, 1), 3, "smaller to its"), ((1, 2), 1, "2 points")]
+    ("ends", "points", "message"), [((2, 1), 3, "smaller to its larger"), ((1, 2), 1, "2 points")]
 )
 def test_bad_ranges(ends, points, message):
     with pytest.raises(zw.InputError, match=message):
