@@ -62,23 +62,17 @@ def test_the_prediction_holds_within_thirty_per_cent(changes, noise):
 
     The root mean square of 14 numbers is itself known to 19 % only; so its own bounds are wider.
     """
-    device = paddle(**changes)
+    device, names = paddle(**changes), ("damping", "coulomb_friction")
     plan = zw.plan(device, force_noise=noise)
+    period, step = (float(device.exact(name)) for name in ("sample_period", "resolution"))
     errors, halves = [], []
     for seed in range(14):
-        log = recorded(
-            _kinds(plan, 40),
-            np.random.default_rng(seed),
-            period=float(device.exact("sample_period")),
-            resolution=float(device.exact("resolution")),
-            noise=noise,
-        )
-        found = [identify(log).estimates[name] for name in ("damping", "coulomb_friction")]
-        errors.append(
-            [e.value - TRUE[n] for e, n in zip(found, ("damping", "coulomb_friction"), strict=True)]
-        )
+        rng = np.random.default_rng(seed)
+        log = recorded(_kinds(plan, 40), rng, period=period, resolution=step, noise=noise)
+        found = [identify(log).estimates[name] for name in names]
+        errors.append([e.value - TRUE[n] for e, n in zip(found, names, strict=True)])
         halves.append([(e.interval()[1] - e.value) / 1.96 for e in found])
-    predicted = np.array([plan.errors(40)[name] for name in ("damping", "coulomb_friction")])
+    predicted = np.array([plan.errors(40)[name] for name in names])
     ratio = np.mean(halves, axis=0) / predicted
     assert ((ratio > 0.7) & (ratio < 1.3)).all()
     scatter = np.sqrt(np.mean(np.square(errors), axis=0)) / predicted
@@ -165,18 +159,16 @@ def test_the_protocol_can_be_followed():
     ],
 )
 def test_bad_input_is_refused(changes, arguments, message):
-    """One message says what cannot be planned with."""
     with pytest.raises(zw.InputError, match=message):
         zw.plan(paddle(**changes), **{"force_noise": 0.1, **arguments})
+
+
+def test_no_time_is_refused():
+    with pytest.raises(zw.InputError, match="seconds"):
+        zw.plan(paddle(), force_noise=0.1).errors(0)
 
 
 def test_of_an_interval_the_middle_is_the_guess():
     """A device that was identified before is known in intervals."""
     wide = zw.plan(paddle(damping=("0.1", "0.2"), mass=("0.03", "0.042")), force_noise=0.1)
     assert wide.seconds == pytest.approx(zw.plan(paddle(), force_noise=0.1).seconds)
-
-
-def test_no_time_is_refused():
-    """Errors after no time at all are not defined."""
-    with pytest.raises(zw.InputError, match="seconds"):
-        zw.plan(paddle(), force_noise=0.1).errors(0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Literal
 
 import numpy as np
@@ -27,15 +28,13 @@ def saturated(force: Array, share: float, way: Way) -> Array:
     return cut
 
 
+@cache
 def logged(seed: int, share: float = 0.0, way: Way = "cut off") -> zw.identification.Identified:
     """What a minute of the paddle says."""
     recording = hand_moves(paddle(), 60.0, seed)
     force = saturated(recording.hand_force, share, way) if share else recording.hand_force
-    return zw.identify(
-        zw.Log.from_arrays(
-            time=recording.time, position=recording.position, hand_force=force, resolution=22.4e-6
-        )
-    )
+    arrays = {"time": recording.time, "position": recording.position, "hand_force": force}
+    return zw.identify(zw.Log.from_arrays(resolution=22.4e-6, **arrays))
 
 
 @pytest.mark.parametrize("way", ["cut off", "steps of a converter", "noise behind the stop"])
@@ -58,7 +57,6 @@ def test_most_promises_keep_to_the_limit() -> None:
 
 
 def test_too_few_strokes_within_the_range_are_too_little() -> None:
-    """Nothing is guessed from what is left."""
     with pytest.raises(zw.InputError, match="the motion shows too little"):
         logged(0, 0.2)
 
@@ -73,37 +71,26 @@ def stops(*blocks: Array) -> tuple[tuple[float, float], int]:
 
 TIME = np.arange(20_000) / 1000
 SINE = 3.0 * np.sin(2 * np.pi * 0.731 * TIME)
-NOWHERE = ((-np.inf, np.inf), 0)
+NOISE = np.random.default_rng(1).normal(size=20_000)
 
 
 @pytest.mark.parametrize(
     "force",
     [
-        SINE,
-        np.rint(SINE / 0.01) * 0.01,
-        np.rint(SINE / 0.1) * 0.1,
-        np.random.default_rng(1).normal(size=20_000),
-        np.rint(np.random.default_rng(1).normal(size=20_000) / 0.05),
-        np.maximum(SINE, 0.0),
-        np.sign(SINE),
-        np.zeros(100),
-        np.linspace(-1, 1, 20_000),
-    ],
-    ids=[
-        "sine",
-        "fine steps",
-        "coarse steps",
-        "noise",
-        "noise in steps",
-        "untouched",
-        "square",
-        "none",
-        "ramp",
+        pytest.param(SINE, id="sine"),
+        pytest.param(np.rint(SINE / 0.01) * 0.01, id="fine steps"),
+        pytest.param(np.rint(SINE / 0.1) * 0.1, id="coarse steps"),
+        pytest.param(NOISE, id="noise"),
+        pytest.param(np.rint(NOISE / 0.05), id="noise in steps"),
+        pytest.param(np.maximum(SINE, 0.0), id="untouched"),
+        pytest.param(np.sign(SINE), id="square"),
+        pytest.param(np.zeros(100), id="none"),
+        pytest.param(np.linspace(-1, 1, 20_000), id="ramp"),
     ],
 )
 def test_what_turns_round_is_at_no_stop(force: Array) -> None:
     """Nor is a force that is 0 where nobody touches, or one of a few values only."""
-    assert stops(force) == NOWHERE
+    assert stops(force) == ((-np.inf, np.inf), 0)
 
 
 def test_one_end_in_many_blocks() -> None:
