@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+import scipy.io
 
 import zwidth as zw
 from zwidth.model.operator.recorded_force import read_column
@@ -55,7 +57,6 @@ RANDOM = np.random.default_rng(1).bytes(20000)
     ],
 )
 def test_foreign_content_is_one_message(content: bytes, message: str, tmp_path: Path) -> None:
-    """The name of the file is in it; the suffix does not matter."""
     path = tmp_path / "log.csv"
     path.write_bytes(content)
     with pytest.raises(zw.InputError, match=message) as caught:
@@ -65,7 +66,6 @@ def test_foreign_content_is_one_message(content: bytes, message: str, tmp_path: 
 
 
 def test_missing_files_and_directories(tmp_path: Path) -> None:
-    """They are named."""
     with pytest.raises(zw.InputError, match="no such file"):
         zw.read_log(tmp_path / "none.csv")
     with pytest.raises(zw.InputError, match="no rosbag2"):
@@ -82,7 +82,6 @@ def outcome(path: Path) -> tuple[str, int]:
 
 
 def test_a_column_that_is_there_twice_is_told_elsewhere_too(tmp_path: Path) -> None:
-    """In Parquet, and where one column of a text is asked for by its name."""
     path, text = tmp_path / "log.parquet", tmp_path / "log.csv"
     pq.write_table(pa.Table.from_arrays([pa.array([1.0, 2.0])] * 2, names=["position_m"] * 2), path)
     with pytest.raises(zw.InputError, match='more than one column "position_m"'):
@@ -97,10 +96,6 @@ def test_a_column_that_is_there_twice_is_told_elsewhere_too(tmp_path: Path) -> N
 @pytest.mark.parametrize("kind", ["parquet", "h5", "mat", "csv", "gz"])
 def test_truncated_files(kind: str, keep: float, tmp_path: Path) -> None:
     """A copy that was cut short: a message, or the part that is there with a word about it."""
-    import gzip
-
-    import scipy.io
-
     columns = {"time_s": np.arange(3000) / 1000, "position_mm": np.arange(3000) % 41 * 1.0}
     path = tmp_path / f"log.{kind}"
     if kind == "parquet":
@@ -122,7 +117,6 @@ def test_truncated_files(kind: str, keep: float, tmp_path: Path) -> None:
 
 
 def test_any_damage_is_a_message_or_a_log(tmp_path: Path) -> None:
-    """Bytes changed at random in a text never end in anything else."""
     random = np.random.default_rng(7)
     path = tmp_path / "log.csv"
     for _ in range(60):
@@ -136,7 +130,6 @@ def test_any_damage_is_a_message_or_a_log(tmp_path: Path) -> None:
 
 
 def test_columns_of_different_lengths(tmp_path: Path) -> None:
-    """They were not recorded together."""
     path = tmp_path / "log.h5"
     with h5py.File(path, "w") as file:
         file["time_s"], file["position_mm"] = np.arange(100) / 1000, np.arange(90.0)
@@ -144,22 +137,25 @@ def test_columns_of_different_lengths(tmp_path: Path) -> None:
         zw.read_log(path)
 
 
-def test_unknown_keys_of_the_dictionaries(tmp_path: Path) -> None:
-    """A slip in columns, units or scale is not silently ignored."""
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"columns": {"hand_force": "force_n"}}, 'did you mean "force_N"'),
+        ({"columns": {"force": "force_N"}}, 'no quantity "force"'),
+        ({"units": {"actuator_force": "N"}}, "the log has no actuator_force"),
+        ({"scale": {"hand_force": 0}}, "must not be 0"),
+        ({"scale": {"hand_force": "0 N/V"}}, "must not be 0"),
+        ({"scale": {"hand_force": "two N/V"}}, "no factor"),
+    ],
+)
+def test_a_slip_in_a_dictionary_is_not_silently_ignored(
+    arguments: dict[str, dict[str, object]], message: str, tmp_path: Path
+) -> None:
     path = tmp_path / "log.csv"
     path.write_text(GOOD)
-    with pytest.raises(zw.InputError, match='did you mean "force_N"'):
-        zw.read_log(path, columns={"hand_force": "force_n"})
+    with pytest.raises(zw.InputError, match=message):
+        zw.read_log(path, **arguments)
     assert zw.read_log(path, columns={"hand_force": None}).channels == ()
-    with pytest.raises(zw.InputError, match='no quantity "force"'):
-        zw.read_log(path, columns={"force": "force_N"})
-    with pytest.raises(zw.InputError, match="the log has no actuator_force"):
-        zw.read_log(path, units={"actuator_force": "N"})
-    for nothing in (0, "0 N/V"):
-        with pytest.raises(zw.InputError, match="must not be 0"):
-            zw.read_log(path, scale={"hand_force": nothing})
-    with pytest.raises(zw.InputError, match="no factor"):
-        zw.read_log(path, scale={"hand_force": "two N/V"})
 
 
 MEASURED = """
@@ -178,11 +174,11 @@ print(int(peak.split()[1]) // 1024, said)
 measured = pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="only Linux says the peak so")
 
 
-def peak(path: Path) -> tuple[int, str]:
+def peak(path: Path, more: str = "") -> tuple[int, str]:
     """[MiB] most memory of a process that reads a file, and what it said."""
-    run = subprocess.run(
-        [sys.executable, "-c", MEASURED, str(path)], capture_output=True, text=True, check=True
-    )
+    script = MEASURED.replace("sys.argv[1]", f"sys.argv[1]{more}")
+    command = [sys.executable, "-c", script, str(path)]
+    run = subprocess.run(command, capture_output=True, text=True, check=True)
     memory, _, said = run.stdout.strip().partition(" ")
     return int(memory), said
 
@@ -210,10 +206,6 @@ def test_a_sparse_hdf5_is_read_in_slices(tmp_path: Path) -> None:
         file["position_m"][: 2**18] = np.arange(2**18) % 97 * 1e-5
         file["force_N"][: 2**18] = np.arange(2**18) % 13 * 1.0
         file["position_m"].attrs["units"] = "m"
-    script = MEASURED.replace("sys.argv[1]", "sys.argv[1], sample_rate=1000")
-    run = subprocess.run(
-        [sys.executable, "-c", script, str(path)], capture_output=True, text=True, check=True
-    )
-    memory, _, said = run.stdout.strip().partition(" ")
+    memory, said = peak(path, ", sample_rate=1000")
     assert said == str(2**25)
-    assert int(memory) < 900
+    assert memory < 900

@@ -6,6 +6,7 @@ import bz2
 import gzip
 import struct
 import zlib
+from collections.abc import Callable
 from pathlib import Path
 
 import h5py
@@ -53,90 +54,86 @@ def test_parquet_that_grows_is_refused(tmp_path: Path) -> None:
     refused(path, "would become")
 
 
-def test_hdf5_that_declares_more_than_it_holds_is_refused(tmp_path: Path) -> None:
+def _declared(file: h5py.File, name: str) -> None:
     """Numbers that were never written are filled in by the library, as many as are declared."""
-    path = tmp_path / "log.h5"
-    with h5py.File(path, "w") as file:
-        for name in ("time_s", "position_mm"):
-            file.create_dataset(name, shape=(2**50,), dtype="f8", chunks=(2**10,), fillvalue=1.0)
-    refused(path, "would become")
+    file.create_dataset(name, shape=(2**50,), dtype="f8", chunks=(2**10,), fillvalue=1.0)
 
 
-def test_hdf5_in_too_large_pieces_is_refused(tmp_path: Path) -> None:
+def _large_piece(file: h5py.File, name: str) -> None:
     """A piece is expanded whole, however little of it is wanted."""
-    path = tmp_path / "log.h5"
-    with h5py.File(path, "w") as file:
-        for name in ("time_s", "position_mm"):
-            file.create_dataset(name, data=np.zeros(2**15), chunks=(2**15,), maxshape=(None,))
-            file.create_dataset(f"{name}_raw", data=np.random.default_rng(1).random(2**15))
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(reading, "LARGEST_CHUNK", 2**17)
-        refused(path, "in smaller pieces")
+    file.create_dataset(name, data=np.zeros(2**15), chunks=(2**15,), maxshape=(None,))
+    file.create_dataset(f"{name}_raw", data=np.random.default_rng(1).random(2**15))
 
 
-def test_hdf5_whose_pieces_grow_is_refused(tmp_path: Path) -> None:
+def _piece_that_grows(file: h5py.File, name: str) -> None:
     """The library expands a piece to its end, far beyond what the dataset declares."""
-    path = tmp_path / "log.h5"
-    with h5py.File(path, "w") as file:
-        for name in ("time_s", "position_mm"):
-            data = file.create_dataset(name, shape=(100,), dtype="f8", chunks=(100,), compression="gzip")
-            data.id.write_direct_chunk((0,), zlib.compress(bytes(SIZE)))
-    refused(path, "in smaller pieces")
+    data = file.create_dataset(name, shape=(100,), dtype="f8", chunks=(100,), compression="gzip")
+    data.id.write_direct_chunk((0,), zlib.compress(bytes(SIZE)))
 
 
-def test_hdf5_compressed_many_times_over_is_refused(tmp_path: Path) -> None:
-    """Each time a thousandfold."""
-    path = tmp_path / "log.h5"
+def _many_times_over(file: h5py.File, name: str) -> None:
+    """Compressed, each time a thousandfold."""
     filters = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     filters.set_chunk((100,))
     filters.set_deflate(9)
     filters.set_deflate(9)
+    space = h5py.h5s.create_simple((100,))
+    h5py.h5d.create(file.id, name.encode(), h5py.h5t.NATIVE_DOUBLE, space, filters)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (_declared, "would become"),
+        (_large_piece, "in smaller pieces"),
+        (_piece_that_grows, "in smaller pieces"),
+        (_many_times_over, "2 times over"),
+    ],
+)
+def test_hdf5_that_grows_is_refused(
+    make: Callable[[h5py.File, str], None], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "log.h5"
     with h5py.File(path, "w") as file:
-        for name in (b"time_s", b"position_mm"):
-            h5py.h5d.create(file.id, name, h5py.h5t.NATIVE_DOUBLE, h5py.h5s.create_simple((100,)), filters)
-    refused(path, "2 times over")
+        for name in ("time_s", "position_mm"):
+            make(file, name)
+    if make is _large_piece:
+        monkeypatch.setattr(reading, "LARGEST_CHUNK", 2**17)
+    refused(path, message)
 
 
 def test_hdf5_does_not_lead_to_other_files(tmp_path: Path) -> None:
-    """Not by a link, which is not followed; not by numbers that are kept elsewhere."""
-    secret = tmp_path / "secret"
+    """By a link, which is not followed; by numbers that are kept elsewhere; put together of others."""
+    path, other, secret = (tmp_path / name for name in ("log.h5", "other.h5", "secret"))
     secret.write_bytes(np.arange(100.0).tobytes())
-    with h5py.File(tmp_path / "other.h5", "w") as file:
+    with h5py.File(other, "w") as file:
         file["position_mm"] = np.arange(100.0)
-    linked, kept = tmp_path / "linked.h5", tmp_path / "kept.h5"
-    with h5py.File(linked, "w") as file:
-        file["time_s"] = np.arange(100.0)
-        file["position_mm"] = h5py.ExternalLink("other.h5", "/position_mm")
-    refused(linked, "position_mm")
-    with h5py.File(kept, "w") as file:
-        file["time_s"] = np.arange(100.0)
-        file.create_dataset("position_mm", shape=(100,), dtype="f8", external=[(str(secret), 0, 800)])
-    refused(kept, "are elsewhere")
-
-
-def test_hdf5_is_not_put_together_of_other_files(tmp_path: Path) -> None:
-    """As a virtual dataset is."""
-    path = tmp_path / "log.h5"
-    with h5py.File(tmp_path / "other.h5", "w") as file:
-        file["x"] = np.arange(100.0)
     layout = h5py.VirtualLayout(shape=(100,), dtype="f8")
-    layout[:] = h5py.VirtualSource(str(tmp_path / "other.h5"), "x", shape=(100,))
-    with h5py.File(path, "w") as file:
-        file["time_s"] = np.arange(100.0)
-        file.create_virtual_dataset("position_mm", layout)
-    refused(path, "are elsewhere")
+    layout[:] = h5py.VirtualSource(str(other), "position_mm", shape=(100,))
+    stored = {"shape": (100,), "dtype": "f8", "external": [(str(secret), 0, 800)]}
+    for make, message in (
+        (
+            lambda at: at.update(position_mm=h5py.ExternalLink("other.h5", "/position_mm")),
+            "position_mm",
+        ),
+        (lambda at: at.create_dataset("position_mm", **stored), "are elsewhere"),
+        (lambda at: at.create_virtual_dataset("position_mm", layout), "are elsewhere"),
+    ):
+        with h5py.File(path, "w") as file:
+            file["time_s"] = np.arange(100.0)
+            make(file)
+        refused(path, message)
 
 
 def test_matlab_that_grows_is_refused(tmp_path: Path) -> None:
-    """By what its compressed variables really become."""
     path = tmp_path / "log.mat"
     savemat(path, {"time_s": np.zeros(SIZE // 8), "position_mm": np.zeros(SIZE // 8)}, do_compression=True)
     assert path.stat().st_size < SIZE // reading.RATIO
     refused(path, "would become")
 
 
-def _mcap(chunks: list[tuple[str, bytes, int]], indexed: bool) -> bytes:
-    """A file with these chunks, (how compressed, bytes, size that it says), or with their index alone."""
+def _mcap(codec: str, content: bytes, declared: int, indexed: bool) -> bytes:
+    """A file with one chunk that says a size, or with one that is no chunk and an index that leads to it."""
 
     def word(text: bytes) -> bytes:
         return struct.pack("<I", len(text)) + text
@@ -144,17 +141,13 @@ def _mcap(chunks: list[tuple[str, bytes, int]], indexed: bool) -> bytes:
     def record(kind: int, content: bytes) -> bytes:
         return struct.pack("<BQ", kind, len(content)) + content
 
-    magic, data, index = b"\x89MCAP0\r\n", b"", b""
+    magic, name = b"\x89MCAP0\r\n", word(codec.encode())
     start = magic + record(1, word(b"ros2") + word(b"zwidth"))
-    for codec, content, declared in chunks:
-        place = len(start + data)
-        head = struct.pack("<QQQI", 0, 1, declared, 0) + word(codec.encode())
-        chunk = head + struct.pack("<Q", len(content)) + content
-        data += record(0x05 if indexed else 0x06, chunk)
-        about = struct.pack("<QQQQ", 0, 1, place, len(chunk) + 9) + word(b"") + struct.pack("<Q", 0)
-        index += record(0x08, about + word(codec.encode()) + struct.pack("<QQ", len(content), declared))
-    summary = len(start + data)
-    footer = record(2, struct.pack("<QQI", summary, 0, 0))
+    chunk = struct.pack("<QQQI", 0, 1, declared, 0) + name + struct.pack("<Q", len(content)) + content
+    data = record(0x05 if indexed else 0x06, chunk)
+    about = struct.pack("<QQQQ", 0, 1, len(start), len(chunk) + 9) + word(b"") + struct.pack("<Q", 0)
+    index = record(0x08, about + name + struct.pack("<QQ", len(content), declared))
+    footer = record(2, struct.pack("<QQI", len(start + data), 0, 0))
     return start + data + index + footer + magic
 
 
@@ -165,8 +158,8 @@ def test_chunks_that_grow_are_refused(codec: str, declared: int, indexed: bool, 
     """By what they say, and by what they really become; where the index leads too."""
     pytest.importorskip("rosbags")
     path = tmp_path / "log.mcap"
-    content = pa.compress(bytes(SIZE), codec="lz4" if codec == "lz4" else "zstd", asbytes=True)
-    path.write_bytes(_mcap([(codec, content, declared)], indexed))
+    content = pa.compress(bytes(SIZE), codec=codec, asbytes=True)
+    path.write_bytes(_mcap(codec, content, declared, indexed))
     refused(path, "in smaller pieces")
 
 
@@ -178,38 +171,34 @@ def _rosbag1(codec: bytes, content: bytes, declared: int, place: int | None) -> 
         header = b"".join(struct.pack("<I", len(field)) + field for field in named)
         return struct.pack("<I", len(header)) + header + struct.pack("<I", len(content)) + content
 
-    magic = b"#ROSBAG V2.0\n"
-    zero = struct.pack("<I", 0)
-    one = struct.pack("<I", 1)
-
     def head(index: int) -> bytes:
-        return record(
-            b" " * 100, op=b"\x03", index_pos=struct.pack("<Q", index), conn_count=zero, chunk_count=one
-        )
+        at = struct.pack("<Q", index)
+        return record(b" " * 100, op=b"\x03", index_pos=at, conn_count=zero, chunk_count=one)
 
+    magic, zero, one = b"#ROSBAG V2.0\n", struct.pack("<I", 0), struct.pack("<I", 1)
     start = magic + head(0)
     chunk = record(content, op=b"\x05", compression=codec, size=struct.pack("<I", declared))
-    begun = len(start) if place is None else place
+    begun = struct.pack("<Q", len(start) if place is None else place)
     times = {"start_time": bytes(8), "end_time": bytes(8)}
-    about = record(b"", op=b"\x06", ver=one, chunk_pos=struct.pack("<Q", begun), count=zero, **times)
+    about = record(b"", op=b"\x06", ver=one, chunk_pos=begun, count=zero, **times)
     return magic + head(len(start + chunk)) + chunk + about
 
 
-@pytest.mark.parametrize("declared", [2**32 - 1, 100])
-def test_chunks_of_ros_1_that_grow_are_refused(declared: int, tmp_path: Path) -> None:
-    """By what they say, and by what they really become."""
+@pytest.mark.parametrize(
+    ("size", "declared", "place", "message"),
+    [
+        (SIZE, 2**32 - 1, None, "in smaller pieces"),  # by what it says
+        (SIZE, 100, None, "in smaller pieces"),  # by what it really becomes
+        (100, 100, 50, "index leads to"),  # to bytes that were not looked at
+    ],
+)
+def test_chunks_of_ros_1_that_grow_are_refused(
+    size: int, declared: int, place: int | None, message: str, tmp_path: Path
+) -> None:
     pytest.importorskip("rosbags")
     path = tmp_path / "log.bag"
-    path.write_bytes(_rosbag1(b"bz2", bz2.compress(bytes(SIZE)), declared, None))
-    refused(path, "in smaller pieces")
-
-
-def test_an_index_of_ros_1_leads_to_its_chunks(tmp_path: Path) -> None:
-    """And to no bytes that were not looked at."""
-    pytest.importorskip("rosbags")
-    path = tmp_path / "log.bag"
-    path.write_bytes(_rosbag1(b"bz2", bz2.compress(bytes(100)), 100, 50))
-    refused(path, "index leads to")
+    path.write_bytes(_rosbag1(b"bz2", bz2.compress(bytes(size)), declared, place))
+    refused(path, message)
 
 
 @pytest.mark.parametrize("grown", [False, True])
@@ -250,16 +239,16 @@ def test_a_bag_that_grows_on_the_disk_is_refused(tmp_path: Path) -> None:
         refused(path, message)
 
 
-def test_zip_archives_and_arrays_of_objects_are_not_read(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("name", "save", "message"),
+    [("log.npz", np.savez_compressed, "zip archive"), ("log.npy", np.save, "no text|no table")],
+)
+def test_zip_archives_and_arrays_of_objects_are_not_read(
+    name: str, save: Callable[..., None], message: str, tmp_path: Path
+) -> None:
     """NumPy's own files are no logs: nothing in them is expanded or run."""
-    for name in ("log.npz", "log.npy"):
-        path = tmp_path / name
-        np_file = {"position_mm": np.array([{"run": "this"}], dtype=object)}
-        if name == "log.npz":
-            np.savez_compressed(path, **np_file)
-        else:
-            np.save(path, np_file["position_mm"])
-        refused(path, "zip archive" if name == "log.npz" else "no text|no table")
+    save(tmp_path / name, np.array([{"run": "this"}], dtype=object))
+    refused(tmp_path / name, message)
 
 
 def test_what_a_recording_becomes_is_read(tmp_path: Path) -> None:

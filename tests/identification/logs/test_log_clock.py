@@ -1,4 +1,4 @@
-"""The clock of a log: its period, jitter, lost and repeated samples, recordings one after the other."""
+"""The clock of a log: period, jitter, lost and repeated samples; recordings one after the other."""
 
 from __future__ import annotations
 
@@ -13,11 +13,6 @@ from zwidth.data.logs.table import BLOCK_SIZE
 def kinds(log: zw.Log) -> set[str]:
     """The findings in a word each."""
     return {finding.kind for finding in log.findings}
-
-
-def said(log: zw.Log, kind: str) -> str:
-    """The sentence of one finding."""
-    return next(f.text for f in log.findings if f.kind == kind)
 
 
 def drift(count: int) -> np.ndarray:
@@ -40,7 +35,6 @@ def test_even_stamps_are_the_time(recording) -> None:
 
 
 def test_blocks_may_be_read_twice_and_are_no_longer_than_said() -> None:
-    """Several passes see the same; a long run is cut into blocks that follow each other."""
     count = 2 * BLOCK_SIZE + 1000
     log = zw.Log.from_arrays(time=np.arange(count) * 1e-3, position=drift(count))
     first, second = list(log.blocks()), list(log.blocks())
@@ -122,7 +116,6 @@ def test_packets_of_samples_are_stamped_when_they_arrive() -> None:
 
 
 def test_a_row_written_twice_is_left_out(recording) -> None:
-    """Its stamp comes twice, the clock goes on: one of the two is dropped, the run goes on."""
     rows = np.sort(np.append(np.arange(4000), [700, 2500]))
     log = zw.Log.from_arrays(time=recording.time[rows], position=recording.position[rows])
     (block,) = log.blocks()
@@ -138,41 +131,36 @@ def test_time_that_starts_again_is_a_new_run(recording) -> None:
     assert [b.time[0] for b in log.blocks()] == [0.0, 0.0, 0.0]
 
 
-def test_time_that_goes_back_otherwise_is_refused(recording) -> None:
-    """A clock set back by 0.3 s in the middle of a recording: nobody knows which samples follow which."""
-    time = recording.time.copy()
-    time[3000:] -= 0.3
-    with pytest.raises(zw.InputError, match="goes back"):
-        zw.Log.from_arrays(time=time, position=recording.position)
-
-
-def test_another_rate_in_the_middle_is_refused() -> None:
-    """2 kHz, then 1 kHz, or 2 kHz and then 2.1 kHz."""
-    first = np.arange(20000) / 2000
-    for period in (1e-3, 1 / 2100):
-        time = np.append(first, first[-1] + period * np.arange(1, 20000))
-        with pytest.raises(zw.InputError, match="period"):
-            zw.Log.from_arrays(time=time, position=drift(time.size))
-
-
-def test_stamps_without_a_clock_are_refused() -> None:
-    """Samples at random instants are no sampled signal."""
-    time = np.cumsum(np.random.default_rng(1).uniform(0, 0.01, 20000))
-    with pytest.raises(zw.InputError, match="no common period"):
-        zw.Log.from_arrays(time=time, position=drift(20000))
+@pytest.mark.parametrize(
+    ("stamps", "message"),
+    [
+        # set back by 0.3 s in the middle of a recording: nobody knows which samples follow which
+        ((lambda k: k / 2000 - 0.3 * (k >= 15_000)), "goes back"),
+        ((lambda k: (k + np.maximum(k - 9999, 0)) / 2000), "period"),  # 2 kHz, then 1 kHz
+        ((lambda k: np.minimum(k, 9999) / 2000 + np.maximum(k - 9999, 0) / 2100), "period"),
+        ((lambda k: np.cumsum(np.random.default_rng(1).uniform(0, 0.01, k.size))), "no common period"),
+    ],
+    ids=["back", "half the rate", "another rate", "no clock"],
+)
+def test_stamps_that_are_no_clock_are_refused(stamps, message: str) -> None:
+    with pytest.raises(zw.InputError, match=message):
+        zw.Log.from_arrays(time=stamps(np.arange(20_000)), position=drift(20_000))
 
 
 def test_a_stated_rate_is_held_against_the_stamps(recording) -> None:
     """Equal: silent; off by 0.5 %: reported and used; off by 5 %: refused."""
-    x = recording.position
-    assert "stated period" not in kinds(
-        zw.Log.from_arrays(time=recording.time, position=x, sample_rate="2 kHz")
-    )
-    log = zw.Log.from_arrays(time=recording.time * 1.005, position=x, sample_rate="2 kHz")
-    assert "+0.5 %" in said(log, "stated period")
+
+    def stated(factor: float) -> zw.Log:
+        return zw.Log.from_arrays(
+            time=recording.time * factor, position=recording.position, sample_rate="2 kHz"
+        )
+
+    assert "stated period" not in kinds(stated(1))
+    log = stated(1.005)
+    assert "+0.5 %" in next(f.text for f in log.findings if f.kind == "stated period")
     assert log.sample_period == 5e-4
     with pytest.raises(zw.InputError, match="stated are"):
-        zw.Log.from_arrays(time=recording.time * 1.05, position=x, sample_rate="2 kHz")
+        stated(1.05)
 
 
 def test_without_time_the_rate_is_needed_and_is_the_clock(recording) -> None:
@@ -188,7 +176,6 @@ def test_without_time_the_rate_is_needed_and_is_the_clock(recording) -> None:
 
 @pytest.mark.parametrize("dtype", ["float64", "datetime64[ns]", "int64"])
 def test_dates_are_counted_from_the_first(dtype: str, recording) -> None:
-    """Seconds since 1970 have no room for microseconds; their differences have."""
     nanoseconds = 1_700_000_000_123_456_789 + np.rint(recording.time * 1e9).astype(np.int64)
     if dtype == "float64":
         log = zw.Log.from_arrays(time=nanoseconds / 1e9, position=recording.position)
@@ -232,3 +219,52 @@ def test_every_gap_is_found_behind_jitter(seed: int) -> None:
     assert log.runs == 1 + np.count_nonzero(np.diff(rows) > 1)
     time = np.concatenate([b.time for b in log.blocks()])
     assert np.abs(time - rows * period).max() < period
+
+
+def short_log(samples=2000, period=1e-3, resolution=2e-5, force=True, shift=0.0):
+    time = np.arange(samples) * period
+    position = np.floor((0.01 * np.sin(12 * time + shift)) / resolution) * resolution
+    return zw.Log.from_arrays(
+        time=time,
+        position=position,
+        hand_force=np.cos(time + shift) if force else None,
+        resolution=resolution,
+        sample_period=period,
+    )
+
+
+def test_runs_follow_each_other_and_nothing_is_lost() -> None:
+    """Every sample of every log is there, in runs of their own, as often as it is read."""
+    logs = [short_log(), short_log(3000, shift=1.0), short_log(2500, shift=2.0)]
+    joined = zw.Log.concatenate(logs)
+    assert joined.samples == 7500
+    assert joined.runs == 3
+    for _ in range(2):
+        blocks = list(joined.blocks())
+        assert [block.run for block in blocks] == [0, 1, 2]
+        for block, log in zip(blocks, logs, strict=True):
+            assert np.array_equal(block.position, next(log.blocks()).position)
+            assert np.array_equal(block.hand_force, next(log.blocks()).hand_force)
+
+
+def test_what_was_odd_is_still_said_with_where() -> None:
+    odd = short_log()
+    joined = zw.Log.concatenate([odd, short_log(shift=1.0)])
+    assert len(joined.findings) == 2 * len(odd.findings)
+    assert all(finding.text.startswith("arrays: ") for finding in joined.findings)
+
+
+@pytest.mark.parametrize(
+    ("logs", "message"),
+    [
+        ([{}, {"period": 1.002e-3}], "sample period"),  # half a part in a thousand is a clock
+        ([{}, {"resolution": 4e-5}], "resolution"),
+        ([{}, {"force": False}], "channels"),
+        ([], "no log"),
+    ],
+)
+def test_logs_that_differ_are_not_joined(logs, message) -> None:
+    """Another rate, encoder or sensor is another experiment."""
+    with pytest.raises(zw.InputError, match=message):
+        zw.Log.concatenate([short_log(**each) for each in logs])
+    assert zw.Log.concatenate([short_log(), short_log(period=1.0005e-3)]).samples == 4000

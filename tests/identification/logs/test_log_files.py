@@ -13,30 +13,26 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 import scipy.io
+import xarray as xr
 
 import zwidth as zw
 from zwidth.data.logs.columns import name_and_unit
 from zwidth.data.logs.text import text_table
 
 HEADER = ("time_s", "position_mm", "force_N")
+UNITS = {"time": "s", "position": "mm", "hand_force": "N"}
 
 
-def rows_of(recording) -> list[tuple[float, ...]]:
-    """Rows in s, mm, N."""
-    return list(
-        zip(
-            recording.time.tolist(),
-            (recording.position * 1e3).tolist(),
-            recording.force.tolist(),
-            strict=True,
-        )
-    )
+def by_name(time: str, position: str, hand_force: str) -> dict[str, str]:
+    """Which columns are which."""
+    return {"time": time, "position": position, "hand_force": hand_force}
 
 
 def text_of(recording, sep=",", header=HEADER, decimal=".") -> str:
     """The recording as a text."""
+    rows = np.stack([recording.time, recording.position * 1e3, recording.force], axis=1).tolist()
     lines = [sep.join(header)] if header else []
-    lines += [sep.join(map(repr, row)).replace(".", decimal) for row in rows_of(recording)]
+    lines += [sep.join(map(repr, row)).replace(".", decimal) for row in rows]
     return "\n".join(lines) + "\n"
 
 
@@ -67,34 +63,27 @@ def assert_same(log: zw.Log, recording, force: bool = True) -> None:
         ("comment.dat", " ", ("# written by savetxt\n# time_s", "position_mm", "force_N"), "."),
         ("json-comment.csv", ",", ('# {"who": "me"}\ntime_s', "position_mm", "force_N"), "."),
         ("other-delimiter.csv", ";", ("time_s,position_mm,force_N",), "."),
+        ("log.csv.gz", ",", HEADER, "."),
+        ("log.csv.bz2", ",", HEADER, "."),
     ],
 )
 def test_texts(name, sep, header, decimal, recording, tmp_path: Path) -> None:
-    """Delimiters, decimal signs, headers, preambles and lines of units as loggers write them."""
+    """Delimiters, decimal signs, headers, preambles and lines of units as loggers write them; compressed."""
     path = tmp_path / name
-    path.write_text(text_of(recording, sep, header, decimal))
+    packed = {".gz": gzip.compress, ".bz2": bz2.compress}.get(path.suffix, bytes)
+    path.write_bytes(packed(text_of(recording, sep, header, decimal).encode()))
     assert_same(zw.read_log(path), recording)
 
 
 def test_texts_without_a_header_have_numbered_columns(recording, tmp_path: Path) -> None:
-    """The user says which is which, and their units."""
     path = tmp_path / "bare.txt"
     path.write_text(text_of(recording, " ", ()))
     with pytest.raises(zw.InputError, match='"column 1", "column 2", "column 3"'):
         zw.read_log(path)
-    columns = {"time": "column 1", "position": "column 2", "hand_force": "column 3"}
+    columns = by_name("column 1", "column 2", "column 3")
     with pytest.raises(zw.InputError, match="has no unit"):
         zw.read_log(path, columns=columns)
-    log = zw.read_log(path, columns=columns, units={"time": "s", "position": "mm", "hand_force": "N"})
-    assert_same(log, recording)
-
-
-def test_compressed_text(recording, tmp_path: Path) -> None:
-    """gzip and bzip2 are unpacked while reading."""
-    for suffix, pack in (("gz", gzip.compress), ("bz2", bz2.compress)):
-        path = tmp_path / f"log.csv.{suffix}"
-        path.write_bytes(pack(text_of(recording).encode()))
-        assert_same(zw.read_log(path), recording)
+    assert_same(zw.read_log(path, columns=columns, units=UNITS), recording)
 
 
 def test_the_first_rows_are_looked_at_once(tmp_path: Path) -> None:
@@ -141,14 +130,12 @@ def test_texts_with_scars(recording, tmp_path: Path) -> None:
 
 
 def test_dates_and_integers_in_text(recording, tmp_path: Path) -> None:
-    """ISO dates, and nanoseconds since 1970 that no double can hold."""
     nanoseconds = 1_700_000_000_000_000_000 + np.rint(recording.time * 1e9).astype(np.int64)
     dates = nanoseconds.astype("datetime64[ns]").astype(str)
     for name, stamps in (("timestamp", dates), ("t_ns", nanoseconds.tolist())):
         path = tmp_path / f"{name}.csv"
-        body = "".join(
-            f"{s},{x},note\n" for s, x in zip(stamps, (recording.position * 1e3).tolist(), strict=True)
-        )
+        rows = zip(stamps, (recording.position * 1e3).tolist(), strict=True)
+        body = "".join(f"{s},{x},note\n" for s, x in rows)
         path.write_text(f"{name},position_mm,remark\n{body}")
         assert_same(zw.read_log(path), recording, force=False)
 
@@ -183,22 +170,19 @@ def test_hdf5_groups_matrices_and_compounds(recording, tmp_path: Path) -> None:
         file["tall"], file["wide"] = matrix, matrix.T
         file["label"] = "a text"
         file["rows"] = np.rec.fromarrays(matrix.T, names="time_s,x_mm,fh_N")
-    assert_same(zw.read_log(path, columns={"position": "robot/left/position", "time": "robot/left/time",
-                                           "hand_force": "robot/left/force"}), recording)  # fmt: skip
-    units = {"time": "s", "position": "mm", "hand_force": "N"}
+    for names in (
+        ("robot/left/time", "robot/left/position", "robot/left/force"),
+        ("rows.time_s", "rows.x_mm", "rows.fh_N"),
+    ):
+        assert_same(zw.read_log(path, columns=by_name(*names)), recording)
     for name in ("tall", "wide"):
-        columns = {"time": f"{name}[0]", "position": f"{name}[1]", "hand_force": f"{name}[2]"}
-        assert_same(zw.read_log(path, columns=columns, units=units), recording)
-    columns = {"time": "rows.time_s", "position": "rows.x_mm", "hand_force": "rows.fh_N"}
-    assert_same(zw.read_log(path, columns=columns), recording)
+        columns = by_name(*(f"{name}[{k}]" for k in range(3)))
+        assert_same(zw.read_log(path, columns=columns, units=UNITS), recording)
     with pytest.raises(zw.InputError, match="may each be the time"):
         zw.read_log(path)
 
 
 def test_netcdf_is_unpacked(recording, tmp_path: Path) -> None:
-    """Units, fill values and packed integers as the conventions have them."""
-    import xarray as xr
-
     counts = np.rint(recording.position / 22.4e-6)
     counts[50] = np.nan
     data = xr.Dataset(
@@ -219,9 +203,8 @@ def test_matlab_old_and_new(recording, tmp_path: Path) -> None:
     scipy.io.savemat(tmp_path / "v5.mat", {"log": {"run": vectors}, "note": "hello"})
     assert_same(zw.read_log(tmp_path / "v5.mat"), recording)
     scipy.io.savemat(tmp_path / "matrix.mat", {"data": np.stack(list(vectors.values()))})
-    columns = {"time": "data[0]", "position": "data[1]", "hand_force": "data[2]"}
-    units = {"time": "s", "position": "mm", "hand_force": "N"}
-    assert_same(zw.read_log(tmp_path / "matrix.mat", columns=columns, units=units), recording)
+    columns = by_name("data[0]", "data[1]", "data[2]")
+    assert_same(zw.read_log(tmp_path / "matrix.mat", columns=columns, units=UNITS), recording)
     with h5py.File(tmp_path / "v73.mat", "w", userblock_size=512) as file:
         for name, values in vectors.items():
             file[name] = values[np.newaxis, :]
@@ -248,30 +231,24 @@ def test_rosbags(storage: str, recording, tmp_path: Path) -> None:
         for t, x, f in zip(*recording, strict=True):
             now = 1_700_000_000_000_000_000 + round(t * 1e9)
             for connection, late in ((first, 0), (second, 60_000)):
-                stamp = time_type(*divmod(now + late, 10**9))
-                header = header_type(stamp=stamp, frame_id="")
-                zero = vector(0.0, 0.0, 0.0)
-                message = (
-                    joint(header, ["stylus"], np.array([x]), none, none)
-                    if connection is first
-                    else stamped(header, wrench(force=vector(0.0, 0.0, f), torque=zero))
-                )
+                header = header_type(stamp=time_type(*divmod(now + late, 10**9)), frame_id="")
+                push = wrench(force=vector(0.0, 0.0, f), torque=vector(0.0, 0.0, 0.0))
+                joints = joint(header, ["stylus"], np.array([x]), none, none)
+                message = joints if connection is first else stamped(header, push)
                 data = store.serialize_cdr(message, connection.msgtype)
                 writer.write(connection, now + late + 300_000, data)
-    log = zw.read_log(path, columns={"hand_force": "/hand.wrench.force.z"}, units={"position": "m"})
+    asked = {"columns": {"hand_force": "/hand.wrench.force.z"}, "units": {"position": "m"}}
+    log = zw.read_log(path, **asked)
     assert_same(log, recording)
     assert {"dates", "two topics"} <= {f.kind for f in log.findings}
     with pytest.raises(zw.InputError, match=r"joint_states.position\[0\].*has no unit"):
         zw.read_log(path)
     (file,) = [p for p in path.iterdir() if p.suffix in (".mcap", ".db3")]
-    assert_same(
-        zw.read_log(file, columns={"hand_force": "/hand.wrench.force.z"}, units={"position": "m"}), recording
-    )
+    assert_same(zw.read_log(file, **asked), recording)
 
 
 def test_without_the_library_for_bags_its_name_is_said(tmp_path: Path, monkeypatch) -> None:
-    """The message says what to install."""
-    monkeypatch.setitem(__import__("sys").modules, "rosbags.highlevel", None)
+    monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
     path = tmp_path / "log.mcap"
     path.write_bytes(b"\x89MCAP0\r\n" + bytes(100) + b"\x89MCAP0\r\n")
     with pytest.raises(zw.InputError, match=r"zwidth\[logs\]"):
@@ -310,13 +287,10 @@ def test_traces_of_zwidth_are_logs(suffix: str, rotary: bool, tmp_path: Path) ->
 
 
 def test_units_and_factors(recording, tmp_path: Path) -> None:
-    """Volts by a factor, counts by a step, degrees to radians, a sign turned round."""
     path = tmp_path / "raw.csv"
     counts = np.rint(recording.position / 22.4e-6).astype(int)
-    body = "".join(
-        f"{t!r},{c},{f!r}\n"
-        for t, c, f in zip(recording.time.tolist(), counts, recording.force.tolist(), strict=True)
-    )
+    rows = zip(recording.time.tolist(), counts, recording.force.tolist(), strict=True)
+    body = "".join(f"{t!r},{c},{f!r}\n" for t, c, f in rows)
     path.write_text("t_s,enc_counts,load_cell_V\n" + body)
     with pytest.raises(zw.InputError, match="what a count is"):
         zw.read_log(path)
@@ -352,5 +326,4 @@ def test_units_and_factors(recording, tmp_path: Path) -> None:
     ],
 )
 def test_names_and_their_units(column: str, quantity: str, expected: tuple[str, str | None]) -> None:
-    """The word that is compared, and the unit behind it."""
     assert name_and_unit(column, quantity) == expected

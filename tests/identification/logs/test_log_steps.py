@@ -50,9 +50,8 @@ def test_positions_without_a_step_have_none() -> None:
         assert log.resolution == 0.0
         assert "no step" in kinds(log)
         assert (next(iter(log.blocks())).position == position).all()
-    assert zw.Log.from_arrays(position=np.round(x, 6), sample_rate=1000).resolution == pytest.approx(
-        1e-6, rel=1e-9
-    )
+    decimals = zw.Log.from_arrays(position=np.round(x, 6), sample_rate=1000)
+    assert decimals.resolution == pytest.approx(1e-6, rel=1e-9)
 
 
 @pytest.mark.parametrize(("stated", "used", "kind"), [
@@ -82,9 +81,8 @@ def test_filtered_positions_stay_as_they_are() -> None:
 def test_a_counter_that_overflows_is_continued(bits: int, signed: bool) -> None:
     """The jumps of nearly the full range are no motion, over borders of blocks too."""
     size = 2**bits
-    counts = np.rint(
-        0.9 * size * np.sin(np.linspace(0, 40, 600_000)) + np.linspace(0, 3 * size, 600_000)
-    ).astype(int)
+    motion = 0.9 * size * np.sin(np.linspace(0, 40, 600_000)) + np.linspace(0, 3 * size, 600_000)
+    counts = np.rint(motion).astype(int)
     read = (counts + size // 2) % size - size // 2 if signed else counts % size
     log = zw.Log.from_arrays(position=read * 1e-5, sample_rate=1000)
     assert "overflow" in kinds(log)
@@ -124,7 +122,6 @@ def test_a_large_fast_motion_is_no_overflow() -> None:
     ({}, "position"),
 ])  # fmt: skip
 def test_arrays_that_say_nothing_are_refused(arguments: dict, message: str) -> None:
-    """One message that says what is wrong."""
     with pytest.raises(zw.InputError, match=message):
         zw.Log.from_arrays(sample_rate=1000, **arguments)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime, timedelta
 from pathlib import Path
+from typing import Any
 from zipfile import ZIP_DEFLATED, ZipFile
 
 import numpy as np
@@ -37,41 +38,28 @@ def book(path: Path, **sheets: Rows) -> Path:
     return path
 
 
-def is_the_test(found: object) -> None:
+def is_the_test(found: Any) -> None:
     """To the digit that the sheet has."""
-    assert found.time - found.time[0] == pytest.approx(TIME, abs=1e-6)  # type: ignore[attr-defined]
-    assert found.indentation == pytest.approx(DEPTH, abs=1e-9)  # type: ignore[attr-defined]
-    assert found.force == pytest.approx(FORCE, abs=1e-9)  # type: ignore[attr-defined]
+    assert found.time - found.time[0] == pytest.approx(TIME, abs=1e-6)
+    assert found.indentation == pytest.approx(DEPTH, abs=1e-9)
+    assert found.force == pytest.approx(FORCE, abs=1e-9)
 
 
 def with_commas(value: object) -> str:
-    """As text: 0,5."""
     return repr(value).replace(".", ",")
 
 
 START = datetime(2026, 11, 26, 23, 59, 55)
 TABLES: dict[str, list[Sequence[object]]] = {
     "a machine's report": [
-        ("Prüfprotokoll",),
-        ("Prüfer", "Müller"),
-        ("Vorkraft", 0.05, "N"),
-        (),
-        NAMES,
-        UNITS,
+        *[("Prüfprotokoll",), ("Prüfer", "Müller"), ("Vorkraft", 0.05, "N"), (), NAMES, UNITS],
         *ROWS,
-        ("Mittel", 1.7, 3.9),
-        ("Probe trocken",),
+        *[("Mittel", 1.7, 3.9), ("Probe trocken",)],
     ],
     "results above the raw data": [
-        ("Results Table 1",),
-        ("", "Maximum Load", "Extension at Maximum Load"),
-        ("", "(N)", "(mm)"),
+        *[("Results Table 1",), ("", "Maximum Load", "Extension at Maximum Load"), ("", "(N)", "(mm)")],
         *[(k, 4.4, 4.0) for k in range(5)],
-        (),
-        ("Raw data",),
-        ("Time", "Load", "Extension"),
-        ("(s)", "(N)", "(mm)"),
-        *ROWS,
+        *[(), ("Raw data",), ("Time", "Load", "Extension"), ("(s)", "(N)", "(mm)"), *ROWS],
     ],
     "commas in texts, a share of the length": [
         [*HEAD[0], "Dehnung"],
@@ -83,16 +71,12 @@ TABLES: dict[str, list[Sequence[object]]] = {
         *HEAD,
         *[((START + timedelta(seconds=t)).time(), f, x) for t, f, x in ROWS],
     ],
-    "empty rows, an empty column": [
-        *[(None, *row) for row in HEAD],
-        *[row for each in ROWS for row in ((None, *each), ())],
-    ],
+    "empty rows, an empty column": [(None, *HEAD[0]), *[row for each in ROWS for row in ((None, *each), ())]],
 }
 
 
 @pytest.mark.parametrize("name", TABLES)
 def test_a_sheet_is_read_as_it_is_meant(name: str, tmp_path: Path) -> None:
-    """Times, depths and forces: cells are numbers, texts, dates; titles and results stand about them."""
     (found,) = read_tests(book(tmp_path / "a.xlsx", Tabelle1=TABLES[name]))
     is_the_test(found)
 
@@ -139,7 +123,6 @@ def test_tests_under_each_other(tmp_path: Path) -> None:
 
 
 def test_another_table_is_left_out_and_said(tmp_path: Path) -> None:
-    """Not taken for the rest of the first."""
     path = book(tmp_path / "a.xlsx", a=[*HEAD, *ROWS, (), ("Klasse", "Zahl", "Anteil"), *[(1, 2, 3)] * 4])
     (found,) = read_tests(path)
     is_the_test(found)
@@ -158,7 +141,7 @@ def test_formulas_are_what_was_kept_of_them(tmp_path: Path) -> None:
     lines = ["".join(map(cell, HEAD[0]))]
     lines += [f"{cell(t)}<c><f>1*{f}</f><v>{f}</v></c>{cell(x)}" for t, f, x in ROWS]
     whole = "".join(f"<row>{line}</row>" for line in lines).encode()
-    changed(path, {"xl/worksheets/sheet1.xml": lambda _: SHEET + whole + END})
+    changed(path, {SHEET_XML: lambda _: SHEET + whole + END})
     (found,) = read_tests(path)
     is_the_test(found)
 
@@ -172,6 +155,7 @@ def changed(path: Path, parts: dict[str, Callable[[bytes], bytes]]) -> None:
             new.writestr(name, parts.get(name, bytes)(content))
 
 
+SHEET_XML, BROKEN = "xl/worksheets/sheet1.xml", "open it in a spreadsheet program"
 SHEET = f'<worksheet xmlns="{MAIN}"><sheetData>'.encode()
 END = b"</sheetData></worksheet>"
 ENTITIES = b"".join(b'<!ENTITY e%d "%s">' % (k, b"&e%d;" % (k - 1) * 10) for k in range(1, 10))
@@ -180,22 +164,20 @@ ENTITIES = b"".join(b'<!ENTITY e%d "%s">' % (k, b"&e%d;" % (k - 1) * 10) for k i
 @pytest.mark.parametrize(
     ("part", "content", "message"),
     [
-        ("xl/worksheets/sheet1.xml", SHEET + b'<row r="1">' + b"<c/>" * 2_000_000 + b"</row>" + END, "a row"),
-        ("xl/worksheets/sheet1.xml", SHEET + b'<row r="9999999999"/>' + END, "more than"),
-        ("xl/worksheets/sheet1.xml", SHEET + b'<row r="1">', "open it in a spreadsheet program"),
+        (SHEET_XML, SHEET + b'<row r="1">' + b"<c/>" * 2_000_000 + b"</row>" + END, "a row"),
+        (SHEET_XML, SHEET + b'<row r="9999999999"/>' + END, "more than"),
+        (SHEET_XML, SHEET + b'<row r="1">', BROKEN),
         ("xl/styles.xml", b"<styleSheet>" + b"<xf/>" * 500_000 + b"</styleSheet>", "are enough"),
         (
-            "xl/worksheets/sheet1.xml",
+            SHEET_XML,
             b'<!DOCTYPE x [<!ENTITY e0 "haha">' + ENTITIES + b"]>" + SHEET + b"<row><c>&e9;</c></row>" + END,
-            "open it in a spreadsheet program",
+            BROKEN,
         ),
         (
-            "xl/worksheets/sheet1.xml",
+            SHEET_XML,
             b'<!DOCTYPE x [<!ENTITY e SYSTEM "file:///etc/hostname">]>'
-            + SHEET
-            + b'<row><c t="inlineStr"><is><t>&e;</t></is></c></row>'
-            + END,
-            "open it in a spreadsheet program|no table",
+            + (SHEET + b'<row><c t="inlineStr"><is><t>&e;</t></is></c></row>' + END),
+            f"{BROKEN}|no table",
         ),
     ],
 )
@@ -216,7 +198,7 @@ def test_two_cells_far_apart_fill_no_memory(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.setattr("zwidth.data.logs.workbook.MOST_CELLS", 10_000)
     path = book(tmp_path / "a.xlsx", a=[*HEAD, *ROWS])
     row = b'<row r="1"><c r="XFD1"><v>1</v></c></row>'
-    changed(path, {"xl/worksheets/sheet1.xml": lambda _: SHEET + row + END})
+    changed(path, {SHEET_XML: lambda _: SHEET + row + END})
     with pytest.raises(zw.InputError, match="cells"):
         read_tests(path)
 
@@ -237,19 +219,25 @@ def test_a_damaged_workbook_is_refused(
         read_tests(path)
 
 
-def test_what_is_no_workbook(tmp_path: Path) -> None:
-    """By what is inside, whatever the name."""
-    path = tmp_path / "a.xlsx"
-    for name, content, message in (
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
         ("xl/workbook.bin", b"", "binary workbook"),
         ("mimetype", b"application/vnd.oasis.opendocument.spreadsheet", "OpenDocument"),
         ("mimetype", b"application/vnd.oasis.opendocument.text", "no workbook"),
-    ):
-        with ZipFile(path, "w") as made:
-            made.writestr("content.xml", "")
-            made.writestr(name, content)
-        with pytest.raises(zw.InputError, match=message):
-            read_tests(path)
-    (tmp_path / "a.csv").write_text("Time [s],Force [N],Depth [mm]\n1,2,3\n2,3,4\n")
+    ],
+)
+def test_what_is_no_workbook(name: str, content: bytes, message: str, tmp_path: Path) -> None:
+    """By what is inside, whatever the name."""
+    with ZipFile(tmp_path / "a.xlsx", "w") as made:
+        made.writestr("content.xml", "")
+        made.writestr(name, content)
+    with pytest.raises(zw.InputError, match=message):
+        read_tests(tmp_path / "a.xlsx")
+
+
+def test_a_text_has_no_sheets(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("Time [s],Force [N],Depth [mm]\n1,2,3\n2,3,4\n", encoding="utf-8")
     with pytest.raises(zw.InputError, match="no workbook and has no sheets"):
-        read_tests(tmp_path / "a.csv", sheet="Probe 1")
+        read_tests(path, sheet="Probe 1")
