@@ -32,16 +32,16 @@ def held(values: np.ndarray, samples: int) -> np.ndarray:
 def recorded(position: np.ndarray, **forces: np.ndarray) -> Recording:
     """Arrays as a recording."""
     return Recording(
-        source="arrays",
-        motion="linear",
-        period=PERIOD,
-        resolution=1e-6,
-        time=np.arange(position.size) * PERIOD,
-        position=position,
-        commanded=forces.get("commanded"),
-        applied=forces.get("applied"),
-        findings=(),
-    )
+        source="arrays", motion="linear", period=PERIOD, resolution=1e-6, findings=(), position=position,
+        time=np.arange(position.size) * PERIOD, **{"commanded": None, "applied": None, **forces},
+    )  # fmt: skip
+
+
+def seen_in(position: np.ndarray, device: Device | None = None, **forces: np.ndarray) -> Evidence:
+    """What is seen of a vibration in arrays."""
+    found = vibration.find(position, PERIOD)
+    assert found is not None
+    return gather(recorded(position, **forces), found, device)
 
 
 def test_frequency_and_swing_of_a_vibration_after_a_rest() -> None:
@@ -87,33 +87,31 @@ def test_the_law_of_a_force_is_found(
 
 
 def test_a_force_that_has_nothing_to_do_with_the_motion_is_not_explained() -> None:
-    """Noise stays noise."""
     found = law.fit(shaken(), RNG.normal(size=1200), PERIOD, PERIOD, [0.0, PERIOD])
     assert found is None or found.unexplained > 0.9
 
 
-def test_what_lies_between_two_forces() -> None:
+@pytest.mark.parametrize("kind", ["delay", "damper", "rate"])
+def test_what_lies_between_two_forces(kind: str) -> None:
     """A delay, a damper inside and a limit of rate are each accounted for best by themselves."""
     position = shaken()
     command = 640 * position
-    speed = np.gradient(position, PERIOD)
-    followed = np.empty_like(command)
-    followed[0] = command[0]
+    followed = command.copy()
     for k in range(1, command.size):
         followed[k] = followed[k - 1] + np.clip(command[k - 1] - followed[k - 1], -0.15, 0.15)
-    inside = command + 2.7 * held(speed, 6)
-    for name, applied in (("delay", held(command, 5)), ("damper", inside), ("rate", followed)):
-        found = drive.account(command, applied, position, PERIOD, PERIOD, 1 / FREQUENCY)
-        left = {"delay": found.by_delay, "damper": found.by_damper, "rate": found.by_rate}
-        assert min(left, key=lambda key: left[key]) == name
-        assert left[name] < 0.02
-        if name == "delay":
-            assert found.delay == pytest.approx(5 * PERIOD)
-        if name == "damper":
-            assert found.damping == pytest.approx(2.7, rel=0.05)
-            assert found.damping_lag == pytest.approx(6 * PERIOD)
-        if name == "rate":
-            assert found.rate == pytest.approx(0.15 / PERIOD, rel=0.05)
+    inside = command + 2.7 * held(np.gradient(position, PERIOD), 6)
+    applied = {"delay": held(command, 5), "damper": inside, "rate": followed}[kind]
+    found = drive.account(command, applied, position, PERIOD, PERIOD, 1 / FREQUENCY)
+    left = {"delay": found.by_delay, "damper": found.by_damper, "rate": found.by_rate}
+    assert min(left, key=lambda key: left[key]) == kind
+    assert left[kind] < 0.02
+    if kind == "delay":
+        assert found.delay == pytest.approx(5 * PERIOD)
+    elif kind == "damper":
+        assert found.damping == pytest.approx(2.7, rel=0.05)
+        assert found.damping_lag == pytest.approx(6 * PERIOD)
+    else:
+        assert found.rate == pytest.approx(0.15 / PERIOD, rel=0.05)
 
 
 def test_a_long_delay_of_a_slow_wobble_is_known_to_a_sample() -> None:
@@ -131,9 +129,7 @@ def test_the_energy_of_a_cycle_is_that_of_the_held_force_along_the_motion(late: 
     position = shaken(2.5, drift=0.0)
     command = 640 * position + 0.4 * np.concatenate([[0.0], np.diff(position)]) / PERIOD
     applied = held(command, late)
-    whole = vibration.find(position, PERIOD)
-    assert whole is not None
-    seen = gather(recorded(position, commanded=command, applied=applied), whole, None)
+    seen = seen_in(position, commanded=command, applied=applied)
     cycles = 49  # 1654.008 rows
     rows = slice(100, 100 + round(cycles / FREQUENCY / PERIOD))
     work = -float(np.sum(applied[rows] * np.diff(position)[rows])) / cycles
@@ -148,13 +144,9 @@ def test_the_energy_that_friction_takes() -> None:
     """π ω b X² + 4 f_c X of the device's numbers, and the mass that would move so: K/ω² without a hand."""
     position = shaken(drift=0.0)
     device = Device(mass=0.03, damping=0.3, coulomb_friction=0.05, sample_period=PERIOD)
-    whole = vibration.find(position, PERIOD)
-    assert whole is not None
-    seen = gather(recorded(position, applied=640 * position), whole, device)
+    seen = seen_in(position, device, applied=640 * position)
     w = 2 * np.pi * FREQUENCY
-    viscous = (
-        np.pi * w * 0.3 * 0.004**2 * (1 + (3 * 0.07) ** 2)
-    )  # the third harmonic moves three times as fast
+    viscous = np.pi * w * 0.3 * 0.004**2 * (1 + (3 * 0.07) ** 2)  # the third harmonic is three times as fast
     assert seen.lost == pytest.approx(viscous + 4 * 0.05 * 0.004, rel=0.01)
     sinc = np.sinc(w * PERIOD / np.pi)  # the hold: cos(ωT/2) sin(ωT/2)/(ωT/2)
     assert seen.apparent_mass == pytest.approx(640 * sinc / w**2, rel=0.01)
@@ -163,9 +155,7 @@ def test_the_energy_that_friction_takes() -> None:
 def test_a_force_counted_the_other_way_is_turned_round() -> None:
     """A spring pushes back, whatever the file counts."""
     position = shaken()
-    whole = vibration.find(position, PERIOD)
-    assert whole is not None
-    one, other = (gather(recorded(position, commanded=s * 640 * position), whole, None) for s in (1, -1))
+    one, other = (seen_in(position, commanded=s * 640 * position) for s in (1, -1))
     assert one.law is not None
     assert other.law is not None
     assert other.law.stiffness == pytest.approx(one.law.stiffness)
@@ -175,9 +165,8 @@ def test_a_force_counted_the_other_way_is_turned_round() -> None:
 def test_a_wheel_that_wobbles_slowly_vibrates() -> None:
     """0.8 Hz, six cycles, quantized; a hand that goes to and fro as slowly is not so regular."""
     t = np.arange(round(8 / PERIOD)) * PERIOD
-    wobble = (
-        np.round((0.4 * np.sin(2 * np.pi * 0.8 * t) + 0.03 * np.sin(2 * np.pi * 2.4 * t + 1)) / 1e-3) * 1e-3
-    )
+    wobble = 0.4 * np.sin(2 * np.pi * 0.8 * t) + 0.03 * np.sin(2 * np.pi * 2.4 * t + 1)
+    wobble = np.round(wobble / 1e-3) * 1e-3
     found = vibration.find(wobble, PERIOD)
     assert found is not None
     assert found.frequency == pytest.approx(0.8, rel=0.02)
@@ -204,10 +193,8 @@ def test_the_motion_shows_the_force_behind_a_command(factor: float, late: int) -
     w = 2 * np.pi * FREQUENCY
     acts = 640 * np.sinc(w * PERIOD / 2 / np.pi)  # through the hold
     device = Device(mass=factor * acts / w**2, damping=0, coulomb_friction=0, sample_period=PERIOD)
-    whole = vibration.find(position, PERIOD)
-    assert whole is not None
     early = np.interp(np.arange(position.size) + late + 0.5, np.arange(position.size), position)
-    seen = gather(recorded(position, commanded=640 * early), whole, device)
+    seen = seen_in(position, device, commanded=640 * early)
     assert seen.moves_as is not None
     assert abs(seen.moves_as) == pytest.approx(factor, rel=0.02)
     assert np.angle(seen.moves_as) == pytest.approx(-w * late * PERIOD, abs=0.01)
@@ -218,37 +205,29 @@ def test_corners_of_a_force() -> None:
     """Third harmonic against the first: a triangle has a ninth, a square minus a third."""
     position = shaken(drift=0.0)
     phase = 2 * np.pi * FREQUENCY * np.arange(position.size) * PERIOD + 0.4
-    whole = vibration.find(position, PERIOD)
-    assert whole is not None
     held = np.sinc(3 * FREQUENCY * PERIOD) / np.sinc(FREQUENCY * PERIOD)
     for wave, bend in ((np.arcsin(np.sin(phase)), 1 / 9), (np.sign(np.sin(phase)), -1 / 3)):
-        seen = gather(recorded(position, applied=wave), whole, None)
+        seen = seen_in(position, applied=wave)
         assert seen.force_bend.real == pytest.approx(bend * held, rel=0.1)
-
-
-def seen_in(position: np.ndarray, **forces: np.ndarray) -> Evidence:
-    """What is seen of a device of 80 g in arrays."""
-    record = recorded(position, **forces)
-    found = vibration.find(position, PERIOD)
-    assert found is not None
-    device = Device(mass=0.08, damping=0.1, coulomb_friction=0, sample_period=PERIOD)
-    return gather(record, found, device)
 
 
 def test_what_speaks_against_any_cause() -> None:
     """Dying out, noise, a motor's force in another unit, millimetres read as metres, the hum of the mains."""
+    device = Device(mass=0.08, damping=0.1, coulomb_friction=0, sample_period=PERIOD)
     t = np.arange(1600) * PERIOD
     x = 0.004 * np.sin(2 * np.pi * FREQUENCY * t)
     force = 0.08 * (2 * np.pi * FREQUENCY) ** 2 * x
-    assert doubt("delay", seen_in(x, commanded=force, applied=held(force, 2))) is None
-    dying = np.exp(-2 * t)
-    assert "dies out" in str(doubt("delay", seen_in(dying * x, commanded=dying * force)))
-    noise = RNG.normal(size=x.size) * 1e-3
-    assert "noise" in str(doubt("structural resonance", seen_in(noise, commanded=1000 * noise)))
-    assert "3 times" in str(doubt("delay", seen_in(x, commanded=force, applied=3 * held(force, 2))))
-    assert "units" in str(doubt("drive damping", seen_in(1000 * x, commanded=force)))
-    hum = 1e-4 * np.sin(2 * np.pi * 50 * t)
-    assert "mains" in str(doubt("structural resonance", seen_in(hum, commanded=300 * hum)))
+    late, dying = held(force, 2), np.exp(-2 * t)
+    noise, hum = RNG.normal(size=x.size) * 1e-3, 1e-4 * np.sin(2 * np.pi * 50 * t)
+    assert doubt("delay", seen_in(x, device, commanded=force, applied=late)) is None
+    for words, cause, position, forces in (
+        ("dies out", "delay", dying * x, {"commanded": dying * force}),
+        ("noise", "structural resonance", noise, {"commanded": 1000 * noise}),
+        ("3 times", "delay", x, {"commanded": force, "applied": 3 * late}),
+        ("units", "drive damping", 1000 * x, {"commanded": force}),
+        ("mains", "structural resonance", hum, {"commanded": 300 * hum}),
+    ):
+        assert words in str(doubt(cause, seen_in(position, device, **forces)))
 
 
 def test_a_motors_force_of_the_other_sign_is_turned_and_said() -> None:
