@@ -34,9 +34,8 @@ from zwidth.data.gains.read import FAMILIES
 def test_openarm_has_relative_damping_on_both_sides(tmp_path):
     """kd is of the speed against the other arm, none of its own; the decimals that are written."""
     follower = openarm("Follower", Kd=[2.5] * 8)
-    gains = zw.read_gains(
-        written(tmp_path, "leader.yaml", openarm()), written(tmp_path, "follower.yaml", follower)
-    )
+    files = written(tmp_path, "leader.yaml", openarm()), written(tmp_path, "follower.yaml", follower)
+    gains = zw.read_gains(*files)
     assert (gains.family, gains.is_pair, gains.drives) == ("openarm", True, True)
     assert [joint.name for joint in gains.joints] == ["J1", "J2", "J3", "J4", "J5", "J6", "J7", "gripper"]
     for n, joint in enumerate(gains.joints):
@@ -130,17 +129,18 @@ def test_compensation_of_i2rt_where_it_is_enabled(tmp_path):
     assert not off.leader.compensation
 
 
-@pytest.mark.parametrize(("volts", "torque"), [("7.4 V", 17.8), ("12 V", 44.2)])
-def test_a_servo_register_is_a_stiffness_by_its_voltage(tmp_path, volts, torque):
+@pytest.mark.parametrize(
+    ("volts", "torque", "supply", "kt", "resistance", "e"),
+    [("7.4 V", 17.8, 7.4, 1.2116, 2.676, 1), ("12 V", 44.2, 12, 1.444, 2.030, 0.975)],
+)
+def test_a_servo_register_is_a_stiffness_by_its_voltage(tmp_path, volts, torque, supply, kt, resistance, e):
     """P = 32: as published, and by duty, voltage and current of a small error."""
     gains = zw.read_gains(written(tmp_path, "a.json", SERVOS), supply_voltage=volts)
     stiffness = float(gains.joints[0].follower.stiffness)
     assert stiffness == pytest.approx(torque, rel=5e-3)
-    supply, (kt, resistance, e) = {17.8: (7.4, (1.2116, 2.676, 1)), 44.2: (12, (1.444, 2.030, 0.975))}[torque]
     error = 0.01
     duty = 0.166 * 32 * error * e
-    current = duty * supply / resistance
-    assert stiffness * error == pytest.approx(kt * current, rel=1e-12)
+    assert stiffness * error == pytest.approx(kt * duty * supply / resistance, rel=1e-12)
     assert gains.joints[0].leader is None
 
 
@@ -169,7 +169,6 @@ def test_lerobot_with_damiao_drives_has_local_damping(tmp_path):
 
 
 def test_a_piper_has_a_row_for_either_end_of_its_unknown_factor(tmp_path):
-    """On J1 to J3."""
     joints = zw.read_gains(written(tmp_path, "a.toml", PIPER), both=True).joints
     assert [joint.name for joint in joints] == [
         "J1 ×1", "J1 ×4", "J2 ×1", "J2 ×4", "J3 ×1", "J3 ×4", "J4", "J5", "J6",
@@ -213,20 +212,24 @@ def test_a_file_that_cannot_be_used_is_refused_in_a_line(tmp_path, text, said):
     assert "\n" not in str(caught.value)
 
 
-def test_options_of_other_arms_are_refused(tmp_path):
+@pytest.mark.parametrize(
+    ("others", "options", "said"),
+    [
+        ((), {"bilateral_kp": 0.1}, "leave it out"),
+        ((), {"supply_voltage": 12}, "leave it out"),
+        ((), {"both": True}, "leave it out"),
+        (("b.yml",), {}, "one kind"),
+        (("a.yaml",), {}, "given twice"),
+        (("none.yaml",), {}, "there is no file"),
+        ((), {"family": "openarms"}, "did you mean"),
+    ],
+)
+def test_options_and_files_of_other_arms_are_refused(tmp_path, others, options, said):
     """They would be ignored."""
     leader = written(tmp_path, "a.yaml", openarm())
-    for option in ({"bilateral_kp": 0.1}, {"supply_voltage": 12}, {"both": True}):
-        with pytest.raises(zw.InputError, match="leave it out"):
-            zw.read_gains(leader, **option)
-    with pytest.raises(zw.InputError, match="one kind"):
-        zw.read_gains(leader, written(tmp_path, "b.yml", YAM))
-    with pytest.raises(zw.InputError, match="given twice"):
-        zw.read_gains(leader, leader)
-    with pytest.raises(zw.InputError, match="did you mean"):
-        zw.read_gains(leader, family="openarms")
-    with pytest.raises(zw.InputError, match="there is no file"):
-        zw.read_gains(tmp_path / "none.yaml")
+    written(tmp_path, "b.yml", YAM)
+    with pytest.raises(zw.InputError, match=said):
+        zw.read_gains(leader, *(tmp_path / name for name in others), **options)
 
 
 def test_every_published_number_has_its_source():
@@ -240,44 +243,21 @@ def test_every_published_number_has_its_source():
     assert all(len(plant.source) > 10 for plant in plants().values())
 
 
-@settings(max_examples=60, deadline=None)
-@given(
-    st.one_of(
-        texts(),
-        st.recursive(
-            st.one_of(st.none(), st.booleans(), st.floats(), st.integers(), texts()),
-            lambda inner: st.one_of(
-                st.lists(inner, max_size=4),
-                st.dictionaries(
-                    st.sampled_from(
-                        [
-                            "LeaderArmParam",
-                            "Kp",
-                            "Kd",
-                            "Fc",
-                            "k",
-                            "Fv",
-                            "kp",
-                            "kd",
-                            "motor_list",
-                            "piper",
-                            "type",
-                            "friction_comp",
-                            "position_p_coefficient",
-                            "position_kp",
-                            "position_kd",
-                            "Bilateral",
-                        ]
-                    ),
-                    inner,
-                    max_size=5,
-                ),
-            ),
-        ).map(json.dumps),
-    )
+KEYS = [
+    "LeaderArmParam", "Bilateral", "Kp", "Kd", "Fc", "k", "Fv", "kp", "kd", "motor_list", "piper", "type",
+    "friction_comp", "position_p_coefficient", "position_kp", "position_kd",
+]  # fmt: skip
+
+
+MESSES = st.recursive(
+    st.none() | st.booleans() | st.floats() | st.integers() | texts(),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.sampled_from(KEYS), inner, max_size=5),
 )
+
+
+@settings(max_examples=60, deadline=None)
+@given(texts() | MESSES.map(json.dumps))
 def test_whatever_is_in_a_file_there_is_an_answer_or_a_message(tmp_path_factory, text):
-    """No exception of another kind."""
     folder: Path = tmp_path_factory.mktemp("gains")
     for name in ("a.yaml", "a.json", "a.toml"):
         try:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from gain_files import written
 
 import zwidth as zw
 from zwidth.passivity.pairs.limits import with_share
@@ -15,13 +16,14 @@ from zwidth.passivity.pairs.limits import with_share
 PAGE = (Path(__file__).parents[2] / "docs" / "gain-files.md").read_text(encoding="utf-8")
 
 
-@pytest.fixture
-def names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+@pytest.fixture(scope="module")
+def names(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """What its example makes."""
-    monkeypatch.chdir(tmp_path)
     found: dict[str, Any] = {}
     (example,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
-    exec(example, found)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path_factory.mktemp("page"))
+        exec(example, found)
     return found
 
 
@@ -72,22 +74,14 @@ def test_with_the_other_plant_the_answers_are_others(names):
 def test_its_plant_is_read(names, tmp_path):
     """The TOML of the page, for eight joints."""
     (text,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
-    path = tmp_path / "my-arm.toml"
-    path.write_text(text, encoding="utf-8")
-    pairs = names["gains"].pairs(plant=path)
+    pairs = names["gains"].pairs(plant=written(tmp_path, "my-arm.toml", text))
     assert [float(pair.sides[0].damping) for pair in pairs.values()][:3] == [0.5, 0.4, 0.6]
 
 
 def test_just_above_the_largest_share_a_motion_gains(names):
     """A ten-thousandth on either side of it, where the page says that both are found."""
     pairs = names["gains"].pairs(ideal_drive=True)
-    for joint, more in (
-        ("J3", "0.0001"),
-        ("J5", "0.0001"),
-        ("J6", "0.0001"),
-        ("J7", "0.0001"),
-        ("J4", "0.1"),
-    ):
+    for joint, more in (dict.fromkeys(("J3", "J5", "J6", "J7"), "0.0001") | {"J4": "0.1"}).items():
         share = Fraction(repr(zw.check(pairs[joint]).largest_compensation))
         assert zw.check(with_share(pairs[joint], share * Fraction("0.9999"))).outcome == "passive"
         beyond = zw.check(with_share(pairs[joint], share * (1 + Fraction(more))))

@@ -34,19 +34,10 @@ def test_the_pair_is_the_one_made_by_hand(tmp_path):
     gains = zw.read_gains(written(tmp_path, "a.yaml", openarm() + openarm("Follower")))
     given = arm("0.5", coulomb_friction="0.4", resolution="0.0001")
     pair = gains.pairs(plant=given, rate="500 Hz", delay=("2 ms", "4 ms"), drive_rate="10 kHz")["J1"]
-    device = zw.Device(
-        damping="0.5", coulomb_friction="0.4", resolution="0.0001", rate=500, delay=0, motion="rotary"
-    )
+    device = given.replace(rate=500, delay=0)
     law = zw.FrictionCompensation(coulomb="0.306", viscous="0.063", speed=1 / Fraction("2.8417"))
-    by_hand = zw.Pair(
-        device,
-        device,
-        stiffness=240,
-        damping=3,
-        delay=("0.002", "0.004"),
-        drive_rate=10_000,
-        compensation=law,
-    )
+    coupling = {"stiffness": 240, "damping": 3, "delay": ("0.002", "0.004"), "drive_rate": 10_000}
+    by_hand = zw.Pair(device, device, compensation=law, **coupling)
     assert pair.sides == by_hand.sides
     assert (pair.sample_period, pair.own_readings) == (by_hand.sample_period, by_hand.own_readings)
     left_out = gains.pairs(plant=given, rate=500, delay=0, drive_rate=0, compensated=False)["J1"]
@@ -142,16 +133,7 @@ def test_an_ideal_drive_is_a_damper(tmp_path, stiffness, damping, b):
     assert "b holds it" in joint.to_dict()["assumptions"][-1]
 
 
-def test_compensation_and_not_kd_decides_with_an_ideal_drive(tmp_path):
-    """OpenArm with published friction: without compensation every joint, with it two and the gripper."""
-    gains = zw.read_gains(written(tmp_path, "a.yaml", openarm()))
-    found = zw.check_gains(gains, ideal_drive=True)
-    assert [joint.name for joint in found.joints if joint.outcome == "passive"] == ["J1", "J2", "gripper"]
-    assert {joint.outcome for joint in found.joints} == {"passive", "active"}
-
-
 def test_what_was_taken_for_granted_is_said(tmp_path):
-    """What is given is not said to be published."""
     gains = zw.read_gains(written(tmp_path, "a.yaml", openarm()))
     plain = " ".join(zw.check_gains(gains).notes)
     for part in ("FREQUENCY", "not measured", "Damiao drive is not published", "measured on no arm of yours",
@@ -177,13 +159,11 @@ def test_gains_beyond_what_a_drive_takes_are_named(tmp_path):
 
 
 def test_plants_are_read_for_each_arm_and_joint(tmp_path):
-    """Lists by joint, one number for all, leader and follower apart."""
     gains = gains_of(tmp_path)
-    plant = written(
-        tmp_path,
-        "arm.toml",
-        '[leader]\ndamping = [0.5, "600 mN*m*s/rad"]\ncoulomb_friction = 0.1\n[follower]\ndamping = "0.7"\n',
+    text = (
+        '[leader]\ndamping = [0.5, "600 mN*m*s/rad"]\ncoulomb_friction = 0.1\n[follower]\ndamping = "0.7"\n'
     )
+    plant = written(tmp_path, "arm.toml", text)
     first, second = gains.pairs(plant=plant).values()
     assert [side.damping for side in first.sides] == [Fraction(1, 2), Fraction(7, 10)]
     assert second.sides[0].damping == Fraction(3, 5)
@@ -203,7 +183,6 @@ def test_plants_are_read_for_each_arm_and_joint(tmp_path):
     ],
 )
 def test_a_plant_that_cannot_be_used_is_refused(tmp_path, text, said):
-    """In one line."""
     with pytest.raises(zw.InputError, match=said):
         gains_of(tmp_path).pairs(plant=written(tmp_path, "arm.toml", text))
 
@@ -231,7 +210,6 @@ def test_a_servo_brakes_by_what_its_motor_induces(tmp_path):
 
 
 def test_shown_and_saved(tmp_path):
-    """A table joint by joint; JSON has what the table says."""
     found = zw.check_gains(gains_of(tmp_path, damping="0.05"), plant=arm(), delay="2 ms")
     told = json.loads(found.to_json())
     assert told["format"] == "zwidth gains 1"

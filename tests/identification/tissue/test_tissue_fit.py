@@ -1,10 +1,14 @@
-"""Fits: what is found, how often the intervals hold it, what cannot be found."""
+"""Fits: what is found, how often the intervals hold it, what cannot be found; the page on soft tissue."""
 
 from __future__ import annotations
+
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from printed import shows
 from scipy.signal import lfilter
 from scipy.stats import binom
 
@@ -54,11 +58,8 @@ def test_relaxation_and_creep_tests():
     held, pushed = np.full(200, 0.01), np.full(200, 2.0)
     relaxed = force_response(SOLID, t, held, 0.0) + rng.normal(0, 0.01, 200)
     crept = position_response(SOLID, t, pushed, 0.0) + rng.normal(0, 1e-5, 200)
-    for fit in (
-        fit_tissue(t, held, relaxed, rest=0),
-        fit_tissue(t, crept, pushed, rest=0, response="position"),
-    ):
-        assert dict(fit.values) == pytest.approx(TRUE, rel=0.05)
+    for x, f, response in ((held, relaxed, "force"), (crept, pushed, "position")):
+        assert dict(fit_tissue(t, x, f, rest=0, response=response).values) == pytest.approx(TRUE, rel=0.05)
 
 
 def noisy(noise, rng, samples=None):
@@ -195,18 +196,13 @@ def test_what_becomes_of_a_fit():
     assert whole.stiffness.low < low < high < whole.stiffness.high
     paddle = zw.Device(damping=1, rate=1000)
     assert fit.verdict(paddle).outcome == "passive"
-    need = zw.formulas.standard_linear_solid_damping(*(whole_high(whole)), "0.001")
+    corner = (part.high for part in (whole.stiffness, whole.branch_stiffness, whole.branch_damping))
+    need = zw.formulas.standard_linear_solid_damping(*corner, "0.001")
     assert fit.verdict(paddle).required_damping == pytest.approx(float(need), rel=1e-12)
     assert fit.verdict(paddle.replace(damping="0.1"), level=None).outcome == "active"
 
 
-def whole_high(solid):
-    """The corner that asks for the most damping."""
-    return [part.high for part in (solid.stiffness, solid.branch_stiffness, solid.branch_damping)]
-
-
 def test_how_a_fit_shows_itself():
-    """Every number with its unit; as text, HTML and a dictionary."""
     fit = fit_tissue(*noisy("white", np.random.default_rng(6)), motion="rotary")
     text = repr(fit)
     assert "standard-linear-solid, 150 samples: r² = " in text
@@ -218,7 +214,6 @@ def test_how_a_fit_shows_itself():
 
 
 def test_bad_input():
-    """What is wrong is said."""
     t, x = motion()
     f = 300 * x
     for arguments, options, said in (
@@ -237,7 +232,21 @@ def test_bad_input():
         with pytest.raises(zw.InputError, match=said):
             fit_tissue(*arguments, **options)
     fit = fit_tissue(t, x, f, model="kelvin-voigt")
-    with pytest.raises(zw.InputError, match="there is no parameter 'mass'"):
-        fit.interval("mass")
-    with pytest.raises(zw.InputError, match="level is > 0 and < 1"):
-        fit.interval("stiffness", 95)
+    for asked, said in (
+        (("mass",), "there is no parameter 'mass'"),
+        (("stiffness", 95), "level is > 0 and < 1"),
+    ):
+        with pytest.raises(zw.InputError, match=said):
+            fit.interval(*asked)
+
+
+def test_the_page_says_what_comes_out():
+    """Its Python blocks in a row; the fit that it prints is the one that they make."""
+    page = (Path(__file__).parents[3] / "docs" / "tissue.md").read_text(encoding="utf-8")
+    names: dict[str, object] = {}
+    for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL):
+        exec(block, names)
+    (printed,) = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
+    assert shows(repr(names["fit"]) + "\n", printed)
+    assert names["models"].best.model.name == "standard-linear-solid"
+    assert names["verdict"].outcome == "passive"
