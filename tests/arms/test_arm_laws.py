@@ -239,6 +239,5 @@ def test_a_held_jacobian_costs_at_most_its_bound() -> None:
     ],
 )
 def test_bad_input_has_one_clear_message(make: object, words: str) -> None:
-    """What was given, and why the physics wants another."""
     with pytest.raises(zw.InputError, match=words):
         make()  # type: ignore[operator]

@@ -40,23 +40,20 @@ def recorded(position: np.ndarray, **forces: np.ndarray) -> Recording:
 def seen_in(position: np.ndarray, device: Device | None = None, **forces: np.ndarray) -> Evidence:
     """What is seen of a vibration in arrays."""
     found = vibration.find(position, PERIOD)
-    assert found is not None
     return gather(recorded(position, **forces), found, device)
 
 
-def test_frequency_and_swing_of_a_vibration_after_a_rest() -> None:
-    """It is found behind a second of slow motion, within its own spread; the swing is that of the sine."""
+def test_frequency_and_swing_of_a_vibration_after_a_rest():
     slow = 0.003 * np.sin(2 * np.pi * 0.4 * np.arange(800) * PERIOD)
     position = np.concatenate([slow, slow[-1] + shaken()])
     found = vibration.find(position, PERIOD)
-    assert found is not None
     assert found.rows.start >= 600
     assert abs(found.frequency - FREQUENCY) < max(3 * found.frequency_spread, 0.02)
     assert found.swing == pytest.approx(0.008, rel=0.15)
     assert found.regular > 0.95
 
 
-def test_a_hand_that_moves_slowly_does_not_vibrate() -> None:
+def test_a_hand_that_moves_slowly_does_not_vibrate():
     """Half a hertz is no vibration, nor is a single stroke."""
     t = np.arange(2000) * PERIOD
     for position in (0.02 * np.sin(np.pi * t), np.where(t < 1, 0, 0.01) * np.minimum(t, 1.2), np.zeros(2000)):
@@ -67,9 +64,7 @@ def test_a_hand_that_moves_slowly_does_not_vibrate() -> None:
     ("stiffness", "damping", "window", "compensation", "lag"),
     [(731.0, 0.0, 1, 0.0, 0), (412.0, 1.3, 5, 0.0, 0), (388.0, 0.0, 1, 0.21, 0), (950.0, 0.8, 2, 0.0, 4)],
 )
-def test_the_law_of_a_force_is_found(
-    stiffness: float, damping: float, window: int, compensation: float, lag: int
-) -> None:
+def test_the_law_of_a_force_is_found(stiffness, damping, window, compensation, lag):
     """From quantized positions, through a limit: terms to a thousandth, the window and the lag exactly."""
     position = np.round(shaken() / 1e-6) * 1e-6
     move = np.concatenate([np.zeros(window), position[window:] - position[:-window]]) / (window * PERIOD)
@@ -77,7 +72,6 @@ def test_the_law_of_a_force_is_found(
     force = stiffness * position + damping * move - compensation * np.sign(last)
     force = np.clip(held(force, lag), -2.5, 2.5)
     found = law.fit(position, force, PERIOD, PERIOD, [k * PERIOD for k in range(8)])
-    assert found is not None
     assert found.stiffness == pytest.approx(stiffness, rel=1e-3)
     assert found.damping == pytest.approx(damping, rel=1e-3, abs=1e-6)
     assert found.compensation == pytest.approx(compensation, rel=1e-3, abs=1e-6)
@@ -86,13 +80,13 @@ def test_the_law_of_a_force_is_found(
     assert found.unexplained < 1e-6
 
 
-def test_a_force_that_has_nothing_to_do_with_the_motion_is_not_explained() -> None:
+def test_a_force_that_has_nothing_to_do_with_the_motion_is_not_explained():
     found = law.fit(shaken(), RNG.normal(size=1200), PERIOD, PERIOD, [0.0, PERIOD])
     assert found is None or found.unexplained > 0.9
 
 
 @pytest.mark.parametrize("kind", ["delay", "damper", "rate"])
-def test_what_lies_between_two_forces(kind: str) -> None:
+def test_what_lies_between_two_forces(kind):
     """A delay, a damper inside and a limit of rate are each accounted for best by themselves."""
     position = shaken()
     command = 640 * position
@@ -114,7 +108,7 @@ def test_what_lies_between_two_forces(kind: str) -> None:
         assert found.rate == pytest.approx(0.15 / PERIOD, rel=0.05)
 
 
-def test_a_long_delay_of_a_slow_wobble_is_known_to_a_sample() -> None:
+def test_a_long_delay_of_a_slow_wobble_is_known_to_a_sample():
     """37 samples of a cycle of 1000, where lags are tried 19 apart."""
     position = 0.3 * np.sin(2 * np.pi * 0.8 * np.arange(6400) * PERIOD)
     command = 0.5 * position
@@ -124,7 +118,7 @@ def test_a_long_delay_of_a_slow_wobble_is_known_to_a_sample() -> None:
 
 
 @pytest.mark.parametrize("late", [0, 3])
-def test_the_energy_of_a_cycle_is_that_of_the_held_force_along_the_motion(late: int) -> None:
+def test_the_energy_of_a_cycle_is_that_of_the_held_force_along_the_motion(late):
     """−∮ f dx by sums over the exact moves between samples; the terms add up to it."""
     position = shaken(2.5, drift=0.0)
     command = 640 * position + 0.4 * np.concatenate([[0.0], np.diff(position)]) / PERIOD
@@ -140,7 +134,7 @@ def test_the_energy_of_a_cycle_is_that_of_the_held_force_along_the_motion(late: 
     assert seen.delay == pytest.approx(late * PERIOD)
 
 
-def test_the_energy_that_friction_takes() -> None:
+def test_the_energy_that_friction_takes():
     """π ω b X² + 4 f_c X of the device's numbers, and the mass that would move so: K/ω² without a hand."""
     position = shaken(drift=0.0)
     device = Device(mass=0.03, damping=0.3, coulomb_friction=0.05, sample_period=PERIOD)
@@ -152,33 +146,29 @@ def test_the_energy_that_friction_takes() -> None:
     assert seen.apparent_mass == pytest.approx(640 * sinc / w**2, rel=0.01)
 
 
-def test_a_force_counted_the_other_way_is_turned_round() -> None:
+def test_a_force_counted_the_other_way_is_turned_round():
     """A spring pushes back, whatever the file counts."""
     position = shaken()
     one, other = (seen_in(position, commanded=s * 640 * position) for s in (1, -1))
-    assert one.law is not None
-    assert other.law is not None
     assert other.law.stiffness == pytest.approx(one.law.stiffness)
     assert other.total == pytest.approx(one.total)
 
 
-def test_a_wheel_that_wobbles_slowly_vibrates() -> None:
+def test_a_wheel_that_wobbles_slowly_vibrates():
     """0.8 Hz, six cycles, quantized; a hand that goes to and fro as slowly is not so regular."""
     t = np.arange(round(8 / PERIOD)) * PERIOD
     wobble = 0.4 * np.sin(2 * np.pi * 0.8 * t) + 0.03 * np.sin(2 * np.pi * 2.4 * t + 1)
     wobble = np.round(wobble / 1e-3) * 1e-3
     found = vibration.find(wobble, PERIOD)
-    assert found is not None
     assert found.frequency == pytest.approx(0.8, rel=0.02)
     hand = sum(0.1 * np.sin(2 * np.pi * f * t + p) for f, p in ((0.31, 0), (0.52, 1), (0.83, 2), (1.21, 3)))
     assert vibration.find(np.asarray(hand), PERIOD) is None
 
 
-def test_a_frequency_that_drifts_is_looked_at_where_it_stays() -> None:
+def test_a_frequency_that_drifts_is_looked_at_where_it_stays():
     """From 20 to 26 Hz in a second: the stretch is shortened until harmonics describe it."""
     t = np.arange(800) * PERIOD
     found = vibration.find(np.sin(2 * np.pi * (20 * t + 3 * t**2)), PERIOD)
-    assert found is not None
     assert found.regular > 0.9
     assert found.rows.stop - found.rows.start < 500
     middle = 0.5 * (found.rows.start + found.rows.stop) * PERIOD
@@ -187,7 +177,7 @@ def test_a_frequency_that_drifts_is_looked_at_where_it_stays() -> None:
 
 
 @pytest.mark.parametrize(("factor", "late"), [(1.0, 0), (1.0, 4), (1.6, 0)])
-def test_the_motion_shows_the_force_behind_a_command(factor: float, late: int) -> None:
+def test_the_motion_shows_the_force_behind_a_command(factor, late):
     """Of a device whose mass is known: how much larger than the command, and how far behind it."""
     position = shaken(drift=0.0)
     w = 2 * np.pi * FREQUENCY
@@ -195,13 +185,12 @@ def test_the_motion_shows_the_force_behind_a_command(factor: float, late: int) -
     device = Device(mass=factor * acts / w**2, damping=0, coulomb_friction=0, sample_period=PERIOD)
     early = np.interp(np.arange(position.size) + late + 0.5, np.arange(position.size), position)
     seen = seen_in(position, device, commanded=640 * early)
-    assert seen.moves_as is not None
     assert abs(seen.moves_as) == pytest.approx(factor, rel=0.02)
     assert np.angle(seen.moves_as) == pytest.approx(-w * late * PERIOD, abs=0.01)
     assert seen.recorded == "command"
 
 
-def test_corners_of_a_force() -> None:
+def test_corners_of_a_force():
     """Third harmonic against the first: a triangle has a ninth, a square minus a third."""
     position = shaken(drift=0.0)
     phase = 2 * np.pi * FREQUENCY * np.arange(position.size) * PERIOD + 0.4
@@ -211,7 +200,7 @@ def test_corners_of_a_force() -> None:
         assert seen.force_bend.real == pytest.approx(bend * held, rel=0.1)
 
 
-def test_what_speaks_against_any_cause() -> None:
+def test_what_speaks_against_any_cause():
     """Dying out, noise, a motor's force in another unit, millimetres read as metres, the hum of the mains."""
     device = Device(mass=0.08, damping=0.1, coulomb_friction=0, sample_period=PERIOD)
     t = np.arange(1600) * PERIOD
@@ -230,7 +219,7 @@ def test_what_speaks_against_any_cause() -> None:
         assert words in str(doubt(cause, seen_in(position, device, **forces)))
 
 
-def test_a_motors_force_of_the_other_sign_is_turned_and_said() -> None:
+def test_a_motors_force_of_the_other_sign_is_turned_and_said():
     """The same rows, the motor's force counted the other way: read as the command counts."""
     t = np.arange(600) * PERIOD
     columns = {"time_s": t, "position_m": np.round(1e4 * np.sin(150 * t)) * 1e-7}

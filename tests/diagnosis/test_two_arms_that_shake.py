@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -39,25 +38,20 @@ def shaken() -> dict[str, np.ndarray]:
 
 
 @pytest.mark.parametrize("cause", FAULTS)
-def test_the_reason_is_named(cause: str, tmp_path: Path) -> None:
-    """Sure, with numbers, and more energy than friction takes."""
+def test_the_reason_is_named(cause, tmp_path):
     how, known = FAULTS[cause]
     found = zw.diagnose_pair(written(tmp_path / "arms.csv", moved(**how)), arms(**known))
     assert found.cause == cause
     assert found.confidence > 0.8
     assert set(found.likely) == set(PAIR_CAUSES)
     assert any(word in found.evidence[0] for word in (cause.split()[-1], "hold", "damper"))
-    assert found.seen is not None
     for fitted in found.seen.laws:
-        assert fitted is not None
         assert fitted.stiffness == pytest.approx(how.get("stiffness", 20.0), rel=1e-3)
         assert fitted.link_delay == pytest.approx(PERIOD * how.get("link", 0))
 
 
-def test_the_change_is_proved_and_makes_the_arms_quiet(shaken: dict[str, np.ndarray], tmp_path: Path) -> None:
-    """The spring that is advised is passive, is written as a pair, and lets the arms come to rest."""
+def test_the_change_is_proved_and_makes_the_arms_quiet(shaken, tmp_path):
     found = zw.diagnose_pair(written(tmp_path / "arms.csv", shaken), arms(damping=0.05))
-    assert found.change is not None
     assert found.change.parameter == "stiffness"
     assert found.change.to < found.change.current
     found.save(tmp_path / "mended.toml")
@@ -72,7 +66,7 @@ def test_the_change_is_proved_and_makes_the_arms_quiet(shaken: dict[str, np.ndar
     assert quiet < 0.2 * loud
 
 
-def test_what_is_not_in_the_file_is_not_named(tmp_path: Path) -> None:
+def test_what_is_not_in_the_file_is_not_named(tmp_path):
     """A delay behind the command: by the command alone, less goes in than friction takes."""
     columns = moved(late=3, viscous=0.04, limit=3.0)
     command = {name: values for name, values in columns.items() if "motor" not in name}
@@ -82,7 +76,7 @@ def test_what_is_not_in_the_file_is_not_named(tmp_path: Path) -> None:
     assert any("motor's own" in words for words in found.record)
 
 
-def test_arms_that_are_moved_slowly_do_not_shake(tmp_path: Path) -> None:
+def test_arms_that_are_moved_slowly_do_not_shake(tmp_path):
     """They say how long was looked, and what could have been seen."""
     t = np.arange(600) * PERIOD
     columns = {"time_s": t, "leader_position_rad": 0.05 * t, "follower_position_rad": 0.045 * t}
@@ -93,9 +87,7 @@ def test_arms_that_are_moved_slowly_do_not_shake(tmp_path: Path) -> None:
     assert "8.3 Hz" in found.claim
 
 
-def test_lists_in_parquet_as_a_robot_learning_dataset_has_them(
-    shaken: dict[str, np.ndarray], tmp_path: Path
-) -> None:
+def test_lists_in_parquet_as_a_robot_learning_dataset_has_them(shaken, tmp_path):
     """Second joint of observation.state and of action; the stamps of an episode are seconds."""
     rows = shaken["time_s"].size
 
@@ -128,9 +120,7 @@ def test_lists_in_parquet_as_a_robot_learning_dataset_has_them(
 
 
 @pytest.mark.parametrize("storage", ["MCAP", "SQLITE3"])
-def test_a_bag_with_the_joint_states_of_both_arms(
-    storage: str, shaken: dict[str, np.ndarray], tmp_path: Path
-) -> None:
+def test_a_bag_with_the_joint_states_of_both_arms(storage, shaken, tmp_path):
     """A topic each, the follower's stamps a little later."""
     from rosbags.rosbag2 import StoragePlugin, Writer
     from rosbags.typesys import Stores, get_typestore
@@ -158,7 +148,7 @@ def test_a_bag_with_the_joint_states_of_both_arms(
     assert one.frequency == pytest.approx(found.frequency, rel=0.02)
 
 
-def test_what_is_missing_is_asked_for_of_its_arm(shaken: dict[str, np.ndarray], tmp_path: Path) -> None:
+def test_what_is_missing_is_asked_for_of_its_arm(shaken, tmp_path):
     bare = {name: values for name, values in shaken.items() if "follower" not in name or "position" in name}
     sides = {k.replace("leader", "left").replace("follower", "right"): v for k, v in shaken.items()}
     slider = zw.Device(mass=0.1, damping=1, coulomb_friction=0, sample_period=PERIOD)
@@ -182,14 +172,14 @@ def test_what_is_missing_is_asked_for_of_its_arm(shaken: dict[str, np.ndarray], 
             ask()
 
 
-def test_a_picture_of_both_arms(shaken: dict[str, np.ndarray], tmp_path: Path) -> None:
+def test_a_picture_of_both_arms(shaken, tmp_path):
     found = zw.diagnose_pair(written(tmp_path / "arms.csv", shaken))
     found.plot(tmp_path / "why.svg")
     assert (tmp_path / "why.svg").stat().st_size > 1000
     assert "leader: stiffness" in dict(found.rows())
 
 
-def test_the_law_of_an_arm() -> None:
+def test_the_law_of_an_arm():
     """Stiffness, both dampings, compensation and both lags from noise that moves both arms."""
     own, other = (np.cumsum(RNG.normal(size=800)) * 1e-3 for _ in range(2))
     late = ((own, 1), (own, 2), (other, 4), (other, 5))
@@ -198,14 +188,13 @@ def test_the_law_of_an_arm() -> None:
     force = 31.0 * (back[0] - back[2]) + 0.2 * (v - its) + 0.05 * v - 0.3 * np.sign(v)
     lags = [k * PERIOD for k in range(4)]
     found = arm_law(own, other, force, PERIOD, PERIOD, lags, [k * PERIOD for k in range(6)])
-    assert found is not None
     assert (found.lag, found.link_delay) == pytest.approx((PERIOD, 3 * PERIOD))
     gains = found.stiffness, found.damping, found.local_damping, found.compensation
     assert gains == pytest.approx((31.0, 0.2, 0.05, 0.3), rel=1e-4)
     assert found.unexplained < 1e-6
 
 
-def test_a_pair_is_written_as_it_is_read(tmp_path: Path) -> None:
+def test_a_pair_is_written_as_it_is_read(tmp_path):
     """Every number of a coupling, digit for digit."""
     pair = arms().replace(
         stiffness="12.5 N*m/rad",
@@ -230,9 +219,7 @@ def test_a_pair_is_written_as_it_is_read(tmp_path: Path) -> None:
         ("Time (s)", "Leader angle (rad)", "Leader torque (Nm)", "follower/q_rad", "follower/torque_Nm"),
     ],
 )
-def test_columns_of_an_arm_by_usual_names(
-    shaken: dict[str, np.ndarray], names: tuple[str, ...], tmp_path: Path
-) -> None:
+def test_columns_of_an_arm_by_usual_names(shaken, names, tmp_path):
     """The arm stands before the name or behind it, the unit after both."""
     columns = {"time_s": shaken["time_s"]}
     columns |= {k: values for k, values in shaken.items() if k != "time_s" and "motor" not in k}

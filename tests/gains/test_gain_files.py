@@ -57,7 +57,6 @@ def test_compensation_is_the_one_of_the_code(tmp_path):
 
 
 def test_one_side_alone_is_taken_for_both_and_that_is_said(tmp_path):
-    """Of a file with both sides, or of two files, nothing is said."""
     alone = zw.read_gains(written(tmp_path, "a.yaml", openarm("Follower")))
     both = zw.read_gains(written(tmp_path, "b.yaml", openarm() + openarm("Follower")))
     assert all(joint.leader == joint.follower for joint in alone.joints)
@@ -85,12 +84,6 @@ def test_a_law_of_its_own_for_the_leader(tmp_path):
     assert not gains.drives
     with pytest.raises(zw.InputError, match="measured torque"):
         zw.read_gains(written(tmp_path, "b.yaml", text + "  Kf: [0.1, 0, 0, 0, 0, 0, 0, 0]\n"))
-
-
-def test_gains_of_a_disturbance_observer_are_refused(tmp_path):
-    """Their Kp is no stiffness."""
-    with pytest.raises(zw.InputError, match="disturbance observers"):
-        zw.read_gains(written(tmp_path, "a.yaml", openarm(Jn=[0.5] * 8)))
 
 
 def test_i2rt_has_local_damping_on_the_follower_alone(tmp_path):
@@ -177,7 +170,6 @@ def test_a_piper_has_a_row_for_either_end_of_its_unknown_factor(tmp_path):
 
 
 def test_yaml_json_and_toml_are_the_same(tmp_path):
-    """Digit for digit: 0.1 is a tenth in each."""
     content = {"LeaderArmParam": {"Kp": [0.1, 30], "Kd": [0.2, 1e-3]}}
     toml = "[LeaderArmParam]\nKp = [0.1, 30]\nKd = [0.2, 1e-3]\n"
     yaml = "LeaderArmParam: {Kp: [0.1, 30], Kd: [0.2, 1e-3]}\n"
@@ -203,6 +195,7 @@ def test_yaml_json_and_toml_are_the_same(tmp_path):
         ("LeaderArmParam: {Kp: [!!python/object/apply:os.getcwd []], Kd: [1]}\n", "Kp\\[0\\]"),
         ("a: " + "[" * 5000, "too deeply|not YAML"),
         (GRIPPER, "a gripper alone"),
+        (openarm(Jn=[0.5] * 8), "disturbance observers"),  # whose Kp is no stiffness
     ],
 )
 def test_a_file_that_cannot_be_used_is_refused_in_a_line(tmp_path, text, said):
@@ -233,7 +226,6 @@ def test_options_and_files_of_other_arms_are_refused(tmp_path, others, options, 
 
 
 def test_every_published_number_has_its_source():
-    """Of families and plants; each family's own plant is one of those."""
     for name in FAMILIES:
         known = family(name)
         for value in (known.rate, known.link_delay, known.drive_rate, known.position_step):

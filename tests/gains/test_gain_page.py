@@ -28,7 +28,6 @@ def names(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 
 def test_the_table_is_what_comes_out(names):
-    """Joint by joint, in the file, without compensation, and how much of it is passive."""
     without = zw.check_gains(names["gains"], ideal_drive=True, compensated=False)
     rows = [
         [cell.strip() for cell in line.strip("|").split("|")]
@@ -52,7 +51,6 @@ def test_the_table_is_what_comes_out(names):
 
 
 def test_the_gains_for_drives_that_take_differences_are_what_comes_out(names):
-    """All active as they stand; the best ones are listed."""
     found = zw.check_gains(names["gains"])
     assert {joint.outcome for joint in found.joints} == {"active"}
     best = {j.name: j.best.gains[0] for j in found.joints if j.best is not None}
@@ -63,7 +61,6 @@ def test_the_gains_for_drives_that_take_differences_are_what_comes_out(names):
 
 
 def test_with_the_other_plant_the_answers_are_others(names):
-    """What the page says of `damiao-mujoco`."""
     found = zw.check_gains(names["gains"], plant="damiao-mujoco")
     passive = [joint.name for joint in found.joints if joint.outcome == "passive"]
     assert passive == ["J5", "J6", "J7", "gripper"]
@@ -72,7 +69,6 @@ def test_with_the_other_plant_the_answers_are_others(names):
 
 
 def test_its_plant_is_read(names, tmp_path):
-    """The TOML of the page, for eight joints."""
     (text,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
     pairs = names["gains"].pairs(plant=written(tmp_path, "my-arm.toml", text))
     assert [float(pair.sides[0].damping) for pair in pairs.values()][:3] == [0.5, 0.4, 0.6]

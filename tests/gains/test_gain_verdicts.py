@@ -54,7 +54,6 @@ def test_i2rt_counts_the_followers_hand_by_the_ratio_of_the_springs(tmp_path):
 
 
 def test_outcomes_are_those_of_the_pairs(tmp_path):
-    """And the outcome of all is the worst of them."""
     gains = zw.read_gains(written(tmp_path, "a.yaml", openarm()))
     found = zw.check_gains(gains)
     by_hand = {name: zw.check(pair).outcome for name, pair in gains.pairs().items()}
@@ -188,7 +187,6 @@ def test_a_plant_that_cannot_be_used_is_refused(tmp_path, text, said):
 
 
 def test_published_plants_are_of_their_own_arms(tmp_path):
-    """And an arm for which nothing is published asks for a plant."""
     piper = zw.read_gains(written(tmp_path, "a.toml", PIPER), both=True)
     with pytest.raises(zw.InputError, match="no source gives"):
         piper.pairs()

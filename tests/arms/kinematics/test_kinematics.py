@@ -1,14 +1,18 @@
-"""Every arm: its Jacobian is the derivative of its position, and the bound inside a cell holds."""
+"""Every arm: its Jacobian is the derivative of its position, the bound inside a cell holds; damping."""
 
 from __future__ import annotations
 
 from math import cos, pi, sin
+from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import zwidth as zw
 from zwidth.model.arms import BUILT_IN, Arm, Leg, LeggedArm, PlanarChain, Sites, built_in
+from zwidth.model.arms.arm import joint_damping
 
 THREE_LINKS = PlanarChain(links=(0.12, 0.1, 0.05), damping=(0.01, 0.02, 0.03), joint_range=((-1, 1),) * 3)
 ARMS = [*(built_in(name, damping=0.003) for name in BUILT_IN), THREE_LINKS]
@@ -25,13 +29,11 @@ def _random_sites(arm: Arm, count: int) -> tuple[Sites, list[tuple[int, ...]]]:
 def test_the_jacobian_is_the_derivative_of_the_position(arm: Arm) -> None:
     """Central differences of forward()."""
     sites, places = _random_sites(arm, 5)
-    step = 1e-6
     for place in places:
         q = sites.joints[place]
-        numeric = np.stack(
-            [(arm.forward(q + step * e) - arm.forward(q - step * e)) / (2 * step) for e in np.eye(len(q))],
-            axis=-1,
-        )
+        steps = 1e-6 * np.eye(len(q))
+        moved = [(arm.forward(q + step) - arm.forward(q - step)) / 2e-6 for step in steps]
+        numeric = np.stack(moved, axis=-1)
         assert arm.jacobian(q) == pytest.approx(numeric, abs=2e-9)
         assert sites.jacobians[place] == pytest.approx(numeric, abs=2e-9)
         assert arm.forward(q) == pytest.approx(sites.positions[place], abs=1e-11)
@@ -127,7 +129,6 @@ def test_out_of_reach_is_nan_and_has_no_bound() -> None:
     ],
 )
 def test_bad_input_has_one_clear_message(make: object, words: str) -> None:
-    """What was given, and what to try."""
     with pytest.raises(zw.InputError, match=words):
         make()  # type: ignore[operator]
 
@@ -137,3 +138,66 @@ def test_a_paddle_turns_on_a_circle() -> None:
     arm = built_in("hapkit", damping=0.001)
     q = np.linspace(-pi / 4, pi / 4, 7)[:, None]
     assert np.linalg.norm(arm.jacobian(q), axis=(-1, -2)) == pytest.approx(0.065659)
+
+
+BELT = np.array([[1.0, 0.0], [-0.7, 1.0]])
+"""The second motor sits in the base: its belt turns with q₂ − 0.7 q₁."""
+SHARED = BELT.T @ np.diag([0.013, 0.008]) @ BELT
+
+
+def test_a_matrix_is_kept_and_shown():
+    arm = built_in("two-link", damping=SHARED)
+    rows = tuple(map(tuple, SHARED.tolist()))
+    assert arm.damping == rows
+    assert f"damping={rows}" in repr(arm)
+    assert arm.replace(name="other").damping == rows
+    assert arm == built_in("two-link", damping=rows)
+
+
+def test_a_diagonal_matrix_is_one_number_for_each_joint():
+    told = (np.diag([0.02, 0.01]), ((0.02, 0), (0, 0.01)), (0.02, 0.01), [0.02, 0.01])
+    assert {joint_damping(damping, 2) for damping in told} == {(0.02, 0.01)}
+    assert joint_damping([[0.3]], 1) == joint_damping(0.3, 1) == (0.3,)
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(2, 7), st.integers(-6, 6))
+def test_shafts_with_friction_give_no_matrix_that_is_refused(seed: int, joints: int, power: int):
+    """Aᵀ diag(b) A, singular too, and joints in units that are as far apart as one likes."""
+    rng = np.random.default_rng(seed)
+    shafts = int(rng.integers(1, joints + 1))
+    scale = 10.0 ** (power * rng.random(joints))
+    turned = rng.normal(size=(shafts, joints)) * scale
+    damping = turned.T @ np.diag(rng.uniform(0.01, 1, shafts)) @ turned
+    kept = np.array(joint_damping(damping, joints))
+    assert np.array_equal(kept, kept.T)
+    assert np.allclose(kept, damping, rtol=1e-12, atol=0)
+
+
+@pytest.mark.parametrize(
+    ("damping", "words"),
+    [
+        ([[0.01, 0.002], [0.003, 0.01]], r"symmetric: .* only \(δ \+ δᵀ\)/2"),
+        ([[0.01, 0.002], [0.002 * (1 + 1e-9), 0.01]], "symmetric"),
+        ([[0.04, 0.06], [0.06, 0.09 * (1 - 1e-9)]], "no negative eigenvalue"),
+        ([[0.01, 1e-9], [1e-9, 0.0]], "no negative eigenvalue"),
+        ([[-0.01, 0], [0, 0.01]], "≥ 0 on the diagonal"),
+        ([[0.01, np.nan], [np.nan, 0.01]], "finite"),
+        ([[0.01, np.inf], [np.inf, 0.01]], "finite"),
+        (np.eye(3), r"for 2 joints is 2 × 2, got the shape \(3, 3\)"),
+        ([[0.01, 0.002]], r"is 2 × 2, got the shape \(1, 2\)"),
+        (np.ones((2, 2, 2)), "is 2 × 2"),
+        ([[0.01, 0.0], [0.01]], "one number for each joint, or a square matrix"),
+        ("thick", "one number for each joint, or a square matrix"),
+        ([0.01], "give one for each joint, 2 in all; got 1"),
+        ([0.01, -0.01], "≥ 0 in every joint"),
+    ],
+)
+def test_what_cannot_be_friction_is_refused(damping: Any, words: str):
+    with pytest.raises(zw.InputError, match=words):
+        PlanarChain(links=(0.1, 0.1), damping=damping)
+
+
+def test_at_the_bound_it_is_taken():
+    """A matrix of which one motion costs nothing: the other side of what is refused."""
+    assert joint_damping([[0.04, 0.06], [0.06, 0.09]], 2) == ((0.04, 0.06), (0.06, 0.09))
+    assert joint_damping([[0.04, 0.06], [0.06, 0.09 * (1 + 1e-9)]], 2)

@@ -94,7 +94,7 @@ def promised(result: zw.identification.Identified) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("name", ["falling", "falling one way"])
-def test_no_more_is_promised_than_the_slope_at_the_largest_speed(name: str) -> None:
+def test_no_more_is_promised_than_the_slope_at_the_largest_speed(name):
     """Of 12 minutes two at most promise more, at 95 % each; by a straight line all do."""
     results = [found(name, seed) for seed in range(12)]
     slopes = [LAWS[name].slope(result.speed) for result in results]
@@ -105,7 +105,7 @@ def test_no_more_is_promised_than_the_slope_at_the_largest_speed(name: str) -> N
     assert sum(promised(r)[0] > slope for r, slope in zip(results, slopes, strict=True)) <= 2
 
 
-def test_a_stribeck_bump_is_not_taken_for_damping() -> None:
+def test_a_stribeck_bump_is_not_taken_for_damping():
     """A parabola without a bump says more than there is; with it, two of 12 at most, and not much less."""
     results = [found("Stribeck", seed) for seed in range(12)]
     share = [promised(result)[0] / 0.15 for result in results]
@@ -116,7 +116,7 @@ def test_a_stribeck_bump_is_not_taken_for_damping() -> None:
 
 
 @pytest.mark.parametrize("name", list(LAWS))
-def test_the_line_promised_is_below_friction(name: str) -> None:
+def test_the_line_promised_is_below_friction(name):
     """At every speed up to that seen, in the mean of both directions, another speed in each."""
     over = 0
     for seed in range(12):
@@ -129,8 +129,7 @@ def test_the_line_promised_is_below_friction(name: str) -> None:
     assert over <= 2
 
 
-def test_a_bend_is_said_with_the_slope_and_the_speed() -> None:
-    """And the device is the line that proves the stiffest wall."""
+def test_a_bend_is_said_with_the_slope_and_the_speed():
     result = found("falling", 0)
     (finding,) = [f for f in result.findings if f.kind == "bent friction"]
     assert "its slope is" in finding.text
@@ -138,8 +137,7 @@ def test_a_bend_is_said_with_the_slope_and_the_speed() -> None:
     assert promised(result) == (float(best.damping), float(best.coulomb_friction))
 
 
-def test_a_claim_names_the_speed_up_to_which_friction_was_seen(tmp_path) -> None:
-    """In the sentence, in the assumptions and in the record, of a device that was saved and read again."""
+def test_a_claim_names_the_speed_up_to_which_friction_was_seen(tmp_path):
     result = found("Stribeck", 1)
     result.save(tmp_path / "mine.toml", 0.9)
     device = load_device([tmp_path / "mine.toml"], {})
@@ -162,7 +160,7 @@ def test_a_claim_names_the_speed_up_to_which_friction_was_seen(tmp_path) -> None
     assert "friction_speed_m_per_s" not in everywhere.scope.to_dict()
 
 
-def test_the_speed_is_that_of_the_strokes() -> None:
+def test_the_speed_is_that_of_the_strokes():
     """A quarter of the strokes each way, or 32 of them, have a quicker pulse; the slower way counts."""
     result = found("falling", 3)
     velocity, stroke = (result.points[name].values for name in ("speed", "stroke"))
@@ -173,7 +171,7 @@ def test_the_speed_is_that_of_the_strokes() -> None:
 
 
 @pytest.mark.parametrize("speed", [0.3, 0.6])
-def test_a_plan_reaches_the_speed_that_is_asked_for(speed: float) -> None:
+def test_a_plan_reaches_the_speed_that_is_asked_for(speed):
     """Its strokes, as a person varies them, show friction that far; slower ones do not, and it goes on."""
     asked = zw.plan(paddle(), force_noise=0.1, speed=speed, precision=0.5)
     kinds = [(s.length, s.duration, 60 * w) for s, w in zip(asked.strokes, asked.shares, strict=True)]
@@ -185,8 +183,7 @@ def test_a_plan_reaches_the_speed_that_is_asked_for(speed: float) -> None:
     assert f"So far it was seen up to {result.speed:.3g} m/s" in repr(farther)
 
 
-def test_friction_speed_of_a_wheel_and_of_its_handle() -> None:
-    """rad/s at the axis, m/s at the handle; not 0."""
+def test_friction_speed_of_a_wheel_and_of_its_handle():
     wheel = {"damping": "0.01", "sample_period": "1 ms", "friction_speed": "4"}
     assert float(zw.rotary(**wheel).friction_speed) == 4.0
     assert float(zw.rotary(**wheel, handle_radius="0.25").friction_speed) == 1.0
@@ -194,8 +191,7 @@ def test_friction_speed_of_a_wheel_and_of_its_handle() -> None:
         zw.rotary(**{**wheel, "friction_speed": 0})
 
 
-def test_best_guesses_below_0() -> None:
-    """An estimate a little below 0 makes a device with f_c = 0, or without a mass."""
+def test_best_guesses_below_0():
     result = found("falling one way", 0)
     less = {name: result.estimates[name]._replace(value=-0.001) for name in ("mass", "coulomb_friction")}
     without = dataclasses.replace(result, estimates={**result.estimates, **less}, findings=())
@@ -204,8 +200,7 @@ def test_best_guesses_below_0() -> None:
 
 
 @pytest.mark.parametrize(("inward", "outward"), [(0.26, 0.14), (0.14, 0.26)])
-def test_each_direction_is_found(inward: float, outward: float) -> None:
-    """In intervals that hold it, and the finding names both; Coulomb friction is the mean as before."""
+def test_each_direction_is_found(inward, outward):
     result = two_ways(0, inward, outward)
     for estimate, true in zip(result.directions, (inward, outward, (inward - outward) / 2), strict=True):
         low, high = estimate.interval(0.999)
@@ -217,7 +212,7 @@ def test_each_direction_is_found(inward: float, outward: float) -> None:
     assert result.shows("damping by direction")
 
 
-def test_the_wall_rests_on_the_lesser() -> None:
+def test_the_wall_rests_on_the_lesser():
     """Of 12 sessions at 95 % two at most promise more than 2 · 0.14/T; by the mean of both all would."""
     results = [two_ways(seed, 0.26, 0.14) for seed in range(12)]
     walls = [2 * float(result.device(0.9).damping.low) / PERIOD for result in results]
@@ -228,14 +223,14 @@ def test_the_wall_rests_on_the_lesser() -> None:
     assert float(best.damping) == results[0].directions.outward.value
 
 
-def test_confidence_in_a_wall_between_the_two() -> None:
+def test_confidence_in_a_wall_between_the_two():
     result = two_ways(1, 0.26, 0.14)
     assert result.confidence(zw.Wall(308)) < 0.5
     assert result.confidence(zw.Wall(350)) < 0.01
     assert result.confidence(zw.Wall(225)) > 0.95
 
 
-def test_a_device_that_is_the_same_both_ways_loses_little() -> None:
+def test_a_device_that_is_the_same_both_ways_loses_little():
     """Not knowing that it is costs some per cent of the promise; nothing is said of directions."""
     results = [two_ways(seed, 0.15, 0.15) for seed in range(12)]
     share = [float(result.device(0.9).damping.low) / 0.15 for result in results]
@@ -246,8 +241,7 @@ def test_a_device_that_is_the_same_both_ways_loses_little() -> None:
     assert float(results[0].device(None).damping) == results[0].estimates["damping"].value
 
 
-def test_both_stand_in_every_face(tmp_path, capsys) -> None:
-    """The table, the document, the file and the command."""
+def test_both_stand_in_every_face(tmp_path, capsys):
     result = two_ways(0, 0.26, 0.14)
     assert "inward" in repr(result)
     assert "outward" in repr(result)

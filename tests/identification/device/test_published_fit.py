@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from recorded_strokes import TRUE, recorded
-from recordings import hand_moves, paddle
 
 import zwidth as zw
 
@@ -49,17 +48,6 @@ def test_it_is_the_normal_equations_of_smoothed_differences():
     assert found.explained == pytest.approx(1 - np.mean(left**2) / force.var(), rel=1e-9)
 
 
-def test_few_passes_leave_counts_and_many_take_the_motion():
-    """On 2.24 mm counts mass is lost with few passes; with many, damping is overstated."""
-    recording = hand_moves(paddle(resolution="2.24 mm"), 60.0, seed=3, drift=0.0)
-    arrays = {name: getattr(recording, name) for name in ("time", "position", "hand_force")}
-    log = zw.Log.from_arrays(resolution=2.24e-3, **arrays)
-    few, many = (zw.identification.identify_published(log, passes=passes) for passes in (2, 200))
-    assert few.mass < 0.3 * TRUE["mass"]
-    assert many.damping > 1.2 * TRUE["damping"]
-    assert many.coulomb_friction < 0.9 * TRUE["coulomb_friction"]
-
-
 def test_without_coulomb_friction_damping_is_more_than_doubled():
     """A mass and a damper call walls passive that are not: Abbott & Okamura (2005) found 0.41 for 0.15."""
     log = recorded([(0.06, 0.5, 30)], np.random.default_rng(4))
@@ -70,7 +58,6 @@ def test_without_coulomb_friction_damping_is_more_than_doubled():
 
 
 def test_runs_are_stacked_and_not_smoothed_across():
-    """Two runs far apart give what their stacked rows give: no row mixes them."""
     rng = np.random.default_rng(5)
     logs = [recorded([(0.06, 0.5, 5)], rng) for _ in range(2)]
     both = zw.identification.identify_published(zw.Log.concatenate(logs), passes=5)

@@ -64,7 +64,6 @@ def test_a_force_that_is_held_counts_from_its_sample_to_the_next():
 
 
 def test_a_late_force_is_read_in_time():
-    """A force recorded 3.4 samples late gives the same means as one in time."""
     time, rest = np.arange(400) * PERIOD, np.zeros(400)
     late, there = (
         weighed(pulse(8, late=n), rest, _stroke(400), PERIOD, np.sin(40 * (time - n * PERIOD)), None)

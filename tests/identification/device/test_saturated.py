@@ -38,8 +38,7 @@ def logged(seed: int, share: float = 0.0, way: Way = "cut off") -> zw.identifica
 
 
 @pytest.mark.parametrize("way", ["cut off", "steps of a converter", "noise behind the stop"])
-def test_damping_is_what_it_was(way: Way) -> None:
-    """A tenth of the samples at the end stop: the finding says so, and the interval holds the truth."""
+def test_damping_is_what_it_was(way):
     found = logged(3, 0.1, way)
     (finding,) = [f for f in found.findings if f.kind == "saturated"]
     assert "the sensor is at the end of its range" in finding.text
@@ -49,20 +48,18 @@ def test_damping_is_what_it_was(way: Way) -> None:
     assert found.strokes < 0.7 * logged(3).strokes
 
 
-def test_most_promises_keep_to_the_limit() -> None:
-    """Of 16 sessions whose load cell is saturated in a tenth of the samples, at most two promise too much."""
+def test_most_promises_keep_to_the_limit():
     promised = [2e3 * logged(seed, 0.1).estimates["damping"].interval(0.9)[0] for seed in range(2, 18)]
     assert sum(wall > 300 for wall in promised) <= 2  # of a one-sided bound of 95 %
     assert np.median(promised) > 270
 
 
-def test_too_few_strokes_within_the_range_are_too_little() -> None:
+def test_too_few_strokes_within_the_range_are_too_little():
     with pytest.raises(zw.InputError, match="the motion shows too little"):
         logged(0, 0.2)
 
 
 def stops(*blocks: Array) -> tuple[tuple[float, float], int]:
-    """What is found in the blocks together."""
     counted = Stops()
     for block in blocks:
         counted.take(block)
@@ -88,13 +85,12 @@ NOISE = np.random.default_rng(1).normal(size=20_000)
         pytest.param(np.linspace(-1, 1, 20_000), id="ramp"),
     ],
 )
-def test_what_turns_round_is_at_no_stop(force: Array) -> None:
+def test_what_turns_round_is_at_no_stop(force):
     """Nor is a force that is 0 where nobody touches, or one of a few values only."""
     assert stops(force) == ((-np.inf, np.inf), 0)
 
 
-def test_one_end_in_many_blocks() -> None:
-    """The same from any blocks; the other end stays open."""
+def test_one_end_in_many_blocks():
     force = np.minimum(SINE + 0.01 * np.random.default_rng(2).normal(size=SINE.size), 2.5)
     whole = stops(force)
     assert whole == ((-np.inf, 2.5), int((force == 2.5).sum()))

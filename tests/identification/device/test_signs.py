@@ -35,8 +35,7 @@ def refused(recording: Recording, **forces: object) -> str:
     return str(error.value)
 
 
-def test_a_load_cell_that_counts_the_other_way(recording: Recording) -> None:
-    """Mass and damping below 0: the message says which sign to turn, of the force or of the position."""
+def test_a_load_cell_that_counts_the_other_way(recording):
     true = logged(recording).estimates["mass"].value
     said = refused(recording, hand_force=-recording.hand_force)
     assert f"mass comes out as {-true:.4g} kg" in said
@@ -46,7 +45,7 @@ def test_a_load_cell_that_counts_the_other_way(recording: Recording) -> None:
     assert "do not rule out" not in said
 
 
-def test_of_two_forces_the_wrong_one_is_named(recording: Recording) -> None:
+def test_of_two_forces_the_wrong_one_is_named(recording):
     """One sign is turned before two; only where both are, it may be the position's."""
     motor = 2.0 * np.sin(2 * np.pi * 0.7 * recording.time)  # the hand makes up for it
     right = {"hand_force": recording.hand_force + motor, "actuator_force": motor}
@@ -60,7 +59,7 @@ def test_of_two_forces_the_wrong_one_is_named(recording: Recording) -> None:
         assert ('{"position": "-1"}' in said) is (len(turned) == 2)
 
 
-def test_a_motor_that_compensates_friction_and_is_not_logged(recording: Recording) -> None:
+def test_a_motor_that_compensates_friction_and_is_not_logged(recording):
     """Damping below 0 with the right mass: no sign explains it, and the message says what may."""
     said = refused(recording, hand_force=recording.hand_force - 0.4 * recording.true_velocity)
     assert "damping comes out as -0.2" in said
@@ -86,14 +85,12 @@ COLUMNS = {"time": "Zeit [s]", "position": "Weg [mm]", "hand_force": "Kraft [N]"
 @pytest.mark.parametrize(
     ("scale", "factor"), [("-1", -1.0), (-1, -1.0), (" -1 ", -1.0), ("1 m", 1e3)], ids=repr
 )
-def test_a_bare_factor_goes_with_the_columns_unit(
-    scale: object, factor: float, recording: Recording, table: Path
-) -> None:
+def test_a_bare_factor_goes_with_the_columns_unit(scale, factor, recording, table):
     (block, *_) = zw.read_log(table, columns=COLUMNS, scale={"position": scale}).blocks()
     assert np.abs(block.position - factor * recording.position[: block.position.size]).max() < 1e-9
 
 
-def test_a_sign_of_counts(tmp_path: Path) -> None:
+def test_a_sign_of_counts(tmp_path):
     rows = "".join(f"{k / 1000!r},{k % 50}\n" for k in range(200))
     (tmp_path / "counts.csv").write_text("t_s,enc_counts\n" + rows, encoding="utf-8")
     log = zw.read_log(tmp_path / "counts.csv", resolution="0.1 mm", scale={"position": "-2"})
@@ -102,7 +99,7 @@ def test_a_sign_of_counts(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("unit", ["m", "deg", "counts", "um"])
-def test_a_unit_that_contradicts_the_columns_own(unit: str, table: Path) -> None:
+def test_a_unit_that_contradicts_the_columns_own(unit, table):
     with pytest.raises(zw.InputError, match=rf'"Weg \[mm\]" says of itself that it is in mm, and {unit} is'):
         zw.read_log(table, columns=COLUMNS, units={"position": unit})
     assert zw.read_log(table, columns=COLUMNS, units={"position": "mm"}).motion == "linear"

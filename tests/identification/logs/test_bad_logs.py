@@ -56,7 +56,7 @@ RANDOM = np.random.default_rng(1).bytes(20000)
         (b"#ROSBAG V2.0\n" + RANDOM, "cannot be read"),
     ],
 )
-def test_foreign_content_is_one_message(content: bytes, message: str, tmp_path: Path) -> None:
+def test_foreign_content_is_one_message(content, message, tmp_path):
     path = tmp_path / "log.csv"
     path.write_bytes(content)
     with pytest.raises(zw.InputError, match=message) as caught:
@@ -65,7 +65,7 @@ def test_foreign_content_is_one_message(content: bytes, message: str, tmp_path: 
     assert len(str(caught.value)) < 1200
 
 
-def test_missing_files_and_directories(tmp_path: Path) -> None:
+def test_missing_files_and_directories(tmp_path):
     with pytest.raises(zw.InputError, match="no such file"):
         zw.read_log(tmp_path / "none.csv")
     with pytest.raises(zw.InputError, match="no rosbag2"):
@@ -81,7 +81,7 @@ def outcome(path: Path) -> tuple[str, int]:
         return str(error), 0
 
 
-def test_a_column_that_is_there_twice_is_told_elsewhere_too(tmp_path: Path) -> None:
+def test_a_column_that_is_there_twice_is_told_elsewhere_too(tmp_path):
     path, text = tmp_path / "log.parquet", tmp_path / "log.csv"
     pq.write_table(pa.Table.from_arrays([pa.array([1.0, 2.0])] * 2, names=["position_m"] * 2), path)
     with pytest.raises(zw.InputError, match='more than one column "position_m"'):
@@ -94,7 +94,7 @@ def test_a_column_that_is_there_twice_is_told_elsewhere_too(tmp_path: Path) -> N
 
 @pytest.mark.parametrize("keep", [0.2, 0.6, 0.95, 0.999])
 @pytest.mark.parametrize("kind", ["parquet", "h5", "mat", "csv", "gz"])
-def test_truncated_files(kind: str, keep: float, tmp_path: Path) -> None:
+def test_truncated_files(kind, keep, tmp_path):
     """A copy that was cut short: a message, or the part that is there with a word about it."""
     columns = {"time_s": np.arange(3000) / 1000, "position_mm": np.arange(3000) % 41 * 1.0}
     path = tmp_path / f"log.{kind}"
@@ -116,20 +116,20 @@ def test_truncated_files(kind: str, keep: float, tmp_path: Path) -> None:
     assert samples == 0 or kind in ("csv", "mat")
 
 
-def test_any_damage_is_a_message_or_a_log(tmp_path: Path) -> None:
-    random = np.random.default_rng(7)
+def test_any_damage_is_a_message_or_a_log(tmp_path):
+    random, whole = np.random.default_rng(7), b"".join(GOOD.encode().splitlines(keepends=True)[:500])
     path = tmp_path / "log.csv"
     for _ in range(60):
-        content = bytearray(GOOD.encode())
+        content = bytearray(whole)
         for place in random.integers(0, len(content), random.integers(1, 30)):
             content[place] = random.choice(list(b"0123456789,;\n\t .-eE#\0\xff\"'x"))
         path.write_bytes(content)
         said, samples = outcome(path)
         assert str(path) in said
-        assert samples <= 2100
+        assert samples <= 600
 
 
-def test_columns_of_different_lengths(tmp_path: Path) -> None:
+def test_columns_of_different_lengths(tmp_path):
     path = tmp_path / "log.h5"
     with h5py.File(path, "w") as file:
         file["time_s"], file["position_mm"] = np.arange(100) / 1000, np.arange(90.0)
@@ -148,9 +148,7 @@ def test_columns_of_different_lengths(tmp_path: Path) -> None:
         ({"scale": {"hand_force": "two N/V"}}, "no factor"),
     ],
 )
-def test_a_slip_in_a_dictionary_is_not_silently_ignored(
-    arguments: dict[str, dict[str, object]], message: str, tmp_path: Path
-) -> None:
+def test_a_slip_in_a_dictionary_is_not_silently_ignored(arguments, message, tmp_path):
     path = tmp_path / "log.csv"
     path.write_text(GOOD)
     with pytest.raises(zw.InputError, match=message):
@@ -185,7 +183,7 @@ def peak(path: Path, more: str = "") -> tuple[int, str]:
 
 @measured
 @pytest.mark.parametrize("start", [b"", GOOD.encode(), b"PAR1", b"MATLAB 5.0 MAT-file"])
-def test_three_gigabytes_of_nothing(start: bytes, tmp_path: Path) -> None:
+def test_three_gigabytes_of_nothing(start, tmp_path):
     """A sparse file is neither loaded nor believed, whatever it begins with."""
     path = tmp_path / "log.csv"
     with open(path, "wb") as file:
@@ -197,7 +195,7 @@ def test_three_gigabytes_of_nothing(start: bytes, tmp_path: Path) -> None:
 
 
 @measured
-def test_a_sparse_hdf5_is_read_in_slices(tmp_path: Path) -> None:
+def test_a_sparse_hdf5_is_read_in_slices(tmp_path):
     """Three datasets of 1 GB each, never written: nothing moves, and memory stays bounded."""
     path = tmp_path / "log.h5"
     with h5py.File(path, "w") as file:

@@ -6,7 +6,6 @@ import bz2
 import gzip
 import struct
 import zlib
-from collections.abc import Callable
 from pathlib import Path
 
 import h5py
@@ -38,7 +37,7 @@ def refused(path: Path, message: str) -> None:
 
 
 @pytest.mark.parametrize(("suffix", "pressed"), [(".gz", gzip.compress), (".bz2", bz2.compress)])
-def test_compressed_text_that_grows_is_refused(suffix: str, pressed, tmp_path: Path) -> None:
+def test_compressed_text_that_grows_is_refused(suffix, pressed, tmp_path):
     """Counted while it is read, since it says nothing of its size itself."""
     path = tmp_path / f"log.csv{suffix}"
     rows = "".join(f"{k},{k % 7}\n" for k in range(100)) + "100,0\n" * (SIZE // 6)
@@ -46,7 +45,7 @@ def test_compressed_text_that_grows_is_refused(suffix: str, pressed, tmp_path: P
     refused(path, "would become")
 
 
-def test_parquet_that_grows_is_refused(tmp_path: Path) -> None:
+def test_parquet_that_grows_is_refused(tmp_path):
     """Half a million times the same number takes some bytes."""
     path = tmp_path / "log.parquet"
     pq.write_table(pa.table({"time_s": np.zeros(SIZE // 8), "position_mm": np.zeros(SIZE // 8)}), path)
@@ -90,9 +89,7 @@ def _many_times_over(file: h5py.File, name: str) -> None:
         (_many_times_over, "2 times over"),
     ],
 )
-def test_hdf5_that_grows_is_refused(
-    make: Callable[[h5py.File, str], None], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_hdf5_that_grows_is_refused(make, message, tmp_path, monkeypatch):
     path = tmp_path / "log.h5"
     with h5py.File(path, "w") as file:
         for name in ("time_s", "position_mm"):
@@ -102,7 +99,7 @@ def test_hdf5_that_grows_is_refused(
     refused(path, message)
 
 
-def test_hdf5_does_not_lead_to_other_files(tmp_path: Path) -> None:
+def test_hdf5_does_not_lead_to_other_files(tmp_path):
     """By a link, which is not followed; by numbers that are kept elsewhere; put together of others."""
     path, other, secret = (tmp_path / name for name in ("log.h5", "other.h5", "secret"))
     secret.write_bytes(np.arange(100.0).tobytes())
@@ -125,7 +122,7 @@ def test_hdf5_does_not_lead_to_other_files(tmp_path: Path) -> None:
         refused(path, message)
 
 
-def test_matlab_that_grows_is_refused(tmp_path: Path) -> None:
+def test_matlab_that_grows_is_refused(tmp_path):
     path = tmp_path / "log.mat"
     savemat(path, {"time_s": np.zeros(SIZE // 8), "position_mm": np.zeros(SIZE // 8)}, do_compression=True)
     assert path.stat().st_size < SIZE // reading.RATIO
@@ -154,7 +151,7 @@ def _mcap(codec: str, content: bytes, declared: int, indexed: bool) -> bytes:
 @pytest.mark.parametrize("indexed", [False, True])
 @pytest.mark.parametrize("declared", [2**60, SIZE, 100])
 @pytest.mark.parametrize("codec", ["zstd", "lz4"])
-def test_chunks_that_grow_are_refused(codec: str, declared: int, indexed: bool, tmp_path: Path) -> None:
+def test_chunks_that_grow_are_refused(codec, declared, indexed, tmp_path):
     """By what they say, and by what they really become; where the index leads too."""
     pytest.importorskip("rosbags")
     path = tmp_path / "log.mcap"
@@ -192,9 +189,7 @@ def _rosbag1(codec: bytes, content: bytes, declared: int, place: int | None) -> 
         (100, 100, 50, "index leads to"),  # to bytes that were not looked at
     ],
 )
-def test_chunks_of_ros_1_that_grow_are_refused(
-    size: int, declared: int, place: int | None, message: str, tmp_path: Path
-) -> None:
+def test_chunks_of_ros_1_that_grow_are_refused(size, declared, place, message, tmp_path):
     pytest.importorskip("rosbags")
     path = tmp_path / "log.bag"
     path.write_bytes(_rosbag1(b"bz2", bz2.compress(bytes(size)), declared, place))
@@ -202,8 +197,7 @@ def test_chunks_of_ros_1_that_grow_are_refused(
 
 
 @pytest.mark.parametrize("grown", [False, True])
-def test_messages_that_are_compressed_one_by_one(grown: bool, recording, tmp_path: Path) -> None:
-    """They are read, unless one becomes too large."""
+def test_messages_that_are_compressed_one_by_one(grown, recording, tmp_path):
     pytest.importorskip("rosbags")
     from rosbags.rosbag2 import CompressionFormat, CompressionMode, Writer
     from rosbags.typesys import Stores, get_typestore
@@ -228,7 +222,7 @@ def test_messages_that_are_compressed_one_by_one(grown: bool, recording, tmp_pat
         assert log.samples == 500
 
 
-def test_a_bag_that_grows_on_the_disk_is_refused(tmp_path: Path) -> None:
+def test_a_bag_that_grows_on_the_disk_is_refused(tmp_path):
     """A whole file of a bag is unpacked to the disk."""
     pytest.importorskip("rosbags")
     path = tmp_path / "bag"
@@ -243,15 +237,13 @@ def test_a_bag_that_grows_on_the_disk_is_refused(tmp_path: Path) -> None:
     ("name", "save", "message"),
     [("log.npz", np.savez_compressed, "zip archive"), ("log.npy", np.save, "no text|no table")],
 )
-def test_zip_archives_and_arrays_of_objects_are_not_read(
-    name: str, save: Callable[..., None], message: str, tmp_path: Path
-) -> None:
+def test_zip_archives_and_arrays_of_objects_are_not_read(name, save, message, tmp_path):
     """NumPy's own files are no logs: nothing in them is expanded or run."""
     save(tmp_path / name, np.array([{"run": "this"}], dtype=object))
     refused(tmp_path / name, message)
 
 
-def test_what_a_recording_becomes_is_read(tmp_path: Path) -> None:
+def test_what_a_recording_becomes_is_read(tmp_path):
     """The bounds are far from what is recorded: a log of the size of the tests' bombs, compressed."""
     path = tmp_path / "log.csv.gz"
     rows = "".join(f"{k / 1000},{round(1e3 * np.sin(k / 97))}\n" for k in range(SIZE // 40))

@@ -20,8 +20,7 @@ def drift(count: int) -> np.ndarray:
     return np.cumsum(np.random.default_rng(2).normal(0, 1e-5, count))
 
 
-def test_even_stamps_are_the_time(recording) -> None:
-    """A clean log comes back as it is, in one run, with nothing odd."""
+def test_even_stamps_are_the_time(recording):
     log = zw.Log.from_arrays(time=recording.time, position=recording.position, hand_force=recording.force)
     blocks = list(log.blocks())
     assert (log.sample_period, log.samples, log.runs, log.motion) == (1 / 2000, 4000, 1, "linear")
@@ -34,7 +33,7 @@ def test_even_stamps_are_the_time(recording) -> None:
     assert log.duration == 2.0
 
 
-def test_blocks_may_be_read_twice_and_are_no_longer_than_said() -> None:
+def test_blocks_may_be_read_twice_and_are_no_longer_than_said():
     count = 2 * BLOCK_SIZE + 1000
     log = zw.Log.from_arrays(time=np.arange(count) * 1e-3, position=drift(count))
     first, second = list(log.blocks()), list(log.blocks())
@@ -46,7 +45,7 @@ def test_blocks_may_be_read_twice_and_are_no_longer_than_said() -> None:
 
 
 @pytest.mark.parametrize("spread", [2e-5, 1.5e-4, 4e-4])
-def test_jitter_of_the_stamps_is_said_and_the_row_is_the_clock(spread: float) -> None:
+def test_jitter_of_the_stamps_is_said_and_the_row_is_the_clock(spread):
     """Stamps within ± spread of an even grid of 0.5 ms: no sample is missing, the times are even."""
     count = 20000
     late = np.random.default_rng(3).uniform(0, spread, count)
@@ -59,8 +58,7 @@ def test_jitter_of_the_stamps_is_said_and_the_row_is_the_clock(spread: float) ->
     assert abs(block.time[0] - 0.5 * spread) < spread
 
 
-def test_a_late_stamp_is_no_lost_sample_and_a_lost_sample_is() -> None:
-    """One stamp late by 0.8 T changes nothing; one row taken out makes a new run."""
+def test_a_late_stamp_is_no_lost_sample_and_a_lost_sample_is():
     time = np.arange(5000) * 1e-3
     time[1234] += 8e-4
     log = zw.Log.from_arrays(time=time, position=drift(5000))
@@ -74,8 +72,7 @@ def test_a_late_stamp_is_no_lost_sample_and_a_lost_sample_is() -> None:
     assert second.time[0] == pytest.approx(3.211)
 
 
-def test_gaps_on_the_border_of_a_piece_are_found() -> None:
-    """The same cuts wherever a gap falls in what is read at once."""
+def test_gaps_on_the_border_of_a_piece_are_found():
     count = 2 * BLOCK_SIZE
     for place in (BLOCK_SIZE - 1, BLOCK_SIZE, BLOCK_SIZE + 1):
         time = np.delete(np.arange(count) * 1e-3, slice(place, place + 5))
@@ -87,7 +84,7 @@ def test_gaps_on_the_border_of_a_piece_are_found() -> None:
 
 
 @pytest.mark.parametrize("rate", [1003, 1010, 1050, 1500, 2200])
-def test_a_clock_of_milliseconds_drops_no_sample_of_a_faster_loop(rate: int) -> None:
+def test_a_clock_of_milliseconds_drops_no_sample_of_a_faster_loop(rate):
     """Between 1 and 2 kHz stamps in whole ms come once or twice: every row is a sample."""
     log = zw.Log.from_arrays(time=np.round(np.arange(20000) / rate, 3), position=drift(20000))
     assert (log.samples, log.runs) == (20000, 1)
@@ -95,7 +92,7 @@ def test_a_clock_of_milliseconds_drops_no_sample_of_a_faster_loop(rate: int) -> 
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.1e-3, 5e-3])
-def test_a_coarse_clock_repeats_stamps_and_no_sample_is_left_out(unit: float) -> None:
+def test_a_coarse_clock_repeats_stamps_and_no_sample_is_left_out(unit):
     """3 kHz stamped by a clock that ticks every few ms: the rows are the clock, the period their mean."""
     time = np.floor(np.arange(30000) / 3000 / unit + 1e-9) * unit
     log = zw.Log.from_arrays(time=time, position=drift(30000))
@@ -105,7 +102,7 @@ def test_a_coarse_clock_repeats_stamps_and_no_sample_is_left_out(unit: float) ->
     assert "grouped stamps" in kinds(log)
 
 
-def test_packets_of_samples_are_stamped_when_they_arrive() -> None:
+def test_packets_of_samples_are_stamped_when_they_arrive():
     """Eight samples with the stamps of their packet; a lost packet still shows."""
     arrival = np.repeat(np.arange(7, 40000, 8) / 4000, 8) + np.tile(np.arange(8) * 1e-7, 5000)
     log = zw.Log.from_arrays(time=arrival, position=drift(40000))
@@ -115,7 +112,7 @@ def test_packets_of_samples_are_stamped_when_they_arrive() -> None:
     assert zw.Log.from_arrays(time=fewer, position=drift(fewer.size)).runs == 2
 
 
-def test_a_row_written_twice_is_left_out(recording) -> None:
+def test_a_row_written_twice_is_left_out(recording):
     rows = np.sort(np.append(np.arange(4000), [700, 2500]))
     log = zw.Log.from_arrays(time=recording.time[rows], position=recording.position[rows])
     (block,) = log.blocks()
@@ -123,8 +120,7 @@ def test_a_row_written_twice_is_left_out(recording) -> None:
     assert np.abs(block.position - recording.position).max() < 1e-17
 
 
-def test_time_that_starts_again_is_a_new_run(recording) -> None:
-    """Recordings one after the other in one file, each from its own zero."""
+def test_time_that_starts_again_is_a_new_run(recording):
     log = zw.Log.from_arrays(time=np.tile(recording.time, 3), position=np.tile(recording.position, 3))
     assert log.runs == 3
     assert "restart" in kinds(log)
@@ -142,12 +138,12 @@ def test_time_that_starts_again_is_a_new_run(recording) -> None:
     ],
     ids=["back", "half the rate", "another rate", "no clock"],
 )
-def test_stamps_that_are_no_clock_are_refused(stamps, message: str) -> None:
+def test_stamps_that_are_no_clock_are_refused(stamps, message):
     with pytest.raises(zw.InputError, match=message):
         zw.Log.from_arrays(time=stamps(np.arange(20_000)), position=drift(20_000))
 
 
-def test_a_stated_rate_is_held_against_the_stamps(recording) -> None:
+def test_a_stated_rate_is_held_against_the_stamps(recording):
     """Equal: silent; off by 0.5 %: reported and used; off by 5 %: refused."""
 
     def stated(factor: float) -> zw.Log:
@@ -163,7 +159,7 @@ def test_a_stated_rate_is_held_against_the_stamps(recording) -> None:
         stated(1.05)
 
 
-def test_without_time_the_rate_is_needed_and_is_the_clock(recording) -> None:
+def test_without_time_the_rate_is_needed_and_is_the_clock(recording):
     """A row has no other clock than its number."""
     log = zw.Log.from_arrays(position=recording.position, sample_period="0.5 ms")
     (block,) = log.blocks()
@@ -175,7 +171,7 @@ def test_without_time_the_rate_is_needed_and_is_the_clock(recording) -> None:
 
 
 @pytest.mark.parametrize("dtype", ["float64", "datetime64[ns]", "int64"])
-def test_dates_are_counted_from_the_first(dtype: str, recording) -> None:
+def test_dates_are_counted_from_the_first(dtype, recording):
     nanoseconds = 1_700_000_000_123_456_789 + np.rint(recording.time * 1e9).astype(np.int64)
     if dtype == "float64":
         log = zw.Log.from_arrays(time=nanoseconds / 1e9, position=recording.position)
@@ -189,8 +185,7 @@ def test_dates_are_counted_from_the_first(dtype: str, recording) -> None:
     assert "dates" in kinds(log)
 
 
-def test_rows_without_a_number_cut_the_run(recording) -> None:
-    """NaN and infinity in any column that is used: left out, counted apart, a new run after them."""
+def test_rows_without_a_number_cut_the_run(recording):
     x, f = recording.position.copy(), recording.force.copy()
     x[100:110], f[2000] = np.nan, np.inf
     log = zw.Log.from_arrays(time=recording.time, position=x, hand_force=f)
@@ -202,7 +197,7 @@ def test_rows_without_a_number_cut_the_run(recording) -> None:
 
 
 @seeds(12)
-def test_every_gap_is_found_behind_jitter(seed: int) -> None:
+def test_every_gap_is_found_behind_jitter(seed):
     """Gaps of any length, wherever they fall, and stamps off by up to T/5: runs as they were.
 
     Times are too, to within a sample: a period that such stamps leave open is rounded.
@@ -233,8 +228,7 @@ def short_log(samples=2000, period=1e-3, resolution=2e-5, force=True, shift=0.0)
     )
 
 
-def test_runs_follow_each_other_and_nothing_is_lost() -> None:
-    """Every sample of every log is there, in runs of their own, as often as it is read."""
+def test_runs_follow_each_other_and_nothing_is_lost():
     logs = [short_log(), short_log(3000, shift=1.0), short_log(2500, shift=2.0)]
     joined = zw.Log.concatenate(logs)
     assert joined.samples == 7500
@@ -247,7 +241,7 @@ def test_runs_follow_each_other_and_nothing_is_lost() -> None:
             assert np.array_equal(block.hand_force, next(log.blocks()).hand_force)
 
 
-def test_what_was_odd_is_still_said_with_where() -> None:
+def test_what_was_odd_is_still_said_with_where():
     odd = short_log()
     joined = zw.Log.concatenate([odd, short_log(shift=1.0)])
     assert len(joined.findings) == 2 * len(odd.findings)
@@ -263,7 +257,7 @@ def test_what_was_odd_is_still_said_with_where() -> None:
         ([], "no log"),
     ],
 )
-def test_logs_that_differ_are_not_joined(logs, message) -> None:
+def test_logs_that_differ_are_not_joined(logs, message):
     """Another rate, encoder or sensor is another experiment."""
     with pytest.raises(zw.InputError, match=message):
         zw.Log.concatenate([short_log(**each) for each in logs])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import bz2
 import gzip
 import sys
-from pathlib import Path
 
 import h5py
 import numpy as np
@@ -67,15 +66,14 @@ def assert_same(log: zw.Log, recording, force: bool = True) -> None:
         ("log.csv.bz2", ",", HEADER, "."),
     ],
 )
-def test_texts(name, sep, header, decimal, recording, tmp_path: Path) -> None:
-    """Delimiters, decimal signs, headers, preambles and lines of units as loggers write them; compressed."""
+def test_texts(name, sep, header, decimal, recording, tmp_path):
     path = tmp_path / name
     packed = {".gz": gzip.compress, ".bz2": bz2.compress}.get(path.suffix, bytes)
     path.write_bytes(packed(text_of(recording, sep, header, decimal).encode()))
     assert_same(zw.read_log(path), recording)
 
 
-def test_texts_without_a_header_have_numbered_columns(recording, tmp_path: Path) -> None:
+def test_texts_without_a_header_have_numbered_columns(recording, tmp_path):
     path = tmp_path / "bare.txt"
     path.write_text(text_of(recording, " ", ()))
     with pytest.raises(zw.InputError, match='"column 1", "column 2", "column 3"'):
@@ -86,7 +84,7 @@ def test_texts_without_a_header_have_numbered_columns(recording, tmp_path: Path)
     assert_same(zw.read_log(path, columns=columns, units=UNITS), recording)
 
 
-def test_the_first_rows_are_looked_at_once(tmp_path: Path) -> None:
+def test_the_first_rows_are_looked_at_once(tmp_path):
     """However many delimiters a line may have, and however often the file is opened."""
     path = tmp_path / "log.csv"
     lines = ["time_s,position_m,hand_force_N,motor_force_N"]
@@ -109,8 +107,7 @@ def test_the_first_rows_are_looked_at_once(tmp_path: Path) -> None:
     assert calls < 10 * 1000
 
 
-def test_texts_with_scars(recording, tmp_path: Path) -> None:
-    """A header again, a comment, a row too short, zero bytes at the end: said, and read around."""
+def test_texts_with_scars(recording, tmp_path):
     text = text_of(recording)
     (tmp_path / "twice.csv").write_text(text + text)
     twice = zw.read_log(tmp_path / "twice.csv")
@@ -129,7 +126,7 @@ def test_texts_with_scars(recording, tmp_path: Path) -> None:
     assert "unfinished" in {f.kind for f in cut.findings}
 
 
-def test_dates_and_integers_in_text(recording, tmp_path: Path) -> None:
+def test_dates_and_integers_in_text(recording, tmp_path):
     nanoseconds = 1_700_000_000_000_000_000 + np.rint(recording.time * 1e9).astype(np.int64)
     dates = nanoseconds.astype("datetime64[ns]").astype(str)
     for name, stamps in (("timestamp", dates), ("t_ns", nanoseconds.tolist())):
@@ -140,8 +137,7 @@ def test_dates_and_integers_in_text(recording, tmp_path: Path) -> None:
         assert_same(zw.read_log(path), recording, force=False)
 
 
-def test_parquet_in_any_types(recording, tmp_path: Path) -> None:
-    """Timestamps, integers, nulls, units in the metadata of a field; groups of rows of any size."""
+def test_parquet_in_any_types(recording, tmp_path):
     counts = np.rint(recording.position / 22.4e-6).astype(np.int16)
     stamps = pa.array(1_700_000_000_000_000 + np.rint(recording.time * 1e6).astype(np.int64)).cast(
         pa.timestamp("us")
@@ -159,8 +155,7 @@ def test_parquet_in_any_types(recording, tmp_path: Path) -> None:
     assert zw.read_log(tmp_path / "null.parquet", resolution="22.4 um").samples == 3999
 
 
-def test_hdf5_groups_matrices_and_compounds(recording, tmp_path: Path) -> None:
-    """Datasets by path with their units; columns of a matrix, either way up; fields of a compound."""
+def test_hdf5_groups_matrices_and_compounds(recording, tmp_path):
     path = tmp_path / "log.h5"
     matrix = np.stack([recording.time, recording.position * 1e3, recording.force], axis=1)
     with h5py.File(path, "w") as file:
@@ -182,7 +177,7 @@ def test_hdf5_groups_matrices_and_compounds(recording, tmp_path: Path) -> None:
         zw.read_log(path)
 
 
-def test_netcdf_is_unpacked(recording, tmp_path: Path) -> None:
+def test_netcdf_is_unpacked(recording, tmp_path):
     counts = np.rint(recording.position / 22.4e-6)
     counts[50] = np.nan
     data = xr.Dataset(
@@ -197,8 +192,7 @@ def test_netcdf_is_unpacked(recording, tmp_path: Path) -> None:
     assert log.resolution == pytest.approx(22.4e-6, rel=1e-9)
 
 
-def test_matlab_old_and_new(recording, tmp_path: Path) -> None:
-    """Vectors, structures and matrices of version 5, and the HDF5 of 7.3."""
+def test_matlab_old_and_new(recording, tmp_path):
     vectors = {"time_s": recording.time, "position_mm": recording.position * 1e3, "force_N": recording.force}
     scipy.io.savemat(tmp_path / "v5.mat", {"log": {"run": vectors}, "note": "hello"})
     assert_same(zw.read_log(tmp_path / "v5.mat"), recording)
@@ -214,7 +208,7 @@ def test_matlab_old_and_new(recording, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("storage", ["MCAP", "SQLITE3"])
-def test_rosbags(storage: str, recording, tmp_path: Path) -> None:
+def test_rosbags(storage, recording, tmp_path):
     """Joint states and a wrench on a topic of its own, each with its header's stamp."""
     from rosbags.rosbag2 import StoragePlugin, Writer
     from rosbags.typesys import Stores, get_typestore
@@ -247,7 +241,7 @@ def test_rosbags(storage: str, recording, tmp_path: Path) -> None:
     assert_same(zw.read_log(file, **asked), recording)
 
 
-def test_without_the_library_for_bags_its_name_is_said(tmp_path: Path, monkeypatch) -> None:
+def test_without_the_library_for_bags_its_name_is_said(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
     path = tmp_path / "log.mcap"
     path.write_bytes(b"\x89MCAP0\r\n" + bytes(100) + b"\x89MCAP0\r\n")
@@ -257,7 +251,7 @@ def test_without_the_library_for_bags_its_name_is_said(tmp_path: Path, monkeypat
 
 @pytest.mark.parametrize("suffix", ["nc", "parquet", "csv"])
 @pytest.mark.parametrize("rotary", [False, True])
-def test_traces_of_zwidth_are_logs(suffix: str, rotary: bool, tmp_path: Path) -> None:
+def test_traces_of_zwidth_are_logs(suffix, rotary, tmp_path):
     """The encoder's reading at the samples alone, with period, step and motion as the trace says."""
     if rotary:
         device = zw.rotary(inertia=2e-5, damping=2e-4, coulomb_friction=2e-3, resolution=1e-4, rate=2000)
@@ -286,7 +280,7 @@ def test_traces_of_zwidth_are_logs(suffix: str, rotary: bool, tmp_path: Path) ->
     assert all((a == b).all() for a, b in zip(direct[1:], block[1:], strict=True))
 
 
-def test_units_and_factors(recording, tmp_path: Path) -> None:
+def test_units_and_factors(recording, tmp_path):
     path = tmp_path / "raw.csv"
     counts = np.rint(recording.position / 22.4e-6).astype(int)
     rows = zip(recording.time.tolist(), counts, recording.force.tolist(), strict=True)
@@ -325,5 +319,5 @@ def test_units_and_factors(recording, tmp_path: Path) -> None:
         ("velocity_m_per_s", "position", ("velocity_m_per_s", None)),
     ],
 )
-def test_names_and_their_units(column: str, quantity: str, expected: tuple[str, str | None]) -> None:
+def test_names_and_their_units(column, quantity, expected):
     assert name_and_unit(column, quantity) == expected

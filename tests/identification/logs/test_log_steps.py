@@ -24,7 +24,7 @@ def walk(count: int = 3000, seed: int = 4) -> np.ndarray:
 
 @settings(max_examples=40, deadline=None)
 @given(st.floats(1e-8, 1e-3), st.integers(0, 50), st.floats(-1.0, 1.0))
-def test_any_step_is_found(step: float, seed: int, start: float) -> None:
+def test_any_step_is_found(step, seed, start):
     """Whole multiples of any number, wherever the first one lies, give that number back."""
     counts = walk(seed=seed)
     log = zw.Log.from_arrays(position=counts * step + start * 400 * step, sample_rate=1000)
@@ -34,15 +34,14 @@ def test_any_step_is_found(step: float, seed: int, start: float) -> None:
     assert (np.rint(np.diff(blocks) / step) == np.diff(counts)).all()
 
 
-def test_a_step_is_found_behind_single_precision_and_decimals() -> None:
-    """22.4 µm in float32, and written with 6 decimals of a metre."""
+def test_a_step_is_found_behind_single_precision_and_decimals():
     x = walk() * 22.4e-6
     for position in (x.astype(np.float32), np.round(x, 6)):
         log = zw.Log.from_arrays(position=position, sample_rate=1000)
         assert log.resolution == pytest.approx(22.4e-6, rel=1e-4)
 
 
-def test_positions_without_a_step_have_none() -> None:
+def test_positions_without_a_step_have_none():
     """Smooth numbers, also in single precision, are no encoder's; decimals are steps of their own."""
     x = np.cumsum(np.random.default_rng(0).normal(0, 1e-5, 5000))
     for position in (x, x.astype(np.float32)):
@@ -60,14 +59,14 @@ def test_positions_without_a_step_have_none() -> None:
     ("44.8 um", 22.4e-6, "stated resolution"),
     ("20 um", 22.4e-6, "stated resolution"),
 ])  # fmt: skip
-def test_a_stated_step_is_held_against_the_data(stated: str, used: float, kind: str) -> None:
+def test_a_stated_step_is_held_against_the_data(stated, used, kind):
     """What the positions do is believed, and a contradiction is said."""
     log = zw.Log.from_arrays(position=walk() * 22.4e-6, sample_rate=1000, resolution=stated)
     assert log.resolution == pytest.approx(used, rel=1e-9)
     assert kind in kinds(log)
 
 
-def test_filtered_positions_stay_as_they_are() -> None:
+def test_filtered_positions_stay_as_they_are():
     """A step is stated but the positions lie between: they were filtered, and are not rounded again."""
     x = np.convolve(walk() * 22.4e-6, np.full(7, 1 / 7), mode="same")
     log = zw.Log.from_arrays(position=x, sample_rate=1000, resolution="22.4 um")
@@ -78,7 +77,7 @@ def test_filtered_positions_stay_as_they_are() -> None:
 
 @pytest.mark.parametrize("bits", [10, 12, 16])
 @pytest.mark.parametrize("signed", [False, True])
-def test_a_counter_that_overflows_is_continued(bits: int, signed: bool) -> None:
+def test_a_counter_that_overflows_is_continued(bits, signed):
     """The jumps of nearly the full range are no motion, over borders of blocks too."""
     size = 2**bits
     motion = 0.9 * size * np.sin(np.linspace(0, 40, 600_000)) + np.linspace(0, 3 * size, 600_000)
@@ -90,7 +89,7 @@ def test_a_counter_that_overflows_is_continued(bits: int, signed: bool) -> None:
     assert (np.rint(np.diff(x) / 1e-5) == np.diff(counts)).all()
 
 
-def test_an_angle_that_starts_again_after_a_turn_is_continued() -> None:
+def test_an_angle_that_starts_again_after_a_turn_is_continued():
     """Degrees from 0 to 360, as many encoders give them."""
     angle = np.linspace(0, 20, 5000) ** 1.5
     log = zw.Log.from_arrays(
@@ -100,7 +99,7 @@ def test_an_angle_that_starts_again_after_a_turn_is_continued() -> None:
     assert x[-1] - x[0] == pytest.approx(angle[-1], abs=0.01)
 
 
-def test_a_large_fast_motion_is_no_overflow() -> None:
+def test_a_large_fast_motion_is_no_overflow():
     """A jump by half the range only, or a range that the jumps do not fill, is left alone."""
     x = walk() * 1e-5
     x[1500:] += 0.55 * (x.max() - x.min())
@@ -121,12 +120,12 @@ def test_a_large_fast_motion_is_no_overflow() -> None:
     ({"position": walk() * 1e-5, "scale": {"positon": 2}}, "positon"),
     ({}, "position"),
 ])  # fmt: skip
-def test_arrays_that_say_nothing_are_refused(arguments: dict, message: str) -> None:
+def test_arrays_that_say_nothing_are_refused(arguments, message):
     with pytest.raises(zw.InputError, match=message):
         zw.Log.from_arrays(sample_rate=1000, **arguments)
 
 
-def test_counts_per_turn_stand_for_what_a_dataset_states_itself() -> None:
+def test_counts_per_turn_stand_for_what_a_dataset_states_itself():
     """What is typed comes before the resolution of the file, as for a resolution that is typed."""
     step = 2 * np.pi / 4096
     angle = ("time", walk() * step, {"units": "rad"})

@@ -80,8 +80,7 @@ def path(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize("name", SHEETS)
-def test_a_sheet_is_read_as_it_is_meant(name: str, path: Path) -> None:
-    """Times, depths and forces, to the digit that the sheet has."""
+def test_a_sheet_is_read_as_it_is_meant(name, path):
     content = SHEETS[name]
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     (found,) = read_tests(path)
@@ -91,8 +90,7 @@ def test_a_sheet_is_read_as_it_is_meant(name: str, path: Path) -> None:
 
 
 @pytest.mark.parametrize("word", ["--", "NaN", "n.a.", "****", "OL", "k.A.", "#DIV/0!", "?", "#NV"])
-def test_a_word_for_no_number(word: str, path: Path) -> None:
-    """The row is kept, its force is none."""
+def test_a_word_for_no_number(word, path):
     lines = SHEET.splitlines()
     lines[9] = ";".join([lines[9].split(";")[0], word, lines[9].split(";")[2]])
     path.write_text("\n".join([*lines, ""]))
@@ -101,7 +99,7 @@ def test_a_word_for_no_number(word: str, path: Path) -> None:
     assert found.time.size == 40
 
 
-def test_tests_side_by_side(path: Path) -> None:
+def test_tests_side_by_side(path):
     """Named alike but for a number, or alike; one column of time for both, or two."""
     for head, line in (
         (
@@ -130,14 +128,13 @@ def test_tests_side_by_side(path: Path) -> None:
         (TIMED + rows("10:{k};{f};{x}\n"), "unit|time"),
     ],
 )
-def test_what_is_not_clear_is_refused_with_what_to_do(text: str, message: str, path: Path) -> None:
+def test_what_is_not_clear_is_refused_with_what_to_do(text, message, path):
     path.write_text(text)
     with pytest.raises(zw.InputError, match=message):
         read_tests(path)
 
 
-def test_a_log_of_a_german_sheet(path: Path) -> None:
-    """The same reader: names, units behind a slash, thousands, a note."""
+def test_a_log_of_a_german_sheet(path):
     steps = np.random.default_rng(1).integers(-9, 9, 400).cumsum()
     lines = [f"{german(k, 0)};{german(0.5 * s, 1)};{german(100.0 * s, 1)}" for k, s in enumerate(steps)]
     path.write_text("Zeit/ms;Weg/mm;Kraft/mN\n" + "\n".join(lines) + "\nEnde;;\n")
@@ -159,7 +156,7 @@ def test_a_log_of_a_german_sheet(path: Path) -> None:
         (["n.a.", "12"], None),
     ],
 )
-def test_the_decimal_sign(fields: list[str], sign: str | None) -> None:
+def test_the_decimal_sign(fields, sign):
     assert decimal_of(fields) == sign
 
 
@@ -176,7 +173,7 @@ def test_the_decimal_sign(fields: list[str], sign: str | None) -> None:
         ("12a", ".", None),
     ],
 )
-def test_a_number(field: str, decimal: str, value: float | None) -> None:
+def test_a_number(field, decimal, value):
     assert number(field, decimal) == value
 
 
@@ -194,5 +191,5 @@ def test_a_number(field: str, decimal: str, value: float | None) -> None:
         ("10:75:00", None),
     ],
 )
-def test_a_clock(field: str, seconds: float | None) -> None:
+def test_a_clock(field, seconds):
     assert clock(field) == seconds

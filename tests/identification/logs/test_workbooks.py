@@ -76,12 +76,12 @@ TABLES: dict[str, list[Sequence[object]]] = {
 
 
 @pytest.mark.parametrize("name", TABLES)
-def test_a_sheet_is_read_as_it_is_meant(name: str, tmp_path: Path) -> None:
+def test_a_sheet_is_read_as_it_is_meant(name, tmp_path):
     (found,) = read_tests(book(tmp_path / "a.xlsx", Tabelle1=TABLES[name]))
     is_the_test(found)
 
 
-def test_texts_among_numbers(tmp_path: Path) -> None:
+def test_texts_among_numbers(tmp_path):
     """ "0,5" is 0.5 where the cells beside it are numbers; "1,018" alone may be 1018, and is refused."""
     rows = [(t, with_commas(f) if k % 9 else f, x) for k, (t, f, x) in enumerate(ROWS)]
     (found,) = read_tests(book(tmp_path / "a.xlsx", a=[*HEAD, *rows]))
@@ -91,7 +91,7 @@ def test_texts_among_numbers(tmp_path: Path) -> None:
         read_tests(book(tmp_path / "b.xlsx", a=[*HEAD, *rows]))
 
 
-def test_several_sheets_are_trials_and_one_may_be_named(tmp_path: Path) -> None:
+def test_several_sheets_are_trials_and_one_may_be_named(tmp_path):
     """Sheets of settings and results are none; a sheet that is hidden is read where it is named."""
     path = book(
         tmp_path / "a.xlsx",
@@ -114,7 +114,7 @@ def test_several_sheets_are_trials_and_one_may_be_named(tmp_path: Path) -> None:
     assert zw.read_log(path, columns=columns, sheet="Probe2").samples == 35
 
 
-def test_tests_under_each_other(tmp_path: Path) -> None:
+def test_tests_under_each_other(tmp_path):
     """Each with the names above it again: one table, in which the time begins anew."""
     one = [NAMES, UNITS, *ROWS]
     (found,) = read_tests(book(tmp_path / "a.xlsx", a=[("Zyklus 1",), *one, (), ("Zyklus 2",), *one]))
@@ -122,14 +122,14 @@ def test_tests_under_each_other(tmp_path: Path) -> None:
     assert np.isfinite(found.force).all()
 
 
-def test_another_table_is_left_out_and_said(tmp_path: Path) -> None:
+def test_another_table_is_left_out_and_said(tmp_path):
     path = book(tmp_path / "a.xlsx", a=[*HEAD, *ROWS, (), ("Klasse", "Zahl", "Anteil"), *[(1, 2, 3)] * 4])
     (found,) = read_tests(path)
     is_the_test(found)
     assert [f.text for f in found.findings] == ["rows 44 to 47 of the sheet are another table and left out"]
 
 
-def test_formulas_are_what_was_kept_of_them(tmp_path: Path) -> None:
+def test_formulas_are_what_was_kept_of_them(tmp_path):
     """As the program that wrote the file computed them; without a result there is nothing to read."""
     path = book(tmp_path / "a.xlsx", a=[*HEAD, *[(t, f"={f}*1", x) for t, f, x in ROWS]])
     with pytest.raises(zw.InputError, match="results are not in the file"):
@@ -181,9 +181,7 @@ ENTITIES = b"".join(b'<!ENTITY e%d "%s">' % (k, b"&e%d;" % (k - 1) * 10) for k i
         ),
     ],
 )
-def test_a_workbook_made_to_do_harm_is_refused(
-    part: str, content: bytes, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_workbook_made_to_do_harm_is_refused(part, content, message, tmp_path, monkeypatch):
     """One message, before the memory is full; nothing comes from another file."""
     monkeypatch.setattr("zwidth.data.logs.workbook.MOST_ROWS", 1000)
     path = book(tmp_path / "a.xlsx", a=[*HEAD, *ROWS])
@@ -193,7 +191,7 @@ def test_a_workbook_made_to_do_harm_is_refused(
     assert "\n" not in str(caught.value)
 
 
-def test_two_cells_far_apart_fill_no_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_cells_far_apart_fill_no_memory(tmp_path, monkeypatch):
     """What lies between them counts."""
     monkeypatch.setattr("zwidth.data.logs.workbook.MOST_CELLS", 10_000)
     path = book(tmp_path / "a.xlsx", a=[*HEAD, *ROWS])
@@ -210,9 +208,7 @@ def test_two_cells_far_apart_fill_no_memory(tmp_path: Path, monkeypatch: pytest.
         (lambda whole: whole[:-900] + bytes(40) + whole[-860:], "cut off|copy it anew|cannot be read"),
     ],
 )
-def test_a_damaged_workbook_is_refused(
-    change: Callable[[bytes], bytes], message: str, tmp_path: Path
-) -> None:
+def test_a_damaged_workbook_is_refused(change, message, tmp_path):
     path = book(tmp_path / "a.xlsx", a=[*HEAD, *ROWS])
     path.write_bytes(change(path.read_bytes()))
     with pytest.raises(zw.InputError, match=message):
@@ -227,7 +223,7 @@ def test_a_damaged_workbook_is_refused(
         ("mimetype", b"application/vnd.oasis.opendocument.text", "no workbook"),
     ],
 )
-def test_what_is_no_workbook(name: str, content: bytes, message: str, tmp_path: Path) -> None:
+def test_what_is_no_workbook(name, content, message, tmp_path):
     """By what is inside, whatever the name."""
     with ZipFile(tmp_path / "a.xlsx", "w") as made:
         made.writestr("content.xml", "")
@@ -236,7 +232,7 @@ def test_what_is_no_workbook(name: str, content: bytes, message: str, tmp_path: 
         read_tests(tmp_path / "a.xlsx")
 
 
-def test_a_text_has_no_sheets(tmp_path: Path) -> None:
+def test_a_text_has_no_sheets(tmp_path):
     path = tmp_path / "a.csv"
     path.write_text("Time [s],Force [N],Depth [mm]\n1,2,3\n2,3,4\n", encoding="utf-8")
     with pytest.raises(zw.InputError, match="no workbook and has no sheets"):

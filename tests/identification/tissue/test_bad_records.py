@@ -35,7 +35,6 @@ def kinds(fit):
 
 
 def test_a_plain_record_says_nothing():
-    """Nor is anything fitted besides."""
     fit = fitted(*record())
     assert not fit.findings
     assert fit.further == 0
@@ -44,7 +43,6 @@ def test_a_plain_record_says_nothing():
 
 @pytest.mark.parametrize("milliseconds", [1.0, 4.0])
 def test_a_late_force_is_read_in_time(milliseconds):
-    """By a delay; the finding says how late it was."""
     t, x, f = record()
     fit = fitted(t, x, np.interp(t - milliseconds * 1e-3, t, f))
     (finding,) = fit.findings
@@ -66,7 +64,6 @@ def test_a_filter_of_the_load_cell():
 
 @pytest.mark.parametrize("share", [0.1, 0.01])
 def test_a_load_cell_at_its_end_stop(share):
-    """Such samples do not count."""
     t, x, f = record()
     most = np.quantile(f, 1 - share)
     noise = np.random.default_rng(1).normal(0, 0.01, t[::10].size)
@@ -104,7 +101,6 @@ def test_holes(stamped):
 
 
 def test_a_zero_that_is_off_or_drifts():
-    """A constant, or a line, is seen and fitted besides."""
     t, x, f = record()
     assert kinds(fitted(t, x, f + 0.3)) == {"offset"}
     assert fitted(t, x, f + 0.3)["offset"] == pytest.approx(0.3, abs=0.02)

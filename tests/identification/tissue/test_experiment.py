@@ -83,7 +83,6 @@ def creep() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 )
 @pytest.mark.parametrize("noisy", [0.0, 0.01])
 def test_which_test_it_is(arrays, kind, noisy):
-    """With noise of 1 % on all, with other origins, and the other way round."""
     rng = np.random.default_rng(4)
     time, x, f = arrays()
     x, f = (v + noisy * np.ptp(v) * rng.normal(size=v.size) for v in (x, f))
@@ -103,7 +102,6 @@ def test_without_noise_the_parameters_come_back_whatever_origin_and_sign(arrays)
 
 
 def test_a_step_before_the_first_sample():
-    """The hold alone gives all three numbers, and the finding says what was taken for granted."""
     time = np.geomspace(0.001, 8, 150)
     force = 0.004 * (420 + 260 * np.exp(-(time - 0.001) * 260 / 90))
     test = zw.tissue.fit_test(time, np.full(150, 0.004), -force, models=ONE)
@@ -121,7 +119,6 @@ def test_the_surface_is_found_where_the_probe_comes_from_outside():
 
 
 def test_what_branches_hold_after_a_hole_in_which_the_probe_moved():
-    """A third of a stroke is lost: the fit is as good as without the hole, and says so."""
     time, x, f = strokes()
     keep = np.r_[0:180, 215:400]
     test = zw.tissue.fit_test(time[keep], x[keep], f[keep], models=ONE)
@@ -225,7 +222,6 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
 
 
 def test_a_fit_is_drawn():
-    """Of a test three panels, of a fit two, the fit in the colour of the line over the dots."""
     time, x, f = relaxation(60)
     test = zw.tissue.fit_test(time, x, f, models=("kelvin-voigt",))
     assert len(test.plot().axes) == 3

@@ -172,7 +172,6 @@ def test_without_a_bound_it_does_wind_up():
 
 
 def test_dead_zone_and_outside_teach_nothing():
-    """Errors within the zone, and samples outside, leave the solid as it is to the last bit."""
     x, f = tissue(500, 300, 150, 15)
     deaf = RecursiveSolid(T, START, dead_zone=100).track(x, f)
     assert np.ptp(deaf.stiffness) == 0
@@ -203,7 +202,6 @@ def test_what_is_returned_is_admissible(method, rule):
 
 
 def test_sample_by_sample_is_the_same():
-    """`update` and `track` share their step; `forget` makes it learn anew."""
     x, f = tissue(300, 300, 150, 15, noise=0.01)
     settings = RecursiveSolid(T, START)
     tracker = settings.start()
@@ -218,7 +216,6 @@ def test_sample_by_sample_is_the_same():
 
 
 def test_a_sample_that_was_not_measured_is_passed_over():
-    """NaN and inf leave the solid as it is, and what comes after them finds the tissue all the same."""
     x, f = tissue(10_000, 300, 150, 15, noise=0.01)
     tracker = RecursiveSolid(T, START).start()
     tracker.track(x[:5000], f[:5000])
@@ -246,7 +243,6 @@ def test_five_parameters_are_not_identifiable():
 
 
 def test_a_million_samples():
-    """The compiled step takes them all; what it ends with is the truth."""
     x, f = tissue(1_000_000, 300, 150, 15, noise=0.01)
     track = RecursiveSolid(T, START, forgetting="0.9999").track(x, f)
     assert mean_of_the_end(track, 100_000) == pytest.approx([300, 150, 15], rel=0.01)

@@ -37,7 +37,6 @@ RECORDS = {
 @pytest.mark.parametrize("model", RECORDS)
 @pytest.mark.parametrize("response", ["force", "position"])
 def test_a_record_without_noise_gives_the_parameters_back(model, response):
-    """From free motion, and from a force that wanders, to rounding."""
     solid, values, branches = RECORDS[model]
     t, path = motion()
     if response == "force":
@@ -152,7 +151,6 @@ def test_offset_of_the_sensor():
 
 
 def test_a_hunt_crossley_contact():
-    """K, n and λ from strokes in and out; its environment simulates."""
     t = 0.002 * np.arange(800)
     x = 0.008 * np.sin(5 * t) ** 2 - 0.001
     depth, speed = np.maximum(x, 0), np.gradient(x, t)
@@ -171,7 +169,6 @@ def test_a_hunt_crossley_contact():
 
 
 def test_a_trace_is_read_as_it_is():
-    """A simulated touch, its readings and its forces by name, gives the rendered solid back."""
     device = zw.Device(mass=0.1, damping=1, rate=4000)
     t, x = motion(3000, 1 / 4000)
     hand = zw.operators.PrescribedMotion(x)
@@ -186,7 +183,6 @@ def test_a_trace_is_read_as_it_is():
 
 
 def test_what_becomes_of_a_fit():
-    """An environment of the estimates; one of joint intervals, wider than single ones; a verdict."""
     t, x, f = noisy("white", np.random.default_rng(6))
     fit = fit_tissue(t, x, f)
     law = fit.environment("tustin")
