@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -63,7 +62,7 @@ def energy_by_hand(arm: Arm, motion: ArmMotion, stiffness: float) -> float:
 
 @pytest.mark.parametrize("build", [chain, pantograph])
 @pytest.mark.parametrize("seed", range(6))
-def test_both_sides_of_the_limit(build: Any, seed: int) -> None:
+def test_both_sides_of_the_limit(build, seed):
     """A thousandth below it the checker accepts the proof; above it a motion takes energy out."""
     arm = build(random_damping(seed, 2))
     sites = arm.sites(2)
@@ -81,7 +80,7 @@ def test_both_sides_of_the_limit(build: Any, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_couplings_count(seed: int) -> None:
+def test_couplings_count(seed):
     """The diagonal alone would say another limit: a verdict that forgot the rest would be wrong."""
     damping = random_damping(seed, 2)
     limits = [
@@ -91,7 +90,7 @@ def test_couplings_count(seed: int) -> None:
     assert abs(limits[0] / limits[2] - 1) > 0.02
 
 
-def test_a_document_with_more_than_there_is_is_refused() -> None:
+def test_a_document_with_more_than_there_is_is_refused():
     """Couplings that are turned round, or left out, from a document that holds."""
     arm = chain(random_damping(2, 2))
     limit = decided(arm).largest_stiffness
@@ -117,7 +116,7 @@ def test_a_document_with_more_than_there_is_is_refused() -> None:
         (True, lambda factor: zw.arms.MatrixWall.in_pose(100 * factor, factor, planar=True)),
     ],
 )
-def test_a_redundant_chain_and_a_pose_are_proved(pose: bool, wall: Any) -> None:
+def test_a_redundant_chain_and_a_pose_are_proved(pose, wall):
     """Three joints, a hand at a point and one in pose, below the limit and not above it."""
     ranges = ((0.2, 0.21), (0.5, 0.51), (0.4, 0.41))
     damping = random_damping(5, 3)
@@ -128,20 +127,18 @@ def test_a_redundant_chain_and_a_pose_are_proved(pose: bool, wall: Any) -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_held_torques_cost_every_motion_of_the_joints(seed: int) -> None:
+def test_held_torques_cost_every_motion_of_the_joints(seed):
     """c q̇ᵀq̇ with c = h F T/2: proved up to the force at which δ − c − JᵀRJ is singular, and not beyond."""
     arm, stiffness = chain(random_damping(seed, 2)), 20.0
     j = arm.jacobian(np.array([0.7001, 1.2001]))
     left = np.linalg.eigvalsh(np.array(arm.damping) - PERIOD / 2 * stiffness * j.T @ j)[0]
     most = 2 * left / (arm.curvature * PERIOD)
-    outcomes = [
-        decided(arm, stiffness, torque_held_up_to=times * most).outcome
-        for times in (1 - 2 * NEAR, 1 + 2 * NEAR)
-    ]
+    forces = ((1 - 2 * NEAR) * most, (1 + 2 * NEAR) * most)
+    outcomes = [decided(arm, stiffness, torque_held_up_to=force).outcome for force in forces]
     assert outcomes == ["passive", "undecided"]
 
 
-def test_encoder_steps_are_counted_beside_couplings() -> None:
+def test_encoder_steps_are_counted_beside_couplings():
     """They are covered joint by joint, by Coulomb friction, which no matrix shares out."""
     arm = chain(random_damping(1, 2), resolution=(1e-5, 1e-5), coulomb_friction=(0.01, 0.01))
     space = decided(arm, 100)
@@ -151,18 +148,16 @@ def test_encoder_steps_are_counted_beside_couplings() -> None:
     assert space.largest_forces == other.largest_forces
 
 
-def test_three_legs_with_couplings() -> None:
-    arm = built_in(
-        "falcon", damping=random_damping(3, 3, 0.004), lower=(0.0, 0.0, 0.119), upper=(0.0004, 0.0004, 0.121),
-        resolution=0,
-    )  # fmt: skip
+def test_three_legs_with_couplings():
+    region = {"lower": (0.0, 0.0, 0.119), "upper": (0.0004, 0.0004, 0.121)}
+    arm = built_in("falcon", damping=random_damping(3, 3, 0.004), resolution=0, **region)
     assert isinstance(arm, LeggedArm)
     limit = decided(arm, 100).largest_stiffness
     outcomes = [decided(arm, times * limit).outcome for times in (0.995, 1.005)]
     assert outcomes == ["passive", "active"]
 
 
-def test_a_joint_beside_the_way_to_the_hand(tmp_path: Path) -> None:
+def test_a_joint_beside_the_way_to_the_hand(tmp_path):
     """Damped together with one that moves the hand it goes along, and less is lost: no certificate."""
     path = random_arm(tmp_path / "arm.urdf", 4, 3)
     b = random_damping(9, 3, 0.3)
@@ -175,7 +170,7 @@ def test_a_joint_beside_the_way_to_the_hand(tmp_path: Path) -> None:
     assert len(spaces[0].certificate.to_dict()["arm"]["damping_N_m_s_rad"]) == 2
 
 
-def test_the_advice_is_enough() -> None:
+def test_the_advice_is_enough():
     """With the damping that is asked for added to the diagonal the region is proved."""
     damping = random_damping(0, 2)
     limit = decided(chain(damping)).largest_stiffness
@@ -187,7 +182,7 @@ def test_the_advice_is_enough() -> None:
 
 
 @pytest.mark.parametrize("damping", [random_damping(0, 2), (0.02, 0.01)])
-def test_the_verdict_says_the_damping(damping: Any) -> None:
+def test_the_verdict_says_the_damping(damping):
     told = decided(chain(damping)).to_dict()["joint_damping_N_m_s_rad"]
     assert np.shape(told) == np.shape(damping)
     assert np.allclose(told, damping, rtol=1e-12)

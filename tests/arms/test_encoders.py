@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -122,7 +121,7 @@ def random_chain(rng: np.random.Generator) -> tuple[PlanarChain, zw.arms.MatrixW
     return bare.replace(damping=tuple(rng.uniform(1, 2, m) * need), coulomb_friction=enough), wall, force
 
 
-def test_no_attack_gains_where_steps_are_counted() -> None:
+def test_no_attack_gains_where_steps_are_counted():
     """Random chains, walls and counts, the torque of the readings held or following them: up to the force
     that is covered nothing is taken out; with a third of the friction something is."""
     rng, gained, fixed = np.random.default_rng(11), 0, 0
@@ -151,12 +150,10 @@ def test_no_attack_gains_where_steps_are_counted() -> None:
 
 
 @pytest.mark.parametrize("held", [True, False])
-def test_both_sides_on_one_joint(held: bool) -> None:
+def test_both_sides_on_one_joint(held):
     """There what is enough is needed: 1 part in 200 above the force that is covered a motion is found."""
-    arm = PlanarChain(
-        links=(0.08,), damping=(0.02,), joint_range=((-0.5, 0.7),), resolution=(1e-3,),
-        coulomb_friction=(0.005,),
-    )  # fmt: skip
+    numbers = {"damping": 0.02, "coulomb_friction": 0.005, "resolution": 1e-3}
+    arm = PlanarChain(links=(0.08,), joint_range=((-0.5, 0.7),), **{k: (v,) for k, v in numbers.items()})
     wall = zw.Wall(900)
     space = zw.workspace(arm, wall, rate=1 / PERIOD, torque_held_up_to=1.0 if held else None)
     steps = space.encoder_steps
@@ -169,7 +166,7 @@ def test_both_sides_on_one_joint(held: bool) -> None:
         assert steps.refuted is None
 
 
-def test_a_slow_rectangle_across_one_edge() -> None:
+def test_a_slow_rectangle_across_one_edge():
     """The torque of the second joint changes at an edge of the first, more the harder the wall pushes."""
     arm, wall = PlanarChain(coulomb_friction=FRICTION, **EXAMPLE), zw.Wall(500)
     edge, count = 80 * EXAMPLE["resolution"][0], 4000
@@ -199,26 +196,37 @@ def test_a_slow_rectangle_across_one_edge() -> None:
     assert f"From {steps.refuted:.4g} N on a motion across their edges takes energy out" in space.claim
 
 
-def test_up_to_a_force_that_is_asked_for() -> None:
-    """Below the one that is covered passive, above the one that is refuted active, undecided between."""
-    arm, wall = PlanarChain(coulomb_friction=FRICTION, **EXAMPLE), zw.Wall(500)
-    for force, outcome in ((35.0, "passive"), (36.0, "undecided"), (61.0, "undecided"), (62.0, "active")):
-        space = decided(arm, largest_force=force)
-        assert (space.outcome, space.encoder) == (outcome, "counted"), force
-        assert space.largest_forces == (force,)
-        if outcome == "active":
-            assert space.motion.largest_force <= force
-            again = replay_cycle(
-                arm, wall, PERIOD, 0, space.motion.joints, counted=True, rest=space.motion.rest
-            )
-            assert again.energy == space.motion.energy < 0
-        if outcome == "undecided":
-            assert "Coulomb friction covers them up to 35.19 N" in space.claim
-    bare = PlanarChain(**EXAMPLE)
-    assert decided(bare, largest_force=1).outcome == "active"
+@pytest.mark.parametrize(
+    ("asked", "force", "outcome"),
+    [
+        ("largest_force", 35.0, "passive"),
+        ("largest_force", 36.0, "undecided"),
+        ("largest_force", 61.0, "undecided"),
+        ("largest_force", 62.0, "active"),
+        ("torque_held_up_to", 35.0, "passive"),
+        ("torque_held_up_to", 50.0, "active"),
+    ],
+)
+def test_up_to_a_force_that_is_asked_for(asked, force, outcome):
+    """35.19 N are covered; 61.57 N are refuted where the torque follows the readings."""
+    arm = PlanarChain(coulomb_friction=FRICTION, **EXAMPLE)
+    space = decided(arm, **{asked: force})
+    assert (space.outcome, space.encoder, space.largest_forces) == (outcome, "counted", (force,))
+    assert space.torque == ("held" if asked == "torque_held_up_to" else "follows")
+    if outcome == "active":
+        motion, held = space.motion, asked == "torque_held_up_to"
+        assert motion.largest_force <= force
+        again = replay_cycle(arm, STIFF, PERIOD, 0, motion.joints, held, counted=True, rest=motion.rest)
+        assert again.energy == motion.energy < 0
+    if outcome == "undecided":
+        assert "Coulomb friction covers them up to 35.19 N" in space.claim
 
 
-def test_friction_that_covers_the_steps_at_no_force() -> None:
+def test_without_friction_a_small_force_is_enough():
+    assert decided(PlanarChain(**EXAMPLE), largest_force=1).outcome == "active"
+
+
+def test_friction_that_covers_the_steps_at_no_force():
     """A motion across their edges takes energy out, up to a hundredth below what covers them."""
     bare = decided(PlanarChain(**EXAMPLE))
     for share in (0.0, 0.5, 0.99):
@@ -232,16 +240,7 @@ def test_friction_that_covers_the_steps_at_no_force() -> None:
         assert again.energy == motion.energy < 0
 
 
-def test_held_torques_are_refuted_by_forces_that_the_wall_gives() -> None:
-    """35.19 N are covered; up to 50 N a motion takes energy out, with no more than that."""
-    arm = PlanarChain(coulomb_friction=FRICTION, **EXAMPLE)
-    for force, outcome in ((35, "passive"), (50, "active")):
-        space = decided(arm, torque_held_up_to=force)
-        assert (space.outcome, space.encoder, space.torque) == (outcome, "counted", "held")
-    assert space.motion.largest_force <= 50
-
-
-def test_a_proof_without_steps_is_no_proof_of_an_arm_that_has_them() -> None:
+def test_a_proof_without_steps_is_no_proof_of_an_arm_that_has_them():
     """Of parallel arms the steps are not bounded: the outcome, its first words and its status say so."""
     legs = zw.arms.built_in("haply-2diy", damping=0.003, coulomb_friction=0.1)
     space = decided(legs, zw.Wall(100), 20)
@@ -258,7 +257,7 @@ def test_a_proof_without_steps_is_no_proof_of_an_arm_that_has_them() -> None:
     assert "Encoder steps" not in free.claim
 
 
-def test_an_arm_whose_damping_fails_is_refuted_behind_its_encoders() -> None:
+def test_an_arm_whose_damping_fails_is_refuted_behind_its_encoders():
     """The motion is one of the readings; that of an ideal encoder does not do where steps are asked for."""
     arm = PlanarChain(**{**EXAMPLE, "damping": (1e-4, 1e-4)}, coulomb_friction=FRICTION)
     space = decided(arm, points=20)
@@ -266,7 +265,7 @@ def test_an_arm_whose_damping_fails_is_refuted_behind_its_encoders() -> None:
     assert space.motion.encoder == "counted"
 
 
-def test_what_follows_the_readings_is_added_up_exactly() -> None:
+def test_what_follows_the_readings_is_added_up_exactly():
     """The work of a torque that follows, by pieces between edges, against ten thousand parts of a period."""
     arm = PlanarChain(**{**EXAMPLE, "resolution": (0.013, 0.007)}, coulomb_friction=(0.01, 0.02))
     rng = np.random.default_rng(3)
@@ -286,7 +285,7 @@ def test_what_follows_the_readings_is_added_up_exactly() -> None:
     assert found.largest_force == pytest.approx(np.linalg.norm(force, axis=1).max())
 
 
-def test_each_cell_looks_at_its_neighbours() -> None:
+def test_each_cell_looks_at_its_neighbours():
     """A reading may lie in the next cell: the bound on the columns holds one step around each."""
     arm = PlanarChain(**{**EXAMPLE, "resolution": (0.05, 0.03)}, coulomb_friction=FRICTION)
     sites, rng = arm.sites(40), np.random.default_rng(6)
@@ -303,26 +302,22 @@ def test_each_cell_looks_at_its_neighbours() -> None:
     assert float(data["covered_force"].min()) < float(data["covered_force"].max())
 
 
-def test_in_pose_each_block_pays_in_its_own_unit() -> None:
+def test_in_pose_each_block_pays_in_its_own_unit():
     """A planar chain in pose: translation and rotation add up, and metres may be millimetres."""
-
-    def asked(scale: float) -> tuple[Any, Any]:
-        arm = PlanarChain(
-            links=(0.1 * scale, 0.08 * scale), damping=(0.05, 0.05), resolution=(2e-3, 2e-3),
-            joint_range=((0, 1), (0.5, 1.5)), pose=True,
-        )  # fmt: skip
+    chain = {"damping": (0.05, 0.05), "resolution": (2e-3, 2e-3), "joint_range": ((0, 1), (0.5, 1.5))}
+    asked = []
+    for scale in (1.0, 1000.0):
+        arm = PlanarChain(links=(0.1 * scale, 0.08 * scale), pose=True, **chain)
         wall = zw.arms.MatrixWall(np.diag([50 / scale**2, 50 / scale**2, 0.4]), np.zeros((3, 3)), turns=1)
         steps = decided(arm, wall, 20).encoder_steps
         assert steps.friction_per_moment == (0.0, 0.0)
-        return steps.friction, steps.friction_up_to(3.0 / scale)
-
-    assert asked(1.0)[0] == pytest.approx(asked(1000.0)[0], rel=1e-6)
-    assert asked(1.0)[1] == pytest.approx(asked(1000.0)[1], rel=1e-6)
-    assert all(value > 0.4 * 2e-3 for value in asked(1.0)[0])
+        asked += [steps.friction, steps.friction_up_to(3.0 / scale)]
+    assert asked[:2] == [pytest.approx(friction, rel=1e-6) for friction in asked[2:]]
+    assert min(asked[0]) > 0.4 * 2e-3
 
 
 @pytest.mark.parametrize("pose", [False, True])
-def test_descriptions_are_counted_with_a_certificate(pose: bool, tmp_path: Path) -> None:
+def test_descriptions_are_counted_with_a_certificate(pose, tmp_path):
     """Joints of any placement in space; in pose with a force and a moment. More of them is refused."""
     random_arm(tmp_path / "arm.urdf", 4, 3)
     numbers: dict[str, Any] = {"resolution": (1e-4,) * 3, "coulomb_friction": (0.05, 0.04, 0.03)}
@@ -343,7 +338,7 @@ def test_descriptions_are_counted_with_a_certificate(pose: bool, tmp_path: Path)
     assert "must be at least" in verify_document(document).reason
 
 
-def test_sizes_of_matrices() -> None:
+def test_sizes_of_matrices():
     """Never below the largest singular value; exact of k·1 and of k n nᵀ."""
     rng = np.random.default_rng(9)
     for _ in range(200):
@@ -362,6 +357,6 @@ def test_sizes_of_matrices() -> None:
         (PlanarChain(**EXAMPLE), {"largest_force": -3}, "largest_force is the largest force"),
     ],
 )
-def test_a_largest_force_needs_encoders(arm: Any, asked: dict[str, float], words: str) -> None:
+def test_a_largest_force_needs_encoders(arm, asked, words):
     with pytest.raises(zw.InputError, match=words):
         decided(arm, **asked)

@@ -136,7 +136,7 @@ def test_a_trace_is_a_recording():
     assert set(found.likely) == set(CAUSES)
 
 
-def test_what_was_found_is_kept_as_json_and_as_a_loop(tmp_path):
+def test_what_was_found_is_kept_as_json_as_a_loop_and_as_a_picture(tmp_path):
     found = zw.diagnose(zw.samples.path("shaking.csv"), zw.load(zw.samples.path("wheel.toml")).device)
     document = found.to_dict()
     assert document["cause"] == "delay"
@@ -147,10 +147,6 @@ def test_what_was_found_is_kept_as_json_and_as_a_loop(tmp_path):
     assert zw.check(loop.device, loop.environment).outcome == document["change"]["outcome"]
     with pytest.raises(zw.InputError, match="exists"):
         found.save(tmp_path / "mended.toml")
-
-
-def test_a_picture_is_drawn(tmp_path):
-    found = zw.diagnose(zw.samples.path("shaking.csv"))
     found.plot(tmp_path / "why.svg")
     assert (tmp_path / "why.svg").stat().st_size > 1000
 

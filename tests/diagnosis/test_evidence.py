@@ -25,12 +25,10 @@ def shaken(seconds: float = 1.5, amplitude: float = 0.004, drift: float = 0.002)
 
 
 def held(values: np.ndarray, samples: int) -> np.ndarray:
-    """The same, so many samples later."""
     return np.concatenate([np.full(samples, values[0]), values[: values.size - samples]])
 
 
 def recorded(position: np.ndarray, **forces: np.ndarray) -> Recording:
-    """Arrays as a recording."""
     return Recording(
         source="arrays", motion="linear", period=PERIOD, resolution=1e-6, findings=(), position=position,
         time=np.arange(position.size) * PERIOD, **{"commanded": None, "applied": None, **forces},

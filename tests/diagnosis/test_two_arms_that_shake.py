@@ -59,11 +59,12 @@ def test_the_change_is_proved_and_makes_the_arms_quiet(shaken, tmp_path):
     assert pair == found.change.pair
     assert zw.check(pair).outcome == "passive" == found.to_dict()["change"]["outcome"]
     softer = moved(**(LATE_LINK | {"stiffness": found.change.to}))
-    quiet, loud = (
-        np.ptp((each["leader_position_rad"] - each["follower_position_rad"])[-300:])
-        for each in (softer, shaken)
-    )
+    between = (each["leader_position_rad"] - each["follower_position_rad"] for each in (softer, shaken))
+    quiet, loud = (np.ptp(distance[-300:]) for distance in between)
     assert quiet < 0.2 * loud
+    found.plot(tmp_path / "why.svg")
+    assert (tmp_path / "why.svg").stat().st_size > 1000
+    assert "leader: stiffness" in dict(found.rows())
 
 
 def test_what_is_not_in_the_file_is_not_named(tmp_path):
@@ -129,10 +130,8 @@ def test_a_bag_with_the_joint_states_of_both_arms(storage, shaken, tmp_path):
     time_type, header = store.types["builtin_interfaces/msg/Time"], store.types["std_msgs/msg/Header"]
     joint, none = store.types["sensor_msgs/msg/JointState"], np.empty(0)
     with Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin[storage]) as writer:
-        topics = {
-            arm: writer.add_connection(f"/{arm}/joint_states", joint.__msgtype__, typestore=store)
-            for arm in ("leader", "follower")
-        }
+        names = {arm: f"/{arm}/joint_states" for arm in ("leader", "follower")}
+        topics = {a: writer.add_connection(n, joint.__msgtype__, typestore=store) for a, n in names.items()}
         for k, t in enumerate(shaken["time_s"]):
             for arm, connection in topics.items():
                 now = 1_700_000_000_000_000_000 + round(t * 1e9) + (arm == "follower") * 90_000
@@ -142,8 +141,8 @@ def test_a_bag_with_the_joint_states_of_both_arms(storage, shaken, tmp_path):
                 writer.write(connection, now, store.serialize_cdr(message, joint.__msgtype__))
     found = zw.diagnose_pair(tmp_path / "bag", units=UNITS)
     assert found.cause == "link delay"
-    names = {"position": "position[0]", "actuator_force": "effort[0]"}
-    leader = {name: f"/leader/joint_states.{value}" for name, value in names.items()}
+    topic = names["leader"]
+    leader = {"position": f"{topic}.position[0]", "actuator_force": f"{topic}.effort[0]"}
     one = zw.diagnose(tmp_path / "bag", columns=leader, units=UNITS)
     assert one.frequency == pytest.approx(found.frequency, rel=0.02)
 
@@ -170,13 +169,6 @@ def test_what_is_missing_is_asked_for_of_its_arm(shaken, tmp_path):
     ):
         with pytest.raises(zw.InputError, match=message):
             ask()
-
-
-def test_a_picture_of_both_arms(shaken, tmp_path):
-    found = zw.diagnose_pair(written(tmp_path / "arms.csv", shaken))
-    found.plot(tmp_path / "why.svg")
-    assert (tmp_path / "why.svg").stat().st_size > 1000
-    assert "leader: stiffness" in dict(found.rows())
 
 
 def test_the_law_of_an_arm():

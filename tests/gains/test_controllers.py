@@ -69,7 +69,6 @@ NAME = "controllers.yaml"
 
 
 def device(damping: float = 1) -> zw.Device:
-    """A joint."""
     return zw.Device(damping=damping, rate=1, motion="rotary")
 
 

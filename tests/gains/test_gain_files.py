@@ -7,21 +7,9 @@ from fractions import Fraction
 from math import tanh
 from pathlib import Path
 
+import gain_files
 import pytest
-from gain_files import (
-    COULOMB,
-    DAMIAO,
-    DAMPING,
-    GRIPPER,
-    PIPER,
-    SERVOS,
-    STEEPNESS,
-    STIFFNESS,
-    VISCOUS,
-    YAM,
-    openarm,
-    written,
-)
+from gain_files import DAMIAO, GRIPPER, PIPER, SERVOS, YAM, openarm, written
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import texts
@@ -39,8 +27,9 @@ def test_openarm_has_relative_damping_on_both_sides(tmp_path):
     assert (gains.family, gains.is_pair, gains.drives) == ("openarm", True, True)
     assert [joint.name for joint in gains.joints] == ["J1", "J2", "J3", "J4", "J5", "J6", "J7", "gripper"]
     for n, joint in enumerate(gains.joints):
-        assert joint.leader.stiffness == joint.follower.stiffness == STIFFNESS[n]
-        assert (joint.leader.damping, joint.follower.damping) == (Fraction(str(DAMPING[n])), Fraction(5, 2))
+        assert joint.leader.stiffness == joint.follower.stiffness == gain_files.STIFFNESS[n]
+        assert joint.leader.damping == Fraction(str(gain_files.DAMPING[n]))
+        assert joint.follower.damping == Fraction(5, 2)
         assert joint.leader.local_damping == joint.follower.local_damping == 0
         assert joint.leader.source == f"leader.yaml, LeaderArmParam, Kp[{n}]"
 
@@ -50,7 +39,7 @@ def test_compensation_is_the_one_of_the_code(tmp_path):
     (joint, *_), at = zw.read_gains(written(tmp_path, "a.yaml", openarm())).joints, (-2.0, 0.03, 0.7)
     law = joint.leader.compensation
     for v in at:
-        expected = COULOMB[0] * tanh(0.1 * STEEPNESS[0] * v) + VISCOUS[0] * v
+        expected = gain_files.COULOMB[0] * tanh(0.1 * gain_files.STEEPNESS[0] * v) + gain_files.VISCOUS[0] * v
         found = float(law.coulomb) * tanh(v / float(law.speed)) + float(law.viscous) * v
         assert found == pytest.approx(expected, rel=1e-12)
     assert float(joint.leader.offset) == 0.088

@@ -1,10 +1,13 @@
-"""Which joints are passive with the gains of a file: by hand-made pairs, closed forms, M(θ) in floats."""
+"""Which joints are passive with the gains of a file: by hand-made pairs, closed forms, M(θ); and the page."""
 
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +16,7 @@ from gain_files import DAMIAO, PIPER, SERVOS, YAM, openarm, written
 import zwidth as zw
 from zwidth.data.gains import ArmGains
 from zwidth.data.gains.joint import CoupledJoint
-from zwidth.passivity.pairs.limits import is_passive
+from zwidth.passivity.pairs.limits import is_passive, with_share
 
 
 def arm(damping: object = "0.5", **more: object) -> zw.Device:
@@ -138,12 +141,9 @@ def test_what_was_taken_for_granted_is_said(tmp_path):
     for part in ("FREQUENCY", "not measured", "Damiao drive is not published", "measured on no arm of yours",
                  "steps of 0.0003815 rad", "to and fro at 10 kHz", "tanh(0.1 k v)"):  # fmt: skip
         assert part in plain
-    given = " ".join(
-        zw.check_gains(
-            gains, plant=arm(resolution=0.0001, coulomb_friction=1), rate=1000, delay="1 ms",
-            drive_rate="5 kHz", compensated=False,
-        ).notes
-    )  # fmt: skip
+    setting = {"rate": 1000, "delay": "1 ms", "drive_rate": "5 kHz", "compensated": False}
+    plant = arm(resolution=0.0001, coulomb_friction=1)
+    given = " ".join(zw.check_gains(gains, plant=plant, **setting).notes)
     for part in ("FREQUENCY", "not measured", "not published", "no arm of yours", "steps of 0.0003815"):
         assert part not in given
     assert "compensation of friction is left out" in given
@@ -239,3 +239,68 @@ def test_gains_scale_together(tmp_path):
     assert (leader.damping, leader.local_damping, follower.damping) == (0, 0, 0)
     assert 0 < follower.local_damping <= 5
     assert zw.check(replace(best).pair()).outcome == "passive"
+
+
+PAGE = (Path(__file__).parents[2] / "docs" / "gain-files.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def names(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """What its example makes."""
+    found: dict[str, Any] = {}
+    (example,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path_factory.mktemp("page"))
+        exec(example, found)
+    return found
+
+
+def test_the_table_is_what_comes_out(names):
+    without = zw.check_gains(names["gains"], ideal_drive=True, compensated=False)
+    lines = re.findall(r"^\| ((?:J\d|gripper) \|.*) \|$", PAGE, re.MULTILINE)
+    rows = [line.split(" | ") for line in lines]
+    assert len(rows) == 8
+    for row, joint, bare in zip(rows, names["verdict"].joints, without.joints, strict=True):
+        share = "all" if joint.compensation == 1 else f"{100 * joint.compensation:.0f} %"
+        gains = joint.gains.leader
+        numbers = [f"{float(x):g}" for x in (gains.stiffness, gains.damping, joint.model.damping[0])]
+        outcomes = [joint.outcome, bare.outcome, share, f"{joint.required_damping:g}"]
+        assert row == [joint.name, *numbers, *outcomes]
+
+
+def test_the_gains_for_drives_that_take_differences_are_what_comes_out(names):
+    found = zw.check_gains(names["gains"])
+    assert {joint.outcome for joint in found.joints} == {"active"}
+    best = {j.name: j.best.gains[0] for j in found.joints if j.best is not None}
+    told = {name: f"{float(g.stiffness):g} with {float(g.damping):g}" for name, g in best.items()}
+    assert set(told) == {"J1", "J2", "J6", "J7", "gripper"}
+    assert told["J7"] == told["gripper"]
+    assert f"J1 {told['J1']}, J2 {told['J2']}, J6 {told['J6']}, J7 and the gripper {told['J7']}." in PAGE
+
+
+def test_with_the_other_plant_the_answers_are_others(names):
+    found = zw.check_gains(names["gains"], plant="damiao-mujoco")
+    passive = [joint.name for joint in found.joints if joint.outcome == "passive"]
+    assert passive == ["J5", "J6", "J7", "gripper"]
+    undecided = [joint.name for joint in found.joints if joint.with_ideal_drive == "undecided"]
+    assert undecided == ["J3", "J4"]
+
+
+def test_its_plant_is_read(names, tmp_path):
+    (text,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    pairs = names["gains"].pairs(plant=written(tmp_path, "my-arm.toml", text))
+    assert [float(pair.sides[0].damping) for pair in pairs.values()][:3] == [0.5, 0.4, 0.6]
+
+
+def test_just_above_the_largest_share_a_motion_gains(names):
+    """A ten-thousandth on either side of it, where the page says that both are found."""
+    pairs = names["gains"].pairs(ideal_drive=True)
+    for joint, more in (dict.fromkeys(("J3", "J5", "J6", "J7"), "0.0001") | {"J4": "0.1"}).items():
+        share = Fraction(repr(zw.check(pairs[joint]).largest_compensation))
+        assert zw.check(with_share(pairs[joint], share * Fraction("0.9999"))).outcome == "passive"
+        beyond = zw.check(with_share(pairs[joint], share * (1 + Fraction(more))))
+        assert beyond.outcome == "active"
+        assert beyond.witness.verify()
+    for joint in ("J1", "J2"):
+        share = Fraction(repr(zw.check(pairs[joint]).largest_compensation))
+        assert zw.check(with_share(pairs[joint], share * Fraction("1.1"))).outcome == "undecided"

@@ -25,7 +25,6 @@ LIMIT = '<limit lower="0.2" upper="2.4" effort="0.5" velocity="9"/><dynamics dam
 
 
 def robot(path: Path, links: Iterable[str], *joints: str) -> Path:
-    """A description."""
     text = "".join([*map(LINK.format, links), *joints])
     path.write_text(f'<robot name="{path.stem}">{text}</robot>', encoding="utf-8")
     return path
@@ -42,7 +41,7 @@ def urdf(tmp_path: Path) -> Path:
     return robot(tmp_path / "two.urdf", ("base", "upper", "lower", "tip"), SHOULDER, ELBOW, HAND)
 
 
-def test_a_described_two_link_arm_is_the_closed_form(urdf: Path) -> None:
+def test_a_described_two_link_arm_is_the_closed_form(urdf):
     """Positions, Jacobians and their bounds, friction and limits, and the same map."""
     arm = read_arm(urdf, frame="tip")
     assert (arm.damping, arm.coulomb_friction, arm.torque_limit) == ((0.02, 0.01), (0.002, 0.002), (0.5, 0.5))
@@ -58,7 +57,7 @@ def test_a_described_two_link_arm_is_the_closed_form(urdf: Path) -> None:
     assert described.outcome == closed.outcome
 
 
-def test_sliding_joints_and_joints_that_are_held(tmp_path: Path) -> None:
+def test_sliding_joints_and_joints_that_are_held(tmp_path):
     """A rail under two links: three joints, of which one is held; the bound covers random points."""
     limit = '<limit lower="-0.1" upper="0.1" effort="5" velocity="1"/><dynamics damping="2"/>'
     rail = _joint("rail", "base", "car", 0.0, "prismatic", limit)
@@ -81,12 +80,23 @@ def test_sliding_joints_and_joints_that_are_held(tmp_path: Path) -> None:
         read_arm(path, hold={})
 
 
-def test_a_joint_may_have_the_name_of_its_link(urdf: Path) -> None:
+MESH = "<visual><geometry><mesh filename='package://../../none.stl'/></geometry></visual>"
+
+
+@pytest.mark.parametrize(
+    ("part", "other"),
+    [
+        ('joint name="hand"', 'joint name="tip"'),  # that of its link
+        (LINK.format("tip"), f'<link name="tip">{MESH}</link>'),  # which is not opened
+    ],
+)
+def test_names_of_joints_and_meshes_do_not_matter(urdf, part, other):
     q = [0.4, 0.9]
-    expected = read_arm(urdf, frame="tip").forward(q)
-    text = urdf.read_text(encoding="utf-8")
-    urdf.write_text(text.replace('joint name="hand"', 'joint name="tip"'), encoding="utf-8")
-    assert read_arm(urdf, frame="tip").forward(q) == pytest.approx(expected)
+    expected = read_arm(urdf, frame="tip")
+    urdf.write_text(urdf.read_text(encoding="utf-8").replace(part, other), encoding="utf-8")
+    found = read_arm(urdf, frame="tip")
+    assert found.forward(q) == pytest.approx(expected.forward(q))
+    assert found.damping == (0.02, 0.01)
 
 
 INERTIA = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
@@ -132,7 +142,7 @@ BY_MUJOCO = {  # position and Jacobian by MuJoCo 4.0.0, mj_jacSite and mj_jacBod
 }
 
 
-def test_mjcf_is_read_as_mujoco_reads_it(tmp_path: Path) -> None:
+def test_mjcf_is_read_as_mujoco_reads_it(tmp_path):
     """Classes in classes, bodies without attributes, joints in frames, a slide in metres."""
     path = tmp_path / "many.xml"
     path.write_text(MANY)
@@ -171,7 +181,7 @@ def test_mjcf_is_read_as_mujoco_reads_it(tmp_path: Path) -> None:
         ("<joint/></body><body><joint/>", "damping=….*in <joint>"),
     ],
 )
-def test_what_mujoco_or_we_cannot_read_is_refused(inside: str, words: str, tmp_path: Path) -> None:
+def test_what_mujoco_or_we_cannot_read_is_refused(inside, words, tmp_path):
     """With the line of the element; advice is in the words of the format."""
     path = tmp_path / "arm.xml"
     path.write_text(f"<mujoco><worldbody><body>\n{inside}</body></worldbody></mujoco>")
@@ -197,7 +207,7 @@ MIMIC = '<mimic joint="lift" multiplier="3" offset="0.1"/>'
 
 
 @pytest.mark.parametrize("form", ["urdf", "xml"])
-def test_a_joint_that_follows_is_part_of_the_mechanism(form: str, tmp_path: Path) -> None:
+def test_a_joint_that_follows_is_part_of_the_mechanism(form, tmp_path):
     """J G of the three joints by themselves, Gᵀ b G, |G|ᵀ f; the bounds between the points hold."""
     both = tmp_path / f"both.{form}", tmp_path / f"apart.{form}"
     text, coupled = FOLLOWING, MIMIC
@@ -235,7 +245,7 @@ def test_a_joint_that_follows_is_part_of_the_mechanism(form: str, tmp_path: Path
     assert (arm.follows, apart.follows) == (True, False)
 
 
-def test_what_a_mechanism_with_a_follower_bears(tmp_path: Path) -> None:
+def test_what_a_mechanism_with_a_follower_bears(tmp_path):
     """By a proof on paper; a stiffer wall is refuted by a hand, who holds two joints and not three."""
     path = tmp_path / "mim.urdf"
     path.write_text(FOLLOWING)
@@ -267,9 +277,7 @@ def test_what_a_mechanism_with_a_follower_bears(tmp_path: Path) -> None:
         ((10, 2), "round numbers, most likely"),
     ],
 )
-def test_damping_of_a_description_is_told_as_such(
-    damping: tuple[float, float], words: str, urdf: Path
-) -> None:
+def test_damping_of_a_description_is_told_as_such(damping, words, urdf):
     text = urdf.read_text(encoding="utf-8")
     for before, after in zip((0.02, 0.01), damping, strict=True):
         text = text.replace(f'damping="{before}"', f'damping="{after}"')
@@ -280,7 +288,7 @@ def test_damping_of_a_description_is_told_as_such(
     assert "joint_damping_source" not in given.to_dict()
 
 
-def test_urdf_is_read_as_pinocchio_reads_it(tmp_path: Path) -> None:
+def test_urdf_is_read_as_pinocchio_reads_it(tmp_path):
     """Branches in the order of their joints' names, names of frames, limits, friction, and J."""
     pin = pytest.importorskip("pinocchio")
     turned = _joint("x", "d", "c", 0.4, extra=LIMIT.format(0.5))
@@ -309,7 +317,7 @@ def test_urdf_is_read_as_pinocchio_reads_it(tmp_path: Path) -> None:
         assert arm.placed(q)[1] == pytest.approx(full, abs=1e-12)
 
 
-def test_what_cannot_be_read_is_said_in_one_message(tmp_path: Path, urdf: Path) -> None:
+def test_what_cannot_be_read_is_said_in_one_message(tmp_path, urdf):
     broken = tmp_path / "broken.urdf"
     broken.write_text("<robot")
     undamped = tmp_path / "undamped.urdf"
@@ -342,9 +350,7 @@ ENTITIES = "<!DOCTYPE robot [<!ENTITY a '{}'>{}]>".format(
         ("", (2**25 + 1) * " ", "larger than"),
     ],
 )
-def test_descriptions_that_lead_elsewhere_or_without_end_are_refused(
-    start: str, inside: str, message: str, tmp_path: Path
-) -> None:
+def test_descriptions_that_lead_elsewhere_or_without_end_are_refused(start, inside, message, tmp_path):
     """Entities that stand for gigabytes or for other files, files in files, levels without end."""
     for ending in ("urdf", "xml"):
         path = tmp_path / f"arm.{ending}"
@@ -354,16 +360,7 @@ def test_descriptions_that_lead_elsewhere_or_without_end_are_refused(
         assert "\n" not in str(caught.value)
 
 
-def test_meshes_are_not_opened(urdf: Path) -> None:
-    text = urdf.read_text(encoding="utf-8")
-    mesh = "<visual><geometry><mesh filename='package://../../none.stl'/></geometry></visual>"
-    urdf.write_text(text.replace('<link name="tip"/>', f'<link name="tip">{mesh}</link>'), encoding="utf-8")
-    assert read_arm(urdf, frame="tip").damping == (0.02, 0.01)
-
-
-def test_what_is_no_tree_or_of_another_format_is_said_in_one_line(
-    tmp_path: Path, urdf: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_what_is_no_tree_or_of_another_format_is_said_in_one_line(tmp_path, urdf, capfd):
     """With the line of the file, and nothing on standard error."""
     lost = tmp_path / "lost.urdf"
     lost.write_text(urdf.read_text(encoding="utf-8").replace(LINK.format("tip"), ""))
@@ -375,7 +372,7 @@ def test_what_is_no_tree_or_of_another_format_is_said_in_one_line(
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_joint_is_held_where_it_can_be(tmp_path: Path, urdf: Path) -> None:
+def test_a_joint_is_held_where_it_can_be(tmp_path, urdf):
     """At an end of its range, not past it, as degrees would be; a rail without limits anywhere."""
     assert read_arm(urdf, hold={"elbow": 2.4}).sites(3).region == (
         "shoulder from 0.2 to 2.4 rad; elbow held at 2.4 rad"

@@ -34,14 +34,14 @@ def _differences(arm: Arm, q: Array, step: float = 1e-6) -> Array:
     return np.stack(moved, axis=-1)
 
 
-def test_the_jacobian_is_the_derivative(arm: PosedArm) -> None:
+def test_the_jacobian_is_the_derivative(arm):
     """By differences, several turns away from the limits of the joints too."""
     rng = np.random.default_rng(1)
     for q in rng.uniform(-7, 7, (6, arm.joint_count)):
         assert arm.jacobian(q) == pytest.approx(_differences(arm, q), abs=1e-8)
 
 
-def test_the_turn_by_pinocchio(arm: PosedArm, tmp_path: Path) -> None:
+def test_the_turn_by_pinocchio(arm, tmp_path):
     """e = 2 sin(φ/2)/φ r with the rotation vector r of pinocchio, and its derivative by Jlog3."""
     pin = pytest.importorskip("pinocchio")
     model = pin.buildModelFromUrdf(str(tmp_path / "arm.urdf"))
@@ -69,7 +69,7 @@ def test_the_turn_by_pinocchio(arm: PosedArm, tmp_path: Path) -> None:
     assert tried > 3
 
 
-def test_the_point_is_that_of_the_arm_held_at_a_point(arm: PosedArm, tmp_path: Path) -> None:
+def test_the_point_is_that_of_the_arm_held_at_a_point(arm, tmp_path):
     """Position, its Jacobian and its bound do not know of the turn; at rest the turn is 0."""
     plain = read_arm(tmp_path / "arm.urdf")
     q = np.random.default_rng(3).uniform(-1, 1, (4, arm.joint_count))
@@ -80,7 +80,7 @@ def test_the_point_is_that_of_the_arm_held_at_a_point(arm: PosedArm, tmp_path: P
     assert parts[..., 0] == pytest.approx(plain.sites(5).change)
 
 
-def test_no_jump_however_far_it_turns(arm: PosedArm) -> None:
+def test_no_jump_however_far_it_turns(arm):
     """Joints that go round twice: e changes by no more than the joints do, and comes back after two turns."""
     for i in np.flatnonzero(~np.array(arm.sliding)):
         q = np.tile(arm.rest, (4001, 1))
@@ -103,7 +103,7 @@ def _in_cells(
         yield place, sites.joints[place] + rng.choice([-1, 1], arm.joint_count) * halves
 
 
-def test_the_bounds_between_the_points_hold(arm: PosedArm) -> None:
+def test_the_bounds_between_the_points_hold(arm):
     """Of the rows of translation, of those of rotation and of all."""
     sites, most = arm.sites(6), 0.0
     for place, q in _in_cells(arm, sites, np.random.default_rng(4), 60):
@@ -115,7 +115,7 @@ def test_the_bounds_between_the_points_hold(arm: PosedArm) -> None:
     assert most > 0.1
 
 
-def test_the_bounds_hold_for_every_rest(arm: PosedArm) -> None:
+def test_the_bounds_hold_for_every_rest(arm):
     """Without a rest the rows are those of the angular velocity, at any rest they are no longer."""
     free = arm.replace(rest=None)
     sites, rng = free.sites(6), np.random.default_rng(14)
@@ -126,19 +126,19 @@ def test_the_bounds_hold_for_every_rest(arm: PosedArm) -> None:
         assert np.linalg.eigvalsh(here[3:].T @ here[3:] - other[3:].T @ other[3:])[0] >= -1e-12
 
 
-def test_the_turning_curvature_is_a_bound(arm: PosedArm) -> None:
+def test_the_turning_curvature_is_a_bound(arm):
     """|e(q + s) − e(q) − J s| ≤ ½ h |s|²."""
-    rng, most = np.random.default_rng(5), 0.0
+    rng, most, curvature = np.random.default_rng(5), 0.0, arm.turning_curvature
     for _ in range(200):
         q, step = rng.uniform(-2, 2, arm.joint_count), rng.normal(size=arm.joint_count) * 0.1
         gap = arm.forward(q + step) - arm.forward(q) - arm.jacobian(q) @ step
-        bound = arm.turning_curvature * (step @ step) / 2
+        bound = curvature * (step @ step) / 2
         assert np.linalg.norm(gap[3:]) <= bound
         most = max(most, np.linalg.norm(gap[3:]) / bound)
     assert most > 0.1
 
 
-def test_a_turn_takes_no_more_than_the_angle() -> None:
+def test_a_turn_takes_no_more_than_the_angle():
     """EᵀE = I − v vᵀ, and a spring K = k I has the moment k sin φ about the axis."""
     rng = np.random.default_rng(6)
     for _ in range(20):
@@ -152,7 +152,7 @@ def test_a_turn_takes_no_more_than_the_angle() -> None:
         assert product(q, other) @ product(q, other) == pytest.approx(other @ other)
 
 
-def test_a_planar_chain_turns_by_the_sum_of_its_joints() -> None:
+def test_a_planar_chain_turns_by_the_sum_of_its_joints():
     """(x, y, Σq), with the Jacobian by differences; the point is that of the chain without pose."""
     plain = PlanarChain(links=(0.1, 0.07, 0.05), damping=(1, 1, 1))
     arm = plain.replace(pose=True)
@@ -165,7 +165,7 @@ def test_a_planar_chain_turns_by_the_sum_of_its_joints() -> None:
     assert (sites.parts[..., 1] == 0).all()
 
 
-def test_what_has_no_pose_is_said(tmp_path: Path) -> None:
+def test_what_has_no_pose_is_said(tmp_path):
     with pytest.raises(zw.InputError, match="haply-2diy has no pose"):
         built_in("haply-2diy", damping=0.01, pose=True)
     path = random_arm(tmp_path / "arm.urdf", 1, 2)

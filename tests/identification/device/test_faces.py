@@ -50,21 +50,13 @@ def test_a_log_a_file_and_a_dataset_give_the_same(found, tmp_path):
     np.savetxt(path, rows, delimiter=",", header="t_s,enc,F1_N", comments="", fmt="%.9g")
     names = {"position": "enc", "hand_force": "F1_N"}
     of_file = zw.identify(path, columns=names, units={"position": "counts"}, resolution="22.4 um")
-    variables = {
-        "position": ("time", position, {"units": "m"}),
-        "hand_force": ("time", force, {"units": "N"}),
-    }
-    data = xr.Dataset(variables, coords={"time": ("time", time, {"units": "s"})})
+    columns = {"time": (time, "s"), "position": (position, "m"), "hand_force": (force, "N")}
+    data = xr.Dataset({name: ("time", values, {"units": unit}) for name, (values, unit) in columns.items()})
     of_dataset = zw.identify(data, resolution=STEP)
     for name, estimate in found.estimates.items():
         assert of_file.estimates[name].value == pytest.approx(estimate.value, rel=1e-6)
         assert of_dataset.estimates[name].value == pytest.approx(estimate.value, rel=1e-9)
     assert str(path) == of_file.source
-
-
-def test_a_log_is_not_read_twice():
-    with pytest.raises(zw.InputError, match="read already; units"):
-        zw.identify(log_of(), units={"position": "mm"})
 
 
 def test_a_mass_may_carry_a_unit():
@@ -75,6 +67,8 @@ def test_a_mass_may_carry_a_unit():
     assert "as given" in repr(plain)
     with pytest.raises(zw.InputError, match="mass is in kg"):
         zw.identify(log, mass="36 mm")
+    with pytest.raises(zw.InputError, match="read already; units"):
+        zw.identify(log, units={"position": "mm"})
 
 
 def test_progress_ends_with_every_sample():
@@ -105,11 +99,8 @@ def test_a_saved_device_is_read_back(found, tmp_path):
         assert there.low.fraction <= here.low.fraction < here.high.fraction <= there.high.fraction
         assert float(there.low) == pytest.approx(float(here.low), rel=1e-4)
         assert float(there.high) == pytest.approx(float(here.high), rel=1e-4)
-    assert (read.sample_period, read.resolution, read.delay) == (
-        own.sample_period,
-        own.resolution,
-        own.delay,
-    )
+    for name in ("sample_period", "resolution", "delay"):
+        assert getattr(read, name) == getattr(own, name)
     assert read.delay.fraction == Fraction(3, 10_000)
 
 
@@ -309,14 +300,10 @@ def test_four_pictures_and_the_numbers(found):
     never = "never: nothing is promised"
     for part in ("fit, 95 % band", "mass–damper model", "promised, up to", "means", never):
         assert part in labels
-
-
-def test_the_line_that_is_drawn_is_the_fit(found):
-    axes = identification_figure(found).axes[0]
-    line = next(li for li in axes.get_lines() if str(li.get_label()).startswith("fit"))
-    slope, start = np.polyfit(line.get_xdata(), line.get_ydata(), 1)
-    assert slope == pytest.approx(found.estimates["damping"].value, rel=1e-9)
-    assert start == pytest.approx(found.estimates["coulomb_friction"].value, rel=1e-9)
+    line = next(li for li in friction.get_lines() if str(li.get_label()).startswith("fit"))
+    drawn = np.polyfit(line.get_xdata(), line.get_ydata(), 1)
+    fit = [found.estimates[name].value for name in ("damping", "coulomb_friction")]
+    assert drawn == pytest.approx(fit, rel=1e-9)
 
 
 def test_a_given_mass_and_another_model_are_drawn_too():

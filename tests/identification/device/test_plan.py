@@ -20,11 +20,8 @@ def test_information_is_the_closed_form_of_a_sine():
     """For short strokes, whose mean over ten seconds is nothing, M is made of the moments of a sine."""
     length, duration = 0.05, 0.2
     speed, acceleration = length / 2 * np.pi / duration, length / 2 * (np.pi / duration) ** 2
-    expected = [
-        [acceleration**2 / 2, 0, 0],
-        [0, speed**2 / 2, 2 * speed / np.pi],
-        [0, 2 * speed / np.pi, 1],
-    ]
+    both = 2 * speed / np.pi
+    expected = [[acceleration**2 / 2, 0, 0], [0, speed**2 / 2, both], [0, both, 1]]
     found = Stroke(length, duration).information()
     scale = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))
     assert np.allclose(found / scale, expected / scale, atol=0.01)

@@ -66,31 +66,22 @@ def test_runs_are_stacked_and_not_smoothed_across():
     assert min(e.mass for e in each) <= both.mass <= max(e.mass for e in each)
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"passes": -1}, "passes"),
-        ({"passes": 2.0}, "passes"),
-        ({"passes": 5000}, "fewer passes"),
-        ({"model": "stiction"}, "model is"),
-    ],
-)
-def test_bad_input_is_refused(changes, message):
-    log = recorded([(0.06, 0.5, 3)], np.random.default_rng(6))
-    with pytest.raises(zw.InputError, match=message):
-        zw.identification.identify_published(log, **changes)
+STROKES = next(recorded([(0.06, 0.5, 3)], np.random.default_rng(6)).blocks())
+GOOD = {"time": STROKES.time, "position": STROKES.position, "hand_force": STROKES.hand_force}
 
 
 @pytest.mark.parametrize(
-    ("position", "arrays", "message"),
+    ("arrays", "options", "message"),
     [
-        (np.sin(TIME * 20) * 0.01, {}, "no force"),
-        (1e-5 * np.arange(1000), {"hand_force": np.sin(TIME)}, "apart"),
+        (GOOD, {"passes": -1}, "passes"),
+        (GOOD, {"passes": 2.0}, "passes"),
+        (GOOD, {"passes": 5000}, "fewer passes"),
+        (GOOD, {"model": "stiction"}, "model is"),
+        ({"time": TIME, "position": np.sin(TIME * 20) * 0.01}, {}, "no force"),
+        ({"time": TIME, "position": 0.01 * TIME, "hand_force": np.sin(TIME)}, {}, "apart"),
     ],
-    ids=["nothing to fit to", "nothing to tell apart"],
 )
-def test_a_log_without_force_or_motion_is_refused(position, arrays, message):
+def test_bad_input_is_refused(arrays, options, message):
+    log = zw.Log.from_arrays(resolution=1e-5, **arrays)
     with pytest.raises(zw.InputError, match=message):
-        zw.identification.identify_published(
-            zw.Log.from_arrays(time=TIME, position=position, resolution=1e-5, **arrays)
-        )
+        zw.identification.identify_published(log, **options)

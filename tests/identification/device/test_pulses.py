@@ -8,15 +8,7 @@ from scipy.integrate import quad
 from scipy.interpolate import BSpline
 
 from zwidth.data.identification.device import pulses
-from zwidth.data.identification.device.pulses import (
-    Strokes,
-    count_without_steps,
-    counted,
-    find_strokes,
-    positions,
-    pulse,
-    weighed,
-)
+from zwidth.data.identification.device.pulses import Strokes, find_strokes, positions, pulse, weighed
 
 PERIOD = 1e-3
 
@@ -116,8 +108,8 @@ def test_a_position_without_steps_is_counted_above_its_noise():
     """Noise makes no ticks: a hand that rests has none, one that moves has them in its direction only."""
     rng = np.random.default_rng(3)
     resting = 1e-5 * rng.normal(size=5000)
-    count = count_without_steps(np.concatenate([resting, resting + 1.0]))
+    count = pulses.count_without_steps(np.concatenate([resting, resting + 1.0]))
     assert 4e-5 < count < 2e-4
-    assert np.ptp(counted(resting, count)) <= 1
+    assert np.ptp(pulses.counted(resting, count)) <= 1
     moving = np.linspace(0.5 * count, 0.01, 5000) + resting
-    assert (np.diff(counted(moving, count)) >= 0).all()
+    assert (np.diff(pulses.counted(moving, count)) >= 0).all()

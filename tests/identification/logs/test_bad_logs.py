@@ -73,7 +73,6 @@ def test_missing_files_and_directories(tmp_path):
 
 
 def outcome(path: Path) -> tuple[str, int]:
-    """The message or the source, and how many samples were read."""
     try:
         log = zw.read_log(path)
         return log.source, sum(b.time.size for b in log.blocks())

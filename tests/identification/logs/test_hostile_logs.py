@@ -30,7 +30,6 @@ def little_is_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def refused(path: Path, message: str) -> None:
-    """Reading it is one line that says so."""
     with pytest.raises(zw.InputError, match=message) as caught:
         zw.read_log(path, columns={"time": "time_s", "position": "position_mm"})
     assert "\n" not in str(caught.value)

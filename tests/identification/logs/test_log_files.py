@@ -23,12 +23,10 @@ UNITS = {"time": "s", "position": "mm", "hand_force": "N"}
 
 
 def by_name(time: str, position: str, hand_force: str) -> dict[str, str]:
-    """Which columns are which."""
     return {"time": time, "position": position, "hand_force": hand_force}
 
 
 def text_of(recording, sep=",", header=HEADER, decimal=".") -> str:
-    """The recording as a text."""
     rows = np.stack([recording.time, recording.position * 1e3, recording.force], axis=1).tolist()
     lines = [sep.join(header)] if header else []
     lines += [sep.join(map(repr, row)).replace(".", decimal) for row in rows]
@@ -180,10 +178,8 @@ def test_hdf5_groups_matrices_and_compounds(recording, tmp_path):
 def test_netcdf_is_unpacked(recording, tmp_path):
     counts = np.rint(recording.position / 22.4e-6)
     counts[50] = np.nan
-    data = xr.Dataset(
-        {"encoder": ("time", counts * 22.4e-6, {"units": "m"})},
-        coords={"time": ("time", recording.time * 1e3, {"units": "milliseconds"})},
-    )
+    time = ("time", recording.time * 1e3, {"units": "milliseconds"})
+    data = xr.Dataset({"encoder": ("time", counts * 22.4e-6, {"units": "m"}), "time": time})
     packed = {"encoder": {"dtype": "int16", "scale_factor": 22.4e-6, "_FillValue": -32768}}
     data.to_netcdf(tmp_path / "log.nc", engine="h5netcdf", encoding=packed)
     log = zw.read_log(tmp_path / "log.nc")

@@ -28,7 +28,6 @@ ONE = ("standard-linear-solid",)
 
 
 def parameters(test: zw.tissue.TissueTest) -> list[float]:
-    """Of the model that is taken."""
     return [test.best[name] for name in test.best.model.parameters]
 
 
