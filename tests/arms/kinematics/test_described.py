@@ -317,21 +317,24 @@ def test_urdf_is_read_as_pinocchio_reads_it(tmp_path):
         assert arm.placed(q)[1] == pytest.approx(full, abs=1e-12)
 
 
-def test_what_cannot_be_read_is_said_in_one_message(tmp_path, urdf):
-    broken = tmp_path / "broken.urdf"
-    broken.write_text("<robot")
-    undamped = tmp_path / "undamped.urdf"
-    undamped.write_text(urdf.read_text(encoding="utf-8").replace("damping", "nothing"))
-    for path, words in (
-        (tmp_path / "none.urdf", "no file"),
-        (broken, "broken.urdf cannot be read: it is no XML"),
-        (tmp_path / "arm.step", "described in"),
-        (undamped, "any damping"),
+def test_what_cannot_be_read_is_said_in_one_line(tmp_path, urdf, capfd):
+    """With the line of the file where it has one, and nothing on standard error."""
+    whole = urdf.read_text(encoding="utf-8")
+    for name, content, words in (
+        ("none.urdf", None, "no file"),
+        ("arm.step", None, "described in"),
+        ("broken.urdf", "<robot", "broken.urdf cannot be read: it is no XML"),
+        ("undamped.urdf", whole.replace("damping", "nothing"), "any damping"),
+        ("lost.urdf", whole.replace(LINK.format("tip"), ""), r"^lost.urdf cannot be read: line \d+: .*\w$"),
+        ("empty.xml", '<robot name="another format"/>', r"^empty.xml cannot be read: line \d+: .*\w$"),
     ):
+        if content is not None:
+            (tmp_path / name).write_text(content, encoding="utf-8")
         with pytest.raises(zw.InputError, match=words):
-            read_arm(path)
+            read_arm(tmp_path / name)
     with pytest.raises(zw.InputError, match="no frame"):
         read_arm(urdf, frame="hook")
+    assert capfd.readouterr() == ("", "")
 
 
 ENTITIES = "<!DOCTYPE robot [<!ENTITY a '{}'>{}]>".format(
@@ -358,18 +361,6 @@ def test_descriptions_that_lead_elsewhere_or_without_end_are_refused(start, insi
         with pytest.raises(zw.InputError, match=f"arm.{ending} cannot be read: it .*{message}") as caught:
             read_arm(path)
         assert "\n" not in str(caught.value)
-
-
-def test_what_is_no_tree_or_of_another_format_is_said_in_one_line(tmp_path, urdf, capfd):
-    """With the line of the file, and nothing on standard error."""
-    lost = tmp_path / "lost.urdf"
-    lost.write_text(urdf.read_text(encoding="utf-8").replace(LINK.format("tip"), ""))
-    empty = tmp_path / "empty.xml"
-    empty.write_text('<robot name="another format"/>')
-    for path in (lost, empty):
-        with pytest.raises(zw.InputError, match=rf"^{path.name} cannot be read: line \d+: .*\w$"):
-            read_arm(path)
-    assert capfd.readouterr() == ("", "")
 
 
 def test_a_joint_is_held_where_it_can_be(tmp_path, urdf):

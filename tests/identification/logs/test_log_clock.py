@@ -85,33 +85,33 @@ def test_gaps_on_the_border_of_a_piece_are_found():
         assert sum(b.time.size for b in log.blocks()) == count - 5
 
 
-@pytest.mark.parametrize("rate", [1003, 1010, 1050, 1500, 2200])
-def test_a_clock_of_milliseconds_drops_no_sample_of_a_faster_loop(rate):
-    """Between 1 and 2 kHz stamps in whole ms come once or twice: every row is a sample."""
-    log = zw.Log.from_arrays(time=np.round(np.arange(20000) / rate, 3), position=drift(20000))
-    assert (log.samples, log.runs) == (20000, 1)
+def packets(k: np.ndarray) -> np.ndarray:
+    """Eight samples with the stamps of their packet."""
+    return (k // 8 * 8 + 7) / 4000 + k % 8 * 1e-7
+
+
+@pytest.mark.parametrize(
+    ("stamps", "rate"),
+    [
+        *[((lambda k, rate=rate: np.round(k / rate, 3)), rate) for rate in (1003, 1010, 1050, 1500, 2200)],
+        *[
+            ((lambda k, unit=unit: np.floor(k / 3000 / unit + 1e-9) * unit), 3000)
+            for unit in (1e-3, 1.1e-3, 5e-3)
+        ],
+        (packets, 4000),
+    ],
+)
+def test_where_stamps_are_coarse_the_rows_are_the_clock(stamps, rate):
+    """Whole ms of a loop between 1 and 2 kHz come once or twice; or a clock ticks every few ms."""
+    log = zw.Log.from_arrays(time=stamps(np.arange(30_000)), position=drift(30_000))
+    assert (log.samples, log.runs) == (30_000, 1)
     assert log.sample_period == pytest.approx(1 / rate, rel=1e-3)
+    assert "grouped stamps" in kinds(log) or rate != 3000
 
 
-@pytest.mark.parametrize("unit", [1e-3, 1.1e-3, 5e-3])
-def test_a_coarse_clock_repeats_stamps_and_no_sample_is_left_out(unit):
-    """3 kHz stamped by a clock that ticks every few ms: the rows are the clock, the period their mean."""
-    time = np.floor(np.arange(30000) / 3000 / unit + 1e-9) * unit
-    log = zw.Log.from_arrays(time=time, position=drift(30000))
-    assert log.runs == 1
-    assert log.samples == 30000
-    assert log.sample_period == pytest.approx(1 / 3000, rel=1e-3)
-    assert "grouped stamps" in kinds(log)
-
-
-def test_packets_of_samples_are_stamped_when_they_arrive():
-    """Eight samples with the stamps of their packet; a lost packet still shows."""
-    arrival = np.repeat(np.arange(7, 40000, 8) / 4000, 8) + np.tile(np.arange(8) * 1e-7, 5000)
-    log = zw.Log.from_arrays(time=arrival, position=drift(40000))
-    assert log.runs == 1
-    assert log.sample_period == pytest.approx(1 / 4000, rel=1e-3)
-    fewer = np.delete(arrival, slice(16000, 16800))
-    assert zw.Log.from_arrays(time=fewer, position=drift(fewer.size)).runs == 2
+def test_a_lost_packet_shows():
+    arrival = np.delete(packets(np.arange(40_000)), slice(16_000, 16_800))
+    assert zw.Log.from_arrays(time=arrival, position=drift(arrival.size)).runs == 2
 
 
 def test_a_row_written_twice_is_left_out(recording):

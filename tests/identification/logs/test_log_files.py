@@ -106,22 +106,19 @@ def test_the_first_rows_are_looked_at_once(tmp_path):
 
 
 def test_texts_with_scars(recording, tmp_path):
-    text = text_of(recording)
-    (tmp_path / "twice.csv").write_text(text + text)
-    twice = zw.read_log(tmp_path / "twice.csv")
-    assert (twice.runs, twice.samples) == (2, 8000)
-    assert {"headers", "restart"} <= {f.kind for f in twice.findings}
+    path, text = tmp_path / "log.csv", text_of(recording)
     lines = text.splitlines(keepends=True)
     lines[100] = "# the hand let go\n" + lines[100]
     lines[500] = "0.2,0.4\n"
-    (tmp_path / "scars.csv").write_bytes("".join(lines).encode() + b"\0" * 70000)
-    log = zw.read_log(tmp_path / "scars.csv")
-    assert (log.runs, log.samples) == (2, 3999)
-    assert {"broken rows", "zeros", "gap"} <= {f.kind for f in log.findings}
-    (tmp_path / "cut.csv").write_text(text[:-9])
-    cut = zw.read_log(tmp_path / "cut.csv")
-    assert cut.samples == 3999
-    assert "unfinished" in {f.kind for f in cut.findings}
+    for content, counts, kinds in (
+        (text + text, (2, 8000), {"headers", "restart"}),
+        ("".join(lines) + "\0" * 70000, (2, 3999), {"broken rows", "zeros", "gap"}),
+        (text[:-9], (1, 3999), {"unfinished"}),
+    ):
+        path.write_text(content, encoding="utf-8")
+        log = zw.read_log(path)
+        assert (log.runs, log.samples) == counts
+        assert kinds <= {finding.kind for finding in log.findings}
 
 
 def test_dates_and_integers_in_text(recording, tmp_path):
