@@ -6,6 +6,7 @@ import json
 from fractions import Fraction
 from math import tanh
 from pathlib import Path
+from typing import Any
 
 import gain_files
 import pytest
@@ -19,6 +20,11 @@ from zwidth.data.gains.plant import family, plants
 from zwidth.data.gains.read import FAMILIES
 
 
+def law(side: Any) -> tuple[Fraction, Fraction, Fraction]:
+    """Spring, damping against the other arm, damping of its own."""
+    return side.stiffness, side.damping, side.local_damping
+
+
 def test_openarm_has_relative_damping_on_both_sides(tmp_path):
     """kd is of the speed against the other arm, none of its own; the decimals that are written."""
     follower = openarm("Follower", Kd=[2.5] * 8)
@@ -27,21 +33,19 @@ def test_openarm_has_relative_damping_on_both_sides(tmp_path):
     assert (gains.family, gains.is_pair, gains.drives) == ("openarm", True, True)
     assert [joint.name for joint in gains.joints] == ["J1", "J2", "J3", "J4", "J5", "J6", "J7", "gripper"]
     for n, joint in enumerate(gains.joints):
-        assert joint.leader.stiffness == joint.follower.stiffness == gain_files.STIFFNESS[n]
-        assert joint.leader.damping == Fraction(str(gain_files.DAMPING[n]))
-        assert joint.follower.damping == Fraction(5, 2)
-        assert joint.leader.local_damping == joint.follower.local_damping == 0
+        assert law(joint.leader) == (gain_files.STIFFNESS[n], Fraction(str(gain_files.DAMPING[n])), 0)
+        assert law(joint.follower) == (gain_files.STIFFNESS[n], Fraction(5, 2), 0)
         assert joint.leader.source == f"leader.yaml, LeaderArmParam, Kp[{n}]"
 
 
 def test_compensation_is_the_one_of_the_code(tmp_path):
     """Fc tanh(0.1 k v) + Fv v, at some speeds."""
     (joint, *_), at = zw.read_gains(written(tmp_path, "a.yaml", openarm())).joints, (-2.0, 0.03, 0.7)
-    law = joint.leader.compensation
+    found = joint.leader.compensation
+    coulomb, viscous, speed = (float(number) for number in (found.coulomb, found.viscous, found.speed))
     for v in at:
         expected = gain_files.COULOMB[0] * tanh(0.1 * gain_files.STEEPNESS[0] * v) + gain_files.VISCOUS[0] * v
-        found = float(law.coulomb) * tanh(v / float(law.speed)) + float(law.viscous) * v
-        assert found == pytest.approx(expected, rel=1e-12)
+        assert coulomb * tanh(v / speed) + viscous * v == pytest.approx(expected, rel=1e-12)
     assert float(joint.leader.offset) == 0.088
 
 
@@ -67,8 +71,7 @@ def test_a_law_of_its_own_for_the_leader(tmp_path):
     text += "  Kd: [3, 3, 3, 3, 0.2, 0.2, 0.2, 0.2]\n"
     gains = zw.read_gains(written(tmp_path, "a.yaml", text + "  Kf: [0, 0, 0, 0, 0, 0, 0, 0]\n"))
     joint = gains.joints[0]
-    assert (joint.leader.stiffness, joint.leader.damping, joint.leader.local_damping) == (60, 0, 3)
-    assert (joint.follower.stiffness, joint.follower.damping) == (240, 3)
+    assert (law(joint.leader), law(joint.follower)) == ((60, 0, 3), (240, 3, 0))
     assert joint.leader.compensation == joint.follower.compensation
     assert not gains.drives
     with pytest.raises(zw.InputError, match="measured torque"):
@@ -80,9 +83,7 @@ def test_i2rt_has_local_damping_on_the_follower_alone(tmp_path):
     yam, gripper = written(tmp_path, "yam.yml", YAM), written(tmp_path, "linear.yml", GRIPPER)
     gains = zw.read_gains(yam, gripper)
     joint = gains.joints[3]
-    assert (joint.leader.stiffness, joint.leader.damping, joint.leader.local_damping) == (2, 0, 0)
-    assert (joint.follower.stiffness, joint.follower.damping) == (10, 0)
-    assert joint.follower.local_damping == Fraction(3, 2)
+    assert (law(joint.leader), law(joint.follower)) == ((2, 0, 0), (10, 0, Fraction(3, 2)))
     assert joint.motor == "DM4310"
     assert any("gripper is left out" in note for note in gains.notes)
     assert not joint.follower.compensation
@@ -103,9 +104,9 @@ def test_a_leader_that_feels_nothing_makes_no_pair(tmp_path):
 
 def test_compensation_of_i2rt_where_it_is_enabled(tmp_path):
     """breakaway tanh(v/eps) of the versions that have it."""
-    law = "friction_comp:\n  enable: {}\n  breakaway: [0.1, 0.2, 0.3, 0, 0, 0]\n  eps: 0.01\n"
-    enabled = zw.read_gains(written(tmp_path, "a.yml", YAM + law.format("true"))).joints[2]
-    off = zw.read_gains(written(tmp_path, "b.yml", YAM + law.format("false"))).joints[2]
+    extra = "friction_comp:\n  enable: {}\n  breakaway: [0.1, 0.2, 0.3, 0, 0, 0]\n  eps: 0.01\n"
+    enabled = zw.read_gains(written(tmp_path, "a.yml", YAM + extra.format("true"))).joints[2]
+    off = zw.read_gains(written(tmp_path, "b.yml", YAM + extra.format("false"))).joints[2]
     for side in (enabled.leader, enabled.follower):
         assert side.compensation == zw.FrictionCompensation(coulomb="0.3", speed="0.01")
     assert not off.leader.compensation
@@ -146,8 +147,7 @@ def test_lerobot_with_damiao_drives_has_local_damping(tmp_path):
     gains = zw.read_gains(written(tmp_path, "a.yaml", DAMIAO), both=True)
     joint = gains.joints[1]
     assert gains.family == "lerobot-damiao"
-    assert joint.leader == joint.follower
-    assert (joint.follower.stiffness, joint.follower.damping, joint.follower.local_damping) == (240, 0, 5)
+    assert law(joint.leader) == law(joint.follower) == (240, 0, 5)
 
 
 def test_a_piper_has_a_row_for_either_end_of_its_unknown_factor(tmp_path):
@@ -155,7 +155,7 @@ def test_a_piper_has_a_row_for_either_end_of_its_unknown_factor(tmp_path):
     assert [joint.name for joint in joints] == [
         "J1 ×1", "J1 ×4", "J2 ×1", "J2 ×4", "J3 ×1", "J3 ×4", "J4", "J5", "J6",
     ]  # fmt: skip
-    assert (joints[1].follower.stiffness, joints[1].follower.local_damping) == (40, Fraction(16, 5))
+    assert law(joints[1].follower) == (40, 0, Fraction(16, 5))
 
 
 def test_yaml_json_and_toml_are_the_same(tmp_path):
@@ -164,9 +164,8 @@ def test_yaml_json_and_toml_are_the_same(tmp_path):
     yaml = "LeaderArmParam: {Kp: [0.1, 30], Kd: [0.2, 1e-3]}\n"
     files = {"a.json": json.dumps(content), "a.toml": toml, "a.yaml": yaml}
     found = [zw.read_gains(written(tmp_path, name, text)) for name, text in files.items()]
-    numbers = [[(j.leader.stiffness, j.leader.damping) for j in gains.joints] for gains in found]
-    assert numbers[0] == numbers[1] == numbers[2]
-    assert numbers[0][0] == (Fraction(1, 10), Fraction(1, 5))
+    numbers = [[law(joint.leader) for joint in gains.joints] for gains in found]
+    assert numbers == [[(Fraction(1, 10), Fraction(1, 5), 0), (30, Fraction(1, 1000), 0)]] * 3
 
 
 @pytest.mark.parametrize(
