@@ -151,10 +151,10 @@ def with_part(path: Path, part: str, content: bytes) -> None:
     """Write a workbook anew with one of its parts otherwise."""
     with ZipFile(path) as old:
         whole = {name: old.read(name) for name in old.namelist()}
-    zipped(path, **whole | {part: content})
+    zipped(path, whole | {part: content})
 
 
-def zipped(path: Path, **parts: bytes) -> None:
+def zipped(path: Path, parts: dict[str, bytes]) -> None:
     with ZipFile(path, "w", ZIP_DEFLATED) as new:
         for name, content in parts.items():
             new.writestr(name, content)
@@ -177,6 +177,7 @@ HEADS = {
 }
 STYLES = b"<styleSheet>" + b"<xf/>" * 500_000 + b"</styleSheet>"
 LED = b'<row><c t="inlineStr"><is><t>&e;</t></is></c></row>'
+CONTENT = {"content.xml": b""}
 OPEN = b"application/vnd.oasis.opendocument."
 
 
@@ -194,9 +195,9 @@ OPEN = b"application/vnd.oasis.opendocument."
             lambda path: path.write_bytes(path.read_bytes()[:-900] + bytes(40) + path.read_bytes()[-860:]),
             "cut off|copy it anew|cannot be read",
         ),
-        (lambda path: zipped(path, **{"content.xml": b"", "xl/workbook.bin": b""}), "binary workbook"),
-        (lambda path: zipped(path, mimetype=OPEN + b"spreadsheet"), "OpenDocument"),
-        (lambda path: zipped(path, mimetype=OPEN + b"text"), "no workbook"),
+        (lambda path: zipped(path, CONTENT | {"xl/workbook.bin": b""}), "binary workbook"),
+        (lambda path: zipped(path, CONTENT | {"mimetype": OPEN + b"spreadsheet"}), "OpenDocument"),
+        (lambda path: zipped(path, CONTENT | {"mimetype": OPEN + b"text"}), "no workbook"),
     ],
 )
 def test_what_is_no_workbook_or_made_to_do_harm_is_refused(change, message, tmp_path, monkeypatch):
