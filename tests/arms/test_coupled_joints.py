@@ -117,7 +117,6 @@ def test_a_document_with_more_than_there_is_is_refused():
     ],
 )
 def test_a_redundant_chain_and_a_pose_are_proved(pose, wall):
-    """Three joints, a hand at a point and one in pose, below the limit and not above it."""
     ranges = ((0.2, 0.21), (0.5, 0.51), (0.4, 0.41))
     damping = random_damping(5, 3)
     arm = PlanarChain(links=(0.1, 0.08, 0.05), damping=damping, joint_range=ranges, pose=pose)

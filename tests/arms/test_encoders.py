@@ -318,7 +318,6 @@ def test_in_pose_each_block_pays_in_its_own_unit():
 
 @pytest.mark.parametrize("pose", [False, True])
 def test_descriptions_are_counted_with_a_certificate(pose, tmp_path):
-    """Joints of any placement in space; in pose with a force and a moment. More of them is refused."""
     random_arm(tmp_path / "arm.urdf", 4, 3)
     numbers: dict[str, Any] = {"resolution": (1e-4,) * 3, "coulomb_friction": (0.05, 0.04, 0.03)}
     hold = {"j0": 0.1}

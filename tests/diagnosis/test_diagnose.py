@@ -20,7 +20,6 @@ RNG = np.random.default_rng(3)
 
 
 def log_of(path: Path, trace: Any, *forces: str) -> Path:
-    """The file that a logger would have written."""
     columns = {"time_s": trace["time"].values, "position_m": trace["measured_position"].values}
     return written(path, columns | {f"{name}_N": trace[name].values for name in forces})
 
@@ -42,7 +41,6 @@ def centring(stiffness: float, damping: float = 0.0, window: int = 1) -> zw.Puls
 
 
 def paddle(**other: Any) -> zw.Device:
-    """A light paddle with little friction and a motor of 30 N."""
     numbers = {
         "mass": 0.06, "damping": 0.12, "coulomb_friction": 0.004, "resolution": 5e-6, "sample_period": PERIOD
     }  # fmt: skip
@@ -86,7 +84,6 @@ def test_the_thing_is_quiet_with_the_stiffness_that_is_advised(tmp_path):
 
 
 def test_the_command_alone_does_not_show_what_lies_behind_it(tmp_path):
-    """A delay may be likely, but no number is given, and the motor's own force is asked for."""
     trace = released(paddle(delay=0.002), centring(150))
     found = zw.diagnose(log_of(tmp_path / "log.csv", trace, "commanded_force"), paddle())
     assert found.cause in (None, "delay")
@@ -120,7 +117,6 @@ def test_one_command_of_an_unknown_device_is_of_two_causes(tmp_path):
 
 
 def test_rest_is_no_vibration(tmp_path):
-    """A wall that comes to rest: no cause, and what to record."""
     trace = released(paddle(damping=1.5), centring(300))
     found = zw.diagnose(log_of(tmp_path / "log.csv", trace.isel(time=slice(200, None)), *BOTH), paddle())
     assert found.cause is None
@@ -179,7 +175,6 @@ def test_both_forces_of_a_served_loop_are_known():
 
 
 def test_a_force_is_held_beside_a_law():
-    """Spring, filtered damper and compensation against their recursion; a lag, and a gain that is another."""
     x = np.cumsum(RNG.normal(size=1200)) * 1e-5
     speed = np.diff(x, prepend=x[0]) / PERIOD
     smooth, slow = np.zeros_like(x), 0.004

@@ -18,7 +18,6 @@ RNG = np.random.default_rng(11)
 
 
 def shaken(seconds: float = 1.5, amplitude: float = 0.004, drift: float = 0.002) -> np.ndarray:
-    """A sine with a third harmonic on a slow drift, sampled."""
     t = np.arange(round(seconds / PERIOD)) * PERIOD
     w = 2 * np.pi * FREQUENCY
     return amplitude * (np.sin(w * t + 0.4) + 0.07 * np.sin(3 * w * t + 1.1)) + drift * t
@@ -36,7 +35,6 @@ def recorded(position: np.ndarray, **forces: np.ndarray) -> Recording:
 
 
 def seen_in(position: np.ndarray, device: Device | None = None, **forces: np.ndarray) -> Evidence:
-    """What is seen of a vibration in arrays."""
     found = vibration.find(position, PERIOD)
     return gather(recorded(position, **forces), found, device)
 
@@ -85,7 +83,6 @@ def test_a_force_that_has_nothing_to_do_with_the_motion_is_not_explained():
 
 @pytest.mark.parametrize("kind", ["delay", "damper", "rate"])
 def test_what_lies_between_two_forces(kind):
-    """A delay, a damper inside and a limit of rate are each accounted for best by themselves."""
     position = shaken()
     command = 640 * position
     followed = command.copy()

@@ -89,7 +89,6 @@ def test_arms_that_are_moved_slowly_do_not_shake(tmp_path):
 
 
 def test_lists_in_parquet_as_a_robot_learning_dataset_has_them(shaken, tmp_path):
-    """Second joint of observation.state and of action; the stamps of an episode are seconds."""
     rows = shaken["time_s"].size
 
     def joints(values: np.ndarray) -> pa.Array:
@@ -122,7 +121,6 @@ def test_lists_in_parquet_as_a_robot_learning_dataset_has_them(shaken, tmp_path)
 
 @pytest.mark.parametrize("storage", ["MCAP", "SQLITE3"])
 def test_a_bag_with_the_joint_states_of_both_arms(storage, shaken, tmp_path):
-    """A topic each, the follower's stamps a little later."""
     from rosbags.rosbag2 import StoragePlugin, Writer
     from rosbags.typesys import Stores, get_typestore
 
@@ -172,7 +170,6 @@ def test_what_is_missing_is_asked_for_of_its_arm(shaken, tmp_path):
 
 
 def test_the_law_of_an_arm():
-    """Stiffness, both dampings, compensation and both lags from noise that moves both arms."""
     own, other = (np.cumsum(RNG.normal(size=800)) * 1e-3 for _ in range(2))
     late = ((own, 1), (own, 2), (other, 4), (other, 5))
     back = [np.concatenate([np.full(n, x[0]), x[: x.size - n]]) for x, n in late]
@@ -187,7 +184,6 @@ def test_the_law_of_an_arm():
 
 
 def test_a_pair_is_written_as_it_is_read(tmp_path):
-    """Every number of a coupling, digit for digit."""
     pair = arms().replace(
         stiffness="12.5 N*m/rad",
         damping="0.01 N*m*s/rad",

@@ -136,7 +136,6 @@ def test_what_is_no_spring_and_damper_is_refused(tmp_path, text, message):
 
 
 def test_checks_on_the_command_line(tmp_path, capsys):
-    """Joints with a plant; an impedance goes on to an arm, at its file's rate, and says what is left out."""
     plant = written(tmp_path, "plant.toml", "[arm]\ndamping = [1.2, 0.8]\n")
     joints, end = written(tmp_path, NAME, TRAJECTORY), written(tmp_path, "end.yaml", CARTESIAN)
     assert main(["gains", str(joints)]) == 2
@@ -156,7 +155,6 @@ def test_checks_on_the_command_line(tmp_path, capsys):
 
 
 def found(folder: Path, **asked: object) -> PassiveGains:
-    """For joints with 1 N·m·s/rad."""
     controllers = read_controllers(written(folder, "arm.yaml", ARM))
     return passive_gains(controllers, device(), **asked)  # type: ignore[arg-type]
 
@@ -239,7 +237,6 @@ def test_writing_on_the_command_line(tmp_path, capsys):
     ],
 )
 def test_what_cannot_be_is_refused(tmp_path, joint, share, message):
-    """A share of nothing; a joint without damping, or with steps and no friction that covers them."""
     controllers = read_controllers(written(tmp_path, "arm.yaml", ARM))
     with pytest.raises(zw.InputError, match=message):
         passive_gains(controllers, zw.Device(**joint, rate=1, motion="rotary"), share=share)

@@ -92,7 +92,6 @@ def test_i2rt_has_local_damping_on_the_follower_alone(tmp_path):
 
 
 def test_a_leader_that_feels_nothing_makes_no_pair(tmp_path):
-    """bilateral_kp = 0, or LeRobot."""
     yam = zw.read_gains(written(tmp_path, "yam.yml", YAM), bilateral_kp=0)
     assert not yam.is_pair
     with pytest.raises(zw.InputError, match="feels nothing"):
@@ -187,7 +186,6 @@ def test_yaml_json_and_toml_are_the_same(tmp_path):
     ],
 )
 def test_a_file_that_cannot_be_used_is_refused_in_a_line(tmp_path, text, said):
-    """What is wrong, and where; nothing in it is run."""
     with pytest.raises(zw.InputError, match=said) as caught:
         zw.read_gains(written(tmp_path, "a.yaml", text))
     assert "\n" not in str(caught.value)

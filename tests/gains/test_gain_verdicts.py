@@ -20,7 +20,6 @@ from zwidth.passivity.pairs.limits import is_passive, with_share
 
 
 def arm(damping: object = "0.5", **more: object) -> zw.Device:
-    """A joint; its rate is put in by the gains."""
     return zw.Device(damping=damping, rate=1, motion="rotary", **more)
 
 
@@ -246,7 +245,6 @@ PAGE = (Path(__file__).parents[2] / "docs" / "gain-files.md").read_text(encoding
 
 @pytest.fixture(scope="module")
 def names(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """What its example makes."""
     found: dict[str, Any] = {}
     (example,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
     with pytest.MonkeyPatch.context() as patch:

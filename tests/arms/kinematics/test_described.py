@@ -289,7 +289,6 @@ def test_damping_of_a_description_is_told_as_such(damping, words, urdf):
 
 
 def test_urdf_is_read_as_pinocchio_reads_it(tmp_path):
-    """Branches in the order of their joints' names, names of frames, limits, friction, and J."""
     pin = pytest.importorskip("pinocchio")
     turned = _joint("x", "d", "c", 0.4, extra=LIMIT.format(0.5))
     path = robot(

@@ -63,7 +63,6 @@ def wandering(
 
 
 def identified(x: Array, force: Array) -> zw.identification.Identified:
-    """What counts of a position and a force say."""
     position = np.floor(x / COUNT) * COUNT
     return zw.identify(
         zw.Log.from_arrays(position=position, hand_force=force, sample_period=PERIOD, resolution=COUNT)

@@ -25,7 +25,6 @@ Identified = zw.identification.Identified
 
 
 def log_of(motion: str = "linear", **other: float) -> zw.Log:
-    """The recording as a log."""
     time, position, force = paddle(**other)
     return zw.Log.from_arrays(time=time, position=position, hand_force=force, resolution=STEP, motion=motion)
 

@@ -25,7 +25,6 @@ STEP = OTHER[0] / (OTHER[0] + 0.036)
 
 
 def identified(arrays, device=None, without=(), resolution=22.4e-6, **changed):
-    """What a recording says, some columns replaced; and options."""
     options = {name: changed.pop(name) for name in set(changed) - set(arrays)}
     kept = {name: values for name, values in {**arrays, **changed}.items() if name not in without}
     log = zw.Log.from_arrays(resolution=resolution, sample_period=1e-3, **kept)
@@ -33,7 +32,6 @@ def identified(arrays, device=None, without=(), resolution=22.4e-6, **changed):
 
 
 def holds(found, finger=FINGER, confidence=0.999):
-    """Whether every interval holds the truth."""
     intervals = [found.estimates[name].interval(confidence) for name in NAMES]
     return all(low < true < high for (low, high), true in zip(intervals, finger, strict=True))
 
@@ -245,7 +243,6 @@ def test_with_the_device_known_a_late_load_cell_is_not_needed(trembling):
 
 
 def test_a_load_cell_at_its_end_stop(trembling):
-    """A tenth of the samples: refused, or by the actuator where the device is known; a few: left out."""
     force = trembling["hand_force"]
     middle = np.median(force)
     ends = [np.quantile(np.abs(force - middle), 1 - share) for share in (0.1, 0.002)]

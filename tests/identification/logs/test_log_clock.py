@@ -146,7 +146,6 @@ def test_stamps_that_are_no_clock_are_refused(stamps, message):
 
 
 def test_a_stated_rate_is_held_against_the_stamps(recording):
-    """Equal: silent; off by 0.5 %: reported and used; off by 5 %: refused."""
 
     def stated(factor: float) -> zw.Log:
         return zw.Log.from_arrays(

@@ -34,7 +34,6 @@ def text_of(recording, sep=",", header=HEADER, decimal=".") -> str:
 
 
 def assert_same(log: zw.Log, recording, force: bool = True) -> None:
-    """The log holds the recording, to rounding."""
     blocks = list(log.blocks())
     assert np.abs(np.concatenate([b.time for b in blocks]) - recording.time).max() < 1e-12
     assert np.abs(np.concatenate([b.position for b in blocks]) - recording.position).max() < 1e-15
@@ -202,7 +201,6 @@ def test_matlab_old_and_new(recording, tmp_path):
 
 @pytest.mark.parametrize("storage", ["MCAP", "SQLITE3"])
 def test_rosbags(storage, recording, tmp_path):
-    """Joint states and a wrench on a topic of its own, each with its header's stamp."""
     from rosbags.rosbag2 import StoragePlugin, Writer
     from rosbags.typesys import Stores, get_typestore
 
@@ -245,7 +243,6 @@ def test_without_the_library_for_bags_its_name_is_said(tmp_path, monkeypatch):
 @pytest.mark.parametrize("suffix", ["nc", "parquet", "csv"])
 @pytest.mark.parametrize("rotary", [False, True])
 def test_traces_of_zwidth_are_logs(suffix, rotary, tmp_path):
-    """The encoder's reading at the samples alone, with period, step and motion as the trace says."""
     if rotary:
         device = zw.rotary(inertia=2e-5, damping=2e-4, coulomb_friction=2e-3, resolution=1e-4, rate=2000)
         trace = zw.simulate(device, zw.Wall(0.5), zw.operators.Finger(), 0.3, initial_position=-0.05)

@@ -40,7 +40,6 @@ def book(path: Path, **sheets: Rows) -> Path:
 
 
 def is_the_test(found: Any) -> None:
-    """To the digit that the sheet has."""
     assert found.time - found.time[0] == pytest.approx(TIME, abs=1e-6)
     assert found.indentation == pytest.approx(DEPTH, abs=1e-9)
     assert found.force == pytest.approx(FORCE, abs=1e-9)
@@ -148,7 +147,6 @@ def test_formulas_are_what_was_kept_of_them(tmp_path):
 
 
 def with_part(path: Path, part: str, content: bytes) -> None:
-    """Write a workbook anew with one of its parts otherwise."""
     with ZipFile(path) as old:
         whole = {name: old.read(name) for name in old.namelist()}
     zipped(path, whole | {part: content})
@@ -167,7 +165,6 @@ ENTITIES = b"".join(b'<!ENTITY e%d "%s">' % (k, b"&e%d;" % (k - 1) * 10) for k i
 
 
 def sheet(path: Path, rows: bytes, head: bytes = b"") -> None:
-    """A workbook with another sheet."""
     with_part(path, SHEET_XML, head + SHEET + rows + END)
 
 
@@ -248,7 +245,6 @@ def watch(value: float, start: float = 36903.25) -> str:
 
 
 def rows(line: str, write=german) -> str:  # type: ignore[no-untyped-def]
-    """A line for each sample."""
     return "".join(
         line.format(t=write(t, 2), f=write(1000 * f, 1), x=write(1000 * x, 3), at=watch(t), k=k)
         for k, (t, x, f) in enumerate(zip(TIME, DEPTH, FORCE, strict=True))
@@ -288,7 +284,6 @@ TEXTS = {
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    """Of the sheet."""
     return tmp_path / "sheet.csv"
 
 
@@ -313,7 +308,6 @@ def test_a_word_for_no_number(word, path):
 
 
 def test_tests_side_by_side(path):
-    """Named alike but for a number, or alike; one column of time for both, or two."""
     for head, line in (
         (
             "Time 1 [s];Force 1 [mN];Depth 1 [mm];Time 2 [s];Force 2 [mN];Depth 2 [mm]",

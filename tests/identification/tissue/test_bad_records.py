@@ -121,7 +121,6 @@ def test_a_sign_turned_round():
 
 @pytest.mark.parametrize("factor", [1e3, 1e-3])
 def test_units_off_by_a_thousand(factor):
-    """The verdict refuses their intervals."""
     t, x, f = record()
     for fit in (fitted(t, x, factor * f), fitted(t, x / factor, f)):
         assert any("unit is off by 1000" in remark for remark in fit.remarks)

@@ -40,12 +40,10 @@ def remembering(white: np.ndarray, rho: np.ndarray | float) -> np.ndarray:
 
 
 def task_of(name: str, history: History, branches: int | None = None) -> Task:
-    """Its force, fitted with a zero."""
     return Task(as_model(name, branches, "force"), history, fines_of(history)[0], True)
 
 
 def relaxation(count: int = 300, begin: float = 0.5) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """4 mm within 0.3 s and a hold, without noise."""
     time = np.linspace(0, 6, count)
     s = np.clip((time - begin) / 0.3, 0, 1)
     depth = 0.004 * s**2 * (3 - 2 * s)
@@ -71,7 +69,6 @@ def strokes() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def creep() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """2 N within 0.2 s, held."""
     time = np.linspace(0, 8, 300)
     force = 2 * np.clip((time - 0.5) / 0.2, 0, 1)
     return time, zw.tissue.position_response(SOLID, time, force, 0.0), force
@@ -91,7 +88,6 @@ def test_which_test_it_is(arrays, kind, noisy):
 
 @pytest.mark.parametrize("arrays", [relaxation, creep, strokes])
 def test_without_noise_the_parameters_come_back_whatever_origin_and_sign(arrays):
-    """A ramp is followed as it was, between its samples too."""
     time, x, f = arrays()
     for test in (
         zw.tissue.fit_test(time, x, f, models=ONE),
@@ -194,7 +190,6 @@ def test_the_simplest_within_6_is_taken_and_rivals_are_named(criteria, best, oth
 
 
 def test_two_branches_are_told_from_one_and_a_misfit_is_said():
-    """The true model leaves noise; one branch too few does not, and then the intervals are doubted."""
     time, x, _ = relaxation(400)
     solid = zw.GeneralizedMaxwell(420, [(200, 10), (260, 200)])
     force = zw.tissue.force_response(solid, time, x) + np.random.default_rng(2).normal(0, 0.004, 400)
@@ -318,7 +313,6 @@ def test_the_ends_of_a_number_that_is_hardly_known():
 
 
 def short_ramp() -> tuple[np.ndarray, np.ndarray]:
-    """4 mm within 0.3 s, held until 4 s."""
     time = np.linspace(0, 4, 120)
     s = np.clip((time - 0.3) / 0.3, 0, 1)
     return time, 0.004 * s**2 * (3 - 2 * s)

@@ -20,14 +20,12 @@ positive = st.fractions(Fraction(1, 50), 900, max_denominator=997)
 
 
 def motion(samples):
-    """Inside, three tones."""
     t = T * np.arange(samples)
     tones = 3 * np.sin(4.4 * t) + np.sin(19.5 * t) + 0.5 * np.sin(71 * t)
     return t, 0.006 + 1e-3 * tones
 
 
 def tissue(samples, *solid, noise=0.0, seed=1):
-    """A position and the force of the material under it."""
     t, x = motion(samples)
     f = force_response(zw.StandardLinearSolid(*solid), t, x)
     return x, f + noise * np.random.default_rng(seed).normal(0, 1, samples)
@@ -122,7 +120,6 @@ def test_maxwell_and_kelvin_voigt_are_solids_too():
 
 
 def test_a_tissue_that_changes_is_followed():
-    """The stiffness doubles at 20 s; with a memory of 2 s it is found anew, with λ = 1 it is not."""
     t, x = motion(40_000)
     soft, stiff = (force_response(zw.StandardLinearSolid(mu0, 150, 15), t, x) for mu0 in (300, 600))
     f = np.where(t < 20, soft, stiff) + np.random.default_rng(3).normal(0, 0.01, t.size)

@@ -21,7 +21,6 @@ TRUE = {"stiffness": 310, "branch_stiffness": 145, "branch_damping": 11}
 
 
 def motion(samples=300, period=0.004):
-    """A hand that wanders inside at several speeds."""
     t = period * np.arange(samples)
     return t, 0.006 + 0.002 * np.sin(8 * t) + 0.001 * np.sin(37 * t + 1) + 0.0004 * np.sin(150 * t)
 
@@ -51,7 +50,6 @@ def test_a_record_without_noise_gives_the_parameters_back(model, response):
 
 
 def test_relaxation_and_creep_tests():
-    """A step before the first sample: the hold alone gives all three numbers."""
     t = np.geomspace(1e-3, 3, 200)
     rng = np.random.default_rng(3)
     held, pushed = np.full(200, 0.01), np.full(200, 2.0)
@@ -126,7 +124,6 @@ def test_what_a_record_does_not_say_is_remarked():
 
 
 def test_the_right_model_has_the_smallest_bic():
-    """One branch fits as well as two, with less; none and no spring do not fit."""
     t, x = motion(600)
     force = force_response(SOLID, t, x) + np.random.default_rng(2).normal(0, 0.01, 600)
     found = compare_tissues(t, x, force)
@@ -237,7 +234,6 @@ def test_bad_input():
 
 
 def test_the_page_says_what_comes_out():
-    """Its Python blocks in a row; the fit that it prints is the one that they make."""
     page = (Path(__file__).parents[3] / "docs" / "tissue.md").read_text(encoding="utf-8")
     names: dict[str, object] = {}
     for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL):
