@@ -50,7 +50,6 @@ def put_files(page: str, folder: Path) -> Path:
 
 
 def has_what_it_reads(call: list[str], folder: Path) -> bool:
-    """Whether the files that a call reads are there."""
     before = dict(zip(call[1:], call, strict=False))
     files = [word for word in call if re.search(r"\.(toml|ya?ml|json|csv|nc|urdf|mcap|bin)$", word)]
     return all((folder / file).exists() for file in files if before.get(file) not in WRITES)
@@ -80,7 +79,6 @@ def test_each_computed_block_has_what_the_text_relies_on(page: str) -> None:
 
 
 def test_calls_and_files_are_found() -> None:
-    """Prompts, chains, comments, a page's files; what is no call of zwidth is none."""
     line = "$ zwidth check a.toml && zwidth verify b.json  # so"
     page = f"```toml\n# a.toml\n[device]\n```\n```console\n{line}\nok\n$ ls\n```\n"
     assert [call for _, call in shown.commands_of(page)] == [["check", "a.toml"], ["verify", "b.json"]]

@@ -24,7 +24,6 @@ CFF_KEYS = {
 
 
 def test_the_citation_is_of_this_version() -> None:
-    """Version, licence, authors and keywords are those of pyproject.toml."""
     assert str(CITATION["version"]) == PROJECT["version"]
     assert CITATION["license"] == PROJECT["license"]
     assert CITATION["authors"] == PROJECT["authors"]
@@ -32,7 +31,6 @@ def test_the_citation_is_of_this_version() -> None:
 
 
 def test_the_citation_is_one_of_the_citation_file_format() -> None:
-    """Its keys are known, those that must be are there, and each has the type that it must have."""
     assert set(CITATION) <= CFF_KEYS
     assert {"authors", "cff-version", "message", "title"} <= set(CITATION)
     assert CITATION["cff-version"] == "1.2.0"
@@ -42,7 +40,6 @@ def test_the_citation_is_one_of_the_citation_file_format() -> None:
 
 
 def test_the_changelog_begins_with_this_version_and_its_date() -> None:
-    """The newest heading; the citation has the same date."""
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     heading = re.search(r"^## (\S+), (\d{4}-\d\d-\d\d)$", text, re.M)
     assert heading is not None
@@ -51,7 +48,6 @@ def test_the_changelog_begins_with_this_version_and_its_date() -> None:
 
 
 def test_pictures_and_files_that_the_readme_shows_are_there() -> None:
-    """Links within the project lead to a file, and each picture says what it shows."""
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     linked = re.findall(r"(!?)\[([^\]]*)\]\(([^)#]+)[^)]*\)", readme)
     assert len(linked) > 10

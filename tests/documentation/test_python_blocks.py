@@ -65,7 +65,6 @@ CASES = [name for name in NAMES if BLOCK.search(read(name))]
 
 @pytest.mark.parametrize("page", CASES)
 def test_the_blocks_of_a_page(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Down the page, names kept, in an empty folder."""
     monkeypatch.chdir(tmp_path)
     names = {"__name__": "page", **({} if page in NOT_RUN else _given())}
     for number, block in enumerate(BLOCK.findall(read(page)), 1):

@@ -37,7 +37,6 @@ def asked(folder: Path, stiffness: str) -> State:
 
 
 def shown(session: Session, waiting: list[Callable[[], None]]) -> tuple[dict[str, str], str, str]:
-    """Texts of the sliders, what to change, and what the open picture's axis says."""
     while waiting:
         waiting.pop(0)()
     texts = {
@@ -76,7 +75,6 @@ def test_the_page_speaks_the_angle_of_the_question(tmp_path: Path) -> None:
 
 
 def test_what_takes_longer_speaks_it_too(tmp_path: Path) -> None:
-    """What a process of its own writes, and the axes of the map."""
     state = asked(tmp_path, "0.5 N*m/deg")
     assert "N·m/deg" in answered(_advised, state)
     assert "N·m/rad" in answered(_advised, state.with_angles({"rad"}))

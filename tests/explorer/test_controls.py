@@ -37,7 +37,6 @@ def answers(state: State, control: Control) -> None:
 
 @pytest.mark.parametrize("name", zw.catalogue.names())
 def test_a_catalogue_device_has_a_slider_for_every_number(name: str) -> None:
-    """As many as the class has fields; each shows the device's own value."""
     device = catalogued(name)
     state = State.of(device, zw.Wall(200))
     controls = device_controls(state, device)
@@ -77,7 +76,6 @@ def test_every_law_can_be_switched_on_and_off(name: str) -> None:
 
 
 def test_laws_keep_the_order_of_the_registry() -> None:
-    """However they are switched on."""
     state = starts.first()
     for name in ("saturation", "force-bounding", "extrapolation"):
         state = starts.with_law(state, name, on=True)

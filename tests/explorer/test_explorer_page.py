@@ -27,13 +27,11 @@ one_size = pytest.mark.parametrize("page", [WIDE], indirect=True, ids=["1280x800
 
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
-    """Of a server in this process."""
     with serve_explorer() as page:
         yield page.address
 
 
 def opened(page: Page, address: str) -> Page:
-    """The page, once it answers."""
     page.set_default_timeout(PATIENCE)
     page.goto(address)
     expect(verdict(page).locator("table")).to_be_visible()
@@ -41,22 +39,18 @@ def opened(page: Page, address: str) -> Page:
 
 
 def verdict(page: Page) -> Locator:
-    """What the page says of the loop."""
     return page.locator("#verdict")
 
 
 def slider(page: Page, name: str) -> Locator:
-    """Of the loop."""
     return page.locator("#loop").get_by_role("slider", name=name, exact=True)
 
 
 def entry(page: Page, name: str) -> Locator:
-    """Beside a slider."""
     return page.locator("#loop").get_by_role("textbox", name=f"{name}, typed with its unit", exact=True)
 
 
 def held(page: Page) -> dict[str, str]:
-    """What the address holds."""
     return dict(parse_qsl(urlsplit(page.url).query))
 
 
@@ -89,7 +83,6 @@ def test_a_device_is_chosen_a_slider_moved_and_the_address_keeps_it(page: Page, 
 
 @one_size
 def test_a_typed_number_is_exact_and_a_wrong_one_is_a_message(page: Page, address: str) -> None:
-    """What cannot be used changes nothing."""
     opened(page, address)
     typed = entry(page, "stiffness")
     typed.fill("0.3 N/mm")
@@ -184,7 +177,6 @@ def parsed_parts(text: str) -> tuple[zw.Device, object]:
 
 @one_size
 def test_what_the_address_cannot_say_is_a_message(page: Page, address: str) -> None:
-    """And the page begins with its own loop."""
     opened(
         page, f"{address}?device.damping=-1&device.rate=1+kHz&environment.type=wall&environment.stiffness=3"
     )
@@ -192,7 +184,6 @@ def test_what_the_address_cannot_say_is_a_message(page: Page, address: str) -> N
 
 
 def test_two_people_do_not_disturb_each_other(browser: Browser, address: str) -> None:
-    """What one moves the other does not see."""
     first, second = (opened(browser.new_page(), address) for _ in range(2))
     typed = entry(first, "stiffness")
     typed.fill("770 N/m")
@@ -205,7 +196,6 @@ def test_two_people_do_not_disturb_each_other(browser: Browser, address: str) ->
 
 
 def test_nothing_is_wider_than_the_screen_and_everybody_can_use_it(page: Page, address: str) -> None:
-    """No horizontal scrolling under any tab; no serious finding of axe under those that differ in kind."""
     opened(page, address)
     for tab in page.get_by_role("tab").all():
         if tab.text_content() == "Play":
@@ -222,7 +212,6 @@ def test_nothing_is_wider_than_the_screen_and_everybody_can_use_it(page: Page, a
 
 @one_size
 def test_tabs_go_by_arrows(page: Page, address: str) -> None:
-    """To the next, around the end, and the address says which is open."""
     opened(page, address)
     first, last = page.get_by_role("tab").first, page.get_by_role("tab").last
     first.focus()

@@ -18,7 +18,6 @@ from zwidth.show.explorer.working import Workers
 
 
 def test_it_shows_the_loop_that_it_was_given() -> None:
-    """Device, environment and verdict are those of the loop, and follow a move."""
     paddle = zw.catalogue.device("haptic-paddle")
     shown = zw.explore(paddle, zw.Wall(stiffness=770))
     assert shown.device == paddle
@@ -117,7 +116,6 @@ def _one(made: list[object] = []) -> object:  # noqa: B006  # one is enough for 
 
 
 def test_importing_zwidth_loads_no_panel() -> None:
-    """Only who asks for the explorer waits for it."""
     code = "import sys, zwidth; zwidth.check; print([m for m in ('panel', 'bokeh') if m in sys.modules])"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "[]"

@@ -54,7 +54,6 @@ def upgrade(address: str, origin: str, session: str, **more: str) -> int:
 
 
 def session_of(address: str, **headers: str) -> str:
-    """The session that a page is given, as its text has it."""
     request = urllib.request.Request(address, headers=headers)
     with urllib.request.urlopen(request, timeout=60) as answer:
         return re.findall(r'"token": ?"([\w.=-]+)"', answer.read().decode())[0]
@@ -113,7 +112,6 @@ def test_over_the_network_an_address_in_numbers_is_a_name_too() -> None:
 
 
 def test_only_this_machine_is_answered() -> None:
-    """By default it listens to 127.0.0.1."""
     with serve_explorer() as page:
         assert page.address.startswith("http://127.0.0.1:")
 
@@ -138,7 +136,6 @@ def test_a_token_opens_the_page_and_nothing_else_does() -> None:
 
 
 def test_a_form_takes_the_token() -> None:
-    """A wrong one is refused."""
     with serve_explorer(token=TOKEN) as page:
         enter = page.address.partition("?")[0] + "enter"
         with pytest.raises(urllib.error.HTTPError, match="401"):
@@ -149,7 +146,6 @@ def test_a_form_takes_the_token() -> None:
 
 
 def test_over_the_network_there_is_always_a_token() -> None:
-    """Where none is given one is made; on this machine none is needed."""
     assert token_for("127.0.0.1", None) is None
     assert token_for("::1", None) is None
     made = token_for("0.0.0.0", None)
@@ -160,13 +156,11 @@ def test_over_the_network_there_is_always_a_token() -> None:
 
 @pytest.mark.parametrize("token", ["short", "with a blank in it, long", "späte-umlaute-0123456789", ""])
 def test_a_token_that_can_be_guessed_is_refused(token: str) -> None:
-    """Or one that an address does not carry."""
     with pytest.raises(InputError, match="16 characters"):
         token_for("127.0.0.1", token)
 
 
 def test_a_port_in_use_is_said() -> None:
-    """And one that is none."""
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
@@ -177,7 +171,6 @@ def test_a_port_in_use_is_said() -> None:
 
 
 def test_so_many_pages_and_no_more() -> None:
-    """The next one is told so."""
     with serve_explorer(most=1) as page:
         first = urllib.request.urlopen(page.address).read().decode()
         second = urllib.request.urlopen(page.address).read().decode()

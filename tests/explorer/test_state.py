@@ -29,7 +29,6 @@ def read_again(state: State) -> State:
 @pytest.mark.parametrize("kind", TYPES)
 @pytest.mark.parametrize("own", [starts.OWN_LINEAR, starts.OWN_ROTARY])
 def test_every_environment_comes_back_from_the_address(kind: str, own: str) -> None:
-    """Of a linear and of a rotary device, the same device and the same environment, to the last digit."""
     state = starts.with_environment(starts.with_device(starts.first(), starts.own_device(own)), kind)
     again = read_again(state)
     assert again == state
@@ -37,7 +36,6 @@ def test_every_environment_comes_back_from_the_address(kind: str, own: str) -> N
 
 
 def test_laws_intervals_and_extras_come_back() -> None:
-    """A chain of laws with numbers that are no decimals, an interval, a hand and a coupling."""
     device = zw.Device(damping=("0.1", "0.2"), rate="1 kHz", name="a & b = “c”, <d>")
     law = zw.render(zw.Wall(THIRD), rendering.PassivityController(largest_damping=THIRD))
     state = State.of(device, law).with_extra("operator", {"type": "dowel", "force": "3 N"})
@@ -90,7 +88,6 @@ VALUES = st.one_of(
 @settings(max_examples=60, deadline=None)
 @given(st.lists(st.tuples(st.builds(lambda h, n: f"{h}.{n}", HEADS, NAMES), VALUES), max_size=6))
 def test_whatever_the_address_says_it_is_a_loop_or_a_message(pairs: list[tuple[str, str]]) -> None:
-    """Never another exception."""
     try:
         state = from_query(pairs)
     except InputError:
@@ -101,7 +98,6 @@ def test_whatever_the_address_says_it_is_a_loop_or_a_message(pairs: list[tuple[s
 @settings(max_examples=80, deadline=None)
 @given(st.text(max_size=200))
 def test_whatever_a_file_says_it_is_a_loop_or_a_message(text: str) -> None:
-    """The same of a file."""
     try:
         from_file(text, "file.toml", starts.first())
     except InputError:
@@ -109,7 +105,6 @@ def test_whatever_a_file_says_it_is_a_loop_or_a_message(text: str) -> None:
 
 
 def test_a_file_is_a_loop_or_a_device_and_not_too_large() -> None:
-    """With an environment it is the loop, without it the device alone, named after the file."""
     device = '[device]\ndamping = 0.1\nrate = "1 kHz"\n'
     shown = starts.first()
     state, alone, begun = from_file(device, "mine.toml", shown)
@@ -171,7 +166,6 @@ def test_what_a_file_does_not_give_is_begun_with_and_marked_until_it_is_set() ->
 
 
 def test_sources_without_a_damping_are_marked_unless_it_is_typed(tmp_path: Path) -> None:
-    """As files that are given to the page; of the catalogue too."""
     mine = tmp_path / "mine.toml"
     mine.write_text('[device]\nmass = "0.1 kg"\nrate = "1 kHz"\n', encoding="utf-8")
     marked = starts.from_sources([str(mine)])
@@ -186,7 +180,6 @@ def test_sources_without_a_damping_are_marked_unless_it_is_typed(tmp_path: Path)
 
 
 def test_a_filter_of_the_velocity_is_a_word_and_its_numbers() -> None:
-    """Each can be chosen, and begins with numbers with which there is a loop."""
     state = starts.first().changed("environment.damping", "1 N*s/m").settled()
     for name, keys in (
         ("window", {"samples"}),

@@ -44,18 +44,15 @@ class Loop:
 
     @property
     def name(self) -> str:
-        """What it is, in a few words."""
         w, m = self.wall, self.found.machine
         return f"{m.number} K {float(w.stiffness):g} B {float(w.damping):g} {self.device!r}"
 
 
 def digits(value: float | Fraction) -> Fraction:
-    """Five digits."""
     return Fraction(f"{float(value):.5g}")
 
 
 def text(m: Machine) -> str:
-    """The header of a machine."""
     unit = 1.0 if m.fixed is None else m.fixed.units.scale.size(m.fixed.result)
     ends = (f"({int(m.counts[0])})", str(int(m.counts[1])))
     numbers = [("COUNTS_MIN", ends[0], "n"), ("COUNTS_MAX", ends[1], "n")]

@@ -58,13 +58,11 @@ class ExactProgram:
         self.init(0)
 
     def init(self, counts: int) -> None:
-        """At rest."""
         x = Fraction(self.law.resolution or 1.0) * counts
         lines = [self.law.line(k, counts > 0) for k in range(self.law.remembers)]
         self.cells = [Fraction(a) + Fraction(s) * x for a, s in lines]
 
     def step(self, counts: int) -> Fraction:
-        """One sample: the force."""
         self.values = {self.law.program.parameters[0]: Fraction(counts)}
         self._block(self.law.program.body)
         return self._value(self.law.program.results[0])

@@ -261,7 +261,6 @@ class _Function:
 
 
 def random_function(random: Random, name: str) -> str:
-    """The text of one function."""
     f = _Function(random, name)
     f.lines.append(f"def {name}(m, p, q, x, y, k):")
     for _ in range(random.randrange(3, 8)):

@@ -24,7 +24,6 @@ from zwidth.model.operator import PrescribedMotion
 
 
 def laid_out(law: Law, counts: int) -> Setup:
-    """The loop of the simulator, whose hand starts there."""
     device, environment = law
     there = PrescribedMotion([counts * float(device.exact("resolution"))] * 2)
     return prepare(device, environment, there, device.exact("sample_period"), encoder_phase=0.5)

@@ -43,7 +43,6 @@ def _tools() -> None:
 
 
 def idle_with(instructions: str) -> str:
-    """The law that does nothing, but for these."""
     clobbered = '"r0", "r1", "r30", "r31", "memory"'
     asm = f'__asm__ volatile("{instructions}\\n clr r1" ::: {clobbered});'
     return UNIT + IDLE.replace("return counts", f"{asm} return counts")
@@ -62,7 +61,6 @@ def test_cycles_are_those_of_the_data_sheet() -> None:
 
 
 def test_whole_numbers_on_the_chip() -> None:
-    """A law in fixed point gives there what Python gives."""
     counts = touch(3000, 2**31 - 1)
     with AvrLaw(text("fixed16")) as law:
         law.init(5)
@@ -146,7 +144,6 @@ def test_it_goes_on_and_begins_anew(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_sketch_takes_a_header_as_well(name: str) -> None:
-    """Compiled as C++ it answers the same."""
     counts = touch(200)
     found = []
     for sketch in (False, True):
@@ -157,7 +154,6 @@ def test_a_sketch_takes_a_header_as_well(name: str) -> None:
 
 
 def test_what_does_not_return() -> None:
-    """A law that runs for ever is found out."""
     endless = UNIT + IDLE.replace("return counts", "while (counts == 3) s->nothing++; return counts")
     with AvrLaw(endless) as law:
         assert law.run([2]).forces.tolist() == [2]

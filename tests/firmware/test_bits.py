@@ -106,7 +106,6 @@ def test_every_header_has_the_same_bits(
 
 @needs_node
 def test_every_module_has_the_same_bits(known: Mapping[str, Known], tmp_path: Path) -> None:
-    """Force and memory are equal to the last bit in JavaScript."""
     files = {f"{n}.mjs": module(k.law, about=[n], numbers=[]) for n, k in known.items()}
     text = "".join(law_in_javascript(n) for n in known)
     ran = run_node(text, tmp_path, {n: (k.readings, k.ran.cells, 1) for n, k in known.items()}, files)
@@ -126,7 +125,6 @@ KEPT = {"double": {0, 1, 16, 32, 64}, "float": {0, 16, 32}, "fixed": {-1, 0, 1, 
 
 
 def _header(law: LawProgram, number: Number, name: str) -> str:
-    """In numbers of any kind."""
     end = 2000.0
     ends = [
         (f"{seen}_{side}", f"({end:.0f})", "") for seen in ("POSITION", "COUNTS") for side in ("MIN", "MAX")
@@ -136,7 +134,6 @@ def _header(law: LawProgram, number: Number, name: str) -> str:
 
 
 def _asked(text: str, *command: str) -> subprocess.CompletedProcess[str]:
-    """What a compiler makes of a text."""
     return subprocess.run([*command, "-"], input=text, capture_output=True, text=True, check=False)
 
 

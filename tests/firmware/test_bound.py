@@ -43,8 +43,6 @@ from zwidth.machine.firmware.program import (
 
 @dataclass
 class Point:
-    """An exact number, and a computed one."""
-
     exact: float
     computed: float
 
@@ -108,7 +106,6 @@ def test_two_operands(name: str, seed: int) -> None:
 @pytest.mark.parametrize("name", ONE)
 @seeds(40)
 def test_one_operand(name: str, seed: int) -> None:
-    """The same of one."""
     bounds, compute = ONE[name]
     a, points = drawn(Random(seed))
     result = bounds(a)
@@ -126,7 +123,6 @@ def test_a_root_of_what_may_be_negative_has_no_bound() -> None:
 
 @seeds(40)
 def test_one_or_the_other(seed: int) -> None:
-    """The hull holds for the points of both; what is apart is the most that they differ by."""
     random = Random(seed)
     (a, ps), (b, qs) = drawn(random), drawn(random)
     both = hull(a, b)
@@ -138,7 +134,6 @@ def test_one_or_the_other(seed: int) -> None:
 
 @seeds(40)
 def test_narrowing_loses_no_point(seed: int) -> None:
-    """A number in both ranges is in the narrower one."""
     random = Random(seed)
     a, points = drawn(random)
     low, high = sorted((random.uniform(-9, 9), random.uniform(-9, 9)))
@@ -208,7 +203,6 @@ def ran(program: Program, x: float, m: float, off: Callable[[], float]) -> tuple
 
 
 def anything(random: Random, off: float) -> float:
-    """Up to so much, the ends often."""
     return random.choice([off, -off, random.uniform(-off, off)])
 
 

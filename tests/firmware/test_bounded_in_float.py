@@ -20,7 +20,6 @@ STIFF = zw.render(zw.Wall(2000, 1), zw.rendering.SlewLimit(2000), zw.rendering.F
 
 
 def test_the_certificate_has_the_rounding_of_float() -> None:
-    """It is accepted with 24 bits; with what is enough for 53 bits it is not."""
     found = zw.emit(PADDLE, STIFF, number="float")
     assert found.judged.outcome == "passive"
     document = found.verdict.certificate.to_dict()

@@ -44,7 +44,6 @@ def test_other_numbers_are_off_as_was_proved(tmp_path: Path, name: str, number: 
 @pytest.mark.parametrize("number", ["fixed", "float"])
 @pytest.mark.parametrize("name", ["damped wall", "standard linear solid", "H(z) of order 4"])
 def test_the_chips_answer_alike(tmp_path: Path, name: str, number: str) -> None:
-    """The bits of this machine on the ATmega328P, as C and as a sketch, and on the Cortex-M4."""
     require("host", "avr", "cortex-m4")
     text = emitted(name, number).text
     host = HostLaw(text, tmp_path)
@@ -59,7 +58,6 @@ def test_the_chips_answer_alike(tmp_path: Path, name: str, number: str) -> None:
 
 @pytest.mark.parametrize("name", LAWS)
 def test_javascript_answers_like_c(tmp_path: Path, name: str) -> None:
-    """The same bits in double."""
     require("host", "node")
     host = HostLaw(emitted(name, "double").text, tmp_path)
     host.init(7)
@@ -67,7 +65,6 @@ def test_javascript_answers_like_c(tmp_path: Path, name: str) -> None:
 
 
 def test_a_damped_wall_in_300_cycles() -> None:
-    """In fixed point, on the ATmega328P, with the travel of a paddle."""
     require("avr")
     with AvrLaw(emitted("damped wall", "fixed", "arduino").text, sketch=True) as law:
         law.init(0)
@@ -75,14 +72,12 @@ def test_a_damped_wall_in_300_cycles() -> None:
 
 
 def on_the_chip(wall: zw.Wall, duration: float) -> Motion:
-    """A touch of a wall that the chip computes, emitted whatever is proved of it."""
     require("avr")
     with AvrLaw(emit(DEVICE, wall, target="arduino", anyway=True).text, sketch=True) as law:
         return closed(DEVICE, HAND, duration, law.force, law.init)
 
 
 def test_the_certified_law_is_quiet_on_the_chip() -> None:
-    """The hand gets nothing out of it, as in the simulation, and the paddle rests in the wall."""
     wall = zw.Wall(150, 0.05)
     assert emit(DEVICE, wall, target="arduino").verdict.outcome == "passive"
     motion = on_the_chip(wall, 1.0)
@@ -93,7 +88,6 @@ def test_the_certified_law_is_quiet_on_the_chip() -> None:
 
 
 def test_the_refuted_law_buzzes_on_the_chip() -> None:
-    """It is emitted only where somebody insists, says so, and gives the energy that the simulation says."""
     wall = zw.Wall(770)
     found = emit(DEVICE, wall, target="arduino", anyway=True)
     assert found.verdict.outcome == "active"

@@ -16,7 +16,6 @@ HAND = zw.operators.Dowel()
 
 
 def on_the_chip(stiffness: float, damping: float = 0.0, duration: float = 1.0) -> Motion:
-    """A touch of a wall that the chip computes."""
     require("avr")
     with AvrLaw(fixed_wall(stiffness, damping)) as law:
         return closed(PADDLE, HAND, duration, law.force, law.init)
@@ -42,7 +41,6 @@ def test_it_is_the_loop_of_simulate(rate: int, delay: str) -> None:
 
 
 def test_the_passive_wall_is_quiet_on_the_chip() -> None:
-    """Proved passive: the hand gets nothing out, and the paddle comes to rest in the wall."""
     assert zw.check(PADDLE, zw.Wall(stiffness=150, damping=0.05)).outcome == "passive"
     motion = on_the_chip(150, 0.05)
     assert motion.extracted == 0
@@ -53,7 +51,6 @@ def test_the_passive_wall_is_quiet_on_the_chip() -> None:
 
 
 def test_the_active_wall_buzzes_on_the_chip() -> None:
-    """Refuted: it throws the paddle to and fro, and the hand gets out what the simulation says, or nearly."""
     assert zw.check(PADDLE, zw.Wall(stiffness=770)).outcome == "active"
     motion = on_the_chip(770, duration=2.0)
     assert motion.extracted == pytest.approx(0.034, abs=0.004)

@@ -28,7 +28,6 @@ def test_every_instruction_is_counted() -> None:
 
 @pytest.mark.parametrize("floats", [cortex.SOFT, cortex.HARD])
 def test_forces_of_the_cortex(floats: tuple[str, ...]) -> None:
-    """Whole numbers, floats and doubles have the bits that they have here, with the unit and without."""
     counts = touch(3000, 2**31 - 1)
     fixed = cortex.run(text("fixed16"), counts, 5, floats)
     assert fixed.forces.tolist() == fixed_forces(counts, 5)
@@ -39,7 +38,6 @@ def test_forces_of_the_cortex(floats: tuple[str, ...]) -> None:
 
 
 def test_what_a_step_takes() -> None:
-    """Floats are quick where the chip has a unit for them, doubles nowhere."""
     counts = touch(500)
     soft, hard = (cortex.run(text("naive_float"), counts, floats=f) for f in (cortex.SOFT, cortex.HARD))
     assert hard.worst < 50 < 200 < soft.median

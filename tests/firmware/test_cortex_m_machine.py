@@ -41,7 +41,6 @@ def ended(folder: Path, kind: int, *options: str) -> int:
 
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
 def test_two_seconds_on_the_machine(tmp_path: Path, kind: int) -> None:
-    """Every sample arrives, a millisecond after the one before, with the law's force."""
     assert ended(tmp_path / "board", kind) == 0
     data = read_telemetry(tmp_path / "board" / "line.bin")
     assert (data.attrs["lost_packets"], data.attrs["dropped_samples"]) == (0, 0)

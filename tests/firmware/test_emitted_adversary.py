@@ -19,7 +19,6 @@ from zwidth.quantity.exact import Exact
 
 @pytest.mark.parametrize("seed", range(12))
 def test_no_motion_contradicts_the_verdict(seed: int, tmp_path: Path) -> None:
-    """Random walls near their limit, in coarse numbers: what is proved gives nothing out."""
     require("host")
     random = Random(seed)
     loop = random_loop(random)

@@ -23,7 +23,6 @@ JUMP = 446
 
 
 def guarded(folder: Path, kind: int, *options: str) -> ctypes.CDLL:
-    """A guard just begun."""
     found = library(DATA / "guarded.c", folder, f"-DLAW_KIND={kind}", *options)
     found.step.restype = found.law.restype = ctypes.c_double
     found.begin()
@@ -63,7 +62,6 @@ def test_afterwards_the_force_is_the_laws_bit_by_bit(tmp_path: Path, kind: int) 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_force_beyond_the_limit_is_cut_and_counted(tmp_path: Path, kind: int) -> None:
-    """At the limit, not above; the status says it; the next smaller force is the law's again."""
     guard = guarded(tmp_path, kind)
     for counts in (0, 400, 800, 1200):
         force = guard.step(counts)
@@ -121,7 +119,6 @@ def test_a_force_that_is_no_finite_number_ends_it(tmp_path: Path, force: str) ->
 
 
 def test_what_has_ended_stays_ended_and_the_first_reason_stays(tmp_path: Path) -> None:
-    """Neither another reading nor another end changes it."""
     guard = guarded(tmp_path, 1)
     guard.step(0)
     assert guard.step(100) > 0.0
@@ -152,7 +149,6 @@ def test_a_law_may_say_where_it_may_begin(tmp_path: Path) -> None:
     ],
 )
 def test_what_cannot_be_guarded_does_not_compile(tmp_path: Path, option: str, what: str) -> None:
-    """And the message names the reason."""
     include = ["-I", DATA, "-I", mains() / "shared"]
     command = [
         tool("cc"),

@@ -35,23 +35,19 @@ class Board:
         self.board.board_sample(late)
 
     def go(self, counts: int) -> None:
-        """As many counts in steps that the handle can go."""
         for _ in range(abs(counts) // 50):
             self.sample(50 if counts > 0 else -50)
         self.sample(int(math.copysign(abs(counts) % 50, counts)))
 
     @property
     def motor(self) -> tuple[int, int]:
-        """Pulse width, and level of the direction pin."""
         return self.board.board_width(), self.board.board_level()
 
     @property
     def phase(self) -> int:
-        """Of the guard."""
         return self.board.board_phase()
 
     def sent(self) -> bytes:
-        """What it sends now."""
         found = bytearray()
         while (byte := self.board.board_idle()) >= 0:
             found.append(byte)
@@ -70,7 +66,6 @@ def kind(request: pytest.FixtureRequest) -> int:
 
 @pytest.fixture(scope="module")
 def library(kind: int, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Compiled once for each."""
     path = tmp_path_factory.mktemp("board") / "hapkit.so"
     include = ["-I", STUBS / "board", "-I", DATA, "-I", mains() / "shared"]
     options = [f"-DLAW_KIND={kind}", "-DF_CPU=16000000UL", "-O1", "-shared", "-fPIC"]
@@ -103,7 +98,6 @@ def test_the_pulse_width_is_that_of_the_torque(library: Path, kind: int, counts:
 
 
 def test_positions_go_on_where_the_sensor_jumps(library: Path) -> None:
-    """Two turns of its sawtooth in, and out again."""
     board = Board(library)
     board.go(-50)
     board.go(-2000)
@@ -116,7 +110,6 @@ def test_positions_go_on_where_the_sensor_jumps(library: Path) -> None:
 
 
 def test_one_wild_reading_is_passed_over(library: Path) -> None:
-    """One is passed over, as a reading within the jump of the sawtooth is: the force is held meanwhile."""
     board = Board(library)
     board.go(-10)
     board.go(100)
@@ -163,7 +156,6 @@ def test_the_timer_and_the_line_are_set_for_the_law(library: Path) -> None:
 
 
 def test_every_sample_is_told(library: Path) -> None:
-    """In order, at whole milliseconds."""
     board, data = Board(library), b""
     for _ in range(100):
         board.sample(-1)

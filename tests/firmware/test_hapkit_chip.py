@@ -31,7 +31,6 @@ class Ran(NamedTuple):
 
 @pytest.fixture(scope="module")
 def simulator(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The chip and its surroundings."""
     needed_header("simavr/sim_avr.h")
     program = tmp_path_factory.mktemp("chip") / "chip"
     run(tool("cc"), "-std=gnu99", *WARNINGS, "-O2", DATA / "chip.c", "-o", program, "-lsimavr", "-lm")
@@ -39,7 +38,6 @@ def simulator(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def sketch(folder: Path, kind: int) -> Path:
-    """Compiled for the chip."""
     written(main_files("arduino", folder="wall"), folder)
     chip = ["-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Os", "-fno-exceptions", "-ffp-contract=off"]
     options = ["-std=gnu++11", *WARNINGS, f"-DLAW_KIND={kind}", "-I", STUBS / "arduino", "-I", folder]
@@ -49,7 +47,6 @@ def sketch(folder: Path, kind: int) -> Path:
 
 
 def ran(simulator: Path, *words: str | Path) -> Ran:
-    """The last line that it prints."""
     return Ran(*map(int, run(simulator, *words).splitlines()[-1].split()))
 
 

@@ -19,7 +19,6 @@ def _tools() -> None:
 
 
 def test_whole_numbers(tmp_path: Path) -> None:
-    """A law in fixed point gives the whole numbers that Python gives."""
     counts = touch(20_000, 2**31 - 1)
     law = HostLaw(text("fixed16"), tmp_path)
     law.init(5)
@@ -51,7 +50,6 @@ def test_a_run_goes_on_and_begins_anew(tmp_path: Path) -> None:
 
 
 def test_a_warning_is_an_error(tmp_path: Path) -> None:
-    """What a compiler warns of is not emitted."""
     careless = text("fixed16").replace("int32_t f;", "int32_t f, unused;")
     with pytest.raises(AssertionError, match="unused"):
         HostLaw(careless, tmp_path)

@@ -18,14 +18,11 @@ COUNT, UNIT = 2.24e-5, 5 / 32767
 
 
 class WrittenLine:
-    """Gives bytes piece by piece, and says when all are gone."""
-
     def __init__(self, data: bytes, size: int = 37) -> None:
         self._pieces: Iterator[bytes] = iter([data[i : i + size] for i in range(0, len(data), size)])
         self.gone = Event()
 
     def read(self, size: int, /) -> bytes:
-        """The next piece, b"" behind the last."""
         piece = next(self._pieces, b"")
         if not piece:
             self.gone.set()
@@ -33,7 +30,6 @@ class WrittenLine:
 
 
 def watched(data: bytes, **options: float) -> LiveTelemetry:
-    """Rows of all that a line gave."""
     line = WrittenLine(data)
     rows = LiveTelemetry(line, **options)
     assert line.gone.wait(60)
@@ -42,7 +38,6 @@ def watched(data: bytes, **options: float) -> LiveTelemetry:
 
 
 def motion(packets: int) -> tuple[np.ndarray, np.ndarray, list[bytes]]:
-    """Counts, forces in units, and their packets."""
     k = np.arange(16 * packets)
     counts = np.rint(300 * np.sin(0.02 * k)).astype(int)
     forces = np.rint(9000 * np.cos(0.017 * k)).astype(int)
@@ -84,7 +79,6 @@ def test_nothing_is_added_over_what_is_missing() -> None:
 
 
 def test_time_goes_on_where_the_machine_is_started_anew() -> None:
-    """A graph's time never goes back."""
     _, _, made = motion(6)
     again = samples(0, 0, [0] * 16, [0] * 16, status=SERVING | FIRST)
     news = Watched(watched(text() + b"".join(made) + again)).news()
@@ -93,7 +87,6 @@ def test_time_goes_on_where_the_machine_is_started_anew() -> None:
 
 
 def test_the_newest_rows_are_kept() -> None:
-    """Who asks too late gets those that are there, and learns how many are gone."""
     _, _, made = motion(20)
     rows = watched(text() + b"".join(made), kept=100)
     count, found = rows.after(0)
@@ -104,14 +97,12 @@ def test_the_newest_rows_are_kept() -> None:
 
 
 def test_a_rotary_law_has_columns_of_its_own() -> None:
-    """Radians and newton metres."""
     _, _, made = motion(3)
     rows = watched(text(flags=1) + b"".join(made))
     assert {"position_rad", "force_N_m"} <= set(rows.COLUMNS)
 
 
 def test_a_line_that_never_says_what_its_numbers_are_is_refused() -> None:
-    """Silent, or with samples alone."""
     _, _, made = motion(3)
     for data in (b"", b"".join(made)):
         with pytest.raises(InputError, match="none said what"):
@@ -119,7 +110,6 @@ def test_a_line_that_never_says_what_its_numbers_are_is_refused() -> None:
 
 
 def test_the_text_may_come_after_samples() -> None:
-    """Rows of the samples before it are written as well."""
     _, _, made = motion(3)
     count, _ = watched(b"".join(made) + text(TEXT)).after(0)
     assert count == 48

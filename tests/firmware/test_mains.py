@@ -44,7 +44,6 @@ def test_the_hapkit_sketch_compiles_for_its_chip(tmp_path: Path, kind: int) -> N
 def test_a_board_that_cannot_run_the_law_is_refused_by_the_compiler(
     tmp_path: Path, option: str, why: str
 ) -> None:
-    """Its clock misses the period or the rate of the line, its motor is too weak, its numbers are others."""
     folder = written(main_files("arduino", folder="wall"), tmp_path / "wall")
     sketch = folder / "wall.ino"
     names = re.findall(r"-D(BAUD|TORQUE)=", option)
@@ -111,7 +110,6 @@ def test_names_follow_the_prefix_of_the_header(target: str) -> None:
 
 
 def test_what_there_is_no_main_program_for_is_said() -> None:
-    """A target that is none, a prefix that C does not take."""
     with pytest.raises(InputError, match="arduino"):
         main_files("toaster")
     with pytest.raises(InputError, match="prefix"):
@@ -119,7 +117,6 @@ def test_what_there_is_no_main_program_for_is_said() -> None:
 
 
 def test_a_sketch_is_called_as_its_folder() -> None:
-    """Arduino opens no other."""
     assert "my-wall.ino" in main_files("arduino", folder="my-wall")
     assert {"guard.h", "telemetry.h"} <= main_files("simplefoc").keys()
 

@@ -21,6 +21,5 @@ def test_forces_of_a_module() -> None:
 
 
 def test_a_module_that_fails() -> None:
-    """What node says is said."""
     with pytest.raises(AssertionError, match="broken"):
         node.run("export function init() { throw new Error('broken'); }\nexport const step = 0;", [1])

@@ -45,7 +45,6 @@ def ran(*command: str | Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="module")
 def simulated(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The program with the simulated mass."""
     return made("posix", tmp_path_factory.mktemp("simulated"))
 
 
@@ -65,7 +64,6 @@ def test_it_runs_as_it_is(simulated: Path, tmp_path: Path) -> None:
 
 
 def test_a_signal_ends_it_in_order(simulated: Path, tmp_path: Path) -> None:
-    """It is asked, and says so."""
     path = tmp_path / "asked.bin"
     command = [str(simulated), "-p", "0", "-t", str(path)]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as running:
@@ -106,7 +104,6 @@ ANSWERED_LATE = f"{SLOW} -DANSWER_MS=60000 -DGUARD_SPEED=10000.0"
 
 
 def test_a_device_that_cannot_be_opened_ends_it_at_once(tmp_path: Path) -> None:
-    """Exit status 2, and words."""
     done = ran(made("moteus", tmp_path / "main", ROTARY), "-d", tmp_path / "none")
     assert done.returncode == 2
     assert "cannot be used" in done.stderr

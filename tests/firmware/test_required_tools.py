@@ -7,7 +7,6 @@ from firmware.emulated import required
 
 
 def test_a_missing_tool_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Skipped with the name of the tool; failed with it where ZWIDTH_EVERY_TARGET is set; or nothing."""
     monkeypatch.setitem(required.TOOLS, "toaster", {"no-such-compiler": None})
     monkeypatch.setitem(required.TOOLS, "nothing", {})
     monkeypatch.delenv("ZWIDTH_EVERY_TARGET", raising=False)
@@ -20,7 +19,6 @@ def test_a_missing_tool_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_missing_header_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A compiler without its library is not enough."""
     required.require("host")
     monkeypatch.setitem(required.TOOLS, "bare", {"gcc": "no/such/header.h"})
     assert required.missing("bare") == ("no/such/header.h of gcc",)

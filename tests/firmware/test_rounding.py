@@ -30,7 +30,6 @@ DEVICES = {"bare": PADDLE, "stepped": STEPPED, "limited": LIMITED}
 
 
 def made(device: zw.Device, name: str, number: str) -> Machine | None:
-    """The machine, where it has a bound and can be written."""
     try:
         found = machine(law_program(device, laws()[name]), number, (-MOST, MOST))
     except zw.InputError:
@@ -128,7 +127,6 @@ def test_whole_numbers_stay_within_their_word(name: str, device: str, tmp_path: 
 
 @pytest.mark.parametrize("name", laws())
 def test_every_number_stays_within_its_bound(name: str) -> None:
-    """Every exact intermediate, and all that is remembered, lies in the range that the bound has for it."""
     law = law_program(PADDLE, laws()[name])
     exact, random = ExactProgram(law), np.random.default_rng(5)
     ends = rest_ends(law, (-MOST, MOST))

@@ -22,12 +22,10 @@ SENT = {1: 5 / 32767, 2: 5 / 32767, 3: 2**-12, 4: 0.01}
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """For what is compiled."""
     return tmp_path_factory.mktemp("sender")
 
 
 def sender(folder: Path, kind: int = 1, *options: str) -> ctypes.CDLL:
-    """One that has sent nothing."""
     found = library(DATA / "sender.c", folder, f"-DLAW_KIND={kind}", *options)
     found.sample.argtypes = [ctypes.c_uint32, ctypes.c_int32, ctypes.c_double, ctypes.c_int]
     found.begin()
@@ -35,7 +33,6 @@ def sender(folder: Path, kind: int = 1, *options: str) -> ctypes.CDLL:
 
 
 def drained(line: ctypes.CDLL, most: int = 10**9) -> bytes:
-    """What it sends now, up to so many bytes."""
     found = bytearray()
     while len(found) < most and (byte := line.next()) >= 0:
         found.append(byte)

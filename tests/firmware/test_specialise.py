@@ -171,7 +171,6 @@ def test_what_cannot_be_emitted_is_refused_by_its_line(function: Callable[..., A
 
 
 def test_what_has_no_source_is_refused() -> None:
-    """A function of a library in C cannot be read."""
     with pytest.raises(zw.InputError, match="cannot be emitted"):
         specialised(math.hypot, (1.0, 2.0))
 

@@ -29,7 +29,6 @@ def stroke(packets: int, *, first: int = 0) -> list[bytes]:
 
 
 def test_a_log(tmp_path: Path) -> None:
-    """Seconds, metres, newtons; the step is that of the text."""
     path = tmp_path / "paddle.bin"
     path.write_bytes(text() + b"".join(stroke(200)))
     log = zw.read_log(path)
@@ -45,7 +44,6 @@ def test_a_log(tmp_path: Path) -> None:
 
 
 def test_a_rotary_law(tmp_path: Path) -> None:
-    """Flags say radians, and forces in whole units of the law."""
     said = TEXT.replace("force_per_unit 1.0", "force_per_unit 0.0025")
     path = tmp_path / "wheel.bin"
     path.write_bytes(text(said, flags=3) + b"".join(stroke(200)))
@@ -126,7 +124,6 @@ def test_what_looks_like_a_packet_within_one_is_none() -> None:
 
 
 def test_a_machine_that_is_started_anew(tmp_path: Path) -> None:
-    """Its time begins again, and its sequence; nothing of that counts as lost."""
     path = tmp_path / "again.bin"
     begun = samples(0, 0, [0] * 16, [0] * 16, status=SERVING | FIRST)
     before, after = stroke(100, first=50), [begun, *stroke(99, first=1)]
@@ -139,7 +136,6 @@ def test_a_machine_that_is_started_anew(tmp_path: Path) -> None:
 
 
 def test_a_gap_is_a_gap_of_the_log(tmp_path: Path) -> None:
-    """What was lost makes another run, and is said."""
     path = tmp_path / "gap.bin"
     packets = stroke(200)
     path.write_bytes(text() + b"".join(packets[:90] + packets[95:]))
@@ -177,7 +173,6 @@ def test_a_device_is_identified_from_its_telemetry(tmp_path: Path) -> None:
     ],
 )
 def test_a_text_that_says_too_little_is_refused(tmp_path: Path, said: str, why: str) -> None:
-    """By one message, from both readers."""
     path = tmp_path / "other.bin"
     path.write_bytes(text(said) + b"".join(stroke(20)))
     for read in (zw.read_log, read_telemetry):
@@ -196,7 +191,6 @@ def test_two_laws_in_one_file_are_refused(tmp_path: Path) -> None:
 
 
 def test_without_a_text_nothing_is_guessed(tmp_path: Path) -> None:
-    """Counts are no lengths."""
     path = tmp_path / "short.bin"
     path.write_bytes(b"".join(stroke(20)))
     for read in (zw.read_log, read_telemetry):

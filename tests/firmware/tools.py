@@ -43,7 +43,6 @@ def _missing(name: str) -> NoReturn:
 
 
 def run(*command: str | Path, cwd: Path | None = None) -> str:
-    """What a program prints; a failure shows all of it."""
     done = subprocess.run(
         [str(word) for word in command], cwd=cwd, capture_output=True, text=True, check=False
     )
@@ -61,7 +60,6 @@ def written(files: dict[str, str], folder: Path) -> Path:
 
 
 def mains() -> Path:
-    """Where the main programs are."""
     return Path(str(resources("zwidth.machine.firmware") / "mains"))
 
 

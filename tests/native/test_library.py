@@ -44,7 +44,6 @@ def ran(how: str) -> str:
 
 @pytest.mark.skipif(build.library() is None, reason="no library of step functions here")
 def test_without_the_library_python_gives_the_same_bits() -> None:
-    """Every law of the bench, tied and free hands."""
     assert len(ran("library").splitlines()) > 40
     assert ran("library") == ran("plain")
 

@@ -82,7 +82,6 @@ class Word(Union):
 
 
 def translated(folder: Path, text: str) -> str:
-    """A package of one file, in C."""
     for name in ("names", "types"):
         (folder / f"{name}.py").write_text("", encoding="utf-8")
     (folder / "steps.py").write_text(HEAD + dedent(text), encoding="utf-8")
@@ -90,7 +89,6 @@ def translated(folder: Path, text: str) -> str:
 
 
 def python(text: str) -> Callable[..., Any]:
-    """The same as Python."""
     space: dict[str, Any] = {}
     exec(compile(HEAD + dedent(text), "steps", "exec", dont_inherit=True), space)
     found: Callable[..., Any] = space["step"]
@@ -99,7 +97,6 @@ def python(text: str) -> Callable[..., Any]:
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
-    """An empty one."""
     (tmp_path / "zwidth").mkdir()
     return tmp_path / "zwidth"
 

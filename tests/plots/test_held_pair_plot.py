@@ -29,7 +29,6 @@ def test_a_picture_of_either(stiffness, tmp_path):
 
 
 def test_without_a_law_that_is_felt_the_limits_stand_alone():
-    """With Coulomb friction of the held arm."""
     rubbed = ARM.replace(coulomb_friction="0.1")
     verdict = zw.check(zw.Pair(ARM, rubbed, stiffness=248, delay="2 ms"), follower=HAND)
     assert len(plots.plot_held_pair(verdict).axes) == 1

@@ -30,7 +30,6 @@ LINEAR = ("N/m", "[N]", "N·s/m", "[m]", "[mm]", "[µm]", "[m/s]")
 
 @cache
 def drawn(device: zw.Device) -> dict[str, Figure]:
-    """Every picture of one device."""
     k = 770 if device is PADDLE else 30
     active, passive = (zw.check(device, zw.Wall(v)) for v in (k, k / 4))
     damped = zw.check(device, zw.Wall(k / 4, float(device.damping) / 10))
@@ -60,7 +59,6 @@ def count(device: zw.Device) -> float:
 
 @pytest.mark.parametrize("device", [PADDLE, WHEEL], ids=["paddle", "wheel"])
 def test_pictures_have_no_faults(device):
-    """None is half empty, no title is cut or lies over another, no offset stands at an axis."""
     found = {name: faults(figure) for name, figure in drawn(device).items()}
     assert {name: lines for name, lines in found.items() if lines} == {}
 
@@ -78,7 +76,6 @@ def test_a_wheel_is_drawn_in_its_units():
 
 
 def test_pictures_are_on_white_whatever_is_around_them():
-    """With matplotlib's dark style on, words stay dark on a white page."""
     with rc_context(), style.context("dark_background"):
         figure = zw.check(PADDLE, zw.Wall(770)).plot()
     assert figure.get_facecolor() == (1, 1, 1, 1)
@@ -95,7 +92,6 @@ def _rgb(colour):
 
 
 def test_a_long_text_is_broken_and_nothing_of_it_lost():
-    """Lines of about the same length; breaks of one's own stay."""
     text = "first line\n" + "a hand that is described in many words " * 6
     lines = broken(text, 3.0).splitlines()
     assert lines[0] == "first line"
@@ -105,7 +101,6 @@ def test_a_long_text_is_broken_and_nothing_of_it_lost():
 
 
 def test_a_title_ends_where_its_axes_place_does():
-    """In the left half of a page it takes more lines than over all of it."""
     with rc_context(LOOK):
         figure = Figure(figsize=(8, 3), layout="constrained")
         half, text = figure.add_subplot(1, 2, 1), "what stands above a picture and is rather long, " * 2
@@ -141,14 +136,12 @@ def over_a_curve(axes):
     [(empty_corner, "height"), (cut, "edge"), (offset, "offset"), (over_a_curve, "legend")],
 )
 def test_a_fault_is_found(spoil, word):
-    """Each of the kinds that are looked for."""
     figure = Figure(figsize=(4, 3), layout="constrained")
     spoil(figure.add_subplot())
     assert any(word in fault for fault in faults(figure))
 
 
 def test_a_good_figure_has_none():
-    """A curve that fills its axes, with a title."""
     figure = Figure(figsize=(4, 3), layout="constrained")
     axes = figure.add_subplot()
     axes.plot([0, 1], [0, 1], label="curve")

@@ -52,7 +52,6 @@ def test_the_pair_stands_beside_its_own_limit():
 
 @pytest.mark.parametrize("stiffness", [10, 1000])
 def test_a_picture_of_either(stiffness, tmp_path):
-    """The motion is shown where there is one; the pair stands where it is."""
     verdict = zw.check(PAIR.replace(stiffness=stiffness))
     figure = plots.plot_pair(verdict)
     assert len(figure.axes) == (2 if verdict.passive else 4)

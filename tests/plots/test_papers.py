@@ -49,7 +49,6 @@ DIFFERS = {
 
 @pytest.fixture(scope="module")
 def papers():
-    """Where the page is made."""
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(str(DOCS / "_ext"))
         import papers

@@ -19,7 +19,6 @@ PADDLE = zw.catalogue.device("haptic-paddle")
 
 @pytest.fixture(scope="module")
 def pictures():
-    """The script that draws them."""
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(str(ROOT / "docs"))
         patch.setattr(sys, "path", list(sys.path))  # it adds the folder of the examples
@@ -30,7 +29,6 @@ def pictures():
 
 
 def test_every_picture_is_made_by_a_command(pictures):
-    """None lies there that nobody can draw again, and none is drawn that no page shows."""
     files = {path.stem for path in (ROOT / "docs" / "_static").glob("*.png")}
     assert files == {*pictures.PICTURES, *SCREENS}
     pages = "".join(
@@ -46,12 +44,10 @@ def test_a_picture_is_not_stale(pictures, name):
 
 
 def test_the_picture_of_a_browser_is_not_stale(pictures):
-    """It shows the curves that there are."""
     assert list(pictures.stale_live()) == []
 
 
 def test_a_stale_picture_is_found(pictures, monkeypatch):
-    """Another number, and other words."""
     softer = pictures.PICTURES["check"]._replace(find=lambda: zw.check(PADDLE, zw.Wall(760)))
     monkeypatch.setitem(pictures.PICTURES, "check", softer)
     assert [line.split(" ")[1] for line in pictures.stale("check")] == ["numbers", "words"]

@@ -47,7 +47,6 @@ def test_criterion_shows_damping_peak_and_violation():
 
 
 def test_criterion_of_a_passive_loop_shades_nothing():
-    """No violation, no shading."""
     (axes,) = plots.criterion(zw.check(IDEAL, zw.Wall(stiffness=100))).axes
     assert not axes.collections
 
@@ -125,7 +124,6 @@ def test_budget_bars_add_up():
 
 
 def test_budget_leaves_out_an_ideal_encoder():
-    """Without quantization there is one pair of bars."""
     assert len(plots.budget(zw.check(IDEAL, zw.Wall(stiffness=100))).axes) == 1
 
 
@@ -139,7 +137,6 @@ def test_budget_leaves_out_an_ideal_encoder():
     ],
 )
 def test_replay_ends_at_the_energy_of_the_witness(device, law):
-    """Played to its end, a motion takes out what the checker found."""
     witness = zw.check(device, law).witness
     played = replay(witness)
     assert played.caption == "the whole motion"
@@ -149,7 +146,6 @@ def test_replay_ends_at_the_energy_of_the_witness(device, law):
 
 
 def test_long_replay_agrees_with_exact_arithmetic(monkeypatch):
-    """Floating point, taken for long motions, shows the same."""
     law = zw.StandardLinearSolid(stiffness=100, branch_stiffness=100, branch_damping=0.2)
     witness = zw.check(PADDLE.replace(delay=0.0023), law).witness
     exact = replay(witness)
@@ -168,7 +164,6 @@ def test_replay_shows_a_few_rounds():
 
 
 def test_witness_needs_an_active_loop():
-    """A passive loop has no motion to draw."""
     with pytest.raises(zw.InputError, match="the loop is passive"):
         plots.witness(zw.check(PADDLE, zw.Wall(stiffness=300)))
 
@@ -195,7 +190,6 @@ def test_a_picture_is_written_by_ending(tmp_path, ending):
 
 
 def test_a_picture_that_cannot_be_written_is_refused(tmp_path):
-    """Another ending, a file that exists, a folder that does not."""
     verdict = zw.check(WHEEL, zw.Wall(stiffness=10))
     with pytest.raises(zw.InputError, match=r"\.png, \.svg or \.pdf, got 'check\.jpg'"):
         verdict.plot(tmp_path / "check.jpg")
@@ -223,7 +217,6 @@ def test_a_picture_that_cannot_be_written_is_refused(tmp_path):
     ],
 )
 def test_check_figure_has_the_panels_that_apply(device, law, panels):
-    """No panel is empty, and every one has labelled axes."""
     figure = plots.check_figure(zw.check(device, law))
     assert isinstance(figure, Figure)
     assert len(figure.axes) == panels
@@ -240,7 +233,6 @@ def test_names_are_drawn_as_they_are():
 
 
 def test_importing_zwidth_does_not_import_matplotlib():
-    """A verdict never waits for a plotting library."""
     code = "import sys, zwidth; sys.exit('matplotlib' in sys.modules or 'zwidth.show.plots' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 

@@ -39,7 +39,6 @@ def test_every_node_and_every_number_is_there() -> None:
 
 
 def test_nodes_stand_by_their_distance_from_the_port() -> None:
-    """And no two at one place."""
     places = placed(SCENE)
     assert [places[n][0] for n in ("handle", "block", "tip $x$", "cage")] == [0, 1, 2, 2]
     assert len(set(places.values())) == 4
@@ -47,13 +46,11 @@ def test_nodes_stand_by_their_distance_from_the_port() -> None:
 
 @pytest.mark.parametrize("size", [3, 300])
 def test_it_is_saved(size: int, tmp_path: Path) -> None:
-    """Whatever its size."""
     random_scene(7, size).plot(tmp_path / "scene.svg")
     assert (tmp_path / "scene.svg").stat().st_size > 1000
 
 
 def test_it_says_what_it_is() -> None:
-    """In a terminal and in a notebook, every element on a line of its own."""
     assert len(repr(SCENE).splitlines()) == 3 + len(SCENE.elements)
     assert SCENE._repr_html_().count("<tr>") == 1 + len(SCENE.elements)
 

@@ -60,7 +60,6 @@ def test_cycle_shows_positions_edges_forces_and_the_joules():
 
 
 def test_both_sides_of_a_limit_stand_beside_each_other():
-    """The storage function at one value, the motion at the other; each as text still on its own side."""
     bracket = zw.limit(PADDLE, zw.Wall(100, 0.05), **BOUNDS)
     figure = plots.limit_figure(bracket)
     left, *right = figure.axes
@@ -77,7 +76,6 @@ def test_a_closed_limit_shows_its_motion_alone():
 
 
 def test_a_verdict_shows_what_the_game_found():
-    """The motion where it refutes, the storage function where it proves."""
     active = zw.check(PADDLE.replace(coulomb_friction="0.002"), zw.Wall(150, 0.05, clamped=True))
     titles = [a.get_title(loc="left") for a in plots.check_figure(active).axes]
     assert any("out in every round" in t for t in titles)

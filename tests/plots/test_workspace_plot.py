@@ -19,7 +19,6 @@ def _space(name: str, stiffness: float) -> Workspace:
 
 
 def test_the_colours_are_the_margins_at_the_places() -> None:
-    """What is drawn over x and y is what the map says."""
     space = _space("haply-2diy", 800)
     figure, axes = plt.subplots()
     plots.draw_workspace(axes, space)
@@ -32,7 +31,6 @@ def test_the_colours_are_the_margins_at_the_places() -> None:
 
 @pytest.mark.parametrize("name", ["hapkit", "two-link", "falcon"])
 def test_every_arm_has_a_picture(name: str, tmp_path: Path) -> None:
-    """Also without a negative margin; the outcome stands in words."""
     path = tmp_path / "map.png"
     _space(name, 100).plot(path)
     assert path.stat().st_size > 5000
@@ -81,7 +79,6 @@ def test_the_title_is_short_and_colours_have_plain_numbers() -> None:
 
 
 def test_another_variable_can_be_drawn() -> None:
-    """By its name; one that the map lacks is refused with those that it has."""
     space = _space("two-link", 100)
     assert "largest stiffness" in plots.workspace_figure(space, "largest_stiffness").axes[1].get_ylabel()
     with pytest.raises(zw.InputError, match="it has margin"):
@@ -89,7 +86,6 @@ def test_another_variable_can_be_drawn() -> None:
 
 
 def test_three_joints_are_not_drawn() -> None:
-    """A map over three coordinates has no picture."""
     arm = PlanarChain(links=(0.1, 0.1, 0.1), damping=(0.1,) * 3)
     space = zw.workspace(arm, zw.Wall(100), rate=1000, points=20)
     with pytest.raises(zw.InputError, match="slice"):

@@ -71,7 +71,6 @@ def test_a_close_up_without_speeds_says_so() -> None:
 
 
 def test_only_maps_are_drawn() -> None:
-    """A boundary is no map."""
     with pytest.raises(zw.InputError, match="no Z-width map"):
         plots.z_width_figure(zw.maps.stability_boundary(PADDLE, points=5))
 

@@ -27,11 +27,9 @@ def hostile() -> Verdict:
 
 @pytest.fixture(scope="session")
 def active_page(active: Verdict) -> str:
-    """Its report as a page."""
     return zw.report.html(active)
 
 
 @pytest.fixture(scope="session")
 def hostile_page(hostile: Verdict) -> str:
-    """Its report as a page."""
     return zw.report.html(hostile)

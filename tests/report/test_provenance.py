@@ -70,14 +70,12 @@ def test_of_a_wheel_the_inertia_is_told_once_and_as_that() -> None:
 
 
 def test_what_was_typed_is_told_as_it_was_typed() -> None:
-    """It goes before the file."""
     told = _origins(WHEEL, damping="60 mN*m*s/rad", virtual_damping="0.002")
     assert told["damping b"] == ("0.06 N·m·s/rad", "typed: --damping 60 mN*m*s/rad")
     assert told["virtual damping B"][1] == "typed: --virtual-damping 0.002"
 
 
 def test_what_was_not_given_is_told_as_such() -> None:
-    """0 for the device, the default for the law."""
     told = _origins(WHEEL)
     assert told["Coulomb friction f_c"] == ("0 N·m", "not given: taken as 0")
     assert told["delay τ"] == ("0 s", "not given: taken as 0")
@@ -110,7 +108,6 @@ def test_of_an_interval_its_worst_end_is_told_as_that() -> None:
 
 @pytest.mark.parametrize("law", [zw.Maxwell(100, 2), zw.PulseTransferFunction([100, -50], [1, 0])])
 def test_of_every_law_something_is_told(law: zw.Maxwell) -> None:
-    """Its line at least."""
     rows = of_verdict(zw.check(zw.Device(damping=1, rate=1000), law)).numbers
     assert rows[-1] == ("law", law.describe(), "given in Python")
 

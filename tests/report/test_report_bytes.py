@@ -49,7 +49,6 @@ def twice(tmp_path_factory: pytest.TempPathFactory) -> list[bytes]:
 
 
 def test_the_same_bytes_in_another_process_and_folder(twice: list[bytes]) -> None:
-    """Bit by bit."""
     first, again = twice
     assert len(first) > 10_000
     assert first == again

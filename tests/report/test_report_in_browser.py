@@ -11,7 +11,6 @@ from playwright.sync_api import Page
 
 @pytest.fixture(scope="module")
 def address(hostile_page: str, tmp_path_factory: pytest.TempPathFactory) -> str:
-    """Of a file."""
     path: Path = tmp_path_factory.mktemp("report") / "report.html"
     path.write_text(hostile_page, encoding="utf-8")
     return path.as_uri()
@@ -29,7 +28,6 @@ def test_nothing_stands_in_the_way_of_a_reader(page: Page, address: str, scheme:
 
 
 def test_the_proof_can_be_saved(page: Page, address: str) -> None:
-    """By the link, without a script."""
     page.goto(address)
     with page.expect_download() as saving:
         page.get_by_role("link", name="Save verdict.json").click()

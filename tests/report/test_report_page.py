@@ -48,7 +48,6 @@ class Read(HTMLParser):
         self.texts.append((self.open[-1] if self.open else "", data))
 
     def inside(self, *tags: str) -> list[str]:
-        """Texts directly in these tags."""
         return [text for tag, text in self.texts if tag in tags]
 
 
@@ -125,7 +124,6 @@ def test_the_proof_is_in_the_page(
 
 
 def test_every_picture_says_what_is_in_it(active_page: str) -> None:
-    """In words with its numbers, for those who cannot see it, and below it."""
     read = Read(active_page)
     said = [str(given["alt"]) for tag, given in read.tags if tag == "img"]
     assert len(said) == len(read.inside("figcaption")) == 4

@@ -17,7 +17,6 @@ SUFFIXES = (".nc", ".parquet", ".csv")
 @pytest.mark.parametrize("suffix", SUFFIXES)
 @pytest.mark.parametrize("which", ["dowel", "finger", "knob"])
 def test_a_trace_comes_back_as_it_was(which: str, suffix: str, tmp_path: Path, request) -> None:
-    """Values to the bit, units, names, attributes and coordinates."""
     trace = request.getfixturevalue(which)
     path = tmp_path / f"touch{suffix}"
     trace.zwidth.save(path)
@@ -66,7 +65,6 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(suffix, dowel, tmp_
 
 
 def test_a_file_is_not_replaced_unasked(dowel, tmp_path: Path) -> None:
-    """Without force the old file is kept."""
     path = tmp_path / "t.nc"
     dowel.zwidth.save(path)
     with pytest.raises(zw.InputError, match="exists"):
@@ -79,7 +77,6 @@ def test_a_file_is_not_replaced_unasked(dowel, tmp_path: Path) -> None:
     [("t.xlsx", "ends in .nc, .parquet, .csv"), ("no/t.nc", "there is no directory"), (".", "ends in")],
 )
 def test_a_place_that_cannot_be_is_refused(name: str, says: str, dowel, tmp_path: Path) -> None:
-    """Another suffix, a missing directory, a directory."""
     with pytest.raises(zw.InputError, match=says):
         dowel.zwidth.save(tmp_path / name)
 
@@ -91,7 +88,6 @@ def test_a_place_that_cannot_be_is_refused(name: str, says: str, dowel, tmp_path
     ids=["empty", "words", "table", "bytes"],
 )
 def test_a_foreign_file_is_refused(suffix: str, content: bytes, tmp_path: Path) -> None:
-    """One message, whatever the bytes."""
     path = tmp_path / f"foreign{suffix}"
     path.write_bytes(content)
     with pytest.raises(zw.InputError) as caught:
@@ -101,7 +97,6 @@ def test_a_foreign_file_is_refused(suffix: str, content: bytes, tmp_path: Path) 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_a_truncated_file_is_refused(suffix: str, dowel, tmp_path: Path) -> None:
-    """Half a file is no trace."""
     path = tmp_path / f"t{suffix}"
     dowel.zwidth.save(path)
     whole = path.read_bytes()
@@ -111,7 +106,6 @@ def test_a_truncated_file_is_refused(suffix: str, dowel, tmp_path: Path) -> None
 
 
 def test_a_dataset_that_is_no_trace_is_refused() -> None:
-    """By the accessor, by saving, and by a CSV without the attributes."""
     with pytest.raises(zw.InputError, match="no zwidth trace"):
         xr.Dataset({"a": 1}).zwidth  # noqa: B018
 

@@ -8,13 +8,10 @@ import zwidth.progress as module
 
 
 class _Terminal:
-    """A standard error that somebody watches."""
-
     def __init__(self, inner) -> None:
         self._inner = inner
 
     def isatty(self) -> bool:
-        """True."""
         return True
 
     def __getattr__(self, name):
@@ -22,7 +19,6 @@ class _Terminal:
 
 
 def test_nothing_is_drawn_where_nobody_watches(capsys, monkeypatch) -> None:
-    """A pipe or a file gets no bar."""
     monkeypatch.setattr(module, "SHOWN_AFTER", 0.0)
     with module.progress_bar("samples") as tell:
         tell(1, 3)
@@ -30,7 +26,6 @@ def test_nothing_is_drawn_where_nobody_watches(capsys, monkeypatch) -> None:
 
 
 def test_short_work_draws_no_bar(capsys, monkeypatch) -> None:
-    """Below the patience of a person there is nothing to see."""
     monkeypatch.setattr(sys, "stderr", _Terminal(sys.stderr))
     with module.progress_bar("samples") as tell:
         tell(1, 3)
@@ -39,7 +34,6 @@ def test_short_work_draws_no_bar(capsys, monkeypatch) -> None:
 
 
 def test_long_work_draws_a_bar(capsys, monkeypatch) -> None:
-    """It counts what is done."""
     monkeypatch.setattr(sys, "stderr", _Terminal(sys.stderr))
     monkeypatch.setattr(module, "SHOWN_AFTER", 0.0)
     with module.progress_bar("samples") as tell:

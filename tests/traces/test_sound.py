@@ -36,16 +36,13 @@ def test_a_buzz_of_100_hz_is_heard_as_100_hz(tmp_path: Path) -> None:
 
 
 def test_pressing_steadily_is_silent() -> None:
-    """A constant force, whatever its size, makes no sound."""
     assert not waveform(_pressing(np.full(500, 3.7))).any()
 
 
 def test_no_contact_is_silence_and_no_crash() -> None:
-    """A force of 0 throughout."""
     assert not waveform(_pressing(np.full(50, -1.0))).any()
 
 
 def test_sound_is_a_wav_file(dowel, tmp_path: Path) -> None:
-    """Another suffix is refused."""
     with pytest.raises(zw.InputError, match=r"\.wav"):
         dowel.zwidth.sound(tmp_path / "buzz.mp3")

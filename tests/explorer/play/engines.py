@@ -55,7 +55,6 @@ def run_node(script: str, folder: Path) -> Any:
 
 
 def played(jobs: list[Job], folder: Path) -> list[Array]:
-    """The rows of each job's recording, a row for each sample."""
     (folder / "plant.mjs").write_text(plant_text(), encoding="utf-8")
     given = []
     for i, job in enumerate(jobs):
@@ -105,7 +104,6 @@ def moved(loop: Played, seconds: float, seed: int) -> Array:
 
 
 def tracking(pointer: Array, hand: LinearHand) -> Tracking:
-    """The hand of the page, as an operator of the simulator."""
     return Tracking(pointer, stiffness=hand.stiffness, damping=hand.damping, mass=hand.mass)
 
 

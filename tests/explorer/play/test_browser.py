@@ -32,7 +32,6 @@ AudioBufferSourceNode.prototype.start = function (...given) {
 
 @pytest.fixture(scope="module")
 def loops() -> list[Played]:
-    """A calm wall, one that buzzes, and two arms."""
     calm = zw.Device(mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, rate=1000)
     rough = calm.replace(damping=0.1, coulomb_friction=0.01, resolution=3e-4, force_limit=5)
     return [
@@ -44,7 +43,6 @@ def loops() -> list[Played]:
 
 @pytest.fixture(scope="module")
 def address(loops: list[Played], tmp_path_factory: pytest.TempPathFactory) -> str:
-    """Of the page, as a file."""
     place = tmp_path_factory.mktemp("page") / "play.html"
     place.write_text(play_page(loops), encoding="utf-8")
     return place.as_uri()
@@ -59,7 +57,6 @@ def _frames(page: Page, count: int) -> None:
 
 
 def _stroke(page: Page, parts: list[float], release: bool = False) -> None:
-    """Press the pointer on the stage and go through these parts of its width."""
     box: Any = page.locator("#stage").bounding_box()
     page.mouse.move(box["x"] + parts[0] * box["width"], box["y"] + 0.5 * box["height"])
     page.mouse.down()
@@ -71,7 +68,6 @@ def _stroke(page: Page, parts: list[float], release: bool = False) -> None:
 
 
 def _recording(page: Page) -> tuple[list[str], Array]:
-    """The heads and the rows of what the page hands out."""
     with page.expect_download() as download:
         page.locator("#download").evaluate("button => button.click()")  # the pointer may hold the handle
     with Path(download.value.path()).open(encoding="utf-8", newline="") as file:
@@ -98,7 +94,6 @@ def test_what_a_person_did_is_simulated_to_the_bit(
 
 
 def test_a_person_without_a_pointer_plays(page: Page, address: str) -> None:
-    """Arrows move the hand, Space lets go and grips; who listens is told where the handle is."""
     page.goto(address)
     stage = page.get_by_role("slider", name="The hand on the handle")
     stage.focus()
@@ -130,7 +125,6 @@ def test_letting_go_frees_the_handle(page: Page, address: str) -> None:
 
 
 def test_it_is_silent_until_asked_and_a_buzz_is_loud(browser: Browser, address: str) -> None:
-    """What is handed to the sound card of a buzz has many times the power of a calm press."""
     page = browser.new_page()
     page.set_default_timeout(PATIENCE)
     page.add_init_script(_LISTEN)
@@ -155,7 +149,6 @@ def test_it_is_silent_until_asked_and_a_buzz_is_loud(browser: Browser, address: 
 
 
 def test_nobody_is_left_out(page: Page, address: str) -> None:
-    """No serious violation that axe finds, in light and in dark; nothing is wider than the page."""
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
         page.goto(address)

@@ -16,7 +16,6 @@ MOST_BYTES = 300_000
 
 @pytest.fixture(scope="module")
 def loops() -> list[Played]:
-    """The loops to begin with."""
     return presets()
 
 
@@ -28,7 +27,6 @@ def _facts(page: str) -> list[dict[str, object]]:
 
 
 def test_the_page_is_whole_and_small(loops: list[Played]) -> None:
-    """No address of anything else in it, nothing left to fill in, no more than 300 kB."""
     page = play_page(loops)
     assert len(page.encode()) <= MOST_BYTES
     assert not re.search(r"https?://|src=|href=|@import|url\(|<!-- ", page)
@@ -36,7 +34,6 @@ def test_the_page_is_whole_and_small(loops: list[Played]) -> None:
 
 
 def test_every_verdict_is_that_of_check(loops: list[Played]) -> None:
-    """Outcome, sentence and what it covers are those of `zw.check`, decided anew."""
     for loop, facts in zip(loops, _facts(play_page(loops)), strict=True):
         verdict = zw.check(*loop.loop)  # type: ignore[call-overload]
         assert (facts["outcome"], facts["claim"]) == (verdict.outcome, verdict.claim)
@@ -44,7 +41,6 @@ def test_every_verdict_is_that_of_check(loops: list[Played]) -> None:
 
 
 def test_the_loops_show_both_outcomes(loops: list[Played]) -> None:
-    """Some are passive, some active; each has another name, something to do and something to notice."""
     assert {"passive", "active"} <= {loop.verdict.outcome for loop in loops}
     assert len({loop.name for loop in loops}) == len(loops)
     assert all(loop.do and loop.notice for loop in loops)
@@ -62,7 +58,6 @@ def test_text_of_others_is_shown_and_not_obeyed() -> None:
 
 
 def test_numbers_have_their_units(loops: list[Played]) -> None:
-    """K, B, T and the others stand with values and units; the wheel's are those of a rotary device."""
     numbers = {loop.name: dict(row[1:] for row in loop.facts()["numbers"]) for loop in loops}
     wheel = next(n for name, n in numbers.items() if "wheel" in name)
     assert wheel["damping"] == "0.02 N·m·s/rad"
@@ -74,6 +69,5 @@ def test_numbers_have_their_units(loops: list[Played]) -> None:
 
 
 def test_a_page_without_loops_is_refused() -> None:
-    """One message."""
     with pytest.raises(zw.InputError, match="at least"):
         play_page([])

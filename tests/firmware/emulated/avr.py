@@ -66,16 +66,13 @@ class AvrLaw:
         self.close()
 
     def close(self) -> None:
-        """Switch the chip off."""
         self._library.machine_close(self._machine)
         self._folder.cleanup()
 
     def init(self, counts: int) -> None:
-        """At rest at this position."""
         self._run(_INIT, [counts])
 
     def reset(self) -> None:
-        """At rest at the position seen last."""
         self._run(_RESET, [0])
 
     def run(self, counts: object) -> Answers:

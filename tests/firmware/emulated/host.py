@@ -41,11 +41,9 @@ class HostLaw:
         self.force_per_unit = defined(header, "FORCE_PER_UNIT")
 
     def init(self, counts: int) -> None:
-        """At rest at this position."""
         self._library.init(counts)
 
     def reset(self) -> None:
-        """At rest at the position seen last."""
         self._library.reset()
 
     def run(self, counts: object) -> NDArray[Any]:
