@@ -69,32 +69,13 @@ class _Function:
         if depth > 2 or r.random() < 0.3:
             return r.choice([*self.reals, *self.reals, repr(round(r.uniform(-4, 4), 2)), "0.0", "-0.0"])
         a, b = self.real(deep), self.real(deep)
-        made = r.choice(
-            [
-                "({a} + {b})",
-                "({a} - {b})",
-                "({a} * {b})",
-                "over({a}, {b})",
-                "over(1, {a})",
-                "(-{a})",
-                "abs({a})",
-                "fabs({a})",
-                "sqrt(abs({a}))",
-                "min({a}, {b})",
-                "max({a}, {b}, x)",
-                "({a} if {t} else {b})",
-                "m[{i}]",
-                "m[{i}]",
-                "p[{w} % 5]",
-                "p[3]",
-                "({w} * {a})",
-                "float({w})",
-                "({a} % 1.5)",
-                "(min(max({a}, -1e6), 1e6) // 1.0)",
-                "searched(m, {a}, 3)",
-                "searched(m, {a}, {w})",
-            ]
-        )
+        made = r.choice([
+            "({a} + {b})", "({a} - {b})", "({a} * {b})", "over({a}, {b})", "over(1, {a})", "(-{a})",
+            "abs({a})", "fabs({a})", "sqrt(abs({a}))", "min({a}, {b})", "max({a}, {b}, x)",
+            "({a} if {t} else {b})", "m[{i}]", "m[{i}]", "p[{w} % 5]", "p[3]", "({w} * {a})", "float({w})",
+            "({a} % 1.5)", "(min(max({a}, -1e6), 1e6) // 1.0)", "searched(m, {a}, 3)",
+            "searched(m, {a}, {w})",
+        ])  # fmt: skip
         return self.filled(made, deep, a=a, b=b)
 
     def filled(self, made: str, depth: int, **given: str) -> str:
@@ -108,21 +89,12 @@ class _Function:
         r, deep = self.random, depth + 1
         if depth > 2 or r.random() < 0.4:
             return r.choice([*self.wholes, str(r.randrange(-3, 6))])
-        made = r.choice(
-            [
-                "({a} + {b})",
-                "({a} - {b})",
-                "({a} * {b} % 11)",
-                "({a} // 3)",
-                "(-{a})",
-                "abs({a})",
-                "min({a}, {b})",
-                "({a} if {t} else {b})",
-                "int(min(max({x}, -9.0), 9.0) if {x} == {x} else 2.0)",
-                "floor(min(max({x}, -9.0), 9.0) if {x} == {x} else 2.0)",
-                "ceil(min(max({x}, -9.0), 9.0) if {x} == {x} else 2.0)",
-            ]
-        )
+        made = r.choice([
+            "({a} + {b})", "({a} - {b})", "({a} * {b} % 11)", "({a} // 3)", "(-{a})", "abs({a})",
+            "min({a}, {b})", "({a} if {t} else {b})", "int(min(max({x}, -9.0), 9.0) if {x} == {x} else 2.0)",
+            "floor(min(max({x}, -9.0), 9.0) if {x} == {x} else 2.0)",
+            "ceil(min(max({x}, -9.0), 9.0) if {x} == {x} else 2.0)",
+        ])  # fmt: skip
         text = self.filled(made, deep, a=self.whole(deep), b=self.whole(deep), x=self.real(deep + 1))
         return f"({text} % {r.randrange(2, 12)})" if r.random() < 0.5 else text
 
@@ -136,20 +108,11 @@ class _Function:
             return r.choice(self.truths)
         if depth > 2 or r.random() < 0.4:
             return f"{self.real(deep)} {r.choice(['<', '<=', '==', '!=', '>', '>='])} {self.real(deep)}"
-        made = r.choice(
-            [
-                "({t} and {b})",
-                "({t} or {b})",
-                "(not ({t}))",
-                "{x} < {y} <= {x}",
-                "{w} < {y}",
-                "{w} == 2",
-                "-1 <= {w} < 3",
-                "(({t}) == ({b}))",
-                "({t} and kept(m, {i}, {x}))",
-                "(kept(m, {i}, {x}) or kept(m, {i}, {y}))",
-            ]
-        )
+        made = r.choice([
+            "({t} and {b})", "({t} or {b})", "(not ({t}))", "{x} < {y} <= {x}", "{w} < {y}", "{w} == 2",
+            "-1 <= {w} < 3", "(({t}) == ({b}))", "({t} and kept(m, {i}, {x}))",
+            "(kept(m, {i}, {x}) or kept(m, {i}, {y}))",
+        ])  # fmt: skip
         return self.filled(made, deep, b=self.truth(deep), x=self.real(deep), y=self.real(deep))
 
     # ---- statements
@@ -173,7 +136,11 @@ class _Function:
         if loop:
             kinds += ["break", "continue"]
         kinds += ["return"] if depth > 1 else []
-        getattr(self, f"_{r.choice(kinds)}")(depth, loop)
+        kind = r.choice(kinds)
+        if kind in ("break", "continue"):
+            self.say(depth, kind)
+        else:
+            getattr(self, f"_{kind}")(depth, loop)
 
     def _name(self, among: list[str], prefix: str) -> str:
         """One that is there, or a new one."""
@@ -249,12 +216,6 @@ class _Function:
         self.say(depth, f"while {name} > 0 and {self.truth(1)}:")
         self.say(depth + 1, f"{name} -= 1")
         self.block(depth + 1, True)
-
-    def _break(self, depth: int, loop: bool) -> None:
-        self.say(depth, "break")
-
-    def _continue(self, depth: int, loop: bool) -> None:
-        self.say(depth, "continue")
 
     def _return(self, depth: int, loop: bool) -> None:
         self.say(depth, f"return {self.real(1)}, {self.real(2)}")

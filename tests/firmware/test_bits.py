@@ -11,21 +11,10 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from emitted_laws import laws, readings
-from machines import (
-    Ran,
-    compiled_c,
-    law_in_c,
-    law_in_javascript,
-    needs_c,
-    needs_node,
-    run_c,
-    run_node,
-    same_bits,
-    understood,
-)
+from firmware.emulated.required import tool
+from machines import Ran, compiled_c, law_in_c, law_in_javascript, run_c, run_node, same_bits, understood
 from moved_plants import PERIOD, PLANTS, plant_in_c
 from numpy.typing import NDArray
-from tools import tool
 
 import zwidth as zw
 from zwidth.loop.law import sampled_force, sampled_force_at
@@ -73,11 +62,8 @@ def _known(device: zw.Device, environment: Environment) -> Known:
 
 
 def _differ(known: Mapping[str, Known], ran: Mapping[str, Ran]) -> list[str]:
-    return [
-        name
-        for name, one in known.items()
-        if not all(same_bits(a, b) for a, b in zip(one.ran, ran[name], strict=True))
-    ]
+    pairs = {name: zip(one.ran, ran[name], strict=True) for name, one in known.items()}
+    return [name for name, parts in pairs.items() if not all(same_bits(a, b) for a, b in parts)]
 
 
 def test_the_readings_make_every_law_push(known: Mapping[str, Known]) -> None:
@@ -85,7 +71,6 @@ def test_the_readings_make_every_law_push(known: Mapping[str, Known]) -> None:
     assert all(len(np.unique(one.ran.outputs)) > 40 for one in known.values())
 
 
-@needs_c
 @pytest.mark.parametrize(
     "options",
     [("-std=c99", "-O2"), ("-std=gnu99", "-O3"), ("-std=gnu99", "-O3", "-march=native")],
@@ -104,7 +89,6 @@ def test_every_header_has_the_same_bits(
     assert not _differ(known, ran)
 
 
-@needs_node
 def test_every_module_has_the_same_bits(known: Mapping[str, Known], tmp_path: Path) -> None:
     files = {f"{n}.mjs": module(k.law, about=[n], numbers=[]) for n, k in known.items()}
     text = "".join(law_in_javascript(n) for n in known)
@@ -126,14 +110,13 @@ KEPT = {"double": {0, 1, 16, 32, 64}, "float": {0, 16, 32}, "fixed": {-1, 0, 1, 
 
 def _header(law: LawProgram, number: Number, name: str) -> str:
     end = 2000.0
-    ends = [
-        (f"{seen}_{side}", f"({end:.0f})", "") for seen in ("POSITION", "COUNTS") for side in ("MIN", "MAX")
-    ]
+    ends = [(f"{it}_{side}", f"({end:.0f})", "") for it in ("POSITION", "COUNTS") for side in ("MIN", "MAX")]
     made = machine(law, number, (-end, end)) if number == "fixed" else Machine(law, number, (-end, end), None)
     return header(made, name=f"{name}_{number}", about=[name], numbers=ends)
 
 
 def _asked(text: str, *command: str) -> subprocess.CompletedProcess[str]:
+    tool(command[0])
     return subprocess.run([*command, "-"], input=text, capture_output=True, text=True, check=False)
 
 
@@ -147,7 +130,6 @@ def headers(known: Mapping[str, Known]) -> str:
     ) + "".join(plant_in_c(program, n) for n, program in plants.items())
 
 
-@needs_c
 @pytest.mark.parametrize("march", MARCH)
 @pytest.mark.parametrize(
     ("compiler", "dialects"), [("cc", ("c99", "gnu99", "c11", "gnu17")), ("c++", ("c++11", "gnu++17"))]
@@ -156,7 +138,6 @@ def test_every_header_compiles_for_every_processor(
     headers: str, compiler: str, dialects: tuple[str, ...], march: str
 ) -> None:
     """In the dialects of C and C++, the strict ones and GNU's."""
-    tool(compiler)
     understood(compiler, march)
     language = "c" if compiler == "cc" else "c++"
     for dialect in dialects:
@@ -165,24 +146,13 @@ def test_every_header_compiles_for_every_processor(
         assert done.returncode == 0, f"{dialect}: {done.stderr[:2000]}"
 
 
-@needs_c
 @pytest.mark.parametrize(("compiler", "dialect"), [("cc", "gnu17"), ("c++", "gnu++17")])
 @pytest.mark.parametrize("march", ["-march=x86-64-v3", "-march=sapphirerapids"])
 def test_no_product_is_fused_with_a_sum(compiler: str, dialect: str, march: str) -> None:
     """Where processor and dialect would: without the header's own words the same text has such products."""
-    tool(compiler)
     understood(compiler, march)
-    options = [
-        compiler,
-        f"-std={dialect}",
-        "-O2",
-        march,
-        "-S",
-        "-o",
-        "-",
-        "-x",
-        "c" if compiler == "cc" else "c++",
-    ]
+    language = "c" if compiler == "cc" else "c++"
+    options = [compiler, f"-std={dialect}", "-O2", march, "-S", "-o", "-", "-x", language]
     text = "".join(law_in_c(law_program(*laws()[name]()), name) for name in ("damped", "prony"))
     fused = re.compile(r"\bv?fn?m(add|sub)\d")
     assert not fused.search(_asked(text, *options).stdout)
@@ -190,7 +160,6 @@ def test_no_product_is_fused_with_a_sum(compiler: str, dialect: str, march: str)
     assert fused.search(_asked(loose, *options, "-ffp-contract=fast").stdout)
 
 
-@needs_c
 @pytest.mark.parametrize("number", KEPT)
 def test_a_compiler_that_keeps_other_digits_is_refused(number: Number) -> None:
     """By each value of FLT_EVAL_METHOD; the libraries' own headers are read before it is changed."""
@@ -202,7 +171,6 @@ def test_a_compiler_that_keeps_other_digits_is_refused(number: Number) -> None:
     assert all("more digits" in one.stderr for m, one in done.items() if m not in KEPT[number])
 
 
-@needs_c
 @pytest.mark.parametrize("number", KEPT)
 @pytest.mark.parametrize(
     ("option", "macro", "why"),

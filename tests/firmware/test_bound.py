@@ -5,27 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import product
 from math import isfinite, sqrt
 from random import Random
+from typing import NamedTuple
 
 import pytest
 from strategies import seeds
 
-from zwidth.machine.firmware.bound import (
-    Bound,
-    absolute,
-    added,
-    apart,
-    divided,
-    floored,
-    hull,
-    least,
-    most,
-    multiplied,
-    plain,
-    rooted,
-    scaled,
-)
+from zwidth.machine.firmware import bound
+from zwidth.machine.firmware.bound import Bound, plain
 from zwidth.machine.firmware.evaluation import Evaluation, Exact
 from zwidth.machine.firmware.machine import FLOAT
 from zwidth.machine.firmware.program import (
@@ -41,8 +30,7 @@ from zwidth.machine.firmware.program import (
 )
 
 
-@dataclass
-class Point:
+class Point(NamedTuple):
     exact: float
     computed: float
 
@@ -71,65 +59,50 @@ def holds(b: Bound, exact: float, computed: float) -> None:
         assert (exact > 0) - (exact < 0) == (computed > 0) - (computed < 0)
 
 
-TWO: dict[str, tuple[Callable, Callable]] = {
-    "added": (lambda a, b: added(a, b, 1.0), lambda a, b: a + b),
-    "less": (lambda a, b: added(a, b, -1.0), lambda a, b: a - b),
-    "multiplied": (multiplied, lambda a, b: a * b),
-    "divided": (divided, lambda a, b: a / b),
-    "least": (least, min),
-    "most": (most, max),
+OPERATIONS: dict[str, tuple[Callable, Callable, int]] = {
+    "added": (lambda a, b: bound.added(a, b, 1.0), lambda a, b: a + b, 2),
+    "less": (lambda a, b: bound.added(a, b, -1.0), lambda a, b: a - b, 2),
+    "multiplied": (bound.multiplied, lambda a, b: a * b, 2),
+    "divided": (bound.divided, lambda a, b: a / b, 2),
+    "least": (bound.least, min, 2),
+    "most": (bound.most, max, 2),
+    "absolute": (bound.absolute, abs, 1),
+    "floored": (bound.floored, lambda a: a // 1.0, 1),
+    "rooted": (bound.rooted, sqrt, 1),
+    "scaled": (lambda a: bound.scaled(a, -1.7), lambda a: -1.7 * a, 1),
+    "scaled by 0": (lambda a: bound.scaled(a, 0.0), lambda a: 0.0, 1),
 }
-ONE: dict[str, tuple[Callable, Callable]] = {
-    "absolute": (absolute, abs),
-    "floored": (floored, lambda a: a // 1.0),
-    "rooted": (rooted, sqrt),
-    "scaled": (lambda a: scaled(a, -1.7), lambda a: -1.7 * a),
-    "scaled by 0": (lambda a: scaled(a, 0.0), lambda a: 0.0),
-}
+"""Of bounds and of numbers, and how many operands."""
 
 
-@pytest.mark.parametrize("name", TWO)
-@seeds(25)
-def test_two_operands(name: str, seed: int) -> None:
-    """Range, error and sign of a result hold for all numbers that theirs hold for."""
-    bounds, compute = TWO[name]
-    random = Random(seed)
-    (a, ps), (b, qs) = drawn(random), drawn(random)
-    result = bounds(a, b)
-    if not isfinite(result.error):
-        return
-    for p in ps:
-        for q in qs:
-            holds(result, compute(p.exact, q.exact), compute(p.computed, q.computed))
-
-
-@pytest.mark.parametrize("name", ONE)
+@pytest.mark.parametrize("name", OPERATIONS)
 @seeds(40)
-def test_one_operand(name: str, seed: int) -> None:
-    bounds, compute = ONE[name]
-    a, points = drawn(Random(seed))
-    result = bounds(a)
-    if not isfinite(result.error):
-        return
-    for p in points:
-        holds(result, compute(p.exact), compute(p.computed))
+def test_bounds_of_operations(name: str, seed: int) -> None:
+    """Range, error and sign of a result hold for all numbers that those of its operands hold for."""
+    bounds, compute, operands = OPERATIONS[name]
+    random = Random(seed)
+    given, points = zip(*(drawn(random) for _ in range(operands)), strict=True)
+    result = bounds(*given)
+    if isfinite(result.error):
+        for of in product(*points):
+            holds(result, compute(*(p.exact for p in of)), compute(*(p.computed for p in of)))
 
 
 def test_a_root_of_what_may_be_negative_has_no_bound() -> None:
     """A machine gives no number there."""
-    assert not isfinite(rooted(plain(0.0, 1.0, 0.1)).error)
-    assert isfinite(rooted(plain(0.0, 1.0, 0.1, signed=True)).error)
+    assert not isfinite(bound.rooted(plain(0.0, 1.0, 0.1)).error)
+    assert isfinite(bound.rooted(plain(0.0, 1.0, 0.1, signed=True)).error)
 
 
 @seeds(40)
 def test_one_or_the_other(seed: int) -> None:
     random = Random(seed)
     (a, ps), (b, qs) = drawn(random), drawn(random)
-    both = hull(a, b)
+    both = bound.hull(a, b)
     for p in (*ps, *qs):
         holds(both, p.exact, p.computed)
     for p in ps:
-        assert all(abs(p.computed - q.exact) <= max(apart(a, b), apart(b, a)) + 1e-9 for q in qs)
+        assert all(abs(p.computed - q.exact) <= max(bound.apart(a, b), bound.apart(b, a)) + 1e-9 for q in qs)
 
 
 @seeds(40)
@@ -219,8 +192,8 @@ def test_branches_whose_test_is_in_doubt(seed: int) -> None:
         exact = ran(program, x, m, lambda: 0.0)
         shifted = m + error * random.uniform(-1, 1)
         computed = ran(program, x, shifted, lambda: anything(random, arithmetic.off))
-        for bound, e, c in zip((result, after[0]), exact, computed, strict=True):
-            holds(bound, e, c)
+        for found, e, c in zip((result, after[0]), exact, computed, strict=True):
+            holds(found, e, c)
 
 
 def test_a_float_too_large_has_no_bound() -> None:

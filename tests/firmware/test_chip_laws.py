@@ -81,10 +81,11 @@ def test_the_certified_law_is_quiet_on_the_chip() -> None:
     wall = zw.Wall(150, 0.05)
     assert emit(DEVICE, wall, target="arduino").verdict.outcome == "passive"
     motion = on_the_chip(wall, 1.0)
-    energy = zw.simulate(DEVICE, wall, HAND, duration=1.0).zwidth.energy
-    assert motion.extracted == energy.got_out == 0
+    trace = zw.simulate(DEVICE, wall, HAND, duration=1.0)
+    assert motion.extracted == trace.zwidth.energy.got_out == 0
     assert motion.counts[-1] > 100
     assert not motion.velocity[-100:].any()
+    assert np.abs(motion.position - trace["position"].values).max() < 1e-4
 
 
 def test_the_refuted_law_buzzes_on_the_chip() -> None:
@@ -97,3 +98,22 @@ def test_the_refuted_law_buzzes_on_the_chip() -> None:
     assert motion.extracted > 0.01
     assert motion.extracted == pytest.approx(energy.got_out, rel=0.1)
     assert np.abs(motion.velocity[-500:]).max() > 0.5
+
+
+@pytest.mark.parametrize("rate", [1000, 1700])
+@pytest.mark.parametrize("delay", ["0 s", "0.4 ms", "1.3 ms"])
+def test_it_is_the_loop_of_simulate(rate: int, delay: str) -> None:
+    """With the same forces it has the same motion and energy, to the last bit, whatever the delay."""
+    values = {"mass": 0.036, "damping": 0.15, "coulomb_friction": 0.12, "resolution": 22.4e-6, "rate": rate}
+    device = zw.Device(**values, delay=delay, force_resolution=0.0005, force_limit=9)
+    trace = zw.simulate(device, zw.Wall(stiffness=700), HAND, duration=0.5)
+    motion = closed(device, HAND, 0.5, lambda counts: 700 * max(22.4e-6 * counts, 0.0))
+    for ours, theirs in (
+        (motion.position, "position"),
+        (motion.command, "commanded_force"),
+        (motion.force, "actuator_force"),
+        (motion.hand_work, "hand_work"),
+    ):
+        assert np.array_equal(ours, trace[theirs].values)
+    assert motion.command.max() == 9
+    assert motion.extracted == trace.zwidth.energy.got_out

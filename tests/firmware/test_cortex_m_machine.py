@@ -7,14 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from firmware.tools import DATA, run, tool, written
+from firmware.emulated.required import tool
+from firmware.tools import DATA, KINDS, law_forces, run, written
 
 from zwidth.machine.firmware.targets import main_files
 from zwidth.machine.firmware.telemetry import read_telemetry
-
-NEWTONS = {1: 0.00672, 2: 0.00672, 3: 28 / 4096, 4: 0.01}
-DAMPED = {1: 0.0448, 2: 0.0448, 3: 184 / 4096, 4: 0.04}
-"""Of the laws of data/law.h: in a count, and in a count of change from one sample to the next."""
 
 
 def ended(folder: Path, kind: int, *options: str) -> int:
@@ -23,23 +20,13 @@ def ended(folder: Path, kind: int, *options: str) -> int:
     flags = " ".join(["-O2", "-Werror", f"-DLAW_KIND={kind}", "-DSAMPLES=2000", *options])
     board = f"BOARD={DATA / 'mps2.c'}"
     run(tool("make"), f"CC={tool('arm-none-eabi-gcc')}", board, f"CFLAGS={flags} -I.", cwd=folder)
-    machine = [
-        "-M",
-        "mps2-an386",
-        "-display",
-        "none",
-        "-monitor",
-        "none",
-        "-semihosting",
-        "-icount",
-        "shift=6",
-    ]
-    line = ["-serial", f"file:{folder / 'line.bin'}"]
+    machine = ["-M", "mps2-an386", "-display", "none", "-monitor", "none", "-semihosting"]
+    line = ["-icount", "shift=6", "-serial", f"file:{folder / 'line.bin'}"]
     command = [tool("qemu-system-arm"), *machine, *line, "-kernel", str(folder / "law.elf")]
     return subprocess.run(command, capture_output=True, check=False, timeout=300).returncode
 
 
-@pytest.mark.parametrize("kind", [1, 2, 3, 4])
+@pytest.mark.parametrize("kind", KINDS)
 def test_two_seconds_on_the_machine(tmp_path: Path, kind: int) -> None:
     assert ended(tmp_path / "board", kind) == 0
     data = read_telemetry(tmp_path / "board" / "line.bin")
@@ -50,11 +37,7 @@ def test_two_seconds_on_the_machine(tmp_path: Path, kind: int) -> None:
     k = np.arange(data.sizes["time"]) % 800
     counts = np.where(k < 200, -k, np.where(k < 600, k - 400, 800 - k))
     assert np.array_equal(np.rint(data.position.values / 2.24e-5), counts)
-    before = np.concatenate([counts[:1], counts[:-1]])
-    law = np.where(
-        counts > 0, np.maximum(NEWTONS[kind] * counts + DAMPED[kind] * (counts - before), 0.0), 0.0
-    )
-    assert np.abs(data.actuator_force.values - law).max() < 1e-4
+    assert np.abs(data.actuator_force.values - law_forces(counts, kind)).max() < 1e-4
 
 
 def test_a_fault_of_the_processor_ends_in_force_0(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from machines import Ran, compiled_c, needs_c, needs_node, run_c, run_node, same_bits, understood
+from machines import Ran, compiled_c, run_c, run_node, same_bits, understood
 from moved_plants import CELLS, PERIOD, PLANTS, hand_and_law, plant_in_c, plant_in_javascript
 from numpy.typing import NDArray
 
@@ -67,7 +67,6 @@ def test_the_forces_make_it_slide_turn_and_stop(simulated: dict[str, tuple[Array
     assert simulated["free"][1].cells[COULOMB] > 0.0
 
 
-@needs_c
 @pytest.mark.parametrize(
     "options",
     [("-std=c99", "-O2"), ("-std=gnu99", "-O3", "-march=native")],
@@ -87,7 +86,6 @@ def test_the_header_moves_it_as_the_simulator_does(
         assert same_bits(expected.cells, ran.cells), name
 
 
-@needs_node
 def test_the_module_moves_it_as_the_simulator_does(
     simulated: dict[str, tuple[Array, Ran]], tmp_path: Path
 ) -> None:

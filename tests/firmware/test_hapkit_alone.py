@@ -8,7 +8,8 @@ import shutil
 from pathlib import Path
 
 import pytest
-from firmware.tools import DATA, STUBS, WARNINGS, mains, run, tool
+from firmware.emulated.required import tool
+from firmware.tools import DATA, MAINS, NEWTONS, STUBS, WARNINGS, run
 from firmware.written_packets import unpacked
 
 WAITING, SERVING, ENDED = range(3)
@@ -54,10 +55,6 @@ class Board:
         return bytes(found)
 
 
-NEWTONS = {1: 0.00672, 2: 0.00672, 3: 28 / 4096, 4: 0.01}
-"""Of the laws of data/law.h, in a count."""
-
-
 @pytest.fixture(scope="module", params=list(NEWTONS))
 def kind(request: pytest.FixtureRequest) -> int:
     """Which kind of number the law is in."""
@@ -67,9 +64,9 @@ def kind(request: pytest.FixtureRequest) -> int:
 @pytest.fixture(scope="module")
 def library(kind: int, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("board") / "hapkit.so"
-    include = ["-I", STUBS / "board", "-I", DATA, "-I", mains() / "shared"]
+    include = ["-I", STUBS / "board", "-I", DATA, "-I", MAINS / "shared"]
     options = [f"-DLAW_KIND={kind}", "-DF_CPU=16000000UL", "-O1", "-shared", "-fPIC"]
-    sketch, board = mains() / "arduino" / "hapkit.ino", STUBS / "board" / "board.cpp"
+    sketch, board = MAINS / "arduino" / "hapkit.ino", STUBS / "board" / "board.cpp"
     files = ["-x", "c++", "-include", "Arduino.h", sketch, board]
     run(tool("c++"), "-std=gnu++11", *WARNINGS, *options, *include, *files, "-o", path)
     return path

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from firmware.tools import run, tool, written
+from firmware.emulated.required import tool
+from firmware.tools import law_forces, run, written
 from servo.emulators.moteus import MoteusEmulator
 
 from zwidth.machine.firmware.targets import main_files
@@ -57,8 +58,7 @@ def test_it_runs_as_it_is(simulated: Path, tmp_path: Path) -> None:
     assert data.attrs["lost_packets"] == 0
     assert set(data.phase.values) == {1}
     counts = np.rint(data.position.values / 2.24e-5)
-    before = np.concatenate([counts[:1], counts[:-1]])
-    law = np.where(counts > 0, np.maximum(0.00672 * counts + 0.0448 * (counts - before), 0.0), 0.0)
+    law = law_forces(counts, 1)
     assert law.max() > 1.0
     assert np.abs(data.actuator_force.values - law).max() < 1e-4
 

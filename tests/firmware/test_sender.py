@@ -7,14 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from firmware.tools import DATA, library
+from firmware.tools import DATA, KINDS, UNIT, library
 from firmware.written_packets import FIRST, SERVING, TEXT, unpacked
 from strategies import seeds
 
 from zwidth.data.logs.telemetry import Decoder
-
-UNIT = {1: 1.0, 2: 1.0, 3: 2**-12, 4: 0.01}
-"""Of the laws of data/law.h [N]."""
 
 SENT = {1: 5 / 32767, 2: 5 / 32767, 3: 2**-12, 4: 0.01}
 """[N] in a unit that is sent: a share of the limit of 5 N, or the law's own where it is whole."""
@@ -39,7 +36,7 @@ def drained(line: ctypes.CDLL, most: int = 10**9) -> bytes:
     return bytes(found)
 
 
-@pytest.mark.parametrize("kind", [1, 2, 3, 4])
+@pytest.mark.parametrize("kind", KINDS)
 def test_every_sample_arrives(folder: Path, kind: int) -> None:
     """Positions exactly, forces to half a unit of what is sent; read by the decoder and by struct alike."""
     line, data = sender(folder, kind), b""
@@ -92,7 +89,7 @@ def test_the_text_has_the_numbers_of_the_header_to_the_last_digit(folder: Path) 
 
 def test_a_force_beyond_what_can_be_sent_is_sent_as_the_largest(folder: Path) -> None:
     """No number wraps around to the other sign; what is no number comes as a large one too."""
-    for kind in (1, 2, 3, 4):
+    for kind in KINDS:
         line = sender(folder, kind)
         for k, force in enumerate((7.0, -7.0, 2e5, -2e5)):
             line.sample(1000 * k, 0, force / UNIT[kind], SERVING)

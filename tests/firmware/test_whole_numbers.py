@@ -38,12 +38,14 @@ def test_a_narrow_product_is_the_wide_one(tmp_path: Path) -> None:
     """Two products of 16 bits give what one of 64 bits gives, at the ends of their ranges too."""
     require("host")
     words = {"word": "int32_t", "prefix": "law"}
-    text = "#include <stdint.h>\n" + "".join(
-        HELPERS[k].format(**words) + "\n" for k in ("scaled", "scaled_narrow")
-    )
-    text += "int32_t wide(int32_t n, int32_t m) { return law_scaled(n, m, 16); }\n"
-    text += "int32_t narrow(int32_t n, int32_t h, int32_t l)\n"
-    text += "{ return law_scaled_narrow((int16_t)n, (int16_t)h, (int16_t)l); }\n"
+    scaled, narrow = (HELPERS[k].format(**words) for k in ("scaled", "scaled_narrow"))
+    text = f"""#include <stdint.h>
+{scaled}
+{narrow}
+int32_t wide(int32_t n, int32_t m) {{ return law_scaled(n, m, 16); }}
+int32_t narrow(int32_t n, int32_t h, int32_t l)
+{{ return law_scaled_narrow((int16_t)n, (int16_t)h, (int16_t)l); }}
+"""
     (tmp_path / "a.c").write_text(text, encoding="utf-8")
     called(["gcc", *STRICT, "-shared", "-fPIC", str(tmp_path / "a.c"), "-o", str(tmp_path / "a.so")])
     library = ctypes.CDLL(str(tmp_path / "a.so"))

@@ -15,17 +15,7 @@ HERE = Path(__file__).parent
 
 
 class HostLaw:
-    """A header as a library of this machine.
-
-    Parameters
-    ----------
-    header
-        The text of law.h.
-    folder
-        An empty one, in which it is compiled.
-    optimized
-        Option of the compiler.
-    """
+    """A header as a library of this machine, compiled in a folder."""
 
     def __init__(self, header: str, folder: Path, optimized: str = "-O2") -> None:
         (folder / "law.h").write_text(header, encoding="utf-8")
@@ -61,10 +51,8 @@ class HostLaw:
 def watched(header: str, counts: object, folder: Path, start: int = 0) -> None:
     """Run a law on these counts from rest at `start`, in a process that ends at undefined behaviour.
 
-    Raises
-    ------
-    AssertionError
-        If a whole number overflows, a shift is too far, or a float does not fit into a whole number.
+    AssertionError if a whole number overflows, a shift is too far, or a float does not fit into a whole
+    number.
     """
     (folder / "law.h").write_text(header, encoding="utf-8")
     program = folder / "law"

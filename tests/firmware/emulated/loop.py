@@ -63,22 +63,11 @@ def closed(
 ) -> Motion:
     """A touch of `duration` seconds, sample by sample.
 
-    Parameters
-    ----------
-    device
-        With a mass and an encoder.
-    operator
-        The hand.
-    duration
-        [s].
-    force
-        From counts to the force of the law [N, N·m], > 0 where it pushes out.
-    init
-        Told the first counts before the first sample.
+    `force` is from counts to the force of the law [N, N·m], > 0 where it pushes out; `init` is told the first
+    counts before the first sample.
     """
-    setup = prepare(
-        device, Wall(stiffness=1), operator, duration
-    )  # of the wall only that it begins at 0 is used
+    # of the wall only that it begins at 0 is used
+    setup = prepare(device, Wall(stiffness=1), operator, duration)
     frame, state, plant = setup.frame, setup.state, setup.frame.plant
     commands, record, work = empty_record(setup.frame)
     signals, h, limit = setup.frame.optional(), float(frame.period), setup.law[LIMIT]
