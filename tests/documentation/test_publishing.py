@@ -42,7 +42,6 @@ def test_the_citation_is_one_of_the_citation_file_format() -> None:
 def test_the_changelog_begins_with_this_version_and_its_date() -> None:
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     heading = re.search(r"^## (\S+), (\d{4}-\d\d-\d\d)$", text, re.M)
-    assert heading is not None
     assert heading[1] == PROJECT["version"]
     assert date.fromisoformat(heading[2]) == CITATION["date-released"]
 

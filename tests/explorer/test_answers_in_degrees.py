@@ -32,7 +32,6 @@ def asked(folder: Path, stiffness: str) -> State:
     file.write_text(WHEEL)
     with answers_as_typed():
         state = from_sources([str(file)], {"stiffness": stiffness})
-    assert state is not None
     return state
 
 

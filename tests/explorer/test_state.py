@@ -112,7 +112,6 @@ def test_a_file_is_a_loop_or_a_device_and_not_too_large() -> None:
     assert state is None
     assert alone.name == "mine"
     state = from_file(f'{device}[environment]\ntype = "wall"\nstiffness = 300\n', "mine.toml", shown).state
-    assert state is not None
     assert state.loop().environment == zw.Wall(300)
     with pytest.raises(InputError, match="64 kB"):
         from_file("#" * (LARGEST_FILE + 1), "mine.toml", shown)
@@ -124,7 +123,6 @@ def test_an_environment_alone_is_put_on_the_device_that_is_shown() -> None:
     wheel = starts.with_device(starts.first(), own.device, own.begun)
     text = '[environment]\ntype = "wall"\nstiffness = "12 N*m/rad"\n[[law]]\ntype = "passivity-controller"\n'
     state = from_file(text, "stop.toml", wheel).state
-    assert state is not None
     assert state.device == wheel.device
     assert state.begun == wheel.begun == {"rate": "1 kHz"}
     assert [law["type"] for law in state.laws] == ["passivity-controller"]
@@ -169,13 +167,10 @@ def test_sources_without_a_damping_are_marked_unless_it_is_typed(tmp_path: Path)
     mine = tmp_path / "mine.toml"
     mine.write_text('[device]\nmass = "0.1 kg"\nrate = "1 kHz"\n', encoding="utf-8")
     marked = starts.from_sources([str(mine)])
-    assert marked is not None
     assert marked.begun == {"damping": "0.1 N*s/m"}
     typed = starts.from_sources([str(mine)], {"damping": "0.3"})
-    assert typed is not None
     assert not typed.begun
     omega = starts.from_sources(["omega.3"])
-    assert omega is not None
     assert "damping" in omega.begun
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import time
 from collections.abc import Iterator
 from itertools import count
 from queue import Queue
@@ -11,33 +9,12 @@ from threading import Thread, local
 from typing import Any
 
 import pytest
+from explorer.jobs import doubled, ended, endless, failed, refused
 
-from zwidth.errors import InputError
 from zwidth.show.explorer.working import Answer, Workers
 
 LOOK = 0.02
 """For an answer, at most [s]."""
-
-
-def doubled(value: int) -> int:
-    return 2 * value
-
-
-def refused(value: int) -> int:
-    raise InputError(f"{value} cannot be")
-
-
-def failed(value: int) -> int:
-    raise ZeroDivisionError(value)
-
-
-def ended(value: int) -> int:
-    os._exit(value)
-
-
-def endless(value: int) -> int:
-    time.sleep(3600)
-    return value
 
 
 def test_a_process_that_does_not_start_is_said(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,6 @@ from firmware.tools import DATA, WARNINGS, run
 
 @pytest.fixture(scope="session")
 def chip(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Of data/chip.c, which runs the program of an ATmega328P."""
     require("avr")
     program = tmp_path_factory.mktemp("chip") / "chip"
     run(tool("cc"), "-std=gnu99", *WARNINGS, "-O2", DATA / "chip.c", "-o", program, "-lsimavr", "-lm")

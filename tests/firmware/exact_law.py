@@ -25,7 +25,6 @@ _DO: dict[str, Callable[..., Any]] = {
 
 
 def kept(value: Fraction) -> Fraction:
-    """The same to 2⁻⁴⁰⁰."""
     return Fraction(round(value * 2**BITS), 2**BITS)
 
 

@@ -58,7 +58,6 @@ _ALLOWED = ("unused-function", "unused-but-set-variable", "tautological-compare"
 
 
 def compiled_c(text: str, folder: Path, options: Sequence[str] = ("-std=c99", "-O2")) -> ctypes.CDLL:
-    """A text in C as a library; warnings are errors."""
     source, library = folder / "emitted.c", folder / f"emitted{''.join(options)}.so".replace("=", "")
     source.write_text(text, encoding="utf-8")
     strict = ["-Wall", "-Werror", *(f"-Wno-{it}" for it in _ALLOWED)]
@@ -191,7 +190,6 @@ INCLUDES = "#include <math.h>\n#include <stdint.h>\n"
 
 
 def program_in_javascript(program: Program, name: str) -> str:
-    """A function for `run_node`."""
     js = JavaScript(program, OF_JAVASCRIPT)
     body = js.lines()
     functions = js.function_lines()

@@ -42,7 +42,6 @@ def hand_and_law(hand: Hand, rows: int, seed: int) -> Array:
 
 
 def plant_in_c(program: Program, name: str) -> str:
-    """A function for `machines.run_c`."""
     count = len(program.parameters)
     given = "".join(f", in[k * {count} + {i}]" for i in range(count))
     return f"""{plant_header(program, name=name, about=[name])}

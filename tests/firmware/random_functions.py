@@ -53,8 +53,6 @@ def kept(m, i, a):
 
 
 class _Function:
-    """One function being written."""
-
     def __init__(self, random: Random, name: str) -> None:
         self.random, self.name = random, name
         self.lines: list[str] = []
@@ -143,7 +141,6 @@ class _Function:
             getattr(self, f"_{kind}")(depth, loop)
 
     def _name(self, among: list[str], prefix: str) -> str:
-        """One that is there, or a new one."""
         changing = [n for n in among if n not in ("q", "k") and not n.startswith("i")]
         if changing and self.random.random() < 0.6:
             return self.random.choice(changing)

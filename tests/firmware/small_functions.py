@@ -9,8 +9,6 @@ Array = Any
 
 
 class Pair(NamedTuple):
-    """Two numbers by name."""
-
     first: float
     second: float
 

@@ -59,11 +59,7 @@ RELAXING = {
     "bounding": zw.render(zw.Wall(2000, 1), zw.rendering.ForceBounding()),
 }
 SLOW = zw.Device(
-    mass="0.05",
-    damping="0.2",
-    coulomb_friction="0.02",
-    resolution="20 um",
-    sample_period="0.001",
+    mass="0.05", damping="0.2", coulomb_friction="0.02", resolution="20 um", sample_period="0.001"
 )
 
 

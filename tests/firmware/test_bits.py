@@ -31,8 +31,6 @@ STEPS = 3000
 
 
 class Known(NamedTuple):
-    """A law, its readings, and what the compiled functions make of them."""
-
     law: LawProgram
     readings: NDArray[np.float64]
     ran: Ran
@@ -137,7 +135,6 @@ def headers(known: Mapping[str, Known]) -> str:
 def test_every_header_compiles_for_every_processor(
     headers: str, compiler: str, dialects: tuple[str, ...], march: str
 ) -> None:
-    """In the dialects of C and C++, the strict ones and GNU's."""
     understood(compiler, march)
     language = "c" if compiler == "cc" else "c++"
     for dialect in dialects:

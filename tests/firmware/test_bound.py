@@ -89,7 +89,6 @@ def test_bounds_of_operations(name: str, seed: int) -> None:
 
 
 def test_a_root_of_what_may_be_negative_has_no_bound() -> None:
-    """A machine gives no number there."""
     assert not isfinite(bound.rooted(plain(0.0, 1.0, 0.1)).error)
     assert isfinite(bound.rooted(plain(0.0, 1.0, 0.1, signed=True)).error)
 
@@ -149,7 +148,6 @@ def branching(random: Random) -> Program:
 
 
 def ran(program: Program, x: float, m: float, off: Callable[[], float]) -> tuple[float, float]:
-    """Result and memory, with an error at every operation, store and set."""
     values, held = {program.parameters[0]: x}, [m]
     do = {"*": lambda a, b: a * b, "+": lambda a, b: a + b, "-": lambda a, b: a - b, "min": min, "max": max}
     do["copy"] = lambda a: a  # a set

@@ -41,5 +41,4 @@ def test_two_seconds_on_the_machine(tmp_path: Path, kind: int) -> None:
 
 
 def test_a_fault_of_the_processor_ends_in_force_0(tmp_path: Path) -> None:
-    """While the law pushes, an instruction that there is none of: then 0 is applied."""
     assert ended(tmp_path / "board", 3, "-DFAULTY=580") == 7

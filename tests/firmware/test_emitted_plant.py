@@ -89,7 +89,6 @@ def test_the_header_moves_it_as_the_simulator_does(
 def test_the_module_moves_it_as_the_simulator_does(
     simulated: dict[str, tuple[Array, Ran]], tmp_path: Path
 ) -> None:
-    """The same in JavaScript."""
     programs = _programs()
     files = {f"{n}.mjs": plant_module(p, about=[n]) for n, (p, _) in programs.items()}
     given = {
@@ -103,7 +102,6 @@ def test_the_module_moves_it_as_the_simulator_does(
 
 
 def test_a_free_hand_has_no_spring() -> None:
-    """A spring between hand and nothing is refused, as is a period of 0."""
     with pytest.raises(zw.InputError, match="anchor"):
         plant_program(PLANTS["held"][0], PERIOD, "free")
     with pytest.raises(zw.InputError, match="> 0 s"):

@@ -122,7 +122,6 @@ def idle_with(instructions: str) -> str:
 
 
 def test_cycles_of_the_avr_are_those_of_the_data_sheet() -> None:
-    """Three of an instruction more cost three times its cycles."""
     require("avr")
     wrong = {}
     for instruction, cycles in INSTRUCTIONS.items():

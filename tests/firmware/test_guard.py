@@ -99,7 +99,6 @@ def test_one_missing_reading_is_bridged_and_two_are_not(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("force", ["(0.0/0.0)", "(1.0/0.0)", "(-1.0/0.0)"])
 def test_a_force_that_is_no_finite_number_ends_it(tmp_path: Path, force: str) -> None:
-    """Not a number, and both infinities: none of them reaches the motor."""
     guard = guarded(tmp_path, 1, f"-DLAW_STIFFNESS={force}", "-DLAW_NEVER_GATED")
     assert guard.step(5) == 0.0
     assert (guard.phase(), guard.reason()) == (ENDED, NO_FORCE)

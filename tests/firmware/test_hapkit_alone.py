@@ -30,7 +30,6 @@ class Board:
         self.board.board_begin()
 
     def sample(self, change: int = 0, late: bool = False) -> None:
-        """The timer fires, after the sensor has moved on so far."""
         self.reading = (self.reading + change) % 980
         self.board.board_sense(self.reading)
         self.board.board_sample(late)
@@ -57,7 +56,6 @@ class Board:
 
 @pytest.fixture(scope="module", params=list(NEWTONS))
 def kind(request: pytest.FixtureRequest) -> int:
-    """Which kind of number the law is in."""
     return int(request.param)
 
 

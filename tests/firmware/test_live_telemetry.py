@@ -8,7 +8,7 @@ from threading import Event
 
 import numpy as np
 import pytest
-from firmware.written_packets import FIRST, SERVING, TEXT, samples, text
+from firmware.written_packets import FIRST, SERVING, TEXT, packed, samples, text
 
 from zwidth.errors import InputError
 from zwidth.machine.firmware.telemetry import LiveTelemetry
@@ -41,11 +41,7 @@ def motion(packets: int) -> tuple[np.ndarray, np.ndarray, list[bytes]]:
     k = np.arange(16 * packets)
     counts = np.rint(300 * np.sin(0.02 * k)).astype(int)
     forces = np.rint(9000 * np.cos(0.017 * k)).astype(int)
-    made = [
-        samples(i, 16_000 * i, counts[j : j + 16].tolist(), forces[j : j + 16].tolist())
-        for i, j in enumerate(range(0, len(k), 16))
-    ]
-    return counts, forces, made
+    return counts, forces, packed(counts.tolist(), forces.tolist())
 
 
 def test_rows_are_what_a_served_loop_writes() -> None:

@@ -59,7 +59,6 @@ def test_a_clock_that_misses_the_period_is_refused_by_the_compiler(tmp_path: Pat
 
 @pytest.mark.parametrize("target", MAINS)
 def test_names_follow_the_prefix_of_the_header(target: str) -> None:
-    """Every name of the header is replaced, and no other word."""
     plain, named = main_files(target, folder="x"), main_files(target, prefix="wall", folder="x")
     assert plain.keys() == named.keys()
     for name, text in named.items():
@@ -75,13 +74,7 @@ def test_what_there_is_no_main_program_for_is_said() -> None:
         main_files("posix", prefix="9walls")
 
 
-def test_a_sketch_is_called_as_its_folder() -> None:
-    assert "my-wall.ino" in main_files("arduino", folder="my-wall")
-    assert {"guard.h", "telemetry.h"} <= main_files("simplefoc").keys()
-
-
 def test_the_data_of_the_tests_is_the_law_of_the_files() -> None:
-    """The header of the tests has every name that the programs use."""
     texts = "".join("".join(main_files(target).values()) for target in MAINS)
     used = set(re.findall(r"\bLAW_[A-Z0-9_]+\b", texts)) - {"LAW_BEGINS_MIN", "LAW_BEGINS_MAX"}
     header = (DATA / "law.h").read_text(encoding="utf-8")

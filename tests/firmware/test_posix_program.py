@@ -77,7 +77,6 @@ def test_a_signal_ends_it_in_order(simulated: Path, tmp_path: Path) -> None:
 
 
 def test_a_reading_that_jumps_ends_it(tmp_path: Path) -> None:
-    """Exit status 1, force 0, and the telemetry has the reason."""
     last = "return counts < whole"
     jumping = ("mass.c", last, f"if (position > 0.001) return 100000;\n  {last}")
     done = ran(made("posix", tmp_path / "main", jumping), "-t", tmp_path / "mass.bin")
@@ -89,7 +88,6 @@ def test_a_reading_that_jumps_ends_it(tmp_path: Path) -> None:
 
 
 def test_the_second_thread_ends_the_force_where_the_loop_hangs(tmp_path: Path) -> None:
-    """A device that never answers is stopped from beside, and the program ends."""
     hangs = ("mass.c", "  velocity +=", "  volatile int hung = 1;\n  while (hung) {\n  }\n  velocity +=")
     stop = "void device_stop(void) {"
     says = ("mass.c", stop, f'#include <stdio.h>\n{stop} puts("stopped"); fflush(stdout);')

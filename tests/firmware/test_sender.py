@@ -57,7 +57,6 @@ def test_every_sample_arrives(folder: Path, kind: int) -> None:
     decoder = Decoder()
     samples = decoder.take(data, last=True)
     about = decoder.about
-    assert about is not None
     assert about.force_unit == pytest.approx(SENT[kind], rel=1e-15)
     assert samples.counts.tolist() == counts.tolist()
     assert samples.force.tolist() == [row[3] for row in found]
@@ -78,7 +77,6 @@ def test_it_fits_a_line_of_115200_baud_at_1_kilohertz(folder: Path) -> None:
 
 
 def test_the_text_has_the_numbers_of_the_header_to_the_last_digit(folder: Path) -> None:
-    """It comes first, and after every 64 packets again."""
     line, data = sender(folder), b""
     for k in range(130 * 16):
         line.sample(1000 * k, 0, 0.0, SERVING)
@@ -88,7 +86,6 @@ def test_the_text_has_the_numbers_of_the_header_to_the_last_digit(folder: Path) 
 
 
 def test_a_force_beyond_what_can_be_sent_is_sent_as_the_largest(folder: Path) -> None:
-    """No number wraps around to the other sign; what is no number comes as a large one too."""
     for kind in KINDS:
         line = sender(folder, kind)
         for k, force in enumerate((7.0, -7.0, 2e5, -2e5)):
@@ -165,7 +162,6 @@ def test_the_sequence_and_the_clock_go_round(folder: Path) -> None:
     line.close_packet()
     decoder = Decoder()
     samples = decoder.take(data + drained(line), last=True)
-    assert decoder.about is not None
     assert np.allclose(samples.time(decoder.about), 1e-6 * (start + 1000 * np.arange(48)), rtol=0, atol=1e-9)
     assert decoder.lost == 0
     assert set(samples.start) == {0}

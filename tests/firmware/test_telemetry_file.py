@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from firmware.written_packets import FIRST, SERVING, TEXT, packet, samples, text
+from firmware.written_packets import FIRST, SERVING, TEXT, packed, packet, samples, text
 from strategies import seeds
 
 import zwidth as zw
@@ -19,13 +19,9 @@ ENDED_BY_A_JUMP = 2 | 2 << 2
 
 def stroke(packets: int, *, first: int = 0) -> list[bytes]:
     """Packets of a sine: 16 samples each, positions within ±500 counts."""
-    found = []
-    for i in range(first, first + packets):
-        k = np.arange(16 * i, 16 * (i + 1))
-        counts = np.rint(500 * np.sin(0.01 * k)).astype(int).tolist()
-        forces = np.rint(3000 * np.cos(0.013 * k)).astype(int).tolist()
-        found.append(samples(i, 16_000 * i, counts, forces))
-    return found
+    k = np.arange(16 * first, 16 * (first + packets))
+    counts, forces = np.rint(500 * np.sin(0.01 * k)), np.rint(3000 * np.cos(0.013 * k))
+    return packed(counts.astype(int).tolist(), forces.astype(int).tolist(), first)
 
 
 def test_a_log(tmp_path: Path) -> None:
@@ -37,7 +33,6 @@ def test_a_log(tmp_path: Path) -> None:
     assert (log.sample_period, log.resolution, log.samples) == (0.001, 2.24e-5, 3200)
     assert log.channels == ("actuator_force",)
     assert np.allclose(block.position, 2.24e-5 * np.rint(500 * np.sin(0.01 * k)), rtol=0, atol=1e-12)
-    assert block.actuator_force is not None
     assert np.allclose(
         block.actuator_force, 5 / 32767 * np.rint(3000 * np.cos(0.013 * k)), rtol=0, atol=1e-12
     )
@@ -55,7 +50,6 @@ def test_a_rotary_law(tmp_path: Path) -> None:
 
 
 def test_a_dataset_that_is_a_log_as_well(tmp_path: Path) -> None:
-    """What the packets say besides stands beside it; the same table comes of both."""
     path = tmp_path / "paddle.bin"
     jumped = samples(200, 3_200_000, [0] * 16, [0] * 16, status=ENDED_BY_A_JUMP)
     path.write_bytes(text() + b"".join(stroke(200)) + jumped)
@@ -145,7 +139,6 @@ def test_a_gap_is_a_gap_of_the_log(tmp_path: Path) -> None:
 
 
 def test_a_device_is_identified_from_its_telemetry(tmp_path: Path) -> None:
-    """A free paddle pushed by its motor alone: the damping that the motion was computed with."""
     mass, damping, resolution = 0.1, 0.8, 2.24e-5
     t = 0.001 * np.arange(20_000)
     x = 0.006 * np.sin(9.0 * t) + 0.004 * np.sin(23.0 * t)
@@ -153,48 +146,32 @@ def test_a_device_is_identified_from_its_telemetry(tmp_path: Path) -> None:
     a = -0.486 * np.sin(9.0 * t) - 2.116 * np.sin(23.0 * t)
     counts = np.floor(x / resolution).astype(int)
     forces = np.rint(-(mass * a + damping * v) / (5 / 32767)).astype(int)
-    packets = [
-        samples(i, 16_000 * i, counts[16 * i : 16 * i + 16].tolist(), forces[16 * i : 16 * i + 16].tolist())
-        for i in range(1250)
-    ]
     path = tmp_path / "paddle.bin"
-    path.write_bytes(text() + b"".join(packets))
+    path.write_bytes(text() + b"".join(packed(counts.tolist(), forces.tolist())))
     found = zw.identify(path, mass=mass, model="viscous", zero="exact")
     assert found.estimates["damping"].value == pytest.approx(damping, rel=0.02)
 
 
 @pytest.mark.parametrize(
-    ("said", "why"),
+    ("texts", "why"),
     [
-        (TEXT.replace("telemetry 1", "telemetry 2"), "telemetry 2"),
-        (TEXT.replace("period_s 0.001\n", ""), "period_s"),
-        (TEXT.replace("resolution 2.24e-05", "resolution 0.0"), "> 0"),
-        (TEXT.replace("force_most 5.0", "force_most (LIMIT)"), "numbers"),
+        ([TEXT.replace("telemetry 1", "telemetry 2")], "telemetry 2"),
+        ([TEXT.replace("period_s 0.001\n", "")], "period_s"),
+        ([TEXT.replace("resolution 2.24e-05", "resolution 0.0")], "> 0"),
+        ([TEXT.replace("force_most 5.0", "force_most (LIMIT)")], "numbers"),
+        ([TEXT, TEXT.replace("2.24e-05", "1e-05")], "two laws"),
+        ([], "says what"),
     ],
 )
-def test_a_text_that_says_too_little_is_refused(tmp_path: Path, said: str, why: str) -> None:
+def test_a_text_that_says_too_little_or_too_much_is_refused(
+    tmp_path: Path, texts: list[str], why: str
+) -> None:
+    """By one message, from both readers; counts are no lengths."""
     path = tmp_path / "other.bin"
-    path.write_bytes(text(said) + b"".join(stroke(20)))
+    line = b"".join(stroke(20))
+    path.write_bytes(b"".join(text(said) + line for said in texts) or line)
     for read in (zw.read_log, read_telemetry):
         with pytest.raises(InputError, match=why):
-            read(path)
-
-
-def test_two_laws_in_one_file_are_refused(tmp_path: Path) -> None:
-    """Their counts are not the same length."""
-    path = tmp_path / "two.bin"
-    path.write_bytes(
-        text() + b"".join(stroke(20)) + text(TEXT.replace("2.24e-05", "1e-05")) + b"".join(stroke(9))
-    )
-    with pytest.raises(InputError, match="two laws"):
-        zw.read_log(path)
-
-
-def test_without_a_text_nothing_is_guessed(tmp_path: Path) -> None:
-    path = tmp_path / "short.bin"
-    path.write_bytes(b"".join(stroke(20)))
-    for read in (zw.read_log, read_telemetry):
-        with pytest.raises(InputError, match="says what"):
             read(path)
 
 

@@ -53,7 +53,6 @@ def written(files: dict[str, str], folder: Path) -> Path:
 
 
 def sketch(folder: Path, *options: str) -> Path:
-    """The sketch of a folder, called as that is, as a program of the Hapkit's chip."""
     require("avr")
     chip = ["-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Os", "-fno-exceptions", "-ffp-contract=off"]
     given = ["-std=gnu++11", *WARNINGS, *options, "-I", STUBS / "arduino", "-I", folder]

@@ -40,6 +40,12 @@ def samples(
     return packet(2, sequence, content)
 
 
+def packed(counts: Sequence[int], forces: Sequence[int], first: int = 0) -> list[bytes]:
+    """Packets of 16 samples, a millisecond apart, of which the first has this number."""
+    at = range(0, len(counts), 16)
+    return [samples(n, 16_000 * n, counts[i : i + 16], forces[i : i + 16]) for n, i in enumerate(at, first)]
+
+
 def unpacked(data: bytes) -> tuple[list[str], list[tuple[int, int, int, int, int]]]:
     """The texts, and (sequence, time, counts, force, status) of each sample, of whole packets in a row."""
     texts, found, at = [], [], 0

@@ -21,11 +21,9 @@ def test_inside_the_boundary_the_pair_is_passive():
     leader, follower = damping_boundary(PAIR)
     for b, f in list(zip(leader, follower, strict=True))[::6]:
         for share, holds in ((1.01, True), (0.99, False)) if np.isfinite(f) else ():
-            arms = {
-                "leader": ARM.replace(damping=float(b)),
-                "follower": ARM.replace(damping=float(f * share)),
-            }
-            assert PairCriterion(PAIR.replace(**arms)).holds is holds
+            arms = (ARM.replace(damping=float(damping)) for damping in (b, f * share))
+            changed = dict(zip(("leader", "follower"), arms, strict=True))
+            assert PairCriterion(PAIR.replace(**changed)).holds is holds
 
 
 @pytest.mark.parametrize("delay", [("2 ms", "2 ms"), ("2 ms", "3 ms"), ("0", "0"), ("0", "0.5 ms")])
@@ -92,3 +90,31 @@ def test_where_friction_lacks_the_damping_that_is_enough_says_so():
     verdict = zw.check(zw.Pair(arm, arm, stiffness=400))
     assert verdict.outcome == "active"
     assert plots.plot_pair(verdict).axes[0].get_title(loc="left") == "shaded: enough damping, not friction"
+
+
+# ---- one arm of a pair in a known hand
+
+LIGHT = zw.Device(damping="0.3", mass="0.02", coulomb_friction=0, resolution=0, delay=0, rate="1 kHz")
+HAND = zw.stability.HandImpedance(mass=0.05, stiffness=100, damping=(2, "2.1"))
+
+
+@pytest.mark.parametrize("stiffness", [240, 300])
+def test_a_picture_of_a_pair_whose_other_arm_is_held(stiffness, tmp_path):
+    """The curve is below the damping of the leader at every frequency exactly if it is passive."""
+    verdict = zw.check(zw.Pair(LIGHT, LIGHT, stiffness=stiffness, delay="2 ms"), follower=HAND)
+    verdict.plot(tmp_path / "held.png")
+    damping, limits = plots.plot_held_pair(verdict).axes
+    needs = np.asarray(damping.lines[0].get_ydata())
+    assert bool((needs <= 0.3).all()) is verdict.passive
+    widths = [bar.get_width() for bar in limits.patches]
+    assert widths == [
+        verdict.largest_stiffness,
+        verdict.largest_stiffness_of_any_such_hand,
+        verdict.largest_stiffness_of_two_hands,
+    ]
+
+
+def test_without_a_law_that_is_felt_the_limits_stand_alone():
+    rubbed = LIGHT.replace(coulomb_friction="0.1")
+    verdict = zw.check(zw.Pair(LIGHT, rubbed, stiffness=248, delay="2 ms"), follower=HAND)
+    assert len(plots.plot_held_pair(verdict).axes) == 1

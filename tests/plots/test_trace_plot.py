@@ -35,9 +35,8 @@ def test_an_active_touch_says_so_and_a_passive_one_does_not() -> None:
 def test_the_force_is_drawn_as_the_staircase_it_is() -> None:
     """Held until the next one: steps, not slopes."""
     trace = zw.simulate(PADDLE, zw.Wall(770.0), zw.operators.Dowel(), 0.1)
-    actuator = next(
-        line for line in trace_figure(trace).axes[1].get_lines() if "actuator" in line.get_label()
-    )
+    lines = trace_figure(trace).axes[1].get_lines()
+    actuator = next(line for line in lines if "actuator" in line.get_label())
     assert actuator.get_drawstyle() == "steps-post"
 
 

@@ -77,13 +77,11 @@ def test_the_verdict_stands_first_and_the_rest_below(active: Verdict, active_pag
     places = [said.index(line) for line in ("active", *lines[:1])]
     assert places == sorted(places)
     assert not [line for line in lines if line not in said]
-    assert active.witness is not None
     assert active.witness.describe() in said
 
 
 def test_the_first_steps_are_those_of_the_motion(active: Verdict, active_page: str) -> None:
     """Positions of the witness, the force of the wall at the sample before, and the energy of all of it."""
-    assert active.witness is not None
     table = re.search(r"energy out so far.*?</table>", active_page, re.DOTALL)
     assert table
     rows = [re.findall(r"<td>([^<]*)</td>", row) for row in table[0].split("<tr>")[2:]]
@@ -101,7 +99,6 @@ def test_text_of_others_is_shown_and_not_obeyed(hostile_page: str) -> None:
     assert "<script>alert(1)</script> & $\\frac{$ ?[2J ?\"'" in read.inside("h1")[0]
     assert "script" not in {tag for tag, _ in read.tags}
     policy = next(given["content"] for tag, given in read.tags if given.get("http-equiv"))
-    assert policy is not None
     assert policy.startswith("default-src 'none';")
     addresses = [given[name] for _, given in read.tags for name in ("src", "href") if name in given]
     assert addresses

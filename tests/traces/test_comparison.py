@@ -44,10 +44,7 @@ def test_it_shows_itself_everywhere(dowel, finger) -> None:
     assert comparison.to_xarray().deepest_position.attrs["units"] == "m"
     assert "peak_actuator_force_N" in next(iter(comparison.to_dict().values()))
     assert len(comparison.rows) == 2
-
-
-def test_a_label_is_never_shared(dowel) -> None:
-    assert len(zw.traces.compare_traces(dowel, dowel).rows) == 2
+    assert len(zw.traces.compare_traces(dowel, dowel).rows) == 2  # no label is shared
 
 
 def test_what_cannot_be_compared_is_refused(dowel, knob) -> None:

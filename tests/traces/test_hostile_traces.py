@@ -53,8 +53,7 @@ def test_numbers_of_netcdf_are_in_it(saved: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "value"),
-    [("motion", "sideways"), ("motion", [1.0, 2.0]), ("stops", [1.0, 2.0]), ("stops", "no")],
+    ("key", "value"), [("motion", "sideways"), ("motion", [1.0, 2.0]), ("stops", [1.0, 2.0]), ("stops", "no")]
 )
 def test_attributes_that_are_wrong_are_refused(key: str, value: object, saved: Path) -> None:
     with h5py.File(saved, "r+") as file:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from browser import PATIENCE
+from browser import NARROW, PATIENCE, WIDE
 from explorer.play.engines import Array, simulated
 from playwright.sync_api import Browser, Page
 
@@ -75,7 +75,13 @@ def _recording(page: Page) -> tuple[list[str], Array]:
     return heads, np.array(rows, dtype=np.float64)
 
 
-@pytest.mark.parametrize("number", [1, 2], ids=["rough", "arms"])
+one_size = pytest.mark.parametrize("page", [WIDE], indirect=True, ids=["1280x800"])
+"""For what a smaller screen does not change."""
+
+
+@pytest.mark.parametrize(
+    ("page", "number"), [(WIDE, 1), (NARROW, 2)], ids=["1280x800-rough", "390x844-arms"], indirect=["page"]
+)
 def test_what_a_person_did_is_simulated_to_the_bit(
     page: Page, address: str, loops: list[Played], number: int
 ) -> None:
@@ -93,6 +99,7 @@ def test_what_a_person_did_is_simulated_to_the_bit(
     assert (rows[:, 3:] == simulated(loops[number], rows[:, 1])).all()
 
 
+@one_size
 def test_a_person_without_a_pointer_plays(page: Page, address: str) -> None:
     page.goto(address)
     stage = page.get_by_role("slider", name="The hand on the handle")
@@ -111,6 +118,7 @@ def test_a_person_without_a_pointer_plays(page: Page, address: str) -> None:
     page.wait_for_function("/handle at .* friction took/.test(document.querySelector('#live').textContent)")
 
 
+@one_size
 def test_letting_go_frees_the_handle(page: Page, address: str) -> None:
     """The wall pushes it out where the hand had held it; the recording says when it was held."""
     page.goto(address)
@@ -158,6 +166,7 @@ def test_nobody_is_left_out(page: Page, address: str) -> None:
         assert wide <= 0
 
 
+@one_size
 def test_it_works_in_a_frame_that_asks_for_nothing(page: Page, loops: list[Played]) -> None:
     """As the text of a frame without an address, with a policy that lets nothing be fetched."""
     policy = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'"
@@ -177,6 +186,7 @@ def test_it_works_in_a_frame_that_asks_for_nothing(page: Page, loops: list[Playe
     assert frame.locator("#loops").is_hidden()
 
 
+@one_size
 def test_a_page_that_was_hidden_does_not_catch_up(page: Page, address: str) -> None:
     """A picture that comes two seconds late moves the loop by a tenth of one; the others are 10 ms apart."""
     page.add_init_script(

@@ -21,7 +21,6 @@ def loops() -> list[Played]:
 
 def _facts(page: str) -> list[dict[str, object]]:
     found = re.search(r'<script type="application/json" id="facts">(.*?)</script>', page, re.DOTALL)
-    assert found is not None
     facts: list[dict[str, object]] = json.loads(found[1])
     return facts
 

@@ -29,7 +29,6 @@ _TICKS = 25.6
 
 
 def run(header: str, counts: object, start: int = 0, floats: tuple[str, ...] = HARD) -> Answers:
-    """What a law answers to these counts, from rest at `start`; AssertionError if it does not end."""
     given = as_counts(counts)
     with TemporaryDirectory(prefix="zwidth-cortex-") as name:
         folder = Path(name)

@@ -15,8 +15,6 @@ HERE = Path(__file__).parent
 
 
 class HostLaw:
-    """A header as a library of this machine, compiled in a folder."""
-
     def __init__(self, header: str, folder: Path, optimized: str = "-O2") -> None:
         (folder / "law.h").write_text(header, encoding="utf-8")
         library = folder / "law.so"

@@ -14,7 +14,6 @@ HERE = Path(__file__).parent
 
 
 def run(module: str, counts: object, start: int = 0) -> NDArray[np.float64]:
-    """The forces for these counts in the units of the law, from rest at `start`."""
     given = as_counts(counts)
     with TemporaryDirectory(prefix="zwidth-node-") as name:
         law, source, answer = (Path(name) / file for file in ("law.mjs", "counts", "forces"))

@@ -26,7 +26,6 @@ TOOLS = {
 
 @cache
 def missing(target: str) -> tuple[str, ...]:
-    """What a target needs and this machine lacks."""
     lacks = []
     for program, header in TOOLS[target].items():
         if shutil.which(program) is None:
