@@ -56,7 +56,6 @@ def test_pictures_and_files_that_the_readme_shows_are_there() -> None:
 
 
 def test_what_is_installed_is_called_by_its_version() -> None:
-    """`zwidth --version` and the package are of this version, from a checkout or unpacked sources alike."""
     from importlib.metadata import version
 
     assert version("zwidth") == PROJECT["version"]

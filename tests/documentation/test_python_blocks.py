@@ -51,7 +51,6 @@ BLOCK = re.compile(r"^```python\n(.*?)^```", re.M | re.S)
 
 @cache
 def _given() -> dict[str, Any]:
-    """What a page may speak of without having made it: the library, the paddle, a wall, a touch of it."""
     paddle, wall = zw.catalogue.device("haptic-paddle"), zw.Wall(100, 0.02)
     finger = zw.simulate(paddle, wall, zw.operators.Finger(), 0.2)
     dowel = zw.simulate(paddle, wall, zw.operators.Dowel(), 0.2)

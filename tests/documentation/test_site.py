@@ -67,7 +67,6 @@ def test_a_good_page(site: Callable[..., list[str]]) -> None:
     ],
 )
 def test_a_broken_page(site: Callable[..., list[str]], body: str, part: str) -> None:
-    """One complaint, with the page it is of."""
     (complaint,) = site(body)
     assert complaint.startswith(f"index.html: {part}")
 

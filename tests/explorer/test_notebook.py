@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import cache
 from types import SimpleNamespace
 
 import pytest
@@ -33,14 +34,9 @@ def test_it_shows_the_loop_that_it_was_given() -> None:
     assert shown.environment == zw.Wall(stiffness=100)
 
 
-def test_a_law_of_one_s_own_is_refused() -> None:
-    """No slider could say it."""
-
-    class Own(zw.Wall):
-        pass
-
-    with pytest.raises(InputError, match="no Own"):
-        zw.explore(zw.catalogue.device("haptic-paddle"), Own(300))
+@cache
+def _one() -> Explorer:
+    return zw.explore()
 
 
 @pytest.mark.parametrize(
@@ -49,13 +45,12 @@ def test_a_law_of_one_s_own_is_refused() -> None:
 @pytest.mark.parametrize("value", [None, "x", 3, float("nan"), [], {"a": 1}, "x" * 10_000])
 def test_whatever_a_browser_sends_is_answered(kind: object, value: object) -> None:
     """With a message at most: what it sends is not trusted."""
-    shown = _one()
-    for number, path in enumerate(
-        ("environment.stiffness", "device", "with.x", "law.9.x", "__class__", None), 1
-    ):
-        shown._session.form.event = {"kind": kind, "path": path, "value": value, "number": number}
-        assert shown._session.form.told["heard"] == number
-    shown._session.form.event = {}
+    form = _one()._session.form
+    paths = ("environment.stiffness", "device", "with.x", "law.9.x", "__class__", None)
+    for number, path in enumerate(paths, 1):
+        form.event = {"kind": kind, "path": path, "value": value, "number": number}
+        assert form.told["heard"] == number
+    form.event = {}
 
 
 def test_a_move_shows_outcome_then_limits_then_the_picture_of_the_newest() -> None:
@@ -107,12 +102,6 @@ def test_a_verdict_of_a_number_that_nobody_measured_stays_on_the_page() -> None:
     form.event = {"kind": "typed", "path": "device.rate", "value": "1 kHz", "number": 4}
     form.event = {"kind": "press", "path": "json", "value": None, "number": 5}
     assert form.told.get("error", "") == ""
-
-
-def _one(made: list[object] = []) -> object:  # noqa: B006  # one is enough for all
-    if not made:
-        made.append(zw.explore())
-    return made[0]
 
 
 def test_importing_zwidth_loads_no_panel() -> None:

@@ -73,7 +73,6 @@ def test_nothing_is_asked_from_abroad_where_a_page_connects_late() -> None:
 
 @pytest.fixture(scope="module")
 def served() -> Iterator[tuple[str, int, str]]:
-    """Address and port of a page, and the session that a browser was given."""
     with serve_explorer() as page:
         yield page.address, urlsplit(page.address).port or 0, session_of(page.address)
 

@@ -76,8 +76,6 @@ def inner(a: Array, of: Pair, flat: float = 1.5, steep: float = 2.0) -> float:
 
 
 class Word(Union):
-    """A word of a call's row."""
-
     _fields_: ClassVar[Any] = [("f", c_double), ("i", c_int64), ("p", c_void_p)]
 
 

@@ -61,7 +61,6 @@ def test_a_picture_of_either(stiffness, tmp_path):
 
 
 def test_the_energy_is_drawn_to_the_end_of_the_motion():
-    """From 0 at rest to what the motion takes out, at the instant when its last round ends."""
     verdict = zw.check(PAIR.replace(stiffness=1000))
     figure = plots.plot_pair(verdict)
     (curve,) = (line for line in figure.axes[3].lines if line.get_gid() == "energy")
@@ -85,7 +84,6 @@ def test_far_from_what_is_needed_axes_are_logarithmic(damping, shown):
 
 
 def test_where_friction_lacks_the_damping_that_is_enough_says_so():
-    """The pair stands inside of what is enough, and is active all the same."""
     arm = ARM.replace(damping=2, coulomb_friction="0.004", resolution="1e-4")
     verdict = zw.check(zw.Pair(arm, arm, stiffness=400))
     assert verdict.outcome == "active"

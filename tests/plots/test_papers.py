@@ -74,7 +74,6 @@ def test_every_figure_and_table_has_its_row(papers, name):
 
 
 def test_gallery_pages_that_are_named_exist(papers):
-    """A link to a drawing leads to a script."""
     source = "".join(path.read_text(encoding="utf-8") for path in (DOCS / "_ext" / "papers").glob("*.py"))
     names = set(re.findall(r"""drawn\(["'](\w+)""", source))
     assert len(names) > 10

@@ -22,7 +22,6 @@ def words(figure: Figure) -> list[str]:
 
 
 def test_regions_curves_and_free_air() -> None:
-    """The map, a close-up of what is passive in it, and the lower end of the Z-width under it."""
     found = zw.z_width(PADDLE, (0, 30000), (0, 90), (900, 3000))
     figure = plots.z_width_figure(found)
     whole, near = figure.axes
@@ -38,7 +37,6 @@ def test_regions_curves_and_free_air() -> None:
 
 
 def test_no_close_up_where_the_map_is_one() -> None:
-    """Passive walls fill the picture: one pair of axes; a hand that is stable everywhere has no curve."""
     found = zw.z_width(PADDLE, (0, 300), (0, "0.15"), (40, 40))
     figure = plots.z_width_figure(found)
     (axes,) = figure.axes
@@ -47,14 +45,12 @@ def test_no_close_up_where_the_map_is_one() -> None:
 
 
 def test_a_close_up_needs_cells() -> None:
-    """Where a passive wall is a cell or two, no picture is made of them."""
     found = zw.z_width(PADDLE, (0, 3000), (0, 5), (50, 50))
     assert found["passive"].any()
     assert len(plots.z_width_figure(found).axes) == 1
 
 
 def test_speeds_are_written_on_their_contours() -> None:
-    """In the close-up the contour of 1 m/s says so; one a cell away from the passive walls is not drawn."""
     found = zw.z_width(PADDLE, (0, 3000), (0, 5), (300, 300))
     _, near = plots.z_width_figure(found).axes
     numbers = {text.get_text() for text in near.texts}
@@ -76,7 +72,6 @@ def test_only_maps_are_drawn() -> None:
 
 
 def test_what_is_not_covered_stands_in_the_legend() -> None:
-    """A filter without end: no region, and the reason for it; without one no such words."""
     found = zw.z_width(PADDLE, (0, 300), (0, 1), (8, 8), hands={}, velocity_filter=WITHOUT_END)
     assert "passive with every hand: not covered" in words(plots.z_width_figure(found))
     found = zw.z_width(PADDLE, (400, 600), (0, 1), (8, 8), hands={"none": None})

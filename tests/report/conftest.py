@@ -15,7 +15,6 @@ HOSTILE = "<script>alert(1)</script> & $\\frac{$ \x1b[2J \u202e\"'"
 
 @pytest.fixture(scope="session")
 def active() -> Verdict:
-    """A spring that is too stiff."""
     return zw.check(PADDLE, zw.Wall(770))
 
 

@@ -43,7 +43,6 @@ def _origins(text: str, **typed: str) -> dict[str, tuple[str, str]]:
 
 
 def test_a_file_is_called_by_its_name_and_the_table() -> None:
-    """And by the key where a number stands there in another way."""
     told = _origins(WHEEL)
     assert told["damping b"] == ("0.05 N·m·s/rad", "wheel.toml, [device]")
     assert told["resolution Δ"] == ("2.61799 mrad", "wheel.toml, [device]: counts_per_turn")
@@ -55,7 +54,6 @@ def test_a_file_is_called_by_its_name_and_the_table() -> None:
 
 
 def test_of_a_wheel_the_inertia_is_told_once_and_as_that() -> None:
-    """No mass, and no second row; of a handle that slides the mass follows from it, and both are told."""
     told = _origins(WHEEL)
     assert told["inertia"] == ("0.02 kg·m²", "wheel.toml, [device]")
     assert not [what for what in told if "mass" in what]
@@ -98,7 +96,6 @@ def test_the_catalogue_is_told_with_its_source() -> None:
 
 
 def test_of_an_interval_its_worst_end_is_told_as_that() -> None:
-    """Made in Python the verdict speaks of the worst corner; a file's interval is told whole."""
     uncertain = zw.check(zw.Device(damping=(0.2, 0.3), rate=1000), zw.Wall(100))
     rows = {what: (value, where) for what, value, where in of_verdict(uncertain).numbers}
     assert rows["damping b"] == ("0.2 N·s/m", "the worst of the interval given in Python")

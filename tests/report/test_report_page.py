@@ -56,7 +56,6 @@ def _text(page: str) -> str:
 
 
 def test_the_verdict_stands_first_and_the_rest_below(active: Verdict, active_page: str) -> None:
-    """The outcome and the claim, then what to change, what is covered, the evidence, the pictures."""
     read, said = Read(active_page), _text(active_page)
     assert active_page.startswith('<!doctype html>\n<html lang="en">')
     assert read.inside("h1") == ["haptic-paddle: wall, 770 N/m"]
@@ -94,7 +93,6 @@ def test_the_first_steps_are_those_of_the_motion(active: Verdict, active_page: s
 
 
 def test_text_of_others_is_shown_and_not_obeyed(hostile_page: str) -> None:
-    """A name with a tag, an entity, mathematics and controls; there is no script, and none would be run."""
     read = Read(hostile_page)
     assert "<script>alert(1)</script> & $\\frac{$ ?[2J ?\"'" in read.inside("h1")[0]
     assert "script" not in {tag for tag, _ in read.tags}
@@ -138,7 +136,6 @@ LOOPS = {
 
 @pytest.mark.parametrize("outcome", LOOPS)
 def test_a_report_of_every_outcome(outcome: str) -> None:
-    """Each says its own claim and what it covers, and its evidence is accepted, where there is some."""
     verdict = zw.check(*LOOPS[outcome])
     said = _text(zw.report.html(verdict))
     assert verdict.outcome == outcome
@@ -150,7 +147,6 @@ def test_a_report_of_every_outcome(outcome: str) -> None:
 
 
 def test_a_pair_of_arms_has_a_report() -> None:
-    """What is no loop of one device has the same parts, as far as they are known."""
     verdict = zw.check(zw.Pair(PADDLE, PADDLE, stiffness=100))
     said = _text(zw.report.html(verdict))
     assert said.startswith("passive: ")
@@ -158,7 +154,6 @@ def test_a_pair_of_arms_has_a_report() -> None:
 
 
 def test_a_report_is_written_under_its_own_endings(active: Verdict, active_page: str, tmp_path: Path) -> None:
-    """Another ending is refused, and so is the loss of a file that exists."""
     with pytest.raises(zw.InputError, match=r"written as \.html, got 'report.doc'"):
         zw.report.save(active, tmp_path / "report.doc")
     path = tmp_path / "report.html"

@@ -52,7 +52,6 @@ rate = "1 kHz"
     ],
 )
 def test_a_value_is_written_as_people_read_it(text: str, unit: str, shown: str) -> None:
-    """Six digits and a prefix; of a list whole numbers only."""
     assert as_read(text, unit) == shown
 
 

@@ -9,7 +9,6 @@ import zwidth as zw
 
 
 def test_the_numbers_are_those_of_the_traces(dowel, finger) -> None:
-    """Each measure computed here by its definition."""
     rows = zw.traces.compare_traces({"dowel": dowel, "finger": finger}).rows
     assert rows["dowel"]["deepest_position"] == dowel.position.values.max()
     assert rows["finger"]["peak_actuator_force"] == finger.actuator_force.values.max()

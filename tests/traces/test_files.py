@@ -107,7 +107,6 @@ def test_a_dataset_that_is_no_trace_is_refused() -> None:
 
 
 def test_the_attributes_are_plain_data(dowel) -> None:
-    """Text and numbers only, so that every format takes them."""
     assert json.loads(json.dumps(dowel.attrs)) == dowel.attrs
 
 

@@ -120,7 +120,6 @@ def test_a_person_without_a_pointer_plays(page: Page, address: str) -> None:
 
 @one_size
 def test_letting_go_frees_the_handle(page: Page, address: str) -> None:
-    """The wall pushes it out where the hand had held it; the recording says when it was held."""
     page.goto(address)
     _stroke(page, [0.5, 0.6, 0.7, 0.75, 0.75], release=True)
     _frames(page, 20)
