@@ -24,10 +24,8 @@ CFF_KEYS = {
 
 
 def test_the_citation_is_of_this_version() -> None:
-    assert str(CITATION["version"]) == PROJECT["version"]
-    assert CITATION["license"] == PROJECT["license"]
-    assert CITATION["authors"] == PROJECT["authors"]
-    assert CITATION["keywords"] == PROJECT["keywords"]
+    for key in ("version", "license", "authors", "keywords"):
+        assert CITATION[key] == PROJECT[key], key
 
 
 def test_the_citation_is_one_of_the_citation_file_format() -> None:

@@ -42,7 +42,7 @@ def _origins(text: str, **typed: str) -> dict[str, tuple[str, str]]:
     return {what: (value, where) for what, value, where in rows}
 
 
-def test_a_file_is_called_by_its_name_and_the_table() -> None:
+def test_a_file_is_called_by_its_name_and_the_table_and_what_it_lacks_is_told() -> None:
     told = _origins(WHEEL)
     assert told["damping b"] == ("0.05 N·m·s/rad", "wheel.toml, [device]")
     assert told["resolution Δ"] == ("2.61799 mrad", "wheel.toml, [device]: counts_per_turn")
@@ -51,6 +51,10 @@ def test_a_file_is_called_by_its_name_and_the_table() -> None:
     assert told["stiffness K"] == ("80 N·m/rad", "wheel.toml, [environment]")
     assert told["virtual damping B"] == ("0.001 N·m·s/rad", "wheel.toml, [environment]")
     assert told["law behind it"] == ("saturation at 2 N·m", "wheel.toml, [[law]]")
+    assert told["Coulomb friction f_c"] == ("0 N·m", "not given: taken as 0")
+    assert told["delay τ"] == ("0 s", "not given: taken as 0")
+    assert told["velocity filter"] == ("backward difference", "not given: the default")
+    assert told["clamped"] == ("no", "not given: the default")
 
 
 def test_of_a_wheel_the_inertia_is_told_once_and_as_that() -> None:
@@ -71,14 +75,6 @@ def test_what_was_typed_is_told_as_it_was_typed() -> None:
     told = _origins(WHEEL, damping="60 mN*m*s/rad", virtual_damping="0.002")
     assert told["damping b"] == ("0.06 N·m·s/rad", "typed: --damping 60 mN*m*s/rad")
     assert told["virtual damping B"][1] == "typed: --virtual-damping 0.002"
-
-
-def test_what_was_not_given_is_told_as_such() -> None:
-    told = _origins(WHEEL)
-    assert told["Coulomb friction f_c"] == ("0 N·m", "not given: taken as 0")
-    assert told["delay τ"] == ("0 s", "not given: taken as 0")
-    assert told["velocity filter"] == ("backward difference", "not given: the default")
-    assert told["clamped"] == ("no", "not given: the default")
 
 
 def test_the_catalogue_is_told_with_its_source() -> None:
