@@ -20,12 +20,7 @@ from zwidth.show.explorer.serving import SHORTEST, serve_explorer, token_for
 
 TOKEN = "a-token-of-a-test-0123456789"
 
-_UPGRADE = {
-    "Connection": "Upgrade",
-    "Upgrade": "websocket",
-    "Sec-WebSocket-Version": "13",
-    "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
-}
+_UPGRADE = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13"}
 
 
 def status(address: str, path: str = "/", **headers: str) -> tuple[int, str]:
@@ -42,8 +37,8 @@ def status(address: str, path: str = "/", **headers: str) -> tuple[int, str]:
 def upgrade(address: str, origin: str, session: str, **more: str) -> int:
     """What a page of this origin is answered that asks for a WebSocket; 0 if it is hung up on."""
     host, _, port = urlsplit(address).netloc.partition(":")
-    wanted = {"Sec-WebSocket-Protocol": f"bokeh, {session}", "Origin": origin, **more}
-    asked = {"Host": f"{host}:{port}", **_UPGRADE, **wanted}
+    key = {"Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==", "Sec-WebSocket-Protocol": f"bokeh, {session}"}
+    asked = {"Host": f"{host}:{port}", **_UPGRADE, **key, "Origin": origin, **more}
     head = "".join(f"{name}: {value}\r\n" for name, value in asked.items())
     with socket.create_connection((host, int(port)), timeout=60) as stream:
         stream.sendall(f"GET /ws HTTP/1.1\r\n{head}\r\n".encode())

@@ -144,23 +144,26 @@ class _Function:
         changing = [n for n in among if n not in ("q", "k") and not n.startswith("i")]
         if changing and self.random.random() < 0.6:
             return self.random.choice(changing)
+        return self._new(prefix)
+
+    def _new(self, prefix: str) -> str:
         self.counts += 1
         return f"{prefix}{self.counts}"
 
-    def _real(self, depth: int, loop: bool) -> None:
-        value, name = self.real(), self._name(self.reals, "r")
+    def _set(self, depth: int, kind: str, value: str) -> None:
+        among = getattr(self, kind)
+        name = self._name(among, kind[0])
         self.say(depth, f"{name} = {value}")
-        self.reals = [*dict.fromkeys([*self.reals, name])]
+        setattr(self, kind, [*dict.fromkeys([*among, name])])
+
+    def _real(self, depth: int, loop: bool) -> None:
+        self._set(depth, "reals", self.real())
 
     def _whole(self, depth: int, loop: bool) -> None:
-        value, name = f"({self.whole()}) % 13", self._name(self.wholes, "w")
-        self.say(depth, f"{name} = {value}")
-        self.wholes = [*dict.fromkeys([*self.wholes, name])]
+        self._set(depth, "wholes", f"({self.whole()}) % 13")
 
     def _truth(self, depth: int, loop: bool) -> None:
-        value, name = self.truth(), self._name(self.truths, "t")
-        self.say(depth, f"{name} = {value}")
-        self.truths = [*dict.fromkeys([*self.truths, name])]
+        self._set(depth, "truths", self.truth())
 
     def _cell(self, depth: int, loop: bool) -> None:
         self.say(depth, f"m[{self.place()}] {self.random.choice(['=', '+=', '*='])} {self.real()}")
@@ -188,8 +191,7 @@ class _Function:
             self.block(depth + 1, loop)
 
     def _for(self, depth: int, loop: bool) -> None:
-        self.counts += 1
-        name = f"i{self.counts}"
+        name = self._new("i")
         passes = self.random.choice(
             ["2", "3", "q", "40", "k", f"{self.whole(1)}", "5, -1, -2", "k, 9", "1, k + 2, 3"]
         )
@@ -199,16 +201,14 @@ class _Function:
         self.wholes.remove(name)
 
     def _over(self, depth: int, loop: bool) -> None:
-        self.counts += 1
-        name = f"r{self.counts}"
+        name = self._new("r")
         self.say(depth, f"for {name} in ({self.real(1)}, {self.real(1)}):")
         self.reals.append(name)
         self.block(depth + 1, True)
         self.reals.remove(name)
 
     def _while(self, depth: int, loop: bool) -> None:
-        self.counts += 1
-        name = f"i{self.counts}"
+        name = self._new("i")
         self.say(depth, f"{name} = {self.random.choice(['3', 'k % 5', '7'])}")
         self.say(depth, f"while {name} > 0 and {self.truth(1)}:")
         self.say(depth + 1, f"{name} -= 1")

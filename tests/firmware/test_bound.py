@@ -14,20 +14,10 @@ import pytest
 from strategies import seeds
 
 from zwidth.machine.firmware import bound
+from zwidth.machine.firmware import program as ir
 from zwidth.machine.firmware.bound import Bound, plain
 from zwidth.machine.firmware.evaluation import Evaluation, Exact
 from zwidth.machine.firmware.machine import FLOAT
-from zwidth.machine.firmware.program import (
-    Branch,
-    Cells,
-    Constant,
-    Load,
-    Operation,
-    Program,
-    Store,
-    Variable,
-    set_to,
-)
 
 
 class Point(NamedTuple):
@@ -127,44 +117,46 @@ class Shaken(Exact):
         return False
 
 
-def branching(random: Random) -> Program:
+def branching(random: Random) -> ir.Program:
     """y = one or the other affine function of x and of what is remembered; it is remembered."""
-    cells, x, m = Cells("memory", 1), Variable("real", "x"), Variable("real", "m")
-    y, test = Variable("real", "y", True), Variable("truth")
-    side = random.choice([Constant(random.choice([0.0, 1.0, random.uniform(-3, 3)]), "real"), m])
-    body: list = [Load(m, cells, Constant(0, "integer"))]
-    u = Variable("real", "u")
-    body.append(Operation(u, "*", (Constant(random.uniform(-2, 2), "real"), x)))
-    body.append(Operation(test, random.choice(["<", "<=", ">", ">="]), (random.choice([u, m]), side)))
+    cells, x, m = ir.Cells("memory", 1), ir.Variable("real", "x"), ir.Variable("real", "m")
+    y, test = ir.Variable("real", "y", True), ir.Variable("truth")
+    side = random.choice([ir.Constant(random.choice([0.0, 1.0, random.uniform(-3, 3)]), "real"), m])
+    body: list = [ir.Load(m, cells, ir.Constant(0, "integer"))]
+    u = ir.Variable("real", "u")
+    body.append(ir.Operation(u, "*", (ir.Constant(random.uniform(-2, 2), "real"), x)))
+    body.append(ir.Operation(test, random.choice(["<", "<=", ">", ">="]), (random.choice([u, m]), side)))
     ways = []
     for _ in range(2):
-        v, w = Variable("real", "v"), Variable("real", "w")
-        given = Operation(v, "*", (Constant(random.uniform(-0.8, 0.8), "real"), random.choice([m, u])))
-        add = random.choice([u, Constant(random.uniform(-4, 4), "real")])
-        ways.append([given, Operation(w, random.choice(["+", "-", "min", "max"]), (v, add)), set_to(y, w)])
-    body.append(Branch(test, *ways))
-    body.append(Store(cells, Constant(0, "integer"), y))
-    return Program((x,), (cells,), body, (y,))
+        v, w = ir.Variable("real", "v"), ir.Variable("real", "w")
+        given = ir.Operation(v, "*", (ir.Constant(random.uniform(-0.8, 0.8), "real"), random.choice([m, u])))
+        add = random.choice([u, ir.Constant(random.uniform(-4, 4), "real")])
+        ways.append(
+            [given, ir.Operation(w, random.choice(["+", "-", "min", "max"]), (v, add)), ir.set_to(y, w)]
+        )
+    body.append(ir.Branch(test, *ways))
+    body.append(ir.Store(cells, ir.Constant(0, "integer"), y))
+    return ir.Program((x,), (cells,), body, (y,))
 
 
-def ran(program: Program, x: float, m: float, off: Callable[[], float]) -> tuple[float, float]:
+def ran(program: ir.Program, x: float, m: float, off: Callable[[], float]) -> tuple[float, float]:
     values, held = {program.parameters[0]: x}, [m]
     do = {"*": lambda a, b: a * b, "+": lambda a, b: a + b, "-": lambda a, b: a - b, "min": min, "max": max}
     do["copy"] = lambda a: a  # a set
     tests = {"<": float.__lt__, "<=": float.__le__, ">": float.__gt__, ">=": float.__ge__}
 
     def value(o: object) -> float:
-        return o.value if isinstance(o, Constant) else values[o]
+        return o.value if isinstance(o, ir.Constant) else values[o]
 
     def block(body: list) -> None:
         for s in body:
-            if isinstance(s, Load):
+            if isinstance(s, ir.Load):
                 values[s.result] = held[0]
-            elif isinstance(s, Operation) and s.operator in tests:
+            elif isinstance(s, ir.Operation) and s.operator in tests:
                 values[s.result] = tests[s.operator](value(s.operands[0]) + off(), value(s.operands[1]))
-            elif isinstance(s, Operation):
+            elif isinstance(s, ir.Operation):
                 values[s.result] = do[s.operator](*map(value, s.operands)) + off()
-            elif isinstance(s, Store):
+            elif isinstance(s, ir.Store):
                 held[0] = value(s.value) + off()
             else:
                 block(s.then if value(s.test) else s.other)
@@ -196,9 +188,9 @@ def test_branches_whose_test_is_in_doubt(seed: int) -> None:
 
 def test_a_float_too_large_has_no_bound() -> None:
     """A factor that no float holds makes the error endless; it may still be compared with."""
-    x, y = Variable("real", "x"), Variable("real", "y")
+    x, y = ir.Variable("real", "x"), ir.Variable("real", "y")
     for operator, endless in (("*", True), ("min", False)):
-        body = [Operation(y, operator, (Constant(1e39, "real"), x))]
-        _, (result,) = Evaluation(FLOAT).run(Program((x,), (), body, (y,)), {x: plain(0.0, 1e-5)}, [])
+        body = [ir.Operation(y, operator, (ir.Constant(1e39, "real"), x))]
+        _, (result,) = Evaluation(FLOAT).run(ir.Program((x,), (), body, (y,)), {x: plain(0.0, 1e-5)}, [])
         assert isfinite(result.error) != endless
     assert Fraction(FLOAT.unit) == Fraction(1, 2**24)

@@ -1,4 +1,4 @@
-"""Emitted laws on their machines: the same forces everywhere, and as far off as was proved at most."""
+"""Emitted laws on their machines: the same forces everywhere, and the loop closed over an emulated chip."""
 
 from __future__ import annotations
 
@@ -81,12 +81,9 @@ def test_it_is_the_loop_of_simulate(rate: int, delay: str) -> None:
     device = zw.Device(**values, delay=delay, force_resolution=0.0005, force_limit=9)
     trace = zw.simulate(device, zw.Wall(stiffness=700), HAND, duration=0.5)
     motion = closed(device, HAND, 0.5, lambda counts: 700 * max(22.4e-6 * counts, 0.0))
-    for ours, theirs in (
-        (motion.position, "position"),
-        (motion.command, "commanded_force"),
-        (motion.force, "actuator_force"),
-        (motion.hand_work, "hand_work"),
-    ):
+    names = ("position", "commanded_force", "actuator_force", "hand_work")
+    parts = (motion.position, motion.command, motion.force, motion.hand_work)
+    for ours, theirs in zip(parts, names, strict=True):
         assert np.array_equal(ours, trace[theirs].values)
     assert motion.command.max() == 9
     assert motion.extracted == trace.zwidth.energy.got_out

@@ -90,26 +90,12 @@ def test_a_law_goes_on_and_begins_anew(tmp_path: Path) -> None:
 # ---- what a step costs
 
 INSTRUCTIONS = {
-    "nop": 1,
-    "movw r30, r24": 1,
-    "in r0, 0x3f": 1,
-    "adiw r30, 1": 2,
-    "mul r24, r25": 2,
-    "muls r24, r25": 2,
-    "fmul r22, r23": 2,
-    "push r0\\n pop r0": 4,
-    "lds r0, 0x100": 2,
-    "ld r0, Z": 2,
-    "lpm r0, Z": 3,
-    "rjmp .+0": 2,
-    "jmp 1f\\n 1:": 3,
-    "clz\\n breq .+0": 2,
-    "sez\\n breq .+0": 3,
-    "clr r0\\n sbrs r0, 0\\n nop": 3,
-    "clr r0\\n sbrc r0, 0\\n nop": 3,
-    "clr r0\\n sbrc r0, 0\\n lds r0, 0x100": 4,
-    "rcall 1f\\n rjmp 2f\\n 1: ret\\n 2:": 3 + 4 + 2,
-}
+    "nop": 1, "movw r30, r24": 1, "in r0, 0x3f": 1, "adiw r30, 1": 2, "mul r24, r25": 2, "muls r24, r25": 2,
+    "fmul r22, r23": 2, "push r0\\n pop r0": 4, "lds r0, 0x100": 2, "ld r0, Z": 2, "lpm r0, Z": 3,
+    "rjmp .+0": 2, "jmp 1f\\n 1:": 3, "clz\\n breq .+0": 2, "sez\\n breq .+0": 3,
+    "clr r0\\n sbrs r0, 0\\n nop": 3, "clr r0\\n sbrc r0, 0\\n nop": 3,
+    "clr r0\\n sbrc r0, 0\\n lds r0, 0x100": 4, "rcall 1f\\n rjmp 2f\\n 1: ret\\n 2:": 3 + 4 + 2,
+}  # fmt: skip
 """Cycles by the instruction set manual of Atmel's 8-bit AVR (0856), for a program counter of 16 bits."""
 
 IDLE_AVR = "#define LAW_FORCE_PER_UNIT 1\n" + IDLE

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -36,17 +37,23 @@ def drained(line: ctypes.CDLL, most: int = 10**9) -> bytes:
     return bytes(found)
 
 
+def told(line: ctypes.CDLL, samples: Iterable[tuple[int, float]]) -> bytes:
+    """What it sends of counts and forces, a millisecond apart, each as it comes."""
+    data = b""
+    for k, (counts, force) in enumerate(samples):
+        line.sample(1000 * k, counts, force, SERVING)
+        data += drained(line)
+    return data
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_sample_arrives(folder: Path, kind: int) -> None:
     """Positions exactly, forces to half a unit of what is sent; read by the decoder and by struct alike."""
-    line, data = sender(folder, kind), b""
-    random = np.random.default_rng(5)
+    line, random = sender(folder, kind), np.random.default_rng(5)
     counts = np.cumsum(random.integers(-300, 300, 1000))
     forces = np.rint(random.uniform(-5, 5, 1000) / UNIT[kind]) if kind > 2 else random.uniform(-5, 5, 1000)
     forces[:2] = [5 / UNIT[kind], -5 / UNIT[kind]]
-    for k in range(1000):
-        line.sample(1000 * k, int(counts[k]), float(forces[k]), SERVING)
-        data += drained(line)
+    data = told(line, zip(counts.tolist(), forces.tolist(), strict=True))
     line.close_packet()
     data += drained(line)
     texts, found = unpacked(data)
@@ -67,21 +74,13 @@ def test_every_sample_arrives(folder: Path, kind: int) -> None:
 
 def test_it_fits_a_line_of_115200_baud_at_1_kilohertz(folder: Path) -> None:
     """Ten bits a byte: 11 520 bytes a second; the texts are counted as well."""
-    line = sender(folder)
-    sent = 0
-    for k in range(10_000):
-        line.sample(1000 * k, k % 400, 1.0, SERVING)
-        sent += len(drained(line))
+    sent = len(told(sender(folder), ((k % 400, 1.0) for k in range(10_000))))
     assert sent / 10 < 11_520
     assert sent / 10_000 < 5.5  # bytes a sample
 
 
 def test_the_text_has_the_numbers_of_the_header_to_the_last_digit(folder: Path) -> None:
-    line, data = sender(folder), b""
-    for k in range(130 * 16):
-        line.sample(1000 * k, 0, 0.0, SERVING)
-        data += drained(line)
-    texts, _ = unpacked(data)
+    texts, _ = unpacked(told(sender(folder), [(0, 0.0)] * (130 * 16)))
     assert texts == [TEXT] * 3
 
 

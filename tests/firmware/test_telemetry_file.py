@@ -24,9 +24,13 @@ def stroke(packets: int, *, first: int = 0) -> list[bytes]:
     return packed(counts.astype(int).tolist(), forces.astype(int).tolist(), first)
 
 
+def recorded(folder: Path, line: bytes) -> Path:
+    (folder / "line.bin").write_bytes(line)
+    return folder / "line.bin"
+
+
 def test_a_log(tmp_path: Path) -> None:
-    path = tmp_path / "paddle.bin"
-    path.write_bytes(text() + b"".join(stroke(200)))
+    path = recorded(tmp_path, text() + b"".join(stroke(200)))
     log = zw.read_log(path)
     (block,) = log.blocks()
     k = np.arange(3200)
@@ -40,8 +44,7 @@ def test_a_log(tmp_path: Path) -> None:
 
 def test_a_rotary_law(tmp_path: Path) -> None:
     said = TEXT.replace("force_per_unit 1.0", "force_per_unit 0.0025")
-    path = tmp_path / "wheel.bin"
-    path.write_bytes(text(said, flags=3) + b"".join(stroke(200)))
+    path = recorded(tmp_path, text(said, flags=3) + b"".join(stroke(200)))
     assert zw.read_log(path).motion == "rotary"
     data = read_telemetry(path)
     assert data.position.attrs["units"] == "rad"
@@ -50,9 +53,8 @@ def test_a_rotary_law(tmp_path: Path) -> None:
 
 
 def test_a_dataset_that_is_a_log_as_well(tmp_path: Path) -> None:
-    path = tmp_path / "paddle.bin"
     jumped = samples(200, 3_200_000, [0] * 16, [0] * 16, status=ENDED_BY_A_JUMP)
-    path.write_bytes(text() + b"".join(stroke(200)) + jumped)
+    path = recorded(tmp_path, text() + b"".join(stroke(200)) + jumped)
     data = read_telemetry(path)
     assert data.time.values[3199] == pytest.approx(3.199)
     assert data.phase.values[[0, 3200]].tolist() == [1, 2]
@@ -64,9 +66,8 @@ def test_a_dataset_that_is_a_log_as_well(tmp_path: Path) -> None:
 
 def test_a_recording_that_began_and_ended_within_a_packet(tmp_path: Path) -> None:
     """Its first and last bytes are no damage; the text may come later."""
-    path = tmp_path / "cut.bin"
     packets = [*stroke(100), text(), *stroke(100, first=100)]
-    path.write_bytes(b"".join(packets)[40:-40])
+    path = recorded(tmp_path, b"".join(packets)[40:-40])
     data = read_telemetry(path)
     assert data.sizes["time"] == 16 * 198
     assert (data.attrs["lost_packets"], data.attrs["damaged_stretches"]) == (0, 0)
@@ -118,10 +119,9 @@ def test_what_looks_like_a_packet_within_one_is_none() -> None:
 
 
 def test_a_machine_that_is_started_anew(tmp_path: Path) -> None:
-    path = tmp_path / "again.bin"
     begun = samples(0, 0, [0] * 16, [0] * 16, status=SERVING | FIRST)
     before, after = stroke(100, first=50), [begun, *stroke(99, first=1)]
-    path.write_bytes(text() + b"".join(before) + text() + b"".join(after))
+    path = recorded(tmp_path, text() + b"".join(before) + text() + b"".join(after))
     data = read_telemetry(path)
     assert data.start.values.tolist() == [0] * 1600 + [1] * 1600
     assert data.time.values[1600] == 0.0
@@ -130,9 +130,8 @@ def test_a_machine_that_is_started_anew(tmp_path: Path) -> None:
 
 
 def test_a_gap_is_a_gap_of_the_log(tmp_path: Path) -> None:
-    path = tmp_path / "gap.bin"
     packets = stroke(200)
-    path.write_bytes(text() + b"".join(packets[:90] + packets[95:]))
+    path = recorded(tmp_path, text() + b"".join(packets[:90] + packets[95:]))
     log = zw.read_log(path)
     assert (log.runs, log.samples) == (2, 195 * 16)
     assert any(finding.kind == "packets lost" and "5 packets" in str(finding) for finding in log.findings)
@@ -146,8 +145,7 @@ def test_a_device_is_identified_from_its_telemetry(tmp_path: Path) -> None:
     a = -0.486 * np.sin(9.0 * t) - 2.116 * np.sin(23.0 * t)
     counts = np.floor(x / resolution).astype(int)
     forces = np.rint(-(mass * a + damping * v) / (5 / 32767)).astype(int)
-    path = tmp_path / "paddle.bin"
-    path.write_bytes(text() + b"".join(packed(counts.tolist(), forces.tolist())))
+    path = recorded(tmp_path, text() + b"".join(packed(counts.tolist(), forces.tolist())))
     found = zw.identify(path, mass=mass, model="viscous", zero="exact")
     assert found.estimates["damping"].value == pytest.approx(damping, rel=0.02)
 
@@ -167,9 +165,8 @@ def test_a_text_that_says_too_little_or_too_much_is_refused(
     tmp_path: Path, texts: list[str], why: str
 ) -> None:
     """By one message, from both readers; counts are no lengths."""
-    path = tmp_path / "other.bin"
     line = b"".join(stroke(20))
-    path.write_bytes(b"".join(text(said) + line for said in texts) or line)
+    path = recorded(tmp_path, b"".join(text(said) + line for said in texts) or line)
     for read in (zw.read_log, read_telemetry):
         with pytest.raises(InputError, match=why):
             read(path)

@@ -14,22 +14,12 @@ from firmware.emulated.host import HostLaw
 from firmware.emulated.required import require
 
 import zwidth as zw
+from zwidth.machine.firmware import program as ir
 from zwidth.machine.firmware.bound import plain
 from zwidth.machine.firmware.c99 import HELPERS, NARROW
 from zwidth.machine.firmware.emit import emit
 from zwidth.machine.firmware.evaluation import Evaluation, Exact
 from zwidth.machine.firmware.fixed import lowered
-from zwidth.machine.firmware.program import (
-    Branch,
-    Cells,
-    Constant,
-    Load,
-    Operation,
-    Program,
-    Store,
-    Variable,
-    set_to,
-)
 from zwidth.machine.firmware.simplified import tidied
 from zwidth.machine.firmware.units import Scale, Unit
 
@@ -77,20 +67,20 @@ def test_every_reading_of_a_travel(tmp_path: Path, travel: str | None) -> None:
 
 
 def test_what_changes_nothing_is_left_out() -> None:
-    given, changing = Variable("integer", "n"), Variable("integer", "w", changes=True)
-    a, b, c, d = (Variable("integer", name) for name in "abcd")
-    memory, zero = Cells("memory", 1), Constant(0, "integer")
+    given, changing = ir.Variable("integer", "n"), ir.Variable("integer", "w", changes=True)
+    a, b, c, d = (ir.Variable("integer", name) for name in "abcd")
+    memory, zero = ir.Cells("memory", 1), ir.Constant(0, "integer")
     body = [
-        Operation(a, "copy", (given,)),
-        Load(b, memory, zero),
-        Operation(c, "-", (b, zero)),
-        set_to(changing, a),
-        Operation(d, "copy", (changing,)),
-        Branch(Constant(True, "truth"), [set_to(changing, c)], [set_to(changing, zero)]),
-        Store(memory, zero, d),
+        ir.Operation(a, "copy", (given,)),
+        ir.Load(b, memory, zero),
+        ir.Operation(c, "-", (b, zero)),
+        ir.set_to(changing, a),
+        ir.Operation(d, "copy", (changing,)),
+        ir.Branch(ir.Constant(True, "truth"), [ir.set_to(changing, c)], [ir.set_to(changing, zero)]),
+        ir.Store(memory, zero, d),
     ]
-    program = tidied(Program((given,), (memory,), list(body), (changing,)))
-    made = [(s.result.changes, s.operands) for s in program.statements() if isinstance(s, Operation)]
+    program = tidied(ir.Program((given,), (memory,), list(body), (changing,)))
+    made = [(s.result.changes, s.operands) for s in program.statements() if isinstance(s, ir.Operation)]
     assert made == [(True, (given,)), (False, (changing,)), (True, (b,)), (True, (zero,))]
     assert len(body) == 7
     assert body[3].operands == (a,)
@@ -98,17 +88,17 @@ def test_what_changes_nothing_is_left_out() -> None:
 
 def test_a_set_in_another_unit_is_a_set() -> None:
     """y is a position on one way and a force on the other: both ways set one whole number, in one unit."""
-    n, y = Variable("integer", "n"), Variable("real", "y", changes=True)
-    real, x, f = (Variable("real", name) for name in ("real", "x", "f"))
-    inside = Variable("truth", "inside")
-    ways = [set_to(y, x)], [Operation(f, "*", (Constant(300.0, "real"), x)), set_to(y, f)]
+    n, y = ir.Variable("integer", "n"), ir.Variable("real", "y", changes=True)
+    real, x, f = (ir.Variable("real", name) for name in ("real", "x", "f"))
+    inside = ir.Variable("truth", "inside")
+    ways = [ir.set_to(y, x)], [ir.Operation(f, "*", (ir.Constant(300.0, "real"), x)), ir.set_to(y, f)]
     body = [
-        Operation(real, "real", (n,)),
-        Operation(x, "*", (Constant(1e-4, "real"), real)),
-        Operation(inside, ">", (x, Constant(0.0, "real"))),
-        Branch(inside, *ways),
+        ir.Operation(real, "real", (n,)),
+        ir.Operation(x, "*", (ir.Constant(1e-4, "real"), real)),
+        ir.Operation(inside, ">", (x, ir.Constant(0.0, "real"))),
+        ir.Branch(inside, *ways),
     ]
-    program = Program((n,), (), body, (y,))
+    program = ir.Program((n,), (), body, (y,))
     evaluation = Evaluation(Exact())
     evaluation.run(program, {n: plain(-100.0, 100.0)}, [])
     found = lowered(program, Scale(1e-4, 0.01, 4), evaluation.seen, [])

@@ -56,34 +56,17 @@ def sketch(folder: Path, *options: str) -> Path:
     require("avr")
     chip = ["-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Os", "-fno-exceptions", "-ffp-contract=off"]
     given = ["-std=gnu++11", *WARNINGS, *options, "-I", STUBS / "arduino", "-I", folder]
-    sources = [
-        "-x",
-        "c++",
-        "-include",
-        "Arduino.h",
-        folder / f"{folder.name}.ino",
-        STUBS / "arduino" / "main.cpp",
-    ]
-    run(tool("avr-g++"), *chip, *given, *sources, "-o", folder / "sketch.elf")
+    source = ["-x", "c++", "-include", "Arduino.h", folder / f"{folder.name}.ino"]
+    core = STUBS / "arduino" / "main.cpp"
+    run(tool("avr-g++"), *chip, *given, *source, core, "-o", folder / "sketch.elf")
     return folder / "sketch.elf"
 
 
 @cache
 def _compiled(source: Path, options: tuple[str, ...]) -> bytes:
     with TemporaryDirectory() as folder:
-        given = (
-            "-std=c99",
-            *WARNINGS,
-            "-O1",
-            "-shared",
-            "-fPIC",
-            *options,
-            "-I",
-            DATA,
-            "-I",
-            MAINS / "shared",
-        )
-        run(tool("cc"), *given, source, "-o", Path(folder) / "made.so")
+        given = ("-std=c99", *WARNINGS, *options, "-I", DATA, "-I", MAINS / "shared", source)
+        run(tool("cc"), "-O1", "-shared", "-fPIC", *given, "-o", Path(folder) / "made.so")
         return (Path(folder) / "made.so").read_bytes()
 
 

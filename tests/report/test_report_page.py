@@ -60,18 +60,10 @@ def test_the_verdict_stands_first_and_the_rest_below(active: Verdict, active_pag
     assert active_page.startswith('<!doctype html>\n<html lang="en">')
     assert read.inside("h1") == ["haptic-paddle: wall, 770 N/m"]
     assert read.inside("h2") == [
-        "In numbers",
-        "What to change, any one of",
-        "What the claim covers and takes for granted",
-        "The evidence",
-        "The first steps of the motion",
-        "Figures",
-        "The actuator, beside the claim",
-        "What is not covered",
-        "Where each number comes from",
-        "What the checker read",
-        "How to check it again",
-    ]
+        "In numbers", "What to change, any one of", "What the claim covers and takes for granted",
+        "The evidence", "The first steps of the motion", "Figures", "The actuator, beside the claim",
+        "What is not covered", "Where each number comes from", "What the checker read", "How to check it again",
+    ]  # fmt: skip
     lines = [active.claim, *active.small_print(), *(a.text for a in active.advice if a.to is not None)]
     places = [said.index(line) for line in ("active", *lines[:1])]
     assert places == sorted(places)
@@ -84,9 +76,8 @@ def test_the_first_steps_are_those_of_the_motion(active: Verdict, active_page: s
     table = re.search(r"energy out so far.*?</table>", active_page, re.DOTALL)
     assert table
     rows = [re.findall(r"<td>([^<]*)</td>", row) for row in table[0].split("<tr>")[2:]]
-    assert [float(row[1]) for row in rows] == pytest.approx(
-        [1e3 * x for x in active.witness.positions], rel=1e-3
-    )
+    shown = [1e-3 * float(row[1]) for row in rows]
+    assert shown == pytest.approx(list(active.witness.positions), rel=1e-3)
     read = active.witness.positions[1] // 22.4e-6 * 22.4e-6
     assert float(rows[1][2]) == pytest.approx(770 * read, rel=1e-3)
     assert float(rows[-1][3]) == pytest.approx(1e3 * active.witness.energy, rel=1e-3)
