@@ -12,7 +12,7 @@ import os
 import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -51,6 +51,12 @@ def same_bits(one: Array, other: Array) -> bool:
     a, b = np.ascontiguousarray(one), np.ascontiguousarray(other)
     both = np.isnan(a) & np.isnan(b)
     return a.shape == b.shape and bool((both | (a.view(np.int64) == b.view(np.int64))).all())
+
+
+def differing(known: Mapping[str, Any], ran: Mapping[str, Ran]) -> list[str]:
+    """Names of what did not run as the `ran` of what is known."""
+    pairs = {name: zip(one.ran, ran[name], strict=True) for name, one in known.items()}
+    return [name for name, parts in pairs.items() if not all(same_bits(a, b) for a, b in parts)]
 
 
 _ALLOWED = ("unused-function", "unused-but-set-variable", "tautological-compare")

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from emitted_laws import laws, readings
 from firmware.emulated.required import tool
-from machines import Ran, compiled_c, law_in_c, law_in_javascript, run_c, run_node, same_bits, understood
+from machines import Ran, compiled_c, differing, law_in_c, law_in_javascript, run_c, run_node, understood
 from moved_plants import PERIOD, PLANTS, plant_in_c
 from numpy.typing import NDArray
 
@@ -59,11 +59,6 @@ def _known(device: zw.Device, environment: Environment) -> Known:
     return Known(law, given[:, None], Ran(forces, memory))
 
 
-def _differ(known: Mapping[str, Known], ran: Mapping[str, Ran]) -> list[str]:
-    pairs = {name: zip(one.ran, ran[name], strict=True) for name, one in known.items()}
-    return [name for name, parts in pairs.items() if not all(same_bits(a, b) for a, b in parts)]
-
-
 def test_the_readings_make_every_law_push(known: Mapping[str, Known]) -> None:
     """Each law gives many forces, inside its limit and at it: what follows compares something."""
     assert all(len(np.unique(one.ran.outputs)) > 40 for one in known.values())
@@ -84,14 +79,14 @@ def test_every_header_has_the_same_bits(
     understood("cc", *options)
     library = compiled_c("".join(law_in_c(k.law, n) for n, k in known.items()), tmp_path, options)
     ran = {n: run_c(library, n, k.readings, k.ran.cells, 1) for n, k in known.items()}
-    assert not _differ(known, ran)
+    assert not differing(known, ran)
 
 
 def test_every_module_has_the_same_bits(known: Mapping[str, Known], tmp_path: Path) -> None:
     files = {f"{n}.mjs": module(k.law, about=[n], numbers=[]) for n, k in known.items()}
     text = "".join(law_in_javascript(n) for n in known)
     ran = run_node(text, tmp_path, {n: (k.readings, k.ran.cells, 1) for n, k in known.items()}, files)
-    assert not _differ(known, ran)
+    assert not differing(known, ran)
 
 
 # ---- what a compiler may be asked for

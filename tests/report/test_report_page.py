@@ -62,7 +62,8 @@ def test_the_verdict_stands_first_and_the_rest_below(active: Verdict, active_pag
     assert read.inside("h2") == [
         "In numbers", "What to change, any one of", "What the claim covers and takes for granted",
         "The evidence", "The first steps of the motion", "Figures", "The actuator, beside the claim",
-        "What is not covered", "Where each number comes from", "What the checker read", "How to check it again",
+        "What is not covered", "Where each number comes from", "What the checker read",
+        "How to check it again",
     ]  # fmt: skip
     lines = [active.claim, *active.small_print(), *(a.text for a in active.advice if a.to is not None)]
     places = [said.index(line) for line in ("active", *lines[:1])]
