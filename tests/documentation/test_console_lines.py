@@ -38,7 +38,6 @@ COMPUTED = re.compile(r"^```\{computed\}\n((?::.*\n)*)((?:\$ .*\n)+)```$", re.M)
 
 
 def typed(page: str) -> list[list[str]]:
-    """The arguments of each call that is no computed one."""
     return [call for _, call in shown.commands_of(COMPUTED.sub("", read(page)))]
 
 

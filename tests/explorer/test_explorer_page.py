@@ -83,7 +83,6 @@ def test_a_device_is_chosen_a_slider_moved_and_the_address_keeps_it(page: Page, 
 
 @one_size
 def test_a_typed_number_is_exact_and_a_wrong_one_is_a_message(page: Page, address: str) -> None:
-    """What cannot be used changes nothing; what is being typed is not written over by an answer."""
     opened(page, address)
     typed = entry(page, "stiffness")
     typed.fill("0.3 N/mm")
@@ -162,7 +161,6 @@ def test_a_file_is_read_and_what_is_downloaded_is_the_loop(page: Page, address: 
 
 @one_size
 def test_what_the_address_cannot_say_is_a_message_and_tabs_go_by_arrows(page: Page, address: str) -> None:
-    """The page begins with its own loop; tabs go around the end, and the address says which is open."""
     opened(
         page, f"{address}?device.damping=-1&device.rate=1+kHz&environment.type=wall&environment.stiffness=3"
     )

@@ -98,7 +98,6 @@ def test_a_move_shows_outcome_then_limits_then_the_picture_of_the_newest() -> No
 
 
 def test_a_verdict_of_a_number_that_nobody_measured_stays_on_the_page() -> None:
-    """There it is marked; a file would go about without the mark, until the number is set."""
     form = Explorer(from_sources(["hapkit"]))._session.form
     for number, path in enumerate(("json", "report"), 1):
         form.event = {"kind": "press", "path": path, "value": None, "number": number}
@@ -139,7 +138,6 @@ delay = "1.4 ms"
 
 
 def asked(folder: Path, stiffness: str) -> State:
-    """As `zwidth explore wheel.toml --stiffness …` begins."""
     file = folder / "wheel.toml"
     file.write_text(WHEEL)
     with answers_as_typed():

@@ -24,7 +24,6 @@ _UPGRADE = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Vers
 
 
 def status(address: str, path: str = "/", **headers: str) -> tuple[int, str]:
-    """What a request is answered with, redirections not followed, and its cookie."""
     host = urlsplit(address).netloc
     connection = http.client.HTTPConnection(host, timeout=60)
     connection.request("GET", path, headers=headers)

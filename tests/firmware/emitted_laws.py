@@ -32,7 +32,6 @@ def _finger() -> dict[str, object]:
 
 
 def laws() -> dict[str, Callable[[], Law]]:
-    """Device and environment of each; made when they are called."""
     wall, damped = zw.Wall(300), zw.Wall(300, "0.2")
     random = np.random.default_rng(3)
     taps = [Fraction(int(n), 1000) for n in random.integers(-999, 1000, 101)]

@@ -54,7 +54,6 @@ def same_bits(one: Array, other: Array) -> bool:
 
 
 def differing(known: Mapping[str, Any], ran: Mapping[str, Ran]) -> list[str]:
-    """Names of what did not run as the `ran` of what is known."""
     pairs = {name: zip(one.ran, ran[name], strict=True) for name, one in known.items()}
     return [name for name, parts in pairs.items() if not all(same_bits(a, b) for a, b in parts)]
 
@@ -168,7 +167,6 @@ export const {name} = (() => {{
 
 
 def program_in_c(program: Program, name: str) -> str:
-    """A function for `run_c`; the program has one array of cells at most."""
     c = C99(program, OF_C, prefix=name)
     body = c.lines()
     size = program.cells[0].size if program.cells else 1

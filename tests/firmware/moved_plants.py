@@ -60,7 +60,6 @@ void {name}_rows(const double *in, int rows, double *cells, double *out)
 
 
 def plant_in_javascript(name: str) -> str:
-    """A function for `machines.run_node` of the plant whose module is beside it as NAME.mjs."""
     return f"""import * as of_{name} from "./{name}.mjs";
 export const {name} = (() => {{
     const s = of_{name}.init(0);

@@ -91,7 +91,6 @@ def test_a_computer_serves_a_simulated_mass(tmp_path: Path, number: str) -> None
     [("cortex-m", "float"), ("cortex-m", "fixed"), ("cortex-m", "double"), ("moteus", None)],
 )
 def test_a_program_links(tmp_path: Path, target: str, number: str | None) -> None:
-    """By its own Makefile, without a library of a vendor."""
     compiler = tool("arm-none-eabi-gcc" if target == "cortex-m" else "cc")
     written(tmp_path / "loop", target, number)
     run(tool("make"), f"CC={compiler}", f"CFLAGS=-O2 {' '.join(WARNED)}", cwd=tmp_path / "loop")

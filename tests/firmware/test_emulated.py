@@ -120,7 +120,6 @@ def test_cycles_of_the_avr_are_those_of_the_data_sheet() -> None:
 
 
 def test_every_instruction_of_the_cortex_is_counted() -> None:
-    """n more of them are n more; so are those of a loop."""
     require("cortex-m4")
     counts = np.array([1, 2, 7, 100, 20_000])
     bare = cortex.run(IDLE, counts).cost
@@ -228,7 +227,6 @@ def test_numbers_of_a_header_are_read_as_its_compiler_reads_them(written: str, n
 
 
 def test_a_missing_tool_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A compiler without its library is not enough."""
     monkeypatch.setitem(required.TOOLS, "toaster", {"no-such-compiler": None})
     monkeypatch.setitem(required.TOOLS, "nothing", {})
     monkeypatch.setitem(required.TOOLS, "bare", {"gcc": "no/such/header.h"})

@@ -85,7 +85,6 @@ def test_a_reading_that_no_hand_can_reach_ends_the_force(tmp_path: Path, way: in
 
 
 def test_one_missing_reading_is_bridged_and_two_are_not(tmp_path: Path) -> None:
-    """The force is held for one sample, and the hand may have gone on for two; then it ends."""
     guard = guarded(tmp_path, 1)
     guard.step(0)
     force = guard.step(100)

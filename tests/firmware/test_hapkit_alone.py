@@ -13,7 +13,7 @@ from firmware.tools import DATA, MAINS, NEWTONS, STUBS, WARNINGS, run
 from firmware.written_packets import unpacked
 
 WAITING, SERVING, ENDED = range(3)
-JUMPED, LATE, WATCHDOG = 2, 5, 6
+LATE, WATCHDOG = 5, 6
 
 
 class Board:
@@ -34,10 +34,12 @@ class Board:
         self.board.board_sense(self.reading)
         self.board.board_sample(late)
 
-    def go(self, counts: int) -> None:
-        for _ in range(abs(counts) // 50):
-            self.sample(50 if counts > 0 else -50)
-        self.sample(int(math.copysign(abs(counts) % 50, counts)))
+    def go(self, *ways: int) -> None:
+        """So many counts in steps that the handle can go, and so many more."""
+        for counts in ways:
+            for _ in range(abs(counts) // 50):
+                self.sample(50 if counts > 0 else -50)
+            self.sample(int(math.copysign(abs(counts) % 50, counts)))
 
     @property
     def motor(self) -> tuple[int, int]:
@@ -70,20 +72,22 @@ def library(kind: int, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_without_a_wall_there_is_no_pulse(library: Path) -> None:
+@pytest.fixture
+def board(library: Path) -> Board:
+    return Board(library)
+
+
+def test_without_a_wall_there_is_no_pulse(board: Board) -> None:
     """Outside nothing acts, and the timer's output is off: at width 0 it would still give a short one."""
-    board = Board(library)
     board.go(-300)
     assert board.phase == SERVING
     assert board.motor[0] == 0
 
 
 @pytest.mark.parametrize("counts", [8, 40, 160, 300])
-def test_the_pulse_width_is_that_of_the_torque(library: Path, kind: int, counts: int) -> None:
+def test_the_pulse_width_is_that_of_the_torque(board: Board, kind: int, counts: int) -> None:
     """By hand: τ = F r_h r_p/r_s, width √(τ/0.03 N·m) of 255; towards smaller counts."""
-    board = Board(library)
-    board.go(-50)
-    board.go(50 + counts)
+    board.go(-50, 50 + counts)
     for _ in range(3):
         board.sample()
     torque = NEWTONS[kind] * counts * 0.07 * 0.004191 / 0.075
@@ -92,11 +96,8 @@ def test_the_pulse_width_is_that_of_the_torque(library: Path, kind: int, counts:
     assert width == pytest.approx(255 * math.sqrt(torque / 0.03), abs=0.51)
 
 
-def test_positions_go_on_where_the_sensor_jumps(library: Path) -> None:
-    board = Board(library)
-    board.go(-50)
-    board.go(-2000)
-    board.go(2050)
+def test_positions_go_on_where_the_sensor_jumps(board: Board) -> None:
+    board.go(-50, -2000, 2050)
     for _ in range(2):
         board.sample()
     assert board.motor[0] == 0
@@ -104,10 +105,8 @@ def test_positions_go_on_where_the_sensor_jumps(library: Path) -> None:
     assert board.board.board_counts() == 0
 
 
-def test_one_wild_reading_is_passed_over(library: Path) -> None:
-    board = Board(library)
-    board.go(-10)
-    board.go(100)
+def test_one_wild_reading_is_passed_over(board: Board) -> None:
+    board.go(-10, 100)
     before = board.motor
     board.sample(-300)
     assert board.motor == before
@@ -115,12 +114,8 @@ def test_one_wild_reading_is_passed_over(library: Path) -> None:
     assert board.phase == SERVING
 
 
-def test_a_sample_that_takes_longer_than_its_period_ends_the_force(library: Path) -> None:
-    """The timer has fired again meanwhile: force 0 at once, and for good."""
-    board = Board(library)
-    board.go(100)
-    board.go(-150)
-    board.go(150)
+def test_a_sample_that_takes_longer_than_its_period_ends_the_force(board: Board) -> None:
+    board.go(100, -150, 150)
     assert board.motor[0] > 0
     board.sample(late=True)
     assert board.motor[0] == 0
@@ -132,8 +127,7 @@ def test_a_sample_that_takes_longer_than_its_period_ends_the_force(library: Path
 def test_after_a_start_by_the_watchdog_there_is_no_force(library: Path) -> None:
     """The mark that outlives it says that a force acted; the start after that one begins anew."""
     board = Board(library, marked=True)
-    board.go(-50)
-    board.go(150)
+    board.go(-50, 150)
     assert (board.phase, board.board.board_reason()) == (ENDED, WATCHDOG)
     assert board.motor[0] == 0
     assert board.board.board_marked() == 0
@@ -142,16 +136,15 @@ def test_after_a_start_by_the_watchdog_there_is_no_force(library: Path) -> None:
     assert fresh.board.board_marked() == 1
 
 
-def test_the_timer_and_the_line_are_set_for_the_law(library: Path) -> None:
+def test_the_timer_and_the_line_are_set_for_the_law(board: Board) -> None:
     """16 000 clocks of 16 MHz in a period of 1 ms; 115 200 Bd to 2.1 %; the watchdog runs."""
-    board = Board(library).board
-    assert board.board_period() == 16_000 - 1
-    assert 16e6 / (8 * (board.board_baud_divisor() + 1)) == pytest.approx(115_200, rel=0.0213)
-    assert board.board_watchdog() == 1
+    assert board.board.board_period() == 16_000 - 1
+    assert 16e6 / (8 * (board.board.board_baud_divisor() + 1)) == pytest.approx(115_200, rel=0.0213)
+    assert board.board.board_watchdog() == 1
 
 
-def test_every_sample_is_told(library: Path) -> None:
-    board, data = Board(library), b""
+def test_every_sample_is_told(board: Board) -> None:
+    data = b""
     for _ in range(100):
         board.sample(-1)
         data += board.sent()

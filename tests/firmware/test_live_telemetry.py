@@ -45,7 +45,6 @@ def motion(packets: int) -> tuple[np.ndarray, np.ndarray, list[bytes]]:
 
 
 def test_rows_are_what_a_served_loop_writes() -> None:
-    """Position, force and the ledger, by hand from what was sent; graphs and their line take them."""
     counts, forces, made = motion(40)
     rows = watched(text() + b"".join(made), damping=0.15, coulomb_friction=0.02)
     news = Watched(rows).news()

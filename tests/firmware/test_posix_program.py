@@ -37,7 +37,6 @@ def made(target: str, folder: Path, *changes: tuple[str, str, str], flags: str =
 
 
 def ran(*command: str | Path) -> subprocess.CompletedProcess[str]:
-    """What a program says; it has no real-time priority."""
     words = [str(word) for word in command]
     return subprocess.run(
         [words[0], "-p", "0", *words[1:]], capture_output=True, text=True, check=False, timeout=300
@@ -50,7 +49,6 @@ def simulated(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_it_runs_as_it_is(simulated: Path, tmp_path: Path) -> None:
-    """The mass meets the wall: the forces that are told are the law's at the positions that are told."""
     done = ran(simulated, "-n", "200", "-t", tmp_path / "mass.bin")
     assert done.returncode == 0
     assert "200 samples" in done.stderr

@@ -113,7 +113,6 @@ def test_what_does_not_continue_a_packet_begins_another(folder: Path) -> None:
 
 
 def test_what_finds_no_room_is_dropped_and_counted(folder: Path) -> None:
-    """Three packets wait in 256 bytes; the rest is lost, and the next packet says how many samples."""
     line = sender(folder)
     for k in range(16 * 10):
         line.sample(1000 * k, k, 0.0, SERVING)
@@ -151,7 +150,6 @@ def test_a_packet_is_whole_however_samples_and_bytes_take_turns(folder: Path, se
 
 
 def test_the_sequence_and_the_clock_go_round(folder: Path) -> None:
-    """65536 packets and 2³² µs on, nothing is lost and time goes on."""
     line, data = sender(folder), b""
     line.continue_from(65535)
     start = 2**32 - 20_000

@@ -186,7 +186,6 @@ def _searched(p: Array, high: int, further: int, x: float) -> float:
 
 
 def test_a_short_search_is_written_out() -> None:
-    """No table is left: on each way the place is known, and so is the sum."""
     program = specialised(_searched, (np.arange(20.0), 6, 10, Variable("real", "x")))
     assert not program.tables()
     sets = (s for s in program.statements() if isinstance(s, Operation) and s.result.changes)

@@ -65,7 +65,6 @@ def test_a_dataset_that_is_a_log_as_well(tmp_path: Path) -> None:
 
 
 def test_a_recording_that_began_and_ended_within_a_packet(tmp_path: Path) -> None:
-    """Its first and last bytes are no damage; the text may come later."""
     packets = [*stroke(100), text(), *stroke(100, first=100)]
     path = recorded(tmp_path, b"".join(packets)[40:-40])
     data = read_telemetry(path)

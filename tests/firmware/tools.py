@@ -39,12 +39,10 @@ def law_forces(counts: NDArray[np.floating], kind: int) -> NDArray[np.floating]:
 
 
 def run(*command: str | Path, cwd: Path | None = None) -> str:
-    """What a program prints; a failure shows all of it."""
     return called([str(word) for word in command], cwd)
 
 
 def written(files: dict[str, str], folder: Path) -> Path:
-    """The folder with these files, and the law of the tests."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in files.items():
         (folder / name).write_text(text, encoding="utf-8")

@@ -14,13 +14,11 @@ SERVING, FIRST = 1, 0x80
 
 
 def packet(kind: int, sequence: int, content: bytes) -> bytes:
-    """Framed, with its checksum."""
     framed = b"zW" + struct.pack("<BBH", kind, len(content), sequence & 0xFFFF) + content
     return framed + struct.pack("<H", binascii.crc_hqx(framed, 0xFFFF))
 
 
 def text(said: str = TEXT, flags: int = 0) -> bytes:
-    """A packet that says what the numbers are."""
     return packet(1, 0, bytes([flags]) + said.encode())
 
 

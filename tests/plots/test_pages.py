@@ -62,7 +62,6 @@ def papers():
 
 @pytest.mark.parametrize("name", CONTENTS)
 def test_every_figure_and_table_has_its_row(papers, name):
-    """Each is there, with something computed, and agrees but for what is known to differ."""
     rows = getattr(papers, name).rows()
     places = " ".join(row.place for row in rows)
     assert [part for part in CONTENTS[name] if not re.search(rf"{re.escape(part)}(?!\d)", places)] == []

@@ -46,7 +46,6 @@ def test_criterion_shows_damping_peak_and_violation():
 
 @pytest.mark.parametrize("damping", [0.5, -0.3])
 def test_criterion_on_a_logarithmic_axis(damping):
-    """A top towards 0 Hz is marked at the left end, another where it is."""
     verdict = zw.check(
         IDEAL, zw.Wall(stiffness=100, damping=damping, velocity_filter=zw.rendering.Window(20))
     )
@@ -95,7 +94,6 @@ def test_plane_of_another_device_shows_the_catalogue():
 
 
 def test_budget_bars_add_up():
-    """The leaks sum to the required damping, also where one of them is negative."""
     law = zw.StandardLinearSolid(stiffness=100, branch_stiffness=100, branch_damping=0.2)
     verdict = zw.check(PADDLE.replace(delay=0.0023), law)
     damping, friction = plots.budget(verdict).axes
@@ -206,7 +204,6 @@ def test_names_are_drawn_as_they_are():
 
 
 def test_indices_mark_the_least_real_part():
-    """The dashed lines are the indices, and the curve touches each at the mark."""
     from scipy.signal import TransferFunction
 
     found = zw.ports.passivity_indices(TransferFunction([1, 1, 5, 0.1], [1, 2, 3, 4]))

@@ -70,7 +70,6 @@ def test_what_is_drawn_is_named() -> None:
 
 
 def test_the_title_is_short_and_colours_have_plain_numbers() -> None:
-    """One line above and one below; where the margin hardly varies no offset is taken from its numbers."""
     arm = PlanarChain(links=(0.1, 0.1), damping=(0.05, 0.05), joint_range=((0, 1), (1, 1.0001)))
     space = zw.workspace(arm, zw.Wall(500), rate=1000, points=16)
     figure = plots.workspace_figure(space)

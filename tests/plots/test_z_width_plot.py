@@ -15,7 +15,6 @@ WITHOUT_END = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
 
 
 def words(figure: Figure) -> list[str]:
-    """Of the one legend, which stands beside the axes and covers nothing."""
     assert not any(axes.get_legend() for axes in figure.axes)
     (legend,) = figure.legends
     return [text.get_text() for text in legend.get_texts()]

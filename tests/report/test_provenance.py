@@ -119,7 +119,6 @@ link_delay = 0.002
 
 
 def test_of_two_arms_each_number_is_told() -> None:
-    """Of which arm it is, or of the coupling, with units as people write them."""
     tables = tables_of(PAIR, "arms.toml", PAIR_TABLES)
     told = {what: (value, where) for what, value, where in of_pair(tables, pair_of(tables))}
     assert told["leader: damping b"] == ("0.15 N·s/m", "catalogue: Abbott & Okamura 2005, section IV-B")

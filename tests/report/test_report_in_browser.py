@@ -17,7 +17,6 @@ def address(hostile_page: str, tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 def test_nothing_stands_in_the_way_of_a_reader(page: Page, address: str) -> None:
-    """No violation of what axe checks, contrast among it; nothing to be scrolled sideways; pictures shown."""
     page.goto(address)
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     assert page.evaluate("[...document.images].every(i => i.complete && i.naturalWidth > 100)")

@@ -15,7 +15,6 @@ NAMES = ("naive_float", "naive_double", "naive_q16", "fixed16")
 
 
 def text(name: str) -> str:
-    """Of a header, or of a module if the name ends so."""
     return (HERE / (name if name.endswith(".mjs") else f"{name}.h")).read_text(encoding="utf-8")
 
 

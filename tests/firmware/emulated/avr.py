@@ -58,7 +58,6 @@ class AvrLaw:
         self._run(_RESET, [0])
 
     def run(self, counts: object) -> Answers:
-        """The forces of so many steps more, and their cycles."""
         forces, cycles = self._run(_STEP, counts)
         return Answers(forces, cycles - self._empty, self.flash, self.ram)
 

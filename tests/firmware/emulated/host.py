@@ -35,7 +35,6 @@ class HostLaw:
         self._library.reset()
 
     def run(self, counts: object) -> NDArray[Any]:
-        """The forces of so many steps more, in the units of the law."""
         given = as_counts(counts)
         forces = np.empty(given.size, self.dtype)
         self._library.run(given.ctypes.data, forces.ctypes.data, given.size)
