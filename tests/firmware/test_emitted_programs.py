@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from firmware.emulated import node
 from firmware.emulated.built import STRICT
 from firmware.emulated.built import WARNED as PEDANTIC
-from firmware.emulated.required import require, tool
+from firmware.emulated.required import tool
+from firmware.machines import law_in_javascript, run_node
 from firmware.tools import STUBS, run, sketch
 
 import zwidth as zw
@@ -124,11 +124,12 @@ def test_the_header_names_its_proof(tmp_path: Path, target: str) -> None:
     assert main(["verify", str(certificate)]) == 0
 
 
-def test_a_module_takes_a_reading_beyond_as_the_nearest() -> None:
-    require("node")
+def test_a_module_takes_a_reading_beyond_as_the_nearest(tmp_path: Path) -> None:
     found = emit(HAPKIT, WALL, target="javascript", travel="-3 .. 3 mm")
     most = int(found.machine.counts[1])
-    forces = node.run(found.text, [most, 10 * most, most], most)
+    rows, cells = np.array([[most], [10 * most], [most]]), np.zeros(found.machine.law.remembers)
+    ran = run_node(law_in_javascript("law"), tmp_path, {"law": (rows, cells, 1)}, {"law.mjs": found.text})
+    forces = ran["law"].outputs[:, 0]
     assert forces[0] == forces[1] == forces[2] > 0.0
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from firmware.baselines.read import NAMES, UNIT, fixed_forces, float_forces, text, touch
-from firmware.emulated import cortex, node, required
+from firmware.emulated import cortex, required
 from firmware.emulated.answers import IDLE
 from firmware.emulated.avr import AvrLaw
 from firmware.emulated.built import defined
@@ -64,13 +64,6 @@ def test_floats_have_every_bit_that_numpy_has(machine: str, name: str, tmp_path:
     forces = MACHINES[machine](name, ANYTHING, -3, tmp_path)
     assert forces.dtype == real
     assert np.array_equal(forces, float_forces(ANYTHING, real, -3))
-
-
-def test_a_module_has_the_bits_of_numpy_and_says_what_fails() -> None:
-    require("node")
-    assert np.array_equal(node.run(text("wall.mjs"), COUNTS, -3), float_forces(COUNTS, np.float64, -3))
-    with pytest.raises(AssertionError, match="broken"):
-        node.run("export function init() { throw new Error('broken'); }\nexport const step = 0;", [1])
 
 
 def test_a_law_goes_on_and_begins_anew(tmp_path: Path) -> None:

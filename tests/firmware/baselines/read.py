@@ -15,7 +15,7 @@ NAMES = ("naive_float", "naive_double", "naive_q16", "fixed16")
 
 
 def text(name: str) -> str:
-    return (HERE / (name if name.endswith(".mjs") else f"{name}.h")).read_text(encoding="utf-8")
+    return (HERE / f"{name}.h").read_text(encoding="utf-8")
 
 
 def fixed_forces(counts: NDArray[np.int32], start: int = 0) -> list[int]:

@@ -16,7 +16,6 @@ import pytest
 
 TOOLS = {
     "host": {"gcc": None},
-    "node": {"node": None},
     "gappa": {"gappa": None},
     "avr": {"gcc": "simavr/sim_avr.h", "avr-gcc": "avr/io.h", "avr-size": None},
     "cortex-m4": {"arm-none-eabi-gcc": "math.h", "arm-none-eabi-size": None, "qemu-system-arm": None},
