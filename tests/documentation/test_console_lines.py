@@ -56,7 +56,6 @@ def has_what_it_reads(call: list[str], folder: Path) -> bool:
 
 @pytest.mark.parametrize("page", [name for name in NAMES if typed(name)])
 def test_the_lines_of_a_page(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the page has the files for is run beside them, in turn; of the others the options are read."""
     folder = put_files(page, tmp_path)
     for call in typed(page):
         with monkeypatch.context() as patch:

@@ -21,7 +21,6 @@ from zwidth.show.explorer.state import State, catalogued, from_query, scale_of
 
 
 def answers(state: State, control: Control) -> None:
-    """Moving the slider to either end, and typing what is shown, gives a loop or a message."""
     shares = [control.said(share) for share in (0.0, 1.0)] if control.scale is not None else []
     texts = [control.text] if control.text else []
     for value in [*shares, *(read_entry(control, text) for text in texts)]:

@@ -162,7 +162,6 @@ def test_so_many_pages_and_no_more() -> None:
 
 
 def test_text_in_the_address_is_shown_and_not_obeyed() -> None:
-    """Markup in a name or a key comes escaped, whether it can be used or not."""
     with serve_explorer() as page:
         for query in ("device.name=%3Cscript%3Ealert(1)%3C/script%3E", "%3Cscript%3Ealert(1)%3C/script%3E=1"):
             text = urllib.request.urlopen(f"{page.address}?{query}").read().decode()

@@ -131,7 +131,6 @@ def test_what_a_specification_cannot_say_is_refused() -> None:
 
 
 def test_another_device_keeps_the_wall_and_another_kind_of_motion_gets_its_own() -> None:
-    """A stiffness in N/m is none in N·m/rad."""
     state = starts.first().changed("environment.stiffness", "345 N/m").settled()
     linear = starts.with_device(state, starts.own_device(starts.OWN_LINEAR))
     assert linear.loop().environment == zw.Wall(345)

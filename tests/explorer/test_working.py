@@ -18,8 +18,6 @@ LOOK = 0.02
 
 
 def test_a_process_that_does_not_start_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As in a script that starts itself again; the next job is answered too."""
-
     def fails(_: object) -> None:
         raise EOFError
 

@@ -80,7 +80,6 @@ def random_loop(random: Random) -> Loop:
 
 
 def cycles(random: Random, rounds: int) -> Iterator[list[Fraction]]:
-    """Positions in counts: over one edge by little, in and out at once, sinusoids, anything."""
     little = Fraction(1, 2**20)
     for _ in range(rounds):
         n = random.choice([1, 1, 2, random.randrange(1, MOST)])

@@ -151,7 +151,6 @@ void {name}_rows(const double *in, int rows, double *cells, double *out)
 
 
 def law_in_javascript(name: str) -> str:
-    """A function for `run_node` of the law whose module is beside it as NAME.mjs."""
     return f"""import * as of_{name} from "./{name}.mjs";
 export const {name} = (() => {{
     let s;

@@ -42,7 +42,6 @@ def known() -> Mapping[str, Known]:
 
 
 def _known(device: zw.Device, environment: Environment) -> Known:
-    """What `simulate` gives: on a walk, then from rest at some places."""
     law = law_program(device, environment)
     still = [[np.nan, *[n] * 4] for n in (-3000, -1, 0, 1, 2, 391, 3000)]
     given = np.concatenate([readings(law, 7, STEPS), np.ravel(still) * (1 if law.resolution > 0 else 2.1e-5)])

@@ -26,7 +26,6 @@ class Point(NamedTuple):
 
 
 def drawn(random: Random) -> tuple[Bound, list[Point]]:
-    """A bound, and points in it, at its ends and about 0 as well."""
     ends = sorted(random.choice([0.0, -1.0, 2.0, random.uniform(-9, 9)]) for _ in range(2))
     error = random.choice([0.0, 1.0, random.uniform(0, 2)])
     signed = random.random() < 0.5

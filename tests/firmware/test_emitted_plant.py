@@ -21,8 +21,6 @@ GIVEN = ("undamped", "slewing", "held_lagging")
 
 
 class Known(NamedTuple):
-    """A program, its inputs, state after every period and in the end by the compiled functions."""
-
     program: Program
     rows: NDArray[np.float64]
     ran: Ran

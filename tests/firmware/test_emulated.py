@@ -18,7 +18,6 @@ from firmware.emulated.host import HostLaw, watched
 from firmware.emulated.required import require
 
 ANYTHING = touch(3000, 2**31 - 1)
-COUNTS = touch(3000)
 
 
 def on_host(level: str, name: str, counts: object, start: int, folder: Path) -> Any:
@@ -67,7 +66,6 @@ def test_floats_have_every_bit_that_numpy_has(machine: str, name: str, tmp_path:
 
 
 def test_a_law_goes_on_and_begins_anew(tmp_path: Path) -> None:
-    """Step by step the same as at once; after a reset at rest where it was, after init where it is told."""
     require("host", "avr")
     counts = touch(60)
     with AvrLaw(text("fixed16"), "-O2") as chip:
@@ -203,7 +201,7 @@ def test_a_warning_is_an_error_and_an_overflow_is_seen(tmp_path: Path) -> None:
         HostLaw(careless, tmp_path)
     for name in ("fixed16", "naive_float"):
         watched(text(name), ANYTHING, tmp_path)
-    watched(text("naive_q16"), COUNTS, tmp_path)
+    watched(text("naive_q16"), touch(3000), tmp_path)
     with pytest.raises(AssertionError, match="overflow"):
         watched(text("naive_q16"), ANYTHING, tmp_path)
 

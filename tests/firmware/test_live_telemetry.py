@@ -8,7 +8,7 @@ from threading import Event
 
 import numpy as np
 import pytest
-from firmware.written_packets import FIRST, SERVING, TEXT, packed, samples, text
+from firmware.written_packets import FIRST, SERVING, packed, samples, text
 
 from zwidth.errors import InputError
 from zwidth.machine.firmware.telemetry import LiveTelemetry
@@ -91,12 +91,6 @@ def test_the_newest_rows_are_kept() -> None:
     assert len(found) == 10
 
 
-def test_a_rotary_law_has_columns_of_its_own() -> None:
-    _, _, made = motion(3)
-    rows = watched(text(flags=1) + b"".join(made))
-    assert {"position_rad", "force_N_m"} <= set(rows.COLUMNS)
-
-
 def test_a_line_that_never_says_what_its_numbers_are_is_refused() -> None:
     _, _, made = motion(3)
     for data in (b"", b"".join(made)):
@@ -104,7 +98,8 @@ def test_a_line_that_never_says_what_its_numbers_are_is_refused() -> None:
             LiveTelemetry(io.BytesIO(data))
 
 
-def test_the_text_may_come_after_samples() -> None:
+def test_the_text_may_come_after_samples_and_say_radians() -> None:
     _, _, made = motion(3)
-    count, _ = watched(b"".join(made) + text(TEXT)).after(0)
-    assert count == 48
+    rows = watched(b"".join(made) + text(flags=1))
+    assert rows.after(0)[0] == 48
+    assert {"position_rad", "force_N_m"} <= set(rows.COLUMNS)

@@ -63,7 +63,6 @@ def test_a_second_on_the_chip(chip: Path, tmp_path: Path, kind: int) -> None:
 
 
 def test_where_the_chip_hangs_its_watchdog_ends_the_force(chip: Path, tmp_path: Path) -> None:
-    """Samples stop while the motor pushes: the chip starts anew, gives no force, and says why."""
     did = ran(chip, wall(tmp_path, 3), "600", tmp_path / "line.bin", "350")
     assert did.width_as_it_hung > 100
     assert did.width == 0

@@ -159,7 +159,6 @@ REFUSED = {
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_cannot_be_emitted_is_refused_by_its_line(name: str, tmp_path: Path) -> None:
-    """The message names the file, the line, and what stands there."""
     body, line, what = REFUSED[name]
     head = "import math\nimport os\nimport numpy as np\nWHERE = float(os.name == 'posix')\n"
     text = f"{head}def refused(m, x, k):\n{indent(body, '    ')}\n"

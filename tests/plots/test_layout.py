@@ -62,7 +62,6 @@ def test_pictures_have_no_faults(device):
 
 
 def test_a_wheel_is_drawn_in_its_units():
-    """N·m/rad and mrad, nothing of a linear device; and no unit as it is typed."""
     said = {name: [w.get_text() for w in words(figure)] for name, figure in drawn(WHEEL).items()}
     of_others = ("haptic-paddle", "catalogue")
     for name, texts in said.items():

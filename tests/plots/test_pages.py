@@ -14,11 +14,8 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 CONTENTS = {
     "course": [
-        "sampled-data system example",
-        "detail of energy leak due to sampling",
-        "position quantization",
-        "conceptual derivation",
-        "dimensionless stability plane",
+        *("sampled-data system example", "detail of energy leak due to sampling", "position quantization"),
+        *("conceptual derivation", "dimensionless stability plane"),
         "where do commercial haptic devices stand?",
         *(f"approach #{n}" for n in (1, 2, 3, 4)),
         "Hannaford & Ryu 2002, Fig. 10",

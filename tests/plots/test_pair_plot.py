@@ -17,7 +17,6 @@ PAIR = zw.Pair(ARM, ARM.replace(damping=1), stiffness=100, damping="0.02", delay
 
 
 def test_inside_the_boundary_the_pair_is_passive():
-    """A little more damping than drawn is enough, a little less is not."""
     leader, follower = damping_boundary(PAIR)
     for b, f in list(zip(leader, follower, strict=True))[::6]:
         for share, holds in ((1.01, True), (0.99, False)) if np.isfinite(f) else ():
@@ -41,7 +40,6 @@ def test_the_stairs_are_the_limits(delay):
 
 
 def test_the_pair_stands_beside_its_own_limit():
-    """With delays that differ too: passive below the stairs at its place, active above them."""
     pair = zw.Pair(ARM.replace(damping=2), ARM.replace(damping=2), stiffness=570.9, delay=("2 ms", "3 ms"))
     delays, stiffness = link_limits(pair)
     (here,) = np.flatnonzero(np.isclose(delays, 0.0025))

@@ -195,7 +195,6 @@ def test_check_figure_has_the_panels_that_apply(device, law, panels):
 
 
 def test_names_are_drawn_as_they_are():
-    """A dollar in a device's name starts no mathematics, a line's end is shown, and a long name is cut."""
     device = PADDLE.replace(name="$\\foo$ of\nour lab, " + "x" * 100)
     figure = plots.check_figure(zw.check(device, zw.Wall(stiffness=300)))
     figure.savefig(BytesIO())
@@ -216,7 +215,6 @@ def test_indices_mark_the_least_real_part():
 
 
 def test_indices_of_several_axes_are_eigenvalues():
-    """One curve for each eigenvalue, the least of them down to the index; also where G has no inverse."""
     from scipy.signal import StateSpace
 
     found = zw.ports.passivity_indices(

@@ -51,7 +51,6 @@ def test_the_same_bytes_in_another_process_and_folder(twice: list[bytes]) -> Non
 
 
 def test_no_path_and_no_date_is_in_it(twice: list[bytes]) -> None:
-    """A file is called by its name; the command is the one that makes the report again."""
     page = twice[1].decode()
     shown = re.sub(r'"data:[^"]*"', "", page)
     assert "zwidth report paddle.toml --stiffness 770 -o report.html" in shown

@@ -29,7 +29,6 @@ def test_a_trace_comes_back_as_it_was(which: str, suffix: str, tmp_path: Path, r
 
 
 def test_csv_says_the_unit_of_every_column(knob, dowel, tmp_path: Path) -> None:
-    """The header is for people and spreadsheets: position_m, hand_force_N, hand_work_J."""
     for trace, columns in (
         (dowel, {"time_s", "position_m", "velocity_m_per_s", "hand_force_N", "hand_work_J"}),
         (knob, {"position_rad", "velocity_rad_per_s", "actuator_force_N_m"}),
@@ -52,7 +51,6 @@ def test_csv_is_read_by_numpy_and_parquet_by_pyarrow(dowel, tmp_path: Path) -> N
 
 @pytest.mark.parametrize("suffix", [*SUFFIXES, ".wav", ".png"])
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(suffix, dowel, tmp_path, monkeypatch) -> None:
-    """A disk that fills up while writing: the old file stays, no part is left."""
     path = tmp_path / f"old{suffix}"
     path.write_bytes(b"precious")
 
@@ -122,7 +120,6 @@ def _pressing(force: np.ndarray) -> object:
 
 
 def test_a_buzz_of_100_hz_is_heard_as_100_hz(tmp_path: Path) -> None:
-    """The file has the rate it says, one channel, and its strongest tone is that of the force."""
     trace = _pressing(1.0 + 0.2 * np.sin(2 * np.pi * 100 * np.arange(1000) / 1000))
     trace.zwidth.sound(tmp_path / "buzz.wav")
     with wave.open(str(tmp_path / "buzz.wav")) as file:

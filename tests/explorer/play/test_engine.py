@@ -13,7 +13,7 @@ from zwidth.loop.kernel import run
 from zwidth.loop.plant import ACTUATOR_WORK, HAND_WORK, POSITION, VELOCITY
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.model.operator import LinearHand, Tracking
-from zwidth.show.explorer.play import Played, presets
+from zwidth.show.explorer.play import Played, play_page, presets
 from zwidth.show.explorer.play import played as play
 from zwidth.show.explorer.play import played_pair as play_pair
 
@@ -113,6 +113,8 @@ def test_what_cannot_be_played_is_refused() -> None:
         play(zw.Device(damping=0.1, rate=1000), zw.Wall(100))
     with pytest.raises(zw.InputError, match="at most 10 s"):
         play(_device(delay=100), zw.Wall(100))
+    with pytest.raises(zw.InputError, match="at least"):
+        play_page([])
     law = zw.FrictionCompensation(coulomb=0.01, viscous=0.1, speed=0.01)
     with pytest.raises(zw.InputError, match="compensation"):
         play_pair(zw.Pair(_device(), _device(), stiffness=50, compensation=law))

@@ -49,7 +49,6 @@ def test_the_loops_show_both_outcomes(loops: list[Played]) -> None:
 
 
 def test_text_of_others_is_shown_and_not_obeyed() -> None:
-    """A name that closes the script, or is markup, stays text."""
     evil = "</script><script>alert(1)</script><img onerror=alert(2)>"
     device = zw.Device(mass=0.05, damping=0.2, rate=1000, name=evil)
     page = play_page([play(device, zw.Wall(100), name=evil)], title=evil)
@@ -68,11 +67,6 @@ def test_numbers_have_their_units(loops: list[Played]) -> None:
     assert first["law"] == "wall, 300 N/m"
     assert (first["resolution"], first["sample period"]) == ("22.4 µm", "1 ms")
     assert first["hand"] == "0.006 kg, 500 N/m, 1.7 N·s/m"
-
-
-def test_a_page_without_loops_is_refused() -> None:
-    with pytest.raises(zw.InputError, match="at least"):
-        play_page([])
 
 
 _RUN = """\
