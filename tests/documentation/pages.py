@@ -31,5 +31,4 @@ __all__ = ["DOCS", "NAMES", "ROOT", "read", "shown"]
 
 @cache
 def read(name: str) -> str:
-    """Its text."""
     return (ROOT / name).read_text(encoding="utf-8")

@@ -38,7 +38,6 @@ COMPUTED = re.compile(r"^```\{computed\}\n((?::.*\n)*)((?:\$ .*\n)+)```$", re.M)
 
 
 def typed(page: str) -> list[list[str]]:
-    """The arguments of each call that is no computed one."""
     return [call for _, call in shown.commands_of(COMPUTED.sub("", read(page)))]
 
 
@@ -50,7 +49,6 @@ def put_files(page: str, folder: Path) -> Path:
 
 
 def has_what_it_reads(call: list[str], folder: Path) -> bool:
-    """Whether the files that a call reads are there."""
     before = dict(zip(call[1:], call, strict=False))
     files = [word for word in call if re.search(r"\.(toml|ya?ml|json|csv|nc|urdf|mcap|bin)$", word)]
     return all((folder / file).exists() for file in files if before.get(file) not in WRITES)
@@ -58,7 +56,6 @@ def has_what_it_reads(call: list[str], folder: Path) -> bool:
 
 @pytest.mark.parametrize("page", [name for name in NAMES if typed(name)])
 def test_the_lines_of_a_page(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the page has the files for is run beside them, in turn; of the others the options are read."""
     folder = put_files(page, tmp_path)
     for call in typed(page):
         with monkeypatch.context() as patch:
@@ -80,7 +77,6 @@ def test_each_computed_block_has_what_the_text_relies_on(page: str) -> None:
 
 
 def test_calls_and_files_are_found() -> None:
-    """Prompts, chains, comments, a page's files; what is no call of zwidth is none."""
     line = "$ zwidth check a.toml && zwidth verify b.json  # so"
     page = f"```toml\n# a.toml\n[device]\n```\n```console\n{line}\nok\n$ ls\n```\n"
     assert [call for _, call in shown.commands_of(page)] == [["check", "a.toml"], ["verify", "b.json"]]

@@ -24,15 +24,11 @@ CFF_KEYS = {
 
 
 def test_the_citation_is_of_this_version() -> None:
-    """Version, licence, authors and keywords are those of pyproject.toml."""
-    assert str(CITATION["version"]) == PROJECT["version"]
-    assert CITATION["license"] == PROJECT["license"]
-    assert CITATION["authors"] == PROJECT["authors"]
-    assert CITATION["keywords"] == PROJECT["keywords"]
+    for key in ("version", "license", "authors", "keywords"):
+        assert CITATION[key] == PROJECT[key], key
 
 
 def test_the_citation_is_one_of_the_citation_file_format() -> None:
-    """Its keys are known, those that must be are there, and each has the type that it must have."""
     assert set(CITATION) <= CFF_KEYS
     assert {"authors", "cff-version", "message", "title"} <= set(CITATION)
     assert CITATION["cff-version"] == "1.2.0"
@@ -42,16 +38,13 @@ def test_the_citation_is_one_of_the_citation_file_format() -> None:
 
 
 def test_the_changelog_begins_with_this_version_and_its_date() -> None:
-    """The newest heading; the citation has the same date."""
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     heading = re.search(r"^## (\S+), (\d{4}-\d\d-\d\d)$", text, re.M)
-    assert heading is not None
     assert heading[1] == PROJECT["version"]
     assert date.fromisoformat(heading[2]) == CITATION["date-released"]
 
 
 def test_pictures_and_files_that_the_readme_shows_are_there() -> None:
-    """Links within the project lead to a file, and each picture says what it shows."""
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     linked = re.findall(r"(!?)\[([^\]]*)\]\(([^)#]+)[^)]*\)", readme)
     assert len(linked) > 10
@@ -61,7 +54,6 @@ def test_pictures_and_files_that_the_readme_shows_are_there() -> None:
 
 
 def test_what_is_installed_is_called_by_its_version() -> None:
-    """`zwidth --version` and the package are of this version, from a checkout or unpacked sources alike."""
     from importlib.metadata import version
 
     assert version("zwidth") == PROJECT["version"]

@@ -16,23 +16,16 @@ RECORDING = "it reads a recording of one's own"
 HARDWARE = "it opens a device, or waits for somebody"
 ELSEWHERE = "a test of that page runs it"
 
+
+def _all(pages: str, reason: str) -> dict[str, str]:
+    return {f"docs/{page}.md": reason for page in pages.split()}
+
+
 NOT_RUN = {
     "README.md": ELSEWHERE,
-    "docs/gain-files.md": ELSEWHERE,
-    "docs/limit.md": ELSEWHERE,
-    "docs/links.md": ELSEWHERE,
-    "docs/quickstart.md": ELSEWHERE,
-    "docs/scenes.md": ELSEWHERE,
-    "docs/theory/trust.md": ELSEWHERE,
-    "docs/tissue.md": ELSEWHERE,
-    "docs/experiment.md": RECORDING,
-    "docs/finger.md": RECORDING,
-    "docs/identification.md": RECORDING,
-    "docs/logs.md": RECORDING,
-    "docs/recording.md": RECORDING,
-    "docs/explore.md": HARDWARE,
-    "docs/firmware.md": HARDWARE,
-    "docs/live.md": HARDWARE,
+    **_all("gain-files limit links quickstart scenes theory/trust tissue", ELSEWHERE),
+    **_all("experiment finger identification logs recording", RECORDING),
+    **_all("explore firmware live", HARDWARE),
     "docs/doctor.md": "it measures for seconds; tests/servo runs such",
     "docs/serve.md 1": "two seconds of real time, in which a busy machine may be late",
     "docs/arms.md 4": "it reads a robot description of one's own",
@@ -51,7 +44,6 @@ BLOCK = re.compile(r"^```python\n(.*?)^```", re.M | re.S)
 
 @cache
 def _given() -> dict[str, Any]:
-    """What a page may speak of without having made it: the library, the paddle, a wall, a touch of it."""
     paddle, wall = zw.catalogue.device("haptic-paddle"), zw.Wall(100, 0.02)
     finger = zw.simulate(paddle, wall, zw.operators.Finger(), 0.2)
     dowel = zw.simulate(paddle, wall, zw.operators.Dowel(), 0.2)
@@ -65,7 +57,6 @@ CASES = [name for name in NAMES if BLOCK.search(read(name))]
 
 @pytest.mark.parametrize("page", CASES)
 def test_the_blocks_of_a_page(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Down the page, names kept, in an empty folder."""
     monkeypatch.chdir(tmp_path)
     names = {"__name__": "page", **({} if page in NOT_RUN else _given())}
     for number, block in enumerate(BLOCK.findall(read(page)), 1):

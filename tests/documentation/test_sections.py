@@ -13,7 +13,6 @@ OPEN_ENDED = {"docs/theory.md"}
 
 
 def entries(page: str) -> list[str]:
-    """What the tables of contents of a page name."""
     blocks = re.findall(r"^```\{toctree\}\n(.*?)^```", read(page), re.M | re.S)
     return [line for block in blocks for line in block.splitlines() if line and not line.startswith(":")]
 
@@ -30,14 +29,12 @@ def test_every_page_is_in_one_section() -> None:
 
 
 def test_a_section_says_what_is_in_it() -> None:
-    """Each of its pages is linked in its text."""
     for name, found in SECTIONS.items():
         linked = set(re.findall(r"\]\(([\w/-]+?)(?:\.md)?(?:#[\w-]+)?\)", read(name)))
         assert set(found) - linked == set(), name
 
 
 def test_a_section_can_be_looked_over() -> None:
-    """Nine pages at most."""
     assert [name for name, found in SECTIONS.items() if len(found) > MOST and name not in OPEN_ENDED] == [
         "docs/index.md"
     ]

@@ -14,14 +14,12 @@ WORDS = "a page with enough words to be read as one " * 3
 
 
 def page(body: str, title: str = "A page") -> str:
-    """Of HTML."""
     head = f"<title>{title}</title><link href='style.css'>"
     return f"<html><head>{head}</head><body><article role='main'>{body}</article></body></html>"
 
 
 @pytest.fixture
 def site(tmp_path: Path) -> Callable[[str], list[str]]:
-    """What is said of a site of two pages, of which one has the body that is given."""
     (tmp_path / "style.css").write_text("", encoding="utf-8")
     (tmp_path / "dot.png").write_bytes(b"png")
     other = page(f"<h1 id='top'>Other</h1><p id='a-ä'>{WORDS}<br>")
@@ -38,7 +36,6 @@ GOOD = f"<h1>One</h1><p>{WORDS}</p>"
 
 
 def test_a_good_page(site: Callable[..., list[str]]) -> None:
-    """Links to pages and places, abroad, to itself; pictures with words."""
     links = "<a href='other.html#a-%C3%A4'>x</a><a href='https://example.org/x'>x</a>"
     links += "<a href='#here'>x</a><a name='here'>"
     pictures = "<img src='dot.png' alt='a dot'><img src='data:image/png;base64,AA' alt='a dot'>"
@@ -55,10 +52,7 @@ def test_a_good_page(site: Callable[..., list[str]]) -> None:
         (GOOD + "<a href='../secret.html'>x</a>", "leads nowhere: ../secret.html"),
         (GOOD + "<a href='https://'>x</a>", "leads out of the site: https://"),
         (GOOD + "<img src='gone.png' alt='a dot'>", "no picture gone.png"),
-        (
-            GOOD + "<img src='https://example.org/dot.png' alt='a dot'>",
-            "no picture https://example.org/dot.png",
-        ),
+        (GOOD + "<img src='https://example.org/x' alt='a dot'>", "no picture https://example.org/x"),
         (GOOD + "<img src='dot.png'>", "a picture without words (alt): dot.png"),
         (GOOD + "<img src='dot.png' alt=' '>", "a picture without words (alt): dot.png"),
         (f"<p>{WORDS}</p>", "no heading"),
@@ -70,7 +64,6 @@ def test_a_good_page(site: Callable[..., list[str]]) -> None:
     ],
 )
 def test_a_broken_page(site: Callable[..., list[str]], body: str, part: str) -> None:
-    """One complaint, with the page it is of."""
     (complaint,) = site(body)
     assert complaint.startswith(f"index.html: {part}")
 
@@ -78,7 +71,6 @@ def test_a_broken_page(site: Callable[..., list[str]], body: str, part: str) -> 
 def test_a_page_without_title_and_a_site_without_pages(
     site: Callable[..., list[str]], tmp_path: Path
 ) -> None:
-    """Both are said."""
     assert site(GOOD, title=" ") == ["index.html: no title"]
     empty = tmp_path / "empty"
     empty.mkdir()

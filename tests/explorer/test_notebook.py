@@ -1,24 +1,29 @@
-"""The explorer as an object: it shows itself, and its loop is that of the sliders."""
+"""The explorer as an object: it shows itself, follows a move, and speaks the angle of the question."""
 
 from __future__ import annotations
 
+import math
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import cache
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
 import zwidth as zw
 from zwidth.errors import InputError
+from zwidth.quantity.spoken import answers_as_typed
+from zwidth.show.explorer.computing import answered
 from zwidth.show.explorer.session import Session
 from zwidth.show.explorer.shown import Explorer
 from zwidth.show.explorer.starts import first, from_sources
+from zwidth.show.explorer.state import State
 from zwidth.show.explorer.working import Workers
 
 
 def test_it_shows_the_loop_that_it_was_given() -> None:
-    """Device, environment and verdict are those of the loop, and follow a move."""
     paddle = zw.catalogue.device("haptic-paddle")
     shown = zw.explore(paddle, zw.Wall(stiffness=770))
     assert shown.device == paddle
@@ -34,14 +39,9 @@ def test_it_shows_the_loop_that_it_was_given() -> None:
     assert shown.environment == zw.Wall(stiffness=100)
 
 
-def test_a_law_of_one_s_own_is_refused() -> None:
-    """No slider could say it."""
-
-    class Own(zw.Wall):
-        pass
-
-    with pytest.raises(InputError, match="no Own"):
-        zw.explore(zw.catalogue.device("haptic-paddle"), Own(300))
+@cache
+def _one() -> Explorer:
+    return zw.explore()
 
 
 @pytest.mark.parametrize(
@@ -50,13 +50,12 @@ def test_a_law_of_one_s_own_is_refused() -> None:
 @pytest.mark.parametrize("value", [None, "x", 3, float("nan"), [], {"a": 1}, "x" * 10_000])
 def test_whatever_a_browser_sends_is_answered(kind: object, value: object) -> None:
     """With a message at most: what it sends is not trusted."""
-    shown = _one()
-    for number, path in enumerate(
-        ("environment.stiffness", "device", "with.x", "law.9.x", "__class__", None), 1
-    ):
-        shown._session.form.event = {"kind": kind, "path": path, "value": value, "number": number}
-        assert shown._session.form.told["heard"] == number
-    shown._session.form.event = {}
+    form = _one()._session.form
+    paths = ("environment.stiffness", "device", "with.x", "law.9.x", "__class__", None)
+    for number, path in enumerate(paths, 1):
+        form.event = {"kind": kind, "path": path, "value": value, "number": number}
+        assert form.told["heard"] == number
+    form.event = {}
 
 
 def test_a_move_shows_outcome_then_limits_then_the_picture_of_the_newest() -> None:
@@ -99,7 +98,6 @@ def test_a_move_shows_outcome_then_limits_then_the_picture_of_the_newest() -> No
 
 
 def test_a_verdict_of_a_number_that_nobody_measured_stays_on_the_page() -> None:
-    """There it is marked; a file would go about without the mark, until the number is set."""
     form = Explorer(from_sources(["hapkit"]))._session.form
     for number, path in enumerate(("json", "report"), 1):
         form.event = {"kind": "press", "path": path, "value": None, "number": number}
@@ -110,14 +108,7 @@ def test_a_verdict_of_a_number_that_nobody_measured_stays_on_the_page() -> None:
     assert form.told.get("error", "") == ""
 
 
-def _one(made: list[object] = []) -> object:  # noqa: B006  # one is enough for all
-    if not made:
-        made.append(zw.explore())
-    return made[0]
-
-
 def test_importing_zwidth_loads_no_panel() -> None:
-    """Only who asks for the explorer waits for it."""
     code = "import sys, zwidth; zwidth.check; print([m for m in ('panel', 'bokeh') if m in sys.modules])"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "[]"
@@ -130,3 +121,75 @@ def test_in_a_kernel_panel_comes_first(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("panel.extension._loaded", False)
     with pytest.raises(InputError, match=r"panel\.extension\(inline=True\)"):
         zw.explore()
+
+
+# ---- a wheel that is asked about in degrees
+
+
+WHEEL = """[device]
+inertia = "0.03 kg*m^2"
+damping = "0.01 N*m*s/rad"
+coulomb_friction = "0.05 N*m"
+counts_per_turn = 65536
+handle_radius = "14 cm"
+rate = "1 kHz"
+delay = "1.4 ms"
+"""
+
+
+def asked(folder: Path, stiffness: str) -> State:
+    file = folder / "wheel.toml"
+    file.write_text(WHEEL)
+    with answers_as_typed():
+        state = from_sources([str(file)], {"stiffness": stiffness})
+    return state
+
+
+def shown(session: Session, waiting: list[Callable[[], None]]) -> tuple[dict[str, str], str, str]:
+    while waiting:
+        waiting.pop(0)()
+    texts = {
+        one["path"]: one.get("text", "")
+        for group in session.form.groups
+        for one in group["controls"]
+        if "path" in one
+    }
+    figure = session.views[0].parts[0].object
+    return texts, session.details.html, figure.yaxis[0].axis_label
+
+
+def test_the_page_speaks_the_angle_of_the_question(tmp_path: Path) -> None:
+    """Degrees from the first look on; a slider keeps them, and a radian that is typed takes them away."""
+    waiting: list[Callable[[], None]] = []
+    session = Session(asked(tmp_path, "0.5 N*m/deg"), Workers(count=0), waiting.append)
+    texts, details, axis = shown(session, waiting)
+    assert texts["environment.stiffness"] == "0.5 N·m/deg"
+    assert "N·m/deg" in details
+    assert "rad" not in details
+    assert axis == "damping [N·m·s/deg]"
+    needed = session.views[0].parts[0].object.renderers[1].data_source.data["has"]
+    assert needed[0] == pytest.approx(0.01 * math.pi / 180)
+
+    session.form.event = {"kind": "move", "path": "environment.stiffness", "value": 0.3, "number": 1}
+    shown(session, waiting)
+    assert session.form.told["error"] == ""
+    assert session.form.told["values"]["environment.stiffness"][0].endswith("N·m/deg")
+    assert session.state.angles == ("deg",)
+
+    session.form.event = {"kind": "typed", "path": "environment.stiffness", "value": "5 N*m/rad", "number": 2}
+    texts, details, axis = shown(session, waiting)
+    assert texts["environment.stiffness"] == "5 N·m/rad"
+    assert "deg" not in details
+    assert axis == "damping [N·m·s/rad]"
+
+
+def test_what_takes_longer_speaks_it_too(tmp_path: Path) -> None:
+    state = asked(tmp_path, "0.5 N*m/deg")
+    assert "N·m/deg" in answered(_advised, state)
+    assert "N·m/rad" in answered(_advised, state.with_angles({"rad"}))
+
+
+def _advised(state: State) -> str:
+    from zwidth.show.explorer.computing import judged_in_full
+
+    return " ".join(advice.text for advice in judged_in_full(state).advice)

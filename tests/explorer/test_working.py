@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import time
 from collections.abc import Iterator
 from itertools import count
 from queue import Queue
@@ -11,43 +9,15 @@ from threading import Thread, local
 from typing import Any
 
 import pytest
+from explorer.jobs import doubled, ended, endless, failed, refused
 
-from zwidth.errors import InputError
 from zwidth.show.explorer.working import Answer, Workers
 
 LOOK = 0.02
 """For an answer, at most [s]."""
 
 
-def doubled(value: int) -> int:
-    """Something quick."""
-    return 2 * value
-
-
-def refused(value: int) -> int:
-    """Something that cannot be."""
-    raise InputError(f"{value} cannot be")
-
-
-def failed(value: int) -> int:
-    """A mistake."""
-    raise ZeroDivisionError(value)
-
-
-def ended(value: int) -> int:
-    """A process that dies."""
-    os._exit(value)
-
-
-def endless(value: int) -> int:
-    """Something that never ends."""
-    time.sleep(3600)
-    return value
-
-
 def test_a_process_that_does_not_start_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As in a script that starts itself again; the next job is answered too."""
-
     def fails(_: object) -> None:
         raise EOFError
 
@@ -75,14 +45,12 @@ def _looks(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def workers() -> Iterator[Workers]:
-    """One process; a job may take a hundred looks."""
     made = Workers(1, longest=100.0)
     yield made
     made.close()
 
 
 def asked(workers: Workers, compute: Any, value: object) -> Answer:
-    """What comes of it."""
     answers: Queue[Answer] = Queue()
     workers.submit(1, "job", compute, (value,), answers.put)
     return answers.get(timeout=600)
@@ -100,7 +68,6 @@ def test_nobody_waits_for_a_process_that_is_still_starting(monkeypatch: pytest.M
 
 
 def test_an_answer_a_message_and_a_mistake(workers: Workers) -> None:
-    """The process goes on after each."""
     assert asked(workers, doubled, 21) == Answer(42)
     assert asked(workers, refused, 3) == Answer(None, "3 cannot be")
     assert "ZeroDivisionError" in asked(workers, failed, 1).message
@@ -108,7 +75,6 @@ def test_an_answer_a_message_and_a_mistake(workers: Workers) -> None:
 
 
 def test_what_dies_or_takes_too_long_is_said_and_replaced(workers: Workers) -> None:
-    """Another process does the next job."""
     assert "without an answer" in asked(workers, ended, 1).message
     assert "took more than" in asked(workers, endless, 1).message
     assert asked(workers, doubled, 4) == Answer(8)

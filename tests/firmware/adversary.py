@@ -36,26 +36,21 @@ ROUNDS = 6
 
 @dataclass(frozen=True)
 class Loop:
-    """A device, a wall, the wall in a machine's numbers, and the verdict on it."""
-
     device: zw.Device
     wall: Wall
     found: Judged
 
     @property
     def name(self) -> str:
-        """What it is, in a few words."""
         w, m = self.wall, self.found.machine
         return f"{m.number} K {float(w.stiffness):g} B {float(w.damping):g} {self.device!r}"
 
 
 def digits(value: float | Fraction) -> Fraction:
-    """Five digits."""
     return Fraction(f"{float(value):.5g}")
 
 
 def text(m: Machine) -> str:
-    """The header of a machine."""
     unit = 1.0 if m.fixed is None else m.fixed.units.scale.size(m.fixed.result)
     ends = (f"({int(m.counts[0])})", str(int(m.counts[1])))
     numbers = [("COUNTS_MIN", ends[0], "n"), ("COUNTS_MAX", ends[1], "n")]
@@ -75,7 +70,6 @@ def random_loop(random: Random) -> Loop:
     number = random.choice(["double", "float", "fixed", "fixed"])
     unit = float(k * count) * 2.0 ** -random.randrange(0, 9) if step is None else None
     m = machine(law_program(base, wall), number, (-MOST, MOST), unit)
-    assert m.error is not None, "a wall has a bound"
     near = [Fraction(1 + random.choice([-1, 1]) * 10 ** random.uniform(-4, -0.7)) for _ in range(3)]
     spent = Fraction(m.error) * random.choice([Fraction(1), near[2], digits(random.uniform(0, 1))])
     device = base.replace(
@@ -86,7 +80,6 @@ def random_loop(random: Random) -> Loop:
 
 
 def cycles(random: Random, rounds: int) -> Iterator[list[Fraction]]:
-    """Positions in counts: over one edge by little, in and out at once, sinusoids, anything."""
     little = Fraction(1, 2**20)
     for _ in range(rounds):
         n = random.choice([1, 1, 2, random.randrange(1, MOST)])

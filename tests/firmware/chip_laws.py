@@ -25,5 +25,4 @@ LAWS: dict[str, Environment] = {
 
 
 def emitted(name: str, number: str, target: str = "c99") -> Emitted:
-    """One of them; what is not proved is emitted anyway."""
     return emit(DEVICE, LAWS[name], target=target, number=number, travel=TRAVEL, anyway=True)

@@ -11,30 +11,8 @@ from random_scenes import random_scene
 
 import zwidth as zw
 from zwidth.machine.firmware.law import LawProgram
+from zwidth.model import rendering as r
 from zwidth.model.environment import Environment
-from zwidth.model.rendering import (
-    AdaptiveWindow,
-    CrossingCorrection,
-    Damper,
-    Dither,
-    DualRate,
-    EventTransient,
-    Extrapolation,
-    ForceBounding,
-    FrictionCompensation,
-    HalfSamplePrediction,
-    Hysteresis,
-    OnePole,
-    PassiveLeap,
-    PassivityController,
-    Saturation,
-    SlewLimit,
-    TickTime,
-    VirtualCoupling,
-    Window,
-    WindowedController,
-    render,
-)
 from zwidth.study.bench.bench import standard_laws
 
 PADDLE = zw.catalogue.device("haptic-paddle")
@@ -54,7 +32,6 @@ def _finger() -> dict[str, object]:
 
 
 def laws() -> dict[str, Callable[[], Law]]:
-    """Device and environment of each; made when they are called."""
     wall, damped = zw.Wall(300), zw.Wall(300, "0.2")
     random = np.random.default_rng(3)
     taps = [Fraction(int(n), 1000) for n in random.integers(-999, 1000, 101)]
@@ -66,8 +43,8 @@ def laws() -> dict[str, Callable[[], Law]]:
         "damped": damped,
         "clamped": damped.replace(clamped=True),
         "bilateral": zw.PulseTransferFunction([500, -200], [1, 0]),
-        "window": zw.Wall(300, "0.2", velocity_filter=Window(12)),
-        "one_pole": zw.Wall(300, "0.2", velocity_filter=OnePole("0.002"), clamped=True),
+        "window": zw.Wall(300, "0.2", velocity_filter=r.Window(12)),
+        "one_pole": zw.Wall(300, "0.2", velocity_filter=r.OnePole("0.002"), clamped=True),
         "detents": zw.NonlinearSpring.detents(5, "0.002", "0.5"),
         "bump_stop": zw.NonlinearSpring.bump_stop("0.003", 300, 4000000, "0.005"),
         "points": zw.NonlinearSpring([float(x) for x in points], [float(f) for f in forces]),
@@ -90,28 +67,33 @@ def laws() -> dict[str, Callable[[], Law]]:
         "coupled_scene": random_scene(7, 9),
     }
     chains = {
-        "saturation": (wall, [Saturation(2)]),
-        "slew": (damped, [SlewLimit(500)]),
-        "dither": (wall, [Dither("0.01")]),
-        "random_dither": (wall, [Dither("0.01", kind="random")]),
-        "compensation": (wall, [FrictionCompensation("0.05", "0.01", "0.02")]),
-        "sign_compensation": (wall, [FrictionCompensation("0.05", "0.01", 0)]),
-        "best_fit": (wall, [Damper("0.2", AdaptiveWindow(fit="best"), clamped=True)]),
-        "credit": (wall, [PassivityController(credit=True, forgetting="0.5", reference="spring")]),
-        "leap_resets": (damped, [PassiveLeap(resets=True)]),
-        "bounding_resets": (damped, [ForceBounding(resets=True)]),
-        "wide_window": (damped, [WindowedController(window=50)]),
-        "jumps": (damped, [DualRate(samples=5, updates="jump")]),
-        "fixed_event": (wall, [EventTransient(kind="fixed", amplitude=1, duration="0.005")]),
-        "throughout": (wall, [CrossingCorrection(throughout=True, **_finger())]),
-        "slip": (damped, [Hysteresis(force="0.1", stiffness=500, clamped=True)]),
+        "saturation": (wall, [r.Saturation(2)]),
+        "slew": (damped, [r.SlewLimit(500)]),
+        "dither": (wall, [r.Dither("0.01")]),
+        "random_dither": (wall, [r.Dither("0.01", kind="random")]),
+        "compensation": (wall, [r.FrictionCompensation("0.05", "0.01", "0.02")]),
+        "sign_compensation": (wall, [r.FrictionCompensation("0.05", "0.01", 0)]),
+        "best_fit": (wall, [r.Damper("0.2", r.AdaptiveWindow(fit="best"), clamped=True)]),
+        "credit": (wall, [r.PassivityController(credit=True, forgetting="0.5", reference="spring")]),
+        "leap_resets": (damped, [r.PassiveLeap(resets=True)]),
+        "bounding_resets": (damped, [r.ForceBounding(resets=True)]),
+        "wide_window": (damped, [r.WindowedController(window=50)]),
+        "jumps": (damped, [r.DualRate(samples=5, updates="jump")]),
+        "fixed_event": (wall, [r.EventTransient(kind="fixed", amplitude=1, duration="0.005")]),
+        "throughout": (wall, [r.CrossingCorrection(throughout=True, **_finger())]),
+        "slip": (damped, [r.Hysteresis(force="0.1", stiffness=500, clamped=True)]),
         "three": (
             wall,
-            [Extrapolation(samples="0.5"), Damper("0.1", TickTime()), PassivityController(), Saturation(3)],
+            [
+                r.Extrapolation(samples="0.5"),
+                r.Damper("0.1", r.TickTime()),
+                r.PassivityController(),
+                r.Saturation(3),
+            ],
         ),
         "four": (
             damped,
-            [HalfSamplePrediction(**_finger()), SlewLimit(900), Dither("0.01"), ForceBounding()],
+            [r.HalfSamplePrediction(**_finger()), r.SlewLimit(900), r.Dither("0.01"), r.ForceBounding()],
         ),
     }
     made: dict[str, Callable[[], Law]] = {}
@@ -121,10 +103,10 @@ def laws() -> dict[str, Callable[[], Law]]:
         made[f"{name}_bare"] = lambda e=given[name]: (BARE, e)
         made[f"{name}_read"] = lambda e=given[name]: (READ, e)
     for name, (environment, chain) in chains.items():
-        made[name] = lambda e=environment, c=chain: (PADDLE, render(e, *c))
+        made[name] = lambda e=environment, c=chain: (PADDLE, r.render(e, *c))
     for name, law in standard_laws(PADDLE, zw.Wall(300)).items():
         made[f"bench_{name}".replace("-", "_")] = lambda e=law: (PADDLE, e)
-    made["coupling"] = lambda: (PADDLE, VirtualCoupling(2000, 1, environment=zw.Maxwell(500, 2)))
+    made["coupling"] = lambda: (PADDLE, r.VirtualCoupling(2000, 1, environment=zw.Maxwell(500, 2)))
     return made
 
 

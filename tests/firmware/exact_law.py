@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator as o
 from collections.abc import Callable, Iterable
 from fractions import Fraction
 from math import floor, isqrt
@@ -16,32 +17,14 @@ BITS = 400
 """Of what is remembered: it is rounded to 2⁻⁴⁰⁰, since an endless response has endless digits."""
 
 _DO: dict[str, Callable[..., Any]] = {
-    "+": lambda a, b: a + b,
-    "-": lambda a, b: a - b,
-    "*": lambda a, b: a * b,
-    "/": lambda a, b: a / b,
-    "<": lambda a, b: a < b,
-    "<=": lambda a, b: a <= b,
-    "==": lambda a, b: a == b,
-    "!=": lambda a, b: a != b,
-    ">": lambda a, b: a > b,
-    ">=": lambda a, b: a >= b,
-    "and": lambda a, b: a and b,
-    "or": lambda a, b: a or b,
-    "not": lambda a: not a,
-    "negate": lambda a: -a,
-    "abs": abs,
-    "floor": lambda a: Fraction(floor(a)),
-    "min": lambda a, b: b if b < a else a,
-    "max": lambda a, b: b if b > a else a,
-    "real": Fraction,
-    "copy": lambda a: a,
-    "sqrt": lambda a: Fraction(isqrt(floor(a * 4**BITS)), 2**BITS),
-}
+    "+": o.add, "-": o.sub, "*": o.mul, "/": o.truediv, "negate": o.neg, "abs": abs, "min": min, "max": max,
+    "<": o.lt, "<=": o.le, "==": o.eq, "!=": o.ne, ">": o.gt, ">=": o.ge, "not": o.not_,
+    "and": lambda a, b: a and b, "or": lambda a, b: a or b, "real": Fraction, "copy": lambda a: a,
+    "floor": lambda a: Fraction(floor(a)), "sqrt": lambda a: Fraction(isqrt(floor(a * 4**BITS)), 2**BITS),
+}  # fmt: skip
 
 
 def kept(value: Fraction) -> Fraction:
-    """The same to 2⁻⁴⁰⁰."""
     return Fraction(round(value * 2**BITS), 2**BITS)
 
 
@@ -58,13 +41,11 @@ class ExactProgram:
         self.init(0)
 
     def init(self, counts: int) -> None:
-        """At rest."""
         x = Fraction(self.law.resolution or 1.0) * counts
         lines = [self.law.line(k, counts > 0) for k in range(self.law.remembers)]
         self.cells = [Fraction(a) + Fraction(s) * x for a, s in lines]
 
     def step(self, counts: int) -> Fraction:
-        """One sample: the force."""
         self.values = {self.law.program.parameters[0]: Fraction(counts)}
         self._block(self.law.program.body)
         return self._value(self.law.program.results[0])
@@ -77,7 +58,7 @@ class ExactProgram:
     def _block(self, body: list[Statement]) -> None:
         for s in body:
             if isinstance(s, Operation):
-                of = [self._value(o) for o in s.operands]
+                of = [self._value(it) for it in s.operands]
                 self.values[s.result] = (
                     of[0] - Fraction(1, 2) if s is self.converter else _DO[s.operator](*of)
                 )

@@ -9,14 +9,15 @@ from __future__ import annotations
 import ctypes
 import json
 import os
-import shutil
 import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from firmware.emulated.built import called
+from firmware.emulated.required import tool
 from numpy.typing import NDArray
 
 from zwidth.machine.firmware.c99 import C99
@@ -38,18 +39,9 @@ class Ran(NamedTuple):
     cells: Array
 
 
-def _needs(name: str) -> pytest.MarkDecorator:
-    """Without a program a test is skipped by its name; where every target is asked for it fails."""
-    lacks = shutil.which(name) is None and not os.environ.get("ZWIDTH_EVERY_TARGET")
-    return pytest.mark.skipif(lacks, reason=f"{name} is not on this machine")
-
-
-needs_c, needs_node = _needs("cc"), _needs("node")
-
-
 def understood(compiler: str, *options: str) -> None:
     """Skips the test where the compiler refuses the options for an empty file: of another processor, say."""
-    command = [compiler, *" ".join(options).split(), "-fsyntax-only", "-x", "c", os.devnull]
+    command = [tool(compiler), *" ".join(options).split(), "-fsyntax-only", "-x", "c", os.devnull]
     if options and subprocess.run(command, capture_output=True, check=False).returncode != 0:
         pytest.skip(f"{compiler} on this machine does not take {' '.join(options)}")
 
@@ -61,18 +53,21 @@ def same_bits(one: Array, other: Array) -> bool:
     return a.shape == b.shape and bool((both | (a.view(np.int64) == b.view(np.int64))).all())
 
 
+def differing(known: Mapping[str, Any], ran: Mapping[str, Ran]) -> list[str]:
+    pairs = {name: zip(one.ran, ran[name], strict=True) for name, one in known.items()}
+    return [name for name, parts in pairs.items() if not all(same_bits(a, b) for a, b in parts)]
+
+
 _ALLOWED = ("unused-function", "unused-but-set-variable", "tautological-compare")
 """Random functions compare x with x, and forget what they have computed."""
 
 
 def compiled_c(text: str, folder: Path, options: Sequence[str] = ("-std=c99", "-O2")) -> ctypes.CDLL:
-    """A text in C as a library; warnings are errors."""
     source, library = folder / "emitted.c", folder / f"emitted{''.join(options)}.so".replace("=", "")
     source.write_text(text, encoding="utf-8")
     strict = ["-Wall", "-Werror", *(f"-Wno-{it}" for it in _ALLOWED)]
-    command = ["cc", *options, *strict, "-fPIC", "-shared", "-o", str(library), str(source), "-lm"]
-    made = subprocess.run(command, capture_output=True, text=True)
-    assert made.returncode == 0, made.stderr
+    command = [tool("cc"), *options, *strict, "-fPIC", "-shared", "-o", str(library), str(source), "-lm"]
+    called(command)
     return ctypes.CDLL(str(library))
 
 
@@ -107,15 +102,9 @@ def run_node(
         shapes[name] = [len(rows), rows.shape[1], outputs]
     (folder / "shapes.json").write_text(json.dumps(shapes), encoding="utf-8")
     (folder / "run.mjs").write_text(_RUN, encoding="utf-8")
-    ran = subprocess.run(["node", "run.mjs"], cwd=folder, capture_output=True, text=True)
-    assert ran.returncode == 0, ran.stderr
-    return {
-        name: Ran(
-            np.fromfile(folder / f"{name}.out").reshape(shape[0], shape[2]),
-            np.fromfile(folder / f"{name}.cells"),
-        )
-        for name, shape in shapes.items()
-    }
+    called([tool("node"), "run.mjs"], folder)
+    outputs = {n: np.fromfile(folder / f"{n}.out").reshape(rows, -1) for n, (rows, _, _) in shapes.items()}
+    return {n: Ran(found, np.fromfile(folder / f"{n}.cells")) for n, found in outputs.items()}
 
 
 _RUN = """\
@@ -162,7 +151,6 @@ void {name}_rows(const double *in, int rows, double *cells, double *out)
 
 
 def law_in_javascript(name: str) -> str:
-    """A function for `run_node` of the law whose module is beside it as NAME.mjs."""
     return f"""import * as of_{name} from "./{name}.mjs";
 export const {name} = (() => {{
     let s;
@@ -178,7 +166,6 @@ export const {name} = (() => {{
 
 
 def program_in_c(program: Program, name: str) -> str:
-    """A function for `run_c`; the program has one array of cells at most."""
     c = C99(program, OF_C, prefix=name)
     body = c.lines()
     size = program.cells[0].size if program.cells else 1
@@ -188,21 +175,16 @@ def program_in_c(program: Program, name: str) -> str:
     read = "".join(f", ({t})in[k * {len(types)} + {i}]" for i, t in enumerate(types))
     results = [f"    out[{i}] = {c.read(r, alone=True)};" for i, r in enumerate(program.results)]
     functions = c.function_lines()
+    call = f"{name}(({name}_state *)cells{read}, out + k * {len(results)})"
     lines = [
         f"typedef struct {{ double {cell}[{size}]; }} {name}_state;",
         *c.table_lines(),
         *c.helper_lines(),
         *functions,
         f"static void {name}({name}_state *s{given}, double *out)",
-        "{",
-        *body,
-        *results,
-        "}",
+        *("{", *body, *results, "}"),
         f"void {name}_rows(const double *in, int rows, double *cells, double *out)",
-        "{",
-        f"    for (int k = 0; k < rows; k += 1) {{ {name}(({name}_state *)cells{read}, "
-        f"out + k * {len(results)}); }}",
-        "}",
+        f"{{ for (int k = 0; k < rows; k++) {{ {call}; }} }}",
     ]
     return "\n".join(lines) + "\n"
 
@@ -211,7 +193,6 @@ INCLUDES = "#include <math.h>\n#include <stdint.h>\n"
 
 
 def program_in_javascript(program: Program, name: str) -> str:
-    """A function for `run_node`."""
     js = JavaScript(program, OF_JAVASCRIPT)
     body = js.lines()
     functions = js.function_lines()

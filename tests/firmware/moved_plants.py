@@ -42,7 +42,6 @@ def hand_and_law(hand: Hand, rows: int, seed: int) -> Array:
 
 
 def plant_in_c(program: Program, name: str) -> str:
-    """A function for `machines.run_c`."""
     count = len(program.parameters)
     given = "".join(f", in[k * {count} + {i}]" for i in range(count))
     return f"""{plant_header(program, name=name, about=[name])}
@@ -61,7 +60,6 @@ void {name}_rows(const double *in, int rows, double *cells, double *out)
 
 
 def plant_in_javascript(name: str) -> str:
-    """A function for `machines.run_node` of the plant whose module is beside it as NAME.mjs."""
     return f"""import * as of_{name} from "./{name}.mjs";
 export const {name} = (() => {{
     const s = of_{name}.init(0);

@@ -53,8 +53,6 @@ def kept(m, i, a):
 
 
 class _Function:
-    """One function being written."""
-
     def __init__(self, random: Random, name: str) -> None:
         self.random, self.name = random, name
         self.lines: list[str] = []
@@ -69,32 +67,13 @@ class _Function:
         if depth > 2 or r.random() < 0.3:
             return r.choice([*self.reals, *self.reals, repr(round(r.uniform(-4, 4), 2)), "0.0", "-0.0"])
         a, b = self.real(deep), self.real(deep)
-        made = r.choice(
-            [
-                "({a} + {b})",
-                "({a} - {b})",
-                "({a} * {b})",
-                "over({a}, {b})",
-                "over(1, {a})",
-                "(-{a})",
-                "abs({a})",
-                "fabs({a})",
-                "sqrt(abs({a}))",
-                "min({a}, {b})",
-                "max({a}, {b}, x)",
-                "({a} if {t} else {b})",
-                "m[{i}]",
-                "m[{i}]",
-                "p[{w} % 5]",
-                "p[3]",
-                "({w} * {a})",
-                "float({w})",
-                "({a} % 1.5)",
-                "(min(max({a}, -1e6), 1e6) // 1.0)",
-                "searched(m, {a}, 3)",
-                "searched(m, {a}, {w})",
-            ]
-        )
+        made = r.choice([
+            "({a} + {b})", "({a} - {b})", "({a} * {b})", "over({a}, {b})", "over(1, {a})", "(-{a})",
+            "abs({a})", "fabs({a})", "sqrt(abs({a}))", "min({a}, {b})", "max({a}, {b}, x)",
+            "({a} if {t} else {b})", "m[{i}]", "m[{i}]", "p[{w} % 5]", "p[3]", "({w} * {a})", "float({w})",
+            "({a} % 1.5)", "(min(max({a}, -1e6), 1e6) // 1.0)", "searched(m, {a}, 3)",
+            "searched(m, {a}, {w})",
+        ])  # fmt: skip
         return self.filled(made, deep, a=a, b=b)
 
     def filled(self, made: str, depth: int, **given: str) -> str:
@@ -108,21 +87,12 @@ class _Function:
         r, deep = self.random, depth + 1
         if depth > 2 or r.random() < 0.4:
             return r.choice([*self.wholes, str(r.randrange(-3, 6))])
-        made = r.choice(
-            [
-                "({a} + {b})",
-                "({a} - {b})",
-                "({a} * {b} % 11)",
-                "({a} // 3)",
-                "(-{a})",
-                "abs({a})",
-                "min({a}, {b})",
-                "({a} if {t} else {b})",
-                "int(min(max({x}, -9.0), 9.0) if {x} == {x} else 2.0)",
-                "floor(min(max({x}, -9.0), 9.0) if {x} == {x} else 2.0)",
-                "ceil(min(max({x}, -9.0), 9.0) if {x} == {x} else 2.0)",
-            ]
-        )
+        made = r.choice([
+            "({a} + {b})", "({a} - {b})", "({a} * {b} % 11)", "({a} // 3)", "(-{a})", "abs({a})",
+            "min({a}, {b})", "({a} if {t} else {b})", "int(min(max({x}, -9.0), 9.0) if {x} == {x} else 2.0)",
+            "floor(min(max({x}, -9.0), 9.0) if {x} == {x} else 2.0)",
+            "ceil(min(max({x}, -9.0), 9.0) if {x} == {x} else 2.0)",
+        ])  # fmt: skip
         text = self.filled(made, deep, a=self.whole(deep), b=self.whole(deep), x=self.real(deep + 1))
         return f"({text} % {r.randrange(2, 12)})" if r.random() < 0.5 else text
 
@@ -136,20 +106,11 @@ class _Function:
             return r.choice(self.truths)
         if depth > 2 or r.random() < 0.4:
             return f"{self.real(deep)} {r.choice(['<', '<=', '==', '!=', '>', '>='])} {self.real(deep)}"
-        made = r.choice(
-            [
-                "({t} and {b})",
-                "({t} or {b})",
-                "(not ({t}))",
-                "{x} < {y} <= {x}",
-                "{w} < {y}",
-                "{w} == 2",
-                "-1 <= {w} < 3",
-                "(({t}) == ({b}))",
-                "({t} and kept(m, {i}, {x}))",
-                "(kept(m, {i}, {x}) or kept(m, {i}, {y}))",
-            ]
-        )
+        made = r.choice([
+            "({t} and {b})", "({t} or {b})", "(not ({t}))", "{x} < {y} <= {x}", "{w} < {y}", "{w} == 2",
+            "-1 <= {w} < 3", "(({t}) == ({b}))", "({t} and kept(m, {i}, {x}))",
+            "(kept(m, {i}, {x}) or kept(m, {i}, {y}))",
+        ])  # fmt: skip
         return self.filled(made, deep, b=self.truth(deep), x=self.real(deep), y=self.real(deep))
 
     # ---- statements
@@ -173,30 +134,36 @@ class _Function:
         if loop:
             kinds += ["break", "continue"]
         kinds += ["return"] if depth > 1 else []
-        getattr(self, f"_{r.choice(kinds)}")(depth, loop)
+        kind = r.choice(kinds)
+        if kind in ("break", "continue"):
+            self.say(depth, kind)
+        else:
+            getattr(self, f"_{kind}")(depth, loop)
 
     def _name(self, among: list[str], prefix: str) -> str:
-        """One that is there, or a new one."""
         changing = [n for n in among if n not in ("q", "k") and not n.startswith("i")]
         if changing and self.random.random() < 0.6:
             return self.random.choice(changing)
+        return self._new(prefix)
+
+    def _new(self, prefix: str) -> str:
         self.counts += 1
         return f"{prefix}{self.counts}"
 
-    def _real(self, depth: int, loop: bool) -> None:
-        value, name = self.real(), self._name(self.reals, "r")
+    def _set(self, depth: int, kind: str, value: str) -> None:
+        among = getattr(self, kind)
+        name = self._name(among, kind[0])
         self.say(depth, f"{name} = {value}")
-        self.reals = [*dict.fromkeys([*self.reals, name])]
+        setattr(self, kind, [*dict.fromkeys([*among, name])])
+
+    def _real(self, depth: int, loop: bool) -> None:
+        self._set(depth, "reals", self.real())
 
     def _whole(self, depth: int, loop: bool) -> None:
-        value, name = f"({self.whole()}) % 13", self._name(self.wholes, "w")
-        self.say(depth, f"{name} = {value}")
-        self.wholes = [*dict.fromkeys([*self.wholes, name])]
+        self._set(depth, "wholes", f"({self.whole()}) % 13")
 
     def _truth(self, depth: int, loop: bool) -> None:
-        value, name = self.truth(), self._name(self.truths, "t")
-        self.say(depth, f"{name} = {value}")
-        self.truths = [*dict.fromkeys([*self.truths, name])]
+        self._set(depth, "truths", self.truth())
 
     def _cell(self, depth: int, loop: bool) -> None:
         self.say(depth, f"m[{self.place()}] {self.random.choice(['=', '+=', '*='])} {self.real()}")
@@ -224,8 +191,7 @@ class _Function:
             self.block(depth + 1, loop)
 
     def _for(self, depth: int, loop: bool) -> None:
-        self.counts += 1
-        name = f"i{self.counts}"
+        name = self._new("i")
         passes = self.random.choice(
             ["2", "3", "q", "40", "k", f"{self.whole(1)}", "5, -1, -2", "k, 9", "1, k + 2, 3"]
         )
@@ -235,33 +201,24 @@ class _Function:
         self.wholes.remove(name)
 
     def _over(self, depth: int, loop: bool) -> None:
-        self.counts += 1
-        name = f"r{self.counts}"
+        name = self._new("r")
         self.say(depth, f"for {name} in ({self.real(1)}, {self.real(1)}):")
         self.reals.append(name)
         self.block(depth + 1, True)
         self.reals.remove(name)
 
     def _while(self, depth: int, loop: bool) -> None:
-        self.counts += 1
-        name = f"i{self.counts}"
+        name = self._new("i")
         self.say(depth, f"{name} = {self.random.choice(['3', 'k % 5', '7'])}")
         self.say(depth, f"while {name} > 0 and {self.truth(1)}:")
         self.say(depth + 1, f"{name} -= 1")
         self.block(depth + 1, True)
-
-    def _break(self, depth: int, loop: bool) -> None:
-        self.say(depth, "break")
-
-    def _continue(self, depth: int, loop: bool) -> None:
-        self.say(depth, "continue")
 
     def _return(self, depth: int, loop: bool) -> None:
         self.say(depth, f"return {self.real(1)}, {self.real(2)}")
 
 
 def random_function(random: Random, name: str) -> str:
-    """The text of one function."""
     f = _Function(random, name)
     f.lines.append(f"def {name}(m, p, q, x, y, k):")
     for _ in range(random.randrange(3, 8)):

@@ -47,9 +47,7 @@ def laws() -> dict[str, Environment]:
         "hysteresis": zw.render(zw.Wall(300), rendering.Hysteresis("0.3", 900)),
         "saturation": zw.render(zw.Wall(613.7, damping="1.37"), rendering.Saturation(3)),
         "chain": zw.render(
-            zw.Wall(300, damping="0.4"),
-            rendering.Hysteresis("0.2", 700),
-            rendering.Saturation(4),
+            zw.Wall(300, damping="0.4"), rendering.Hysteresis("0.2", 700), rendering.Saturation(4)
         ),
     }
 

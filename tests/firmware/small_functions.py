@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
+from inspect import isfunction
 from typing import Any, NamedTuple
 
 Array = Any
 
 
 class Pair(NamedTuple):
-    """Two numbers by name."""
-
     first: float
     second: float
 
@@ -149,36 +148,36 @@ def not_computed(m: Array, x: float, k: int) -> float:
     return 2.0 if 0 <= n < 4 and m[n] > 0.0 else 3.0
 
 
-def stores(m: Array, i: int, x: float) -> bool:
+def _stores(m: Array, i: int, x: float) -> bool:
     m[i] += x
     return m[i] > 1.0
 
 
 def called_if_needed(m: Array, x: float, k: int) -> float:
-    if k > 2 or stores(m, 1, x):
+    if k > 2 or _stores(m, 1, x):
         m[0] = m[0] * 0.5
-    return m[0] + (1.0 if k < 4 and stores(m, 2, -x) else 0.0)
+    return m[0] + (1.0 if k < 4 and _stores(m, 2, -x) else 0.0)
 
 
 def place_asked_once(m: Array, x: float, k: int) -> float:
-    m[1 if stores(m, 2, x) else 0] += 1.0
+    m[1 if _stores(m, 2, x) else 0] += 1.0
     return m[0] - m[1]
 
 
 def stop_asked_once(m: Array, x: float, k: int) -> float:
     total = 0.0
-    for i in range(k if stores(m, 2, x) else 2 * k):
+    for i in range(k if _stores(m, 2, x) else 2 * k):
         total += m[2] * i
     return total
 
 
 def records(m: Array, x: float, k: int) -> float:
     pair = Pair(x, second=2.0) if k > 3 else Pair(m[0], x)
-    low, high = ordered(pair.first, pair.second)
+    low, high = _ordered(pair.first, pair.second)
     return low - 3.0 * high
 
 
-def ordered(a: float, b: float) -> tuple[float, float]:
+def _ordered(a: float, b: float) -> tuple[float, float]:
     return (b, a) if b < a else (a, b)
 
 
@@ -195,29 +194,10 @@ def ends(m: Array, x: float, k: int) -> float:
     return min(big * 1e10, -big) / (big - big) + math.sqrt(abs(x))
 
 
-FUNCTIONS = (
-    nested_returns,
-    break_written_out,
-    break_in_loop,
-    swapped,
-    remembered,
-    merged,
-    loops_in_loops,
-    two_loops,
-    mixed,
-    chained,
-    known_and_not,
-    changed_by_a_loop_in_a_branch,
-    stop_read_once,
-    counter_after_another,
-    not_computed,
-    called_if_needed,
-    place_asked_once,
-    stop_asked_once,
-    records,
-    whole_quotient,
-)
-"""Those that Python computes as they stand."""
-
 NUMPY = (whole_zero, ends)
 """Those that divide by 0."""
+
+_HERE = [f for f in dict(globals()).values() if isfunction(f) and f.__module__ == __name__]
+
+FUNCTIONS = tuple(f for f in _HERE if not f.__name__.startswith("_") and f not in NUMPY)
+"""Those that Python computes as they stand."""

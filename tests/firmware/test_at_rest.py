@@ -24,7 +24,6 @@ from zwidth.model.operator import PrescribedMotion
 
 
 def laid_out(law: Law, counts: int) -> Setup:
-    """The loop of the simulator, whose hand starts there."""
     device, environment = law
     there = PrescribedMotion([counts * float(device.exact("resolution"))] * 2)
     return prepare(device, environment, there, device.exact("sample_period"), encoder_phase=0.5)
@@ -60,11 +59,7 @@ RELAXING = {
     "bounding": zw.render(zw.Wall(2000, 1), zw.rendering.ForceBounding()),
 }
 SLOW = zw.Device(
-    mass="0.05",
-    damping="0.2",
-    coulomb_friction="0.02",
-    resolution="20 um",
-    sample_period="0.001",
+    mass="0.05", damping="0.2", coulomb_friction="0.02", resolution="20 um", sample_period="0.001"
 )
 
 

@@ -11,21 +11,10 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from emitted_laws import laws, readings
-from machines import (
-    Ran,
-    compiled_c,
-    law_in_c,
-    law_in_javascript,
-    needs_c,
-    needs_node,
-    run_c,
-    run_node,
-    same_bits,
-    understood,
-)
+from firmware.emulated.required import tool
+from machines import Ran, compiled_c, differing, law_in_c, law_in_javascript, run_c, run_node, understood
 from moved_plants import PERIOD, PLANTS, plant_in_c
 from numpy.typing import NDArray
-from tools import tool
 
 import zwidth as zw
 from zwidth.loop.law import sampled_force, sampled_force_at
@@ -42,8 +31,6 @@ STEPS = 3000
 
 
 class Known(NamedTuple):
-    """A law, its readings, and what the compiled functions make of them."""
-
     law: LawProgram
     readings: NDArray[np.float64]
     ran: Ran
@@ -55,7 +42,6 @@ def known() -> Mapping[str, Known]:
 
 
 def _known(device: zw.Device, environment: Environment) -> Known:
-    """What `simulate` gives: on a walk, then from rest at some places."""
     law = law_program(device, environment)
     still = [[np.nan, *[n] * 4] for n in (-3000, -1, 0, 1, 2, 391, 3000)]
     given = np.concatenate([readings(law, 7, STEPS), np.ravel(still) * (1 if law.resolution > 0 else 2.1e-5)])
@@ -72,20 +58,11 @@ def _known(device: zw.Device, environment: Environment) -> Known:
     return Known(law, given[:, None], Ran(forces, memory))
 
 
-def _differ(known: Mapping[str, Known], ran: Mapping[str, Ran]) -> list[str]:
-    return [
-        name
-        for name, one in known.items()
-        if not all(same_bits(a, b) for a, b in zip(one.ran, ran[name], strict=True))
-    ]
-
-
 def test_the_readings_make_every_law_push(known: Mapping[str, Known]) -> None:
     """Each law gives many forces, inside its limit and at it: what follows compares something."""
     assert all(len(np.unique(one.ran.outputs)) > 40 for one in known.values())
 
 
-@needs_c
 @pytest.mark.parametrize(
     "options",
     [("-std=c99", "-O2"), ("-std=gnu99", "-O3"), ("-std=gnu99", "-O3", "-march=native")],
@@ -101,16 +78,14 @@ def test_every_header_has_the_same_bits(
     understood("cc", *options)
     library = compiled_c("".join(law_in_c(k.law, n) for n, k in known.items()), tmp_path, options)
     ran = {n: run_c(library, n, k.readings, k.ran.cells, 1) for n, k in known.items()}
-    assert not _differ(known, ran)
+    assert not differing(known, ran)
 
 
-@needs_node
 def test_every_module_has_the_same_bits(known: Mapping[str, Known], tmp_path: Path) -> None:
-    """Force and memory are equal to the last bit in JavaScript."""
     files = {f"{n}.mjs": module(k.law, about=[n], numbers=[]) for n, k in known.items()}
     text = "".join(law_in_javascript(n) for n in known)
     ran = run_node(text, tmp_path, {n: (k.readings, k.ran.cells, 1) for n, k in known.items()}, files)
-    assert not _differ(known, ran)
+    assert not differing(known, ran)
 
 
 # ---- what a compiler may be asked for
@@ -126,17 +101,14 @@ KEPT = {"double": {0, 1, 16, 32, 64}, "float": {0, 16, 32}, "fixed": {-1, 0, 1, 
 
 
 def _header(law: LawProgram, number: Number, name: str) -> str:
-    """In numbers of any kind."""
     end = 2000.0
-    ends = [
-        (f"{seen}_{side}", f"({end:.0f})", "") for seen in ("POSITION", "COUNTS") for side in ("MIN", "MAX")
-    ]
+    ends = [(f"{it}_{side}", f"({end:.0f})", "") for it in ("POSITION", "COUNTS") for side in ("MIN", "MAX")]
     made = machine(law, number, (-end, end)) if number == "fixed" else Machine(law, number, (-end, end), None)
     return header(made, name=f"{name}_{number}", about=[name], numbers=ends)
 
 
 def _asked(text: str, *command: str) -> subprocess.CompletedProcess[str]:
-    """What a compiler makes of a text."""
+    tool(command[0])
     return subprocess.run([*command, "-"], input=text, capture_output=True, text=True, check=False)
 
 
@@ -150,7 +122,6 @@ def headers(known: Mapping[str, Known]) -> str:
     ) + "".join(plant_in_c(program, n) for n, program in plants.items())
 
 
-@needs_c
 @pytest.mark.parametrize("march", MARCH)
 @pytest.mark.parametrize(
     ("compiler", "dialects"), [("cc", ("c99", "gnu99", "c11", "gnu17")), ("c++", ("c++11", "gnu++17"))]
@@ -158,8 +129,6 @@ def headers(known: Mapping[str, Known]) -> str:
 def test_every_header_compiles_for_every_processor(
     headers: str, compiler: str, dialects: tuple[str, ...], march: str
 ) -> None:
-    """In the dialects of C and C++, the strict ones and GNU's."""
-    tool(compiler)
     understood(compiler, march)
     language = "c" if compiler == "cc" else "c++"
     for dialect in dialects:
@@ -168,24 +137,13 @@ def test_every_header_compiles_for_every_processor(
         assert done.returncode == 0, f"{dialect}: {done.stderr[:2000]}"
 
 
-@needs_c
 @pytest.mark.parametrize(("compiler", "dialect"), [("cc", "gnu17"), ("c++", "gnu++17")])
 @pytest.mark.parametrize("march", ["-march=x86-64-v3", "-march=sapphirerapids"])
 def test_no_product_is_fused_with_a_sum(compiler: str, dialect: str, march: str) -> None:
     """Where processor and dialect would: without the header's own words the same text has such products."""
-    tool(compiler)
     understood(compiler, march)
-    options = [
-        compiler,
-        f"-std={dialect}",
-        "-O2",
-        march,
-        "-S",
-        "-o",
-        "-",
-        "-x",
-        "c" if compiler == "cc" else "c++",
-    ]
+    language = "c" if compiler == "cc" else "c++"
+    options = [compiler, f"-std={dialect}", "-O2", march, "-S", "-o", "-", "-x", language]
     text = "".join(law_in_c(law_program(*laws()[name]()), name) for name in ("damped", "prony"))
     fused = re.compile(r"\bv?fn?m(add|sub)\d")
     assert not fused.search(_asked(text, *options).stdout)
@@ -193,7 +151,6 @@ def test_no_product_is_fused_with_a_sum(compiler: str, dialect: str, march: str)
     assert fused.search(_asked(loose, *options, "-ffp-contract=fast").stdout)
 
 
-@needs_c
 @pytest.mark.parametrize("number", KEPT)
 def test_a_compiler_that_keeps_other_digits_is_refused(number: Number) -> None:
     """By each value of FLT_EVAL_METHOD; the libraries' own headers are read before it is changed."""
@@ -205,7 +162,6 @@ def test_a_compiler_that_keeps_other_digits_is_refused(number: Number) -> None:
     assert all("more digits" in one.stderr for m, one in done.items() if m not in KEPT[number])
 
 
-@needs_c
 @pytest.mark.parametrize("number", KEPT)
 @pytest.mark.parametrize(
     ("option", "macro", "why"),

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from firmware.emulated import node
-from firmware.emulated.built import STRICT, called
+from firmware.emulated.built import STRICT
 from firmware.emulated.built import WARNED as PEDANTIC
-from firmware.emulated.required import require
-from firmware.tools import DATA, STUBS, needed_header, run, tool
+from firmware.emulated.required import tool
+from firmware.machines import law_in_javascript, run_node
+from firmware.tools import STUBS, run, sketch
 
 import zwidth as zw
 from zwidth.cli.main import main
@@ -24,56 +24,20 @@ from zwidth.machine.firmware.telemetry import read_telemetry
 WARNED = ("-Wall", "-Wextra", "-Werror", "-ffp-contract=off")
 
 HAPKIT = zw.Device(
-    mass="20 g",
-    damping=0.15,
-    coulomb_friction="0.1 N",
-    resolution="13.1 um",
-    rate="1 kHz",
-    force_limit="5 N",
-    force_resolution="0.01 N",
-)
-MOTOR = zw.Device(
-    motion="rotary",
-    mass=1e-4,
-    damping=0.002,
-    coulomb_friction=0.004,
-    resolution="0.0007669903939428206 rad",
-    rate=1000,
-    force_limit=2,
-)
+    mass="20 g", damping=0.15, coulomb_friction="0.1 N", resolution="13.1 um", rate="1 kHz"
+).replace(force_limit="5 N", force_resolution="0.01 N")
+MOTOR = zw.rotary(
+    inertia=1e-4, damping=0.002, coulomb_friction=0.004, resolution="0.0007669903939428206 rad", rate=1000
+).replace(force_limit=2)
 WALL = zw.Wall(stiffness=150, damping=0.05)
-SPRING_OF_A_MOTOR = zw.Wall(stiffness=1)
 
 
 def written(folder: Path, target: str, number: str | None = None, prefix: str = "law") -> Emitted:
-    """The law of a target, in a folder."""
-    loop = (MOTOR, SPRING_OF_A_MOTOR) if target in ("simplefoc", "moteus") else (HAPKIT, WALL)
-    found = emit(
-        *loop, target=target, number=number, travel="-3 .. 3 rad" if loop[0] is MOTOR else None, prefix=prefix
-    )
+    turns = target in ("simplefoc", "moteus")
+    loop, travel = ((MOTOR, zw.Wall(stiffness=1)), "-3 .. 3 rad") if turns else ((HAPKIT, WALL), None)
+    found = emit(*loop, target=target, number=number, travel=travel, prefix=prefix)
     found.write(folder)
     return found
-
-
-def sketch(folder: Path) -> Path:
-    """The sketch of a folder as a program of its chip."""
-    require("avr")
-    chip = ["-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Os", "-fno-exceptions", "-std=gnu++11", *WARNED]
-    source = ["-x", "c++", "-include", "Arduino.h", str(folder / f"{folder.name}.ino")]
-    start = str(STUBS / "arduino" / "main.cpp")
-    called(
-        [
-            "avr-g++",
-            *chip,
-            f"-I{STUBS / 'arduino'}",
-            f"-I{folder}",
-            *source,
-            start,
-            "-o",
-            str(folder / "a.elf"),
-        ]
-    )
-    return folder / "a.elf"
 
 
 def force(data: object, error: float) -> None:
@@ -89,94 +53,63 @@ def force(data: object, error: float) -> None:
 
 
 @pytest.mark.parametrize("number", ["fixed", "float"])
-def test_a_hapkit_alone_gives_the_force_that_was_proved(tmp_path: Path, number: str) -> None:
-    """The sketch on its emulated chip, the sensor moved by a swinging handle: forces by its own telemetry."""
+def test_a_hapkit_alone_gives_the_force_that_was_proved(chip: Path, tmp_path: Path, number: str) -> None:
     found = written(tmp_path / "wall", "arduino", number)
-    program = sketch(tmp_path / "wall")
-    needed_header("simavr/sim_avr.h")
-    chip = tmp_path / "chip"
-    run(tool("cc"), "-std=gnu99", "-O2", DATA / "chip.c", "-o", chip, "-lsimavr", "-lm")
-    run(chip, program, "1000", tmp_path / "line.bin")
+    run(chip, sketch(tmp_path / "wall"), "1000", tmp_path / "line.bin")
     data = read_telemetry(tmp_path / "line.bin")
     assert data.attrs["certificate_sha256"] == found.certificate_sha256
     assert data.actuator_force.values.max() > 0.5
-    assert found.machine.error is not None
     force(data, found.machine.error)
 
 
-@pytest.mark.parametrize(("delay", "in_time"), [("0.25 ms", True), ("0.02 ms", False)])
-def test_a_force_later_than_the_proof_counts_ends_it(tmp_path: Path, delay: str, in_time: bool) -> None:
+@pytest.mark.parametrize(("delay", "in_time"), [(0.25e-3, True), (0.02e-3, False)])
+def test_a_force_later_than_the_proof_counts_ends_it(
+    chip: Path, tmp_path: Path, delay: float, in_time: bool
+) -> None:
     """The sensor alone takes the chip 26 us: a law that was proved for a force within 20 us is not served."""
-    device = HAPKIT.replace(delay=zw.Interval(0, zw.Exact(float(delay.split()[0]) / 1000)))
+    device = HAPKIT.replace(delay=zw.Interval(0, zw.Exact(delay)))
     emit(device, zw.Wall(150), target="arduino").write(tmp_path / "wall")
-    program = sketch(tmp_path / "wall")
-    needed_header("simavr/sim_avr.h")
-    chip = tmp_path / "chip"
-    run(tool("cc"), "-std=gnu99", "-O2", DATA / "chip.c", "-o", chip, "-lsimavr", "-lm")
-    run(chip, program, "400", tmp_path / "line.bin")
+    run(chip, sketch(tmp_path / "wall"), "400", tmp_path / "line.bin")
     phases = read_telemetry(tmp_path / "line.bin").phase.values
     assert ((phases == 1).sum() > 100) == in_time
     assert (phases[-1] == 2) != in_time
 
 
-@pytest.mark.parametrize("number", ["float", "fixed", "double"])
-def test_a_cortex_m_links(tmp_path: Path, number: str) -> None:
-    """By its own Makefile, without a library of a vendor."""
-    require("cortex-m4")
-    written(tmp_path / "board", "cortex-m", number)
-    flags = f"CFLAGS=-O2 {' '.join(WARNED)}"
-    called([tool("make"), "CC=arm-none-eabi-gcc", "CPU=-mcpu=cortex-m4", flags], tmp_path / "board")
-    assert (tmp_path / "board" / "law.elf").exists()
-
-
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the program asks Linux for its clock")
 @pytest.mark.parametrize("number", ["double", "float", "fixed"])
 def test_a_computer_serves_a_simulated_mass(tmp_path: Path, number: str) -> None:
-    """As it is written it runs, and tells the forces that were proved."""
     found = written(tmp_path / "loop", "posix", number)
     flags = f"CFLAGS=-O2 {' '.join(WARNED)} -D_GNU_SOURCE -DTIMEOUT=60000000000 -DLONGEST_GAP=60000000000"
-    called([tool("make"), f"CC={tool('cc')}", flags], tmp_path / "loop")
-    line = tmp_path / "line.bin"
-    done = subprocess.run(
-        [tmp_path / "loop" / "main", "-p", "0", "-n", "400", "-t", line], capture_output=True, check=False
-    )
-    assert done.returncode == 0
-    data = read_telemetry(line)
-    assert found.machine.error is not None
+    run(tool("make"), f"CC={tool('cc')}", flags, cwd=tmp_path / "loop")
+    run(tmp_path / "loop" / "main", "-p", "0", "-n", "400", "-t", tmp_path / "line.bin")
+    data = read_telemetry(tmp_path / "line.bin")
     force(data, found.machine.error)
 
 
-def test_a_moteus_links(tmp_path: Path) -> None:
-    """By its own Makefile."""
-    written(tmp_path / "loop", "moteus")
-    called([tool("make"), f"CC={tool('cc')}", f"CFLAGS=-O2 {' '.join(WARNED)}"], tmp_path / "loop")
+@pytest.mark.parametrize(
+    ("target", "number"),
+    [("cortex-m", "float"), ("cortex-m", "fixed"), ("cortex-m", "double"), ("moteus", None)],
+)
+def test_a_program_links(tmp_path: Path, target: str, number: str | None) -> None:
+    compiler = tool("arm-none-eabi-gcc" if target == "cortex-m" else "cc")
+    written(tmp_path / "loop", target, number)
+    run(tool("make"), f"CC={compiler}", f"CFLAGS=-O2 {' '.join(WARNED)}", cwd=tmp_path / "loop")
 
 
-def test_a_sketch_of_simplefoc_compiles(tmp_path: Path) -> None:
+@pytest.mark.parametrize("number", ["double", "float", "fixed"])
+def test_a_sketch_of_simplefoc_compiles(tmp_path: Path, number: str) -> None:
     """Against a stub of the library, for a motor with an encoder of 8192 counts a turn."""
-    written(tmp_path / "motor", "simplefoc")
-    named = [f"-I{STUBS / 'simplefoc'}", f"-I{tmp_path / 'motor'}", "-fsyntax-only", "-x", "c++"]
-    called([tool("c++"), "-std=gnu++11", *WARNED, *named, str(tmp_path / "motor" / "motor.ino")])
+    folder = tmp_path / "motor"
+    written(folder, "simplefoc", number)
+    named = ["-I", STUBS / "simplefoc", "-I", folder, "-fsyntax-only", "-x", "c++"]
+    run(tool("c++"), "-std=gnu++11", *WARNED, *named, folder / "motor.ino")
 
 
 @pytest.mark.parametrize("number", ["double", "float", "fixed"])
 def test_a_header_compiles_alone(tmp_path: Path, number: str) -> None:
-    """As C and as C++, under another prefix, with nobody who calls its functions."""
-    require("host")
     written(tmp_path, "c99", number, "wall")
-    for line in (["gcc", *STRICT], ["g++", "-std=gnu++11", *PEDANTIC, "-x", "c++"]):
-        if line[0] == "g++":
-            tool("g++")
-        called([*line, "-O2", "-fsyntax-only", "-include", str(tmp_path / "wall.h"), "/dev/null"])
-
-
-def test_a_header_of_laws_compiles_as_cpp(tmp_path: Path) -> None:
-    """None of their names is a word of C++, such as new."""
-    require("host")
-    laws = zw.rendering.DualRate(samples=17), zw.rendering.ForceBounding()
-    emit(HAPKIT, zw.render(zw.Wall(300), *laws)).write(tmp_path)
-    line = [tool("g++"), "-std=gnu++11", *PEDANTIC, "-x", "c++", "-fsyntax-only"]
-    called([*line, "-include", str(tmp_path / "law.h"), "/dev/null"])
+    for line in ([tool("gcc"), *STRICT], [tool("g++"), "-std=gnu++11", *PEDANTIC, "-x", "c++"]):
+        run(*line, "-O2", "-fsyntax-only", "-include", tmp_path / "wall.h", "/dev/null")
 
 
 @pytest.mark.parametrize("target", ["c99", "arduino", "javascript"])
@@ -186,18 +119,17 @@ def test_the_header_names_its_proof(tmp_path: Path, target: str) -> None:
     certificate = tmp_path / "law" / "law.certificate.json"
     bytes_ = certificate.read_bytes()
     named = re.search(r'CERTIFICATE_SHA256 =? ?"([0-9a-f]{64})"', found.text)
-    assert named is not None
     assert named[1] == sha256(bytes_).hexdigest() == found.certificate_sha256
     assert sha256(bytes_.replace(b"1", b"2", 1)).hexdigest() != named[1]
     assert main(["verify", str(certificate)]) == 0
 
 
-def test_a_module_takes_a_reading_beyond_as_the_nearest() -> None:
-    """As the header does, and as its constants say."""
-    require("node")
+def test_a_module_takes_a_reading_beyond_as_the_nearest(tmp_path: Path) -> None:
     found = emit(HAPKIT, WALL, target="javascript", travel="-3 .. 3 mm")
     most = int(found.machine.counts[1])
-    forces = node.run(found.text, [most, 10 * most, most], most)
+    rows, cells = np.array([[most], [10 * most], [most]]), np.zeros(found.machine.law.remembers)
+    ran = run_node(law_in_javascript("law"), tmp_path, {"law": (rows, cells, 1)}, {"law.mjs": found.text})
+    forces = ran["law"].outputs[:, 0]
     assert forces[0] == forces[1] == forces[2] > 0.0
 
 
@@ -205,9 +137,10 @@ def test_what_is_emitted_is_the_same_everywhere(tmp_path: Path) -> None:
     """Two processes, with other seeds of Python's hashes, write the same bytes."""
     code = (
         "import zwidth as zw; from zwidth.machine.firmware.emit import emit; import sys;"
-        "d=zw.catalogue.device('haptic-paddle');"
-        "[emit(d, zw.Wall(stiffness=150, damping=0.05), target=t).write(f'{sys.argv[1]}/{t}')"
-        " for t in ('arduino', 'cortex-m', 'javascript')]"
+        "d, wall, r = zw.catalogue.device('haptic-paddle'), zw.Wall(150, 0.05), zw.rendering;"
+        "chain = zw.render(wall, r.PassivityController(), r.EventTransient());"
+        "[emit(d, law, target=t, anyway=True).write(f'{sys.argv[1]}/{t}')"
+        " for t, law in (('arduino', wall), ('cortex-m', chain), ('javascript', chain))]"
     )
     for seed in ("1", "2"):
         environment = {"PYTHONHASHSEED": seed, "PYTHONPATH": ":".join(sys.path), "PATH": "/usr/bin:/bin"}

@@ -25,7 +25,6 @@ _FORMATS = {"float": (FLOAT, "ieee_32", 2.0**-24), "double": (DOUBLE, "ieee_64",
 
 
 def plainly(value: float) -> str:
-    """All digits of a double."""
     getcontext().prec = 1200
     return f"{Decimal(value):f}"
 
@@ -76,7 +75,6 @@ class Script:
         return name
 
     def text(self) -> str:
-        """For gappa."""
         both = " /\\ "
         goal = f"{{ {both.join(self.suppose)} -> {both.join(self.claims)} }}"
         return "\n".join([*self.lines, goal])
@@ -97,7 +95,6 @@ def test_gappa_proves_the_rounding_of_a_step(name: str, number: str, tmp_path: P
 
 
 def test_gappa_proves_no_bound_that_is_too_small(tmp_path: Path) -> None:
-    """A tenth of what is claimed it does not prove."""
     require("gappa")
     script = Script(law_program(PADDLE, laws()["wall"]), "float", 0.1)
     (tmp_path / "step.g").write_text(script.text(), encoding="utf-8")

@@ -8,11 +8,12 @@ import shutil
 from pathlib import Path
 
 import pytest
-from firmware.tools import DATA, STUBS, WARNINGS, mains, run, tool
+from firmware.emulated.required import tool
+from firmware.tools import DATA, MAINS, NEWTONS, STUBS, WARNINGS, run
 from firmware.written_packets import unpacked
 
 WAITING, SERVING, ENDED = range(3)
-JUMPED, LATE, WATCHDOG = 2, 5, 6
+LATE, WATCHDOG = 5, 6
 
 
 class Board:
@@ -29,71 +30,64 @@ class Board:
         self.board.board_begin()
 
     def sample(self, change: int = 0, late: bool = False) -> None:
-        """The timer fires, after the sensor has moved on so far."""
         self.reading = (self.reading + change) % 980
         self.board.board_sense(self.reading)
         self.board.board_sample(late)
 
-    def go(self, counts: int) -> None:
-        """As many counts in steps that the handle can go."""
-        for _ in range(abs(counts) // 50):
-            self.sample(50 if counts > 0 else -50)
-        self.sample(int(math.copysign(abs(counts) % 50, counts)))
+    def go(self, *ways: int) -> None:
+        """So many counts in steps that the handle can go, and so many more."""
+        for counts in ways:
+            for _ in range(abs(counts) // 50):
+                self.sample(50 if counts > 0 else -50)
+            self.sample(int(math.copysign(abs(counts) % 50, counts)))
 
     @property
     def motor(self) -> tuple[int, int]:
-        """Pulse width, and level of the direction pin."""
         return self.board.board_width(), self.board.board_level()
 
     @property
     def phase(self) -> int:
-        """Of the guard."""
         return self.board.board_phase()
 
     def sent(self) -> bytes:
-        """What it sends now."""
         found = bytearray()
         while (byte := self.board.board_idle()) >= 0:
             found.append(byte)
         return bytes(found)
 
 
-NEWTONS = {1: 0.00672, 2: 0.00672, 3: 28 / 4096, 4: 0.01}
-"""Of the laws of data/law.h, in a count."""
-
-
 @pytest.fixture(scope="module", params=list(NEWTONS))
 def kind(request: pytest.FixtureRequest) -> int:
-    """Which kind of number the law is in."""
     return int(request.param)
 
 
 @pytest.fixture(scope="module")
 def library(kind: int, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Compiled once for each."""
     path = tmp_path_factory.mktemp("board") / "hapkit.so"
-    include = ["-I", STUBS / "board", "-I", DATA, "-I", mains() / "shared"]
+    include = ["-I", STUBS / "board", "-I", DATA, "-I", MAINS / "shared"]
     options = [f"-DLAW_KIND={kind}", "-DF_CPU=16000000UL", "-O1", "-shared", "-fPIC"]
-    sketch, board = mains() / "arduino" / "hapkit.ino", STUBS / "board" / "board.cpp"
+    sketch, board = MAINS / "arduino" / "hapkit.ino", STUBS / "board" / "board.cpp"
     files = ["-x", "c++", "-include", "Arduino.h", sketch, board]
     run(tool("c++"), "-std=gnu++11", *WARNINGS, *options, *include, *files, "-o", path)
     return path
 
 
-def test_without_a_wall_there_is_no_pulse(library: Path) -> None:
+@pytest.fixture
+def board(library: Path) -> Board:
+    return Board(library)
+
+
+def test_without_a_wall_there_is_no_pulse(board: Board) -> None:
     """Outside nothing acts, and the timer's output is off: at width 0 it would still give a short one."""
-    board = Board(library)
     board.go(-300)
     assert board.phase == SERVING
     assert board.motor[0] == 0
 
 
 @pytest.mark.parametrize("counts", [8, 40, 160, 300])
-def test_the_pulse_width_is_that_of_the_torque(library: Path, kind: int, counts: int) -> None:
+def test_the_pulse_width_is_that_of_the_torque(board: Board, kind: int, counts: int) -> None:
     """By hand: τ = F r_h r_p/r_s, width √(τ/0.03 N·m) of 255; towards smaller counts."""
-    board = Board(library)
-    board.go(-50)
-    board.go(50 + counts)
+    board.go(-50, 50 + counts)
     for _ in range(3):
         board.sample()
     torque = NEWTONS[kind] * counts * 0.07 * 0.004191 / 0.075
@@ -102,12 +96,8 @@ def test_the_pulse_width_is_that_of_the_torque(library: Path, kind: int, counts:
     assert width == pytest.approx(255 * math.sqrt(torque / 0.03), abs=0.51)
 
 
-def test_positions_go_on_where_the_sensor_jumps(library: Path) -> None:
-    """Two turns of its sawtooth in, and out again."""
-    board = Board(library)
-    board.go(-50)
-    board.go(-2000)
-    board.go(2050)
+def test_positions_go_on_where_the_sensor_jumps(board: Board) -> None:
+    board.go(-50, -2000, 2050)
     for _ in range(2):
         board.sample()
     assert board.motor[0] == 0
@@ -115,11 +105,8 @@ def test_positions_go_on_where_the_sensor_jumps(library: Path) -> None:
     assert board.board.board_counts() == 0
 
 
-def test_one_wild_reading_is_passed_over(library: Path) -> None:
-    """One is passed over, as a reading within the jump of the sawtooth is: the force is held meanwhile."""
-    board = Board(library)
-    board.go(-10)
-    board.go(100)
+def test_one_wild_reading_is_passed_over(board: Board) -> None:
+    board.go(-10, 100)
     before = board.motor
     board.sample(-300)
     assert board.motor == before
@@ -127,12 +114,8 @@ def test_one_wild_reading_is_passed_over(library: Path) -> None:
     assert board.phase == SERVING
 
 
-def test_a_sample_that_takes_longer_than_its_period_ends_the_force(library: Path) -> None:
-    """The timer has fired again meanwhile: force 0 at once, and for good."""
-    board = Board(library)
-    board.go(100)
-    board.go(-150)
-    board.go(150)
+def test_a_sample_that_takes_longer_than_its_period_ends_the_force(board: Board) -> None:
+    board.go(100, -150, 150)
     assert board.motor[0] > 0
     board.sample(late=True)
     assert board.motor[0] == 0
@@ -144,8 +127,7 @@ def test_a_sample_that_takes_longer_than_its_period_ends_the_force(library: Path
 def test_after_a_start_by_the_watchdog_there_is_no_force(library: Path) -> None:
     """The mark that outlives it says that a force acted; the start after that one begins anew."""
     board = Board(library, marked=True)
-    board.go(-50)
-    board.go(150)
+    board.go(-50, 150)
     assert (board.phase, board.board.board_reason()) == (ENDED, WATCHDOG)
     assert board.motor[0] == 0
     assert board.board.board_marked() == 0
@@ -154,17 +136,15 @@ def test_after_a_start_by_the_watchdog_there_is_no_force(library: Path) -> None:
     assert fresh.board.board_marked() == 1
 
 
-def test_the_timer_and_the_line_are_set_for_the_law(library: Path) -> None:
+def test_the_timer_and_the_line_are_set_for_the_law(board: Board) -> None:
     """16 000 clocks of 16 MHz in a period of 1 ms; 115 200 Bd to 2.1 %; the watchdog runs."""
-    board = Board(library).board
-    assert board.board_period() == 16_000 - 1
-    assert 16e6 / (8 * (board.board_baud_divisor() + 1)) == pytest.approx(115_200, rel=0.0213)
-    assert board.board_watchdog() == 1
+    assert board.board.board_period() == 16_000 - 1
+    assert 16e6 / (8 * (board.board.board_baud_divisor() + 1)) == pytest.approx(115_200, rel=0.0213)
+    assert board.board.board_watchdog() == 1
 
 
-def test_every_sample_is_told(library: Path) -> None:
-    """In order, at whole milliseconds."""
-    board, data = Board(library), b""
+def test_every_sample_is_told(board: Board) -> None:
+    data = b""
     for _ in range(100):
         board.sample(-1)
         data += board.sent()

@@ -8,7 +8,7 @@ from threading import Event
 
 import numpy as np
 import pytest
-from firmware.written_packets import FIRST, SERVING, TEXT, samples, text
+from firmware.written_packets import FIRST, SERVING, packed, samples, text
 
 from zwidth.errors import InputError
 from zwidth.machine.firmware.telemetry import LiveTelemetry
@@ -18,14 +18,11 @@ COUNT, UNIT = 2.24e-5, 5 / 32767
 
 
 class WrittenLine:
-    """Gives bytes piece by piece, and says when all are gone."""
-
     def __init__(self, data: bytes, size: int = 37) -> None:
         self._pieces: Iterator[bytes] = iter([data[i : i + size] for i in range(0, len(data), size)])
         self.gone = Event()
 
     def read(self, size: int, /) -> bytes:
-        """The next piece, b"" behind the last."""
         piece = next(self._pieces, b"")
         if not piece:
             self.gone.set()
@@ -33,7 +30,6 @@ class WrittenLine:
 
 
 def watched(data: bytes, **options: float) -> LiveTelemetry:
-    """Rows of all that a line gave."""
     line = WrittenLine(data)
     rows = LiveTelemetry(line, **options)
     assert line.gone.wait(60)
@@ -42,19 +38,13 @@ def watched(data: bytes, **options: float) -> LiveTelemetry:
 
 
 def motion(packets: int) -> tuple[np.ndarray, np.ndarray, list[bytes]]:
-    """Counts, forces in units, and their packets."""
     k = np.arange(16 * packets)
     counts = np.rint(300 * np.sin(0.02 * k)).astype(int)
     forces = np.rint(9000 * np.cos(0.017 * k)).astype(int)
-    made = [
-        samples(i, 16_000 * i, counts[j : j + 16].tolist(), forces[j : j + 16].tolist())
-        for i, j in enumerate(range(0, len(k), 16))
-    ]
-    return counts, forces, made
+    return counts, forces, packed(counts.tolist(), forces.tolist())
 
 
 def test_rows_are_what_a_served_loop_writes() -> None:
-    """Position, force and the ledger, by hand from what was sent; graphs and their line take them."""
     counts, forces, made = motion(40)
     rows = watched(text() + b"".join(made), damping=0.15, coulomb_friction=0.02)
     news = Watched(rows).news()
@@ -84,7 +74,6 @@ def test_nothing_is_added_over_what_is_missing() -> None:
 
 
 def test_time_goes_on_where_the_machine_is_started_anew() -> None:
-    """A graph's time never goes back."""
     _, _, made = motion(6)
     again = samples(0, 0, [0] * 16, [0] * 16, status=SERVING | FIRST)
     news = Watched(watched(text() + b"".join(made) + again)).news()
@@ -93,7 +82,6 @@ def test_time_goes_on_where_the_machine_is_started_anew() -> None:
 
 
 def test_the_newest_rows_are_kept() -> None:
-    """Who asks too late gets those that are there, and learns how many are gone."""
     _, _, made = motion(20)
     rows = watched(text() + b"".join(made), kept=100)
     count, found = rows.after(0)
@@ -103,23 +91,15 @@ def test_the_newest_rows_are_kept() -> None:
     assert len(found) == 10
 
 
-def test_a_rotary_law_has_columns_of_its_own() -> None:
-    """Radians and newton metres."""
-    _, _, made = motion(3)
-    rows = watched(text(flags=1) + b"".join(made))
-    assert {"position_rad", "force_N_m"} <= set(rows.COLUMNS)
-
-
 def test_a_line_that_never_says_what_its_numbers_are_is_refused() -> None:
-    """Silent, or with samples alone."""
     _, _, made = motion(3)
     for data in (b"", b"".join(made)):
         with pytest.raises(InputError, match="none said what"):
             LiveTelemetry(io.BytesIO(data))
 
 
-def test_the_text_may_come_after_samples() -> None:
-    """Rows of the samples before it are written as well."""
+def test_the_text_may_come_after_samples_and_say_radians() -> None:
     _, _, made = motion(3)
-    count, _ = watched(b"".join(made) + text(TEXT)).after(0)
-    assert count == 48
+    rows = watched(b"".join(made) + text(flags=1))
+    assert rows.after(0)[0] == 48
+    assert {"position_rad", "force_N_m"} <= set(rows.COLUMNS)

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from firmware.tools import run, tool, written
+from firmware.emulated.required import tool
+from firmware.tools import law_forces, run, written
 from servo.emulators.moteus import MoteusEmulator
 
 from zwidth.machine.firmware.targets import main_files
@@ -36,7 +37,6 @@ def made(target: str, folder: Path, *changes: tuple[str, str, str], flags: str =
 
 
 def ran(*command: str | Path) -> subprocess.CompletedProcess[str]:
-    """What a program says; it has no real-time priority."""
     words = [str(word) for word in command]
     return subprocess.run(
         [words[0], "-p", "0", *words[1:]], capture_output=True, text=True, check=False, timeout=300
@@ -45,12 +45,10 @@ def ran(*command: str | Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="module")
 def simulated(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The program with the simulated mass."""
     return made("posix", tmp_path_factory.mktemp("simulated"))
 
 
 def test_it_runs_as_it_is(simulated: Path, tmp_path: Path) -> None:
-    """The mass meets the wall: the forces that are told are the law's at the positions that are told."""
     done = ran(simulated, "-n", "200", "-t", tmp_path / "mass.bin")
     assert done.returncode == 0
     assert "200 samples" in done.stderr
@@ -58,14 +56,12 @@ def test_it_runs_as_it_is(simulated: Path, tmp_path: Path) -> None:
     assert data.attrs["lost_packets"] == 0
     assert set(data.phase.values) == {1}
     counts = np.rint(data.position.values / 2.24e-5)
-    before = np.concatenate([counts[:1], counts[:-1]])
-    law = np.where(counts > 0, np.maximum(0.00672 * counts + 0.0448 * (counts - before), 0.0), 0.0)
+    law = law_forces(counts, 1)
     assert law.max() > 1.0
     assert np.abs(data.actuator_force.values - law).max() < 1e-4
 
 
 def test_a_signal_ends_it_in_order(simulated: Path, tmp_path: Path) -> None:
-    """It is asked, and says so."""
     path = tmp_path / "asked.bin"
     command = [str(simulated), "-p", "0", "-t", str(path)]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as running:
@@ -79,7 +75,6 @@ def test_a_signal_ends_it_in_order(simulated: Path, tmp_path: Path) -> None:
 
 
 def test_a_reading_that_jumps_ends_it(tmp_path: Path) -> None:
-    """Exit status 1, force 0, and the telemetry has the reason."""
     last = "return counts < whole"
     jumping = ("mass.c", last, f"if (position > 0.001) return 100000;\n  {last}")
     done = ran(made("posix", tmp_path / "main", jumping), "-t", tmp_path / "mass.bin")
@@ -91,7 +86,6 @@ def test_a_reading_that_jumps_ends_it(tmp_path: Path) -> None:
 
 
 def test_the_second_thread_ends_the_force_where_the_loop_hangs(tmp_path: Path) -> None:
-    """A device that never answers is stopped from beside, and the program ends."""
     hangs = ("mass.c", "  velocity +=", "  volatile int hung = 1;\n  while (hung) {\n  }\n  velocity +=")
     stop = "void device_stop(void) {"
     says = ("mass.c", stop, f'#include <stdio.h>\n{stop} puts("stopped"); fflush(stdout);')
@@ -106,7 +100,6 @@ ANSWERED_LATE = f"{SLOW} -DANSWER_MS=60000 -DGUARD_SPEED=10000.0"
 
 
 def test_a_device_that_cannot_be_opened_ends_it_at_once(tmp_path: Path) -> None:
-    """Exit status 2, and words."""
     done = ran(made("moteus", tmp_path / "main", ROTARY), "-d", tmp_path / "none")
     assert done.returncode == 2
     assert "cannot be used" in done.stderr

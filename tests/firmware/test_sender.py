@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from firmware.tools import DATA, library
+from firmware.tools import DATA, KINDS, UNIT, library
 from firmware.written_packets import FIRST, SERVING, TEXT, unpacked
 from strategies import seeds
 
 from zwidth.data.logs.telemetry import Decoder
-
-UNIT = {1: 1.0, 2: 1.0, 3: 2**-12, 4: 0.01}
-"""Of the laws of data/law.h [N]."""
 
 SENT = {1: 5 / 32767, 2: 5 / 32767, 3: 2**-12, 4: 0.01}
 """[N] in a unit that is sent: a share of the limit of 5 N, or the law's own where it is whole."""
@@ -22,12 +20,10 @@ SENT = {1: 5 / 32767, 2: 5 / 32767, 3: 2**-12, 4: 0.01}
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """For what is compiled."""
     return tmp_path_factory.mktemp("sender")
 
 
 def sender(folder: Path, kind: int = 1, *options: str) -> ctypes.CDLL:
-    """One that has sent nothing."""
     found = library(DATA / "sender.c", folder, f"-DLAW_KIND={kind}", *options)
     found.sample.argtypes = [ctypes.c_uint32, ctypes.c_int32, ctypes.c_double, ctypes.c_int]
     found.begin()
@@ -35,24 +31,29 @@ def sender(folder: Path, kind: int = 1, *options: str) -> ctypes.CDLL:
 
 
 def drained(line: ctypes.CDLL, most: int = 10**9) -> bytes:
-    """What it sends now, up to so many bytes."""
     found = bytearray()
     while len(found) < most and (byte := line.next()) >= 0:
         found.append(byte)
     return bytes(found)
 
 
-@pytest.mark.parametrize("kind", [1, 2, 3, 4])
+def told(line: ctypes.CDLL, samples: Iterable[tuple[int, float]]) -> bytes:
+    """What it sends of counts and forces, a millisecond apart, each as it comes."""
+    data = b""
+    for k, (counts, force) in enumerate(samples):
+        line.sample(1000 * k, counts, force, SERVING)
+        data += drained(line)
+    return data
+
+
+@pytest.mark.parametrize("kind", KINDS)
 def test_every_sample_arrives(folder: Path, kind: int) -> None:
     """Positions exactly, forces to half a unit of what is sent; read by the decoder and by struct alike."""
-    line, data = sender(folder, kind), b""
-    random = np.random.default_rng(5)
+    line, random = sender(folder, kind), np.random.default_rng(5)
     counts = np.cumsum(random.integers(-300, 300, 1000))
     forces = np.rint(random.uniform(-5, 5, 1000) / UNIT[kind]) if kind > 2 else random.uniform(-5, 5, 1000)
     forces[:2] = [5 / UNIT[kind], -5 / UNIT[kind]]
-    for k in range(1000):
-        line.sample(1000 * k, int(counts[k]), float(forces[k]), SERVING)
-        data += drained(line)
+    data = told(line, zip(counts.tolist(), forces.tolist(), strict=True))
     line.close_packet()
     data += drained(line)
     texts, found = unpacked(data)
@@ -63,7 +64,6 @@ def test_every_sample_arrives(folder: Path, kind: int) -> None:
     decoder = Decoder()
     samples = decoder.take(data, last=True)
     about = decoder.about
-    assert about is not None
     assert about.force_unit == pytest.approx(SENT[kind], rel=1e-15)
     assert samples.counts.tolist() == counts.tolist()
     assert samples.force.tolist() == [row[3] for row in found]
@@ -74,28 +74,18 @@ def test_every_sample_arrives(folder: Path, kind: int) -> None:
 
 def test_it_fits_a_line_of_115200_baud_at_1_kilohertz(folder: Path) -> None:
     """Ten bits a byte: 11 520 bytes a second; the texts are counted as well."""
-    line = sender(folder)
-    sent = 0
-    for k in range(10_000):
-        line.sample(1000 * k, k % 400, 1.0, SERVING)
-        sent += len(drained(line))
+    sent = len(told(sender(folder), ((k % 400, 1.0) for k in range(10_000))))
     assert sent / 10 < 11_520
     assert sent / 10_000 < 5.5  # bytes a sample
 
 
 def test_the_text_has_the_numbers_of_the_header_to_the_last_digit(folder: Path) -> None:
-    """It comes first, and after every 64 packets again."""
-    line, data = sender(folder), b""
-    for k in range(130 * 16):
-        line.sample(1000 * k, 0, 0.0, SERVING)
-        data += drained(line)
-    texts, _ = unpacked(data)
+    texts, _ = unpacked(told(sender(folder), [(0, 0.0)] * (130 * 16)))
     assert texts == [TEXT] * 3
 
 
 def test_a_force_beyond_what_can_be_sent_is_sent_as_the_largest(folder: Path) -> None:
-    """No number wraps around to the other sign; what is no number comes as a large one too."""
-    for kind in (1, 2, 3, 4):
+    for kind in KINDS:
         line = sender(folder, kind)
         for k, force in enumerate((7.0, -7.0, 2e5, -2e5)):
             line.sample(1000 * k, 0, force / UNIT[kind], SERVING)
@@ -123,7 +113,6 @@ def test_what_does_not_continue_a_packet_begins_another(folder: Path) -> None:
 
 
 def test_what_finds_no_room_is_dropped_and_counted(folder: Path) -> None:
-    """Three packets wait in 256 bytes; the rest is lost, and the next packet says how many samples."""
     line = sender(folder)
     for k in range(16 * 10):
         line.sample(1000 * k, k, 0.0, SERVING)
@@ -161,7 +150,6 @@ def test_a_packet_is_whole_however_samples_and_bytes_take_turns(folder: Path, se
 
 
 def test_the_sequence_and_the_clock_go_round(folder: Path) -> None:
-    """65536 packets and 2³² µs on, nothing is lost and time goes on."""
     line, data = sender(folder), b""
     line.continue_from(65535)
     start = 2**32 - 20_000
@@ -171,7 +159,6 @@ def test_the_sequence_and_the_clock_go_round(folder: Path) -> None:
     line.close_packet()
     decoder = Decoder()
     samples = decoder.take(data + drained(line), last=True)
-    assert decoder.about is not None
     assert np.allclose(samples.time(decoder.about), 1e-6 * (start + 1000 * np.arange(48)), rtol=0, atol=1e-9)
     assert decoder.lost == 0
     assert set(samples.start) == {0}

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from firmware.written_packets import FIRST, SERVING, TEXT, packet, samples, text
+from firmware.written_packets import FIRST, SERVING, TEXT, packed, packet, samples, text
 from strategies import seeds
 
 import zwidth as zw
@@ -19,36 +19,32 @@ ENDED_BY_A_JUMP = 2 | 2 << 2
 
 def stroke(packets: int, *, first: int = 0) -> list[bytes]:
     """Packets of a sine: 16 samples each, positions within ±500 counts."""
-    found = []
-    for i in range(first, first + packets):
-        k = np.arange(16 * i, 16 * (i + 1))
-        counts = np.rint(500 * np.sin(0.01 * k)).astype(int).tolist()
-        forces = np.rint(3000 * np.cos(0.013 * k)).astype(int).tolist()
-        found.append(samples(i, 16_000 * i, counts, forces))
-    return found
+    k = np.arange(16 * first, 16 * (first + packets))
+    counts, forces = np.rint(500 * np.sin(0.01 * k)), np.rint(3000 * np.cos(0.013 * k))
+    return packed(counts.astype(int).tolist(), forces.astype(int).tolist(), first)
+
+
+def recorded(folder: Path, line: bytes) -> Path:
+    (folder / "line.bin").write_bytes(line)
+    return folder / "line.bin"
 
 
 def test_a_log(tmp_path: Path) -> None:
-    """Seconds, metres, newtons; the step is that of the text."""
-    path = tmp_path / "paddle.bin"
-    path.write_bytes(text() + b"".join(stroke(200)))
+    path = recorded(tmp_path, text() + b"".join(stroke(200)))
     log = zw.read_log(path)
     (block,) = log.blocks()
     k = np.arange(3200)
     assert (log.sample_period, log.resolution, log.samples) == (0.001, 2.24e-5, 3200)
     assert log.channels == ("actuator_force",)
     assert np.allclose(block.position, 2.24e-5 * np.rint(500 * np.sin(0.01 * k)), rtol=0, atol=1e-12)
-    assert block.actuator_force is not None
     assert np.allclose(
         block.actuator_force, 5 / 32767 * np.rint(3000 * np.cos(0.013 * k)), rtol=0, atol=1e-12
     )
 
 
 def test_a_rotary_law(tmp_path: Path) -> None:
-    """Flags say radians, and forces in whole units of the law."""
     said = TEXT.replace("force_per_unit 1.0", "force_per_unit 0.0025")
-    path = tmp_path / "wheel.bin"
-    path.write_bytes(text(said, flags=3) + b"".join(stroke(200)))
+    path = recorded(tmp_path, text(said, flags=3) + b"".join(stroke(200)))
     assert zw.read_log(path).motion == "rotary"
     data = read_telemetry(path)
     assert data.position.attrs["units"] == "rad"
@@ -57,10 +53,8 @@ def test_a_rotary_law(tmp_path: Path) -> None:
 
 
 def test_a_dataset_that_is_a_log_as_well(tmp_path: Path) -> None:
-    """What the packets say besides stands beside it; the same table comes of both."""
-    path = tmp_path / "paddle.bin"
     jumped = samples(200, 3_200_000, [0] * 16, [0] * 16, status=ENDED_BY_A_JUMP)
-    path.write_bytes(text() + b"".join(stroke(200)) + jumped)
+    path = recorded(tmp_path, text() + b"".join(stroke(200)) + jumped)
     data = read_telemetry(path)
     assert data.time.values[3199] == pytest.approx(3.199)
     assert data.phase.values[[0, 3200]].tolist() == [1, 2]
@@ -71,10 +65,8 @@ def test_a_dataset_that_is_a_log_as_well(tmp_path: Path) -> None:
 
 
 def test_a_recording_that_began_and_ended_within_a_packet(tmp_path: Path) -> None:
-    """Its first and last bytes are no damage; the text may come later."""
-    path = tmp_path / "cut.bin"
     packets = [*stroke(100), text(), *stroke(100, first=100)]
-    path.write_bytes(b"".join(packets)[40:-40])
+    path = recorded(tmp_path, b"".join(packets)[40:-40])
     data = read_telemetry(path)
     assert data.sizes["time"] == 16 * 198
     assert (data.attrs["lost_packets"], data.attrs["damaged_stretches"]) == (0, 0)
@@ -126,11 +118,9 @@ def test_what_looks_like_a_packet_within_one_is_none() -> None:
 
 
 def test_a_machine_that_is_started_anew(tmp_path: Path) -> None:
-    """Its time begins again, and its sequence; nothing of that counts as lost."""
-    path = tmp_path / "again.bin"
     begun = samples(0, 0, [0] * 16, [0] * 16, status=SERVING | FIRST)
     before, after = stroke(100, first=50), [begun, *stroke(99, first=1)]
-    path.write_bytes(text() + b"".join(before) + text() + b"".join(after))
+    path = recorded(tmp_path, text() + b"".join(before) + text() + b"".join(after))
     data = read_telemetry(path)
     assert data.start.values.tolist() == [0] * 1600 + [1] * 1600
     assert data.time.values[1600] == 0.0
@@ -139,17 +129,14 @@ def test_a_machine_that_is_started_anew(tmp_path: Path) -> None:
 
 
 def test_a_gap_is_a_gap_of_the_log(tmp_path: Path) -> None:
-    """What was lost makes another run, and is said."""
-    path = tmp_path / "gap.bin"
     packets = stroke(200)
-    path.write_bytes(text() + b"".join(packets[:90] + packets[95:]))
+    path = recorded(tmp_path, text() + b"".join(packets[:90] + packets[95:]))
     log = zw.read_log(path)
     assert (log.runs, log.samples) == (2, 195 * 16)
     assert any(finding.kind == "packets lost" and "5 packets" in str(finding) for finding in log.findings)
 
 
 def test_a_device_is_identified_from_its_telemetry(tmp_path: Path) -> None:
-    """A free paddle pushed by its motor alone: the damping that the motion was computed with."""
     mass, damping, resolution = 0.1, 0.8, 2.24e-5
     t = 0.001 * np.arange(20_000)
     x = 0.006 * np.sin(9.0 * t) + 0.004 * np.sin(23.0 * t)
@@ -157,50 +144,30 @@ def test_a_device_is_identified_from_its_telemetry(tmp_path: Path) -> None:
     a = -0.486 * np.sin(9.0 * t) - 2.116 * np.sin(23.0 * t)
     counts = np.floor(x / resolution).astype(int)
     forces = np.rint(-(mass * a + damping * v) / (5 / 32767)).astype(int)
-    packets = [
-        samples(i, 16_000 * i, counts[16 * i : 16 * i + 16].tolist(), forces[16 * i : 16 * i + 16].tolist())
-        for i in range(1250)
-    ]
-    path = tmp_path / "paddle.bin"
-    path.write_bytes(text() + b"".join(packets))
+    path = recorded(tmp_path, text() + b"".join(packed(counts.tolist(), forces.tolist())))
     found = zw.identify(path, mass=mass, model="viscous", zero="exact")
     assert found.estimates["damping"].value == pytest.approx(damping, rel=0.02)
 
 
 @pytest.mark.parametrize(
-    ("said", "why"),
+    ("texts", "why"),
     [
-        (TEXT.replace("telemetry 1", "telemetry 2"), "telemetry 2"),
-        (TEXT.replace("period_s 0.001\n", ""), "period_s"),
-        (TEXT.replace("resolution 2.24e-05", "resolution 0.0"), "> 0"),
-        (TEXT.replace("force_most 5.0", "force_most (LIMIT)"), "numbers"),
+        ([TEXT.replace("telemetry 1", "telemetry 2")], "telemetry 2"),
+        ([TEXT.replace("period_s 0.001\n", "")], "period_s"),
+        ([TEXT.replace("resolution 2.24e-05", "resolution 0.0")], "> 0"),
+        ([TEXT.replace("force_most 5.0", "force_most (LIMIT)")], "numbers"),
+        ([TEXT, TEXT.replace("2.24e-05", "1e-05")], "two laws"),
+        ([], "says what"),
     ],
 )
-def test_a_text_that_says_too_little_is_refused(tmp_path: Path, said: str, why: str) -> None:
-    """By one message, from both readers."""
-    path = tmp_path / "other.bin"
-    path.write_bytes(text(said) + b"".join(stroke(20)))
+def test_a_text_that_says_too_little_or_too_much_is_refused(
+    tmp_path: Path, texts: list[str], why: str
+) -> None:
+    """By one message, from both readers; counts are no lengths."""
+    line = b"".join(stroke(20))
+    path = recorded(tmp_path, b"".join(text(said) + line for said in texts) or line)
     for read in (zw.read_log, read_telemetry):
         with pytest.raises(InputError, match=why):
-            read(path)
-
-
-def test_two_laws_in_one_file_are_refused(tmp_path: Path) -> None:
-    """Their counts are not the same length."""
-    path = tmp_path / "two.bin"
-    path.write_bytes(
-        text() + b"".join(stroke(20)) + text(TEXT.replace("2.24e-05", "1e-05")) + b"".join(stroke(9))
-    )
-    with pytest.raises(InputError, match="two laws"):
-        zw.read_log(path)
-
-
-def test_without_a_text_nothing_is_guessed(tmp_path: Path) -> None:
-    """Counts are no lengths."""
-    path = tmp_path / "short.bin"
-    path.write_bytes(b"".join(stroke(20)))
-    for read in (zw.read_log, read_telemetry):
-        with pytest.raises(InputError, match="says what"):
             read(path)
 
 

@@ -14,36 +14,27 @@ from firmware.emulated.host import HostLaw
 from firmware.emulated.required import require
 
 import zwidth as zw
+from zwidth.machine.firmware import program as ir
 from zwidth.machine.firmware.bound import plain
 from zwidth.machine.firmware.c99 import HELPERS, NARROW
 from zwidth.machine.firmware.emit import emit
 from zwidth.machine.firmware.evaluation import Evaluation, Exact
 from zwidth.machine.firmware.fixed import lowered
-from zwidth.machine.firmware.program import (
-    Branch,
-    Cells,
-    Constant,
-    Load,
-    Operation,
-    Program,
-    Store,
-    Variable,
-    set_to,
-)
 from zwidth.machine.firmware.simplified import tidied
 from zwidth.machine.firmware.units import Scale, Unit
 
 
 def test_a_narrow_product_is_the_wide_one(tmp_path: Path) -> None:
-    """Two products of 16 bits give what one of 64 bits gives, at the ends of their ranges too."""
     require("host")
     words = {"word": "int32_t", "prefix": "law"}
-    text = "#include <stdint.h>\n" + "".join(
-        HELPERS[k].format(**words) + "\n" for k in ("scaled", "scaled_narrow")
-    )
-    text += "int32_t wide(int32_t n, int32_t m) { return law_scaled(n, m, 16); }\n"
-    text += "int32_t narrow(int32_t n, int32_t h, int32_t l)\n"
-    text += "{ return law_scaled_narrow((int16_t)n, (int16_t)h, (int16_t)l); }\n"
+    scaled, narrow = (HELPERS[k].format(**words) for k in ("scaled", "scaled_narrow"))
+    text = f"""#include <stdint.h>
+{scaled}
+{narrow}
+int32_t wide(int32_t n, int32_t m) {{ return law_scaled(n, m, 16); }}
+int32_t narrow(int32_t n, int32_t h, int32_t l)
+{{ return law_scaled_narrow((int16_t)n, (int16_t)h, (int16_t)l); }}
+"""
     (tmp_path / "a.c").write_text(text, encoding="utf-8")
     called(["gcc", *STRICT, "-shared", "-fPIC", str(tmp_path / "a.c"), "-o", str(tmp_path / "a.so")])
     library = ctypes.CDLL(str(tmp_path / "a.so"))
@@ -72,26 +63,24 @@ def test_every_reading_of_a_travel(tmp_path: Path, travel: str | None) -> None:
     forces = law.run(order) * law.force_per_unit
     x = 22.4e-6 * np.clip(order, low, high)
     wall = np.where(x > 0, 150 * x + 0.05 * np.diff(x, prepend=x[0]) / 1e-3, 0.0)
-    assert found.machine.error is not None
     assert np.abs(forces - np.clip(wall, -16.5, 16.5)).max() <= found.machine.error + 1e-12
 
 
 def test_what_changes_nothing_is_left_out() -> None:
-    """Copies and sums with 0 are; what copies a number that changes later is not."""
-    given, changing = Variable("integer", "n"), Variable("integer", "w", changes=True)
-    a, b, c, d = (Variable("integer", name) for name in "abcd")
-    memory, zero = Cells("memory", 1), Constant(0, "integer")
+    given, changing = ir.Variable("integer", "n"), ir.Variable("integer", "w", changes=True)
+    a, b, c, d = (ir.Variable("integer", name) for name in "abcd")
+    memory, zero = ir.Cells("memory", 1), ir.Constant(0, "integer")
     body = [
-        Operation(a, "copy", (given,)),
-        Load(b, memory, zero),
-        Operation(c, "-", (b, zero)),
-        set_to(changing, a),
-        Operation(d, "copy", (changing,)),
-        Branch(Constant(True, "truth"), [set_to(changing, c)], [set_to(changing, zero)]),
-        Store(memory, zero, d),
+        ir.Operation(a, "copy", (given,)),
+        ir.Load(b, memory, zero),
+        ir.Operation(c, "-", (b, zero)),
+        ir.set_to(changing, a),
+        ir.Operation(d, "copy", (changing,)),
+        ir.Branch(ir.Constant(True, "truth"), [ir.set_to(changing, c)], [ir.set_to(changing, zero)]),
+        ir.Store(memory, zero, d),
     ]
-    program = tidied(Program((given,), (memory,), list(body), (changing,)))
-    made = [(s.result.changes, s.operands) for s in program.statements() if isinstance(s, Operation)]
+    program = tidied(ir.Program((given,), (memory,), list(body), (changing,)))
+    made = [(s.result.changes, s.operands) for s in program.statements() if isinstance(s, ir.Operation)]
     assert made == [(True, (given,)), (False, (changing,)), (True, (b,)), (True, (zero,))]
     assert len(body) == 7
     assert body[3].operands == (a,)
@@ -99,17 +88,17 @@ def test_what_changes_nothing_is_left_out() -> None:
 
 def test_a_set_in_another_unit_is_a_set() -> None:
     """y is a position on one way and a force on the other: both ways set one whole number, in one unit."""
-    n, y = Variable("integer", "n"), Variable("real", "y", changes=True)
-    real, x, f = (Variable("real", name) for name in ("real", "x", "f"))
-    inside = Variable("truth", "inside")
-    ways = [set_to(y, x)], [Operation(f, "*", (Constant(300.0, "real"), x)), set_to(y, f)]
+    n, y = ir.Variable("integer", "n"), ir.Variable("real", "y", changes=True)
+    real, x, f = (ir.Variable("real", name) for name in ("real", "x", "f"))
+    inside = ir.Variable("truth", "inside")
+    ways = [ir.set_to(y, x)], [ir.Operation(f, "*", (ir.Constant(300.0, "real"), x)), ir.set_to(y, f)]
     body = [
-        Operation(real, "real", (n,)),
-        Operation(x, "*", (Constant(1e-4, "real"), real)),
-        Operation(inside, ">", (x, Constant(0.0, "real"))),
-        Branch(inside, *ways),
+        ir.Operation(real, "real", (n,)),
+        ir.Operation(x, "*", (ir.Constant(1e-4, "real"), real)),
+        ir.Operation(inside, ">", (x, ir.Constant(0.0, "real"))),
+        ir.Branch(inside, *ways),
     ]
-    program = Program((n,), (), body, (y,))
+    program = ir.Program((n,), (), body, (y,))
     evaluation = Evaluation(Exact())
     evaluation.run(program, {n: plain(-100.0, 100.0)}, [])
     found = lowered(program, Scale(1e-4, 0.01, 4), evaluation.seen, [])
@@ -124,5 +113,4 @@ def test_a_coefficient_that_is_a_unit_by_chance() -> None:
     """K + B/T is 200 N/m, which is 2 per unit of force of 0.01 N: a product as any other."""
     device = DEVICE.replace(force_resolution="0.01 N")
     found = emit(device, zw.Wall(150, 0.05), number="fixed", travel="-60 .. 60 mm")
-    assert found.machine.rounding is not None
     assert found.machine.rounding < 0.002

@@ -1,58 +1,48 @@
-"""What the tests of firmware need of the machine: compilers, and where the files are that they compile.
-
-A tool that is missing skips the test by its name; with ZWIDTH_EVERY_TARGET=1 in the environment it fails.
-"""
+"""What the tests of firmware compile, how it is run, and the law of the tests, data/law.h, by hand."""
 
 from __future__ import annotations
 
 import ctypes
-import os
 import shutil
-import subprocess
+from functools import cache
 from importlib.resources import files as resources
 from pathlib import Path
-from typing import NoReturn
+from tempfile import TemporaryDirectory
 
-import pytest
+import numpy as np
+from firmware.emulated.built import called
+from firmware.emulated.required import require, tool
+from numpy.typing import NDArray
 
 HERE = Path(__file__).parent
 DATA, STUBS = HERE / "data", HERE / "stubs"
+MAINS = Path(str(resources("zwidth.machine.firmware") / "mains"))
 
 WARNINGS = ("-Wall", "-Wextra", "-Werror", "-Wno-unused-function")
 """Every one is an error; a law may have functions that a program does not call."""
 
+KINDS = [1, 2, 3, 4]
+"""Of the laws of data/law.h: in double, float, fine and coarse whole numbers."""
 
-def tool(name: str) -> str:
-    """The path of a compiler or another program; without it the test is skipped."""
-    found = shutil.which(name)
-    return _missing(name) if found is None else found
+UNIT = {1: 1.0, 2: 1.0, 3: 2**-12, 4: 0.01}
+"""Of their forces [N]."""
 
-
-def needed_header(name: str) -> None:
-    """Without a header of a library, such as simavr/sim_avr.h, the test is skipped."""
-    asked = [tool("cc"), "-E", "-include", name, "-x", "c", os.devnull]
-    if subprocess.run(asked, capture_output=True, check=False).returncode != 0:
-        _missing(name)
+NEWTONS = {1: 0.00672, 2: 0.00672, 3: 28 / 4096, 4: 0.01}
+DAMPED = {1: 0.0448, 2: 0.0448, 3: 184 / 4096, 4: 0.04}
+"""[N] in a count, and in a count of change from one sample to the next."""
 
 
-def _missing(name: str) -> NoReturn:
-    reason = f"{name} is not on this machine"
-    if os.environ.get("ZWIDTH_EVERY_TARGET") == "1":
-        pytest.fail(f"{reason}, and every target is asked for")
-    pytest.skip(reason)
+def law_forces(counts: NDArray[np.floating], kind: int) -> NDArray[np.floating]:
+    """[N], of the law of data/law.h that begins at rest at the first of the counts."""
+    moved = np.diff(counts, prepend=counts[0])
+    return np.where(counts > 0, np.maximum(NEWTONS[kind] * counts + DAMPED[kind] * moved, 0.0), 0.0)
 
 
 def run(*command: str | Path, cwd: Path | None = None) -> str:
-    """What a program prints; a failure shows all of it."""
-    done = subprocess.run(
-        [str(word) for word in command], cwd=cwd, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, f"{command[0]} ended with {done.returncode}:\n{done.stdout}{done.stderr}"
-    return done.stdout
+    return called([str(word) for word in command], cwd)
 
 
 def written(files: dict[str, str], folder: Path) -> Path:
-    """The folder with these files, and the law of the tests."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in files.items():
         (folder / name).write_text(text, encoding="utf-8")
@@ -60,14 +50,26 @@ def written(files: dict[str, str], folder: Path) -> Path:
     return folder
 
 
-def mains() -> Path:
-    """Where the main programs are."""
-    return Path(str(resources("zwidth.machine.firmware") / "mains"))
+def sketch(folder: Path, *options: str) -> Path:
+    require("avr")
+    chip = ["-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Os", "-fno-exceptions", "-ffp-contract=off"]
+    given = ["-std=gnu++11", *WARNINGS, *options, "-I", STUBS / "arduino", "-I", folder]
+    source = ["-x", "c++", "-include", "Arduino.h", folder / f"{folder.name}.ino"]
+    core = STUBS / "arduino" / "main.cpp"
+    run(tool("avr-g++"), *chip, *given, *source, core, "-o", folder / "sketch.elf")
+    return folder / "sketch.elf"
+
+
+@cache
+def _compiled(source: Path, options: tuple[str, ...]) -> bytes:
+    with TemporaryDirectory() as folder:
+        given = ("-std=c99", *WARNINGS, *options, "-I", DATA, "-I", MAINS / "shared", source)
+        run(tool("cc"), "-O1", "-shared", "-fPIC", *given, "-o", Path(folder) / "made.so")
+        return (Path(folder) / "made.so").read_bytes()
 
 
 def library(source: Path, folder: Path, *options: str) -> ctypes.CDLL:
-    """A file of C with the law of the tests, compiled for this machine and loaded anew."""
+    """A file of C with the law of the tests, loaded anew: its variables are as at the start."""
     name = folder / f"{source.stem}-{len(list(folder.iterdir()))}.so"
-    include = ("-I", DATA, "-I", mains() / "shared")
-    run(tool("cc"), "-std=c99", *WARNINGS, "-O1", "-shared", "-fPIC", *options, *include, source, "-o", name)
+    name.write_bytes(_compiled(source, options))
     return ctypes.CDLL(str(name))

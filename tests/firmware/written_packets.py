@@ -14,13 +14,11 @@ SERVING, FIRST = 1, 0x80
 
 
 def packet(kind: int, sequence: int, content: bytes) -> bytes:
-    """Framed, with its checksum."""
     framed = b"zW" + struct.pack("<BBH", kind, len(content), sequence & 0xFFFF) + content
     return framed + struct.pack("<H", binascii.crc_hqx(framed, 0xFFFF))
 
 
 def text(said: str = TEXT, flags: int = 0) -> bytes:
-    """A packet that says what the numbers are."""
     return packet(1, 0, bytes([flags]) + said.encode())
 
 
@@ -38,6 +36,12 @@ def samples(
     for n, f in zip(counts, forces, strict=True):
         content += struct.pack("<hh", n - counts[0], f)
     return packet(2, sequence, content)
+
+
+def packed(counts: Sequence[int], forces: Sequence[int], first: int = 0) -> list[bytes]:
+    """Packets of 16 samples, a millisecond apart, of which the first has this number."""
+    at = range(0, len(counts), 16)
+    return [samples(n, 16_000 * n, counts[i : i + 16], forces[i : i + 16]) for n, i in enumerate(at, first)]
 
 
 def unpacked(data: bytes) -> tuple[list[str], list[tuple[int, int, int, int, int]]]:

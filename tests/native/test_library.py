@@ -12,7 +12,6 @@ import pytest
 
 from zwidth.loop.kernel import packed_plant
 from zwidth.loop.plant import free_response
-from zwidth.loop.step import book
 from zwidth.machine.servo.cycle import put_at_rest
 from zwidth.native import build
 
@@ -37,14 +36,16 @@ for name, law in standard_laws(device, zw.Wall(600)).items():
 """
 
 
+needs_library = pytest.mark.skipif(build.library() is None, reason="no library of step functions here")
+
+
 def ran(how: str) -> str:
     command = [sys.executable, "-c", MOTIONS, how]
     return subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=True).stdout
 
 
-@pytest.mark.skipif(build.library() is None, reason="no library of step functions here")
+@needs_library
 def test_without_the_library_python_gives_the_same_bits() -> None:
-    """Every law of the bench, tied and free hands."""
     assert len(ran("library").splitlines()) > 40
     assert ran("library") == ran("plain")
 
@@ -54,12 +55,15 @@ def test_a_call_gives_back_what_the_annotations_say() -> None:
     assert free_response(2.0, 0.25) == free_response.py_func(2.0, 0.25)
 
 
-@pytest.mark.skipif(build.library() is None, reason="no library of step functions here")
-@pytest.mark.parametrize("given", [np.zeros(9, int), np.zeros(9, np.float32)])
-def test_an_array_of_other_numbers_is_refused(given: object) -> None:
-    """Copied silently it would be the copy that is changed."""
-    with pytest.raises(TypeError, match="takes an array of <f8 here"):
-        packed_plant(given)
+@needs_library
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [((np.zeros(9, kind),), "takes an array of <f8 here") for kind in (int, np.float32)] + [((), "argument")],
+)
+def test_what_it_does_not_take_is_an_error_of_python(given: tuple[object, ...], says: str) -> None:
+    """An array of other numbers, copied silently, would be the copy that is changed."""
+    with pytest.raises(TypeError, match=says):
+        packed_plant(*given)
 
 
 def test_a_column_is_taken_and_changed_as_it_is() -> None:
@@ -72,36 +76,22 @@ def test_a_column_is_taken_and_changed_as_it_is() -> None:
     assert (table[:, 0] == np.arange(0.0, 27.0, 3.0)).all()
 
 
-@pytest.mark.skipif(build.library() is None, reason="no library of step functions here")
-def test_too_few_arguments_are_an_error_of_python() -> None:
-    with pytest.raises(TypeError, match="argument"):
-        book()
-
-
-def test_without_compiler_and_library_it_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(build, "BUILT", tmp_path / "steps.so")
-    monkeypatch.setattr(build, "_is_checkout", lambda: True)
-    monkeypatch.setattr(build, "compiler", lambda: None)
-    with pytest.warns(RuntimeWarning, match=r"as plain Python.*there is no C compiler"):
-        assert build._library.__wrapped__() is None
-
-
-def test_an_installed_package_without_its_library_says_how_to_have_it(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+@pytest.mark.parametrize(
+    ("is_checkout", "compiler", "told"),
+    [
+        (True, None, r"as plain Python.*there is no C compiler"),
+        (False, build.compiler(), "with a C compiler"),
+        (True, [sys.executable, "-c", "raise SystemExit('no such thing')"], "no such thing"),
+    ],
+    ids=["no compiler", "installed", "a compiler that fails"],
+)
+def test_without_a_library_it_is_told(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, is_checkout: bool, compiler: list[str] | None, told: str
 ) -> None:
     monkeypatch.setattr(build, "BUILT", tmp_path / "steps.so")
-    monkeypatch.setattr(build, "_is_checkout", lambda: False)
-    with pytest.warns(RuntimeWarning, match="with a C compiler"):
-        assert build._library.__wrapped__() is None
-
-
-def test_a_compiler_that_fails_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(build, "BUILT", tmp_path / "steps.so")
-    monkeypatch.setattr(build, "_is_checkout", lambda: True)
-    monkeypatch.setattr(
-        build, "compiler", lambda: [sys.executable, "-c", "raise SystemExit('no such thing')"]
-    )
-    with pytest.warns(RuntimeWarning, match="no such thing"):
+    monkeypatch.setattr(build, "_is_checkout", lambda: is_checkout)
+    monkeypatch.setattr(build, "compiler", lambda: compiler)
+    with pytest.warns(RuntimeWarning, match=told):
         assert build._library.__wrapped__() is None
     assert not list(tmp_path.iterdir())
 

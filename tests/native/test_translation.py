@@ -76,13 +76,10 @@ def inner(a: Array, of: Pair, flat: float = 1.5, steep: float = 2.0) -> float:
 
 
 class Word(Union):
-    """A word of a call's row."""
-
     _fields_: ClassVar[Any] = [("f", c_double), ("i", c_int64), ("p", c_void_p)]
 
 
 def translated(folder: Path, text: str) -> str:
-    """A package of one file, in C."""
     for name in ("names", "types"):
         (folder / f"{name}.py").write_text("", encoding="utf-8")
     (folder / "steps.py").write_text(HEAD + dedent(text), encoding="utf-8")
@@ -90,7 +87,6 @@ def translated(folder: Path, text: str) -> str:
 
 
 def python(text: str) -> Callable[..., Any]:
-    """The same as Python."""
     space: dict[str, Any] = {}
     exec(compile(HEAD + dedent(text), "steps", "exec", dont_inherit=True), space)
     found: Callable[..., Any] = space["step"]
@@ -99,7 +95,6 @@ def python(text: str) -> Callable[..., Any]:
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
-    """An empty one."""
     (tmp_path / "zwidth").mkdir()
     return tmp_path / "zwidth"
 

@@ -51,7 +51,6 @@ ON_PURPOSE = {
 
 
 def test_every_script_is_listed():
-    """A new page comes with its number."""
     assert {path.stem for path in EXAMPLES.glob("plot_*.py")} == set(NUMBERS)
 
 

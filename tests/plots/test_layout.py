@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from figure_layout import faults, words
 from matplotlib import rc_context, style
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 import zwidth as zw
@@ -16,10 +17,7 @@ from zwidth.show.plots.style import LOOK, broken, heading
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 WHEEL = zw.Device(
-    mass=0.05,
-    damping=0.01,
-    coulomb_friction=0.1,
-    resolution="0.00153398",
+    **{"mass": 0.05, "damping": 0.01, "coulomb_friction": 0.1, "resolution": "0.00153398"},
     rate=1000,
     delay=0,
     motion="rotary",
@@ -30,7 +28,6 @@ LINEAR = ("N/m", "[N]", "N·s/m", "[m]", "[mm]", "[µm]", "[m/s]")
 
 @cache
 def drawn(device: zw.Device) -> dict[str, Figure]:
-    """Every picture of one device."""
     k = 770 if device is PADDLE else 30
     active, passive = (zw.check(device, zw.Wall(v)) for v in (k, k / 4))
     damped = zw.check(device, zw.Wall(k / 4, float(device.damping) / 10))
@@ -60,13 +57,11 @@ def count(device: zw.Device) -> float:
 
 @pytest.mark.parametrize("device", [PADDLE, WHEEL], ids=["paddle", "wheel"])
 def test_pictures_have_no_faults(device):
-    """None is half empty, no title is cut or lies over another, no offset stands at an axis."""
     found = {name: faults(figure) for name, figure in drawn(device).items()}
     assert {name: lines for name, lines in found.items() if lines} == {}
 
 
 def test_a_wheel_is_drawn_in_its_units():
-    """N·m/rad and mrad, nothing of a linear device; and no unit as it is typed."""
     said = {name: [w.get_text() for w in words(figure)] for name, figure in drawn(WHEEL).items()}
     of_others = ("haptic-paddle", "catalogue")
     for name, texts in said.items():
@@ -78,24 +73,16 @@ def test_a_wheel_is_drawn_in_its_units():
 
 
 def test_pictures_are_on_white_whatever_is_around_them():
-    """With matplotlib's dark style on, words stay dark on a white page."""
     with rc_context(), style.context("dark_background"):
         figure = zw.check(PADDLE, zw.Wall(770)).plot()
     assert figure.get_facecolor() == (1, 1, 1, 1)
     for axes in figure.axes:
         assert axes.get_facecolor()[:3] == (1, 1, 1)
         dark = [axes.xaxis.label, axes.yaxis.label, *axes.get_xticklabels(), *axes.get_yticklabels()]
-        assert all(np.mean(_rgb(text.get_color())) < 0.5 for text in dark)
-
-
-def _rgb(colour):
-    from matplotlib.colors import to_rgb
-
-    return to_rgb(colour)
+        assert all(np.mean(to_rgb(text.get_color())) < 0.5 for text in dark)
 
 
 def test_a_long_text_is_broken_and_nothing_of_it_lost():
-    """Lines of about the same length; breaks of one's own stay."""
     text = "first line\n" + "a hand that is described in many words " * 6
     lines = broken(text, 3.0).splitlines()
     assert lines[0] == "first line"
@@ -105,7 +92,6 @@ def test_a_long_text_is_broken_and_nothing_of_it_lost():
 
 
 def test_a_title_ends_where_its_axes_place_does():
-    """In the left half of a page it takes more lines than over all of it."""
     with rc_context(LOOK):
         figure = Figure(figsize=(8, 3), layout="constrained")
         half, text = figure.add_subplot(1, 2, 1), "what stands above a picture and is rather long, " * 2
@@ -136,22 +122,17 @@ def over_a_curve(axes):
     axes.legend(loc="upper left")
 
 
-@pytest.mark.parametrize(
-    ("spoil", "word"),
-    [(empty_corner, "height"), (cut, "edge"), (offset, "offset"), (over_a_curve, "legend")],
-)
-def test_a_fault_is_found(spoil, word):
-    """Each of the kinds that are looked for."""
-    figure = Figure(figsize=(4, 3), layout="constrained")
-    spoil(figure.add_subplot())
-    assert any(word in fault for fault in faults(figure))
-
-
-def test_a_good_figure_has_none():
-    """A curve that fills its axes, with a title."""
-    figure = Figure(figsize=(4, 3), layout="constrained")
-    axes = figure.add_subplot()
+def good(axes):
     axes.plot([0, 1], [0, 1], label="curve")
     axes.set_title("good")
     axes.legend(loc="lower right")
-    assert faults(figure) == []
+
+
+@pytest.mark.parametrize(
+    ("draw", "word"),
+    [(empty_corner, "height"), (cut, "edge"), (offset, "offset"), (over_a_curve, "legend"), (good, None)],
+)
+def test_a_fault_is_found(draw, word):
+    figure = Figure(figsize=(4, 3), layout="constrained")
+    draw(figure.add_subplot())
+    assert faults(figure) == [] if word is None else any(word in fault for fault in faults(figure))

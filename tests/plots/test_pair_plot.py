@@ -17,15 +17,12 @@ PAIR = zw.Pair(ARM, ARM.replace(damping=1), stiffness=100, damping="0.02", delay
 
 
 def test_inside_the_boundary_the_pair_is_passive():
-    """A little more damping than drawn is enough, a little less is not."""
     leader, follower = damping_boundary(PAIR)
     for b, f in list(zip(leader, follower, strict=True))[::6]:
         for share, holds in ((1.01, True), (0.99, False)) if np.isfinite(f) else ():
-            arms = {
-                "leader": ARM.replace(damping=float(b)),
-                "follower": ARM.replace(damping=float(f * share)),
-            }
-            assert PairCriterion(PAIR.replace(**arms)).holds is holds
+            arms = (ARM.replace(damping=float(damping)) for damping in (b, f * share))
+            changed = dict(zip(("leader", "follower"), arms, strict=True))
+            assert PairCriterion(PAIR.replace(**changed)).holds is holds
 
 
 @pytest.mark.parametrize("delay", [("2 ms", "2 ms"), ("2 ms", "3 ms"), ("0", "0"), ("0", "0.5 ms")])
@@ -43,7 +40,6 @@ def test_the_stairs_are_the_limits(delay):
 
 
 def test_the_pair_stands_beside_its_own_limit():
-    """With delays that differ too: passive below the stairs at its place, active above them."""
     pair = zw.Pair(ARM.replace(damping=2), ARM.replace(damping=2), stiffness=570.9, delay=("2 ms", "3 ms"))
     delays, stiffness = link_limits(pair)
     (here,) = np.flatnonzero(np.isclose(delays, 0.0025))
@@ -52,7 +48,6 @@ def test_the_pair_stands_beside_its_own_limit():
 
 @pytest.mark.parametrize("stiffness", [10, 1000])
 def test_a_picture_of_either(stiffness, tmp_path):
-    """The motion is shown where there is one; the pair stands where it is."""
     verdict = zw.check(PAIR.replace(stiffness=stiffness))
     figure = plots.plot_pair(verdict)
     assert len(figure.axes) == (2 if verdict.passive else 4)
@@ -64,7 +59,6 @@ def test_a_picture_of_either(stiffness, tmp_path):
 
 
 def test_the_energy_is_drawn_to_the_end_of_the_motion():
-    """From 0 at rest to what the motion takes out, at the instant when its last round ends."""
     verdict = zw.check(PAIR.replace(stiffness=1000))
     figure = plots.plot_pair(verdict)
     (curve,) = (line for line in figure.axes[3].lines if line.get_gid() == "energy")
@@ -88,8 +82,35 @@ def test_far_from_what_is_needed_axes_are_logarithmic(damping, shown):
 
 
 def test_where_friction_lacks_the_damping_that_is_enough_says_so():
-    """The pair stands inside of what is enough, and is active all the same."""
     arm = ARM.replace(damping=2, coulomb_friction="0.004", resolution="1e-4")
     verdict = zw.check(zw.Pair(arm, arm, stiffness=400))
     assert verdict.outcome == "active"
     assert plots.plot_pair(verdict).axes[0].get_title(loc="left") == "shaded: enough damping, not friction"
+
+
+# ---- one arm of a pair in a known hand
+
+LIGHT = zw.Device(damping="0.3", mass="0.02", coulomb_friction=0, resolution=0, delay=0, rate="1 kHz")
+HAND = zw.stability.HandImpedance(mass=0.05, stiffness=100, damping=(2, "2.1"))
+
+
+@pytest.mark.parametrize("stiffness", [240, 300])
+def test_a_picture_of_a_pair_whose_other_arm_is_held(stiffness, tmp_path):
+    """The curve is below the damping of the leader at every frequency exactly if it is passive."""
+    verdict = zw.check(zw.Pair(LIGHT, LIGHT, stiffness=stiffness, delay="2 ms"), follower=HAND)
+    verdict.plot(tmp_path / "held.png")
+    damping, limits = plots.plot_held_pair(verdict).axes
+    needs = np.asarray(damping.lines[0].get_ydata())
+    assert bool((needs <= 0.3).all()) is verdict.passive
+    widths = [bar.get_width() for bar in limits.patches]
+    assert widths == [
+        verdict.largest_stiffness,
+        verdict.largest_stiffness_of_any_such_hand,
+        verdict.largest_stiffness_of_two_hands,
+    ]
+
+
+def test_without_a_law_that_is_felt_the_limits_stand_alone():
+    rubbed = LIGHT.replace(coulomb_friction="0.1")
+    verdict = zw.check(zw.Pair(LIGHT, rubbed, stiffness=248, delay="2 ms"), follower=HAND)
+    assert len(plots.plot_held_pair(verdict).axes) == 1

@@ -11,19 +11,12 @@ import zwidth as zw
 from zwidth.model.scene import Contact, CoulombFriction, Damper, Lever, LineEnd, Mass, NonlinearSpring, Spring
 from zwidth.show.plots.scene import placed
 
-SCENE = zw.Scene(
-    [
-        Mass("handle", "0.05"),
-        Spring("handle", "block", 812),
-        Damper("handle", "block", "0.57"),
-        Mass("block", "0.23"),
-        Contact("block", "ground", 3100, 2, "0.004"),
-        CoulombFriction("block", "ground", "0.31"),
-        Lever("block", "tip $x$", "-1.5"),
-        NonlinearSpring("block", "cage", [-1, 1], [-2, 3]),
-        LineEnd("cage", "4.2"),
-    ]
-)
+SCENE = zw.Scene([
+    Mass("handle", "0.05"), Spring("handle", "block", 812), Damper("handle", "block", "0.57"),
+    Mass("block", "0.23"), Contact("block", "ground", 3100, 2, "0.004"), Lever("block", "tip $x$", "-1.5"),
+    CoulombFriction("block", "ground", "0.31"), NonlinearSpring("block", "cage", [-1, 1], [-2, 3]),
+    LineEnd("cage", "4.2"),
+])  # fmt: skip
 
 
 def test_every_node_and_every_number_is_there() -> None:
@@ -39,7 +32,6 @@ def test_every_node_and_every_number_is_there() -> None:
 
 
 def test_nodes_stand_by_their_distance_from_the_port() -> None:
-    """And no two at one place."""
     places = placed(SCENE)
     assert [places[n][0] for n in ("handle", "block", "tip $x$", "cage")] == [0, 1, 2, 2]
     assert len(set(places.values())) == 4
@@ -47,19 +39,16 @@ def test_nodes_stand_by_their_distance_from_the_port() -> None:
 
 @pytest.mark.parametrize("size", [3, 300])
 def test_it_is_saved(size: int, tmp_path: Path) -> None:
-    """Whatever its size."""
     random_scene(7, size).plot(tmp_path / "scene.svg")
     assert (tmp_path / "scene.svg").stat().st_size > 1000
 
 
 def test_it_says_what_it_is() -> None:
-    """In a terminal and in a notebook, every element on a line of its own."""
     assert len(repr(SCENE).splitlines()) == 3 + len(SCENE.elements)
     assert SCENE._repr_html_().count("<tr>") == 1 + len(SCENE.elements)
 
 
 def test_a_verdict_shows_its_scene() -> None:
-    """Behind its coupling, beside what else there is to draw; one without H(z) too."""
     device = zw.Device(damping=1, rate=1000, resolution=0)
     held = SCENE.replace(elements=[e for e in SCENE.elements if not e.leads_elsewhere])
     for scene, panels in ((held, 1), (zw.Scene([Spring("handle", "a", 812), Mass("a", "0.2")]), 3)):

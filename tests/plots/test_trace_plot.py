@@ -13,7 +13,6 @@ PADDLE = zw.catalogue.device("haptic-paddle")
 
 @pytest.mark.parametrize("hand", [zw.operators.Dowel(), zw.operators.Finger(), zw.operators.Guide()])
 def test_a_trace_has_three_panels_with_units(hand, tmp_path) -> None:
-    """Position, force, energy; a file of any of three kinds."""
     trace = zw.simulate(PADDLE, zw.Wall(500.0), hand, 0.2)
     figure = trace_figure(trace)
     above, middle, below = figure.axes
@@ -27,7 +26,6 @@ def test_a_trace_has_three_panels_with_units(hand, tmp_path) -> None:
 
 
 def test_an_active_touch_says_so_and_a_passive_one_does_not() -> None:
-    """The words stand above the energies."""
     active = zw.simulate(PADDLE, zw.Wall(770.0), zw.operators.Dowel(), 0.3)
     passive = zw.simulate(PADDLE, zw.Wall(300.0), zw.operators.Dowel(), 0.3)
     assert "active" in trace_figure(active).axes[2].get_title(loc="left")
@@ -37,14 +35,12 @@ def test_an_active_touch_says_so_and_a_passive_one_does_not() -> None:
 def test_the_force_is_drawn_as_the_staircase_it_is() -> None:
     """Held until the next one: steps, not slopes."""
     trace = zw.simulate(PADDLE, zw.Wall(770.0), zw.operators.Dowel(), 0.1)
-    actuator = next(
-        line for line in trace_figure(trace).axes[1].get_lines() if "actuator" in line.get_label()
-    )
+    lines = trace_figure(trace).axes[1].get_lines()
+    actuator = next(line for line in lines if "actuator" in line.get_label())
     assert actuator.get_drawstyle() == "steps-post"
 
 
 def test_a_long_trace_is_thinned_without_losing_its_peaks() -> None:
-    """A million points become a few thousand, the highest and the lowest among them."""
     x = np.arange(1_000_000.0)
     y = np.sin(x / 7.0)
     y[123_457] = 9.0
@@ -57,7 +53,6 @@ def test_a_long_trace_is_thinned_without_losing_its_peaks() -> None:
 
 
 def test_several_traces_share_their_axes() -> None:
-    """One line per trace and panel, labelled once."""
     traces = {str(k): zw.simulate(PADDLE, zw.Wall(k), zw.operators.Dowel(), 0.2) for k in (200.0, 500.0)}
     figure = comparison_figure(traces)
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["200.0", "500.0"]

@@ -15,14 +15,12 @@ WITHOUT_END = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
 
 
 def words(figure: Figure) -> list[str]:
-    """Of the one legend, which stands beside the axes and covers nothing."""
     assert not any(axes.get_legend() for axes in figure.axes)
     (legend,) = figure.legends
     return [text.get_text() for text in legend.get_texts()]
 
 
 def test_regions_curves_and_free_air() -> None:
-    """The map, a close-up of what is passive in it, and the lower end of the Z-width under it."""
     found = zw.z_width(PADDLE, (0, 30000), (0, 90), (900, 3000))
     figure = plots.z_width_figure(found)
     whole, near = figure.axes
@@ -38,7 +36,6 @@ def test_regions_curves_and_free_air() -> None:
 
 
 def test_no_close_up_where_the_map_is_one() -> None:
-    """Passive walls fill the picture: one pair of axes; a hand that is stable everywhere has no curve."""
     found = zw.z_width(PADDLE, (0, 300), (0, "0.15"), (40, 40))
     figure = plots.z_width_figure(found)
     (axes,) = figure.axes
@@ -47,14 +44,12 @@ def test_no_close_up_where_the_map_is_one() -> None:
 
 
 def test_a_close_up_needs_cells() -> None:
-    """Where a passive wall is a cell or two, no picture is made of them."""
     found = zw.z_width(PADDLE, (0, 3000), (0, 5), (50, 50))
     assert found["passive"].any()
     assert len(plots.z_width_figure(found).axes) == 1
 
 
 def test_speeds_are_written_on_their_contours() -> None:
-    """In the close-up the contour of 1 m/s says so; one a cell away from the passive walls is not drawn."""
     found = zw.z_width(PADDLE, (0, 3000), (0, 5), (300, 300))
     _, near = plots.z_width_figure(found).axes
     numbers = {text.get_text() for text in near.texts}
@@ -71,13 +66,11 @@ def test_a_close_up_without_speeds_says_so() -> None:
 
 
 def test_only_maps_are_drawn() -> None:
-    """A boundary is no map."""
     with pytest.raises(zw.InputError, match="no Z-width map"):
         plots.z_width_figure(zw.maps.stability_boundary(PADDLE, points=5))
 
 
 def test_what_is_not_covered_stands_in_the_legend() -> None:
-    """A filter without end: no region, and the reason for it; without one no such words."""
     found = zw.z_width(PADDLE, (0, 300), (0, 1), (8, 8), hands={}, velocity_filter=WITHOUT_END)
     assert "passive with every hand: not covered" in words(plots.z_width_figure(found))
     found = zw.z_width(PADDLE, (400, 600), (0, 1), (8, 8), hands={"none": None})

@@ -15,7 +15,6 @@ HOSTILE = "<script>alert(1)</script> & $\\frac{$ \x1b[2J \u202e\"'"
 
 @pytest.fixture(scope="session")
 def active() -> Verdict:
-    """A spring that is too stiff."""
     return zw.check(PADDLE, zw.Wall(770))
 
 
@@ -27,11 +26,9 @@ def hostile() -> Verdict:
 
 @pytest.fixture(scope="session")
 def active_page(active: Verdict) -> str:
-    """Its report as a page."""
     return zw.report.html(active)
 
 
 @pytest.fixture(scope="session")
 def hostile_page(hostile: Verdict) -> str:
-    """Its report as a page."""
     return zw.report.html(hostile)

@@ -42,8 +42,7 @@ def _origins(text: str, **typed: str) -> dict[str, tuple[str, str]]:
     return {what: (value, where) for what, value, where in rows}
 
 
-def test_a_file_is_called_by_its_name_and_the_table() -> None:
-    """And by the key where a number stands there in another way."""
+def test_a_file_is_called_by_its_name_and_the_table_and_what_it_lacks_is_told() -> None:
     told = _origins(WHEEL)
     assert told["damping b"] == ("0.05 N·m·s/rad", "wheel.toml, [device]")
     assert told["resolution Δ"] == ("2.61799 mrad", "wheel.toml, [device]: counts_per_turn")
@@ -52,10 +51,13 @@ def test_a_file_is_called_by_its_name_and_the_table() -> None:
     assert told["stiffness K"] == ("80 N·m/rad", "wheel.toml, [environment]")
     assert told["virtual damping B"] == ("0.001 N·m·s/rad", "wheel.toml, [environment]")
     assert told["law behind it"] == ("saturation at 2 N·m", "wheel.toml, [[law]]")
+    assert told["Coulomb friction f_c"] == ("0 N·m", "not given: taken as 0")
+    assert told["delay τ"] == ("0 s", "not given: taken as 0")
+    assert told["velocity filter"] == ("backward difference", "not given: the default")
+    assert told["clamped"] == ("no", "not given: the default")
 
 
 def test_of_a_wheel_the_inertia_is_told_once_and_as_that() -> None:
-    """No mass, and no second row; of a handle that slides the mass follows from it, and both are told."""
     told = _origins(WHEEL)
     assert told["inertia"] == ("0.02 kg·m²", "wheel.toml, [device]")
     assert not [what for what in told if "mass" in what]
@@ -70,19 +72,9 @@ def test_of_a_wheel_the_inertia_is_told_once_and_as_that() -> None:
 
 
 def test_what_was_typed_is_told_as_it_was_typed() -> None:
-    """It goes before the file."""
     told = _origins(WHEEL, damping="60 mN*m*s/rad", virtual_damping="0.002")
     assert told["damping b"] == ("0.06 N·m·s/rad", "typed: --damping 60 mN*m*s/rad")
     assert told["virtual damping B"][1] == "typed: --virtual-damping 0.002"
-
-
-def test_what_was_not_given_is_told_as_such() -> None:
-    """0 for the device, the default for the law."""
-    told = _origins(WHEEL)
-    assert told["Coulomb friction f_c"] == ("0 N·m", "not given: taken as 0")
-    assert told["delay τ"] == ("0 s", "not given: taken as 0")
-    assert told["velocity filter"] == ("backward difference", "not given: the default")
-    assert told["clamped"] == ("no", "not given: the default")
 
 
 def test_the_catalogue_is_told_with_its_source() -> None:
@@ -100,7 +92,6 @@ def test_the_catalogue_is_told_with_its_source() -> None:
 
 
 def test_of_an_interval_its_worst_end_is_told_as_that() -> None:
-    """Made in Python the verdict speaks of the worst corner; a file's interval is told whole."""
     uncertain = zw.check(zw.Device(damping=(0.2, 0.3), rate=1000), zw.Wall(100))
     rows = {what: (value, where) for what, value, where in of_verdict(uncertain).numbers}
     assert rows["damping b"] == ("0.2 N·s/m", "the worst of the interval given in Python")
@@ -110,7 +101,6 @@ def test_of_an_interval_its_worst_end_is_told_as_that() -> None:
 
 @pytest.mark.parametrize("law", [zw.Maxwell(100, 2), zw.PulseTransferFunction([100, -50], [1, 0])])
 def test_of_every_law_something_is_told(law: zw.Maxwell) -> None:
-    """Its line at least."""
     rows = of_verdict(zw.check(zw.Device(damping=1, rate=1000), law)).numbers
     assert rows[-1] == ("law", law.describe(), "given in Python")
 
@@ -129,7 +119,6 @@ link_delay = 0.002
 
 
 def test_of_two_arms_each_number_is_told() -> None:
-    """Of which arm it is, or of the coupling, with units as people write them."""
     tables = tables_of(PAIR, "arms.toml", PAIR_TABLES)
     told = {what: (value, where) for what, value, where in of_pair(tables, pair_of(tables))}
     assert told["leader: damping b"] == ("0.15 N·s/m", "catalogue: Abbott & Okamura 2005, section IV-B")

@@ -6,9 +6,13 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
+
+from zwidth.cli.main import main
 
 DEVICE = """
 [device]
@@ -18,48 +22,38 @@ resolution = "22.4 um"
 rate = "1 kHz"
 """
 
-WRITE = """
-from zwidth.cli.main import main
-import sys
-main(["report", sys.argv[1], "--stiffness", "770", "-o", f"{sys.argv[2]}.html"])
-"""
 
-
-def _written(folder: Path, source: str, name: str, **environment: str) -> bytes:
-    folder.mkdir()
+def _written(folder: Path, report: Callable[[], object], name: str) -> bytes:
     (folder / "paddle.toml").write_text(DEVICE, encoding="utf-8")
     (folder / "matplotlibrc").write_text(f"lines.linewidth: {len(name)}\nfont.size: 14\n", encoding="utf-8")
-    subprocess.run(
-        [sys.executable, "-c", WRITE, source, name],
-        cwd=folder,
-        env={**os.environ, **environment},
-        check=True,
-        capture_output=True,
-    )
+    report()
     return (folder / f"{name}.html").read_bytes()
 
 
 @pytest.fixture(scope="module")
 def twice(tmp_path_factory: pytest.TempPathFactory) -> list[bytes]:
     """In two processes, folders, zones of time, under other names, and once by a whole path."""
-    top = tmp_path_factory.mktemp("reports")
-    first = _written(top / "here", "paddle.toml", "report", PYTHONHASHSEED="1", TZ="UTC")
-    whole = str(top / "there" / "paddle.toml")
-    return [first, _written(top / "there", whole, "another", PYTHONHASHSEED="2", TZ="Asia/Tokyo")]
+    here, there = tmp_path_factory.mktemp("here"), tmp_path_factory.mktemp("there")
+    words = ["report", str(there / "paddle.toml"), "--stiffness", "770", "-o", "another.html"]
+    command = [sys.executable, "-c", f"from zwidth.cli.main import main\nmain({words})"]
+    environment = {**os.environ, "PYTHONHASHSEED": "2", "TZ": "Asia/Tokyo"}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(here)
+        first = _written(here, lambda: main(["report", "paddle.toml", *words[2:5], "report.html"]), "report")
+    run = partial(subprocess.run, command, cwd=there, env=environment, check=True, capture_output=True)
+    return [first, _written(there, run, "another")]
 
 
 def test_the_same_bytes_in_another_process_and_folder(twice: list[bytes]) -> None:
-    """Bit by bit."""
     first, again = twice
     assert len(first) > 10_000
     assert first == again
 
 
 def test_no_path_and_no_date_is_in_it(twice: list[bytes]) -> None:
-    """A file is called by its name; the command is the one that makes the report again."""
     page = twice[1].decode()
     shown = re.sub(r'"data:[^"]*"', "", page)
     assert "zwidth report paddle.toml --stiffness 770 -o report.html" in shown
     assert "paddle.toml, [device]" in shown
-    assert "reports" not in shown
+    assert "there" not in shown
     assert not re.search(r"\b20[2-9]\d-\d\d-\d\d\b", shown)

@@ -52,7 +52,6 @@ rate = "1 kHz"
     ],
 )
 def test_a_value_is_written_as_people_read_it(text: str, unit: str, shown: str) -> None:
-    """Six digits and a prefix; of a list whole numbers only."""
     assert as_read(text, unit) == shown
 
 
@@ -62,7 +61,6 @@ def _rows(page: str) -> dict[str, str]:
 
 
 def test_it_stands_after_the_figures_and_says_where_every_digit_is(active: Verdict, active_page: str) -> None:
-    """The numbers are those of the document, to six digits."""
     assert active_page.index("<h2>Figures</h2>") < active_page.index("<h2>What the checker read</h2>")
     assert "the proof is about the exact numbers, which stand in verdict.json" in active_page
     rows, document = _rows(active_page), json.dumps(active.saved(), default=str)
@@ -72,7 +70,6 @@ def test_it_stands_after_the_figures_and_says_where_every_digit_is(active: Verdi
 
 
 def test_the_title_is_short_and_names_the_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The device by its name or its file, the law by its kind, and its file; the law in full stands below."""
     monkeypatch.chdir(tmp_path)
     Path("my-wheel.toml").write_text(WHEEL, encoding="utf-8")
     Path("my-stop.toml").write_text(STOP, encoding="utf-8")

@@ -9,7 +9,6 @@ import zwidth as zw
 
 
 def test_the_numbers_are_those_of_the_traces(dowel, finger) -> None:
-    """Each measure computed here by its definition."""
     rows = zw.traces.compare_traces({"dowel": dowel, "finger": finger}).rows
     assert rows["dowel"]["deepest_position"] == dowel.position.values.max()
     assert rows["finger"]["peak_actuator_force"] == finger.actuator_force.values.max()
@@ -31,7 +30,6 @@ def test_chatter_is_what_is_quicker_than_30_hz() -> None:
 
 
 def test_the_dowel_chatters_and_the_finger_does_not(dowel, finger) -> None:
-    """What the table is for: who vibrates, who gets energy out."""
     rows = zw.traces.compare_traces({"dowel": dowel, "finger": finger}).rows
     assert rows["dowel"]["energy_extracted"] > 0 >= rows["finger"]["energy_extracted"]
     assert rows["dowel"]["chatter"] > 20 * rows["finger"]["chatter"]
@@ -39,22 +37,16 @@ def test_the_dowel_chatters_and_the_finger_does_not(dowel, finger) -> None:
 
 
 def test_it_shows_itself_everywhere(dowel, finger) -> None:
-    """Terminal, Jupyter, xarray, dict: units with the numbers."""
     comparison = zw.traces.compare_traces(dowel, finger)
     assert "deepest [m]" in repr(comparison)
     assert comparison._repr_html_().startswith("<table>")
     assert comparison.to_xarray().deepest_position.attrs["units"] == "m"
     assert "peak_actuator_force_N" in next(iter(comparison.to_dict().values()))
     assert len(comparison.rows) == 2
-
-
-def test_a_label_is_never_shared(dowel) -> None:
-    """The same trace twice keeps two rows."""
-    assert len(zw.traces.compare_traces(dowel, dowel).rows) == 2
+    assert len(zw.traces.compare_traces(dowel, dowel).rows) == 2  # no label is shared
 
 
 def test_what_cannot_be_compared_is_refused(dowel, knob) -> None:
-    """Nothing at all; radians with metres; a Dataset that is no trace."""
     with pytest.raises(zw.InputError, match="one trace at least"):
         zw.traces.compare_traces()
     with pytest.raises(zw.InputError, match="rotary"):

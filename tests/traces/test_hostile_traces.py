@@ -16,7 +16,6 @@ from zwidth import reading
 
 @pytest.fixture
 def saved(finger, tmp_path: Path) -> Path:
-    """A trace that may be read."""
     path = tmp_path / "touch.nc"
     finger.zwidth.save(path)
     assert zw.traces.load_trace(path).identical(finger)
@@ -24,14 +23,12 @@ def saved(finger, tmp_path: Path) -> Path:
 
 
 def refused(path: Path, message: str) -> None:
-    """Reading it is one line that says so."""
     with pytest.raises(zw.InputError, match=message) as caught:
         zw.traces.load_trace(path)
     assert "\n" not in str(caught.value)
 
 
 def test_netcdf_that_declares_more_than_it_holds_is_refused(saved: Path) -> None:
-    """Before it is filled in."""
     with h5py.File(saved, "r+") as file:
         file.create_dataset("more", shape=(2**50,), dtype="f8", chunks=(2**10,))
     refused(saved, "would become")
@@ -39,7 +36,6 @@ def test_netcdf_that_declares_more_than_it_holds_is_refused(saved: Path) -> None
 
 @pytest.mark.parametrize("inside", ["position", "group/position"])
 def test_netcdf_does_not_lead_to_other_files(inside: str, saved: Path, tmp_path: Path) -> None:
-    """By a link to one."""
     with h5py.File(tmp_path / "other.h5", "w") as other, h5py.File(saved, "r+") as file:
         other["position"] = file["position"][:]
         if inside in file:
@@ -49,7 +45,6 @@ def test_netcdf_does_not_lead_to_other_files(inside: str, saved: Path, tmp_path:
 
 
 def test_numbers_of_netcdf_are_in_it(saved: Path, tmp_path: Path) -> None:
-    """Not in a file that only their bytes are taken from."""
     secret = tmp_path / "secret"
     secret.write_bytes(np.arange(100.0).tobytes())
     with h5py.File(saved, "r+") as file:
@@ -58,18 +53,15 @@ def test_numbers_of_netcdf_are_in_it(saved: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "value"),
-    [("motion", "sideways"), ("motion", [1.0, 2.0]), ("stops", [1.0, 2.0]), ("stops", "no")],
+    ("key", "value"), [("motion", "sideways"), ("motion", [1.0, 2.0]), ("stops", [1.0, 2.0]), ("stops", "no")]
 )
 def test_attributes_that_are_wrong_are_refused(key: str, value: object, saved: Path) -> None:
-    """As a file of others may have them."""
     with h5py.File(saved, "r+") as file:
         file.attrs[key] = value
     refused(saved, f"attribute {key}")
 
 
 def test_parquet_that_grows_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """By what it says that it holds."""
     monkeypatch.setattr(reading, "FREE", 2**20)
     path = tmp_path / "touch.parquet"
     pq.write_table(pa.table({"time_s": np.zeros(10**6)}), path)

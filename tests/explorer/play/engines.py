@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
-import subprocess
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import pytest
+from firmware.emulated.built import called
+from firmware.emulated.required import tool
 from numpy.typing import NDArray
 
 import zwidth as zw
@@ -35,40 +33,21 @@ class Job(NamedTuple):
     held: Array | None = None
 
 
-def node() -> str:
-    """The path of node; without it the test is skipped, or fails where every target is asked for."""
-    found = shutil.which("node")
-    if found is None:
-        if os.environ.get("ZWIDTH_EVERY_TARGET"):
-            pytest.fail("not on this machine: node")
-        pytest.skip("not on this machine: node")
-    return found
-
-
 def run_node(script: str, folder: Path) -> Any:
     """What a script prints as JSON; OURS in it is where the page's modules are."""
     place = Path(str(OURS)).as_uri()
     (folder / "run.mjs").write_text(script.replace("OURS", place), encoding="utf-8")
-    ran = subprocess.run([node(), "run.mjs"], cwd=folder, capture_output=True, text=True, check=False)
-    assert ran.returncode == 0, ran.stderr
-    return json.loads(ran.stdout)
+    return json.loads(called([tool("node"), "run.mjs"], folder))
 
 
 def played(jobs: list[Job], folder: Path) -> list[Array]:
-    """The rows of each job's recording, a row for each sample."""
     (folder / "plant.mjs").write_text(plant_text(), encoding="utf-8")
     given = []
     for i, job in enumerate(jobs):
         (folder / f"law{i}.mjs").write_text(job.loop.law or "export const none = 0;\n", encoding="utf-8")
         held = np.ones(len(job.pointer)) if job.held is None else job.held
-        given.append(
-            {
-                "facts": job.loop.facts(),
-                "law": bool(job.loop.law),
-                "pointer": job.pointer.tolist(),
-                "held": held.tolist(),
-            }
-        )
+        hand = {"pointer": job.pointer.tolist(), "held": held.tolist()}
+        given.append({"facts": job.loop.facts(), "law": bool(job.loop.law), **hand})
     (folder / "jobs.json").write_text(json.dumps(given), encoding="utf-8")
     return [np.array(rows) for rows in run_node(_RUN, folder)]
 
@@ -105,7 +84,6 @@ def moved(loop: Played, seconds: float, seed: int) -> Array:
 
 
 def tracking(pointer: Array, hand: LinearHand) -> Tracking:
-    """The hand of the page, as an operator of the simulator."""
     return Tracking(pointer, stiffness=hand.stiffness, damping=hand.damping, mass=hand.mass)
 
 

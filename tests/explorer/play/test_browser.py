@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from browser import PATIENCE
+from browser import NARROW, PATIENCE, WIDE
 from explorer.play.engines import Array, simulated
 from playwright.sync_api import Browser, Page
 
@@ -32,7 +32,6 @@ AudioBufferSourceNode.prototype.start = function (...given) {
 
 @pytest.fixture(scope="module")
 def loops() -> list[Played]:
-    """A calm wall, one that buzzes, and two arms."""
     calm = zw.Device(mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, rate=1000)
     rough = calm.replace(damping=0.1, coulomb_friction=0.01, resolution=3e-4, force_limit=5)
     return [
@@ -44,7 +43,6 @@ def loops() -> list[Played]:
 
 @pytest.fixture(scope="module")
 def address(loops: list[Played], tmp_path_factory: pytest.TempPathFactory) -> str:
-    """Of the page, as a file."""
     place = tmp_path_factory.mktemp("page") / "play.html"
     place.write_text(play_page(loops), encoding="utf-8")
     return place.as_uri()
@@ -59,7 +57,6 @@ def _frames(page: Page, count: int) -> None:
 
 
 def _stroke(page: Page, parts: list[float], release: bool = False) -> None:
-    """Press the pointer on the stage and go through these parts of its width."""
     box: Any = page.locator("#stage").bounding_box()
     page.mouse.move(box["x"] + parts[0] * box["width"], box["y"] + 0.5 * box["height"])
     page.mouse.down()
@@ -71,7 +68,6 @@ def _stroke(page: Page, parts: list[float], release: bool = False) -> None:
 
 
 def _recording(page: Page) -> tuple[list[str], Array]:
-    """The heads and the rows of what the page hands out."""
     with page.expect_download() as download:
         page.locator("#download").evaluate("button => button.click()")  # the pointer may hold the handle
     with Path(download.value.path()).open(encoding="utf-8", newline="") as file:
@@ -79,7 +75,13 @@ def _recording(page: Page) -> tuple[list[str], Array]:
     return heads, np.array(rows, dtype=np.float64)
 
 
-@pytest.mark.parametrize("number", [1, 2], ids=["rough", "arms"])
+one_size = pytest.mark.parametrize("page", [WIDE], indirect=True, ids=["1280x800"])
+"""For what a smaller screen does not change."""
+
+
+@pytest.mark.parametrize(
+    ("page", "number"), [(WIDE, 1), (NARROW, 2)], ids=["1280x800-rough", "390x844-arms"], indirect=["page"]
+)
 def test_what_a_person_did_is_simulated_to_the_bit(
     page: Page, address: str, loops: list[Played], number: int
 ) -> None:
@@ -97,8 +99,8 @@ def test_what_a_person_did_is_simulated_to_the_bit(
     assert (rows[:, 3:] == simulated(loops[number], rows[:, 1])).all()
 
 
+@one_size
 def test_a_person_without_a_pointer_plays(page: Page, address: str) -> None:
-    """Arrows move the hand, Space lets go and grips; who listens is told where the handle is."""
     page.goto(address)
     stage = page.get_by_role("slider", name="The hand on the handle")
     stage.focus()
@@ -116,8 +118,8 @@ def test_a_person_without_a_pointer_plays(page: Page, address: str) -> None:
     page.wait_for_function("/handle at .* friction took/.test(document.querySelector('#live').textContent)")
 
 
+@one_size
 def test_letting_go_frees_the_handle(page: Page, address: str) -> None:
-    """The wall pushes it out where the hand had held it; the recording says when it was held."""
     page.goto(address)
     _stroke(page, [0.5, 0.6, 0.7, 0.75, 0.75], release=True)
     _frames(page, 20)
@@ -130,7 +132,6 @@ def test_letting_go_frees_the_handle(page: Page, address: str) -> None:
 
 
 def test_it_is_silent_until_asked_and_a_buzz_is_loud(browser: Browser, address: str) -> None:
-    """What is handed to the sound card of a buzz has many times the power of a calm press."""
     page = browser.new_page()
     page.set_default_timeout(PATIENCE)
     page.add_init_script(_LISTEN)
@@ -155,7 +156,6 @@ def test_it_is_silent_until_asked_and_a_buzz_is_loud(browser: Browser, address: 
 
 
 def test_nobody_is_left_out(page: Page, address: str) -> None:
-    """No serious violation that axe finds, in light and in dark; nothing is wider than the page."""
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
         page.goto(address)
@@ -165,6 +165,7 @@ def test_nobody_is_left_out(page: Page, address: str) -> None:
         assert wide <= 0
 
 
+@one_size
 def test_it_works_in_a_frame_that_asks_for_nothing(page: Page, loops: list[Played]) -> None:
     """As the text of a frame without an address, with a policy that lets nothing be fetched."""
     policy = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'"
@@ -184,6 +185,7 @@ def test_it_works_in_a_frame_that_asks_for_nothing(page: Page, loops: list[Playe
     assert frame.locator("#loops").is_hidden()
 
 
+@one_size
 def test_a_page_that_was_hidden_does_not_catch_up(page: Page, address: str) -> None:
     """A picture that comes two seconds late moves the loop by a tenth of one; the others are 10 ms apart."""
     page.add_init_script(

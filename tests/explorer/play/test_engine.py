@@ -13,7 +13,7 @@ from zwidth.loop.kernel import run
 from zwidth.loop.plant import ACTUATOR_WORK, HAND_WORK, POSITION, VELOCITY
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.model.operator import LinearHand, Tracking
-from zwidth.show.explorer.play import Played, presets
+from zwidth.show.explorer.play import Played, play_page, presets
 from zwidth.show.explorer.play import played as play
 from zwidth.show.explorer.play import played_pair as play_pair
 
@@ -60,7 +60,6 @@ def _same(one: Array, other: Array) -> bool:
 
 
 def test_the_engine_moves_as_the_simulator_does(tmp_path: Path) -> None:
-    """Positions, velocities, forces, energies at every sample, whatever delay, encoder and arms."""
     loops = _loops()
     jobs = [Job(loop, moved(loop, 2.0, seed)) for seed, loop in enumerate(loops.values())]
     for name, job, rows in zip(loops, jobs, played(jobs, tmp_path), strict=True):
@@ -69,7 +68,6 @@ def test_the_engine_moves_as_the_simulator_does(tmp_path: Path) -> None:
 
 
 def test_every_preset_moves_as_the_simulator_does(tmp_path: Path) -> None:
-    """The loops of the page as it is, with laws that remember, and two arms on a link."""
     loops = presets()
     jobs = [Job(loop, moved(loop, 3.0, 1)) for loop in loops]
     for job, rows in zip(jobs, played(jobs, tmp_path), strict=True):
@@ -109,13 +107,14 @@ def test_a_hand_that_lets_go(tmp_path: Path) -> None:
 
 
 def test_what_cannot_be_played_is_refused() -> None:
-    """Each with one message: an interval, no mass, compensation of friction, a delay of minutes."""
     with pytest.raises(zw.InputError, match="single value, the one that you take"):
         play(_device(damping=(0.1, 0.2)), zw.Wall(100))
     with pytest.raises(zw.InputError, match="mass"):
         play(zw.Device(damping=0.1, rate=1000), zw.Wall(100))
     with pytest.raises(zw.InputError, match="at most 10 s"):
         play(_device(delay=100), zw.Wall(100))
+    with pytest.raises(zw.InputError, match="at least"):
+        play_page([])
     law = zw.FrictionCompensation(coulomb=0.01, viscous=0.1, speed=0.01)
     with pytest.raises(zw.InputError, match="compensation"):
         play_pair(zw.Pair(_device(), _device(), stiffness=50, compensation=law))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -16,26 +15,12 @@ NAMES = ("naive_float", "naive_double", "naive_q16", "fixed16")
 
 
 def text(name: str) -> str:
-    """Of a header, or of a module if the name ends so."""
-    return (HERE / (name if name.endswith(".mjs") else f"{name}.h")).read_text(encoding="utf-8")
-
-
-def coefficients(stiffness: float, damping: float) -> tuple[int, int]:
-    """What `fixed16` multiplies the count with, and the one before."""
-    back = damping / PERIOD
-    return round((stiffness + back) * RESOLUTION / UNIT), round(back * RESOLUTION / UNIT)
-
-
-def fixed_wall(stiffness: float, damping: float) -> str:
-    """`fixed16` with another wall [N/m, N·s/m]."""
-    now, before = coefficients(stiffness, damping)
-    header = re.sub(r"(LAW_NOW) \d+", rf"\1 {now}", text("fixed16"))
-    return re.sub(r"(LAW_BEFORE) \d+", rf"\1 {before}", header)
+    return (HERE / f"{name}.h").read_text(encoding="utf-8")
 
 
 def fixed_forces(counts: NDArray[np.int32], start: int = 0) -> list[int]:
     """What `fixed16` answers, in whole numbers of any size."""
-    gain, back = coefficients(300, 0.05)
+    gain, back = (round(k * RESOLUTION / UNIT) for k in (300 + 0.05 / PERIOD, 0.05 / PERIOD))
     found, before = [], min(max(start, -32767), 32767)
     for count in counts:
         now = min(max(int(count), -32767), 32767)

@@ -27,22 +27,18 @@ class Answers:
 
     @property
     def median(self) -> int:
-        """Of the cost."""
         return int(np.median(self.cost))
 
     @property
     def worst(self) -> int:
-        """Of the cost, over the given counts."""
         return int(self.cost.max())
 
 
 def force_type(whole: int, size: int) -> np.dtype[Any]:
-    """Of a force that has so many bytes."""
     return _WHOLE[size] if whole else _REAL[size]
 
 
 def as_counts(counts: object) -> NDArray[np.int32]:
-    """The same as int32, one behind the other."""
     given = np.asarray(counts)
     found = np.ascontiguousarray(given, dtype=np.int32)
     assert np.array_equal(found, given), "counts are whole numbers of 32 bits"

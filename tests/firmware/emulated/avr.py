@@ -10,7 +10,6 @@ import ctypes
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -26,21 +25,9 @@ _FAILURES = {-1: "the program ended", -2: "a step took more than 4 000 000 cycle
 
 
 class AvrLaw:
-    """A header on the chip, which is switched on; close it, or use it in a `with`.
+    """A header on the chip, which is switched on; a `sketch` of the Arduino is compiled as C++.
 
-    Parameters
-    ----------
-    header
-        The text of law.h.
-    optimized
-        Option of the compiler.
-    sketch
-        Whether it is compiled as C++, as a sketch of the Arduino is.
-
-    Raises
-    ------
-    AssertionError
-        If it does not compile, or the program ends or runs for ever.
+    AssertionError if it does not compile, or the program ends or runs for ever.
     """
 
     def __init__(self, header: str, optimized: str = "-Os", *, sketch: bool = False) -> None:
@@ -60,26 +47,17 @@ class AvrLaw:
     def __enter__(self) -> AvrLaw:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Switch the chip off."""
+    def __exit__(self, *_: object) -> None:
         self._library.machine_close(self._machine)
         self._folder.cleanup()
 
     def init(self, counts: int) -> None:
-        """At rest at this position."""
         self._run(_INIT, [counts])
 
     def reset(self) -> None:
-        """At rest at the position seen last."""
         self._run(_RESET, [0])
 
     def run(self, counts: object) -> Answers:
-        """The forces of so many steps more, and their cycles."""
         forces, cycles = self._run(_STEP, counts)
         return Answers(forces, cycles - self._empty, self.flash, self.ram)
 

@@ -29,13 +29,6 @@ _TICKS = 25.6
 
 
 def run(header: str, counts: object, start: int = 0, floats: tuple[str, ...] = HARD) -> Answers:
-    """What a law answers to these counts, from rest at `start`.
-
-    Raises
-    ------
-    AssertionError
-        If it does not compile or does not end.
-    """
     given = as_counts(counts)
     with TemporaryDirectory(prefix="zwidth-cortex-") as name:
         folder = Path(name)

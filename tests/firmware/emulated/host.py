@@ -15,18 +15,6 @@ HERE = Path(__file__).parent
 
 
 class HostLaw:
-    """A header as a library of this machine.
-
-    Parameters
-    ----------
-    header
-        The text of law.h.
-    folder
-        An empty one, in which it is compiled.
-    optimized
-        Option of the compiler.
-    """
-
     def __init__(self, header: str, folder: Path, optimized: str = "-O2") -> None:
         (folder / "law.h").write_text(header, encoding="utf-8")
         library = folder / "law.so"
@@ -41,15 +29,12 @@ class HostLaw:
         self.force_per_unit = defined(header, "FORCE_PER_UNIT")
 
     def init(self, counts: int) -> None:
-        """At rest at this position."""
         self._library.init(counts)
 
     def reset(self) -> None:
-        """At rest at the position seen last."""
         self._library.reset()
 
     def run(self, counts: object) -> NDArray[Any]:
-        """The forces of so many steps more, in the units of the law."""
         given = as_counts(counts)
         forces = np.empty(given.size, self.dtype)
         self._library.run(given.ctypes.data, forces.ctypes.data, given.size)
@@ -63,10 +48,8 @@ class HostLaw:
 def watched(header: str, counts: object, folder: Path, start: int = 0) -> None:
     """Run a law on these counts from rest at `start`, in a process that ends at undefined behaviour.
 
-    Raises
-    ------
-    AssertionError
-        If a whole number overflows, a shift is too far, or a float does not fit into a whole number.
+    AssertionError if a whole number overflows, a shift is too far, or a float does not fit into a whole
+    number.
     """
     (folder / "law.h").write_text(header, encoding="utf-8")
     program = folder / "law"

@@ -12,17 +12,7 @@ from math import floor
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.loop.kernel import (
-    R_ACTUATOR,
-    R_COMMAND,
-    R_HAND_WORK,
-    R_POSITION,
-    R_VELOCITY,
-    apply_due,
-    in_interval,
-    note,
-    travel,
-)
+from zwidth.loop import kernel
 from zwidth.loop.law import LIMIT, STEP, rounded
 from zwidth.loop.plant import FAULT, POSITION
 from zwidth.loop.setup import empty_record, prepare
@@ -63,22 +53,11 @@ def closed(
 ) -> Motion:
     """A touch of `duration` seconds, sample by sample.
 
-    Parameters
-    ----------
-    device
-        With a mass and an encoder.
-    operator
-        The hand.
-    duration
-        [s].
-    force
-        From counts to the force of the law [N, N·m], > 0 where it pushes out.
-    init
-        Told the first counts before the first sample.
+    `force` is from counts to the force of the law [N, N·m], > 0 where it pushes out; `init` is told the first
+    counts before the first sample.
     """
-    setup = prepare(
-        device, Wall(stiffness=1), operator, duration
-    )  # of the wall only that it begins at 0 is used
+    # of the wall only that it begins at 0 is used
+    setup = prepare(device, Wall(stiffness=1), operator, duration)
     frame, state, plant = setup.frame, setup.state, setup.frame.plant
     commands, record, work = empty_record(setup.frame)
     signals, h, limit = setup.frame.optional(), float(frame.period), setup.law[LIMIT]
@@ -91,26 +70,13 @@ def closed(
             init(int(counts[0]))
         wanted = rounded(force(int(counts[k])), setup.law[STEP])
         commands[k] = min(max(wanted, -limit), limit) if limit > 0 else wanted
-        hand = in_interval(k, h, final, state[POSITION], *signals)
-        due = apply_due(state, plant, due, k, 0.0, frame.late, frame.offset, frame.arrivals, commands)
-        note(state, k, record)
+        hand = kernel.in_interval(k, h, final, state[POSITION], *signals)
+        due = kernel.apply_due(state, plant, due, k, 0.0, frame.late, frame.offset, frame.arrivals, commands)
+        kernel.note(state, k, record)
         if not final:
-            due = travel(
-                state,
-                plant,
-                hand,
-                0.0,
-                h,
-                h,
-                due,
-                k,
-                frame.late,
-                frame.offset,
-                frame.arrivals,
-                commands,
-                work,
-            )
+            late = (due, k, frame.late, frame.offset, frame.arrivals)
+            due = kernel.travel(state, plant, hand, 0.0, h, h, *late, commands, work)
     assert state[FAULT] == 0, "too many events in one interval"
-    record[R_COMMAND] = commands
-    rows = (R_POSITION, R_VELOCITY, R_COMMAND, R_ACTUATOR, R_HAND_WORK)
+    record[kernel.R_COMMAND] = commands
+    rows = (kernel.R_POSITION, kernel.R_VELOCITY, kernel.R_COMMAND, kernel.R_ACTUATOR, kernel.R_HAND_WORK)
     return Motion(counts, *(record[row] for row in rows))

@@ -1,4 +1,4 @@
-"""The page of the papers: nothing of theirs is left out, and what differs is known to."""
+"""Pages of the docs: nothing of the papers is left out, and pictures show what is found today."""
 
 from __future__ import annotations
 
@@ -8,15 +8,14 @@ from pathlib import Path
 
 import pytest
 
+import zwidth as zw
+
 DOCS = Path(__file__).parents[2] / "docs"
 
 CONTENTS = {
     "course": [
-        "sampled-data system example",
-        "detail of energy leak due to sampling",
-        "position quantization",
-        "conceptual derivation",
-        "dimensionless stability plane",
+        *("sampled-data system example", "detail of energy leak due to sampling", "position quantization"),
+        *("conceptual derivation", "dimensionless stability plane"),
         "where do commercial haptic devices stand?",
         *(f"approach #{n}" for n in (1, 2, 3, 4)),
         "Hannaford & Ryu 2002, Fig. 10",
@@ -49,7 +48,6 @@ DIFFERS = {
 
 @pytest.fixture(scope="module")
 def papers():
-    """Where the page is made."""
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(str(DOCS / "_ext"))
         import papers
@@ -61,7 +59,6 @@ def papers():
 
 @pytest.mark.parametrize("name", CONTENTS)
 def test_every_figure_and_table_has_its_row(papers, name):
-    """Each is there, with something computed, and agrees but for what is known to differ."""
     rows = getattr(papers, name).rows()
     places = " ".join(row.place for row in rows)
     assert [part for part in CONTENTS[name] if not re.search(rf"{re.escape(part)}(?!\d)", places)] == []
@@ -75,9 +72,53 @@ def test_every_figure_and_table_has_its_row(papers, name):
 
 
 def test_gallery_pages_that_are_named_exist(papers):
-    """A link to a drawing leads to a script."""
     source = "".join(path.read_text(encoding="utf-8") for path in (DOCS / "_ext" / "papers").glob("*.py"))
     names = set(re.findall(r"""drawn\(["'](\w+)""", source))
     assert len(names) > 10
     examples = DOCS.parent / "examples"
     assert [name for name in names if not (examples / f"plot_{name}.py").is_file()] == []
+
+
+# ---- pictures in the README and on the pages
+
+
+SCREENS = ("explore", "live", "report")
+"""Pages as a browser shows them."""
+
+PADDLE = zw.catalogue.device("haptic-paddle")
+
+
+@pytest.fixture(scope="module")
+def pictures():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(DOCS))
+        patch.setattr(sys, "path", list(sys.path))  # it adds the folder of the examples
+        import pictures
+
+        yield pictures
+    del sys.modules["pictures"]
+
+
+def test_every_picture_is_made_by_a_command(pictures):
+    files = {path.stem for path in (DOCS / "_static").glob("*.png")}
+    assert files == {*pictures.PICTURES, *SCREENS}
+    pages = "".join(
+        path.read_text(encoding="utf-8") for path in [DOCS.parent / "README.md", *DOCS.glob("*.md")]
+    )
+    assert [name for name in files if f"_static/{name}.png" not in pages] == []
+
+
+@pytest.mark.parametrize("name", ["check", "touch", "limit", "laws", "map", "identify"])
+def test_a_picture_is_not_stale(pictures, name):
+    """Its numbers and its words are those of today; `python docs/pictures.py` draws it anew."""
+    assert list(pictures.stale(name)) == []
+
+
+def test_the_picture_of_a_browser_is_not_stale(pictures):
+    assert list(pictures.stale_live()) == []
+
+
+def test_a_stale_picture_is_found(pictures, monkeypatch):
+    softer = pictures.PICTURES["check"]._replace(find=lambda: zw.check(PADDLE, zw.Wall(760)))
+    monkeypatch.setitem(pictures.PICTURES, "check", softer)
+    assert [line.split(" ")[1] for line in pictures.stale("check")] == ["numbers", "words"]
