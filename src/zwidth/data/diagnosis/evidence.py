@@ -414,6 +414,8 @@ def _terms(fitted: _Fitted, motion: _Motion, delay: float, seen: Array) -> dict[
             "actuator limit": between.by_rate,
         }
         least = min(accounts, key=lambda name: accounts[name])
+        if accounts["delay"] <= _ALIKE:
+            least = "delay"  # the simplest of those that account for it
         added = motion.work(motion.phasors(between.applied - seen))
         supplied |= dict.fromkeys(accounts, 0.0)
         if between.by_nothing > _ALIKE:

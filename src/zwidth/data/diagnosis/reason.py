@@ -255,11 +255,17 @@ _FEEDS = 0.7
 """Share of the energy that a drive must add to be what feeds a motion, whatever asks for it."""
 
 
+_MANY_TIMES = 5.0
+"""What friction takes, that a damper gives which shakes between two counts: there its own law is rounded."""
+
+
 def _may_be_commanded(cause: str, seen: Evidence) -> bool:
     """Whether the force is so little that of a law about one place that a moving target may explain it."""
     left = 1.0 if seen.law is None else seen.law.unexplained
     in_drive = seen.recorded == "both" and cause in ("drive damping", "delay", "actuator limit")
     if in_drive and seen.supplied[cause] >= _FEEDS * abs(seen.energy):
+        return False
+    if cause == "differenced velocity" and seen.lost and seen.supplied[cause] > _MANY_TIMES * seen.lost:
         return False
     slow = seen.vibration.frequency < min(_PLANNED, 1 / (_SAMPLES * seen.loop_period))
     if slow and seen.aimed is None:

@@ -146,7 +146,7 @@ def _target(
     """The log whose position is that of the target, or where it stands still, and what is said of it."""
     likely = [name for name in names if is_target(name) and name not in columns.values()]
     if TARGET not in columns and len(likely) > 1:
-        return None, (f"{listed(likely)} may each be the target: say which with columns={{\"{TARGET}\": …}}",)
+        return None, (f'{listed(likely)} may each be the target: say which with columns={{"{TARGET}": …}}',)
     column = columns[TARGET] if TARGET in columns else next(iter(likely), None)
     if column is None:
         return None, ()
