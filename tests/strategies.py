@@ -54,23 +54,8 @@ def devices(draw: st.DrawFn, **fixed: Any) -> zw.Device:
 
 
 WORDS = (
-    "device",
-    "environment",
-    "type",
-    "wall",
-    "damping",
-    "rate",
-    "stiffness",
-    "1 kHz",
-    "22.4 um",
-    "0.1..0.2",
-    "nan",
-    "-1",
-    "1e999",
-    "µm",
-    "N*s/m",
-    "one-pole",
-    "",
+    *("device", "environment", "type", "wall", "damping", "rate", "stiffness"),
+    *("1 kHz", "22.4 um", "0.1..0.2", "nan", "-1", "1e999", "µm", "N*s/m", "one-pole", ""),
 )
 """Words near to valid input, where a parser is most easily confused."""
 
@@ -82,15 +67,10 @@ def texts() -> st.SearchStrategy[str]:
 
 def toml_values() -> st.SearchStrategy[Any]:
     """Whatever tomllib may return, dates apart, nested three deep."""
-    leaves = (
-        texts()
-        | st.booleans()
-        | st.integers()
-        | st.decimals()
-        | st.sampled_from([1, 300, Decimal("0.15"), 10**4000, Decimal("1e-99999")])
-    )
-    return st.recursive(
-        leaves,
-        lambda inner: st.lists(inner, max_size=3) | st.dictionaries(texts(), inner, max_size=3),
-        max_leaves=8,
-    )
+    numbers = st.sampled_from([1, 300, Decimal("0.15"), 10**4000, Decimal("1e-99999")])
+    leaves = texts() | st.booleans() | st.integers() | st.decimals() | numbers
+
+    def nested(inner: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
+        return st.lists(inner, max_size=3) | st.dictionaries(texts(), inner, max_size=3)
+
+    return st.recursive(leaves, nested, max_leaves=8)

@@ -75,29 +75,25 @@ def circle(graph: Imports) -> list[str]:
     try:
         TopologicalSorter(graph).prepare()
     except CycleError as error:
-        names: list[str] = error.args[1]
-        return names
+        return list(error.args[1])
     return []
 
 
-def folders() -> Iterator[str]:
-    """Every folder with a first page."""
-    return (name for name, path in modules().items() if path.name == "__init__.py")
+FOLDERS = [name for name, path in modules().items() if path.name == "__init__.py"]
 
 
 @pytest.fixture(scope="module")
-def imported() -> Imports:
-    """Read once."""
+def imported():
     return imports()
 
 
-@pytest.mark.parametrize("folder", list(folders()))
-def test_no_folder_has_a_circle(folder: str, imported: Imports) -> None:
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_no_folder_has_a_circle(folder, imported):
     """Its files and folders can be put into an order in which each needs the ones before it alone."""
     assert circle(folded(imported, folder)) == []
 
 
-def test_a_circle_would_be_seen() -> None:
+def test_a_circle_would_be_seen():
     """Of two files that name each other, at the top, in a function or by a text, and of two folders."""
     known = ("p.a", "p.b.c", "p.b.d", "p.b")
     graph = {
@@ -109,7 +105,5 @@ def test_a_circle_would_be_seen() -> None:
     assert graph == {"p.a": {"p.b.c"}, "p.b.c": {"p.b.d"}, "p.b.d": {"p.a"}, "p.b": {"p.b.c"}}
     assert sorted(set(circle(folded(graph, "p")))) == ["a", "b"]
     assert circle(folded(graph, "p.b")) == []
-    assert imports_of("p.a", 'f(import_module("p.b.c"), import_module(f"p.b.{x}"))', False, known) == {
-        "p.b.c",
-        "p.b",
-    }
+    by_name = 'f(import_module("p.b.c"), import_module(f"p.b.{x}"))'
+    assert imports_of("p.a", by_name, False, known) == {"p.b.c", "p.b"}

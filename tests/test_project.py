@@ -7,6 +7,7 @@ import dataclasses
 import inspect
 import math
 import re
+import shlex
 import subprocess
 import sys
 import tomllib
@@ -16,7 +17,6 @@ from functools import cache
 from importlib import import_module
 from io import StringIO
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -25,37 +25,26 @@ from scipy.signal import TransferFunction
 
 import zwidth as zw
 from zwidth import checker
+from zwidth.cli.commands import COMMANDS
+from zwidth.cli.main import _parser, main
+from zwidth.cli.parsing import joined
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "src" / "zwidth"
-PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+
+
+def _text(name):
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+PYPROJECT = tomllib.loads(_text("pyproject.toml"))
 RESULTS = {"FrictionModel", "Identified", "InputError", "Log", "Verdict", "Witness"}
 """Classes that zwidth makes and a person only reads."""
 
 CLASSES = [name for name in zw.__all__ if inspect.isclass(getattr(zw, name)) and name not in RESULTS]
 
 
-def _modules_after(statement: str) -> set[str]:
-    code = f"{statement}; import sys; print(*sorted(sys.modules))"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    return set(done.stdout.split())
-
-
-def test_importing_zwidth_imports_nothing_heavy() -> None:
-    """The command line starts fast because only what is used is imported."""
-    heavy = {"numpy", "scipy", "matplotlib", "rich", "control", "tomllib"}
-    assert not heavy & _modules_after("import zwidth")
-
-
-def test_checking_a_wall_needs_no_numerical_library() -> None:
-    """The proof is exact arithmetic: no float array takes part in it."""
-    used = _modules_after(
-        "import zwidth as zw; zw.check(zw.Device(damping=0.15, rate=1000), zw.Wall(stiffness=300)).to_dict()"
-    )
-    assert not {"numpy", "scipy", "matplotlib", "rich"} & used
-
-
-def test_the_checker_imports_the_standard_library_only() -> None:
+def test_the_checker_imports_the_standard_library_only():
     """What re-proves a certificate shares no code with what found it; its parts know each other alone.
 
     A storage function has millions of moves: to go through them takes numpy, but for the slow twin.
@@ -65,8 +54,7 @@ def test_the_checker_imports_the_standard_library_only() -> None:
     assert files
     for file in files:
         is_fast = file.parent.name == "storage" and file.name != "plainly.py"
-        many = {"numpy"} if is_fast else set()
-        allowed = sys.stdlib_module_names | many
+        allowed = sys.stdlib_module_names | ({"numpy"} if is_fast else set())
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Import):
                 assert {alias.name.split(".")[0] for alias in node.names} <= allowed
@@ -75,7 +63,7 @@ def test_the_checker_imports_the_standard_library_only() -> None:
                 assert 0 < node.level <= inside or (node.module or "").split(".")[0] in allowed
 
 
-def test_the_import_order_holds() -> None:
+def test_the_import_order_holds():
     """A later chapter may use an earlier one, never the reverse."""
     from importlinter import cli as contracts
 
@@ -83,7 +71,7 @@ def test_the_import_order_holds() -> None:
 
 
 @pytest.mark.parametrize("name", zw.__all__)
-def test_every_public_name_is_documented(name: str) -> None:
+def test_every_public_name_is_documented(name):
     """Each name has a docstring, and each public attribute that it or a class of ours below it defines."""
     thing = getattr(zw, name)
     assert inspect.getdoc(thing)
@@ -100,8 +88,7 @@ def test_every_public_name_is_documented(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [*CLASSES, "check", "rotary"])
-def test_every_argument_is_documented(name: str) -> None:
-    """Each argument of a public class or function stands in its docstring."""
+def test_every_argument_is_documented(name):
     thing = getattr(zw, name)
     text = inspect.getdoc(thing) or ""
     arguments = [p for p in inspect.signature(thing).parameters if p != "self"]
@@ -109,13 +96,13 @@ def test_every_argument_is_documented(name: str) -> None:
     assert not missing, f"{name}: {missing}"
 
 
-def test_names_of_all_are_sorted_and_exist() -> None:
+def test_names_of_all_are_sorted_and_exist():
     """`zwidth.__all__` is a list one can find a name in."""
     assert list(zw.__all__) == sorted(zw.__all__, key=lambda n: (not n[0].isupper(), n))
     assert all(hasattr(zw, name) for name in zw.__all__)
 
 
-def test_a_room_is_one_under_both_of_its_names() -> None:
+def test_a_room_is_one_under_both_of_its_names():
     """`import zwidth.servo.devices` is the room that stands on a floor; of a function there is no module."""
     assert import_module("zwidth.rendering") is zw.rendering is import_module("zwidth.model.rendering")
     devices = import_module("zwidth.servo.devices")
@@ -126,39 +113,33 @@ def test_a_room_is_one_under_both_of_its_names() -> None:
             import_module(name)
 
 
-def test_version_is_the_one_of_the_distribution() -> None:
-    """What is installed is what pyproject.toml declares, and the changelog has an entry for it."""
+def test_version_is_the_one_of_the_distribution():
     from importlib.metadata import version
 
     declared = PYPROJECT["project"]["version"]
     assert version("zwidth") == declared
-    assert f"## {declared}" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert f"## {declared}" in _text("CHANGELOG.md")
 
 
-def test_what_is_shipped_beside_the_code() -> None:
+def test_what_is_shipped_beside_the_code():
     """Type checkers find the marker, the catalogue its data; checkers schemas, laws mains, pages modules."""
-    assert (SOURCE / "py.typed").exists()
-    assert (SOURCE / "model" / "device" / "catalogue.toml").exists()
-    assert (SOURCE / "data" / "gains" / "families.toml").exists()
-    assert (SOURCE / "checker" / "schemas" / "spring.json").exists()
-    assert (SOURCE / "machine" / "firmware" / "mains" / "shared" / "guard.h").exists()
-    assert (SOURCE / "show" / "explorer" / "play" / "engine.mjs").exists()
+    data = ("model/device/catalogue.toml", "data/gains/families.toml", "checker/schemas/spring.json")
+    for name in ("py.typed", *data, "machine/firmware/mains/shared/guard.h", "show/explorer/play/engine.mjs"):
+        assert (SOURCE / name).exists()
 
 
 def _tracked() -> list[Path]:
     try:
-        listed = subprocess.run(
-            ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True
-        ).stdout
+        git = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True)
     except (OSError, subprocess.CalledProcessError):
         pytest.skip("not a git checkout")
-    return [ROOT / name for name in listed.split("\0") if name]
+    return [ROOT / name for name in git.stdout.split("\0") if name]
 
 
 MACHINE_PATH = re.compile(r"(?<![\w.])/(?:home|Users|root|work|tmp|mnt)/\w")
 
 
-def test_no_file_names_a_path_of_some_machine() -> None:
+def test_no_file_names_a_path_of_some_machine():
     """A clone works anywhere."""
     found = []
     for path in _tracked():
@@ -169,15 +150,8 @@ def test_no_file_names_a_path_of_some_machine() -> None:
     assert not found
 
 
-def readme_commands() -> list[str]:
-    """The one-line commands of the README that set up a virtual environment."""
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    return [line for line in readme.splitlines() if line.startswith("python3 -m venv")]
-
-
-def test_the_readme_has_two_commands() -> None:
-    """One sets up and does the main job, the other sets up and tests."""
-    job, tests = readme_commands()
+def test_the_readme_has_two_commands():
+    job, tests = (line for line in _text("README.md").splitlines() if line.startswith("python3 -m venv"))
     assert "zwidth check" in job
     assert "pytest" in tests
 
@@ -192,12 +166,10 @@ def _pole_of_the_readme(stiffness: float, damping: float) -> float:
     return float(abs(np.linalg.eigvals(body - np.outer(pushed, [stiffness + push, 0, -push]))).max())
 
 
-def test_the_readme_table_is_what_comes_out() -> None:
+def test_the_readme_table_is_what_comes_out():
     """Its numbers are computed, not remembered; device and walls alone are passive, as it says."""
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    table = re.findall(
-        r"^\| (\d+) \| ([\d.]+) \| ([\d.]+) \| (\w+) \| ([\d.]+)(.*?) \| True", readme, re.MULTILINE
-    )
+    row = r"^\| (\d+) \| ([\d.]+) \| ([\d.]+) \| (\w+) \| ([\d.]+)(.*?) \| True"
+    table = re.findall(row, _text("README.md"), re.MULTILINE)
     assert len(table) == 4
     device = zw.Device(mass=0.1, damping=0.1, sample_period=0.001)
     assert zw.ports.passivity_indices(TransferFunction([1], [0.1, 0.1])).passive
@@ -211,11 +183,11 @@ def test_the_readme_table_is_what_comes_out() -> None:
         assert zw.ports.passivity_indices(wall).passive
 
 
-def _bounds() -> dict[str, set[str]]:
+def _bounds():
     """The lower bounds of each library that is asked for, but for those of the docs."""
     project = PYPROJECT["project"]
     extras = [asked for name, asked in project["optional-dependencies"].items() if name != "docs"]
-    bounds: dict[str, set[str]] = {}
+    bounds = {}
     for line in [*project["dependencies"], *(line for lines in extras for line in lines)]:
         asked = re.fullmatch(r"([\w-]+)(\[[\w,]+\])?>=([\d.]+)(;.+)?", line)
         assert asked, f"{line}: no lower bound"
@@ -223,36 +195,31 @@ def _bounds() -> dict[str, set[str]]:
     return bounds
 
 
-def test_the_oldest_versions_that_are_tested_are_the_lower_bounds() -> None:
+def test_the_oldest_versions_that_are_tested_are_the_lower_bounds():
     """Whoever has the oldest that pyproject.toml admits has what `.ci/oldest` tests."""
-    lines = (ROOT / ".ci" / "oldest.txt").read_text(encoding="utf-8").splitlines()
+    lines = _text(".ci/oldest.txt").splitlines()
     pins = dict(line.split("==") for line in lines if line and not line.startswith("#"))
     for name, bounds in _bounds().items():
         (bound,) = bounds
         assert re.fullmatch(rf"{re.escape(bound)}(\.0)*", pins[name]), f"{name}: {bound}, tested {pins[name]}"
 
 
-def test_what_is_run_with_the_oldest_versions_exists() -> None:
+def test_what_is_run_with_the_oldest_versions_exists():
     """Every test that the list names: one that has moved would be no test."""
-    listed = re.findall(r"^  (tests/\S+)", (ROOT / ".ci" / "oldest").read_text(encoding="utf-8"), re.M)
+    listed = re.findall(r"^  (tests/\S+)", _text(".ci/oldest"), re.M)
     assert len(listed) > 10
-    assert [name for name in listed if not _is_there(*name.split("::"))] == []
-
-
-def _is_there(file: str, test: str = "") -> bool:
-    return (ROOT / file).exists() and (
-        not test or f"\ndef {test}(" in (ROOT / file).read_text(encoding="utf-8")
-    )
+    for name in listed:
+        file, _, test = name.partition("::")
+        assert (ROOT / file).exists(), name
+        assert not test or f"\ndef {test}(" in _text(file), name
 
 
 def _blocks(page: str, language: str) -> list[str]:
-    text = (ROOT / page).read_text(encoding="utf-8")
-    return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
+    return re.findall(rf"```{language}\n(.*?)```", _text(page), re.DOTALL)
 
 
-def test_the_readme_example_says_what_comes_out() -> None:
-    """The Python example of the README runs, and its comments are true."""
-    names: dict[str, Any] = {}
+def test_the_readme_example_says_what_comes_out():
+    names = {}
     for example in _blocks("README.md", "python"):
         exec(example, names)
     assert f"{names['trace'].zwidth.energy.extracted:.4f}" == "0.0342"
@@ -264,10 +231,9 @@ def test_the_readme_example_says_what_comes_out() -> None:
     assert verdict.advice[0].text == "raise the rate from 1000 Hz to 2567 Hz"
 
 
-def test_the_quickstart_example_says_what_comes_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The Python example of the quickstart runs, and its comments are true."""
+def test_the_quickstart_example_says_what_comes_out(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    names: dict[str, Any] = {}
+    names = {}
     (example,) = _blocks("docs/quickstart.md", "python")
     exec(example, names)
     verdict = names["verdict"]
@@ -276,23 +242,14 @@ def test_the_quickstart_example_says_what_comes_out(tmp_path: Path, monkeypatch:
     assert Path("wall.json").exists()
 
 
-@pytest.mark.parametrize(
-    "page",
-    [
-        "docs/quickstart.md",
-        "docs/scenes.md",
-        "docs/specification.md",
-        "docs/laws.md",
-        "docs/identification.md",
-    ],
-)
-def test_the_specifications_of_a_page_can_be_read(page: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("page", ["quickstart", "scenes", "specification", "laws", "identification"])
+def test_the_specifications_of_a_page_can_be_read(page, tmp_path):
     """Every TOML block with tables in the docs is a valid specification; one without is a velocity filter."""
     from zwidth.cli.simulate.tables import build_touch
     from zwidth.model.specification.laws import with_laws
     from zwidth.model.specification.read import TABLES, read_tables, specified
 
-    blocks = _blocks(page, "toml")
+    blocks = _blocks(f"docs/{page}.md", "toml")
     assert blocks
     for number, block in enumerate(blocks):
         tables = [block]
@@ -323,7 +280,7 @@ def _command_line_page() -> str:
         import tables
     finally:
         sys.path.pop(0)
-    page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    page = _text("docs/command-line.md")
     included = re.findall(r"\{include\} _generated/(.+)\.md", page)
     return "\n".join([page, *(tables.TABLES[name]() for name in included)])
 
@@ -337,8 +294,7 @@ def _help(*command: str) -> str:
     return said.getvalue()
 
 
-def test_every_parameter_is_on_the_command_line_page() -> None:
-    """Every parameter that `zwidth check` takes stands on its page, and every type of environment."""
+def test_every_parameter_is_on_the_command_line_page():
     from zwidth.model.rendering import LAWS
     from zwidth.model.specification.environments import TYPES, option_keys
     from zwidth.model.specification.read import DEVICE_KEYS
@@ -350,38 +306,8 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
     assert not missing
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
-        "check",
-        "report",
-        "limit",
-        "pair",
-        "links",
-        "gains",
-        "map",
-        "sweep",
-        "play",
-        "simulate",
-        "serve",
-        "replay",
-        "doctor",
-        "emit",
-        "compare",
-        "identify",
-        "tissue",
-        "plan",
-        "traces",
-        "devices",
-        "verify",
-        "completion",
-        "examples",
-        "new",
-        "tour",
-    ],
-)
-def test_every_option_in_the_help_is_on_the_command_line_page(command: str) -> None:
-    """What `--help` offers, the page explains."""
+@pytest.mark.parametrize("command", [name for name in COMMANDS if name != "workspace"])
+def test_every_option_in_the_help_is_on_the_command_line_page(command):
     page = _command_line_page()
     assert f"zwidth {command}" in page
     options = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", _help(command)))
@@ -390,14 +316,11 @@ def test_every_option_in_the_help_is_on_the_command_line_page(command: str) -> N
     assert not missing
 
 
-def test_every_key_of_the_json_is_on_its_page() -> None:
-    """Whoever reads a verdict by program finds each of its keys explained."""
+def test_every_key_of_the_json_is_on_its_page():
     page = json_page()
     paddle = zw.catalogue.device("haptic-paddle")
     delayed = paddle.replace(delay=0.0003)
-    solid = zw.StandardLinearSolid(
-        stiffness=100, branch_stiffness=50, branch_damping=1, discretization="backward"
-    )
+    solid = zw.StandardLinearSolid(100, 50, 1, discretization="backward")
     loops = [
         (paddle, zw.Wall(stiffness=300)),
         (paddle, zw.Wall(stiffness=770)),
@@ -413,33 +336,26 @@ def test_every_key_of_the_json_is_on_its_page() -> None:
     assert not [key for key in sorted(keys) if f"`{key}`" not in page]
 
 
-def _unrolled_as_documented(positions: list[Fraction], repeats: list[dict[str, int]]) -> list[Fraction]:
-    page = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
-    code = re.search(r"```python\n(def unrolled.+?)```", page, re.DOTALL)
-    assert code
-    names: dict[str, Any] = {}
-    exec(code.group(1), names)
-    result: list[Fraction] = names["unrolled"](positions, repeats)
-    return result
+def _unrolled_as_documented(positions, repeats):
+    names = {}
+    exec(re.search(r"```python\n(def unrolled.+?)```", _text("docs/json.md"), re.DOTALL)[1], names)
+    return names["unrolled"](positions, repeats)
 
 
-def test_unrolling_as_the_json_page_says_keeps_the_energy_of_a_witness() -> None:
+def test_unrolling_as_the_json_page_says_keeps_the_energy_of_a_witness():
     """Whoever replays a motion from its JSON extracts the energy that it claims."""
     device = zw.Device(damping=0.15, coulomb_friction=0.01, resolution=0, rate=1000)
     witness = zw.check(device, zw.Wall(stiffness=120, damping=0.1)).witness
-    assert witness is not None
     document = {"repeats": [], **witness.to_dict()}
     document["positions_m"] = _unrolled_as_documented(document["positions_m"], document.pop("repeats"))
     assert checker.verify(document).energy == witness.exact_energy
     assert len(document["positions_m"]) == witness.motion.samples + 1
 
 
-def test_unrolling_as_the_json_page_says_carries_an_advance_on() -> None:
+def test_unrolling_as_the_json_page_says_carries_an_advance_on():
     """A part that ends ahead of its start moves all that follows, as the checker has it."""
     device = zw.Device(damping=0.15, coulomb_friction=0.01, resolution=0, rate=1000)
-    witness = zw.check(device, zw.PulseTransferFunction([900, -500], [1, 0.2])).witness
-    assert witness is not None
-    document = witness.to_dict()
+    document = zw.check(device, zw.PulseTransferFunction([900, -500], [1, 0.2])).witness.to_dict()
     repeats = [{"first": 1, "last": 4, "times": 7}, {"first": 5, "last": 6, "times": 30}]
     positions = [Fraction(n, 1000) for n in (0, 3, 5, 4, 6, 7, 9, 2, -1)]
     whole = _unrolled_as_documented(positions, repeats)
@@ -458,21 +374,20 @@ def _keys(document: object) -> set[str]:
     return set()
 
 
-def test_every_file_that_the_newcomers_page_names_exists() -> None:
+def test_every_file_that_the_newcomers_page_names_exists():
     """One contact through every floor: a file that moves takes its line along."""
-    page = (ROOT / "docs" / "one-contact.md").read_text(encoding="utf-8")
-    named = set(re.findall(r"`([a-z_]+/[a-z_/]*(?:\.py|/))`", page))
+    named = set(re.findall(r"`([a-z_]+/[a-z_/]*(?:\.py|/))`", _text("docs/one-contact.md")))
     assert len(named) > 40
     assert {name for name in named if not (SOURCE / name).exists() and not (ROOT / name).exists()} == set()
 
 
-def test_no_two_files_of_tests_have_one_name() -> None:
+def test_no_two_files_of_tests_have_one_name():
     """Two of one name, in folders without `__init__.py`, cannot be collected in one run."""
     names = [path.name for path in (ROOT / "tests").rglob("test_*.py")]
     assert sorted(set(names)) == sorted(names)
 
 
-def test_names_that_are_found_and_not_offered_stand_where_they_belong() -> None:
+def test_names_that_are_found_and_not_offered_stand_where_they_belong():
     """Old programs go on, and `dir` is short; each is offered by a namespace, or is the type of a result."""
     found = {
         "amplifiers": zw.simulation.amplifiers,
@@ -490,7 +405,7 @@ def test_names_that_are_found_and_not_offered_stand_where_they_belong() -> None:
     assert isinstance(zw.check(paddle, zw.Wall(stiffness=9000)).witness, zw.Witness)
 
 
-def test_no_module_bears_the_name_of_what_its_package_offers() -> None:
+def test_no_module_bears_the_name_of_what_its_package_offers():
     """Whoever imports the module would put it in the place of a function that is found when asked for."""
     for stub in (ROOT / "src").rglob("__init__.pyi"):
         package = ".".join(stub.parent.relative_to(ROOT / "src").parts)
@@ -499,3 +414,33 @@ def test_no_module_bears_the_name_of_what_its_package_offers() -> None:
                 inside = {(stub.parent / f"{name.asname or name.name}.py").name for name in line.names}
                 beside = {path.name for path in stub.parent.glob("*.py")}
                 assert not inside & beside, f"{stub}: {inside & beside}"
+
+
+RUN = ("--plan", "identify", "verify", "workspace arm.urdf", "check")
+"""What is run here; the rest is read, or run in tests/documentation, or by the tests of its command."""
+
+
+def _readme_commands():
+    """The lines of the README that begin with zwidth, as typed."""
+    lines = [line for block in _blocks("README.md", "sh") for line in block.splitlines()]
+    return [line for line in lines if line.startswith("zwidth ") and "--help" not in line]
+
+
+def test_each_command_of_the_readme_works_as_typed(tmp_path, monkeypatch, capsys):
+    """Its options exist, and the files that it reads are samples, or were written by a line above."""
+    monkeypatch.chdir(tmp_path)
+    lines = _readme_commands()
+    assert len(lines) > 30
+    assert main(["examples", "."]) == 0
+    there = {path.name for path in tmp_path.iterdir()}
+    for line in lines:
+        argv = shlex.split(line, comments=True)[1:]
+        _, unknown = _parser(argv).parse_known_args(joined(argv))
+        assert not unknown, line
+        written = {argv[k + 1] for k, word in enumerate(argv) if word in ("-o", "--plot")}
+        read = {word for word in argv if re.fullmatch(r"[a-z][\w-]*\.\w{3,5}", word)} - written
+        assert read <= there, line
+        there |= written
+        if read | written and any(mark in line for mark in RUN) and "--replay" not in line:
+            status = main(argv)
+            assert status in (0, 1, 3, 4), f"{line}\n{capsys.readouterr().err}"

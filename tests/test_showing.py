@@ -1,14 +1,11 @@
 """Text of others is shown, never obeyed: in a notebook, in a picture, on a terminal."""
 
-from __future__ import annotations
-
 import ast
 import json
 import os
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -38,7 +35,7 @@ SOURCE = sorted(Path(zw.__file__).parent.rglob("*.py"))
 DEVICE = zw.Device(mass=0.04, damping=0.15, sample_period=0.001, name=HOSTILE)
 
 
-def test_only_html_becomes_a_part_of_html() -> None:
+def test_only_html_becomes_a_part_of_html():
     """Text is escaped wherever it stands, attributes too; what was escaped is not escaped again."""
     assert element("p", "a < b") == "<p>a &lt; b</p>"
     assert element("p", element("b", "&")) == "<p><b>&amp;</b></p>"
@@ -48,7 +45,7 @@ def test_only_html_becomes_a_part_of_html() -> None:
     )
 
 
-def test_a_picture_stands_within_the_page() -> None:
+def test_a_picture_stands_within_the_page():
     """Its file in the address, what it shows as text; of its own markup nothing is a part of the page."""
     drawn = Picture(b"<svg/>", "svg+xml", 'a "curve" <b>', "below it")
     assert drawn.html == (
@@ -73,7 +70,7 @@ class Shows(Shown):
         yield Lines(["beware"], mark="!")
 
 
-def test_what_is_said_once_is_shown_in_both_places() -> None:
+def test_what_is_said_once_is_shown_in_both_places():
     """In a terminal in columns, set left or right; in a notebook in elements, and no blank lines."""
     assert repr(Shows()) == (
         "passive: No <motion>.\n\nin words\n"
@@ -90,54 +87,46 @@ def test_what_is_said_once_is_shown_in_both_places() -> None:
     )
 
 
-def test_rows_without_headings_have_a_name_first() -> None:
-    """The first cell says what the others are."""
+def test_rows_without_headings_have_a_name_first():
     assert Table(rows=[["K", "1 N/m"]]).html == (
         '<table><tbody><tr><th scope="row" style="text-align:left">K</th>'
         '<td style="text-align:left">1 N/m</td></tr></tbody></table>'
     )
 
 
-def test_what_a_terminal_obeys_is_not_printed() -> None:
+def test_what_a_terminal_obeys_is_not_printed():
     """Escapes, carriage returns, C1 controls, a change of direction; line ends and Greek letters stay."""
     assert printable("a\x1b[31m\rb\x9bc\u202ed\ue000") == "a?[31m?b?c?d\ue000"
     assert printable("2b/T ≥ K·s²\n\tμ") == "2b/T ≥ K·s²\n\tμ"
 
 
-def _pages() -> list[tuple[str, ast.FunctionDef]]:
-    texts = [(path.name, path.read_text(encoding="utf-8")) for path in SOURCE]
-    return [
-        (name, node)
-        for name, text in texts
-        if "Html" in text
-        for node in ast.walk(ast.parse(text))
-        if isinstance(node, ast.FunctionDef) and node.name in ("_repr_html_", "html")
-    ]
+def _pages():
+    for path in SOURCE:
+        text = path.read_text(encoding="utf-8")
+        for node in ast.walk(ast.parse(text)) if "Html" in text else ():
+            if isinstance(node, ast.FunctionDef) and node.name in ("_repr_html_", "html"):
+                yield path.name, node
 
 
-def test_every_page_of_a_notebook_is_made_of_escaped_parts() -> None:
+def test_every_page_of_a_notebook_is_made_of_escaped_parts():
     """By its type: `Html` comes from one module only, and a text or an f-string is none."""
-    pages = _pages()
+    pages = list(_pages())
     assert {name for name, _ in pages} == {"showing.py", "device.py"}
     for name, page in pages:
-        assert page.returns is not None
         assert ast.unparse(page.returns) == "Html", name
-        assert not [part for part in ast.walk(page) if isinstance(part, ast.Return) and _is_text(part)], name
+        answers = [part.value for part in ast.walk(page) if isinstance(part, ast.Return)]
+        assert not [one for one in answers if isinstance(one, (ast.JoinedStr, ast.Constant, ast.BinOp))], name
     makers = {path.name for path in SOURCE if re.search(r"\bHtml\(", path.read_text(encoding="utf-8"))}
     assert makers == {"showing.py"}
 
 
-def _is_text(answer: ast.Return) -> bool:
-    return isinstance(answer.value, (ast.JoinedStr, ast.Constant, ast.BinOp))
-
-
 @pytest.fixture(scope="module")
-def trace() -> Any:
+def trace():
     """Of a device whose name is hostile."""
     return zw.simulate(DEVICE, zw.Wall(200), zw.operators.ConstantForce(1), 0.02)
 
 
-def test_names_are_escaped_in_notebooks(trace: Any) -> None:
+def test_names_are_escaped_in_notebooks(trace):
     """Whatever can hold a name of a user shows it as it was typed."""
     verdict = zw.check(DEVICE, zw.Wall(200))
     active = zw.check(DEVICE, zw.Wall(2000))
@@ -153,7 +142,7 @@ def test_names_are_escaped_in_notebooks(trace: Any) -> None:
     assert "&lt;script&gt;" in DEVICE._repr_html_()
 
 
-def test_what_xarray_shows_is_not_obeyed_either(trace: Any, tmp_path: Path) -> None:
+def test_what_xarray_shows_is_not_obeyed_either(trace, tmp_path):
     """A Dataset says its attributes as they are: those of a device, and those of a file of others."""
     for suffix in (".nc", ".csv", ".parquet"):
         path = tmp_path / f"touch{suffix}"
@@ -166,7 +155,7 @@ def test_what_xarray_shows_is_not_obeyed_either(trace: Any, tmp_path: Path) -> N
 
 
 @given(st.text(), st.text())
-def test_no_name_and_no_message_holds_what_is_obeyed(name: str, more: str) -> None:
+def test_no_name_and_no_message_holds_what_is_obeyed(name, more):
     """Whoever made the text: a device, an arm, a message that quotes it."""
     device = zw.Device(mass=1, damping=1, sample_period=1, name=name)
     arm = replace(built_in("two-link", damping=0.1), name=name)
@@ -175,25 +164,21 @@ def test_no_name_and_no_message_holds_what_is_obeyed(name: str, more: str) -> No
     assert one_line(name).isprintable()
 
 
-@pytest.mark.parametrize("draw", ["trace", "traces", "verdict", "law"])
-def test_names_are_drawn_as_they_are(draw: str, trace: Any, tmp_path: Path) -> None:
+DRAWN = {
+    "trace": lambda trace, path: trace.zwidth.plot(path),
+    "traces": lambda trace, path: zw.traces.compare_traces({HOSTILE: trace}).plot(path),
+    "verdict": lambda _, path: zw.check(DEVICE, zw.Wall(200)).plot(path),
+    "law": lambda _, path: zw.compare(DEVICE, zw.Wall(200), {HOSTILE: zw.Wall(200)}).plot(path),
+}
+
+
+@pytest.mark.parametrize("draw", DRAWN)
+def test_names_are_drawn_as_they_are(draw, trace, tmp_path):
     """Neither markup nor mathematics; the picture is whole XML without a script."""
     path = tmp_path / "picture.svg"
-    if draw == "trace":
-        trace.zwidth.plot(path)
-    elif draw == "traces":
-        zw.traces.compare_traces({HOSTILE: trace}).plot(path)
-    elif draw == "verdict":
-        zw.check(DEVICE, zw.Wall(200)).plot(path)
-    else:
-        _with_law(trace).plot(path)
+    DRAWN[draw](trace, path)
     tree = ElementTree.parse(path)
     assert not [part for part in tree.iter() if "script" in str(part.tag)]
-
-
-def _with_law(trace: Any) -> Any:
-    wall = zw.Wall(200)
-    return zw.compare(DEVICE, wall, {HOSTILE: wall})
 
 
 TOML = """
@@ -209,7 +194,7 @@ stiffness = 200
 """
 
 
-def test_a_file_cannot_command_the_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_cannot_command_the_terminal(tmp_path, capsys):
     """What a specification calls its device is printed without what a terminal obeys."""
     path = tmp_path / "loop.toml"
     path.write_text(TOML.format(name='"bad \\u001b[2J \\u009b31m \\u202e"'), encoding="utf-8")
@@ -221,13 +206,7 @@ def test_a_file_cannot_command_the_terminal(tmp_path: Path, capsys: pytest.Captu
 
 @pytest.mark.skipif(os.name != "posix", reason="no such names of files")
 @pytest.mark.parametrize("options", [[], ["--json"]])
-def test_the_name_of_a_file_cannot_command_the_terminal(
-    options: list[str],
-    trace: Any,
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_the_name_of_a_file_cannot_command_the_terminal(options, trace, tmp_path, capsys, monkeypatch):
     """A trace is called by it, in the table and in JSON, where it can be read back."""
     monkeypatch.chdir(tmp_path)
     name = "\x1b[2J\x7f\x9btouch.nc"

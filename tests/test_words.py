@@ -39,14 +39,14 @@ def words(name: str) -> list[str]:
     return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+", name.strip("_"))]
 
 
-def test_the_table_is_read() -> None:
+def test_the_table_is_read():
     """It rules something out, in small letters, and nothing that it asks for."""
     assert len(ruled_out()) > 10
     assert all(re.fullmatch("[a-z_]+", word) for word in ruled_out())
     assert words("_ValueIteration") == words("VALUE_ITERATION") == ["value", "iteration"]
 
 
-def test_names_are_those_of_the_glossary() -> None:
+def test_names_are_those_of_the_glossary():
     """Names that Python itself gives, such as `__slots__`, are not ours."""
     single = {word for word in ruled_out() if "_" not in word}
     joined = ruled_out() - single

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -39,6 +38,12 @@ def pantograph(damping: Any) -> Arm:
     return built_in("haply-2diy", damping=damping, lower=(0.02, 0.08), upper=(0.0202, 0.0802), resolution=0)
 
 
+def decided(arm: Arm, wall: Any = 10, points: int = 4, **asked: float) -> Any:
+    """At 1 kHz, of a wall or a stiffness."""
+    wall = zw.Wall(wall) if isinstance(wall, float | int) else wall
+    return zw.workspace(arm, wall, rate=1 / PERIOD, points=points, **asked)
+
+
 def limit_by_hand(arm: Arm, at: Array) -> float:
     """2/T times the least eigenvalue of J⁻ᵀδJ⁻¹, with J by differences."""
     steps = np.eye(len(at)) * 1e-6
@@ -57,19 +62,17 @@ def energy_by_hand(arm: Arm, motion: ArmMotion, stiffness: float) -> float:
 
 @pytest.mark.parametrize("build", [chain, pantograph])
 @pytest.mark.parametrize("seed", range(6))
-def test_both_sides_of_the_limit(build: Any, seed: int) -> None:
+def test_both_sides_of_the_limit(build, seed):
     """A thousandth below it the checker accepts the proof; above it a motion takes energy out."""
     arm = build(random_damping(seed, 2))
     sites = arm.sites(2)
     at = sites.joints.reshape(-1, 2).mean(axis=0)
     limit = limit_by_hand(arm, at)
-    below = zw.workspace(arm, zw.Wall((1 - 4 * NEAR) * limit), rate=1 / PERIOD, points=4)
+    below = decided(arm, (1 - 4 * NEAR) * limit)
     assert below.outcome == "passive"
-    assert below.certificate is not None
     assert below.certificate.verify()
-    above = zw.workspace(arm, zw.Wall((1 + 4 * NEAR) * limit), rate=1 / PERIOD, points=4)
+    above = decided(arm, (1 + 4 * NEAR) * limit)
     assert above.outcome == "active"
-    assert above.motion is not None
     assert above.motion.energy == pytest.approx(
         energy_by_hand(arm, above.motion, above.wall.stiffness), rel=1e-6
     )
@@ -77,23 +80,21 @@ def test_both_sides_of_the_limit(build: Any, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_couplings_count(seed: int) -> None:
+def test_couplings_count(seed):
     """The diagonal alone would say another limit: a verdict that forgot the rest would be wrong."""
     damping = random_damping(seed, 2)
     limits = [
-        zw.workspace(chain(d), zw.Wall(10), rate=1 / PERIOD, points=4).largest_stiffness
-        for d in (damping, np.diag(damping), damping * [[1, -1], [-1, 1]])
+        decided(chain(d)).largest_stiffness for d in (damping, np.diag(damping), damping * [[1, -1], [-1, 1]])
     ]
     assert abs(limits[0] / limits[1] - 1) > 0.02
     assert abs(limits[0] / limits[2] - 1) > 0.02
 
 
-def test_a_document_with_more_than_there_is_is_refused() -> None:
+def test_a_document_with_more_than_there_is_is_refused():
     """Couplings that are turned round, or left out, from a document that holds."""
     arm = chain(random_damping(2, 2))
-    limit = zw.workspace(arm, zw.Wall(10), rate=1 / PERIOD, points=4).largest_stiffness
-    space = zw.workspace(arm, zw.Wall(0.999 * limit), rate=1 / PERIOD, points=4)
-    assert space.certificate is not None
+    limit = decided(arm).largest_stiffness
+    space = decided(arm, 0.999 * limit)
     document = json.loads(json.dumps(space.certificate.to_dict()))
     assert verify(document).valid
     (a, c), (_, b) = document["arm"]["damping_N_m_s_rad"]
@@ -108,101 +109,79 @@ def test_a_document_with_more_than_there_is_is_refused() -> None:
     assert not all(truths)
 
 
-def test_a_redundant_chain_and_a_pose_are_proved() -> None:
-    """Three joints, a hand at a point and one in pose, below the limit and not above it."""
+@pytest.mark.parametrize(
+    ("pose", "wall"),
+    [
+        (False, lambda factor: zw.Wall(100 * factor)),
+        (True, lambda factor: zw.arms.MatrixWall.in_pose(100 * factor, factor, planar=True)),
+    ],
+)
+def test_a_redundant_chain_and_a_pose_are_proved(pose, wall):
     ranges = ((0.2, 0.21), (0.5, 0.51), (0.4, 0.41))
-    for pose in (False, True):
-        arm = PlanarChain(
-            links=(0.1, 0.08, 0.05), damping=random_damping(5, 3), joint_range=ranges, pose=pose
-        )
-        wall = zw.arms.MatrixWall.in_pose(100, 1, planar=True) if pose else zw.Wall(100)
-        factor = zw.workspace(arm, wall, rate=1 / PERIOD, points=6).stiffness_factor
-        outcomes = []
-        for times in (0.97, 1.03):
-            scaled = (
-                zw.arms.MatrixWall.in_pose(100 * times * factor, times * factor, planar=True)
-                if pose
-                else zw.Wall(100 * times * factor)
-            )
-            outcomes.append(zw.workspace(arm, scaled, rate=1 / PERIOD, points=6).outcome)
-        assert outcomes == ["passive", "active"]
+    damping = random_damping(5, 3)
+    arm = PlanarChain(links=(0.1, 0.08, 0.05), damping=damping, joint_range=ranges, pose=pose)
+    factor = decided(arm, wall(1), 6).stiffness_factor
+    outcomes = [decided(arm, wall(times * factor), 6).outcome for times in (0.97, 1.03)]
+    assert outcomes == ["passive", "active"]
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_held_torques_cost_every_motion_of_the_joints(seed: int) -> None:
+def test_held_torques_cost_every_motion_of_the_joints(seed):
     """c q̇ᵀq̇ with c = h F T/2: proved up to the force at which δ − c − JᵀRJ is singular, and not beyond."""
     arm, stiffness = chain(random_damping(seed, 2)), 20.0
     j = arm.jacobian(np.array([0.7001, 1.2001]))
     left = np.linalg.eigvalsh(np.array(arm.damping) - PERIOD / 2 * stiffness * j.T @ j)[0]
     most = 2 * left / (arm.curvature * PERIOD)
-    outcomes = [
-        zw.workspace(
-            arm, zw.Wall(stiffness), rate=1 / PERIOD, points=4, torque_held_up_to=times * most
-        ).outcome
-        for times in (1 - 2 * NEAR, 1 + 2 * NEAR)
-    ]
+    forces = ((1 - 2 * NEAR) * most, (1 + 2 * NEAR) * most)
+    outcomes = [decided(arm, stiffness, torque_held_up_to=force).outcome for force in forces]
     assert outcomes == ["passive", "undecided"]
 
 
-def test_encoder_steps_are_counted_beside_couplings() -> None:
+def test_encoder_steps_are_counted_beside_couplings():
     """They are covered joint by joint, by Coulomb friction, which no matrix shares out."""
     arm = chain(random_damping(1, 2), resolution=(1e-5, 1e-5), coulomb_friction=(0.01, 0.01))
-    space = zw.workspace(arm, zw.Wall(100), rate=1 / PERIOD, points=4)
+    space = decided(arm, 100)
     assert (space.outcome, space.encoder) == ("passive", "counted")
     alone = chain(tuple(np.diag(arm.damping)), resolution=(1e-5, 1e-5), coulomb_friction=(0.01, 0.01))
-    other = zw.workspace(alone, zw.Wall(100), rate=1 / PERIOD, points=4)
+    other = decided(alone, 100)
     assert space.largest_forces == other.largest_forces
 
 
-def test_three_legs_with_couplings() -> None:
-    """The Falcon, below and above the limit of a small region."""
-    arm = built_in(
-        "falcon", damping=random_damping(3, 3, 0.004), lower=(0.0, 0.0, 0.119), upper=(0.0004, 0.0004, 0.121),
-        resolution=0,
-    )  # fmt: skip
+def test_three_legs_with_couplings():
+    region = {"lower": (0.0, 0.0, 0.119), "upper": (0.0004, 0.0004, 0.121)}
+    arm = built_in("falcon", damping=random_damping(3, 3, 0.004), resolution=0, **region)
     assert isinstance(arm, LeggedArm)
-    limit = zw.workspace(arm, zw.Wall(100), rate=1 / PERIOD, points=4).largest_stiffness
-    outcomes = [
-        zw.workspace(arm, zw.Wall(times * limit), rate=1 / PERIOD, points=4).outcome
-        for times in (0.995, 1.005)
-    ]
+    limit = decided(arm, 100).largest_stiffness
+    outcomes = [decided(arm, times * limit).outcome for times in (0.995, 1.005)]
     assert outcomes == ["passive", "active"]
 
 
-def test_a_joint_beside_the_way_to_the_hand(tmp_path: Path) -> None:
+def test_a_joint_beside_the_way_to_the_hand(tmp_path):
     """Damped together with one that moves the hand it goes along, and less is lost: no certificate."""
     path = random_arm(tmp_path / "arm.urdf", 4, 3)
     b = random_damping(9, 3, 0.3)
     apart = b.copy()
     apart[:2, 2] = apart[2, :2] = 0.0
-    spaces = [
-        zw.workspace(
-            read_arm(path, frame="l2", hold={"j2": 0.0}, damping=d), zw.Wall(5), rate=1 / PERIOD, points=8
-        )
-        for d in (apart, b)
-    ]
+    arms = (read_arm(path, frame="l2", hold={"j2": 0.0}, damping=d) for d in (apart, b))
+    spaces = [decided(arm, 5, 8) for arm in arms]
     assert [space.outcome for space in spaces] == ["passive", "theorem"]
     assert "damped together with joints beside it" in spaces[1].claim
     assert len(spaces[0].certificate.to_dict()["arm"]["damping_N_m_s_rad"]) == 2
 
 
-def test_the_advice_is_enough() -> None:
+def test_the_advice_is_enough():
     """With the damping that is asked for added to the diagonal the region is proved."""
     damping = random_damping(0, 2)
-    limit = zw.workspace(chain(damping), zw.Wall(10), rate=1 / PERIOD, points=4).largest_stiffness
-    space = zw.workspace(chain(damping), zw.Wall(1.5 * limit), rate=1 / PERIOD, points=4)
+    limit = decided(chain(damping)).largest_stiffness
+    space = decided(chain(damping), 1.5 * limit)
     more = damping + np.diag(space.least_additions)
     assert zw.workspace(chain(more), space.wall, rate=1 / PERIOD, points=4).outcome == "passive"
     short = damping + 0.9 * np.diag(space.least_additions)
     assert zw.workspace(chain(short), space.wall, rate=1 / PERIOD, points=4).outcome == "active"
 
 
-def test_the_verdict_says_the_matrix() -> None:
-    """In its JSON, as it was given."""
-    damping = random_damping(0, 2)
-    told = zw.workspace(chain(damping), zw.Wall(10), rate=1 / PERIOD, points=4).to_dict()
-    assert np.allclose(told["joint_damping_N_m_s_rad"], damping, rtol=1e-12)
-    assert zw.workspace(chain((0.02, 0.01)), zw.Wall(10), rate=1e3).to_dict()["joint_damping_N_m_s_rad"] == [
-        0.02,
-        0.01,
-    ]
+@pytest.mark.parametrize("damping", [random_damping(0, 2), (0.02, 0.01)])
+def test_the_verdict_says_the_damping(damping):
+    told = decided(chain(damping)).to_dict()["joint_damping_N_m_s_rad"]
+    assert np.shape(told) == np.shape(damping)
+    assert np.allclose(told, damping, rtol=1e-12)

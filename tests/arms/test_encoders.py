@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ from zwidth.passivity.scope import TOLD
 
 Array = npt.NDArray[np.float64]
 
-PERIOD = 1e-3
+PERIOD, STIFF = 1e-3, zw.Wall(500)
 Q2 = (float(np.deg2rad(140)), float(np.deg2rad(150)))
 EXAMPLE: dict[str, Any] = {
     "links": (0.1, 0.1),
@@ -29,6 +28,11 @@ EXAMPLE: dict[str, Any] = {
 }
 """Its friction pays for the steps of the reading alone, but not for those of the Jacobian at every force."""
 FRICTION = (0.01593592, 0.0231231)
+
+
+def decided(arm: Any, wall: Any = STIFF, points: int = 50, **asked: float | None) -> Any:
+    """At 1 kHz."""
+    return zw.workspace(arm, wall, rate=1 / PERIOD, points=points, **asked)
 
 
 def placed(links: tuple[float, ...], q: Array) -> tuple[Array, Array]:
@@ -71,15 +75,11 @@ def attacks(rng: np.random.Generator, arm: PlanarChain, count: int) -> list[Arra
         small = rectangle(steps, joint, 0.3 * steps[joint])
         size = 10 ** rng.uniform(-2, 0, (count, 1, 1))
         found.append(edges + signs * size * small)
-        far = np.minimum(edges[:, 0, joint] - low[joint], high[joint] - edges[:, 0, joint]) * rng.uniform(
-            0.1, 0.9
-        )
-        there = np.linspace(0, 1, 60)[:, None] * np.eye(m)[joint]
+        here = edges[:, 0, joint]
+        far = np.minimum(here - low[joint], high[joint] - here) * rng.uniform(0.1, 0.9)
+        there = far[:, None, None] * np.linspace(0, 1, 60)[:, None] * np.eye(m)[joint]
         around = np.where(np.arange(m) == joint, 0.0, 1e-4 * steps) * np.ones((60, 1))
-        slow = np.concatenate(
-            [far[:, None, None] * there + around, far[:, None, None] * there[::-1] - around], axis=1
-        )
-        found.append(edges + signs * slow)
+        found.append(edges + signs * np.concatenate([there + around, there[:, ::-1] - around], axis=1))
     side = np.where(np.arange(6) % 2, 1.0, -1.0)[None, :, None]
     ways = rng.choice([-1.0, 0.0, 1.0], (count, 1, m)) * 10 ** rng.uniform(-3, 0, (count, 1, m))
     found.append(edges + side * ways * steps / 2)
@@ -117,24 +117,22 @@ def random_chain(rng: np.random.Generator) -> tuple[PlanarChain, zw.arms.MatrixW
     load = np.swapaxes(jacobians, -1, -2) @ (k * PERIOD / 2 + np.array(wall.damping)) @ jacobians
     need = 1.2 * np.linalg.eigvalsh(load).max() + 1.01 * bare.curvature * force * PERIOD / 2
     steps = encoder_steps(bare, wall, PERIOD, bare.sites(40))
-    assert steps is not None
     enough = tuple(1.00001 * np.array(steps.friction_up_to(force)))
     return bare.replace(damping=tuple(rng.uniform(1, 2, m) * need), coulomb_friction=enough), wall, force
 
 
-def test_no_attack_gains_where_steps_are_counted() -> None:
+def test_no_attack_gains_where_steps_are_counted():
     """Random chains, walls and counts, the torque of the readings held or following them: up to the force
     that is covered nothing is taken out; with a third of the friction something is."""
     rng, gained, fixed = np.random.default_rng(11), 0, 0
     for _ in range(8):
         arm, wall, force = random_chain(rng)
-        space = zw.workspace(arm, wall, rate=1 / PERIOD, points=10, torque_held_up_to=force)
+        space = decided(arm, wall, 10, torque_held_up_to=force)
         assert (space.outcome, space.encoder) == ("passive", "counted"), space.claim
         assert space.largest_forces == (force,)
         k, b = np.array(wall.stiffness), np.array(wall.damping)
         weak = arm.replace(coulomb_friction=tuple(np.array(arm.coulomb_friction) / 3))
         steps = space.encoder_steps
-        assert steps is not None
         # What pays twice for the misread position alone, and four times the force at which that is enough.
         alone = arm.replace(coulomb_friction=tuple(2 * np.array(steps.friction)))
         hard = 4 * float((np.array(steps.friction) / steps.friction_per_force).max())
@@ -152,27 +150,23 @@ def test_no_attack_gains_where_steps_are_counted() -> None:
 
 
 @pytest.mark.parametrize("held", [True, False])
-def test_both_sides_on_one_joint(held: bool) -> None:
+def test_both_sides_on_one_joint(held):
     """There what is enough is needed: 1 part in 200 above the force that is covered a motion is found."""
-    arm = PlanarChain(
-        links=(0.08,), damping=(0.02,), joint_range=((-0.5, 0.7),), resolution=(1e-3,),
-        coulomb_friction=(0.005,),
-    )  # fmt: skip
+    numbers = {"damping": 0.02, "coulomb_friction": 0.005, "resolution": 1e-3}
+    arm = PlanarChain(links=(0.08,), joint_range=((-0.5, 0.7),), **{k: (v,) for k, v in numbers.items()})
     wall = zw.Wall(900)
     space = zw.workspace(arm, wall, rate=1 / PERIOD, torque_held_up_to=1.0 if held else None)
     steps = space.encoder_steps
-    assert steps is not None
     assert space.encoder == "counted"
     assert steps.friction[0] == pytest.approx(0.08**2 * 900 * 1e-3 / 2, rel=1e-3)
     assert steps.covered[0] == pytest.approx((0.005 - steps.friction[0]) / (0.08e-3 / 2), rel=1e-3)
     if held:
-        assert steps.refuted is not None
         assert steps.covered[0] < steps.refuted < 1.005 * steps.covered[0]
     else:  # one joint that follows its readings: the force does not matter, but in the proof it does
         assert steps.refuted is None
 
 
-def test_a_slow_rectangle_across_one_edge() -> None:
+def test_a_slow_rectangle_across_one_edge():
     """The torque of the second joint changes at an edge of the first, more the harder the wall pushes."""
     arm, wall = PlanarChain(coulomb_friction=FRICTION, **EXAMPLE), zw.Wall(500)
     edge, count = 80 * EXAMPLE["resolution"][0], 4000
@@ -192,91 +186,86 @@ def test_a_slow_rectangle_across_one_edge() -> None:
     assert energy(0.2, True) < -1e-3
     assert energy(0.5, True) < -1e-2
     assert energy(0.06, True) > 0
-    space = zw.workspace(arm, wall, rate=1 / PERIOD, points=50)
+    space = decided(arm)
     assert (space.outcome, space.encoder, space.torque) == ("passive", "counted", "follows")
     assert space.largest_forces == pytest.approx((35.19,), rel=1e-3)
     assert "for wall forces up to 35.19 N, proved. Encoder steps are counted" in space.claim
     steps = space.encoder_steps
-    assert steps is not None
     assert steps.motion is not None
     assert steps.refuted == pytest.approx(61.57, rel=1e-2)
     assert f"From {steps.refuted:.4g} N on a motion across their edges takes energy out" in space.claim
 
 
-def test_up_to_a_force_that_is_asked_for() -> None:
-    """Below the one that is covered passive, above the one that is refuted active, undecided between."""
-    arm, wall = PlanarChain(coulomb_friction=FRICTION, **EXAMPLE), zw.Wall(500)
-    for force, outcome in ((35.0, "passive"), (36.0, "undecided"), (61.0, "undecided"), (62.0, "active")):
-        space = zw.workspace(arm, wall, rate=1 / PERIOD, points=50, largest_force=force)
-        assert (space.outcome, space.encoder) == (outcome, "counted"), force
-        assert space.largest_forces == (force,)
-        if outcome == "active":
-            assert space.motion is not None
-            assert space.motion.largest_force <= force
-            again = replay_cycle(
-                arm, wall, PERIOD, 0, space.motion.joints, counted=True, rest=space.motion.rest
-            )
-            assert again.energy == space.motion.energy < 0
-        if outcome == "undecided":
-            assert "Coulomb friction covers them up to 35.19 N" in space.claim
-    bare = PlanarChain(**EXAMPLE)
-    assert zw.workspace(bare, wall, rate=1 / PERIOD, points=50, largest_force=1).outcome == "active"
+@pytest.mark.parametrize(
+    ("asked", "force", "outcome"),
+    [
+        ("largest_force", 35.0, "passive"),
+        ("largest_force", 36.0, "undecided"),
+        ("largest_force", 61.0, "undecided"),
+        ("largest_force", 62.0, "active"),
+        ("torque_held_up_to", 35.0, "passive"),
+        ("torque_held_up_to", 50.0, "active"),
+    ],
+)
+def test_up_to_a_force_that_is_asked_for(asked, force, outcome):
+    """35.19 N are covered; 61.57 N are refuted where the torque follows the readings."""
+    arm = PlanarChain(coulomb_friction=FRICTION, **EXAMPLE)
+    space = decided(arm, **{asked: force})
+    assert (space.outcome, space.encoder, space.largest_forces) == (outcome, "counted", (force,))
+    assert space.torque == ("held" if asked == "torque_held_up_to" else "follows")
+    if outcome == "active":
+        motion, held = space.motion, asked == "torque_held_up_to"
+        assert motion.largest_force <= force
+        again = replay_cycle(arm, STIFF, PERIOD, 0, motion.joints, held, counted=True, rest=motion.rest)
+        assert again.energy == motion.energy < 0
+    if outcome == "undecided":
+        assert "Coulomb friction covers them up to 35.19 N" in space.claim
 
 
-def test_friction_that_covers_the_steps_at_no_force() -> None:
+def test_without_friction_a_small_force_is_enough():
+    assert decided(PlanarChain(**EXAMPLE), largest_force=1).outcome == "active"
+
+
+def test_friction_that_covers_the_steps_at_no_force():
     """A motion across their edges takes energy out, up to a hundredth below what covers them."""
-    bare = zw.workspace(PlanarChain(**EXAMPLE), zw.Wall(500), rate=1 / PERIOD, points=50)
-    assert bare.encoder_steps is not None
+    bare = decided(PlanarChain(**EXAMPLE))
     for share in (0.0, 0.5, 0.99):
         friction = tuple(share * f for f in bare.encoder_steps.friction)
         arm = PlanarChain(coulomb_friction=friction, **EXAMPLE)
-        space = zw.workspace(arm, zw.Wall(500), rate=1 / PERIOD, points=50)
+        space = decided(arm)
         assert (space.outcome, space.encoder, space.certificate) == ("active", "counted", None), share
         assert ("Coulomb friction is not given and taken as 0" in space.claim) is (share == 0)
         motion = space.motion
-        assert motion is not None
         again = replay_cycle(arm, zw.Wall(500), PERIOD, 0, motion.joints, counted=True, rest=motion.rest)
         assert again.energy == motion.energy < 0
 
 
-def test_held_torques_are_refuted_by_forces_that_the_wall_gives() -> None:
-    """35.19 N are covered; up to 50 N a motion takes energy out, with no more than that."""
-    arm = PlanarChain(coulomb_friction=FRICTION, **EXAMPLE)
-    for force, outcome in ((35, "passive"), (50, "active")):
-        space = zw.workspace(arm, zw.Wall(500), rate=1 / PERIOD, points=50, torque_held_up_to=force)
-        assert (space.outcome, space.encoder, space.torque) == (outcome, "counted", "held")
-    assert space.motion is not None
-    assert space.motion.largest_force <= 50
-
-
-def test_a_proof_without_steps_is_no_proof_of_an_arm_that_has_them() -> None:
+def test_a_proof_without_steps_is_no_proof_of_an_arm_that_has_them():
     """Of parallel arms the steps are not bounded: the outcome, its first words and its status say so."""
     legs = zw.arms.built_in("haply-2diy", damping=0.003, coulomb_friction=0.1)
-    space = zw.workspace(legs, zw.Wall(100), rate=1000, points=20)
+    space = decided(legs, zw.Wall(100), 20)
     assert (space.outcome, space.encoder) == ("passive without encoder steps", "ideal")
     assert (space.scope.encoder, space.encoder_steps) == ("not counted", None)
     assert space.claim.startswith("Read without steps, no motion of the hand would take energy out")
     assert "of such an arm" in space.claim
     assert TOLD[space.outcome].status == 4
-    assert space.certificate is not None
     assert space.certificate.verify()
-    without = zw.workspace(legs.replace(resolution=(0.0, 0.0)), zw.Wall(100), rate=1000, points=20)
+    without = decided(legs.replace(resolution=(0.0, 0.0)), zw.Wall(100), 20)
     assert (without.outcome, without.scope.encoder) == ("passive", "ideal")
-    free = zw.workspace(zw.arms.built_in("two-link", damping=0.05), zw.Wall(100), rate=1000, points=20)
+    free = decided(zw.arms.built_in("two-link", damping=0.05), zw.Wall(100), 20)
     assert free.outcome == "passive"
     assert "Encoder steps" not in free.claim
 
 
-def test_an_arm_whose_damping_fails_is_refuted_behind_its_encoders() -> None:
+def test_an_arm_whose_damping_fails_is_refuted_behind_its_encoders():
     """The motion is one of the readings; that of an ideal encoder does not do where steps are asked for."""
     arm = PlanarChain(**{**EXAMPLE, "damping": (1e-4, 1e-4)}, coulomb_friction=FRICTION)
-    space = zw.workspace(arm, zw.Wall(500), rate=1 / PERIOD, points=20)
+    space = decided(arm, points=20)
     assert (space.outcome, space.encoder) == ("active", "counted")
-    assert space.motion is not None
     assert space.motion.encoder == "counted"
 
 
-def test_what_follows_the_readings_is_added_up_exactly() -> None:
+def test_what_follows_the_readings_is_added_up_exactly():
     """The work of a torque that follows, by pieces between edges, against ten thousand parts of a period."""
     arm = PlanarChain(**{**EXAMPLE, "resolution": (0.013, 0.007)}, coulomb_friction=(0.01, 0.02))
     rng = np.random.default_rng(3)
@@ -296,7 +285,7 @@ def test_what_follows_the_readings_is_added_up_exactly() -> None:
     assert found.largest_force == pytest.approx(np.linalg.norm(force, axis=1).max())
 
 
-def test_each_cell_looks_at_its_neighbours() -> None:
+def test_each_cell_looks_at_its_neighbours():
     """A reading may lie in the next cell: the bound on the columns holds one step around each."""
     arm = PlanarChain(**{**EXAMPLE, "resolution": (0.05, 0.03)}, coulomb_friction=FRICTION)
     sites, rng = arm.sites(40), np.random.default_rng(6)
@@ -306,44 +295,37 @@ def test_each_cell_looks_at_its_neighbours() -> None:
     bound = columns_in_cells(arm, sites).reshape(-1, 2)
     index = np.abs(sites.joints.reshape(-1, 1, 2) - cells).sum(axis=-1).argmin(axis=0)
     assert (np.linalg.norm(placed((0.1, 0.1), cells + off)[1], axis=-2) <= bound[index] + 1e-12).all()
-    data = zw.workspace(arm, zw.Wall(50), rate=1 / PERIOD, points=40).data
+    data = decided(arm, zw.Wall(50), 40).data
     own, each, _ = friction_for(arm, zw.Wall(50), PERIOD, columns_in_cells(arm, sites))
     expected = np.maximum((np.array(FRICTION) - own) / each, 0).min(axis=-1)
     assert data["covered_force"].values == pytest.approx(expected)
     assert float(data["covered_force"].min()) < float(data["covered_force"].max())
 
 
-def test_in_pose_each_block_pays_in_its_own_unit() -> None:
+def test_in_pose_each_block_pays_in_its_own_unit():
     """A planar chain in pose: translation and rotation add up, and metres may be millimetres."""
-
-    def asked(scale: float) -> tuple[Any, Any]:
-        arm = PlanarChain(
-            links=(0.1 * scale, 0.08 * scale), damping=(0.05, 0.05), resolution=(2e-3, 2e-3),
-            joint_range=((0, 1), (0.5, 1.5)), pose=True,
-        )  # fmt: skip
+    chain = {"damping": (0.05, 0.05), "resolution": (2e-3, 2e-3), "joint_range": ((0, 1), (0.5, 1.5))}
+    asked = []
+    for scale in (1.0, 1000.0):
+        arm = PlanarChain(links=(0.1 * scale, 0.08 * scale), pose=True, **chain)
         wall = zw.arms.MatrixWall(np.diag([50 / scale**2, 50 / scale**2, 0.4]), np.zeros((3, 3)), turns=1)
-        steps = zw.workspace(arm, wall, rate=1000, points=20).encoder_steps
-        assert steps is not None
+        steps = decided(arm, wall, 20).encoder_steps
         assert steps.friction_per_moment == (0.0, 0.0)
-        return steps.friction, steps.friction_up_to(3.0 / scale)
-
-    assert asked(1.0)[0] == pytest.approx(asked(1000.0)[0], rel=1e-6)
-    assert asked(1.0)[1] == pytest.approx(asked(1000.0)[1], rel=1e-6)
-    assert all(value > 0.4 * 2e-3 for value in asked(1.0)[0])
+        asked += [steps.friction, steps.friction_up_to(3.0 / scale)]
+    assert asked[:2] == [pytest.approx(friction, rel=1e-6) for friction in asked[2:]]
+    assert min(asked[0]) > 0.4 * 2e-3
 
 
 @pytest.mark.parametrize("pose", [False, True])
-def test_descriptions_are_counted_with_a_certificate(pose: bool, tmp_path: Path) -> None:
-    """Joints of any placement in space; in pose with a force and a moment. More of them is refused."""
+def test_descriptions_are_counted_with_a_certificate(pose, tmp_path):
     random_arm(tmp_path / "arm.urdf", 4, 3)
     numbers: dict[str, Any] = {"resolution": (1e-4,) * 3, "coulomb_friction": (0.05, 0.04, 0.03)}
     hold = {"j0": 0.1}
     arm = read_arm(tmp_path / "arm.urdf", hold=hold, pose=pose, **numbers)
     wall: Any = zw.arms.MatrixWall.in_pose(40, 0.2) if pose else zw.Wall(40)
-    space = zw.workspace(arm, wall, rate=1000, points=10)
+    space = decided(arm, wall, 10)
     assert (space.outcome, space.encoder) == ("passive", "counted"), space.claim
     assert len(space.largest_forces) == (2 if pose else 1)
-    assert space.certificate is not None
     document = space.certificate.documents[0]
     found = verify_document(document)
     assert found.valid
@@ -355,7 +337,7 @@ def test_descriptions_are_counted_with_a_certificate(pose: bool, tmp_path: Path)
     assert "must be at least" in verify_document(document).reason
 
 
-def test_sizes_of_matrices() -> None:
+def test_sizes_of_matrices():
     """Never below the largest singular value; exact of k·1 and of k n nᵀ."""
     rng = np.random.default_rng(9)
     for _ in range(200):
@@ -366,13 +348,14 @@ def test_sizes_of_matrices() -> None:
     assert size_bound(7 * np.outer(n, n)) == pytest.approx(7 * n @ n)
 
 
-def test_a_largest_force_needs_encoders() -> None:
-    """Of an arm without them, and beside held torques, it is refused."""
-    arm = zw.arms.built_in("two-link", damping=0.05)
-    with pytest.raises(zw.InputError, match="resolution of its joints"):
-        zw.workspace(arm, zw.Wall(100), rate=1000, largest_force=3)
-    arm = PlanarChain(**EXAMPLE)
-    with pytest.raises(zw.InputError, match="leave largest_force out"):
-        zw.workspace(arm, zw.Wall(100), rate=1000, largest_force=3, torque_held_up_to=3)
-    with pytest.raises(zw.InputError, match="largest_force is the largest force"):
-        zw.workspace(arm, zw.Wall(100), rate=1000, largest_force=-3)
+@pytest.mark.parametrize(
+    ("arm", "asked", "words"),
+    [
+        (zw.arms.built_in("two-link", damping=0.05), {"largest_force": 3}, "resolution of its joints"),
+        (PlanarChain(**EXAMPLE), {"largest_force": 3, "torque_held_up_to": 3}, "leave largest_force out"),
+        (PlanarChain(**EXAMPLE), {"largest_force": -3}, "largest_force is the largest force"),
+    ],
+)
+def test_a_largest_force_needs_encoders(arm, asked, words):
+    with pytest.raises(zw.InputError, match=words):
+        decided(arm, **asked)

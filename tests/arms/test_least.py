@@ -23,7 +23,7 @@ def _matrices(seed: int, cells: int, joints: int) -> Array:
 
 
 @pytest.mark.parametrize(("cells", "joints"), [(80, 1), (30, 2), (1, 4), (3000, 3), (1, 6), (200, 7)])
-def test_it_is_enough_and_the_least(cells: int, joints: int) -> None:
+def test_it_is_enough_and_the_least(cells, joints):
     """Every matrix is ⪰ 0 with it, and its sum is the lower bound to 1e-6; less of it fails."""
     for seed in range(3):
         matrices = _matrices(seed, cells, joints)
@@ -35,7 +35,7 @@ def test_it_is_enough_and_the_least(cells: int, joints: int) -> None:
         assert np.linalg.eigvalsh(1e-3 * matrices + np.diag(0.999 * added)).min() < 0
 
 
-def test_of_an_arm_with_many_joints_the_bounds_decide() -> None:
+def test_of_an_arm_with_many_joints_the_bounds_decide():
     """Each bracket goes from what the points ask for to what the cells do, and nothing is proved."""
     points = _matrices(4, 20, 6)
     cells = points - 0.01 * np.eye(6)
@@ -50,7 +50,7 @@ def _in_each(matrices: Array) -> tuple[Array]:
     return (np.full(matrices.shape[-1], -np.linalg.eigvalsh(matrices).min()),)
 
 
-def test_it_is_that_of_a_semidefinite_solver() -> None:
+def test_it_is_that_of_a_semidefinite_solver():
     """cvxopt on the same programme."""
     cvxopt.solvers.options["show_progress"] = False
     for seed, joints in ((1, 2), (2, 3), (3, 6)):
@@ -66,7 +66,7 @@ def test_it_is_that_of_a_semidefinite_solver() -> None:
         assert least_additions(matrices)[0].sum() == pytest.approx(solved["primal objective"], rel=1e-5)
 
 
-def test_nothing_is_added_where_nothing_lacks() -> None:
+def test_nothing_is_added_where_nothing_lacks():
     """Zero, and zero as the bound; what lacks by rounding alone gets no more than rounding."""
     good = np.eye(3)[None] + np.zeros((5, 3, 3))
     assert (least_additions(good)[0] == 0).all()
@@ -74,7 +74,7 @@ def test_nothing_is_added_where_nothing_lacks() -> None:
     assert added.max() < 1e-13
 
 
-def test_one_matrix_of_one_joint_and_one_joint_that_is_enough() -> None:
+def test_one_matrix_of_one_joint_and_one_joint_that_is_enough():
     """−M of a number; and never more than one joint alone, or all alike."""
     assert least_additions(np.array([[[-0.3]], [[-0.7]]]))[0] == pytest.approx([0.7])
     for seed in range(20):
@@ -86,7 +86,7 @@ def test_one_matrix_of_one_joint_and_one_joint_that_is_enough() -> None:
 
 
 @pytest.mark.parametrize("name", ["two-link", "haply-2diy", "falcon"])
-def test_the_least_damping_proves_the_region(name: str) -> None:
+def test_the_least_damping_proves_the_region(name):
     """With it the region is proved; a little less is refuted, and so is the same sum shared out alike."""
     arm = built_in(name, damping=(0.004, 0.002, 0.003)[: 3 if name == "falcon" else 2], resolution=0)
     space = zw.workspace(arm, zw.Wall(900), rate=1000, points=20)

@@ -1,7 +1,5 @@
 """A device that turns on the bench: felt at its rim, told about its axis."""
 
-from __future__ import annotations
-
 import pytest
 
 import zwidth as zw
@@ -12,30 +10,18 @@ from zwidth.study.bench.bench import at_rim, radius_of
 
 RADIUS = Exact("0.13")
 KNOB = zw.rotary(
-    inertia=0.004,
-    damping=0.03,
-    coulomb_friction=0.04,
-    counts_per_turn=5000,
-    rate="1 kHz",
-    delay="1 ms",
-    name="knob",
+    inertia=0.004, damping=0.03, coulomb_friction=0.04, counts_per_turn=5000, rate="1 kHz", delay="1 ms"
 )
 WALL = zw.Wall(14, 0.01)
 
 
-def test_the_same_touch_about_the_axis() -> None:
+def test_the_same_touch_about_the_axis():
     """Simulated there, with a finger whose numbers are turned by hand, it has the scores that are told."""
     there = at_rim(KNOB, WALL, RADIUS)
     found = zw.compare(*there, {"wall": there[1]}).about_axis(KNOB, WALL, RADIUS)
     r, touch = float(RADIUS), TypicalTouch()
-    finger = zw.operators.Finger(
-        mass=touch.mass * r**2,
-        stiffness=touch.stiffness * r**2,
-        damping=touch.damping * r**2,
-        force=touch.force * r,
-        speed=touch.speed / r,
-        start=touch.start / r,
-    )
+    powers = {"mass": 2, "stiffness": 2, "damping": 2, "force": 1, "speed": -1, "start": -1}
+    finger = zw.operators.Finger(**{name: getattr(touch, name) * r**power for name, power in powers.items()})
     trace = zw.simulate(KNOB, WALL, finger, 1.5)
     told = found.scores.sel(law="wall")
     for name, units, score in (
@@ -51,7 +37,7 @@ def test_the_same_touch_about_the_axis() -> None:
     assert found.to_dict()["touched_at_radius_m"] == 0.13
 
 
-def test_what_is_refused() -> None:
+def test_what_is_refused():
     """No radius, one of nothing, one where nothing turns, and laws whose numbers are not of the rim."""
     for given, part in ((None, "how far from the axis"), (0, "handle_radius must be > 0")):
         with pytest.raises(zw.InputError, match=part):

@@ -1,7 +1,5 @@
 """A promise on the bench counts the amplifier: converter steps, force limit, what else the device states."""
 
-from __future__ import annotations
-
 import itertools
 import time
 from fractions import Fraction
@@ -21,16 +19,8 @@ PROMISES = ("passive", "theorem")
 
 def made(step="0.01", friction="0", **more):
     """b = 0.5 N·s/m at 1 kHz, an ideal encoder, a converter with steps."""
-    return zw.Device(
-        mass="0.05",
-        damping="0.5",
-        coulomb_friction=friction,
-        resolution=more.pop("resolution", 0),
-        sample_period="0.001",
-        delay=0,
-        force_resolution=step,
-        **more,
-    )
+    numbers = {"mass": "0.05", "damping": "0.5", "resolution": 0, "sample_period": "0.001", "delay": 0}
+    return zw.Device(**{**numbers, "coulomb_friction": friction, "force_resolution": step, **more})
 
 
 def known_of(device, law, fastest=10.0):
@@ -155,16 +145,9 @@ def test_the_force_limit_counts_in_a_refutation_too():
 
 def scaled(device, length, force, period):
     """The device in other units."""
-    unit = {
-        "mass": force * period**2 / length,
-        "damping": force * period / length,
-        "coulomb_friction": force,
-        "resolution": length,
-        "sample_period": period,
-        "delay": period,
-        "force_limit": force,
-        "force_resolution": force,
-    }
+    unit = {"mass": force * period**2 / length, "damping": force * period / length, "resolution": length}
+    unit |= {"sample_period": period, "delay": period}
+    unit |= dict.fromkeys(("coulomb_friction", "force_limit", "force_resolution"), force)
     given = {key: device.exact(key) * by for key, by in unit.items() if getattr(device, key) is not None}
     return zw.Device(**given)
 
@@ -181,51 +164,30 @@ def test_a_loop_and_its_twin_in_other_units_get_one_answer(device):
     """Lengths × 3.7, forces × 0.21, times × 1.9: the same status, gains × 3.7 · 0.21."""
     length, force, period = Fraction("3.7"), Fraction("0.21"), Fraction("1.9")
     twin = scaled(device, length, force, period)
-    for stiffness in (2345,) if device.force_limit is None else (900,):
-        wall, other = zw.Wall(stiffness), zw.Wall(stiffness * force / length)
-        rows = (
-            ((), ()),
-            ((DualRate(samples=1),), (DualRate(samples=1),)),
-            ((PassiveLeap(),), (PassiveLeap(),)),
-            ((EnergyBounding(),), (EnergyBounding(),)),
-            (
-                (PassivityController(largest_damping="0.02"),),
-                (PassivityController(largest_damping=Fraction("0.02") * force * period / length),),
-            ),
-        )
-        for stages, elsewhere in rows:
-            law = zw.render(wall, *stages) if stages else wall
-            same = zw.render(other, *elsewhere) if stages else other
-            found, again = attack(device, law), attack(twin, same, fastest=10 * length / period)
-            assert found.extracts == again.extracts
-            if found.extracts:
-                assert again.gain == pytest.approx(found.gain * float(force * length), rel=1e-6)
-            assert standing(device, law, found).status == standing(twin, same, again).status
+    stiffness = 2345 if device.force_limit is None else 900
+    wall, other = zw.Wall(stiffness), zw.Wall(stiffness * force / length)
+    damping = Fraction("0.02"), Fraction("0.02") * force * period / length
+    alike = [(stage, stage) for stage in (DualRate(samples=1), PassiveLeap(), EnergyBounding())]
+    alike.append(tuple(PassivityController(largest_damping=each) for each in damping))
+    pairs = [(wall, other), *((zw.render(wall, here), zw.render(other, there)) for here, there in alike)]
+    for law, same in pairs:
+        found, again = attack(device, law), attack(twin, same, fastest=10 * length / period)
+        assert found.extracts == again.extracts
+        if found.extracts:
+            assert again.gain == pytest.approx(found.gain * float(force * length), rel=1e-6)
+        assert standing(device, law, found).status == standing(twin, same, again).status
 
 
 def random_loop(rng):
     """A device with steps, a wall that it renders alone, and what is said to be proved of it."""
     b, period, step = 10 ** rng.uniform(-1, 0.5), 10 ** rng.uniform(-3.5, -2.5), 10 ** rng.uniform(-3, -1)
     friction = step * rng.choice([0.0, 0.2, 0.5000001, 0.7])
-    device = zw.Device(
-        mass=0.05,
-        damping=b,
-        coulomb_friction=friction,
-        resolution=0,
-        sample_period=period,
-        delay=0,
-        force_resolution=step,
-        force_limit=None if rng.random() < 0.5 else step * rng.uniform(3, 300),
-    )
+    limit = None if rng.random() < 0.5 else step * rng.uniform(3, 300)
+    device = made(step, friction, damping=b, sample_period=period, force_limit=limit)
     stiffness = 2 * b / period * rng.uniform(0.2, 0.9)
+    dual = DualRate(samples=int(rng.integers(1, 4)))
     controller = PassivityController(largest_damping=0.09 * b)
-    stages = (
-        PassiveLeap(),
-        DualRate(samples=int(rng.integers(1, 4))),
-        controller,
-        EnergyBounding(),
-        ForceBounding(),
-    )
+    stages = (PassiveLeap(), dual, controller, EnergyBounding(), ForceBounding())
     stage = stages[int(rng.integers(len(stages)))]
     return device, zw.render(zw.Wall(stiffness), stage), step / stiffness
 
@@ -261,13 +223,8 @@ def test_rounds_are_what_the_simulator_makes_of_them(delay):
     """Walls and laws that remember, with delays of part of a sample: gain and total of all rounds."""
     device = PADDLE.replace(delay=delay)
     rng = np.random.default_rng(4)
-    for stages in (
-        (),
-        (PassivityController(),),
-        (ForceBounding(),),
-        (zw.rendering.Hysteresis(fastest="0.2"),),
-    ):
-        law = zw.render(zw.Wall(2000), *stages) if stages else zw.Wall(2000)
+    stages = PassivityController(), ForceBounding(), zw.rendering.Hysteresis(fastest="0.2")
+    for law in (zw.Wall(2000), *(zw.render(zw.Wall(2000), stage) for stage in stages)):
         play, motions = _player(device, law), list(fixed_motions(device, 10, law).values())
         for index in rng.choice(len(motions), 4, replace=False):
             quick, slow = play(motions[index], 40), _taken(device, law, motions[index], 40)
@@ -287,18 +244,11 @@ def test_nothing_depends_on_the_time_that_it_takes(monkeypatch):
 
 
 def test_a_theorem_is_never_called_passive():
-    """In the table, the page of a notebook, the advice, the evidence and the JSON."""
     device = PADDLE.replace(resolution=0)
     found = zw.compare(device, zw.Wall(2000), {"energy": zw.render(zw.Wall(2000), EnergyBounding())})
     assert found.scores["status"].item() == "theorem"
     assert found.standings["energy"].proof == "paper"
-    said = (
-        found.evidence["energy"],
-        found.advice.split(". ", 1)[1],
-        found.to_json(),
-        found._repr_html_(),
-        repr(found),
-    )
-    for text in said:
+    advice = found.advice.split(". ", 1)[1]
+    for text in (found.evidence["energy"], advice, found.to_json(), found._repr_html_(), repr(found)):
         assert "no certificate" in text or "without a certificate" in text
         assert "passive" not in text.replace("renders 300 N/m passively", "")

@@ -1,7 +1,5 @@
 """The bench: scores from traces whose value is known, its verdicts, its faces."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -10,7 +8,6 @@ import pytest
 import xarray as xr
 
 import zwidth as zw
-from zwidth.cli.main import main
 from zwidth.loop.traces import measures as scores
 from zwidth.model import rendering
 from zwidth.study.bench import standard_laws
@@ -69,19 +66,10 @@ def test_the_bench_says_what_check_says(stiff):
 
 
 def test_the_table_of_the_docs_is_what_the_bench_says(stiff):
-    """Status and numbers of the page, to the digits that it shows."""
     page = (Path(__file__).parents[2] / "docs" / "laws.md").read_text(encoding="utf-8")
     table = page[page.index("| law | status | felt") :].split("\n\n")[0].splitlines()[2:]
-    variables = {
-        "static_stiffness": 1,
-        "tap_chatter": 1e3,
-        "bounces": 1,
-        "settling_time": 1e3,
-        "peak_force": 1,
-        "generated_energy": 1e3,
-        "dowel_energy": 1e3,
-        "gain": 1e3,
-    }
+    variables = {"static_stiffness": 1, "tap_chatter": 1e3, "bounces": 1, "settling_time": 1e3}
+    variables |= {"peak_force": 1, "generated_energy": 1e3, "dowel_energy": 1e3, "gain": 1e3}
     assert len(table) >= 18
     for line in table:
         name, status, *cells = (cell.strip(" `") for cell in line.strip("|").split("|"))
@@ -98,7 +86,6 @@ def test_the_table_of_the_docs_is_what_the_bench_says(stiff):
 
 
 def test_every_key_of_the_json_is_on_its_page(stiff):
-    """Whoever reads scores by program finds each of them explained."""
     page = (Path(__file__).parents[2] / "docs" / "json.md").read_text(encoding="utf-8")
     document = json.loads(stiff.to_json())
     keys = {*document, *document["laws"]["wall"]}
@@ -134,11 +121,8 @@ def test_force_bounding_is_proved_and_not_broken(stiff):
     assert "force bounding credits" in stiff.evidence["force-bounding"]
     assert not stiff.attacks["force-bounding"].extracts
     assert float(stiff.scores["static_stiffness"].sel(law="force-bounding")) > 1000
-    late = zw.compare(
-        PADDLE.replace(delay="0.0005"),
-        zw.Wall(2000),
-        {"late": zw.render(zw.Wall(2000), zw.rendering.ForceBounding())},
-    )
+    law = zw.render(zw.Wall(2000), zw.rendering.ForceBounding())
+    late = zw.compare(PADDLE.replace(delay="0.0005"), zw.Wall(2000), {"late": law})
     assert late.scores["status"].item() not in ("passive", "theorem")
 
 
@@ -163,7 +147,6 @@ def test_a_passive_wall_is_never_attacked_with_success():
 
 
 def test_its_faces(stiff, tmp_path):
-    """Table, paragraph, notebook, picture, units."""
     text = repr(stiff)
     assert "wall, 2000 N/m on haptic-paddle" in text
     assert "force-bounding" in stiff.advice
@@ -174,26 +157,6 @@ def test_its_faces(stiff, tmp_path):
     assert all("units" in v.attrs for k, v in stiff.scores.data_vars.items() if k != "status")
 
 
-def test_the_command(tmp_path, monkeypatch, capsys):
-    """A table; JSON with units in its keys; one line for a law that is not there."""
-    monkeypatch.chdir(tmp_path)
-    wall = ["compare", "haptic-paddle", "--stiffness", "400"]
-    assert main([*wall, "--laws", "wall, virtual-damping", "--plot", "a.png", "-o", "a.json"]) == 0
-    assert "virtual-damping" in capsys.readouterr().out
-    saved = json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))
-    assert list(saved["laws"]) == ["wall", "virtual-damping"]
-    assert saved["laws"]["wall"]["static_stiffness_N_per_m"] == pytest.approx(400, rel=0.05)
-    assert main([*wall, "--laws", "wall", "--fastest", "fast"]) == 2
-    assert "fastest" in capsys.readouterr().err
-    assert main([*wall, "--laws", "passivity-controller-published", "--fastest", "1 m/s", "--json"]) == 0
-    assert (
-        json.loads(capsys.readouterr().out)["laws"]["passivity-controller-published"]["status"] == "undecided"
-    )
-    assert main([*wall, "--laws", "magic"]) == 2
-    assert 'no law "magic"' in capsys.readouterr().err
-    assert main([*wall[:2], "--type", "maxwell", "--branch-stiffness", "3", "--branch-damping", "1"]) == 2
-
-
 @pytest.mark.parametrize(
     ("device", "wall", "options", "said"),
     [
@@ -202,10 +165,10 @@ def test_the_command(tmp_path, monkeypatch, capsys):
         (PADDLE.replace(damping=(1, 2)), zw.Wall(100), {}, "interval"),
         (PADDLE, zw.Wall((100, 200)), {}, "interval"),
         (PADDLE, zw.Wall(100), {"laws": {}}, "nothing to compare"),
+        (zw.rotary(inertia=1e-4, damping="0.001", rate=1000), zw.Wall(1), {}, "--handle-radius"),
     ],
 )
 def test_what_it_refuses(device, wall, options, said):
-    """One clear line."""
     with pytest.raises(zw.InputError, match=said):
         zw.compare(device, wall, **options)
 
@@ -237,13 +200,6 @@ def test_the_game_settles_what_the_adversary_does_not():
     assert "on either side take no energy out, proved; others may" in found.evidence["0.11"]
     assert "value iteration finds more" in found.evidence["0.14"]
     assert found.evidence["timed"].endswith("it remembers too much to be tabulated")
-
-
-def test_a_wheel_is_told_how_to_come_to_its_handle():
-    """The message names the option that does it."""
-    wheel = zw.rotary(inertia=1e-4, damping="0.001", rate=1000)
-    with pytest.raises(zw.InputError, match="--handle-radius"):
-        zw.compare(wheel, zw.Wall(1))
 
 
 def test_what_was_stored_at_the_start_is_not_given_out():

@@ -1,7 +1,5 @@
 """Ways to join two arms, beside each other: the numbers of each come from its verdict and its traces."""
 
-from __future__ import annotations
-
 import json
 
 import pytest
@@ -16,13 +14,8 @@ PAIR = zw.Pair(ARM, ARM, stiffness=100, delay="1 ms")
 @pytest.fixture(scope="module")
 def compared():
     """Three schemes, each with its arms."""
-    return zw.compare(
-        {
-            "positions": PAIR,
-            "forces": PAIR.replace(stiffness=0, follower_stiffness=100, reflection=1),
-            "loose": PAIR.replace(stiffness=400),
-        }
-    )
+    forces = PAIR.replace(stiffness=0, follower_stiffness=100, reflection=1)
+    return zw.compare({"positions": PAIR, "forces": forces, "loose": PAIR.replace(stiffness=400)})
 
 
 def test_a_hard_wall_is_felt_through_the_spring(compared):

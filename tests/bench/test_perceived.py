@@ -1,7 +1,5 @@
 """Just-noticeable differences of stiffness, and where they are said."""
 
-from __future__ import annotations
-
 from math import isnan
 
 import numpy as np
@@ -15,29 +13,26 @@ PADDLE = zw.catalogue.device("haptic-paddle")
 
 
 @pytest.mark.parametrize(("steps", "felt"), [(1, 1230.0), (2, 1512.9), (-1, 813.0081300813008), (0, 1000.0)])
-def test_steps_of_23_percent(steps: int, felt: float):
-    """Each is 23 % of the one before, up and down."""
+def test_steps_of_23_percent(steps, felt):
     assert noticeable_differences(felt, 1000) == pytest.approx(steps, abs=1e-12)
 
 
 def test_just_below_a_step_and_just_above():
     """The step lies at 1 + w, whatever w is."""
     for weber in (0.07, WEBER, 0.5):
-        below, above = (
-            noticeable_differences(400 * (1 + weber) * by, 400, weber) for by in (1 - 1e-9, 1 + 1e-9)
-        )
+        step = 400 * (1 + weber)
+        below, above = (noticeable_differences(step * by, 400, weber) for by in (1 - 1e-9, 1 + 1e-9))
         assert below < 1 < above
 
 
 @pytest.mark.parametrize("felt", [0.0, -20.0, float("nan"), float("inf")])
-def test_what_was_not_felt_has_no_number(felt: float):
+def test_what_was_not_felt_has_no_number(felt):
     """A wall that was not touched, or that pulled."""
     assert isnan(noticeable_differences(felt, 1000))
 
 
 @pytest.mark.parametrize(("wanted", "weber"), [(0, 0.2), (-1, 0.2), (float("inf"), 0.2), (9, 0), (9, -0.1)])
-def test_nothing_to_compare_with_is_refused(wanted: float, weber: float):
-    """One message."""
+def test_nothing_to_compare_with_is_refused(wanted, weber):
     with pytest.raises(InputError, match="must be finite and > 0"):
         noticeable_differences(100, wanted, weber)
 
@@ -53,10 +48,7 @@ def test_a_trace_says_what_was_felt():
 
 
 def test_the_bench_says_it_with_its_source():
-    """A column of the table, in steps of the stiffness that is wanted."""
-    wall = zw.Wall(600)
-    laws = {"wall": wall, "softer": zw.Wall(300)}
-    found = zw.compare(PADDLE, wall, laws)
+    found = zw.compare(PADDLE, zw.Wall(600), {"wall": zw.Wall(600), "softer": zw.Wall(300)})
     steps = found.scores["stiffness_jnds"]
     expected = np.log(found.scores["static_stiffness"] / 600) / np.log(1.23)
     assert np.allclose(steps, expected)

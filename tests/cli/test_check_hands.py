@@ -1,13 +1,9 @@
-"""`zwidth check --hands`: what is said of hands that are known, saved, checked, and bad input."""
-
-from __future__ import annotations
+"""`zwidth check --hands` and `--active-below`: what is said of hands, saved, checked, and bad input."""
 
 import json
 from pathlib import Path
 
 import pytest
-
-from zwidth.cli.main import main
 
 WHEEL = """[device]
 inertia = "0.03 kg*m^2"
@@ -18,56 +14,79 @@ handle_radius = "14 cm"
 rate = "1 kHz"
 delay = "1.4 ms"
 """
-ASKED = ["check", "wheel.toml", "--stiffness", "0.5 N*m/deg", "--hands", "none,hands-on"]
+OF_A_WHEEL = "check wheel.toml --stiffness '0.5 N*m/deg'"
+HANDS = f"{OF_A_WHEEL} --hands none,hands-on"
+DAMPED = "check haptic-paddle --stiffness 100 --virtual-damping 0.05 --active-below '10 Hz'"
 
 
 @pytest.fixture(autouse=True)
-def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def _wheel(run):
     Path("wheel.toml").write_text(WHEEL, encoding="utf-8")
 
 
-def test_each_hand_is_told_in_degrees(capsys: pytest.CaptureFixture[str]) -> None:
+def test_each_hand_is_told_in_degrees(run):
     """About the axis though a radius is given, as the question is in degrees; each hand by itself."""
-    assert main(ASKED) == 1
-    out = " ".join(capsys.readouterr().out.split())
+    out = run(HANDS, 1).words
     assert "K = 0.5 N·m/deg" in out
     assert "none is shaken, at 4.912 Hz; comes to rest up to 0.09187 N·m/deg" in out
     assert "hands-on comes to rest, up to 2.763 N·m/deg" in out
     assert "of each hand alone, as long as it keeps contact; dry friction and encoder steps left out" in out
 
 
-def test_saved_proofs_are_checked(capsys: pytest.CaptureFixture[str]) -> None:
+def test_saved_proofs_are_checked(run):
     """All that is proved is in the file; evidence that shows something else of a hand is refused."""
-    assert main([*ASKED, "-o", "proof.json"]) == 1
-    assert main(["verify", "proof.json"]) == 0
-    out = capsys.readouterr().out
-    assert "do not come to rest" in out
-    assert "come to rest after every disturbance" in " ".join(out.split())
+    run(f"{HANDS} -o proof.json", 1)
+    run("verify proof.json").says("do not come to rest", "come to rest after every disturbance")
     document = json.loads(Path("proof.json").read_text(encoding="utf-8"))
-    assert {k: v["outcome"] for k, v in document["known_hands"].items()} == {
-        "none": "unstable", "hands-on": "stable"
-    }  # fmt: skip
-    document["known_hands"]["none"]["certificate"] = document["known_hands"]["hands-on"]["certificate"]
+    hands = document["known_hands"]
+    found = [(name, hand["outcome"]) for name, hand in hands.items()]
+    assert found == [("none", "unstable"), ("hands-on", "stable")]
+    hands["none"]["certificate"] = hands["hands-on"]["certificate"]
     Path("proof.json").write_text(json.dumps(document), encoding="utf-8")
-    assert main(["verify", "proof.json"]) == 1
-    assert "shows something else" in " ".join(capsys.readouterr().out.split())
+    assert "shows something else" in run("verify proof.json", 1).words
 
 
-def test_json_has_them(capsys: pytest.CaptureFixture[str]) -> None:
-    """A document for each."""
-    assert main([*ASKED, "--json"]) == 1
-    document = json.loads(capsys.readouterr().out)
-    assert document["known_hands"]["none"]["format"] == "zwidth stability 1"
-    assert main([*ASKED[:-2], "--json"]) == 1
-    assert "known_hands" not in json.loads(capsys.readouterr().out)
+def test_json_has_them(run):
+    assert run(f"{HANDS} --json", 1).json["known_hands"]["none"]["format"] == "zwidth stability 1"
+    assert "known_hands" not in run(f"{OF_A_WHEEL} --json", 1).json
+
+
+def test_an_active_hand(run):
+    run(DAMPED).says(
+        "an active hand",
+        "up to 0.149901 N·s/m, contact kept",
+        "up to 0.05 N·s/m, contact broken too",
+        "too active",
+    )
+    document = run(f"{DAMPED} --json").json
+    found = document["active_hand"]
+    assert (document["outcome"], found["below_Hz"]) == ("passive", 10)
+    assert found["contact_broken"]["activity_N_s_per_m"] == 0.05
+    assert found["shaking_hand"]["frequency_Hz"] == pytest.approx(8)
+
+
+def test_proofs_of_an_active_hand_are_saved_and_verified(run):
+    """All three proofs are in the file and checked; one spoilt is found."""
+    run(f"{DAMPED} -o proof.json")
+    out = run("verify proof.json").out
+    assert out.count("VALID") == 1 + 3
+    assert out.count("No hand of this activity") == 2
+    assert "10 Hz" in out
+    document = json.loads(Path("proof.json").read_text(encoding="utf-8"))
+    document["active_hand"]["contact_kept"]["certificate"]["activity_N_s_per_m"] = "0.2"
+    Path("proof.json").write_text(json.dumps(document), encoding="utf-8")
+    run("verify proof.json", 1)
 
 
 @pytest.mark.parametrize(
-    ("more", "said"),
-    [(["--hands", "dowel"], '"dowel"'), (["--hands", "none", "--mass", "1"], "inertia")],
+    ("line", "said"),
+    [
+        (f"{OF_A_WHEEL} --hands dowel", '"dowel"'),
+        (f"{OF_A_WHEEL} --hands none --mass 1", "inertia"),
+        ("check haptic-paddle --stiffness 100 --active-below '700 Hz'", "half the rate"),
+        ("check haptic-paddle --stiffness 100 --active-below soon", "--active-below"),
+        ("check haptic-paddle --stiffness 100 --active-below '10 m'", "--active-below"),
+    ],
 )
-def test_bad_input(more: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """One message that says what is possible."""
-    assert main([*ASKED[:-2], *more]) == 2
-    assert said in capsys.readouterr().err
+def test_bad_input(refused, line, said):
+    assert said in refused(line)

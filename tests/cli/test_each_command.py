@@ -1,7 +1,5 @@
 """`zwidth each`: several devices in a table, what was measured beside it, files, and bad input."""
 
-from __future__ import annotations
-
 import csv
 import json
 from pathlib import Path
@@ -9,7 +7,6 @@ from pathlib import Path
 import pytest
 
 import zwidth as zw
-from zwidth.cli.main import main
 
 KIT = """[device]
 damping = "{low} .. {high} N*s/m"
@@ -27,28 +24,19 @@ MEASURED = "device;stiffness [N/mm]\nkit-1; 0.41\nkit-2; 180 N/m\n"
 
 
 @pytest.fixture(autouse=True)
-def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def _files(run):
     for name, low, high in (("kit-1", "0.13", "0.19"), ("kit-2", "0.1", "0.12"), ("kit-3", "0.02", "0.03")):
         Path(f"{name}.toml").write_text(KIT.format(low=low, high=high), encoding="utf-8")
     Path("wheel.toml").write_text(WHEEL, encoding="utf-8")
     Path("class.csv").write_text(MEASURED, encoding="utf-8")
 
 
-def run(capsys: pytest.CaptureFixture[str], *typed: str) -> tuple[int, str, str]:
-    """Status, output and messages, lines joined."""
-    status = main(["each", *typed])
-    out, err = capsys.readouterr()
-    return status, " ".join(out.split()), " ".join(err.split())
+KITS = "each kit-1.toml kit-2.toml kit-3.toml"
 
 
-KITS = ("kit-1.toml", "kit-2.toml", "kit-3.toml")
-
-
-def test_each_has_the_verdict_of_check(capsys: pytest.CaptureFixture[str]) -> None:
+def test_each_has_the_verdict_of_check(run):
     """Outcome and limit of each are those of `zw.check`; on all the smallest; the worst is the status."""
-    status, out, _ = run(capsys, *KITS, "--stiffness", "210")
-    assert status == 1
+    out = run(f"{KITS} --stiffness 210", 1).words
     assert "wall, 210 N/m: " in out
     assert "on every one of them up to 40 N/m, the limit of kit-3" in out
     for name in ("kit-1", "kit-2", "kit-3"):
@@ -56,12 +44,12 @@ def test_each_has_the_verdict_of_check(capsys: pytest.CaptureFixture[str]) -> No
         assert f"{name} {verdict.outcome} {verdict.max_stiffness:.4g}" in out
         assert f"{verdict.limit}: " in out
     assert "delay not given, taken as 0: kit-1, kit-2, kit-3" in out
-    assert run(capsys, *KITS, "--stiffness", "40")[0] == 0
+    run(f"{KITS} --stiffness 40")
 
 
-def test_what_was_measured_stands_beside_it(capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_was_measured_stands_beside_it(run):
     """In units of the head or its own; what shook below the proof is named, the unmeasured has none."""
-    _, out, _ = run(capsys, *KITS, "--stiffness", "100", "--measured", "class.csv", "-o", "table.csv")
+    out = run(f"{KITS} --stiffness 100 --measured class.csv -o table.csv", 1).words
     assert "shook from 0.9 to 1.58 times what is proved" in out
     assert "shook below what is proved: kit-2." in out
     assert "kit-3 active 40 – –" in out
@@ -70,67 +58,58 @@ def test_what_was_measured_stands_beside_it(capsys: pytest.CaptureFixture[str]) 
     assert [row[4:] for row in rows] == [["410", "1.57692"], ["180", "0.9"], ["", ""]]
 
 
-def test_saved_verdicts_are_checked(capsys: pytest.CaptureFixture[str]) -> None:
-    """All of them, each by itself."""
-    assert run(capsys, *KITS, "--stiffness", "30", "-o", "class.json")[0] == 0
-    assert main(["verify", "class.json"]) == 0
-    assert capsys.readouterr().out.count("VALID") >= 3
+def test_saved_verdicts_are_checked(run):
+    run(f"{KITS} --stiffness 30 -o class.json")
+    assert run("verify class.json").out.count("VALID") >= 3
     saved = json.loads(Path("class.json").read_text(encoding="utf-8"))
     assert [one["device"] for one in saved["devices"]] == ["kit-1", "kit-2", "kit-3"]
 
 
-def test_wheels_are_told_in_degrees(capsys: pytest.CaptureFixture[str]) -> None:
+def test_wheels_are_told_in_degrees(run):
     """About the axis, where one asks so; one file has the wall of both."""
     Path("other.toml").write_text(WHEEL.replace("0.01", "0.02"), encoding="utf-8")
-    Path("wall.toml").write_text(
-        '[environment]\ntype = "wall"\nstiffness = "0.1 N*m/deg"\n', encoding="utf-8"
-    )
-    status, out, _ = run(capsys, "wheel.toml", "other.toml", "wall.toml")
-    assert status == 0
-    assert "up to 0.349 N·m/deg, the limit of wheel" in out
-    assert run(capsys, "wheel.toml", "other.toml", "--stiffness", "0.1 N*m/deg")[1] == out
+    wall = '[environment]\ntype = "wall"\nstiffness = "0.1 N*m/deg"\n'
+    Path("wall.toml").write_text(wall, encoding="utf-8")
+    told = run("each wheel.toml other.toml wall.toml")
+    assert "up to 0.349 N·m/deg, the limit of wheel" in told.words
+    assert run("each wheel.toml other.toml --stiffness '0.1 N*m/deg'") == told
 
 
 @pytest.mark.parametrize(
     ("typed", "said"),
     [
-        (("kit-1.toml", "--stiffness", "100"), "two devices or more, got 1"),
-        (("kit-1.toml", "kit-1.toml", "--stiffness", "100"), "two devices are called"),
-        (("kit-1.toml", "kit-2.toml"), "no environment is given"),
-        (("kit-1.toml", "kit-2.toml", "--stiffness", "100", "-o", "x.txt"), ".csv or .json"),
-        (
-            ("kit-1.toml", "kit-3.toml", "--stiffness", "9", "--measured", "class.csv"),
-            '"kit-2" is none of these',
-        ),
-        (("kit-1.toml", "kit-2.toml", "--stiffness", "9", "--measured", "no.csv"), "no.csv cannot be read"),
+        ("kit-1.toml --stiffness 100", "two devices or more, got 1"),
+        ("kit-1.toml kit-1.toml --stiffness 100", "two devices are called"),
+        ("kit-1.toml kit-2.toml", "no environment is given"),
+        ("kit-1.toml kit-2.toml --stiffness 100 -o x.txt", ".csv or .json"),
+        ("kit-1.toml kit-3.toml --stiffness 9 --measured class.csv", '"kit-2" is none of these'),
+        ("kit-1.toml kit-2.toml --stiffness 9 --measured no.csv", "no.csv cannot be read"),
     ],
 )
-def test_bad_input(typed: tuple[str, ...], said: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """One message, and nothing written."""
-    status, _, err = run(capsys, *typed)
-    assert status == 2
-    assert said in err
+def test_bad_input(refused, typed, said):
+    assert said in refused(f"each {typed}")
 
 
 @pytest.mark.parametrize(
     ("line", "said"),
-    [("kit-1", "line 2: a device and a stiffness"), ("kit-1,-4", "is > 0"), ("kit-1,3 kg", "stiffness is in"),
-     ("kit-1,4\nkit-1,5", "stands there twice")],
-)  # fmt: skip
-def test_bad_tables(line: str, said: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """The line is named."""
+    [
+        ("kit-1", "line 2: a device and a stiffness"),
+        ("kit-1,-4", "is > 0"),
+        ("kit-1,3 kg", "stiffness is in"),
+        ("kit-1,4\nkit-1,5", "stands there twice"),
+    ],
+)
+def test_bad_tables(refused, line, said):
     Path("bad.csv").write_text(f"device,stiffness\n{line}\n", encoding="utf-8")
-    status, _, err = run(capsys, "kit-1.toml", "kit-2.toml", "--stiffness", "9", "--measured", "bad.csv")
-    assert status == 2
+    err = refused("each kit-1.toml kit-2.toml --stiffness 9 --measured bad.csv")
     assert said in err
     assert "bad.csv" in err
 
 
-def test_an_encoder_on_the_motor(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_encoder_on_the_motor(run, refused):
     """Counts in a turn of the motor, times its turns in one of the handle."""
-    typed = ("--motion", "rotary", "--rate", "1 kHz", "--damping", "0.001 N*m*s/rad", "--no-questions")
-    assert main(["new", "device", "new.toml", *typed, "--encoder", "980 counts/turn x 17.45"]) == 0
+    typed = "--motion rotary --rate '1 kHz' --damping '0.001 N*m*s/rad' --no-questions"
+    run(f"new device new.toml {typed} --encoder '980 counts/turn x 17.45'")
     assert 'counts_per_turn = "17101"' in Path("new.toml").read_text(encoding="utf-8")
-    capsys.readouterr()
-    assert main(["new", "device", "new.toml", *typed, "--force", "--encoder", "0.09 deg x 17.45"]) == 2
-    assert "counts in a turn of the motor" in " ".join(capsys.readouterr().err.split())
+    told = refused(f"new device new.toml {typed} --force --encoder '0.09 deg x 17.45'")
+    assert "counts in a turn of the motor" in told

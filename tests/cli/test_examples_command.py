@@ -1,17 +1,12 @@
 """`zwidth examples`: files that say where their numbers come from, and commands that do what they say."""
 
-from __future__ import annotations
-
 import json
-import shlex
 from pathlib import Path
 from runpy import run_path
-from typing import Any
 
 import pytest
 
 import zwidth as zw
-from zwidth.cli.main import main
 from zwidth.model.samples import EXAMPLES
 
 SAYS = {
@@ -31,36 +26,22 @@ SAYS = {
 """By the first file of an example, the exit status of its command and what stands in its report."""
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the samples."""
-    folder = tmp_path_factory.mktemp("samples") / "mine"
-    assert main(["examples", str(folder)]) == 0
-    return folder
-
-
 @pytest.mark.parametrize("first", SAYS)
-def test_the_command_of_an_example_does_what_it_says(
-    first: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_command_of_an_example_does_what_it_says(run, first):
     (example,) = (e for e in EXAMPLES if e.files[0] == first)
-    monkeypatch.chdir(folder)
+    run("examples .")
     status, word = SAYS[first]
-    program, *argv = shlex.split(example.command)
-    assert program == "zwidth"
-    assert main(argv) == status
-    assert word in capsys.readouterr().out
+    assert example.command.startswith("zwidth ")
+    assert word in run(example.command.removeprefix("zwidth "), status).out
 
 
-def test_every_example_that_zwidth_runs_is_tried_here() -> None:
+def test_every_example_that_zwidth_runs_is_tried_here():
     assert {e.files[0] for e in EXAMPLES if e.command.startswith("zwidth")} == set(SAYS)
 
 
-def test_the_fit_of_the_relaxation_test_finds_the_tissue_that_it_was_made_of(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_fit_of_the_relaxation_test_finds_the_tissue_that_it_was_made_of(run, capsys):
     """310 and 145 N/m, 60 N·s/m, as examples/sample_logs.py has them; numbers are printed to four digits."""
-    monkeypatch.chdir(folder)
+    run("examples .")
     run_path("fit_tissue.py")
     rows = [line.split() for line in capsys.readouterr().out.splitlines()]
     for name, truth in (("stiffness", 310), ("branch_stiffness", 145), ("branch_damping", 60)):
@@ -68,7 +49,7 @@ def test_the_fit_of_the_relaxation_test_finds_the_tissue_that_it_was_made_of(
         assert float(row[2]) <= truth <= float(row[4])
 
 
-def test_the_log_holds_the_paddle_that_it_was_made_of() -> None:
+def test_the_log_holds_the_paddle_that_it_was_made_of():
     """36 g, 0.15 N·s/m, 0.12 N, as examples/sample_logs.py has them."""
     found = zw.identify(zw.samples.path("session.csv"))
     for name, truth in (("mass", 0.036), ("damping", 0.15), ("coulomb_friction", 0.12)):
@@ -76,18 +57,14 @@ def test_the_log_holds_the_paddle_that_it_was_made_of() -> None:
         assert low < truth < high
 
 
-def test_the_list_fits_80_columns_and_names_every_file_and_command(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    assert main(["examples"]) == 0
-    said = capsys.readouterr().out
+def test_the_list_fits_80_columns_and_names_every_file_and_command(run):
+    said = run("examples").out
     assert max(map(len, said.splitlines())) <= 80
     assert all(name in said for name in zw.samples.names())
     assert all(example.command in said for example in EXAMPLES)
 
 
-def test_every_file_of_the_folder_is_listed_and_says_where_its_numbers_come_from() -> None:
-    """Text says so in its first lines, a lesson in its first cell."""
+def test_every_file_of_the_folder_is_listed_and_says_where_its_numbers_come_from():
     package = zw.samples.path("wheel.toml").parent
     there = {path.name for path in package.iterdir() if path.is_file()} - {"__init__.py"}
     assert there == set(zw.samples.names())
@@ -97,42 +74,35 @@ def test_every_file_of_the_folder_is_listed_and_says_where_its_numbers_come_from
         assert name.endswith(".ipynb") or any(word in head for word in told), name
 
 
-def test_nothing_is_replaced_without_force(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A file of one's own stays, and no other is written."""
-    mine = tmp_path / "wheel.toml"
+def test_nothing_is_replaced_without_force(run, refused):
+    mine = Path("wheel.toml")
     mine.write_text("mine", encoding="utf-8")
-    assert main(["examples", str(tmp_path)]) == 2
-    assert "wheel.toml exists" in capsys.readouterr().err
-    assert [path.name for path in tmp_path.iterdir()] == ["wheel.toml"]
-    assert main(["examples", str(tmp_path), "--force"]) == 0
+    assert "wheel.toml exists" in refused("examples .")
+    assert [path.name for path in Path().iterdir()] == ["wheel.toml"]
+    run("examples . --force")
     assert "[device]" in mine.read_text(encoding="utf-8")
 
 
-def test_a_folder_that_cannot_be_made_is_one_message(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (tmp_path / "file").write_text("", encoding="utf-8")
-    for folder in (tmp_path / "file", tmp_path / "no" / "such"):
-        assert main(["examples", str(folder)]) == 2
-        assert capsys.readouterr().err.count("\n") == 1
+def test_a_folder_that_cannot_be_made_is_one_message(refused):
+    Path("file").write_text("", encoding="utf-8")
+    for folder in ("file", "no/such"):
+        refused(f"examples {folder}")
 
 
-def test_an_unknown_sample_is_refused_with_the_names_there_are() -> None:
+def test_an_unknown_sample_is_refused_with_the_names_there_are():
     with pytest.raises(zw.InputError, match=r"wheel\.toml"):
         zw.samples.path("../catalogue.toml")
 
 
 @pytest.mark.parametrize("lesson", [n for n in zw.samples.names() if n.endswith(".ipynb")])
-def test_the_cells_of_a_lesson_run(
-    lesson: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_cells_of_a_lesson_run(lesson, tmp_path, monkeypatch, capsys):
     """One after the other, from a kernel's empty start; no outputs are stored."""
     monkeypatch.chdir(tmp_path)
     import matplotlib.pyplot as plt
 
     book = json.loads(zw.samples.path(lesson).read_text(encoding="utf-8"))
     assert (book["nbformat"], len({cell["id"] for cell in book["cells"]})) == (4, len(book["cells"]))
-    names: dict[str, Any] = {}
+    names = {}
     for cell in book["cells"]:
         if cell["cell_type"] == "code":
             assert cell["outputs"] == []
@@ -144,12 +114,7 @@ def test_the_cells_of_a_lesson_run(
 
 
 SAID = {
-    "lesson-1-sampling.ipynb": (
-        "300 N/m: passive",
-        "301 N/m: active",
-        "energy out: 1.427 mJ",
-        "200 N/m: 0.00 mJ",
-    ),
+    "lesson-1-sampling.ipynb": ("300 N/m: passive", "301 N/m: active", "out: 1.427 mJ", "200 N/m: 0.00 mJ"),
     "lesson-2-friction.ipynb": (
         "active - quantization against Coulomb friction",
         "100 N/m: passive",

@@ -1,7 +1,5 @@
 """`zwidth explore` as it is typed: the address is said, Ctrl-C ends it, and what it lacks is one message."""
 
-from __future__ import annotations
-
 import os
 import re
 import signal
@@ -11,22 +9,15 @@ from urllib.request import urlopen
 
 import pytest
 
-from zwidth.cli.main import main
-
-COMMAND = [sys.executable, "-m", "zwidth", "explore", "--no-browser", "--port", "0"]
+COMMAND = [sys.executable, *["-m", "zwidth", "explore", "--no-browser", "--port", "0", "haptic-paddle"]]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
-def test_it_says_where_it_is_and_ends_at_ctrl_c() -> None:
+def test_it_says_where_it_is_and_ends_at_ctrl_c():
     """The page answers at the address that is said; the status is 130, as of what else is served."""
-    with subprocess.Popen(
-        [*COMMAND, "haptic-paddle"],
-        stderr=subprocess.PIPE,
-        text=True,
-        env={**os.environ, "PYTHONUNBUFFERED": "1"},
-    ) as running:
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
+    with subprocess.Popen(COMMAND, stderr=subprocess.PIPE, text=True, env=environment) as running:
         try:
-            assert running.stderr is not None
             line = running.stderr.readline()
             found = re.fullmatch(r"exploring at (http://127\.0\.0\.1:\d+/) ; Ctrl-C ends it\n", line)
             assert found, line
@@ -42,7 +33,7 @@ def test_it_says_where_it_is_and_ends_at_ctrl_c() -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
-def test_ctrl_c_is_heard_by_whichever_thread_takes_it() -> None:
+def test_ctrl_c_is_heard_by_whichever_thread_takes_it(run):
     """The system may hand a signal to any thread of the process; the main one waits, and hears of it."""
     program = (
         "import signal, threading, time\n"
@@ -61,30 +52,6 @@ def test_ctrl_c_is_heard_by_whichever_thread_takes_it() -> None:
     assert ran.stdout == "heard\n"
 
 
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        (["--port", "70000"], "--port is a port"),
-        (["--token", "short"], "16 characters or more"),
-        (["no-such-device"], "neither a file nor a device"),
-    ],
-)
-def test_what_cannot_be_explored_is_one_line(
-    given: list[str], said: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Status 2, and a message that says what to give."""
-    assert main(["explore", "--no-browser", *given]) == 2
-    error = capsys.readouterr().err
-    assert said in error
-    assert error.count("\n") == 1
-
-
-def test_without_its_libraries_it_says_what_to_install(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """One line that names the extra."""
+def test_without_its_libraries_it_says_what_to_install(refused, monkeypatch):
     monkeypatch.setattr("zwidth.show.explorer.notebook.find_spec", lambda _: None)
-    assert main(["explore", "--no-browser"]) == 2
-    error = capsys.readouterr().err
-    assert "pip install 'zwidth[explore]'" in error
-    assert error.count("\n") == 1
+    assert "pip install 'zwidth[explore]'" in refused("explore --no-browser")

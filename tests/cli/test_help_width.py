@@ -1,30 +1,23 @@
 """Help and messages fit the terminal, and what stands together there can be copied."""
 
-from __future__ import annotations
-
 import os
 import re
 import shlex
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 from zwidth.cli.commands import COMMANDS
-from zwidth.cli.main import main
 from zwidth.cli.output import width_of, wrapped
 
 
 @pytest.mark.parametrize("width", [60, 80, 100])
 @pytest.mark.parametrize("command", ["", *COMMANDS])
-def test_help_fits_and_every_example_is_whole(
-    command: str, width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_help_fits_and_every_example_is_whole(command, width, monkeypatch, run):
     """No line is too long; a shell that reads an example has the words of the table of commands."""
     monkeypatch.setenv("COLUMNS", str(width))
-    assert main([*([command] if command else []), "--help"]) == 0
-    out = capsys.readouterr().out
+    out = run(f"{command} --help").out
     assert max(map(width_of, out.splitlines())) <= width
     if command:
         _, examples, shown = out.rpartition("example")
@@ -37,22 +30,19 @@ def test_help_fits_and_every_example_is_whole(
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_no_name_and_no_value_of_the_help_is_in_two(
-    command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_no_name_and_no_value_of_the_help_is_in_two(command, monkeypatch, run):
     """In a narrow terminal it has the words that it has in a wide one, and each quoted value in one line."""
     shown = []
     for width in ("60", "100"):
         monkeypatch.setenv("COLUMNS", width)
-        main([command, "--help"])
-        shown.append(capsys.readouterr().out.replace("\\\n", ""))
+        shown.append(run(f"{command} --help").out.replace("\\\n", ""))
     narrow, wide = shown
     assert sorted(narrow.split()) == sorted(wide.split())
     quotations = re.findall(r"(?<!\w)'[^'\n]+'", wide)
     assert [narrow.count(one) for one in quotations] == [wide.count(one) for one in quotations]
 
 
-def test_what_is_quoted_stays_in_one_line() -> None:
+def test_what_is_quoted_stays_in_one_line():
     """Unless no line could hold it; an apostrophe opens nothing."""
     assert list(wrapped("write --rate '1 kHz' then", 17)) == ["write --rate", "'1 kHz' then"]
     assert list(wrapped('give the "N m" of it', 13)) == ["give the", '"N m" of it']
@@ -61,18 +51,12 @@ def test_what_is_quoted_stays_in_one_line() -> None:
 
 
 @pytest.mark.parametrize("width", [40, 80])
-def test_a_message_fits_the_terminal(width: int, tmp_path: Path) -> None:
+def test_a_message_fits_the_terminal(width, tmp_path):
     """In lines that say what the message says, the name in one of them."""
     (tmp_path / "d.toml").write_text('[device]\nmass = "a very odd mass"\nrate = 1000\n', encoding="utf-8")
-    done = subprocess.run(
-        [sys.executable, "-m", "zwidth", "check", "d.toml", "--stiffness", "100"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        env={**os.environ, "PYTHONIOENCODING": "utf-8", "COLUMNS": str(width)},
-        check=False,
-    )
+    command = [sys.executable, *["-m", "zwidth", "check", "d.toml", "--stiffness", "100"]]
+    environment = {**os.environ, "PYTHONIOENCODING": "utf-8", "COLUMNS": str(width)}
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, encoding="utf-8", env=environment)
     lines = done.stderr.splitlines()
     assert done.returncode == 2
     assert len(lines) > 1

@@ -36,7 +36,7 @@ def run_in(folder: Path) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="the runner's shell is bash")
-def test_a_gain_change_that_makes_a_wall_active_fails_the_build(tmp_path: Path) -> None:
+def test_a_gain_change_that_makes_a_wall_active_fails_the_build(tmp_path):
     """As it is the build goes on; with a stiffer bump stop and a wall that cannot be read it fails."""
     shutil.copy(EXAMPLE / "device.toml", tmp_path)
     shutil.copytree(EXAMPLE / "walls", tmp_path / "walls")

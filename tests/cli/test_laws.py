@@ -1,7 +1,5 @@
 """Laws in a chain in a specification and on the command line."""
 
-from __future__ import annotations
-
 import inspect
 import json
 import re
@@ -13,9 +11,7 @@ from hypothesis import strategies as st
 from strategies import toml_values
 
 import zwidth as zw
-from zwidth.cli.main import main
 from zwidth.model import rendering
-from zwidth.model.environment import Environment
 from zwidth.model.rendering import ESTIMATORS, LAWS
 from zwidth.model.specification.laws import build_law, with_laws
 from zwidth.model.specification.read import TABLES, read_tables
@@ -23,14 +19,18 @@ from zwidth.model.specification.table import Table
 
 LOOP = '[device]\ncatalogue = "haptic-paddle"\n\n[environment]\ntype = "wall"\nstiffness = 400\n'
 WALL = zw.Wall(400)
-TOUCH = ("--operator", "dowel", "--duration", "0.1")
+TOUCH = "--operator dowel --duration 0.1"
 
 
-def read(text: str, folder: Path, *typed: str, motion: str = "linear") -> Environment:
+@pytest.fixture(autouse=True)
+def _here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def read(text, *typed, motion="linear"):
     """The wall behind the laws of a file with these tables, or of the command line."""
-    (folder / "laws.toml").write_text(text, encoding="utf-8")
-    table = read_tables([folder / "laws.toml"], TABLES).get("law")
-    return with_laws(WALL, table, typed or None, motion)
+    Path("laws.toml").write_text(text, encoding="utf-8")
+    return with_laws(WALL, read_tables(["laws.toml"], TABLES).get("law"), typed or None, motion)
 
 
 @pytest.mark.parametrize(
@@ -52,8 +52,7 @@ def test_every_law_can_be_named(kinds, base):
         assert {k for k, v in row.keys.items() if v.required} == required
 
 
-def test_laws_are_read_with_their_units_and_in_their_order(tmp_path):
-    """As Python would have made them."""
+def test_laws_are_read_with_their_units_and_in_their_order():
     text = (
         '[[law]]\ntype = "crossing-correction"\nthroughout = true\nfinger_mass = "20 g"\n'
         'finger_position = "4 mm"\n'
@@ -68,7 +67,7 @@ def test_laws_are_read_with_their_units_and_in_their_order(tmp_path):
         '[[law]]\ntype = "slew-limit"\nrate = "3 kN/s"\n'
         '[[law]]\ntype = "dither"\nkind = "random"\nseed = 7\namplitude = "1 mN"\n'
     )
-    assert read(text, tmp_path) == zw.render(
+    assert read(text) == zw.render(
         WALL,
         rendering.CrossingCorrection(throughout=True, finger_mass="0.02", finger_position="0.004"),
         rendering.Damper("0.2", rendering.AdaptiveWindow("22.4e-6", 20, "best"), clamped=True),
@@ -84,89 +83,74 @@ def test_laws_are_read_with_their_units_and_in_their_order(tmp_path):
     )
 
 
-def test_laws_of_a_rotary_device_have_its_units(tmp_path):
+def test_laws_of_a_rotary_device_have_its_units():
     """N·m for N, and a linear unit is refused."""
     saturated = '[[law]]\ntype = "saturation"\nlimit = "20 mN*m"\n'
-    law = read(saturated, tmp_path, motion="rotary")
+    law = read(saturated, motion="rotary")
     assert law == zw.render(WALL, rendering.Saturation("0.02"))
     with pytest.raises(zw.InputError, match=r"limit is in N; got"):
-        read(saturated, tmp_path)
+        read(saturated)
 
 
-def test_laws_of_the_command_line_have_their_defaults_and_replace_those_of_a_file(tmp_path):
-    """Repeated, or with commas between them."""
+def test_laws_of_the_command_line_have_their_defaults_and_replace_those_of_a_file():
     text = '[[law]]\ntype = "saturation"\n'
     two = zw.render(WALL, rendering.Extrapolation(), rendering.PassivityController())
-    assert read(text, tmp_path, "extrapolation, passivity-controller") == two
-    assert read(text, tmp_path, "extrapolation", "passivity-controller") == two
-    assert read(text, tmp_path) == zw.render(WALL, rendering.Saturation())
+    assert read(text, "extrapolation, passivity-controller") == two
+    assert read(text, "extrapolation", "passivity-controller") == two
+    assert read(text) == zw.render(WALL, rendering.Saturation())
     assert with_laws(WALL, None, None, "linear") is WALL
 
 
-def test_simulate_takes_laws(tmp_path, monkeypatch, capsys):
-    """The trace is Python's."""
-    monkeypatch.chdir(tmp_path)
+def test_simulate_takes_laws(run):
     Path("loop.toml").write_text(LOOP + '[[law]]\ntype = "hysteresis"\nfastest = 0.2\n', encoding="utf-8")
-    assert main(["simulate", "loop.toml", *TOUCH, "-o", "file.nc"]) == 0
-    assert "with hysteresis of the width for 0.2 m/s" in capsys.readouterr().out
-    assert main(["simulate", "loop.toml", "--law", "extrapolation", *TOUCH, "-o", "typed.nc"]) == 0
+    assert "with hysteresis of the width for 0.2 m/s" in run(f"simulate loop.toml {TOUCH} -o file.nc").out
+    run(f"simulate loop.toml --law extrapolation {TOUCH} -o typed.nc")
     paddle, dowel = zw.catalogue.device("haptic-paddle"), zw.operators.Dowel()
-    for name, law in {
-        "file": rendering.Hysteresis(fastest="0.2"),
-        "typed": rendering.Extrapolation(),
-    }.items():
+    laws = {"file": rendering.Hysteresis(fastest="0.2"), "typed": rendering.Extrapolation()}
+    for name, law in laws.items():
         again = zw.simulate(paddle, zw.render(WALL, law), dowel, 0.1)
-        assert zw.traces.load_trace(tmp_path / f"{name}.nc").identical(again)
+        assert zw.traces.load_trace(f"{name}.nc").identical(again)
 
 
-def test_compare_puts_the_row_on_the_bench(tmp_path, monkeypatch, capsys):
+def test_compare_puts_the_row_on_the_bench(run):
     """Under the name "yours", beside the laws that were named."""
-    monkeypatch.chdir(tmp_path)
     laws = '[[law]]\ntype = "extrapolation"\n[[law]]\ntype = "passivity-controller"\n'
     Path("loop.toml").write_text(LOOP + laws, encoding="utf-8")
-    assert main(["compare", "loop.toml", "--laws", "wall", "--json"]) == 0
-    scores = json.loads(capsys.readouterr().out)["laws"]
+    scores = run("compare loop.toml --laws wall --json").json["laws"]
     assert list(scores) == ["wall", "yours"]
     own = zw.render(WALL, rendering.Extrapolation(), rendering.PassivityController())
     again = zw.compare(zw.catalogue.device("haptic-paddle"), WALL, {"yours": own}).scores
     assert scores["yours"]["generated_energy_J"] == float(again["generated_energy"][0])
-    assert main(["compare", "haptic-paddle", "--stiffness", "400", "--laws", "wall", "--law", "damer"]) == 2
-    assert 'did you mean "damper"?' in capsys.readouterr().err
 
 
-def test_limit_plays_the_game_against_laws_in_a_row(tmp_path, monkeypatch, capsys):
+def test_laws_are_compared_in_a_table_and_in_files(run):
+    wall = "compare haptic-paddle --stiffness 400 --laws"
+    assert "virtual-damping" in run(f"{wall} 'wall, virtual-damping' --plot a.png -o a.json").out
+    saved = json.loads(Path("a.json").read_text(encoding="utf-8"))["laws"]
+    assert list(saved) == ["wall", "virtual-damping"]
+    assert saved["wall"]["static_stiffness_N_per_m"] == pytest.approx(400, rel=0.05)
+    told = run(f"{wall} passivity-controller-published --fastest '1 m/s' --json").json["laws"]
+    assert told["passivity-controller-published"]["status"] == "undecided"
+
+
+def test_limit_plays_the_game_against_laws_in_a_row(run):
     """From a file or from the option, the bracket of Python; its evidence is verified."""
-    monkeypatch.chdir(tmp_path)
     Path("loop.toml").write_text(LOOP + '[[law]]\ntype = "saturation"\n', encoding="utf-8")
-    bounds = ["--penetration", "0.2 mm", "--speed", "0.1 m/s"]
-    assert main(["limit", "loop.toml", *bounds, "--json", "-o", "limit.json"]) == 0
-    found = json.loads(capsys.readouterr().out)
+    bounds = "--penetration '0.2 mm' --speed '0.1 m/s'"
+    found = run(f"limit loop.toml {bounds} --json -o limit.json").json
     law = zw.render(WALL, rendering.Saturation())
     again = zw.limit(zw.catalogue.device("haptic-paddle"), law, penetration="0.0002", speed="0.1")
     assert found["proved_passive_N_per_m"] == again.proved_passive
     assert found["proved_active_N_per_m"] == again.proved_active
-    assert main(["limit", "haptic-paddle", "--stiffness", "400", "--law", "saturation", *bounds]) == 0
-    assert "with saturation at the force limit" in capsys.readouterr().out
-    assert main(["verify", "limit.json"]) == 0
-    shown = capsys.readouterr().out
-    assert "No hand within these bounds takes energy out" in shown
-    assert "row storage" in shown
-    assert "row motion" in shown
+    typed = run(f"limit haptic-paddle --stiffness 400 --law saturation {bounds}").out
+    assert "with saturation at the force limit" in typed
+    run("verify limit.json").says("No hand within these bounds takes energy out", "row storage", "row motion")
 
 
-def test_check_decides_laws_in_a_row_and_a_map_names_who_takes_them(tmp_path, monkeypatch, capsys):
-    """From a file and from the command line; one line where they have no place."""
-    monkeypatch.chdir(tmp_path)
+def test_check_decides_laws_in_a_row(run):
     Path("loop.toml").write_text(LOOP + '[[law]]\ntype = "force-bounding"\n', encoding="utf-8")
-    assert main(["check", "loop.toml", "--all"]) == 0
-    assert "force bounding, the last law in the row" in " ".join(capsys.readouterr().out.split())
-    assert main(["check", "haptic-paddle", "--stiffness", "770", "--law", "force-bounding"]) == 0
-    capsys.readouterr()
-    Path("device.toml").write_text('[device]\ncatalogue = "haptic-paddle"\n[[law]]\ntype = "held"\n', "utf-8")
-    assert main(["map", "device.toml", "--stiffness", "0:100", "--virtual-damping", "0:1"]) == 2
-    assert (
-        "laws in a chain have no place in this command: zwidth check decides them" in capsys.readouterr().err
-    )
+    assert "force bounding, the last law in the row" in run("check loop.toml --all").words
+    run("check haptic-paddle --stiffness 770 --law force-bounding")
 
 
 BAD = [
@@ -204,28 +188,34 @@ BAD = [
 
 
 @pytest.mark.parametrize(("text", "said"), BAD, ids=[said for _, said in BAD])
-def test_a_slip_is_one_clear_message(text, said, tmp_path):
-    """It says where it stands and what is allowed."""
+def test_a_slip_is_one_clear_message(text, said):
     with pytest.raises(zw.InputError) as caught:
-        read(text, tmp_path)
+        read(text)
     message = str(caught.value)
     assert "laws.toml" in message
     assert said in message
     assert message.isprintable()
 
 
+SIMULATE = f"simulate haptic-paddle --stiffness 400 {TOUCH} --law"
+
+
 @pytest.mark.parametrize(
-    ("names", "said"),
+    ("line", "said"),
     [
-        ("dampr", 'there is no law "dampr"; did you mean "damper"?'),
-        ("saturation,,", 'there is no law ""'),
-        ("damper", 'the law "damper" needs damping [N*s/m], in a [[law]] table of a file'),
+        (f"{SIMULATE} dampr", 'zwidth: command line: --law: there is no law "dampr"; did you mean "damper"?'),
+        (f"{SIMULATE} saturation,,", 'zwidth: command line: --law: there is no law ""'),
+        (f"{SIMULATE} damper", 'the law "damper" needs damping [N*s/m], in a [[law]] table of a file'),
+        ("compare haptic-paddle --stiffness 400 --laws wall --law damer", 'did you mean "damper"?'),
+        (
+            "map device.toml --stiffness 0:100 --virtual-damping 0:1",
+            "laws in a chain have no place in this command: zwidth check decides them",
+        ),
     ],
 )
-def test_a_slip_on_the_command_line(names, said, capsys):
-    """It ends with status 2 and one line."""
-    assert main(["simulate", "haptic-paddle", "--stiffness", "400", *TOUCH, "--law", names]) == 2
-    assert capsys.readouterr().err.startswith(f"zwidth: command line: --law: {said}")
+def test_a_slip_on_the_command_line(refused, line, said):
+    Path("device.toml").write_text('[device]\ncatalogue = "haptic-paddle"\n[[law]]\ntype = "held"\n', "utf-8")
+    assert said in refused(line)
 
 
 VALUES = toml_values() | st.sampled_from(
@@ -233,7 +223,7 @@ VALUES = toml_values() | st.sampled_from(
 )
 
 
-def described(table: Table, motion: str) -> str:
+def described(table, motion):
     """The law that a table makes, or the message why it makes none."""
     try:
         return build_law(table, motion).describe(motion)

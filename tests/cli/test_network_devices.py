@@ -1,13 +1,12 @@
 """`zwidth network` with a real device at a line: an emulated board, in processes joined by real sockets."""
 
-from __future__ import annotations
-
 import json
 import math
 import re
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from free_channels import udp, zenoh
@@ -15,7 +14,6 @@ from servo.emulators.faults import Fault
 from servo.emulators.hapkit import HapkitEmulator
 
 from zwidth.cli.machine.network_plan import load_plan
-from zwidth.cli.main import main
 from zwidth.machine.servo.port_run import PortRun
 from zwidth.quantity.exact import Exact
 
@@ -23,23 +21,11 @@ SCENE = """
 [environment]
 type = "scene"
 port = ""
-
-[[environment.elements]]
-type = "line-end"
-node = "tool"
-impedance = "0.5 N*s/m"
-name = "paddle"
-
-[[environment.elements]]
-type = "mass"
-node = "tool"
-mass = "50 g"
-
-[[environment.elements]]
-type = "spring"
-first = "tool"
-second = "ground"
-stiffness = "40 N/m"
+elements = [
+  { type = "line-end", node = "tool", impedance = "0.5 N*s/m", name = "paddle" },
+  { type = "mass", node = "tool", mass = "50 g" },
+  { type = "spring", first = "tool", second = "ground", stiffness = "40 N/m" },
+]
 """
 
 NETWORK = """
@@ -76,41 +62,34 @@ def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-def file(tmp_path, connection, port="/dev/null", line=""):
+def write(connection, port="/dev/null", channel=""):
     """The file of a network, with its device beside it."""
-    (tmp_path / "real.toml").write_text(REAL, encoding="utf-8")
-    path = tmp_path / "room.toml"
+    Path("real.toml").write_text(REAL, encoding="utf-8")
+    line = f'\n[[network.line]]\nname = "paddle"\nchannel = "{channel}"\n' if channel else ""
     text = SCENE + NETWORK.replace("CONNECTION", connection.replace("PORT", port)) + line
-    path.write_text(text, encoding="utf-8")
-    return path
+    Path("room.toml").write_text(text, encoding="utf-8")
 
 
-def process(path, name):
+def process(name):
     command = [
         sys.executable,
-        "-m",
-        "zwidth",
-        "network",
-        str(path),
-        "--json",
-        "--duration",
-        "3 s",
-        "--run",
+        *["-m", "zwidth", "network", "room.toml", "--json", "--duration", "3s", "--run"],
         name,
     ]
-    return subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8"
-    )
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8")
+
+
+def plan():
+    return load_plan(Path("room.toml").absolute()).runs("paddle", Exact(1))
 
 
 @pytest.mark.real_time
 @pytest.mark.parametrize("channel", [udp, zenoh])
-def test_a_board_feels_the_scene_and_no_force_once_the_scene_is_killed(tmp_path, channel):
+def test_a_board_feels_the_scene_and_no_force_once_the_scene_is_killed(channel):
     """Its handle goes to and fro by 4 mm; no side hears of more energy than the other sent."""
-    line = f'\n[[network.line]]\nname = "paddle"\nchannel = "{channel()}"\n'
     with HapkitEmulator(lambda exchange: round(200 * math.sin(0.05 * exchange))) as board:
-        path = file(tmp_path, KIT + SLOW, board.port, line)
-        children = {name: process(path, name) for name in ("room", "paddle")}
+        write(KIT + SLOW, board.port, channel())
+        children = {name: process(name) for name in ("room", "paddle")}
         seen = []
         for text in children["paddle"].stderr:
             seen.append(text)
@@ -136,41 +115,36 @@ def test_a_board_feels_the_scene_and_no_force_once_the_scene_is_killed(tmp_path,
 
 
 @pytest.mark.real_time
-def test_a_board_that_fails_ends_its_process_with_force_0_and_status_1(tmp_path, capsys, monkeypatch):
+def test_a_board_that_fails_ends_its_process_with_force_0_and_status_1(run, monkeypatch):
     """Two bad answers in a row; nobody is at the other end, and nothing was felt."""
     monkeypatch.setattr("zwidth.cli.machine.network._MEETING", 0.0)
-    line = f'\n[[network.line]]\nname = "paddle"\nchannel = "{udp()}"\n'
     with HapkitEmulator(lambda exchange: exchange, Fault.GARBAGE, at=20) as board:
-        path = file(tmp_path, KIT + 'safety = { longest_gap = "30 s" }\n', board.port, line)
-        assert main(["network", str(path), "--run", "paddle", "--duration", "30 s", "--json"]) == 1
-    told = json.loads(capsys.readouterr().out)["processes"]["paddle"]
+        write(KIT + 'safety = { longest_gap = "30 s" }\n', board.port, udp())
+        told = run("network room.toml --run paddle --duration 30s --json", 1).json["processes"]["paddle"]
     assert "no whole frame" in told["device"]["ended"] or "no answer in time" in told["device"]["ended"]
     assert told["steps"] < 3000
     assert board.commands[-1].force == 0.0
 
 
-def test_a_plan_says_how_a_device_is_reached_and_reaches_none(tmp_path, capsys, monkeypatch):
+def test_a_plan_says_how_a_device_is_reached_and_reaches_none(run, refused, monkeypatch):
     """No such port is there; the delay that was not given is the shortest that a port can have."""
     monkeypatch.setattr("zwidth.cli.machine.network._MEETING", 0.0)
-    line = f'\n[[network.line]]\nname = "paddle"\nchannel = "{udp()}"\n'
-    path = file(tmp_path, KIT + SLOW, "/dev/no-such-port", line)
-    assert main(["network", str(path), "--plan"]) == 0
-    assert "paddle: real, Hapkit at /dev/no-such-port" in capsys.readouterr().out
-    run = load_plan(path).runs("paddle", Exact(1))
-    assert isinstance(run, PortRun)
-    assert run.port.device.exact("delay") == run.port.device.exact("sample_period")
-    assert run.port.device.force_limit == 1.5
-    assert main(["network", str(path), "--run", "paddle"]) == 2
-    assert "/dev/no-such-port" in capsys.readouterr().err
+    write(KIT + SLOW, "/dev/no-such-port", udp())
+    assert "paddle: real, Hapkit at /dev/no-such-port" in run("network room.toml --plan").out
+    port_run = plan()
+    assert isinstance(port_run, PortRun)
+    assert port_run.port.device.exact("delay") == port_run.port.device.exact("sample_period")
+    assert port_run.port.device.force_limit == 1.5
+    assert "/dev/no-such-port" in run("network room.toml --run paddle", 2).err
 
 
-def test_a_place_and_a_longest_period_stand_with_the_connection(tmp_path):
-    """And are of the run; the port keeps account of that period."""
+def test_a_place_and_a_longest_period_stand_with_the_connection():
     kit = KIT.replace("count", 'origin = "1 mm", sense = -1, longest_period = "9 ms", count')
-    run = load_plan(file(tmp_path, kit)).runs("paddle", Exact(1))
-    assert isinstance(run, PortRun)
-    assert (run.placement.origin, run.placement.sense) == (1e-3, -1)
-    assert run.port.device.sample_period == 9e-3
+    write(kit)
+    port_run = plan()
+    assert isinstance(port_run, PortRun)
+    assert (port_run.placement.origin, port_run.placement.sense) == (1e-3, -1)
+    assert port_run.port.device.sample_period == 9e-3
 
 
 @pytest.mark.parametrize(
@@ -187,10 +161,7 @@ def test_a_place_and_a_longest_period_stand_with_the_connection(tmp_path):
         (KIT.replace("count", 'longest_period = "7 ms", count'), "longest_period must be ≥ 8 ms"),
     ],
 )
-def test_what_is_no_real_device_is_refused_in_one_line(tmp_path, capsys, more, said):
+def test_what_is_no_real_device_is_refused_in_one_line(refused, more, said):
     """Before anything is reached."""
-    path = file(tmp_path, more)
-    assert main(["network", str(path), "--run", "paddle"]) == 2
-    told = capsys.readouterr().err
-    assert re.search(said, told), told
-    assert told.count("\n") == 1
+    write(more)
+    assert re.search(said, refused("network room.toml --run paddle"))

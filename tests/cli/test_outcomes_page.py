@@ -15,14 +15,12 @@ BADGES = {"both sides of a limit": "BRACKETED", "bad input": ""}
 
 
 def test_the_page_has_every_outcome_and_status():
-    """All of them; 0 to 4."""
     assert set(TOLD) <= {row[0] for row in ROWS}
     assert {row[2] for row in ROWS} == set("01234")
 
 
 @pytest.mark.parametrize(("outcome", "command", "status"), ROWS, ids=[row[1][:60] for row in ROWS])
 def test_a_command_of_the_page(outcome, command, status, capsys):
-    """Badge and exit status."""
     ended = main(shlex.split(command))
     assert ended == int(status)
     printed = capsys.readouterr().out.strip()

@@ -1,19 +1,15 @@
 """What `zwidth verify` says of a proof: no more than its kind shows, and of the numbers that were checked."""
 
-from __future__ import annotations
-
 import copy
 import json
 import math
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 import zwidth as zw
 from zwidth import checker
 from zwidth.checker import judge
-from zwidth.cli.main import main
 from zwidth.quantity.text import to_json
 
 PADDLE = zw.Device(
@@ -21,123 +17,114 @@ PADDLE = zw.Device(
 )
 
 
-def plain(document: dict[str, Any]) -> dict[str, Any]:
+def plain(document):
     """As it is read from a file."""
-    read: dict[str, Any] = json.loads(to_json(document))
-    return read
+    return json.loads(to_json(document))
 
 
-def proof_of(wall: zw.Wall) -> dict[str, Any]:
+def proof_of(wall):
     """The certificate of a passive loop."""
-    found = zw.check(PADDLE, wall).certificate
-    assert found is not None
-    return plain(found.to_dict())
+    return plain(zw.check(PADDLE, wall).certificate.to_dict())
 
 
 SPRING, DAMPED = proof_of(zw.Wall(100)), proof_of(zw.Wall(100, 0.05))
-STABLE = {
-    "kind": "stability",
-    "loop": {
-        "mass_kg": "0.05",
-        "damping_N_s_per_m": "0.7",
-        "stiffness_N_per_m": "350",
-        "sample_period_s": "0.001",
-        "delay_s": "0",
-        "numerator": ["1200", "-400"],
-        "denominator": ["1", "0"],
-    },
-}
+LAW = {"numerator": ["1200", "-400"], "denominator": ["1", "0"], "sample_period_s": "0.001", "delay_s": "0"}
+HELD = {"mass_kg": "0.05", "damping_N_s_per_m": "0.7", "stiffness_N_per_m": "350"}
+STABLE = {"kind": "stability", "loop": {**HELD, **LAW}}
+POSITIVE = {"at_one": 0, "at_minus_one": 0, "square": ["1"], "factor": ["1"]}
 PORT = {
     "kind": "positive real",
     "system": {"time": "discrete", "numerator": ["-4"], "denominator": ["1"]},
     "index": "input",
     "level": "-5",
-    "proof": {
-        "offset": "1",
-        "positivity": {"at_one": 0, "at_minus_one": 0, "square": ["1"], "factor": ["1"]},
-    },
+    "proof": {"offset": "1", "positivity": POSITIVE},
 }
 
 
-def told(document: object, tmp_path: Path, capsys: pytest.CaptureFixture[str], status: int = 0) -> str:
+@pytest.fixture
+def told(run):
     """What is printed of a document, in one line: of one that is valid unless another status is given."""
-    file = tmp_path / "proof.json"
-    file.write_text(json.dumps(document))
-    assert main(["verify", str(file)]) == status
-    return " ".join(capsys.readouterr().out.split())
+
+    def runner(document, status=0):
+        Path("proof.json").write_text(json.dumps(document))
+        return run("verify proof.json", status).words
+
+    return runner
 
 
-def test_a_damped_wall_is_passive_in_contact_only(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def corners(*documents):
+    return {"kind": "corners", "corners": list(documents)}
+
+
+def test_a_damped_wall_is_passive_in_contact_only(told):
     """Of a one-sided law that is proved as a line it is said that contact is kept; of a spring it is not."""
     assert DAMPED["kind"] == "quantized"
-    assert "passive as long as contact is kept" in told(DAMPED, tmp_path, capsys)
+    assert "passive as long as contact is kept" in told(DAMPED)
     two_sided = {**DAMPED, "loop": {**DAMPED["loop"], "unilateral": False}}
-    assert "contact is kept" not in told(two_sided, tmp_path, capsys)
+    assert "contact is kept" not in told(two_sided)
     assert SPRING["kind"] == "spring"
-    assert "The loop below is passive, proved" in told(SPRING, tmp_path, capsys)
-    corners = {"kind": "corners", "corners": [DAMPED, proof_of(zw.Wall(90, 0.05))]}
-    assert "passive as long as contact is kept" in told(corners, tmp_path, capsys)
+    assert "The loop below is passive, proved" in told(SPRING)
+    assert "passive as long as contact is kept" in told(corners(DAMPED, proof_of(zw.Wall(90, 0.05))))
 
 
-def test_what_lies_between_corners(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_lies_between_corners(told):
     """Two laws with one D are proved with every mix of them; with another period none between is."""
-    mixed = told({"kind": "corners", "corners": [SPRING, proof_of(zw.Wall(90))]}, tmp_path, capsys)
+    mixed = told(corners(SPRING, proof_of(zw.Wall(90))))
     assert "and every mix of their laws" in mixed
     slower = plain(zw.check(PADDLE.replace(rate=900), zw.Wall(90)).certificate.to_dict())
-    apart = told({"kind": "corners", "corners": [SPRING, slower]}, tmp_path, capsys)
+    apart = told(corners(SPRING, slower))
     assert "nothing is said of what lies between them" in apart
 
 
-def test_the_same_corner_twice(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_same_corner_twice(told):
     """Two proofs of one corner are no proof of two."""
-    again = {"kind": "corners", "corners": [DAMPED, DAMPED]}
-    assert "the same corner is given twice" in told(again, tmp_path, capsys, status=1)
+    assert "the same corner is given twice" in told(corners(DAMPED, DAMPED), 1)
 
 
-def test_corners_that_differ_in_a_late_digit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_corners_that_differ_in_a_late_digit(told):
     """Two corners that are shown alike, with twelve digits, are two all the same."""
     stiffness = [f"{'1' * 60}{digit}/1{'0' * 59}3" for digit in "12"]
     near = [{**SPRING, "loop": {**SPRING["loop"], "numerator": [k]}} for k in stiffness]
-    assert "all 2 corners" in told({"kind": "corners", "corners": near}, tmp_path, capsys)
+    assert "all 2 corners" in told(corners(*near))
 
 
-def test_an_active_hand_keeps_contact_in_its_band(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_active_hand_keeps_contact_in_its_band(told):
     """A hand more active than the device is damped shakes it off the wall: contact is kept, it says."""
     found = plain(zw.stability.tolerated_activity(PADDLE.replace(delay=0), zw.Wall(20, 0.12)).to_dict())
     kept, broken = (found[key]["certificate"] for key in ("contact_kept", "contact_broken"))
-    assert "from the loop below as long as contact is kept" in told(kept, tmp_path, capsys)
-    assert "contact is kept" not in told(broken, tmp_path, capsys)
+    assert "from the loop below as long as contact is kept" in told(kept)
+    assert "contact is kept" not in told(broken)
 
 
-def test_a_known_hand_keeps_contact(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_known_hand_keeps_contact(told):
     """Rest is that of the linear loop, and nothing is said of passivity."""
-    out = told(STABLE, tmp_path, capsys)
+    out = told(STABLE)
     assert "contact kept" in out
     assert "passive" not in out
 
 
-def test_corners_belong_to_the_kind_corners(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_corners_belong_to_the_kind_corners(told):
     """Other proofs beside a proof are no part of it, and would be shown as if they were."""
     for document, other in ((STABLE, SPRING), (SPRING, DAMPED)):
-        out = told({**document, "corners": [other]}, tmp_path, capsys, status=1)
+        out = told({**document, "corners": [other]}, 1)
         assert "NOT VALID entries that no proof of this kind has: corners" in out
 
 
-def test_corners_of_several_kinds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_corners_of_several_kinds(told):
     """Where corners show different things, none of their headlines is that of all."""
-    out = told({"kind": "corners", "corners": [SPRING, STABLE]}, tmp_path, capsys)
+    out = told(corners(SPRING, STABLE))
     assert "is passive" not in out
     assert "VALID Proved: all 2 corners" in out
     verdict = {
         "outcome": "passive",
-        "certificate": {"kind": "corners", "corners": [SPRING, STABLE]},
+        "certificate": corners(SPRING, STABLE),
         "worst_hand": {"certificate": SPRING},
     }
-    assert "corners that show different things" in told(verdict, tmp_path, capsys, status=1)
+    assert "corners that show different things" in told(verdict, 1)
 
 
 @pytest.mark.parametrize("outcome", ["passive", "active"])
-def test_the_index_of_a_port_is_no_verdict(outcome: str) -> None:
+def test_the_index_of_a_port_is_no_verdict(outcome):
     """A level of −5 N·s/m says nothing of passivity, and extraction above one nothing of activity."""
     motion = {"kind": "sequence", "latent": ["1"]}
     taken = {**PORT, "kind": "extraction", "level": "-3", "motion": motion}
@@ -149,53 +136,45 @@ def test_the_index_of_a_port_is_no_verdict(outcome: str) -> None:
         assert "is of a port" in part.verification.reason
 
 
-def test_only_what_is_checked_is_shown(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_only_what_is_checked_is_shown(told):
     """A law beside the proof of a spring is no part of it: what nobody reads is refused, at any depth."""
     for added in ({"law": {"stiffness_N_per_m": "99999"}}, {"stiffness_N_per_m": "99999"}, {"note": "9"}):
-        out = told({**SPRING, **added}, tmp_path, capsys, status=1)
+        out = told({**SPRING, **added}, 1)
         assert f"NOT VALID entries that no proof of this kind has: {next(iter(added))}" in out
     deep = copy.deepcopy(DAMPED)
     deep["proof"]["norm"]["stiffness_N_per_m"] = "9"
     assert checker.verify(deep).reason.endswith(": proof.norm.stiffness_N_per_m")
 
 
-def test_an_active_loop_without_a_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_active_loop_without_a_motion(run):
     """A law that is too slow for a motion to be written down: active all the same, and the proof verifies."""
-    path = tmp_path / "verdict.json"
-    law = ["--type", "pulse-transfer-function", "--numerator", "1,0", "--denominator", "1,-1"]
-    device = ["--damping", "900", "--rate", "1 kHz"]
-    assert main(["check", *device, *law, "--save", str(path)]) == 1
-    said = " ".join(capsys.readouterr().out.split())
+    law = "--type pulse-transfer-function --numerator 1,0 --denominator 1,-1"
+    device = "--damping 900 --rate '1 kHz'"
+    said = run(f"check {device} {law} --save verdict.json", 1).words
     assert "ACTIVE The hand can take any amount of energy out of this loop: at" in said
     assert "No motion that shows it was found short enough to be written down." in said
-    document = json.loads(path.read_text(encoding="utf-8"))
+    document = json.loads(Path("verdict.json").read_text(encoding="utf-8"))
     assert ("violation" in document, "witness" in document) == (True, False)
-    assert main(["verify", str(path)]) == 0
-    said = " ".join(capsys.readouterr().out.split())
+    said = run("verify verdict.json").words
     assert said.startswith(
         "VALID A hand can take any amount of energy out of the loop below, proved: the linear"
     )
 
 
-def test_a_key_that_is_given_twice(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_key_that_is_given_twice(refused):
     """Which of the two was proved would be the reader's guess."""
     text = json.dumps(SPRING)
     assert text.count('"delay_s"') == 1
-    (tmp_path / "proof.json").write_text(text.replace('"delay_s"', '"delay_s": "9", "delay_s"'), "utf-8")
-    assert main(["verify", str(tmp_path / "proof.json")]) == 2
-    err = capsys.readouterr().err
-    assert "'delay_s' is given twice in one object" in err
-    assert err.count("\n") == 1
+    Path("proof.json").write_text(text.replace('"delay_s"', '"delay_s": "9", "delay_s"'), "utf-8")
+    assert "'delay_s' is given twice in one object" in refused("verify proof.json")
 
 
 @pytest.mark.parametrize("written", ["0_1", "٣", " 15", "1/2 ", "0x10", "1,5", "³", "1/0", "--1", ""])
-def test_numbers_are_in_plain_digits(written: str) -> None:
+def test_numbers_are_in_plain_digits(written):
     """Nothing that one reader takes for a number and another one does not."""
     found = checker.verify({**SPRING, "loop": {**SPRING["loop"], "damping_N_s_per_m": written}})
-    assert (found.valid, found.reason) == (
-        False,
-        f"loop.damping_N_s_per_m: expected a number, got {written!r}",
-    )
+    assert not found.valid
+    assert found.reason == f"loop.damping_N_s_per_m: expected a number, got {written!r}"
 
 
 @pytest.mark.parametrize(
@@ -208,7 +187,7 @@ def test_numbers_are_in_plain_digits(written: str) -> None:
     ],
 )
 @pytest.mark.parametrize("kind", ["storage", "coarse storage", "contact motion", "force bounding", "spring"])
-def test_another_unit_is_refused(key: str, other: str, kind: str) -> None:
+def test_another_unit_is_refused(key, other, kind):
     """Every reader of a loop wants the unit that the number is taken for."""
     names = ("damping_N_s_per_m", "coulomb_friction_N", "resolution_m", "sample_period_s", "delay_s")
     loop = {**dict.fromkeys(names, "0.001"), "force_resolution_N": "0"}
@@ -220,7 +199,7 @@ def test_another_unit_is_refused(key: str, other: str, kind: str) -> None:
     assert "the unit of" in found.reason
 
 
-def test_what_is_said_of_a_port_needs_evidence_at_that_level() -> None:
+def test_what_is_said_of_a_port_needs_evidence_at_that_level():
     """Passive is an input index of 0 or more, active one below 0; nothing else is taken."""
     port = {"format": "zwidth indices 1", "outcome": "passive"}
     saved = plain(zw.ports.passivity_indices(zw.PulseTransferFunction([4], [1]), PADDLE).to_dict())
@@ -235,20 +214,13 @@ def test_what_is_said_of_a_port_needs_evidence_at_that_level() -> None:
         assert not judge(document).valid
 
 
-def test_a_document_about_a_wheel_is_told_in_degrees_too(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_document_about_a_wheel_is_told_in_degrees_too(run, refused):
     """π/180 of what is about a radian; what the document has stands before it, and no other line changes."""
     wheel = zw.rotary(damping="0.02 N*m*s/rad", rate="1 kHz")
     found = zw.check(wheel, zw.Wall("20 N*m/rad")).certificate
-    assert found is not None
-    file = tmp_path / "wheel.json"
-    file.write_text(to_json(found.to_dict()), encoding="utf-8")
-    assert main(["verify", str(file)]) == 0
-    plainly = capsys.readouterr().out
-    assert main(["verify", str(file), "--angles", "deg"]) == 0
-    told = capsys.readouterr().out
+    Path("wheel.json").write_text(to_json(found.to_dict()), encoding="utf-8")
+    plainly = run("verify wheel.json").out
+    told = run("verify wheel.json --angles deg").out
     assert f"0.02 N·m·s/rad = {0.02 * math.pi / 180:.6g} N·m·s/deg" in told
     assert [line.partition(" = ")[0] for line in told.splitlines()] == plainly.splitlines()
-    assert main(["verify", str(file), "--angles", "degrees"]) == 2
-    assert "deg, turn, rad, rpm" in capsys.readouterr().err
+    assert "deg, turn, rad, rpm" in refused("verify wheel.json --angles degrees")

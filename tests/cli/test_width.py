@@ -1,7 +1,5 @@
 """Lines and tables that fit: nothing is lost, nothing is wider than the page."""
 
-from __future__ import annotations
-
 import io
 import sys
 
@@ -27,7 +25,7 @@ words = st.text(st.sampled_from("ab·é力µ→ "), max_size=120)
 
 
 @given(words, st.integers(4, 60))
-def test_text_is_broken_and_nothing_is_lost(text: str, width: int) -> None:
+def test_text_is_broken_and_nothing_is_lost(text, width):
     """But blanks."""
     lines = list(wrapped(text, width))
     assert all(width_of(line) <= width for line in lines)
@@ -35,18 +33,16 @@ def test_text_is_broken_and_nothing_is_lost(text: str, width: int) -> None:
 
 
 @pytest.mark.parametrize("text", ["plain", "力覚 wide", "e\u0301 accent", "N·s/m → µ"])
-def test_columns_are_those_of_a_terminal(text: str) -> None:
-    """As another library counts them."""
+def test_columns_are_those_of_a_terminal(text):
     assert width_of(text) == cell_len(text)
 
 
-def test_an_item_goes_on_under_its_own_beginning() -> None:
-    """Of lists with marks and with numbers."""
+def test_an_item_goes_on_under_its_own_beginning():
     assert list(wrapped("· one two three", 9)) == ["· one two", "  three"]
     assert list(wrapped("12. one two", 8)) == ["12. one", "    two"]
 
 
-def test_a_table_that_is_too_wide_becomes_several() -> None:
+def test_a_table_that_is_too_wide_becomes_several():
     """Each with the names of its rows, every cell once."""
     heads = [["", "first", "second", "third"], ["", "N", "m", "s"]]
     rows = [["row one", "1", "22", "333"], ["row two", "4", "55", "666"]]
@@ -67,7 +63,7 @@ def test_a_table_that_is_too_wide_becomes_several() -> None:
     assert max(map(width_of, fitted([Table(heads=heads, rows=rows, lefts=1)], 10))) <= 10
 
 
-def test_names_with_long_texts_and_lists() -> None:
+def test_names_with_long_texts_and_lists():
     """A text goes on beside its name; the items of a list under themselves."""
     parts = [Table(rows=[["name", "a text of some words"]], caption="of it"), Lines(["an item of a list"])]
     assert list(fitted(parts, 16)) == [
@@ -75,7 +71,7 @@ def test_names_with_long_texts_and_lists() -> None:
     ]  # fmt: skip
 
 
-def test_the_width_is_that_of_the_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_width_is_that_of_the_terminal(monkeypatch):
     """Of COLUMNS before it; 80 without either; no more than 100, and never so few that no word fits."""
     monkeypatch.delenv("COLUMNS", raising=False)
     monkeypatch.setattr(sys, "stdout", io.StringIO())
@@ -88,14 +84,12 @@ def test_the_width_is_that_of_the_terminal(monkeypatch: pytest.MonkeyPatch) -> N
 class _Terminal(io.TextIOWrapper):
     """Says that it is a terminal."""
 
-    def isatty(self) -> bool:
+    def isatty(self):
         return True
 
 
 @pytest.mark.parametrize(("locale", "encoding"), [("C", "ascii"), ("POSIX", "ascii"), ("C.UTF-8", "utf-8")])
-def test_a_terminal_of_the_locale_c_has_ascii(
-    monkeypatch: pytest.MonkeyPatch, locale: str, encoding: str
-) -> None:
+def test_a_terminal_of_the_locale_c_has_ascii(monkeypatch, locale, encoding):
     """What it lacks is spelled out before lines are broken, so that they still fit."""
     shown = io.BytesIO()
     monkeypatch.setattr(sys, "stdout", _Terminal(shown, encoding="utf-8"))
@@ -111,7 +105,7 @@ def test_a_terminal_of_the_locale_c_has_ascii(
     assert spelled("≥") == (">=" if encoding == "ascii" else "≥")
 
 
-def test_a_pipe_of_the_locale_c_is_left_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_pipe_of_the_locale_c_is_left_as_it_is(monkeypatch):
     """A file is no terminal."""
     monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(io.BytesIO(), encoding="utf-8"))
     monkeypatch.setenv("LC_ALL", "C")

@@ -44,8 +44,7 @@ def stiffness(model: tuple[Any, Any], period: Fraction, delta: Fraction) -> Frac
     return min(viscous, 2 * friction / delta) if delta else viscous
 
 
-def test_stiction_and_bends() -> None:
-    """The corners of a curve with stiction, a dip and a rise, computed by hand."""
+def test_stiction_and_bends():
     assert [tuple(map(str, corner)) for corner in STRIBECK.minorants()] == [
         ("0.15", "0.0"),
         ("0.14", "0.2"),
@@ -55,17 +54,9 @@ def test_stiction_and_bends() -> None:
     assert "last chord" in STRIBECK.assumption
 
 
-def test_a_straight_curve_is_its_own_model() -> None:
-    """f_c + b v, with stiction above or without."""
-    for stiction in (0.12, 0.5):
-        curve = zw.FrictionCurve([0, 1, 2, 3], [stiction, 0.27, 0.42, 0.57])
-        assert curve.minorants()[-1] == (zw.Exact("0.12"), zw.Exact("0.15"))
-
-
 @settings(max_examples=80)
 @given(curves())
-def test_corners_lie_below_and_cannot_grow(curve: zw.FrictionCurve) -> None:
-    """Each is a model below the curve, and neither of its numbers can be enlarged alone."""
+def test_corners_lie_below_and_cannot_grow(curve):
     corners = curve.minorants()
     step = Fraction(1, 10**9)
     for friction, damping in corners:
@@ -79,8 +70,7 @@ def test_corners_lie_below_and_cannot_grow(curve: zw.FrictionCurve) -> None:
 
 @settings(max_examples=80)
 @given(curves(), st.fractions(0, 1, max_denominator=50))
-def test_the_largest_friction_for_a_damping(curve: zw.FrictionCurve, part: Fraction) -> None:
-    """Below the curve, and not below it when a little larger; refused beyond the largest damping."""
+def test_the_largest_friction_for_a_damping(curve, part):
     limit = curve.largest_damping.fraction
     friction = curve.largest_coulomb_friction(part * limit).fraction
     assert below(curve, friction, part * limit)
@@ -93,8 +83,7 @@ def test_the_largest_friction_for_a_damping(curve: zw.FrictionCurve, part: Fract
 
 @settings(max_examples=80)
 @given(curves(), st.fractions("0.001", 1, max_denominator=1000), st.fractions(0, 1, max_denominator=1000))
-def test_the_best_model_against_a_search(curve: zw.FrictionCurve, period: Fraction, delta: Fraction) -> None:
-    """No model on a fine grid of dampings proves a stiffer wall."""
+def test_the_best_model_against_a_search(curve, period, delta):
     best = curve.best(period, delta)
     assert below(curve, best.coulomb_friction.fraction, best.damping.fraction)
     limit = curve.largest_damping.fraction
@@ -104,7 +93,7 @@ def test_the_best_model_against_a_search(curve: zw.FrictionCurve, period: Fracti
         assert stiffness((curve.largest_coulomb_friction(b), b), period, delta) <= reached
 
 
-def test_the_best_model_balances_both_limits() -> None:
+def test_the_best_model_balances_both_limits():
     """Where the edge allows it, 2b/T = 2f_c/Δ exactly."""
     model = STRIBECK.best(0.001, Fraction("0.0224"))
     f, b = model.coulomb_friction.fraction, model.damping.fraction
@@ -127,14 +116,13 @@ def test_the_best_model_balances_both_limits() -> None:
         (3, [1, 2]),
     ],
 )
-def test_what_is_no_curve_is_refused(speeds: Any, forces: Any) -> None:
-    """With an InputError that speaks of the friction curve."""
+def test_what_is_no_curve_is_refused(speeds, forces):
     with pytest.raises(zw.InputError, match="friction curve"):
         zw.FrictionCurve(speeds, forces)
 
 
 @given(curves(), st.sampled_from([0, -1]))
-def test_best_needs_a_period(curve: zw.FrictionCurve, period: int) -> None:
+def test_best_needs_a_period(curve, period):
     """T > 0 and Δ ≥ 0."""
     with pytest.raises(zw.InputError, match="sample_period"):
         curve.best(period, 0)

@@ -53,19 +53,12 @@ def moved(
 
 
 def written(path: Path, columns: dict[str, np.ndarray]) -> Path:
-    """As CSV."""
     table = np.column_stack(list(columns.values()))
     np.savetxt(path, table, fmt="%.7g", delimiter=",", header=",".join(columns), comments="")
     return path
 
 
 def arms(**other: float) -> zw.Pair:
-    """What their owner knows."""
-    numbers = {
-        "damping": 0.02,
-        "coulomb_friction": 0.005,
-        "resolution": 1e-4,
-        "sample_period": PERIOD,
-    } | other
-    leader, follower = (zw.Device(motion="rotary", mass=mass, **numbers) for mass in (0.01, 0.014))
+    numbers = {"damping": 0.02, "coulomb_friction": 0.005, "resolution": 1e-4, "motion": "rotary", **other}
+    leader, follower = (zw.Device(mass=mass, sample_period=PERIOD, **numbers) for mass in (0.01, 0.014))
     return zw.Pair(leader, follower, stiffness=1)

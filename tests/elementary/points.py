@@ -10,7 +10,6 @@ import mpmath
 
 
 def even(low: float, high: float) -> Callable[[Random], float]:
-    """Spread evenly over the range."""
     return lambda random: random.uniform(low, high)
 
 

@@ -1,7 +1,5 @@
 """The elementary functions against mpmath, in units of the last place, over their whole range."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from random import Random
 
@@ -45,7 +43,6 @@ def _digits():
 
 @pytest.mark.parametrize(("function", "exact", "draw", "bound"), RANGES)
 def test_error_in_the_last_place(function, exact, draw, bound):
-    """Little more than the half that rounding takes, and less than one where digits are missing."""
     random = Random(31)
     points = [draw(random) for _ in range(POINTS)]
     assert max(error_of(function(x), exact(mpmath.mpf(x))) for x in points) < bound
@@ -76,7 +73,6 @@ def test_powers_beyond_the_range_that_laws_use():
 
 
 def test_two_doubles_hold_a_sum_and_a_product():
-    """Their parts add up to them exactly."""
     random = Random(34)
     draw = both(wide(1e-120, 1e120))
     for _ in range(POINTS):

@@ -89,7 +89,6 @@ def unfixed(text: str) -> list[str]:
 
 @pytest.mark.parametrize("chapter", SIMULATED)
 def test_steps_take_no_function_whose_last_bit_is_the_librarys(chapter):
-    """Powers, exponentials, logarithms and angles are of `elementary`, wherever something is simulated."""
     sources = sorted((PACKAGE / chapter).rglob("*.py"))
     assert sources
     found = {path.name: unfixed(path.read_text(encoding="utf-8")) for path in sources}
@@ -97,7 +96,6 @@ def test_steps_take_no_function_whose_last_bit_is_the_librarys(chapter):
 
 
 def test_a_librarys_function_would_be_seen():
-    """By its name, as an attribute, and as a power."""
     text = """
 from math import exp, sqrt
 @compiled

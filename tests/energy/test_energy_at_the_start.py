@@ -1,4 +1,4 @@
-"""What the loop holds where a touch starts: a bound that every passive loop keeps, and no active one."""
+"""What the loop holds where a touch starts, what the ledger adds up, and when energy came out."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
+from zwidth.loop.energy import ledger
 from zwidth.model.rendering import PassivityController
 
 PADDLE = zw.catalogue.device("haptic-paddle")
@@ -18,19 +19,16 @@ def passive_loop(random, kind):
     count = float(random.choice([0.0, 1e-5, 1e-4]))
     k = float(10 ** random.uniform(1, 3.3))
     slack = 1 + float(random.choice([1e-9, 0.05]))
-    if kind == "spring":
-        law, need, steepest = zw.PulseTransferFunction([k], [1]), (delay + 0.5) * k * period, k
-    elif kind == "wall":
-        law, need, steepest = zw.Wall(k), (delay + 0.5) * k * period, k
-    elif kind == "detents":
+    need, steepest = (delay + 0.5) * k * period, k
+    if kind == "detents":
         pitch = float(random.uniform(0.002, 0.02))
         law = zw.NonlinearSpring.detents(int(random.integers(1, 6)), pitch, k * pitch / 4)
-        need, steepest = (delay + 0.5) * k * period, k
-    else:
+    elif kind == "solid":
         pole, part = float(random.uniform(0, 0.99)), float(random.uniform(0, 3))
         law = zw.PulseTransferFunction([k * (1 + part), -k * (pole + part)], [1, -pole])
-        need = None
-        steepest = k * (1 + part) * (1 + (pole + part) / (1 - pole))
+        need, steepest = None, k * (1 + part) * (1 + (pole + part) / (1 - pole))
+    else:
+        law = zw.Wall(k) if kind == "wall" else zw.PulseTransferFunction([k], [1])
     device = zw.Device(
         mass=float(10 ** random.uniform(-2, 0)),
         damping=0 if need is None else need * slack,
@@ -76,7 +74,6 @@ def touch(random, kind, start=None):
 
 @pytest.mark.parametrize("kind", ["spring", "wall", "detents", "solid"])
 def test_no_touch_of_a_passive_loop_is_active_wherever_it_starts(kind):
-    """Random loops that are proved passive, hands and starts; many get out what was stored."""
     random = np.random.default_rng(6)
     out = 0
     for _ in range(60):
@@ -128,22 +125,12 @@ def test_the_touch_starts_where_the_law_is_at_rest():
 
 
 def test_a_start_that_is_given_is_kept():
-    """By the hand's own start, or by initial_position: what the spring holds there is in the trace."""
     for hand, start in ((zw.operators.Finger(start=-0.015), None), (zw.operators.Finger(), -0.015)):
         trace = zw.simulate(PADDLE, SPRING, hand, 0.3, initial_position=start)
         half = 2.24e-5 / 2
         assert trace.attrs["stored_at_start_J"] == pytest.approx(50 * (0.015 + half) ** 2, rel=1e-12)
         assert not trace.zwidth.energy.active
         assert trace.zwidth.energy.got_out > 0.005
-
-
-def test_a_wheel_holds_as_much():
-    """½ K θ² in N·m/rad, at a start of 0.3 rad."""
-    wheel = zw.Device(mass=1e-4, damping="0.001", coulomb_friction="0.001", rate=1000, motion="rotary")
-    hand = zw.operators.ConstantForce(0.0)
-    trace = zw.simulate(wheel, zw.PulseTransferFunction(["0.5"], [1]), hand, 0.3, initial_position=0.3)
-    assert trace.attrs["stored_at_start_J"] == pytest.approx(0.25 * 0.09)
-    assert not trace.zwidth.energy.active
 
 
 def test_late_forces_let_the_hand_go_further_in_for_nothing():
@@ -209,7 +196,6 @@ def test_contacts_with_memory_that_are_left(law):
 
 
 def test_words_and_files_carry_the_bound(tmp_path, capsys):
-    """The report says what came out and what was stored; a saved trace gives it back."""
     from zwidth.cli.main import main
 
     words = "simulate haptic-paddle --type pulse-transfer-function --numerator 100,0 --denominator 1,0"
@@ -222,3 +208,41 @@ def test_words_and_files_carry_the_bound(tmp_path, capsys):
     assert kept.attrs["stored_at_start_J"] == pytest.approx(0.0200224, rel=1e-5)
     assert main([*run[:-2]]) == 0
     assert "got no energy out" in " ".join(capsys.readouterr().out.split())
+
+
+def _touch(stiffness: float, hand=None, **options):
+    return zw.simulate(PADDLE, zw.Wall(stiffness), hand or zw.operators.Dowel(), 0.6, **options)
+
+
+def test_both_balances_close_to_rounding():
+    trace = _touch(600.0, zw.operators.Finger())
+    book = trace.zwidth.energy
+    assert book.closes
+    assert np.abs(book.residual).max() < 1e-15
+    tampered = trace.copy()
+    tampered["viscous_loss"] = trace.viscous_loss * 1.001
+    assert not ledger(tampered).closes
+
+
+def test_what_the_device_held_at_first_does_not_count_as_extracted():
+    """A hand that only stops a moving device gets its kinetic energy, and no more."""
+    free = zw.Device(mass=0.5, damping=0.0, rate=1000)
+    hand = zw.operators.ConstantForce(-1.0)
+    trace = zw.simulate(free, zw.Wall(0.0), hand, 0.25, initial_velocity=0.5)
+    book = trace.zwidth.energy
+    assert -trace.hand_work.values.min() == pytest.approx(0.5 * 0.5 * 0.25, rel=1e-9)
+    assert book.extracted == pytest.approx(0.0, abs=1e-12)
+
+
+def test_totals_in_words_numbers_and_html():
+    book = _touch(500.0).zwidth.energy
+    assert "the hand put into the device" in repr(book)
+    assert book._repr_html_().startswith("<table>")
+    assert book.to_dict()["hand_work_J"] == book.totals["hand_work"]
+    plain = _touch(500.0, zw.operators.ConstantForce(1.0)).zwidth.energy
+    assert "damper" not in repr(plain)
+
+
+def test_a_dataset_without_energies_is_refused():
+    with pytest.raises(zw.InputError, match="lacks viscous_loss"):
+        ledger(_touch(100.0).drop_vars("viscous_loss"))

@@ -1,7 +1,5 @@
 """A body behind a coupling: H(z) against the program that steps it, and what is refused."""
 
-from __future__ import annotations
-
 import random
 from fractions import Fraction
 from typing import get_args
@@ -39,7 +37,6 @@ def response(law, positions):
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize("body", [{}, NUMBERS], ids=["free", "held"])
 def test_it_is_what_the_program_does(integrator, body, exchange):
-    """Exactly, sample by sample, for a motion of random numbers."""
     law = zw.coupling.CoupledBody(130, "0.06", "0.8 g", integrator=integrator, **body, **EXCHANGES[exchange])
     draw = random.Random(7)
     positions = [Fraction(draw.randint(-9, 9), 1000) for _ in range(14)]
@@ -48,7 +45,6 @@ def test_it_is_what_the_program_does(integrator, body, exchange):
 
 
 def test_without_own_losses_both_runge_kutta_methods_are_the_motion_itself():
-    """Under a force that is held a free body moves on a parabola."""
     two, four = (
         zw.coupling.CoupledBody(130, "0.06", "0.8 g", integrator=f"runge-kutta-{order}") for order in (2, 4)
     )
@@ -66,7 +62,6 @@ def test_behind_the_coupling_stands_the_same_body():
 
 
 def test_a_scene_steps_its_bodies_by_the_implicit_midpoint():
-    """Of the same coupling before a scene of mass, damper and spring H(z) is the same."""
     parts = [
         zw.scene.Mass("tip", "1 g"),
         zw.scene.Damper("tip", "ground", "0.3"),
@@ -93,7 +88,6 @@ def test_a_scene_steps_its_bodies_by_the_implicit_midpoint():
     ],
 )
 def test_what_is_no_such_body_is_refused(changes, message):
-    """With what was given, and why."""
     with pytest.raises(zw.InputError, match=message):
         zw.coupling.CoupledBody(**{"stiffness": 100, "damping": 0, "virtual_mass": 1, **changes})
 

@@ -46,7 +46,6 @@ PIPER = "[piper]\nkp = [10, 10, 10, 10, 10, 10]\nkd = [0.8, 0.8, 0.8, 0.8, 0.8, 
 
 
 def written(folder: Path, name: str, text: str) -> Path:
-    """A file with this text."""
     path = folder / name
     path.write_text(text, encoding="utf-8")
     return path

@@ -1,18 +1,22 @@
-"""Parameter files of ros2_control: what their numbers are, and which joints are passive by closed forms."""
+"""Parameter files of ros2_control: what their numbers are, which joints are passive, and gains that are."""
 
 from __future__ import annotations
 
 import json
+import re
 from math import sqrt
 from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from described_arms import panda_like
+from gain_files import written
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.data.gains import check_controllers, read_controllers
+from zwidth.data.gains import check_controllers, passive_gains, read_controllers
+from zwidth.data.gains.passive import PassiveGains
 
 FRANKA = """
 /**:
@@ -48,47 +52,50 @@ cartesian_impedance_controller:
     damping:
       translation: {x: 1.0, y: 0.5, z: 0.0}
 """
+ARM = """
+controller_manager: {ros__parameters: {update_rate: 1000}}
+arm:
+  ros__parameters:
+    gains:
+      good: {p: 123.456, d: 0.125}
+      "no": {p: 100000, i: 2.0, d: 0.0}
+/**: {impedance: {ros__parameters: {k_gains: [500.0], d_gains: [30.0]}}}
+"""
 COMPLIANCE = "c: {ros__parameters: {stiffness: {trans_x: 500, trans_y: 500, trans_z: 500}}}"
-
-
 FORCE = "c: {ros__parameters: {solver: {error_scale: 0.5}, pd_gains: {trans_x: {p: 0.05}, rot_z: {p: 1.5}}}}"
 
 
-def written(folder: Path, text: str, name: str = "controllers.yaml") -> Path:
-    """A file."""
-    path = folder / name
-    path.write_text(text, encoding="utf-8")
-    return path
+NAME = "controllers.yaml"
 
 
-def device(damping: float) -> zw.Device:
-    """A joint."""
+def device(damping: float = 1) -> zw.Device:
     return zw.Device(damping=damping, rate=1, motion="rotary")
 
 
-def test_keys_that_are_given_twice_are_one_table(tmp_path: Path) -> None:
+def test_keys_that_are_given_twice_are_one_table(tmp_path):
     """franka_ros2 writes /** again for each controller, and ROS joins them."""
-    found = read_controllers(written(tmp_path, FRANKA))
+    found = read_controllers(written(tmp_path, NAME, FRANKA))
     assert [(float(j.stiffness), float(j.damping)) for j in found.joints] == [(600, 30), (250, 5)]
     assert found.rate == 1000
     with pytest.raises(zw.InputError, match="line 4: p is given twice"):
-        read_controllers(written(tmp_path, "a:\n  gains:\n    j: {p: 1,\n      p: 2}\n"))
+        read_controllers(written(tmp_path, NAME, "a:\n  gains:\n    j: {p: 1,\n      p: 2}\n"))
 
 
 @pytest.mark.parametrize(("share", "outcome"), [(1.001, "passive"), (0.999, "active")])
-def test_each_joint_is_decided_by_its_closed_form(tmp_path: Path, share: float, outcome: str) -> None:
+def test_each_joint_is_decided_by_its_closed_form(tmp_path, share, outcome):
     """Of a spring p one period late b = 3 p T/2; a little less is active."""
     text = FRANKA.replace("[30.0, 5.0]", "[0.0, 0.0]")
-    found = check_controllers(read_controllers(written(tmp_path, text)), device(3 * 600 * 0.0005 * share))
+    controllers = read_controllers(written(tmp_path, NAME, text))
+    found = check_controllers(controllers, device(3 * 600 * 0.0005 * share))
     assert found.joints[0].verdict.outcome == outcome
     assert found.joints[0].needed == pytest.approx(0.9)
     assert found.joints[1].verdict.passive
     assert found.outcome == outcome
 
 
-def test_an_integrator_gives_energy_out(tmp_path: Path) -> None:
+def test_an_integrator_gives_energy_out(tmp_path):
     """H(z) of all three gains, against a slow hand; without it the joint is passive."""
-    controllers = read_controllers(written(tmp_path, TRAJECTORY))
+    controllers = read_controllers(written(tmp_path, NAME, TRAJECTORY))
     found = check_controllers(controllers, device(5), delay=0)
     assert [joint.verdict.outcome for joint in found.joints] == ["passive", "active"]
     law = found.joints[1].verdict.environment.pulse_transfer_function(1)
@@ -98,9 +105,9 @@ def test_an_integrator_gives_energy_out(tmp_path: Path) -> None:
     assert found.claim == "Energy comes out of elbow."
 
 
-def test_an_impedance_is_a_wall_at_the_end(tmp_path: Path) -> None:
+def test_an_impedance_is_a_wall_at_the_end(tmp_path):
     """D = 2 ζ √K, as the controller has it, with what the wall leaves out."""
-    (one,) = read_controllers(written(tmp_path, CARTESIAN)).cartesian
+    (one,) = read_controllers(written(tmp_path, NAME, CARTESIAN)).cartesian
     assert one.stiffness == (200, 300, 400, 20, 30, 40)
     assert one.damping[:3] == pytest.approx((2 * sqrt(200), sqrt(300), 0))
     assert one.damping[3:] == pytest.approx([2 * sqrt(k) for k in (20, 30, 40)])
@@ -123,17 +130,14 @@ def test_an_impedance_is_a_wall_at_the_end(tmp_path: Path) -> None:
         (CARTESIAN.replace(", z: 400.0", ""), "z is missing"),
     ],
 )
-def test_what_is_no_spring_and_damper_is_refused(tmp_path: Path, text: str, message: str) -> None:
-    """With what it is, and what would be read."""
+def test_what_is_no_spring_and_damper_is_refused(tmp_path, text, message):
     with pytest.raises(zw.InputError, match=message):
-        read_controllers(written(tmp_path, text))
+        read_controllers(written(tmp_path, NAME, text))
 
 
-def test_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Joints with a plant; an impedance goes on to an arm, at the rate of its file, and says what is "
-    "left out."""
-    plant = written(tmp_path, "[arm]\ndamping = [1.2, 0.8]\n", "plant.toml")
-    joints, end = written(tmp_path, TRAJECTORY), written(tmp_path, CARTESIAN, "end.yaml")
+def test_checks_on_the_command_line(tmp_path, capsys):
+    plant = written(tmp_path, "plant.toml", "[arm]\ndamping = [1.2, 0.8]\n")
+    joints, end = written(tmp_path, NAME, TRAJECTORY), written(tmp_path, "end.yaml", CARTESIAN)
     assert main(["gains", str(joints)]) == 2
     assert "give --plant" in capsys.readouterr().err
     assert main(["gains", str(joints), "--plant", str(plant), "--json"]) == 1
@@ -148,3 +152,124 @@ def test_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     told = json.loads(capsys.readouterr().out)
     assert any("null-space" in note for note in told["wall_leaves_out"])
     assert told["wall"]["stiffness_N_per_m"][2][2] == 400
+
+
+def found(folder: Path, **asked: object) -> PassiveGains:
+    controllers = read_controllers(written(folder, "arm.yaml", ARM))
+    return passive_gains(controllers, device(), **asked)  # type: ignore[arg-type]
+
+
+def test_what_is_proved_stays_and_what_is_not_is_the_nearest(tmp_path):
+    """A spring one period late needs 3 p T/2; one that is kept has as much of its d as 0.8 b pays for."""
+    good, spring, damped = found(tmp_path).joints
+    assert (float(good.law.stiffness), float(good.law.damping)) == (123.456, 0.125)
+    assert float(spring.law.stiffness) == 533.3
+    assert (spring.law.integral, spring.law.damping) == (0, 0)
+    assert damped.law.stiffness == 500
+    assert 0 < damped.law.damping < 1
+    device, more = damped.verdict.device, damped.law.damping * 1001 / 1000
+    assert float(device.damping) == 0.8
+    held = zw.PulseTransferFunction([500 + more * 1000, -more * 1000], [1, 0])
+    assert zw.check(device, held).outcome == "active"
+    assert all(joint.verdict.passive for joint in (good, spring, damped))
+
+
+def test_the_stiffest_needs_its_damper(tmp_path):
+    """Some d lets the spring be stiffer than 2 b/3 T; 2 % more is active; half the share, half of both."""
+    whole, half = found(tmp_path, stiffest=True, share=1).joints[0], found(tmp_path, stiffest=True, share=0.5)
+    p, d = float(whole.law.stiffness), float(whole.law.damping)
+    assert p > 1.1 / 0.0015
+    stiffer = zw.PulseTransferFunction([1.02 * p + 1000 * d, -1000 * d], [1, 0])
+    assert zw.check(whole.verdict.device, stiffer).outcome == "active"
+    assert float(half.joints[0].law.stiffness) == pytest.approx(p / 2, rel=1e-3)
+
+
+def test_the_file_has_the_types_that_ros_asks_for_and_is_read_again(tmp_path):
+    """Doubles with a point, a whole rate, names that YAML would take for a truth value; units in comments."""
+    gains = found(tmp_path)
+    gains.save(tmp_path / "passive.yaml")
+    text = (tmp_path / "passive.yaml").read_text(encoding="utf-8")
+    tree = yaml.safe_load(text)
+    assert tree["controller_manager"] == {"ros__parameters": {"update_rate": 1000}}
+    own = tree["arm"]["ros__parameters"]["gains"]
+    assert list(own) == ["good", "no"]
+    assert {type(value) for row in own.values() for value in row.values()} == {float}
+    assert "p: 533.3  # N*m/rad; your file: 100000" in text
+    assert "no 0.8" in text
+    again = read_controllers(tmp_path / "passive.yaml")
+    laws = [(law.name, law.stiffness, law.integral, law.damping) for law in again.joints]
+    assert laws == [(j.law.name, j.law.stiffness, 0, j.law.damping) for j in gains.joints]
+    assert again.rate == 1000
+
+
+def test_the_page_shows_what_comes_out(tmp_path):
+    page = (Path(__file__).parents[2] / "docs" / "gain-files.md").read_text(encoding="utf-8")
+    asked, shown = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)
+    controllers = read_controllers(written(tmp_path, NAME, asked))
+    text = passive_gains(controllers, device()).to_yaml()
+    assert text.endswith(f"\n{shown}")
+
+
+def test_writing_on_the_command_line(tmp_path, capsys):
+    arm, plant = written(tmp_path, "arm.yaml", ARM), written(tmp_path, "plant.toml", "[arm]\ndamping = 1\n")
+    out, proofs = tmp_path / "passive.yaml", tmp_path / "proofs.json"
+    asked = ["gains", str(arm), "--plant", str(plant)]
+    assert main([*asked, "-o", str(out)]) == 1
+    assert "written, each proved with 80 % of b" in capsys.readouterr().out
+    assert main(["gains", str(out), "--plant", str(plant), "-o", str(proofs)]) == 0
+    assert main(["verify", str(proofs)]) == 0
+    assert capsys.readouterr().out.count("VALID") == 1 + 3
+    assert main([*asked, "-o", str(out)]) == 2
+    assert "exists" in capsys.readouterr().err
+    assert main([*asked, "-o", str(arm), "--force"]) == 2
+    assert "choose another name" in capsys.readouterr().err
+    assert main([*asked, "--share", "0.5"]) == 2
+    assert "add -o" in capsys.readouterr().err
+    assert arm.read_text(encoding="utf-8") == ARM
+
+
+@pytest.mark.parametrize(
+    ("joint", "share", "message"),
+    [
+        ({"damping": 1}, 0, "0 < share"),
+        ({"damping": 0}, 1, "no gains of good are proved: 0 N"),
+        ({"damping": 1, "resolution": 1e-4}, 1, "give coulomb_friction"),
+    ],
+)
+def test_what_cannot_be_is_refused(tmp_path, joint, share, message):
+    controllers = read_controllers(written(tmp_path, "arm.yaml", ARM))
+    with pytest.raises(zw.InputError, match=message):
+        passive_gains(controllers, zw.Device(**joint, rate=1, motion="rotary"), share=share)
+
+
+END = """
+end:
+  ros__parameters:
+    stiffness:
+      translation: {x: 600.0, y: 500.0, z: 400.0}
+      nullspace_stiffness: 20
+"""
+
+
+def test_an_impedance_that_postures_bear(tmp_path, capsys):
+    """K stays, ζ goes down to what 0.8 of the damping pays for: all of it pays for 1.25 times as much."""
+    arm, end = panda_like(tmp_path / "panda.urdf"), written(tmp_path, "end.yaml", END)
+    out = tmp_path / "borne.yaml"
+    asked = ["workspace", str(arm), "--rate", "1 kHz", "--postures", "100"]
+    assert main([*asked, "--wall", str(end), "-o", str(out)]) == 1
+    assert "ζ = 0.0" in capsys.readouterr().out
+    own = yaml.safe_load(out.read_text(encoding="utf-8"))["end"]["ros__parameters"]
+    assert own["stiffness"] == {"translation": {"x": 600.0, "y": 500.0, "z": 400.0}}
+    (zeta,) = set(own["damping"]["translation"].values())
+    assert 0.005 < zeta < 0.02
+    assert "between them nothing is proved" in " ".join(out.read_text(encoding="utf-8").split())
+    assert main([*asked, "--wall", str(out), "--json"]) == 3
+    told = json.loads(capsys.readouterr().out)
+    assert 1.25 < told["damping_factor"] < 1.5
+    for more, part in (
+        (["--wall", str(end), "-o", str(end), "--force"], "choose another name"),
+        (["--stiffness", "9", "-o", str(tmp_path / "a.yaml")], "whose names it takes"),
+        (["--stiffness", "9", "--share", "1"], "add -o passive.yaml"),
+    ):
+        assert main([*asked, *more]) == 2
+        assert part in capsys.readouterr().err

@@ -1,10 +1,13 @@
-"""Which joints are passive with the gains of a file: by hand-made pairs, closed forms, M(θ) in floats."""
+"""Which joints are passive with the gains of a file: by hand-made pairs, closed forms, M(θ); and the page."""
 
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,11 +16,10 @@ from gain_files import DAMIAO, PIPER, SERVOS, YAM, openarm, written
 import zwidth as zw
 from zwidth.data.gains import ArmGains
 from zwidth.data.gains.joint import CoupledJoint
-from zwidth.passivity.pairs.limits import is_passive
+from zwidth.passivity.pairs.limits import is_passive, with_share
 
 
 def arm(damping: object = "0.5", **more: object) -> zw.Device:
-    """A joint; its rate is put in by the gains."""
     return zw.Device(damping=damping, rate=1, motion="rotary", **more)
 
 
@@ -34,19 +36,10 @@ def test_the_pair_is_the_one_made_by_hand(tmp_path):
     gains = zw.read_gains(written(tmp_path, "a.yaml", openarm() + openarm("Follower")))
     given = arm("0.5", coulomb_friction="0.4", resolution="0.0001")
     pair = gains.pairs(plant=given, rate="500 Hz", delay=("2 ms", "4 ms"), drive_rate="10 kHz")["J1"]
-    device = zw.Device(
-        damping="0.5", coulomb_friction="0.4", resolution="0.0001", rate=500, delay=0, motion="rotary"
-    )
+    device = given.replace(rate=500, delay=0)
     law = zw.FrictionCompensation(coulomb="0.306", viscous="0.063", speed=1 / Fraction("2.8417"))
-    by_hand = zw.Pair(
-        device,
-        device,
-        stiffness=240,
-        damping=3,
-        delay=("0.002", "0.004"),
-        drive_rate=10_000,
-        compensation=law,
-    )
+    coupling = {"stiffness": 240, "damping": 3, "delay": ("0.002", "0.004"), "drive_rate": 10_000}
+    by_hand = zw.Pair(device, device, compensation=law, **coupling)
     assert pair.sides == by_hand.sides
     assert (pair.sample_period, pair.own_readings) == (by_hand.sample_period, by_hand.own_readings)
     left_out = gains.pairs(plant=given, rate=500, delay=0, drive_rate=0, compensated=False)["J1"]
@@ -63,7 +56,6 @@ def test_i2rt_counts_the_followers_hand_by_the_ratio_of_the_springs(tmp_path):
 
 
 def test_outcomes_are_those_of_the_pairs(tmp_path):
-    """And the outcome of all is the worst of them."""
     gains = zw.read_gains(written(tmp_path, "a.yaml", openarm()))
     found = zw.check_gains(gains)
     by_hand = {name: zw.check(pair).outcome for name, pair in gains.pairs().items()}
@@ -142,27 +134,15 @@ def test_an_ideal_drive_is_a_damper(tmp_path, stiffness, damping, b):
     assert "b holds it" in joint.to_dict()["assumptions"][-1]
 
 
-def test_compensation_and_not_kd_decides_with_an_ideal_drive(tmp_path):
-    """OpenArm with published friction: without compensation every joint, with it two and the gripper."""
-    gains = zw.read_gains(written(tmp_path, "a.yaml", openarm()))
-    found = zw.check_gains(gains, ideal_drive=True)
-    assert [joint.name for joint in found.joints if joint.outcome == "passive"] == ["J1", "J2", "gripper"]
-    assert {joint.outcome for joint in found.joints} == {"passive", "active"}
-
-
 def test_what_was_taken_for_granted_is_said(tmp_path):
-    """What is given is not said to be published."""
     gains = zw.read_gains(written(tmp_path, "a.yaml", openarm()))
     plain = " ".join(zw.check_gains(gains).notes)
     for part in ("FREQUENCY", "not measured", "Damiao drive is not published", "measured on no arm of yours",
                  "steps of 0.0003815 rad", "to and fro at 10 kHz", "tanh(0.1 k v)"):  # fmt: skip
         assert part in plain
-    given = " ".join(
-        zw.check_gains(
-            gains, plant=arm(resolution=0.0001, coulomb_friction=1), rate=1000, delay="1 ms",
-            drive_rate="5 kHz", compensated=False,
-        ).notes
-    )  # fmt: skip
+    setting = {"rate": 1000, "delay": "1 ms", "drive_rate": "5 kHz", "compensated": False}
+    plant = arm(resolution=0.0001, coulomb_friction=1)
+    given = " ".join(zw.check_gains(gains, plant=plant, **setting).notes)
     for part in ("FREQUENCY", "not measured", "not published", "no arm of yours", "steps of 0.0003815"):
         assert part not in given
     assert "compensation of friction is left out" in given
@@ -177,13 +157,11 @@ def test_gains_beyond_what_a_drive_takes_are_named(tmp_path):
 
 
 def test_plants_are_read_for_each_arm_and_joint(tmp_path):
-    """Lists by joint, one number for all, leader and follower apart."""
     gains = gains_of(tmp_path)
-    plant = written(
-        tmp_path,
-        "arm.toml",
-        '[leader]\ndamping = [0.5, "600 mN*m*s/rad"]\ncoulomb_friction = 0.1\n[follower]\ndamping = "0.7"\n',
+    text = (
+        '[leader]\ndamping = [0.5, "600 mN*m*s/rad"]\ncoulomb_friction = 0.1\n[follower]\ndamping = "0.7"\n'
     )
+    plant = written(tmp_path, "arm.toml", text)
     first, second = gains.pairs(plant=plant).values()
     assert [side.damping for side in first.sides] == [Fraction(1, 2), Fraction(7, 10)]
     assert second.sides[0].damping == Fraction(3, 5)
@@ -203,13 +181,11 @@ def test_plants_are_read_for_each_arm_and_joint(tmp_path):
     ],
 )
 def test_a_plant_that_cannot_be_used_is_refused(tmp_path, text, said):
-    """In one line."""
     with pytest.raises(zw.InputError, match=said):
         gains_of(tmp_path).pairs(plant=written(tmp_path, "arm.toml", text))
 
 
 def test_published_plants_are_of_their_own_arms(tmp_path):
-    """And an arm for which nothing is published asks for a plant."""
     piper = zw.read_gains(written(tmp_path, "a.toml", PIPER), both=True)
     with pytest.raises(zw.InputError, match="no source gives"):
         piper.pairs()
@@ -231,7 +207,6 @@ def test_a_servo_brakes_by_what_its_motor_induces(tmp_path):
 
 
 def test_shown_and_saved(tmp_path):
-    """A table joint by joint; JSON has what the table says."""
     found = zw.check_gains(gains_of(tmp_path, damping="0.05"), plant=arm(), delay="2 ms")
     told = json.loads(found.to_json())
     assert told["format"] == "zwidth gains 1"
@@ -263,3 +238,67 @@ def test_gains_scale_together(tmp_path):
     assert (leader.damping, leader.local_damping, follower.damping) == (0, 0, 0)
     assert 0 < follower.local_damping <= 5
     assert zw.check(replace(best).pair()).outcome == "passive"
+
+
+PAGE = (Path(__file__).parents[2] / "docs" / "gain-files.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def names(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    (example,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path_factory.mktemp("page"))
+        exec(example, found)
+    return found
+
+
+def test_the_table_is_what_comes_out(names):
+    without = zw.check_gains(names["gains"], ideal_drive=True, compensated=False)
+    lines = re.findall(r"^\| ((?:J\d|gripper) \|.*) \|$", PAGE, re.MULTILINE)
+    rows = [line.split(" | ") for line in lines]
+    assert len(rows) == 8
+    for row, joint, bare in zip(rows, names["verdict"].joints, without.joints, strict=True):
+        share = "all" if joint.compensation == 1 else f"{100 * joint.compensation:.0f} %"
+        gains = joint.gains.leader
+        numbers = [f"{float(x):g}" for x in (gains.stiffness, gains.damping, joint.model.damping[0])]
+        outcomes = [joint.outcome, bare.outcome, share, f"{joint.required_damping:g}"]
+        assert row == [joint.name, *numbers, *outcomes]
+
+
+def test_the_gains_for_drives_that_take_differences_are_what_comes_out(names):
+    found = zw.check_gains(names["gains"])
+    assert {joint.outcome for joint in found.joints} == {"active"}
+    best = {j.name: j.best.gains[0] for j in found.joints if j.best is not None}
+    told = {name: f"{float(g.stiffness):g} with {float(g.damping):g}" for name, g in best.items()}
+    assert set(told) == {"J1", "J2", "J6", "J7", "gripper"}
+    assert told["J7"] == told["gripper"]
+    assert f"J1 {told['J1']}, J2 {told['J2']}, J6 {told['J6']}, J7 and the gripper {told['J7']}." in PAGE
+
+
+def test_with_the_other_plant_the_answers_are_others(names):
+    found = zw.check_gains(names["gains"], plant="damiao-mujoco")
+    passive = [joint.name for joint in found.joints if joint.outcome == "passive"]
+    assert passive == ["J5", "J6", "J7", "gripper"]
+    undecided = [joint.name for joint in found.joints if joint.with_ideal_drive == "undecided"]
+    assert undecided == ["J3", "J4"]
+
+
+def test_its_plant_is_read(names, tmp_path):
+    (text,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    pairs = names["gains"].pairs(plant=written(tmp_path, "my-arm.toml", text))
+    assert [float(pair.sides[0].damping) for pair in pairs.values()][:3] == [0.5, 0.4, 0.6]
+
+
+def test_just_above_the_largest_share_a_motion_gains(names):
+    """A ten-thousandth on either side of it, where the page says that both are found."""
+    pairs = names["gains"].pairs(ideal_drive=True)
+    for joint, more in (dict.fromkeys(("J3", "J5", "J6", "J7"), "0.0001") | {"J4": "0.1"}).items():
+        share = Fraction(repr(zw.check(pairs[joint]).largest_compensation))
+        assert zw.check(with_share(pairs[joint], share * Fraction("0.9999"))).outcome == "passive"
+        beyond = zw.check(with_share(pairs[joint], share * (1 + Fraction(more))))
+        assert beyond.outcome == "active"
+        assert beyond.witness.verify()
+    for joint in ("J1", "J2"):
+        share = Fraction(repr(zw.check(pairs[joint]).largest_compensation))
+        assert zw.check(with_share(pairs[joint], share * Fraction("1.1"))).outcome == "undecided"

@@ -15,7 +15,7 @@ oscillation, whose zeros are known.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from typing import Any
@@ -33,14 +33,7 @@ Number = Any
 class Loop:
     """Device, wall, hand and clock; plain floats, taken as the exact binary numbers they are.
 
-    Parameters
-    ----------
-    force, anchor
-        F of every sample interval [N]; x_a at every sample instant [m], one more; empty for 0.
-    wall_stiffness, wall_damping
-        K [N/m] and, on the backward difference, B [N·s/m].
-    converter_step, force_limit, slew, lag
-        ΔF [N], F_max [N], r [N/s] and τ [s] of the amplifier; 0 where there is no such limit.
+    The hand's force holds for an interval, its anchor is given at every sample instant, one more.
     """
 
     mass: float
@@ -76,7 +69,6 @@ ENERGIES = (
 )
 
 
-@dataclass
 class Trace:
     """At every sample instant, forces just after it; energies since t = 0 [J] by name.
 
@@ -85,18 +77,10 @@ class Trace:
     those when it broke loose.
     """
 
-    position: list[mpf] = field(default_factory=list)
-    velocity: list[mpf] = field(default_factory=list)
-    count: list[int] = field(default_factory=list)
-    commanded_force: list[mpf] = field(default_factory=list)
-    actuator_force: list[mpf] = field(default_factory=list)
-    hand_force: list[mpf] = field(default_factory=list)
-    energy: dict[str, list[mpf]] = field(default_factory=lambda: {name: [] for name in ENERGIES})
-    reversals: list[mpf] = field(default_factory=list)
-    releases: list[mpf] = field(default_factory=list)
-
-
-# --- sums of polynomials times exponentials -------------------------------------------------
+    def __init__(self) -> None:
+        self.position, self.velocity, self.count, self.commanded_force = [], [], [], []
+        self.actuator_force, self.hand_force, self.reversals, self.releases = [], [], [], []
+        self.energy: dict[str, list[mpf]] = {name: [] for name in ENERGIES}
 
 
 @lru_cache(maxsize=256)
@@ -209,9 +193,6 @@ def _falling(n: int, times: int) -> int:
     return (1, n, n * (n - 1))[times]
 
 
-# --- zeros ------------------------------------------------------------------------------------
-
-
 def zeros(f: Sum, end: mpf) -> Iterator[mpf]:
     """Where f changes sign in (0, end), in order."""
     terms = {rate: p for rate, p in f.terms.items() if any(p)}
@@ -259,9 +240,6 @@ def first_loss(f: Sum, end: mpf) -> mpf | None:
         if f(high) < 0:
             return crossing(f, low, high)
     return None
-
-
-# --- the loop ---------------------------------------------------------------------------------
 
 
 class _Run:

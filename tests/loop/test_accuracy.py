@@ -1,4 +1,4 @@
-"""The simulator against the same loops at sixty digits: every sample of a second, or of 0.4 s of a finger."""
+"""The simulator against the same loops at sixty digits, which are held against mpmath's integrator."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from mpmath import mpf
-from reference import Loop, simulate
+from mpmath import mp, mpf
+from reference import DIGITS, Loop, Sum, motion, polynomial, simulate
 
 import zwidth as zw
 from zwidth.model.operator import LinearHand, Operator, Signals
@@ -107,7 +107,6 @@ LOOPS = {
 
 
 def simulated(loop):
-    """The same loop by `zw.simulate`."""
     known = {"force_limit": loop.force_limit, "force_resolution": loop.converter_step}
     if loop.slew:
         known |= {
@@ -180,3 +179,53 @@ def test_every_sample_is_right(name):
     bound = ENERGY * moved_energy(expected)
     for quantity, joules in (expected.energy | states(loop, expected)).items():
         assert largest(trace[quantity].values, joules) <= bound, quantity
+
+
+@pytest.fixture
+def _digits():
+    with mp.workdps(DIGITS):
+        yield
+
+
+def close(a, b, tolerance="1e-45"):
+    return abs(mpf(a) - b) <= mpf(tolerance) * max(1, abs(b))
+
+
+@pytest.mark.parametrize("damping", [0.0, 3.0, 8.0, 8.125, 40.0])
+@pytest.mark.parametrize("stiffness", [0.0, 64.0])
+@pytest.mark.usefixtures("_digits")
+def test_the_motion_obeys_its_equation(damping, stiffness):
+    """M ẍ + B ẋ + k x = drive, also where the drive's rate is one of the motion's own."""
+    own = -damping / 0.25 if stiffness == 0 else -16.0
+    drive = polynomial(mpf(1.3), mpf(-200)) + Sum({mpf(own or -5000): (mpf(0.8),)})
+    x = motion(mpf(0.25), mpf(damping), mpf(stiffness), drive, mpf(-0.01), mpf(0.2))
+    v = x.derivative()
+    assert close(x(mpf(0)), mpf(-0.01))
+    assert close(v(mpf(0)), mpf(0.2))
+    for s in (mpf("1e-5"), mpf("0.0011")):
+        left = mpf(0.25) * v.derivative()(s) + damping * v(s) + stiffness * x(s)
+        assert close(left, drive(s), "1e-50")
+
+
+@pytest.mark.usefixtures("_digits")
+def test_a_smooth_piece_is_that_of_a_taylor_integrator():
+    """One lagged sample in the hand, by mpmath's Taylor series to 30 digits, its energies too."""
+    loop = replace(FINGER, position=0.002, velocity=-0.2, lag=2e-4, wall_damping=0.5)
+    trace = simulate(loop, 1)
+    f, T, push, start = trace.commanded_force[0], mpf(loop.period), mpf(loop.force[0]), mpf(loop.anchor[0])
+    speed = (mpf(loop.anchor[1]) - start) / T
+
+    def rates(t, y):
+        x, v, fa = y[:3]
+        tie = 500 * (start + speed * t - x) + 2 * (speed - v)
+        a = (push + tie - fa + mpf(0.12) - mpf(0.15) * v) / (mpf(0.036) + mpf(0.006))
+        hand = push + tie - mpf(0.006) * a
+        powers = [hand * v, -fa * v, mpf(0.15) * v**2, -mpf(0.12) * v]
+        return [v, a, (f - fa) / mpf(2e-4), *powers, push * v + tie * speed, 2 * (speed - v) ** 2]
+
+    with mp.workdps(34):
+        end = mp.odefun(rates, 0, [mpf(0.002), mpf(-0.2)] + 7 * [mpf(0)])(T)
+    got = [trace.position[1], trace.velocity[1], trace.actuator_force[1]]
+    got += [joules[1] for joules in trace.energy.values()]
+    assert not trace.reversals
+    assert all(close(a, b, "1e-30") for a, b in zip(got, end, strict=True))

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -9,17 +12,11 @@ import zwidth as zw
 from zwidth.loop.batch import BLOCK
 
 PADDLE = zw.catalogue.device("haptic-paddle")
-PAIRS = {
-    "position": "position", "velocity": "velocity", "hand_work": "hand_work",
-    "actuator_work": "actuator_work", "viscous_loss": "viscous_loss", "coulomb_loss": "coulomb_loss",
-    "hand_source_work": "hand_source_work", "hand_damper_loss": "hand_damper_loss",
-}  # fmt: skip
 
 
 def _same(batch, trace) -> None:
-    """A loop of a batch against its trace, to the last bit."""
-    for kept, variable in PAIRS.items():
-        assert float(batch[kept]) == float(trace[variable][-1]), kept
+    for kept in ("position", "velocity", *(key for key in trace if key.endswith(("_work", "_loss")))):
+        assert float(batch[kept]) == float(trace[kept][-1]), kept
     assert float(batch.deepest_position) == trace.position.values.max()
     assert float(batch.peak_actuator_force) == np.abs(trace.actuator_force.values).max()
     assert float(batch.energy_extracted) == (-trace.hand_work.values).max()
@@ -29,8 +26,7 @@ def _same(batch, trace) -> None:
 
 
 @pytest.mark.parametrize("delay", [0.0, 2e-3])
-def test_free_loops_have_the_bits_of_each_alone(delay: float) -> None:
-    """More loops than a block, every parameter varied."""
+def test_free_loops_have_the_bits_of_each_alone(delay):
     count = BLOCK + 9
     rng = np.random.default_rng(5)
     vary = {
@@ -55,65 +51,87 @@ def test_free_loops_have_the_bits_of_each_alone(delay: float) -> None:
         _same(batch.isel(case=i), zw.simulate(device.replace(**own), wall, push, 0.4, **options))
 
 
-def test_loops_of_every_other_kind_have_the_bits_of_each_alone() -> None:
-    """Memory, a tied hand, a part of a sample of delay: one by one, on two threads."""
-    device = PADDLE.replace(delay=3e-4)
-    wall, hand = zw.Wall(300.0, damping=0.2), zw.operators.Finger()
-    vary = {"environment.stiffness": [200.0, 900.0], "operator.damping": [0.1, 1.0, 4.0]}
-    batch = zw.simulation.simulate_batch(device, wall, hand, 0.5, vary=vary, workers=2)
-    assert batch.sizes == {"stiffness": 2, "damping": 3}
-    for i, k in enumerate(vary["environment.stiffness"]):
-        for j, c in enumerate(vary["operator.damping"]):
-            finger = zw.operators.Finger(damping=c)
-            _same(batch.isel(stiffness=i, damping=j), zw.simulate(device, zw.Wall(k, 0.2), finger, 0.5))
+DOWEL, FINGER = zw.operators.Dowel(), zw.operators.Finger()
+OTHERS = {
+    "memory, a tied hand, part of a sample of delay": (
+        {"delay": 3e-4},
+        zw.Wall(300.0, damping=0.2),
+        FINGER,
+        {"environment.stiffness": [200.0, 900.0], "operator.damping": [0.1, 1.0, 4.0]},
+    ),
+    "points": (
+        {},
+        zw.NonlinearSpring([-0.01, -0.002, 0, 0.02], [-3, -0.1, 0, 7]),
+        DOWEL,
+        {"device.damping": [0.1, 0.4]},
+    ),
+    "contact": (
+        {},
+        zw.HuntCrossley(1),
+        DOWEL,
+        {"environment.stiffness": [1e3, 3e4], "exponent": [1, 1.5], "dissipation": [0, 2]},
+    ),
+    "clamped": (
+        {},
+        zw.Wall(500.0, 0.3),
+        DOWEL,
+        {"clamped": [False, True], "environment.damping": [0.0, 0.3]},
+    ),
+}
 
 
-def test_threads_do_not_change_a_bit() -> None:
-    """One thread or three."""
-    vary = {"stiffness": np.linspace(50.0, 1500.0, 3 * BLOCK + 1)}
-    one, three = (
-        zw.simulation.simulate_batch(PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 0.3, vary=vary, workers=n)
-        for n in (1, 3)
-    )
-    assert one.identical(three)
+@pytest.mark.parametrize("name", OTHERS)
+def test_loops_of_every_other_kind_have_the_bits_of_each_alone(name):
+    """One by one, on two threads."""
+    changes, law, hand, vary = OTHERS[name]
+    device = PADDLE.replace(**changes)
+    batch = zw.simulation.simulate_batch(device, law, hand, 0.3, vary=vary, workers=2)
+    for values in product(*vary.values()):
+        parts = {"device": device, "environment": law, "operator": hand}
+        for key, value in zip(vary, values, strict=True):
+            part, _, own = f"environment.{key}".rpartition(".")
+            part = part.rpartition(".")[2]
+            parts[part] = replace(parts[part], **{own: value})
+        chosen = {key.rpartition(".")[2]: value for key, value in zip(vary, values, strict=True)}
+        _same(batch.sel(chosen), zw.simulate(*parts.values(), 0.3))
+
+
+ALONE = "simulate each value on its own"
+TABLE = zw.NonlinearSpring([0, 0.01], [0, 3])
 
 
 @pytest.mark.parametrize(
-    ("vary", "says"),
+    ("vary", "says", "options"),
     [
-        ({}, "vary needs"),
-        ({"stiffness": []}, "vary needs"),
-        ({"stifness": [1.0]}, "no parameter 'stifness'"),
-        ({"damping": [0.1]}, "ambiguous"),
-        ({"device.stiffness": [1.0]}, "no parameter 'device.stiffness'"),
-        ({"environment.stiffness": [-1.0]}, "stiffness must be"),
-        ({"device.mass": [0.0]}, "mass must be > 0"),
-        ({"stiffness": [[100.0, 200.0], [300.0, 400.0]]}, "'stiffness' is varied over single values"),
-        ({"stiffness": [[100.0], [300.0, 400.0]]}, "'stiffness' is varied over single values"),
-        ({"stiffness": {100.0, 200.0}}, "'stiffness' is varied over single values"),
+        ({}, "vary needs", {}),
+        ({"stiffness": []}, "vary needs", {}),
+        ({"stifness": [1.0]}, "no parameter 'stifness'", {}),
+        ({"damping": [0.1]}, "ambiguous", {}),
+        ({"device.stiffness": [1.0]}, "no parameter 'device.stiffness'", {}),
+        ({"environment.stiffness": [-1.0]}, "stiffness must be", {}),
+        ({"device.mass": [0.0]}, "mass must be > 0", {}),
+        *(
+            ({"stiffness": values}, "'stiffness' is varied over single values", {})
+            for values in ([[100.0, 200.0], [300.0, 400.0]], [[100.0], [300.0, 400.0]], {100.0, 200.0})
+        ),
+        ({"stiffness": [1, 2], "force": [1, 2, 3]}, "stiffness 2, force 3", {"together": True}),
+        (
+            {"branches": [[(800, 3)], [(200, 20), (50, 1)]]},
+            ALONE,
+            {"environment": zw.GeneralizedMaxwell(0, branches=[(800, 3)])},
+        ),
+        ({"positions": [[0, 0.01], [0, 0.02]]}, ALONE, {"environment": TABLE}),
+        ({"forces": np.array([[0, 3], [0, 4]])}, ALONE, {"environment": TABLE}),
     ],
 )
-def test_what_cannot_be_varied_is_refused(vary: dict, says: str) -> None:
-    """The message names the parameter."""
+def test_what_cannot_be_varied_is_refused(vary, says, options):
+    given = {"environment": zw.Wall(300.0), **options}
+    hand = zw.operators.ConstantForce(1.0) if "together" in options else zw.operators.Finger()
     with pytest.raises(zw.InputError, match=says):
-        zw.simulation.simulate_batch(PADDLE, zw.Wall(300.0), zw.operators.Finger(), 0.1, vary=vary)
+        zw.simulation.simulate_batch(device=PADDLE, operator=hand, duration=0.1, vary=vary, **given)
 
 
-@pytest.mark.parametrize(
-    ("environment", "vary"),
-    [
-        (zw.GeneralizedMaxwell(0, branches=[(800, 3)]), {"branches": [[(800, 3)], [(200, 20), (50, 1)]]}),
-        (zw.NonlinearSpring([0, 0.01], [0, 3]), {"positions": [[0, 0.01], [0, 0.02]]}),
-        (zw.NonlinearSpring([0, 0.01], [0, 3]), {"forces": np.array([[0, 3], [0, 4]])}),
-    ],
-)
-def test_a_parameter_that_is_a_list_is_not_varied(environment, vary: dict) -> None:
-    """One message, whatever the shape."""
-    with pytest.raises(zw.InputError, match="simulate each value on its own"):
-        zw.simulation.simulate_batch(PADDLE, environment, zw.operators.Finger(), 0.1, vary=vary)
-
-
-def test_free_loops_at_the_edge_of_friction_have_the_bits_of_each_alone() -> None:
+def test_free_loops_at_the_edge_of_friction_have_the_bits_of_each_alone():
     """Hands that push with the stiction, give or take the last digits: they rest, or creep onwards."""
     count = 3 * BLOCK
     rng = np.random.default_rng(3)
@@ -133,18 +151,7 @@ def test_free_loops_at_the_edge_of_friction_have_the_bits_of_each_alone() -> Non
         assert float(general.velocity[-1]) == pytest.approx(float(batch.velocity[i]), rel=1e-12, abs=1e-17)
 
 
-def test_values_varied_together_are_equally_many() -> None:
-    """The message counts them."""
-    with pytest.raises(zw.InputError, match="stiffness 2, force 3"):
-        zw.simulation.simulate_batch(
-            PADDLE, zw.Wall(1.0), zw.operators.ConstantForce(1.0), 0.1,
-            vary={"stiffness": [1, 2], "force": [1, 2, 3]}, together=True,
-        )  # fmt: skip
-
-
-def test_ctrl_c_keeps_the_loops_that_are_finished() -> None:
-    """The others are NaN, and the attribute says how many are there."""
-
+def test_ctrl_c_keeps_the_loops_that_are_finished():
     def stop(done: int, total: int) -> None:
         raise KeyboardInterrupt
 

@@ -29,22 +29,20 @@ def _applied(trace) -> list[tuple[float, float]]:
     return [(round(float(trace.time[i]) / PERIOD, 9), round(float(force[i]), 9)) for i in changes]
 
 
-def test_without_delay_the_force_of_sample_0_acts_at_t_0() -> None:
+def test_without_delay_the_force_of_sample_0_acts_at_t_0():
     """Sample k is taken at k T, and its force acts from that instant until (k + 1) T."""
     assert _applied(_forces(INSIDE)) == [(k, k + 1.0) for k in range(7)]
 
 
 @pytest.mark.parametrize(("delay", "shift"), [(0.001, 1.0), (0.0003, 0.3), (0.0024, 2.4)])
-def test_a_delay_moves_every_force_by_as_much(delay: float, shift: float) -> None:
-    """Before the first force arrives the actuator gives none."""
+def test_a_delay_moves_every_force_by_as_much(delay, shift):
     trace = _forces(INSIDE.replace(delay=delay))
     expected = [(round(k + shift, 9), k + 1.0) for k in range(7) if k + shift <= 6]
     assert _applied(trace) == expected
     assert trace.actuator_force.values[0] == 0.0
 
 
-def test_the_command_stands_at_its_sample_and_the_energy_before_its_jump() -> None:
-    """`commanded_force` and `measured_position` are those of the newest sample."""
+def test_the_command_stands_at_its_sample_and_the_energy_before_its_jump():
     trace = _forces(INSIDE.replace(delay=0.0003))
     at_samples = trace.isel(time=trace.sampled.values)
     assert at_samples.measured_position.values == pytest.approx(_ramp(6))
@@ -52,7 +50,7 @@ def test_the_command_stands_at_its_sample_and_the_energy_before_its_jump() -> No
     assert float(at_samples.hand_work[0]) == 0.0
 
 
-def test_a_late_sample_reads_later_and_acts_later() -> None:
+def test_a_late_sample_reads_later_and_acts_later():
     """Sample 2, late by 0.4 T, reads the position of then; the others stay where they are."""
     late = np.zeros(7)
     late[2] = 0.4 * PERIOD
@@ -61,7 +59,7 @@ def test_a_late_sample_reads_later_and_acts_later() -> None:
     assert trace.time.values[trace.sampled.values][2] == pytest.approx(2.4 * PERIOD)
 
 
-def test_a_missed_sample_leaves_the_force_as_it_was() -> None:
+def test_a_missed_sample_leaves_the_force_as_it_was():
     """The force of sample 2 is held through sample 3, which nobody took."""
     missed = [False, False, False, True, False, False, False]
     trace = _forces(INSIDE, timing=zw.simulation.Timing(missed=missed))
@@ -69,8 +67,7 @@ def test_a_missed_sample_leaves_the_force_as_it_was() -> None:
 
 
 @pytest.mark.parametrize("delay", [0.0, 0.0003, 0.0017])
-def test_lateness_of_nearly_nothing_is_no_lateness(delay: float) -> None:
-    """The irregular clock, driven by a regular one, gives the same motion."""
+def test_lateness_of_nearly_nothing_is_no_lateness(delay):
     device = zw.catalogue.device("haptic-paddle").replace(delay=delay)
     late = np.zeros(301)
     late[150] = 1e-17
@@ -81,7 +78,7 @@ def test_lateness_of_nearly_nothing_is_no_lateness(delay: float) -> None:
 
 
 @pytest.mark.parametrize("phase", [0.0, 0.25, 0.999])
-def test_the_encoder_counts_from_its_phase(phase: float) -> None:
+def test_the_encoder_counts_from_its_phase(phase):
     """x_m = Δ floor(x/Δ + φ): the first count comes (1 − φ) Δ deep."""
     device = INSIDE.replace(resolution=1e-4)
     positions = np.linspace(-1e-4, 3e-4, 401)
@@ -104,7 +101,6 @@ def test_the_encoder_counts_from_its_phase(phase: float) -> None:
         ({"missed": [True]}, "missed has shape"),
     ],
 )
-def test_a_clock_that_cannot_be_is_refused(given: dict, says: str) -> None:
-    """One message: what was given and what the bound is."""
+def test_a_clock_that_cannot_be_is_refused(given, says):
     with pytest.raises(zw.InputError, match=says):
         _forces(INSIDE, timing=zw.simulation.Timing(**given))

@@ -21,7 +21,6 @@ def free(curve: zw.FrictionCurve, hand: zw.operators.Operator, duration: float):
 
 
 def test_the_lines_of_a_curve():
-    """What it says between its points, below and beyond them."""
     np.testing.assert_allclose(
         lines_of(FALLS), [[0, 0.3, -4], [0.05, 0.1 - 0.05 * 0.3 / 0.95, 0.3 / 0.95]], rtol=1e-12
     )
@@ -30,7 +29,6 @@ def test_the_lines_of_a_curve():
 
 
 def test_one_line_is_coulomb_and_viscous_friction():
-    """With a hand on one arm and a wall on the other."""
     line = zw.FrictionCurve([0, 1], ["0.1", "0.3"])
     curved, plain = (zw.simulate(PAIR, HAND, zw.Wall(200, 1), 0.5, friction=f) for f in (line, None))
     for name in ("position", "velocity", "hand_work", "coulomb_loss", "viscous_loss"):
@@ -58,7 +56,6 @@ def test_a_push_along_the_curve_as_an_integrator_has_it(force):
 
 @pytest.mark.parametrize("hand", [HAND, zw.operators.PrescribedMotion(lambda t: 0.01 * np.sin(20 * t))])
 def test_every_joule(hand):
-    """Stuck, slipping, led along a path, against a wall; friction takes no less than the line below it."""
     trace = zw.simulate(PAIR, hand, zw.Wall(200, 1), 0.5, friction=FALLS)
     assert trace.zwidth.energy.closes
     lost = trace["coulomb_loss"] + trace["viscous_loss"]
@@ -85,7 +82,6 @@ def led_together(pair: zw.Pair) -> float:
 
 
 def test_what_is_proved_with_the_line_below_is_quiet_with_the_curve():
-    """Compensation that spends more than the least of the curve is not."""
     damping = FALLS.largest_damping
     arm = ARM.replace(damping=damping, coulomb_friction=FALLS.largest_coulomb_friction(damping))
     pair = zw.Pair(arm, arm, stiffness=100, delay="1 ms")
@@ -97,7 +93,6 @@ def test_what_is_proved_with_the_line_below_is_quiet_with_the_curve():
 
 
 def test_bad_input():
-    """It says whose."""
     with pytest.raises(zw.InputError, match="friction of the follower is a FrictionCurve or None"):
         zw.simulate(PAIR, HAND, None, 0.1, friction=(None, 0.3))
     with pytest.raises(zw.InputError, match="of the arms of a pair"):

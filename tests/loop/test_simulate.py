@@ -14,68 +14,7 @@ PADDLE = zw.catalogue.device("haptic-paddle")
 IDEAL = zw.amplifiers.Ideal()
 
 
-def _read(environment: object, positions: np.ndarray, **device) -> np.ndarray:
-    """The force commanded at each sample of a prescribed motion."""
-    motion = zw.operators.PrescribedMotion(positions)
-    loop = zw.Device(**{"damping": 0.1, "sample_period": 0.002, **device})
-    trace = zw.simulate(loop, environment, motion, 0.002 * (len(positions) - 1), amplifier=IDEAL)
-    return trace.commanded_force.values
-
-
-LAWS = {
-    "damped wall": zw.Wall(300.0, damping=0.7),
-    "window": zw.Wall(300.0, damping=0.7, velocity_filter=zw.rendering.Window(5)),
-    "one-pole": zw.Wall(300.0, damping=0.7, velocity_filter=zw.rendering.OnePole(0.01)),
-    "filter": zw.Wall(
-        300.0, damping=0.7, velocity_filter=zw.rendering.VelocityFilter([0.3, 0.1], [1.0, -0.7, 0.1])
-    ),
-    "standard linear solid": zw.StandardLinearSolid(200.0, 100.0, 0.6),
-    "Maxwell": zw.Maxwell(100.0, 0.6),
-    "Prony": zw.GeneralizedMaxwell(50.0, [(100.0, 0.6), (30.0, 900.0), (20.0, 5.0)]),
-    "Prony, matched": zw.GeneralizedMaxwell(50.0, [(100.0, 0.6), (20.0, 5.0)], discretization="matched"),
-    "coupling": zw.VirtualCoupling(500.0, 0.5, zw.Wall(2000.0)),
-    "transfer function": zw.PulseTransferFunction([3.0, -1.0, 0.2], [1.0, -0.5, 0.06]),
-}
-
-
-@pytest.mark.parametrize("name", LAWS)
-def test_each_law_is_run_as_its_pulse_transfer_function_says(name: str) -> None:
-    """In contact, from rest at the surface, the commands are those of scipy's lfilter."""
-    x = np.abs(np.cumsum(np.random.default_rng(3).normal(size=400))) * 1e-4 + 1e-5
-    x[0] = 0.0
-    h = LAWS[name].pulse_transfer_function(zw.Exact("0.002").fraction)
-    b, a = [float(c) for c in h.numerator], [float(c) for c in h.denominator]
-    b = [0.0] * (len(a) - len(b)) + b
-    expected = scipy.signal.lfilter(b, a, x)
-    assert np.abs(_read(LAWS[name], x) - expected)[1:].max() < 1e-9 * np.abs(expected).max()
-
-
-def test_a_wall_pushes_inside_only_and_its_estimator_runs_outside_too() -> None:
-    """f = K x + B v for x > 0; at entry v is the difference to the position outside."""
-    x = np.array([-2e-3, -1e-3, 1e-3, 2e-3, 0.0, -1e-3])
-    expected = [0.0, 0.0, 300e-3 + 0.7 * 2e-3 / 0.002, 600e-3 + 0.7 * 1e-3 / 0.002, 0.0, 0.0]
-    assert _read(LAWS["damped wall"], x) == pytest.approx(expected, abs=1e-12)
-
-
-def test_a_solid_feels_the_penetration_only() -> None:
-    """A viscoelastic solid that is left relaxes; it does not follow the hand outside."""
-    solid = LAWS["standard linear solid"]
-    x = np.array([-5e-3, -1e-3, 1e-3, 2e-3, -4e-3, -4e-3, 1e-3])
-    inside = _read(solid, np.maximum(x, 0.0))
-    got = _read(solid, x)
-    assert got[x > 0] == pytest.approx(inside[x > 0], abs=1e-12)
-    assert (got[x <= 0] == 0.0).all()
-
-
-def test_a_law_begins_at_rest_where_the_hand_is() -> None:
-    """Held still inside a damped wall, the force is K x from the first sample on."""
-    x = np.full(20, 1.5e-3)
-    assert _read(LAWS["window"], x) == pytest.approx(np.full(20, 0.45), abs=1e-12)
-    assert _read(LAWS["Prony"], x) == pytest.approx(np.full(20, 0.075), abs=1e-12)
-
-
-def test_the_converter_rounds_and_the_actuator_saturates() -> None:
-    """The nearest step, never more than the limit; the ideal amplifier does neither."""
+def test_the_converter_rounds_and_the_actuator_saturates():
     device = {"force_resolution": 0.05, "force_limit": 1.0, "mass": 0.1}
     x = np.array([0.0, 1.13e-3, 2.0e-3, 9e-3])
     motion = zw.operators.PrescribedMotion(x)
@@ -86,7 +25,7 @@ def test_the_converter_rounds_and_the_actuator_saturates() -> None:
     assert ideal.actuator_force.values[-1] == pytest.approx(2.7)
 
 
-def test_a_limited_voltage_raises_the_force_at_u_over_l() -> None:
+def test_a_limited_voltage_raises_the_force_at_u_over_l():
     """Abbott & Okamura's motor: 16.5 N in 0.15 ms, not at once."""
     x = np.array([0.0, 0.0, 20e-3, 20e-3, 20e-3])
     wall = zw.Wall(1000.0)
@@ -99,7 +38,7 @@ def test_a_limited_voltage_raises_the_force_at_u_over_l() -> None:
     assert np.diff(force).max() == pytest.approx(16.5 / 3.3 * 12.0 / 0.55e-3 * 1e-6, rel=1e-6)
 
 
-def test_a_lagging_force_comes_nearer_by_the_same_part_each_time() -> None:
+def test_a_lagging_force_comes_nearer_by_the_same_part_each_time():
     """τ df/dt = f_command − f: after τ it has gone 1 − 1/e of the way."""
     x = np.array([0.0, 5e-3, 5e-3, 5e-3])
     motion = zw.operators.PrescribedMotion(x)
@@ -111,7 +50,7 @@ def test_a_lagging_force_comes_nearer_by_the_same_part_each_time() -> None:
 
 @pytest.mark.parametrize("amplifier", ["Ideal", "VoltageLimited", "FirstOrderLag"])
 @pytest.mark.parametrize("hand", [zw.operators.Dowel(), zw.operators.Finger()])
-def test_the_motion_does_not_depend_on_how_many_points_are_recorded(amplifier, hand) -> None:
+def test_the_motion_does_not_depend_on_how_many_points_are_recorded(amplifier, hand):
     """Nothing is integrated in steps: 1 point per sample or 7, the same loop."""
     drive = getattr(zw.amplifiers, amplifier)(*([2e-4] if amplifier == "FirstOrderLag" else []))
     device = PADDLE.replace(delay=4e-4, stiction=0.15)
@@ -132,8 +71,7 @@ def test_the_motion_does_not_depend_on_how_many_points_are_recorded(amplifier, h
     push=st.integers(-3000, 3000).map(lambda n: n / 1000),
     finger=st.booleans(),
 )
-def test_the_ledger_closes_in_every_loop(stiffness, delay, resolution, mass, limit, push, finger) -> None:
-    """Hand and actuator put in what is stored and lost, at every sample."""
+def test_the_ledger_closes_in_every_loop(stiffness, delay, resolution, mass, limit, push, finger):
     device = PADDLE.replace(mass=mass, delay=delay, resolution=resolution, force_limit=limit)
     hand = zw.operators.Finger() if finger else zw.operators.ConstantForce(push)
     t = zw.simulate(device, zw.Wall(stiffness), hand, 0.3, initial_position=-2e-3, initial_velocity=0.1)
@@ -145,7 +83,7 @@ def test_the_ledger_closes_in_every_loop(stiffness, delay, resolution, mass, lim
     assert float(abs(residual).max()) <= 1e-12 * moved
 
 
-def test_a_prescribed_motion_needs_the_work_that_the_proofs_count() -> None:
+def test_a_prescribed_motion_needs_the_work_that_the_proofs_count():
     """Energy out is −Σ f Δx − f_c Σ|Δx| − (b/T) Σ Δx²: the sum of the witness."""
     x = np.array([0.0, 2.0187e-3, 1e-3, 1.7e-3, 0.0, 0.0])
     trace = zw.simulate(PADDLE, zw.Wall(770.0), zw.operators.PrescribedMotion(x), 0.005, amplifier=IDEAL)
@@ -178,8 +116,7 @@ def test_a_prescribed_motion_needs_the_work_that_the_proofs_count() -> None:
         ({"operator": zw.operators.PrescribedMotion(np.zeros(101)), "initial_velocity": 1.0}, "prescribed"),
     ],
 )
-def test_what_cannot_be_simulated_is_refused_in_one_message(change: dict, says: str) -> None:
-    """What was given, and what to do."""
+def test_what_cannot_be_simulated_is_refused_in_one_message(change, says):
     call = {
         "device": PADDLE,
         "environment": zw.Wall(300.0),
@@ -191,8 +128,7 @@ def test_what_cannot_be_simulated_is_refused_in_one_message(change: dict, says: 
     assert "\n" not in str(caught.value)
 
 
-def test_ctrl_c_keeps_what_is_finished(monkeypatch) -> None:
-    """An interrupted simulation is the beginning of the whole one, and says so."""
+def test_ctrl_c_keeps_what_is_finished(monkeypatch):
     import zwidth.loop.simulate as module
 
     monkeypatch.setattr(module, "_STRIDE", 40)
@@ -208,8 +144,7 @@ def test_ctrl_c_keeps_what_is_finished(monkeypatch) -> None:
     assert (part.position.values == whole.position.values[:80]).all()
 
 
-def test_a_motion_that_grows_without_bound_is_cut_and_says_when() -> None:
-    """A spring on both sides that the rate cannot follow: finite numbers up to the end of the trace."""
+def test_a_motion_that_grows_without_bound_is_cut_and_says_when():
     loop = zw.Device(mass=0.036, damping=0.1, sample_period=1e-3)
     spring = zw.PulseTransferFunction([1e9], [1.0])
     trace = zw.simulate(loop, spring, zw.operators.ConstantForce(1.0), 2.0, amplifier=IDEAL)
@@ -220,16 +155,14 @@ def test_a_motion_that_grows_without_bound_is_cut_and_says_when() -> None:
     assert trace.zwidth.energy.closes
 
 
-def test_a_delay_longer_than_the_simulation_leaves_the_hand_alone() -> None:
-    """No force ever arrives, however many samples the delay has."""
+def test_a_delay_longer_than_the_simulation_leaves_the_hand_alone():
     far = zw.Device(mass=0.036, damping=0.1, sample_period=1e-3, delay="1e9 s")
     trace = zw.simulate(far, zw.Wall(1e3), zw.operators.ConstantForce(1.0), 0.1)
     assert float(trace.position[-1]) > 0
     assert not trace.actuator_force.values.any()
 
 
-def test_switch_positions_need_a_delay_that_ends_within_a_sample() -> None:
-    """With a whole number of samples the force changes at the samples, not where the motion says."""
+def test_switch_positions_need_a_delay_that_ends_within_a_sample():
     motion = zw.operators.PrescribedMotion([0, 1e-3, 2e-3], switch_positions=[0.5e-3, 1.5e-3])
     with pytest.raises(zw.InputError, match=r"switch positions.*delay of 0 s"):
         zw.simulate(PADDLE, zw.Wall(300.0), motion, 0.002)
@@ -238,8 +171,7 @@ def test_switch_positions_need_a_delay_that_ends_within_a_sample() -> None:
     assert float(trace.position[-1]) == 2e-3
 
 
-def test_python_control_and_scipy_systems_are_environments() -> None:
-    """A discrete system is run as the wall with the same H(z)."""
+def test_python_control_and_scipy_systems_are_environments():
     wall = zw.simulate(PADDLE, zw.PulseTransferFunction([300.0], [1.0]), zw.operators.Dowel(), 0.05)
     system = scipy.signal.dlti([300.0], [1.0], dt=0.001)
     same = zw.simulate(PADDLE, system, zw.operators.Dowel(), 0.05)

@@ -44,10 +44,7 @@ def assert_same(found: xr.Dataset, expected: xr.Dataset) -> None:
         ),
     ],
 )
-def test_with_the_force_of_a_wall_it_is_the_simulation_of_that_wall(
-    device: zw.Device, asked: dict[str, Any]
-) -> None:
-    """Position, forces and every energy have the same bits, whatever device, clock and amplifier."""
+def test_with_the_force_of_a_wall_it_is_the_simulation_of_that_wall(device, asked):
     expected = zw.simulate(device, zw.Wall(770), zw.operators.Dowel(), 0.2, **asked)
     found = stepped(device, stored_at_start=0.0, **asked).run(spring)
     assert_same(found, expected)
@@ -55,15 +52,14 @@ def test_with_the_force_of_a_wall_it_is_the_simulation_of_that_wall(
     assert found.zwidth.energy.extracted == expected.zwidth.energy.extracted
 
 
-def test_force_bounding_stands_behind_it() -> None:
-    """As behind a wall."""
+def test_force_bounding_stands_behind_it():
     law = zw.rendering.ForceBounding()
     expected = zw.simulate(PADDLE, zw.render(zw.Wall(770), law), zw.operators.Dowel(), 0.2)
     assert_same(stepped(bounding=law).run(spring), expected)
     assert not np.array_equal(stepped().run(spring).position.values, expected.position.values)
 
 
-def test_a_law_with_a_state_is_stepped_by_hand() -> None:
+def test_a_law_with_a_state_is_stepped_by_hand():
     """A membrane that tears: read, force, read; half of it is the first half of all of it."""
     half, whole = stepped(), stepped()
     torn = False
@@ -81,8 +77,7 @@ def test_a_law_with_a_state_is_stepped_by_hand() -> None:
     assert whole.time == all_of_it.time[-1]
 
 
-def test_a_script_that_does_nothing_else_has_the_ledger_too() -> None:
-    """In a process of its own, where nobody has asked for `simulate` before."""
+def test_a_script_that_does_nothing_else_has_the_ledger_too():
     script = (
         "import zwidth as zw; "
         "paddle = zw.catalogue.device('haptic-paddle'); "
@@ -92,8 +87,7 @@ def test_a_script_that_does_nothing_else_has_the_ledger_too() -> None:
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
 
 
-def test_what_the_law_holds_is_not_supposed() -> None:
-    """Nothing is said to be gained where it is not known what was there."""
+def test_what_the_law_holds_is_not_supposed():
     energy = stepped().run(spring).zwidth.energy
     assert np.isnan(energy.extracted)
     assert not energy.active
@@ -101,7 +95,7 @@ def test_what_the_law_holds_is_not_supposed() -> None:
     assert energy.got_out > 0
 
 
-def test_what_cannot_be_stepped_is_refused() -> None:
+def test_what_cannot_be_stepped_is_refused():
     """A force that is none, a sample too many, nothing yet, another law, less than nothing stored."""
     touch = stepped()
     with pytest.raises(zw.InputError, match="nothing has happened yet"):
@@ -109,7 +103,7 @@ def test_what_cannot_be_stepped_is_refused() -> None:
     with pytest.raises(zw.InputError, match="force at 0 s must be finite"):
         touch.step(float("nan"))
     with pytest.raises(zw.InputError, match="is a number"):
-        touch.step("much")  # type: ignore[arg-type]
+        touch.step("much")
     touch.run(spring)
     with pytest.raises(zw.InputError, match="samples have their force"):
         touch.step(0.0)

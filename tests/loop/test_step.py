@@ -56,7 +56,7 @@ def _go(plant: Plant, state: np.ndarray, h: float, force=0.0, anchor=0.0, speed=
 
 
 @pytest.mark.parametrize("z", [0.0, 1e-9, 1e-3, 0.4, 0.999999, 1.0, 1.000001, 3.7, 60.0, 900.0])
-def test_the_responses_of_a_free_mass_are_right_to_rounding(z: float) -> None:
+def test_the_responses_of_a_free_mass_are_right_to_rounding(z):
     """h1, h2, h3 against their integrals at 40 digits, on both sides of the change of method."""
     t = 0.0137
     with mp.workdps(40):
@@ -72,7 +72,7 @@ def test_the_responses_of_a_free_mass_are_right_to_rounding(z: float) -> None:
     ("name", "stiffness", "damping"),
     [("under", 800.0, 0.4), ("critical", 500.0, 2.0 * math.sqrt(500.0 * 0.05)), ("over", 300.0, 40.0)],
 )
-def test_the_three_ways_of_damping_meet_their_textbook_forms(name, stiffness, damping) -> None:
+def test_the_three_ways_of_damping_meet_their_textbook_forms(name, stiffness, damping):
     """A mass on spring and damper, let go: position and velocity after 0.01 to 40 ms."""
     plant = _plant(mass=0.05, damping=0.0, stiffness=stiffness, hand_damping=damping)
     for t in (1e-5, 1e-3, 7e-3, 4e-2):
@@ -89,7 +89,7 @@ def test_the_three_ways_of_damping_meet_their_textbook_forms(name, stiffness, da
             assert abs(mpf(float(state[VELOCITY])) - v) < 4e-15 * (1 + abs(b) * t), (name, t)
 
 
-def test_dry_friction_alone_stops_a_mass_after_m_v_over_f() -> None:
+def test_dry_friction_alone_stops_a_mass_after_m_v_over_f():
     """A mass sliding against Coulomb friction stops after m v²/(2 f_c), and stays."""
     plant = _plant(damping=0.0, coulomb=0.12, stiction=0.12)
     state = _go(plant, _state(v=0.3), 0.2)
@@ -99,8 +99,15 @@ def test_dry_friction_alone_stops_a_mass_after_m_v_over_f() -> None:
     assert state[COULOMB] == pytest.approx(0.5 * 0.036 * 0.09, rel=4 * EPS)
 
 
-def test_stiction_holds_up_to_its_force_and_not_beyond() -> None:
-    """At rest a force of f_s is held; the next larger one moves the mass, against f_c only."""
+def test_both_frictions_stop_a_free_mass():
+    """It stops after (m/b)(v₀ − (f_c/b) ln(1 + b v₀/f_c))."""
+    state = _go(_plant(coulomb=0.12, stiction=0.12), _state(v=0.3), 0.2)
+    way = 0.036 / 0.15 * (0.3 - 0.12 / 0.15 * math.log1p(0.15 * 0.3 / 0.12))
+    assert state[POSITION] == pytest.approx(way, rel=100 * EPS)
+    assert (state[VELOCITY], state[STOPS]) == (0.0, 1)
+
+
+def test_stiction_holds_up_to_its_force_and_not_beyond():
     plant = _plant(coulomb=0.1, stiction=0.25)
     assert _go(plant, _state(), 0.01, force=0.25)[POSITION] == 0.0
     state = _go(plant, _state(), 0.01, force=math.nextafter(0.25, 1.0))
@@ -108,7 +115,7 @@ def test_stiction_holds_up_to_its_force_and_not_beyond() -> None:
     assert state[POSITION] == pytest.approx(free[POSITION], rel=1e-14)
 
 
-def test_a_moving_anchor_breaks_the_mass_away_when_its_spring_reaches_the_stiction() -> None:
+def test_a_moving_anchor_breaks_the_mass_away_when_its_spring_reaches_the_stiction():
     """Rest until k u t = f_s, however the stretch is cut; then motion."""
     plant = _plant(coulomb=0.1, stiction=0.2, stiffness=100.0)
     still = _go(plant, _state(), 0.0199, speed=0.1)
@@ -117,8 +124,7 @@ def test_a_moving_anchor_breaks_the_mass_away_when_its_spring_reaches_the_sticti
     assert _go(plant, _state(), 0.0201, speed=0.1)[POSITION] > 0.0
 
 
-def test_a_turn_is_found_even_if_both_ends_move_the_same_way() -> None:
-    """An oscillator that turns round twice inside one stretch has two stops."""
+def test_a_turn_is_found_even_if_both_ends_move_the_same_way():
     plant = _plant(damping=0.01, stiffness=500.0, coulomb=0.001, stiction=0.001)
     period = 2 * math.pi * math.sqrt(0.036 / 500.0)
     state = _go(plant, _state(x=0.01, v=0.05), 1.003 * period)
@@ -126,8 +132,7 @@ def test_a_turn_is_found_even_if_both_ends_move_the_same_way() -> None:
     assert state[VELOCITY] > 0.0
 
 
-def test_a_grazing_stop_against_a_receding_force_is_no_turn() -> None:
-    """A mass whose velocity nearly touches zero goes on, and the ledger closes."""
+def test_a_grazing_stop_against_a_receding_force_is_no_turn():
     plant = _plant(damping=0.0, stiffness=100.0, mass=0.01)
     x0 = 0.01
     speed = x0 * 100.0  # the anchor's speed lifts the lowest velocity just above 0
@@ -136,7 +141,7 @@ def test_a_grazing_stop_against_a_receding_force_is_no_turn() -> None:
 
 
 @pytest.mark.parametrize("ulps", [-3, -1, 0, 1, 3, 40])
-def test_a_hand_that_pushes_with_the_friction_force_waits_for_a_lagging_force(ulps: int) -> None:
+def test_a_hand_that_pushes_with_the_friction_force_waits_for_a_lagging_force(ulps):
     """At rest until F − f_a = −f_c, then M v' = F + f_c − f_a; the last digits of F make no difference."""
     friction, goal, lag, h = 0.003906, 3.0, 7e-4, 0.03125
     force = friction + ulps * np.spacing(friction)
@@ -166,7 +171,7 @@ def test_a_hand_that_pushes_with_the_friction_force_waits_for_a_lagging_force(ul
 )
 def test_a_mass_at_the_edge_of_friction_moves_on(
     h, friction, extra, stiffness, hand_damping, drive, side, ulps, now, speed, goal
-) -> None:
+):
     """Held to the last digit: it rests, goes, or stops once more; it never stops without end."""
     plant = _plant(
         coulomb=friction, stiction=friction + extra, stiffness=stiffness, hand_damping=hand_damping,
@@ -206,8 +211,7 @@ def _typed(low: float, high: float) -> st.SearchStrategy[float]:
 )
 def test_both_energy_balances_close(
     h, mass, hand_mass, damping, coulomb, extra, stiffness, hand_damping, drive, x, v, force, speed, goal
-) -> None:
-    """Whatever the plant: what goes in is stored or lost, in the device and in the hand."""
+):
     plant = _plant(
         mass=mass, hand_mass=hand_mass, damping=damping, coulomb=coulomb, stiction=coulomb + extra,
         stiffness=stiffness, hand_damping=hand_damping,
@@ -237,8 +241,7 @@ def test_both_energy_balances_close(
     force=st.floats(-3.0, 3.0),
     speed=st.floats(-0.3, 0.3),
 )
-def test_a_stretch_in_two_parts_ends_where_it_ends_in_one(h, cut, stiffness, lag, v, force, speed) -> None:
-    """The motion does not know how it is cut: no step error."""
+def test_a_stretch_in_two_parts_ends_where_it_ends_in_one(h, cut, stiffness, lag, v, force, speed):
     plant = _plant(coulomb=0.12, stiction=0.17, stiffness=stiffness, hand_damping=0.8, lag=lag)
     once = _go(plant, _state(v=v, goal=1.0 if lag else 0.0), h, force, 0.001, speed)
     twice = _go(plant, _state(v=v, goal=1.0 if lag else 0.0), cut * h, force, 0.001, speed)

@@ -1,7 +1,5 @@
 """The boundary of stability in the plane of walls, by two roads."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -13,7 +11,7 @@ BARE = zw.Device(mass=0.036, damping=0, rate=1000)
 K_SCALE, B_SCALE = 1e-6 / 0.036, 1e-3 / 0.036
 
 
-def test_the_curve_without_delay_is_the_closed_form() -> None:
+def test_the_curve_without_delay_is_the_closed_form():
     """κ = 2β(2 − β)/(2 + β) on every point that bounds; the largest near κ = 0.68629 at β = 0.82843."""
     found = zw.maps.stability_boundary(BARE, points=4000)
     here = found["bounds"].values & (found["stiffness"].values > 1e-3)
@@ -25,22 +23,21 @@ def test_the_curve_without_delay_is_the_closed_form() -> None:
     assert beta[kappa.argmax()] == pytest.approx(2 * np.sqrt(2) - 2, abs=1e-2)
 
 
-def test_one_sample_of_delay_in_the_plane_of_salcudean_and_vlaar() -> None:
+def test_one_sample_of_delay_in_the_plane_of_salcudean_and_vlaar():
     """k = T²K/2m, b = TB/2m: z²(z − 1)² + (z + 1)[k z + b (z − 1)] has its outermost root on the circle."""
     found = zw.maps.stability_boundary(BARE, delay=0.001, points=400)
     here = found["bounds"].values & (found["stiffness"].values > 1)
     assert here.sum() > 50
-    for k, b in zip(
-        found["stiffness"].values[here][::5], found["virtual_damping"].values[here][::5], strict=True
-    ):
-        k, b = k * K_SCALE / 2, b * B_SCALE / 2
+    walls = (found[name].values[here][::5] for name in ("stiffness", "virtual_damping"))
+    for stiffness, damping in zip(*walls, strict=True):
+        k, b = stiffness * K_SCALE / 2, damping * B_SCALE / 2
         p = np.polyadd(np.polymul([1, 0, 0], [1, -2, 1]), np.polymul([1, 1], [k + b, -b]))
         assert np.abs(np.roots(p)).max() == pytest.approx(1, abs=1e-7)
 
 
 @pytest.mark.parametrize("delay", [0, 0.0003, 0.001, 0.0025, 0.004])
 @pytest.mark.parametrize("hand", [None, Finger()])
-def test_both_sides_of_the_curve(delay: float, hand: object) -> None:
+def test_both_sides_of_the_curve(delay, hand):
     """Bisection's answer: a thousandth below a bounding point is stable, a thousandth above is not."""
     found = zw.maps.stability_boundary(PADDLE, hand, delay, points=150)
     device = PADDLE.replace(delay=delay)
@@ -57,23 +54,26 @@ def test_both_sides_of_the_curve(delay: float, hand: object) -> None:
         assert zw.stability.coupled_stability(device, outward, hand).outcome == "unstable"
 
 
-def test_frequencies_are_those_of_the_poles() -> None:
+def test_frequencies_are_those_of_the_poles():
     """At a bounding point the pole nearest to the circle has the frequency that stands there."""
     found = zw.maps.stability_boundary(PADDLE, Finger(), points=40)
     for n in np.flatnonzero(found["bounds"].values[:40] & (found["stiffness"].values[:40] > 100)):
         one = found.isel(point=n)
-        there = zw.stability.coupled_stability(
-            PADDLE, zw.Wall(one["stiffness"].item(), one["virtual_damping"].item()), Finger()
-        )
+        wall = zw.Wall(one["stiffness"].item(), one["virtual_damping"].item())
+        there = zw.stability.coupled_stability(PADDLE, wall, Finger())
         assert there.frequency == pytest.approx(one["frequency"].item(), rel=1e-6)
         assert there.spectral_radius == pytest.approx(1, abs=1e-8)
 
 
-def test_what_has_no_boundary() -> None:
-    """An interval, no mass, one point."""
-    with pytest.raises(zw.InputError, match="one device and one hand"):
-        zw.maps.stability_boundary(PADDLE, zw.stability.HandImpedance(mass=(0, 1)))
-    with pytest.raises(zw.InputError, match="mass of the device"):
-        zw.maps.stability_boundary(zw.Device(damping=1, rate=1000))
-    with pytest.raises(zw.InputError, match="two ends"):
-        zw.maps.stability_boundary(PADDLE, points=1)
+@pytest.mark.parametrize(
+    ("device", "hand", "points", "message"),
+    [
+        (PADDLE, zw.stability.HandImpedance(mass=(0, 1)), 9, "one device and one hand"),
+        (zw.Device(damping=1, rate=1000), None, 9, "mass of the device"),
+        (PADDLE, None, 1, "two ends"),
+    ],
+    ids=["an interval", "no mass", "one point"],
+)
+def test_what_has_no_boundary(device, hand, points, message):
+    with pytest.raises(zw.InputError, match=message):
+        zw.maps.stability_boundary(device, hand, points=points)

@@ -1,7 +1,5 @@
 """The 2⁴ design: effects against areas that have a closed form."""
 
-from __future__ import annotations
-
 import pytest
 
 import zwidth as zw
@@ -10,7 +8,7 @@ PADDLE = zw.catalogue.device("haptic-paddle")
 FINE = {"cells": (20, 20), "hands": {}}  # what is passive alone
 
 
-def test_effects_are_differences_of_mean_areas() -> None:
+def test_effects_are_differences_of_mean_areas():
     """With a fine encoder the passive triangle is b²/T: its effects follow from four numbers."""
     found = zw.maps.z_width_factors(
         PADDLE, (0, 1200), (0, 0.4), rate=(1000, 2000), damping=(0.15, 0.3), resolution=(1e-6, 2e-6), **FINE
@@ -31,7 +29,7 @@ def test_effects_are_differences_of_mean_areas() -> None:
     assert effect.sizes["term"] == 15
 
 
-def test_what_colgate_and_brown_found() -> None:
+def test_what_colgate_and_brown_found():
     """Damping and rate enlarge what is stable; resolution leaves it as it is."""
     found = zw.maps.z_width_factors(
         PADDLE, (0, 4000), (0, 20), rate=("100 Hz", "1 kHz"), damping=(0.15, 1.5), resolution=(2e-4, 2e-6),
@@ -45,9 +43,8 @@ def test_what_colgate_and_brown_found() -> None:
     assert finer > 0
 
 
-def test_two_equal_levels_are_refused() -> None:
+def test_two_equal_levels_are_refused():
     """An effect is a difference."""
+    levels = {"rate": (1000, "1 kHz"), "damping": (1, 2), "resolution": (0, 1e-5)}
     with pytest.raises(zw.InputError, match="twice"):
-        zw.maps.z_width_factors(
-            PADDLE, (0, 1), (0, 1), rate=(1000, "1 kHz"), damping=(1, 2), resolution=(0, 1e-5)
-        )
+        zw.maps.z_width_factors(PADDLE, (0, 1), (0, 1), **levels)

@@ -1,7 +1,5 @@
 """The boundary that holds for every hand within intervals."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -12,7 +10,7 @@ BOX = zw.stability.HandImpedance(mass=(0, 0.02), stiffness=(0, 1000), damping=(0
 
 
 @pytest.mark.parametrize("delay", ["0", "0.0005"])
-def test_both_sides(delay: str) -> None:
+def test_both_sides(delay):
     """Below the one no hand of 60 is shaken; just above the other the named one is."""
     device = PADDLE.replace(delay=delay)
     found = zw.maps.robust_boundary(device, BOX, (2, 20), points=3)
@@ -34,7 +32,7 @@ def test_both_sides(delay: str) -> None:
         assert zw.stability.coupled_stability(bare, above, worst).outcome == "unstable"
 
 
-def test_a_certain_hand_has_no_gap() -> None:
+def test_a_certain_hand_has_no_gap():
     """Then both are the largest stable stiffness."""
     found = zw.maps.robust_boundary(PADDLE, zw.operators.Finger(), (1, 2), points=2)
     assert found["guaranteed"].values.tolist() == found["refuted"].values.tolist()
@@ -42,7 +40,7 @@ def test_a_certain_hand_has_no_gap() -> None:
     assert found["guaranteed"].values[0] == expected
 
 
-def test_a_slow_swing_of_the_hand_bounds_the_wall() -> None:
+def test_a_slow_swing_of_the_hand_bounds_the_wall():
     """A heavy, hardly damped handle on a spring: 0.02 rad a sample, where roots lie close.
 
     b + c = K (T/2 + delay) without virtual damping, but for terms of second order in (ωT).
@@ -54,15 +52,15 @@ def test_a_slow_swing_of_the_hand_bounds_the_wall() -> None:
     assert found["guaranteed"] > 0.995 * found["refuted"]
 
 
-def test_nothing_is_proved_where_a_hand_is_shaken_at_any_stiffness() -> None:
+def test_nothing_is_proved_where_a_hand_is_shaken_at_any_stiffness():
     """More virtual damping than an empty handle bears."""
     found = zw.maps.robust_boundary(PADDLE, BOX, (70, 200), points=2)
     assert np.isnan(found["guaranteed"].values[-1])
 
 
-def test_bad_ranges() -> None:
-    """From smaller to larger, at two points at least."""
-    with pytest.raises(zw.InputError, match="smaller to its larger"):
-        zw.maps.robust_boundary(PADDLE, BOX, (2, 1))
-    with pytest.raises(zw.InputError, match="2 points"):
-        zw.maps.robust_boundary(PADDLE, BOX, (1, 2), points=1)
+@pytest.mark.parametrize(
+    ("ends", "points", "message"), [((2, 1), 3, "smaller to its larger"), ((1, 2), 1, "2 points")]
+)
+def test_bad_ranges(ends, points, message):
+    with pytest.raises(zw.InputError, match=message):
+        zw.maps.robust_boundary(PADDLE, BOX, ends, points=points)

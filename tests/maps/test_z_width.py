@@ -1,7 +1,5 @@
 """The Z-width map: each layer against another road, stores that are killed and gone on with, clusters."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal
@@ -9,7 +7,7 @@ import subprocess
 import sys
 from contextlib import ExitStack
 from fractions import Fraction
-from pathlib import Path
+from itertools import product
 
 import numpy as np
 import pytest
@@ -28,24 +26,23 @@ from zwidth.study.maps.request import CHUNK, FORMAT, request
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 WIDE = ((0, 30000), (0, 90))
-LAYERS = (
-    "passive",
-    "passive_sustained",
-    "quiet",
-    "admissible_speed",
-    "stable_none",
-    "stable_finger",
-    "stable_dowel",
-)
+LAYERS = ("passive", "passive_sustained", "quiet", "admissible_speed")
+FILTERED = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
+"""Its response does not end."""
 
 
-def same(a: xr.Dataset, b: xr.Dataset) -> bool:
+def same(a, b):
     """Every layer has the same bytes."""
-    return all(a[name].values.tobytes() == b[name].values.tobytes() for name in LAYERS)
+    names = (*LAYERS, "stable_none", "stable_finger", "stable_dowel")
+    return all(a[name].values.tobytes() == b[name].values.tobytes() for name in names)
 
 
-def test_every_number_has_its_unit() -> None:
-    """In the attribute `units`, coordinates too; of the limits that of stiffness."""
+def cells(found):
+    """Stiffness and virtual damping of each."""
+    return product(found["stiffness"].values, found["virtual_damping"].values)
+
+
+def test_every_number_has_its_unit():
     found = zw.z_width(PADDLE, *WIDE, cells=(3, 3))
     numbers = {name: one for name, one in found.variables.items() if one.dtype.kind == "f"}
     assert {"limit_passive", "limit_dowel", "admissible_speed", "stiffness"} <= set(numbers)
@@ -53,19 +50,18 @@ def test_every_number_has_its_unit() -> None:
     assert {found[name].attrs["units"] for name in ("limit_passive", "limit_none", "stiffness")} == {"N/m"}
 
 
-def test_stable_cells_are_those_that_stability_proves() -> None:
+def test_stable_cells_are_those_that_stability_proves():
     """On a coarse grid every cell of every hand is as `zw.stability.coupled_stability` says, one by one."""
     found = zw.z_width(PADDLE, *WIDE, cells=(9, 11))
     hands = {"none": None, "finger": Finger(), "dowel": Dowel(force=1)}
     for name, hand in hands.items():
-        for k in found["stiffness"].values:
-            for b in found["virtual_damping"].values:
-                expected = zw.stability.coupled_stability(PADDLE, zw.Wall(k, b), hand).outcome == "stable"
-                assert bool(found[f"stable_{name}"].sel(stiffness=k, virtual_damping=b)) == expected
+        for k, b in cells(found):
+            expected = zw.stability.coupled_stability(PADDLE, zw.Wall(k, b), hand).outcome == "stable"
+            assert bool(found[f"stable_{name}"].sel(stiffness=k, virtual_damping=b)) == expected
 
 
 @pytest.mark.parametrize("delay", ["0", "0.0004", "0.002"])
-def test_stable_cells_end_at_the_boundary(delay: str) -> None:
+def test_stable_cells_end_at_the_boundary(delay):
     """At each virtual damping the last stable cell is the last one below the curve."""
     device = PADDLE.replace(delay=delay)
     found = zw.z_width(device, *WIDE, cells=(300, 40))
@@ -76,17 +72,16 @@ def test_stable_cells_end_at_the_boundary(delay: str) -> None:
             assert found[f"stable_{name}"].values[:, j].sum() == count
 
 
-def test_passive_cells_are_those_that_check_proves() -> None:
+def test_passive_cells_are_those_that_check_proves():
     """Near both edges of the passive region, each cell as `zw.check` says; both kinds occur."""
     found = zw.z_width(PADDLE, (0, 360), (-0.2, 0.2), cells=(12, 10))
     outcomes = set()
-    for k in found["stiffness"].values:
-        for b in found["virtual_damping"].values:
-            mine = bool(found["passive"].sel(stiffness=k, virtual_damping=b))
-            assert not mine or zw.check(PADDLE, zw.Wall(k, b)).outcome == "passive"
-            # without delay the condition for contact made and broken is also necessary for B ≥ 0
-            assert b < 0 or mine == (k * 0.0005 + b <= 0.15)
-            outcomes.add(mine)
+    for k, b in cells(found):
+        mine = bool(found["passive"].sel(stiffness=k, virtual_damping=b))
+        assert not mine or zw.check(PADDLE, zw.Wall(k, b)).outcome == "passive"
+        # without delay the condition for contact made and broken is also necessary for B ≥ 0
+        assert b < 0 or mine == (k * 0.0005 + b <= 0.15)
+        outcomes.add(mine)
     assert outcomes == {True, False}
 
 
@@ -101,25 +96,24 @@ def test_passive_cells_are_those_that_check_proves() -> None:
         ({"resolution": "0.001"}, zw.rendering.Window(3)),
     ],
 )
-def test_sustained_cells_are_those_that_the_criterion_proves(changes: dict, velocity: object) -> None:
+def test_sustained_cells_are_those_that_the_criterion_proves(changes, velocity):
     """Each cell as the exact decision says; more of them than with contact broken, and not all."""
     device = PADDLE.replace(**changes)
     found = zw.z_width(device, (0, 330), (-0.3, 0.6), (24, 17), velocity_filter=velocity, hands={})
-    cells = found["passive_sustained"]
-    for k in found["stiffness"].values:
-        for b in found["virtual_damping"].values:
-            expected = decide(device, zw.Wall(k, b, velocity_filter=velocity)).is_provable
-            assert bool(cells.sel(stiffness=k, virtual_damping=b)) == expected
-    assert (found["passive"] <= cells).all()
-    assert found["passive"].sum() < cells.sum() < cells.size
+    sustained = found["passive_sustained"]
+    for k, b in cells(found):
+        expected = decide(device, zw.Wall(k, b, velocity_filter=velocity)).is_provable
+        assert bool(sustained.sel(stiffness=k, virtual_damping=b)) == expected
+    assert (found["passive"] <= sustained).all()
+    assert found["passive"].sum() < sustained.sum() < sustained.size
 
 
 @pytest.mark.parametrize(("first", "past"), [(0, 20), (3, 17), (9, 10), (1, 19), (0, 1), (19, 20), (4, 9)])
-def test_ends_of_an_interval_are_found(first: int, past: int) -> None:
+def test_ends_of_an_interval_are_found(first, past):
     """Wherever it lies in the range that floats allow, if one of the three cells tried first is in it."""
-    seen: set[int] = set()
+    seen = set()
 
-    def proved(i: int) -> bool:
+    def proved(i):
         seen.add(i)
         return first <= i < past
 
@@ -128,7 +122,7 @@ def test_ends_of_an_interval_are_found(first: int, past: int) -> None:
     assert seen <= set(range(20))
 
 
-def test_a_cell_exactly_on_the_limit_is_passive_and_the_next_double_is_not() -> None:
+def test_a_cell_exactly_on_the_limit_is_passive_and_the_next_double_is_not():
     """K = 2b/T = 300 N/m at B = 0 is met exactly, although 0.15 is no double."""
     on = zw.z_width(PADDLE, (299, 301), ("-0.1", "0.1"), cells=(1, 1))
     above = zw.z_width(PADDLE, (299, "301.0000000000002"), ("-0.1", "0.1"), cells=(1, 1))
@@ -139,7 +133,7 @@ def test_a_cell_exactly_on_the_limit_is_passive_and_the_next_double_is_not() -> 
     assert not bool(above["passive"])
 
 
-def test_the_encoder_limits_what_is_passive() -> None:
+def test_the_encoder_limits_what_is_passive():
     """With a coarse encoder f_c ≥ (K/2 + B/T) Δ binds: K = 2f_c/Δ − 2B/T."""
     coarse = PADDLE.replace(resolution="0.001")
     found = zw.z_width(coarse, (0, 300), (0, "0.12"), cells=(150, 60))
@@ -149,7 +143,7 @@ def test_the_encoder_limits_what_is_passive() -> None:
     assert 0 < expected.sum() < (k * 0.0005 + b <= 0.15).sum()
 
 
-def test_the_admissible_speed_of_a_spring_is_that_of_the_plane() -> None:
+def test_the_admissible_speed_of_a_spring_is_that_of_the_plane():
     """v = (2f_c − KΔ)/(KT − 2b), never above it, and within 1e-12."""
     found = zw.z_width(PADDLE, (0, 20000), ("-1e-12", "1e-12"), cells=(40, 1))
     seen = set()
@@ -161,7 +155,7 @@ def test_the_admissible_speed_of_a_spring_is_that_of_the_plane() -> None:
     assert seen == {"inf", "finite", "0"}
 
 
-def test_no_fast_motion_below_the_admissible_speed_gains_energy() -> None:
+def test_no_fast_motion_below_the_admissible_speed_gains_energy():
     """A thousand motions of 60 samples, random and to and fro, at that speed; at 30 times it some gain."""
     k, b = 500.0, 0.08
     found = zw.z_width(PADDLE, (k - 1, k + 1), (b - 0.01, b + 0.01), cells=(1, 1))
@@ -183,35 +177,20 @@ def test_no_fast_motion_below_the_admissible_speed_gains_energy() -> None:
         assert (work.min() < 0) == gains
 
 
-def test_the_kernel_never_believes_a_sign_that_rounding_made() -> None:
+def test_the_kernel_never_believes_a_sign_that_rounding_made():
     """Within 1e-13 of the boundary it leaves the cell to exact arithmetic; 1e-9 away it decides rightly."""
     ready = plan(request(PADDLE, *WIDE, (10, 10), None, {"finger": Finger()}))
     hand = ready.hands[0]
     for b in (1.0, 20.0, 60.0):
         limit = zw.stability.coupled_stability(PADDLE, zw.Wall(10, b), Finger()).max_stiffness
-        assert limit is not None
-        answers = {
-            off: decide_cell(
-                hand.free,
-                hand.stiff,
-                hand.damped,
-                limit * (1 + off),
-                b,
-                hand.slack,
-                np.zeros((2, 9)),
-                np.zeros((2, 9)),
-            )
-            for off in (-1e-9, -1e-16, 0.0, 1e-16, 1e-9)
-        }
-        assert answers[-1e-9] == STABLE
-        assert answers[1e-9] == UNSTABLE
-        assert answers[0.0] == UNKNOWN
+        for off, answer in ((-1e-9, STABLE), (0.0, UNKNOWN), (1e-9, UNSTABLE)):
+            cell, room = (limit * (1 + off), b, hand.slack), (np.zeros((2, 9)), np.zeros((2, 9)))
+            assert decide_cell(hand.free, hand.stiff, hand.damped, *cell, *room) == answer
 
 
-def test_a_filter_without_end_is_not_called_passive() -> None:
+def test_a_filter_without_end_is_not_called_passive():
     """No condition for contact made and broken covers it; stability is decided all the same."""
-    filtered = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
-    found = zw.z_width(PADDLE, (0, 300), (0, 1), cells=(5, 5), velocity_filter=filtered)
+    found = zw.z_width(PADDLE, (0, 300), (0, 1), cells=(5, 5), velocity_filter=FILTERED)
     assert not found["passive"].any()
     assert (found["admissible_speed"] == 0).all()
     assert found["stable_finger"].any()
@@ -219,7 +198,7 @@ def test_a_filter_without_end_is_not_called_passive() -> None:
 
 
 @pytest.mark.parametrize("delay", ["0.0005", "0.0014"])
-def test_a_delay_of_part_of_a_sample_ends_where_check_does(delay: str) -> None:
+def test_a_delay_of_part_of_a_sample_ends_where_check_does(delay):
     """The curve is where `check` stops proving contact made and broken; slow hands are proved beyond it."""
     device = PADDLE.replace(delay=delay)
     found = zw.z_width(device, (0, 300), (-0.1, 0.2), cells=(60, 6), hands={})
@@ -243,7 +222,7 @@ def test_a_delay_of_part_of_a_sample_ends_where_check_does(delay: str) -> None:
     assert json.loads(found["quiet"].attrs["scope"])["hands"]["in_each_part_of_a_sample"]
 
 
-def test_regions_and_free_air() -> None:
+def test_regions_and_free_air():
     """The passive area is the triangle ½ (2b/T) b, to a cell; the lower end is the device itself."""
     found = zw.z_width(PADDLE, (0, 600), (0, "0.3"), cells=(400, 400))
     assert found["area"].sel(region="passive").item() == pytest.approx(0.5 * 300 * 0.15, rel=0.01)
@@ -252,25 +231,22 @@ def test_regions_and_free_air() -> None:
     assert found["quiet"].values[found["passive"].values].all()
 
 
-def test_threads_do_not_change_a_bit() -> None:
-    """One thread or four."""
+def test_threads_do_not_change_a_bit():
     one, four = (zw.z_width(PADDLE, *WIDE, cells=(300, 300), workers=n) for n in (1, 4))
     assert same(one, four)
 
 
-def test_a_store_is_gone_on_with(tmp_path: Path) -> None:
-    """The chunks that are there are not computed again; the layers are those of a map in memory."""
+def test_a_store_is_gone_on_with(tmp_path):
     cells, path = (300, 300), tmp_path / "map.zarr"
-    told: list[int] = []
+    told, again = [], []
 
-    def stop(done: int, total: int) -> None:
+    def stop(done, total):
         told.append(done)
         if done == 4:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         zw.z_width(PADDLE, *WIDE, cells=cells, path=path, progress=stop, workers=1)
-    again: list[int] = []
     found = zw.z_width(PADDLE, *WIDE, cells=cells, path=path, progress=lambda done, total: again.append(done))
     assert told == [1, 2, 3, 4]
     assert again == [5, 6, 7, 8, 9]
@@ -295,13 +271,12 @@ zw.z_width(device, *walls, cells=(260, 260), path=sys.argv[1], progress=stopped)
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="there is no SIGKILL here")
-def test_a_map_killed_twice_loses_nothing(tmp_path: Path) -> None:
+def test_a_map_killed_twice_loses_nothing(tmp_path):
     """SIGKILL at chunk 2, and again at chunk 5: what was done stays, and the end is the same to the bit."""
     path = tmp_path / "killed.zarr"
     for at in (2, 5):
         command = [sys.executable, "-c", STOPPED, str(path), str(at)]
         process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-        assert process.stdout is not None
         for line in process.stdout:
             if int(line) == at:
                 os.kill(process.pid, signal.SIGKILL)
@@ -309,13 +284,13 @@ def test_a_map_killed_twice_loses_nothing(tmp_path: Path) -> None:
         assert process.wait() == -signal.SIGKILL
         process.stdout.close()
         assert xr.open_zarr(path, consolidated=False)["done"].values.sum() == at
-    left: list[int] = []
+    left = []
     found = zw.z_width(PADDLE, *WIDE, cells=(260, 260), path=path, progress=lambda n, total: left.append(n))
     assert left == list(range(6, 10))
     assert same(found, zw.z_width(PADDLE, *WIDE, cells=(260, 260)))
 
 
-def test_a_store_stopped_before_its_arrays_were_there(tmp_path: Path) -> None:
+def test_a_store_stopped_before_its_arrays_were_there(tmp_path):
     """A group that says which map was begun, and nothing else: it is begun again."""
     import zarr
 
@@ -326,56 +301,56 @@ def test_a_store_stopped_before_its_arrays_were_there(tmp_path: Path) -> None:
     assert same(found, zw.z_width(PADDLE, *WIDE, cells=(5, 5)))
 
 
-def test_a_full_disk_keeps_what_is_finished(tmp_path: Path) -> None:
-    """One message, and the same map goes on when there is room."""
+def test_a_full_disk_keeps_what_is_finished(tmp_path):
     path = tmp_path / "map"
 
-    def full(done: int, total: int) -> None:
+    def full(done, total):
         disk.enter_context(full_disk(largest=0))
 
     with ExitStack() as disk, pytest.raises(zw.InputError, match=r"map cannot be written: .*goes on with it"):
         zw.z_width(PADDLE, *WIDE, cells=(CHUNK, CHUNK + 1), path=path, progress=full, workers=1)
-    left: list[int] = []
+    left = []
     zw.z_width(PADDLE, *WIDE, cells=(CHUNK, CHUNK + 1), path=path, progress=lambda n, total: left.append(n))
     assert left == [2]
 
 
-def test_a_store_that_leads_elsewhere_is_refused(tmp_path: Path) -> None:
+def leads_elsewhere(path):
     """Neither read nor written is what a link in it names."""
-    path, other = tmp_path / "map", tmp_path / "other"
-    zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
-    (path / "passive").rename(other)
-    (path / "passive").symlink_to(other)
-    with pytest.raises(zw.InputError, match="passive in it is a link"):
-        zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
+    (path / "passive").rename(path.parent / "other")
+    (path / "passive").symlink_to(path.parent / "other")
 
 
-def test_a_store_that_declares_more_than_its_map_is_refused(tmp_path: Path) -> None:
+def declares_more(path):
     """Cells that were never written are filled in, as many as are declared."""
-    path = tmp_path / "map"
-    zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
     about = path / "passive" / "zarr.json"
     document = json.loads(about.read_text(encoding="utf-8"))
-    document["shape"] = [2**40, 2**40]
-    about.write_text(json.dumps(document), encoding="utf-8")
-    with pytest.raises(zw.InputError, match="holds another map"):
-        zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
+    about.write_text(json.dumps({**document, "shape": [2**40, 2**40]}), encoding="utf-8")
 
 
-def test_a_store_of_another_map_is_refused(tmp_path: Path) -> None:
-    """Another range, or a directory with something else in it; neither is touched."""
-    path = tmp_path / "map.zarr"
-    zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
-    with pytest.raises(zw.InputError, match="holds another map"):
-        zw.z_width(PADDLE, (0, 1), (0, 1), cells=(5, 5), path=path)
-    (tmp_path / "else").mkdir()
-    (tmp_path / "else" / "notes.txt").write_text("mine")
+@pytest.mark.parametrize(
+    ("changed", "stiffness", "message"),
+    [
+        (leads_elsewhere, (0, 30000), "passive in it is a link"),
+        (declares_more, (0, 30000), "holds another map"),
+        (lambda path: None, (0, 1), "holds another map"),
+    ],
+    ids=["a link", "more", "another range"],
+)
+def test_a_store_of_another_map_is_refused(changed, stiffness, message, tmp_path):
+    zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=tmp_path / "map")
+    changed(tmp_path / "map")
+    with pytest.raises(zw.InputError, match=message):
+        zw.z_width(PADDLE, stiffness, WIDE[1], cells=(5, 5), path=tmp_path / "map")
+
+
+def test_a_folder_with_something_else_is_not_touched(tmp_path):
+    (tmp_path / "notes.txt").write_text("mine")
     with pytest.raises(zw.InputError, match="holds"):
-        zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=tmp_path / "else")
-    assert (tmp_path / "else" / "notes.txt").read_text(encoding="utf-8") == "mine"
+        zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=tmp_path)
+    assert (tmp_path / "notes.txt").read_text(encoding="utf-8") == "mine"
 
 
-def test_a_cluster_gives_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cluster_gives_the_same_bits(monkeypatch):
     """Two workers, each a process of its own, against the threads of this one."""
     import distributed
 
@@ -387,8 +362,7 @@ def test_a_cluster_gives_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
     assert same(there, zw.z_width(PADDLE, *WIDE, cells=(150, 150)))
 
 
-def test_chunks_tile_the_map() -> None:
-    """The last chunk is the rest: no cell twice, none missing."""
+def test_chunks_tile_the_map():
     asked = request(PADDLE, *WIDE, (CHUNK + 3, 5), None, {"none": None})
     ready = plan(asked)
     assert asked.layout.chunks == (2, 1)
@@ -409,18 +383,17 @@ def test_chunks_tile_the_map() -> None:
         ({"speed": 0}, "speed"),
     ],
 )
-def test_what_cannot_be_mapped(change: dict[str, object], message: str) -> None:
-    """One clear message each."""
+def test_what_cannot_be_mapped(change, message):
     given = {"device": PADDLE, "stiffness": (0, 10), "virtual_damping": (0, 1), "cells": (3, 3), **change}
     with pytest.raises(zw.InputError, match=message):
         zw.z_width(**given)
 
 
-def test_what_no_condition_covers_is_said_and_springs_are_decided() -> None:
+def test_what_no_condition_covers_is_said_and_springs_are_decided():
     """Of a filter without end the column at B = 0 ends where `check` does, from both sides."""
     device = PADDLE.replace(delay="0.0005", coulomb_friction=1)
-    filtered = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
-    found = zw.z_width(device, (0, 300), ("-0.5", "0.5"), cells=(300, 3), hands={}, velocity_filter=filtered)
+    given = {"hands": {}, "velocity_filter": FILTERED}
+    found = zw.z_width(device, (0, 300), ("-0.5", "0.5"), cells=(300, 3), **given)
     middle = found["passive"].values[:, 1]
     k = found["stiffness"].values
     limit = float(found["spring_limit"])
@@ -431,18 +404,16 @@ def test_what_no_condition_covers_is_said_and_springs_are_decided() -> None:
     for share, outcome in ((1 - 1e-9, "passive"), (1 + 1e-6, "active")):
         assert check_by_closed_forms(device, zw.Wall(limit * share)).outcome == outcome
     assert "does not end" in found.attrs["not_covered"]
-    assert zw.maps.z_width_certificate(device, found, velocity_filter=filtered) is not None
+    assert zw.maps.z_width_certificate(device, found, velocity_filter=FILTERED) is not None
     coarse = zw.z_width(device.replace(coulomb_friction="0.001"), (0, 300), (0, 1), cells=(4, 4), hands={})
     assert float(coarse["spring_limit"]) == pytest.approx(2 * 0.001 / 2.24e-5)
     assert zw.z_width(PADDLE, (0, 300), (0, 1), cells=(4, 4), hands={}).attrs["not_covered"] == ""
 
 
-def test_no_spring_is_passive_without_damping_of_the_device() -> None:
+def test_no_spring_is_passive_without_damping_of_the_device():
     """A filter whose response does not end leaves springs alone, and b = 0 holds none but that of K = 0."""
-    filtered = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
     for damping, passive in ((0, [False, False]), (0.15, [True, False])):
-        found = zw.z_width(
-            PADDLE.replace(damping=damping), (0, 500), (-1, 1), (2, 1), velocity_filter=filtered, hands={}
-        )
+        device = PADDLE.replace(damping=damping)
+        found = zw.z_width(device, (0, 500), (-1, 1), (2, 1), velocity_filter=FILTERED, hands={})
         assert found["virtual_damping"].values.tolist() == [0]
         assert found["passive"].values[:, 0].tolist() == passive

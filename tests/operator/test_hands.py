@@ -1,4 +1,4 @@
-"""What each hand does in time, against values worked out by another road."""
+"""What each hand does in time, by values worked out on another road; and which hand is the usual one."""
 
 from __future__ import annotations
 
@@ -7,36 +7,41 @@ import math
 import numpy as np
 import pytest
 
-from zwidth import catalogue
+import zwidth as zw
 from zwidth.errors import InputError
 from zwidth.model.operator import (
+    OPERATORS,
     ConstantForce,
     Cycle,
     Dowel,
     Finger,
+    FingersOn,
     Guide,
+    HandsOn,
     MaliciousTouch,
     SoftTouch,
     TypicalTouch,
+    usual_hand,
 )
+from zwidth.model.operator.named import usual_kind
+from zwidth.show.explorer.computing import hand_kind_of, operator_of
+from zwidth.show.explorer.play import played
+from zwidth.show.explorer.state import State
 
-PADDLE = catalogue.device("haptic-paddle")
+PADDLE = zw.catalogue.device("haptic-paddle")
 TIMES = np.arange(601) * 0.001
 
 
-def test_a_constant_force_is_the_same_in_every_interval() -> None:
-    """N intervals, one value, no hand behind it."""
+def test_a_constant_force_is_the_same_in_every_interval():
     signals = ConstantForce(0.7).signals(TIMES)
-    assert signals.force is not None
     assert signals.force.tolist() == [0.7] * 600
     assert ConstantForce(0.7).hand == (0, 0, 0)
 
 
-def test_a_finger_approaches_and_stops_where_it_presses() -> None:
+def test_a_finger_approaches_and_stops_where_it_presses():
     """At 0.25 m/s from −30 mm it is at −5 mm after 0.1 s, and stops 1.5 N / 300 N/m = 5 mm inside."""
     finger = Finger(stiffness=300, force=1.5, speed=0.25, start=-0.03)
     anchor = finger.signals(TIMES).anchor
-    assert anchor is not None
     assert anchor[100] == pytest.approx(-0.005, abs=1e-15)
     arrival = round((0.03 + 0.005) / 0.25 / 0.001)
     assert anchor[arrival - 1] < 0.005
@@ -45,34 +50,21 @@ def test_a_finger_approaches_and_stops_where_it_presses() -> None:
     assert finger.initial_position == -0.03
 
 
-def test_a_finger_presses_with_its_force_on_a_rigid_wall() -> None:
-    """k (x_a − 0) = F in the end; on a wall of stiffness K the balance k(x_a − x) = K x gives F K/(K + k)."""
-    finger = Finger(stiffness=420, force=2.3)
-    anchor = finger.signals(np.arange(1001) * 0.001).anchor
-    assert anchor is not None
-    k, end = finger.hand.stiffness, float(anchor[-1])
-    assert k * end == pytest.approx(2.3, rel=1e-15)
-    wall = 300.0
-    depth = k * end / (k + wall)
-    assert wall * depth == pytest.approx(2.3 * wall / (wall + 420), rel=1e-14)
-
-
-def test_the_finger_has_the_published_numbers_and_the_chosen_damping_ratio() -> None:
+def test_the_finger_has_the_published_numbers_and_the_chosen_damping_ratio():
     """0.006 kg and 500 N/m (Gillespie & Cutkosky 1996); the damping is half of critical."""
     mass, stiffness, damping = Finger().hand
     assert (mass, stiffness) == (0.006, 500)
     assert damping / (2 * math.sqrt(mass * stiffness)) == pytest.approx(0.5, abs=0.01)
 
 
-def test_the_typical_touch_is_the_finger_at_moderate_speed() -> None:
-    """Same body; a touch of another name is another operator."""
+def test_the_typical_touch_is_the_finger_at_moderate_speed():
     typical = TypicalTouch()
     assert typical.hand == Finger().hand
     assert typical.describe().startswith("typical touch")
     assert typical.speed < MaliciousTouch().speed
 
 
-def test_the_malicious_touch_is_tuned_to_the_paddle_on_its_stiff_wall() -> None:
+def test_the_malicious_touch_is_tuned_to_the_paddle_on_its_stiff_wall():
     """√(k/m_h) is √(K/m) at 770 N/m, and c is above K T/2 − b by less than a third."""
     touch = MaliciousTouch()
     mass, damping, period = (float(PADDLE.exact(key)) for key in ("mass", "damping", "sample_period"))
@@ -81,25 +73,16 @@ def test_the_malicious_touch_is_tuned_to_the_paddle_on_its_stiff_wall() -> None:
     assert least < touch.damping < least * 4 / 3
 
 
-def test_a_soft_touch_grows_and_stays() -> None:
-    """A quarter of the force after a quarter of the rise, taken when the interval begins."""
+def test_a_soft_touch_grows_and_stays():
     force, anchor, _, _ = SoftTouch(force=0.2, rise=0.4, start=-0.002).signals(TIMES)
-    assert force is not None
     assert force[0] == 0
     assert force[100] == pytest.approx(0.05, rel=1e-14)
     assert set(force[400:]) == {0.2}
-    assert anchor is not None
     assert set(anchor) == {-0.002}
+    assert set(SoftTouch(force=0.2, rise=0).signals(TIMES).force) == {0.2}
 
 
-def test_a_soft_touch_without_a_rise_is_there_at_once() -> None:
-    """No division by zero."""
-    force = SoftTouch(force=0.2, rise=0).signals(TIMES).force
-    assert force is not None
-    assert set(force) == {0.2}
-
-
-def test_the_soft_touch_lies_in_the_window_where_the_coarse_encoder_buzzes() -> None:
+def test_the_soft_touch_lies_in_the_window_where_the_coarse_encoder_buzzes():
     """f_c < F < K Δ − f_c at 240 and 120 N/m with Δ = 2.24 mm; no force does so at 80 and 90 N/m."""
     friction, edge = float(PADDLE.exact("coulomb_friction")), 100 * float(PADDLE.exact("resolution"))
     for stiffness in (240, 120):
@@ -108,7 +91,7 @@ def test_the_soft_touch_lies_in_the_window_where_the_coarse_encoder_buzzes() -> 
         assert stiffness * edge - friction < friction
 
 
-def test_a_dowel_weighs_what_its_wood_weighs() -> None:
+def test_a_dowel_weighs_what_its_wood_weighs():
     """A rod of 8 mm and 150 mm: 7.540 cm³, at 0.65 g/cm³ 4.90 g, the default; twice as thick, four times."""
     assert Dowel.of_size(0.15, 0.008).mass == pytest.approx(7.5398e-6 * 650, rel=1e-4)
     assert Dowel().mass == pytest.approx(Dowel.of_size(0.15, 0.008).mass, rel=1e-3)
@@ -117,44 +100,78 @@ def test_a_dowel_weighs_what_its_wood_weighs() -> None:
     assert thick.force == 3
 
 
-@pytest.mark.parametrize("size", [(0, 0.008), (0.15, -0.008), (float("nan"), 0.008), (0.15, float("inf"))])
-def test_a_dowel_has_a_size(size: tuple[float, float]) -> None:
-    """A rod without length or thickness is refused."""
-    with pytest.raises(InputError, match="must be > 0 and finite"):
-        Dowel.of_size(*size)
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        *(
+            (lambda size=size: Dowel.of_size(*size), "must be > 0 and finite")
+            for size in ((0, 0.008), (0.15, -0.008), (float("nan"), 0.008), (0.15, float("inf")))
+        ),
+        (lambda: Cycle(low=1e-3, high=1e-3), "low must be < high"),
+    ],
+)
+def test_a_hand_that_cannot_be_is_refused(make, said):
+    with pytest.raises(InputError, match=said):
+        make()
 
 
-def test_a_dowel_only_pushes() -> None:
-    """Mass and force; a grip that damps is held to a hand at rest."""
+def test_a_dowel_only_pushes():
     force, anchor, _, _ = Dowel(force=3.5).signals(TIMES)
-    assert force is not None
     assert set(force) == {3.5}
     assert anchor is None
     assert Dowel().hand == (0.0049, 0, 0)
     gripped = Dowel(damping=0.05, start=-0.01).signals(TIMES).anchor
-    assert gripped is not None
     assert set(gripped) == {-0.01}
 
 
-def test_a_guide_pushes_at_constant_speed_and_holds() -> None:
+def test_a_guide_pushes_at_constant_speed_and_holds():
     """From −4 mm at 0.05 m/s: at the surface after 0.08 s, at 9 mm from 0.26 s on."""
     signals = Guide(start=-0.004, speed=0.05, depth=0.009).signals(TIMES)
     position = signals.position
-    assert position is not None
     assert position[80] == pytest.approx(0, abs=1e-17)
     assert position[259] < 0.009
     assert set(position[261:]) == {0.009}
     assert signals.switch_position is None
 
 
-def test_a_cycle_is_one_sample_in_and_one_out() -> None:
-    """low at even samples, high at odd ones."""
+def test_a_cycle_is_one_sample_in_and_one_out():
     position = Cycle(low=-2e-6, high=3e-4).signals(TIMES).position
-    assert position is not None
     assert position[:4].tolist() == [-2e-6, 3e-4, -2e-6, 3e-4]
 
 
-def test_a_cycle_goes_in_before_it_comes_out() -> None:
-    """low ≥ high is no cycle."""
-    with pytest.raises(InputError, match="low must be < high"):
-        Cycle(low=1e-3, high=1e-3)
+def turning(inertia: object) -> zw.Device:
+    """A device that turns, of this inertia."""
+    return zw.rotary(inertia=inertia, damping="2 mN*m*s/rad", rate="1 kHz")
+
+
+@pytest.mark.parametrize(
+    ("inertia", "kind"),
+    [
+        ("2e-5 kg*m^2", FingersOn),
+        ("0.000299 kg*m^2", FingersOn),
+        ("0.0003 kg*m^2", HandsOn),
+        (("2e-5", "0.006"), HandsOn),
+        (None, HandsOn),
+    ],
+)
+def test_what_turns_is_a_knob_or_a_wheel(inertia, kind):
+    assert type(usual_hand(turning(inertia))) is kind
+    assert OPERATORS[usual_kind(turning(inertia))] is kind
+    assert type(usual_hand(zw.catalogue.device("haptic-paddle"))) is Finger
+
+
+def test_fingers_on_a_knob_are_two_fingers_at_its_edge():
+    """At the edge, 15 mm from the axis, each has the mass, spring, damper and force of a finger."""
+    one, both, r = Finger(), FingersOn(), 0.015
+    for name in ("mass", "stiffness", "damping"):
+        assert getattr(both, name) / r**2 / 2 == pytest.approx(getattr(one, name), rel=1e-9)
+    assert both.force / r / 2 == pytest.approx(one.force)
+
+
+def test_explore_and_play_hold_a_wheel_with_two_hands():
+    wheel = turning("0.006 kg*m^2")
+    state = State.of(wheel, zw.Wall("0.3 N*m/deg"))
+    assert hand_kind_of(state) == "hands-on"
+    assert operator_of(state) == HandsOn()
+    assert operator_of(state.with_extra("operator", {"type": "finger", "force": "1 N*m"})) == Finger(force=1)
+    assert played(wheel, zw.Wall("0.3 N*m/deg")).hand == HandsOn().hand

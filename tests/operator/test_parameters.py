@@ -1,18 +1,18 @@
-"""Operators that are a few numbers: units, bounds, comparison."""
+"""Operators that are a few numbers: units, bounds, comparison, and the page on them."""
 
 from __future__ import annotations
 
 import dataclasses
 import inspect
 import re
-from typing import Any
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from zwidth.errors import InputError
 from zwidth.model import operator as operators
-from zwidth.model.operator import OPERATORS, ParametricOperator
+from zwidth.model.operator import OPERATORS, Operator
 from zwidth.quantity.parameter import parameters_of
 from zwidth.quantity.text import unit_text
 from zwidth.quantity.units import parse_number
@@ -22,8 +22,7 @@ EACH = pytest.mark.parametrize("kind", OPERATORS.values(), ids=list(OPERATORS))
 
 
 @EACH
-def test_works_as_it_is(kind: type[ParametricOperator]) -> None:
-    """Every hand of the registry needs no argument and gives finite signals of the right lengths."""
+def test_works_as_it_is_and_starts_where_its_signals_start(kind):
     hand = kind()
     force, anchor, position, switches = hand.signals(TIMES)
     assert force is None or force.shape == (800,)
@@ -34,28 +33,13 @@ def test_works_as_it_is(kind: type[ParametricOperator]) -> None:
     assert given
     assert all(np.isfinite(signal).all() and signal.dtype == np.float64 for signal in given)
     assert hand.kinematic == (position is not None)
+    assert (anchor is not None) == (hand.hand.stiffness > 0 or hand.hand.damping > 0)
+    # no force comes from nowhere: anchor and prescribed position begin at the handle
+    assert {s[0] for s in (anchor, position) if s is not None} <= {hand.initial_position}
 
 
 @EACH
-def test_a_spring_or_damper_has_an_anchor(kind: type[ParametricOperator]) -> None:
-    """The loop is told where the spring and the damper end, and only where there is one."""
-    hand = kind()
-    tied = hand.hand.stiffness > 0 or hand.hand.damping > 0
-    assert (hand.signals(TIMES).anchor is not None) == tied
-
-
-@EACH
-def test_starts_where_its_signals_start(kind: type[ParametricOperator]) -> None:
-    """At t = 0 the anchor, or the prescribed position, is at the handle: no force comes from nowhere."""
-    hand = kind()
-    signals = hand.signals(TIMES)
-    for start in (s[0] for s in (signals.anchor, signals.position) if s is not None):
-        assert start == hand.initial_position
-
-
-@EACH
-def test_every_number_has_units_a_meaning_and_a_place_in_the_docstring(kind: type[Any]) -> None:
-    """A command line can offer each number with its unit; a reader finds it in a docstring."""
+def test_every_number_has_units_a_meaning_and_a_place_in_the_docstring(kind):
     text = "".join(inspect.getdoc(k) or "" for k in kind.__mro__)
     for field in dataclasses.fields(kind):
         quantity = kind.parameters()[field.name]
@@ -67,8 +51,7 @@ def test_every_number_has_units_a_meaning_and_a_place_in_the_docstring(kind: typ
 
 
 @EACH
-def test_equal_numbers_are_equal_hands(kind: type[Any]) -> None:
-    """Hands are values: equal, hashable, and rebuilt by their repr."""
+def test_equal_numbers_are_equal_hands(kind):
     if not dataclasses.fields(kind):
         assert (kind(), hash(kind())) == (kind(), hash(kind()))
         return
@@ -82,8 +65,7 @@ def test_equal_numbers_are_equal_hands(kind: type[Any]) -> None:
 
 
 @EACH
-def test_describes_itself_with_every_number(kind: type[ParametricOperator]) -> None:
-    """One line, in linear or rotary units."""
+def test_describes_itself_with_every_number(kind):
     hand = kind()
     for motion in ("linear", "rotary"):
         line = hand.describe(motion)
@@ -95,7 +77,7 @@ def test_describes_itself_with_every_number(kind: type[ParametricOperator]) -> N
 
 @EACH
 @pytest.mark.parametrize("bad", [float("nan"), float("inf"), "soon", None, True, [1, 2]])
-def test_a_number_must_be_finite(kind: type[Any], bad: object) -> None:
+def test_a_number_must_be_finite(kind, bad):
     """What is no finite number is refused by the name of the argument."""
     for name in kind.parameters():
         with pytest.raises(InputError, match=name):
@@ -103,8 +85,7 @@ def test_a_number_must_be_finite(kind: type[Any], bad: object) -> None:
 
 
 @EACH
-def test_each_bound_holds_from_both_sides(kind: type[Any]) -> None:
-    """The bound itself is allowed where it says so; just past it the message says why."""
+def test_each_bound_holds_from_both_sides(kind):
     for field in dataclasses.fields(kind):
         bound = parameters_of(kind)[field.name].bound
         if not bound:
@@ -119,15 +100,52 @@ def test_each_bound_holds_from_both_sides(kind: type[Any]) -> None:
             assert getattr(kind(**{field.name: 0}), field.name) == 0
 
 
-def test_a_number_may_carry_its_unit() -> None:
+def test_a_number_may_carry_its_unit():
     """ "250 mN" is 0.25 N; for a rotary device a torque is taken; a length is refused."""
-    assert operators.Dowel(force="250 mN").force == 0.25  # type: ignore[arg-type]
-    assert operators.Dowel(force="30 mN*m").force == 0.03  # type: ignore[arg-type]
+    assert operators.Dowel(force="250 mN").force == 0.25
+    assert operators.Dowel(force="30 mN*m").force == 0.03
     with pytest.raises(InputError, match="force is in N"):
-        operators.Dowel(force="250 mm")  # type: ignore[arg-type]
+        operators.Dowel(force="250 mm")
 
 
-def test_the_registry_cannot_be_changed() -> None:
-    """Whoever adds a hand adds a line to the package."""
+def test_the_registry_cannot_be_changed():
     with pytest.raises(TypeError):
-        OPERATORS["mine"] = operators.Dowel  # type: ignore[index]
+        OPERATORS["mine"] = operators.Dowel
+
+
+PAGE = (Path(__file__).parents[2] / "docs" / "operators.md").read_text(encoding="utf-8")
+
+
+def _section(title: str) -> str:
+    return PAGE.split(f"\n## {title}\n", 1)[1].split("\n## ", 1)[0]
+
+
+@pytest.mark.parametrize("name", OPERATORS)
+def test_every_number_stands_on_the_page_with_its_default(name):
+    kind = OPERATORS[name]
+    rows = re.findall(
+        r"^\| `(\w+)` \| (\S+ \S+) \| \S", _section(f"{kind.__name__} (`{name}`)"), re.MULTILINE
+    )
+    hand = kind()
+    expected = [
+        (key, f"{getattr(hand, key):.6g} {q.unit_for(kind.motion)}") for key, q in kind.parameters().items()
+    ]
+    assert sorted(rows) == sorted(expected)
+
+
+def test_every_hand_has_a_section():
+    titles = {title.split(" ")[0] for title in re.findall(r"^## (.+)$", PAGE, re.MULTILINE)}
+    hands = {
+        n
+        for n in operators.__all__
+        if isinstance(k := getattr(operators, n), type) and issubclass(k, Operator)
+    }
+    assert hands - {"Operator", "ParametricOperator"} <= titles
+
+
+def test_the_links_of_the_table_lead_to_sections():
+    titles = re.findall(r"^## (.+)$", PAGE, re.MULTILINE)
+    anchors = {re.sub(r"[^\w -]", "", title).lower().replace(" ", "-") for title in titles}
+    links = re.findall(r"\]\(#([\w-]+)\)", PAGE)
+    assert len(links) > 9
+    assert set(links) <= anchors

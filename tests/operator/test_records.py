@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import pickle
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,8 +26,7 @@ RECORDERS = pytest.mark.parametrize("make", [RecordedForce, PrescribedMotion, tr
 
 
 @RECORDERS
-def test_takes_any_row_of_numbers(make: Any) -> None:
-    """Lists, tuples, arrays, fractions, other types of number: the same record."""
+def test_takes_any_row_of_numbers(make):
     expected = make([0.5, 0.25, 1.0])
     for values in [(0.5, 0.25, 1), np.array([0.5, 0.25, 1], dtype=np.float32), [Fraction(1, 2), 0.25, 1]]:
         assert make(values) == expected
@@ -38,8 +36,7 @@ def test_takes_any_row_of_numbers(make: Any) -> None:
 
 
 @RECORDERS
-def test_a_record_is_its_own(make: Any) -> None:
-    """Changing the given array, or the signals of an earlier touch, changes no record."""
+def test_a_record_is_its_own(make):
     values = np.array([1.0, 2.0, 3.0, 4.0])
     hand = make(values)
     times = TIMES if make is RecordedForce else TIMES[:4]
@@ -55,8 +52,7 @@ def test_a_record_is_its_own(make: Any) -> None:
 
 
 @RECORDERS
-def test_a_record_shows_its_length_only(make: Any) -> None:
-    """A million samples do not fill a terminal."""
+def test_a_record_shows_its_length_only(make):
     assert "<100000 values>" in repr(make(np.zeros(100_000)))
     assert len(make(np.zeros(100_000)).describe()) < 200
 
@@ -76,75 +72,42 @@ def test_a_record_shows_its_length_only(make: Any) -> None:
         ([10**400], "one number per sample"),
     ],
 )
-def test_refuses_what_is_no_row_of_finite_numbers(make: Any, bad: object, message: str) -> None:
-    """The message says what was given, and where."""
+def test_refuses_what_is_no_row_of_finite_numbers(make, bad, message):
     with pytest.raises(InputError, match=message):
         make(bad)
 
 
-def test_a_recorded_force_is_held_in_each_interval() -> None:
-    """One value per interval, in order."""
-    force = RecordedForce([0.1, -0.2, 0.3, 0.4]).signals(TIMES).force
-    assert force is not None
-    assert force.tolist() == [0.1, -0.2, 0.3, 0.4]
-
-
-@pytest.mark.parametrize("length", [3, 5])
-def test_a_recorded_force_fits_the_touch(length: int) -> None:
-    """One value too few or too many is refused, naming both lengths and the duration that would fit."""
-    with pytest.raises(InputError, match=rf"{length} values.*4 sample intervals.*{length / 1000} s"):
-        RecordedForce(np.ones(length)).signals(TIMES)
-
-
-def test_prescribed_positions_fit_the_touch() -> None:
-    """N + 1 positions and N positions of switching for N intervals; one off is refused."""
+def test_records_are_taken_as_they_are():
+    """N + 1 positions, N positions of switching and N forces for N intervals."""
     motion = PrescribedMotion([0, 1, 2, 1, 0], switch_positions=[0.5, 1.5, 1.5, 0.5])
     signals = motion.signals(TIMES)
-    assert signals.position is not None
-    assert signals.switch_position is not None
     assert signals.position.tolist() == [0, 1, 2, 1, 0]
     assert signals.switch_position.tolist() == [0.5, 1.5, 1.5, 0.5]
     assert motion.kinematic
-    with pytest.raises(InputError, match=r"positions has 4 values.*5 sample instants"):
-        PrescribedMotion([0, 1, 2, 1]).signals(TIMES)
-    with pytest.raises(InputError, match=r"switch_positions has 5 values.*4 sample intervals"):
-        PrescribedMotion([0, 1, 2, 1, 0], switch_positions=[0] * 5).signals(TIMES)
+    assert RecordedForce([0.1, -0.2, 0.3, 0.4]).signals(TIMES).force.tolist() == [0.1, -0.2, 0.3, 0.4]
 
 
-def test_a_function_of_time_prescribes_positions() -> None:
+def test_a_function_of_time_prescribes_positions():
     """It is asked at each sample instant, and at 0 for the start."""
     motion = PrescribedMotion(lambda t: 0.002 - 3 * t)
     position = motion.signals(TIMES).position
-    assert position is not None
     assert position == pytest.approx([0.002, -0.001, -0.004, -0.007, -0.010])
     assert motion.initial_position == 0.002
 
 
-@pytest.mark.parametrize(
-    "function", [lambda t: None, lambda t: "x", lambda t: float("nan") if t > 0.001 else t]
-)
-def test_a_function_gives_finite_positions(function: Any) -> None:
-    """A function that gives something else is refused, naming the time."""
-    with pytest.raises(InputError, match="one finite number for a time"):
-        PrescribedMotion(function).signals(TIMES)
-
-
-def test_tracking_holds_the_last_position() -> None:
-    """After the end of the motion the anchor stays; of a longer one the touch sees the beginning."""
+def test_tracking_holds_the_last_position():
     for positions, expected in [([1, 2, 3], [1, 2, 3, 3, 3]), (range(9), [0, 1, 2, 3, 4])]:
         anchor = tracking(list(positions)).signals(TIMES).anchor
-        assert anchor is not None
         assert anchor.tolist() == expected
 
 
-def test_a_hand_tied_by_nothing_has_no_anchor() -> None:
-    """Without spring and damper only its mass is felt."""
+def test_a_hand_tied_by_nothing_has_no_anchor():
     hand = Tracking([0.0], stiffness=0, damping=0, mass=0.01)
     assert hand.signals(TIMES).anchor is None
     assert hand.hand == (0.01, 0, 0)
 
 
-def test_bandwidth_gives_stiffness_and_damping() -> None:
+def test_bandwidth_gives_stiffness_and_damping():
     """0.05 kg at 20 Hz: the undamped frequency is √(k/M), the damping ratio c/(2√(kM))."""
     hand = Tracking.of_bandwidth([0.0], frequency=20, moved_mass=0.05, damping_ratio=0.3, mass=0.01).hand
     assert np.sqrt(hand.stiffness / 0.05) / (2 * np.pi) == pytest.approx(20, rel=1e-14)
@@ -152,26 +115,11 @@ def test_bandwidth_gives_stiffness_and_damping() -> None:
     assert hand.mass == 0.01
 
 
-@pytest.mark.parametrize("bad", [{"frequency": 0}, {"moved_mass": -1}, {"frequency": float("nan")}])
-def test_bandwidth_needs_a_mass_and_a_frequency(bad: dict[str, float]) -> None:
-    """Without them there is no stiffness to work out."""
-    with pytest.raises(InputError, match=f"{next(iter(bad))} must be > 0 and finite"):
-        Tracking.of_bandwidth([0.0], **{"frequency": 20, "moved_mass": 0.05, **bad})
-
-
-@pytest.mark.parametrize("bad", [{"stiffness": -1}, {"damping": -1e-9}, {"mass": float("inf")}])
-def test_tracking_validates_its_numbers(bad: dict[str, float]) -> None:
-    """The same bounds as for every hand."""
-    with pytest.raises(InputError, match=next(iter(bad))):
-        Tracking([0.0], **{"stiffness": 1, "damping": 1, **bad})
-
-
 DEVICE = zw.Device(damping=0.15, coulomb_friction=0.01, resolution=0, rate=1000)
 
 
 def _witness(stiffness: float = 120, damping: float = 0.1, **changes: Any) -> zw.Witness:
     witness = zw.check(DEVICE.replace(**changes), zw.Wall(stiffness=stiffness, damping=damping)).witness
-    assert witness is not None
     return witness
 
 
@@ -180,13 +128,11 @@ def _repeating() -> zw.Witness:
     return _witness(240, 0, resolution=2.24e-3, coulomb_friction=0.12)
 
 
-def test_a_witness_is_replayed_position_by_position() -> None:
-    """Every round is listed; after the end the hand stays."""
+def test_a_witness_is_replayed_position_by_position():
     witness = _witness()
     hand = WitnessMotion(witness)
     times = np.arange(hand.intervals + 4) * 0.001
     position = hand.signals(times).position
-    assert position is not None
     assert hand.kinematic
     assert position.tolist() == [*witness.positions, *[witness.positions[-1]] * 3]
     assert hand.initial_position == witness.positions[0]
@@ -194,12 +140,11 @@ def test_a_witness_is_replayed_position_by_position() -> None:
     assert hash(hand) == hash(WitnessMotion(witness))
 
 
-def test_the_energy_of_a_replayed_witness_is_what_it_claims() -> None:
+def test_the_energy_of_a_replayed_witness_is_what_it_claims():
     """−Σ f Δx − f_c Σ|Δx| − (b/T) Σ Δx² with the wall's force worked out here, on the replayed positions."""
     witness = _witness()
     hand = WitnessMotion(witness)
     x = hand.signals(np.arange(hand.intervals + 1) * 0.001).position
-    assert x is not None
     before = np.concatenate([[0.0], x[:-1]])
     force = np.where(x > 0, 120 * x + 0.1 * (x - before) / 0.001, 0.0)
     step = np.diff(x)
@@ -207,58 +152,32 @@ def test_the_energy_of_a_replayed_witness_is_what_it_claims() -> None:
     assert out == pytest.approx(witness.energy, rel=1e-9)
 
 
-def test_rounds_of_a_witness_can_be_limited() -> None:
-    """The repeated part so many times, and no more."""
+def test_rounds_of_a_witness_can_be_limited():
     witness = _repeating()
     assert witness.motion.rounds > 3
     hand = WitnessMotion(witness, rounds=3)
     assert hand.intervals == witness.motion.repeated(3).samples
     anchor = tracking(witness.motion.repeated(3)).signals(np.arange(hand.intervals + 1) * 0.001).anchor
     position = hand.signals(np.arange(hand.intervals + 1) * 0.001).position
-    assert anchor is not None
-    assert position is not None
     assert anchor.tolist() == position.tolist()
 
 
-def test_switch_positions_of_a_witness_are_replayed() -> None:
-    """Where a delayed force changes within the interval, so does the motion; then it stays."""
+def test_switch_positions_of_a_witness_are_replayed():
     witness = _witness(900, 0, delay=0.0003)
     hand = WitnessMotion(witness, rounds=2)
     listed = witness.motion.repeated(2).listed()
     assert listed.switch_positions
     signals = hand.signals(np.arange(hand.intervals + 3) * 0.001)
-    assert signals.switch_position is not None
     expected = [*map(float, listed.switch_positions), *[float(listed.positions[-1])] * 2]
     assert signals.switch_position.tolist() == expected
     cut = hand.signals(np.arange(3) * 0.001)
-    assert cut.switch_position is not None
     assert cut.switch_position.tolist() == expected[:2]
 
 
 @pytest.mark.parametrize("make", [WitnessMotion, tracking])
-def test_a_witness_is_replayed_at_its_own_period(make: Any) -> None:
-    """At another sample period it would prove nothing."""
+def test_a_witness_is_replayed_at_its_own_period(make):
     with pytest.raises(InputError, match=r"period of 0\.001 s and is replayed at 0\.002 s"):
         make(_witness()).signals(np.arange(9) * 0.002)
-
-
-@pytest.mark.parametrize("rounds", [0, -1, 2.5, True])
-def test_rounds_are_whole(rounds: Any) -> None:
-    """A part is done a whole number of times."""
-    with pytest.raises(InputError, match="rounds must be a whole number ≥ 1"):
-        WitnessMotion(_witness(), rounds=rounds)
-
-
-def test_a_motion_too_long_to_list_is_refused() -> None:
-    """The message says how to shorten it."""
-    with pytest.raises(InputError, match="rounds=100"):
-        WitnessMotion(_repeating(), rounds=10**9)
-
-
-def test_a_passive_loop_has_no_witness() -> None:
-    """None is refused in words."""
-    with pytest.raises(InputError, match="a passive loop has no witness"):
-        WitnessMotion(zw.check(DEVICE, zw.Wall(stiffness=1)).witness)
 
 
 @pytest.mark.parametrize(
@@ -271,8 +190,7 @@ def test_a_passive_loop_has_no_witness() -> None:
         ("\ufefft f\r\n0 0.5\r\n1 -1e-3\r\n2 2\r\n", "f"),
     ],
 )
-def test_a_force_is_read_from_a_file(text: str, column: str | int | None, tmp_path: Path) -> None:
-    """One column, with or without names, comments and other columns."""
+def test_a_force_is_read_from_a_file(text, column, tmp_path):
     path = tmp_path / "force.csv"
     path.write_bytes(text.encode())
     assert RecordedForce.from_file(path, column) == RecordedForce([0.5, -1e-3, 2])
@@ -295,19 +213,53 @@ def test_a_force_is_read_from_a_file(text: str, column: str | int | None, tmp_pa
         (bytes(2**20 + 1), None, "line of more than"),
     ],
 )
-def test_a_file_of_another_shape_is_refused(
-    text: bytes, column: str | int | None, message: str, tmp_path: Path
-) -> None:
-    """The message names the file, the line and what is wrong."""
+def test_a_file_of_another_shape_is_refused(text, column, message, tmp_path):
     path = tmp_path / "force.csv"
     path.write_bytes(text)
     with pytest.raises(InputError, match=message):
         RecordedForce.from_file(path, column)
 
 
-def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
-    """No traceback."""
-    with pytest.raises(InputError, match=r"nowhere\.csv cannot be read"):
-        RecordedForce.from_file(tmp_path / "nowhere.csv")
-    with pytest.raises(InputError, match="cannot be read"):
-        RecordedForce.from_file(tmp_path)
+BAND = {"frequency": 20, "moved_mass": 0.05}
+TIED = {"stiffness": 1, "damping": 1}
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        *(
+            (lambda n=n: RecordedForce(np.ones(n)), rf"{n} values.*4 sample intervals.*{n / 1000} s")
+            for n in (3, 5)
+        ),
+        (lambda: PrescribedMotion([0, 1, 2, 1]), r"positions has 4 values.*5 sample instants"),
+        (
+            lambda: PrescribedMotion([0, 1, 2, 1, 0], switch_positions=[0] * 5),
+            r"switch_positions has 5 values.*4 sample intervals",
+        ),
+        *(
+            (lambda function=function: PrescribedMotion(function), "one finite number for a time")
+            for function in (lambda t: None, lambda t: "x", lambda t: float("nan") if t > 0.001 else t)
+        ),
+        *(
+            (lambda k=k, v=v: Tracking.of_bandwidth([0.0], **BAND | {k: v}), f"{k} must be > 0 and finite")
+            for k, v in (("frequency", 0), ("moved_mass", -1), ("frequency", float("nan")))
+        ),
+        (lambda: Tracking([0.0], **TIED | {"stiffness": -1}), "stiffness"),
+        (lambda: Tracking([0.0], **TIED | {"damping": -1e-9}), "damping"),
+        (lambda: Tracking([0.0], **TIED, mass=float("inf")), "mass"),
+        *(
+            (lambda n=n: WitnessMotion(_witness(), rounds=n), "rounds must be a whole number ≥ 1")
+            for n in (0, -1, 2.5, True)
+        ),
+        (lambda: WitnessMotion(_repeating(), rounds=10**9), "rounds=100"),
+        (
+            lambda: WitnessMotion(zw.check(DEVICE, zw.Wall(stiffness=1)).witness),
+            "a passive loop has no witness",
+        ),
+        (lambda: RecordedForce.from_file("nowhere.csv"), r"nowhere\.csv cannot be read"),
+        (lambda: RecordedForce.from_file("."), "cannot be read"),
+    ],
+)
+def test_what_does_not_fit_the_touch_is_refused(make, said):
+    with pytest.raises(InputError, match=said):
+        make().signals(TIMES)

@@ -1,23 +1,32 @@
-"""Advice is the bound of the outcome that is printed: each value is asked of `check` again, on both sides."""
+"""Advice is the bound of the outcome that is printed, a limit is one as printed: both are asked again."""
 
 from __future__ import annotations
 
 import random
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
+import pytest
 from strategies import seeds
 
 import zwidth as zw
+from zwidth.cli.check.limit_report import _claim
 from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering import OnePole, Window
 from zwidth.passivity.advice import Advice
+from zwidth.passivity.bracket import Bracket, passive_limit
+from zwidth.passivity.bracket.bracket import parameter_of
 from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.formulas.nonlinear_spring import certify_spring
+from zwidth.passivity.loop_advice import advise_on_spring
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.units import parse_number
 
+PADDLE = zw.Device(damping="0.15", coulomb_friction="0.12", resolution="22.4e-6", rate=1000)
+IDEAL = PADDLE.replace(resolution=0)
 Loop = tuple[zw.Device, Any]
 
 _MORE = ("rate", "damping", "coulomb_friction", "time_constant")
@@ -26,8 +35,7 @@ _MORE = ("rate", "damping", "coulomb_friction", "time_constant")
 _SAID = re.compile(r"(?:to|as low as) (-?[\d.e-]+) ?(\D*?)(?: while contact is kept)?(?: \(now .*\))?$")
 
 
-def rounded(value: float) -> Exact:
-    """As a person types it."""
+def typed(value: float) -> Exact:
     return Exact(f"{value:.4g}")
 
 
@@ -37,33 +45,33 @@ def drawn(rng: random.Random) -> Loop:
     late = rng.choice([0, 0, rng.randrange(1, 4), rng.uniform(0, 3), rng.uniform(0, 3)])
     stiffness, damping = rng.uniform(0, 1.3) * b / period / (1 + late), rng.uniform(-0.3, 1) * b
     numbers: dict[str, Any] = {
-        "damping": rounded(b),
-        "sample_period": rounded(period),
-        "delay": late * rounded(period).fraction if isinstance(late, int) else rounded(late * period),
+        "damping": typed(b),
+        "sample_period": typed(period),
+        "delay": late * typed(period).fraction if isinstance(late, int) else typed(late * period),
     }
     if rng.random() < 0.6:
-        numbers["resolution"] = rounded(10 ** rng.uniform(-6, -4))
+        numbers["resolution"] = typed(10 ** rng.uniform(-6, -4))
     if rng.random() < 0.7:
-        numbers["coulomb_friction"] = rounded(10 ** rng.uniform(-3, 0))
+        numbers["coulomb_friction"] = typed(10 ** rng.uniform(-3, 0))
     if rng.random() < 0.12:
         key = rng.choice([k for k in numbers if float(numbers[k])])
-        end = rounded(float(numbers[key]) * rng.uniform(1.01, 1.5))
+        end = typed(float(numbers[key]) * rng.uniform(1.01, 1.5))
         numbers[key] = Interval(*sorted((Exact(numbers[key]), end), key=float))
     device = zw.Device(**numbers, motion=rng.choice(["linear", "linear", "linear", "rotary"]))
     return device, _law(rng, stiffness, damping, period)
 
 
 def _law(rng: random.Random, stiffness: float, damping: float, period: float) -> Environment:
-    k, b = rounded(stiffness), rounded(damping)
+    k, b = typed(stiffness), typed(damping)
     kind = rng.randrange(9)
     if kind == 0:
         return zw.Wall(k)
     if kind < 5:
-        slow = OnePole(rounded(period * 10 ** rng.uniform(-1, 1)))
+        slow = OnePole(typed(period * 10 ** rng.uniform(-1, 1)))
         filters = [None, None, Window(rng.randrange(2, 6)), slow]
-        b = rng.choice([b, rounded(abs(damping) / 4)])
+        b = rng.choice([b, typed(abs(damping) / 4)])
         return zw.Wall(k, b, rng.choice(filters), clamped=rng.random() < 0.1)
-    branch, eta = rounded(stiffness * rng.uniform(0.1, 1)), rounded(abs(damping) * rng.uniform(0.2, 2) + 1e-4)
+    branch, eta = typed(stiffness * rng.uniform(0.1, 1)), typed(abs(damping) * rng.uniform(0.2, 2) + 1e-4)
     how = rng.choice(["backward", "tustin"])
     if kind == 5:
         return zw.Maxwell(branch, eta, discretization=how)
@@ -74,22 +82,21 @@ def _law(rng: random.Random, stiffness: float, damping: float, period: float) ->
 
 
 def turned(loop: Loop, advice: Advice, value: float | Fraction) -> Loop:
-    """The loop with another value of what is advised on."""
     device, law = loop
     key, exact = advice.parameter, Exact(value)
     if key == "stiffness":
-        return device, law.replace(stiffness=_end(law.stiffness, exact, False))
+        return device, law.replace(stiffness=end(law.stiffness, exact))
     if key == "virtual_damping":
         return device, law.replace(damping=exact)
     if key == "time_constant":
         return device, law.replace(velocity_filter=OnePole(exact))
     if key == "rate":
         period = Exact(1 / exact.fraction)
-        return device.replace(sample_period=_end(device.sample_period, period, False)), law
-    return device.replace(**{key: _end(getattr(device, key), exact, key in _MORE)}), law
+        return device.replace(sample_period=end(device.sample_period, period)), law
+    return device.replace(**{key: end(getattr(device, key), exact, low=key in _MORE)}), law
 
 
-def _end(now: Any, value: Exact, low: bool) -> Any:
+def end(now: Any, value: Exact, low: bool = False) -> Any:
     """The end of an interval that asks for more, moved; a value in the place of one."""
     if not isinstance(now, Interval):
         return value
@@ -128,7 +135,7 @@ def _of_a_number(loop: Loop, advice: Advice, contact: str, rng: random.Random) -
         if not holds(turned(loop, advice, value), advice, contact):
             yield f"not {where}, {value!r}"
             return
-    high = 3e-3 if is_slow(loop) else 2e-6
+    high = 3e-3 if is_slow(loop) else 1e-6
     beyond = to * (1 - high if more else 1 + high)
     limited = not advice.is_alone and (to or not more)
     if limited and holds(turned(loop, advice, beyond or 1e-14), advice, contact):
@@ -136,7 +143,6 @@ def _of_a_number(loop: Loop, advice: Advice, contact: str, rng: random.Random) -
 
 
 def is_slow(loop: Loop) -> bool:
-    """Whether limits are looked for in larger steps."""
     from zwidth.passivity.corners import worst_corners
     from zwidth.passivity.parameter_limits import is_of_high_degree
 
@@ -155,10 +161,39 @@ def holds(loop: Loop, advice: Advice, contact: str) -> bool:
 def _of_another_filter(loop: Loop, advice: Advice, contact: str) -> Iterator[str]:
     device, law = loop
     name, number = re.search(r"(window|one-pole filter) of ([\d.]+ ?\w+)", advice.text).groups()
-    is_window = name == "window"
-    other = Window(int(number.split()[0])) if is_window else OnePole(Exact(parse_number(number, "s", "it")))
+    if name == "window":
+        samples = int(number.split()[0])
+        other, less = Window(samples), Window(samples - 1) if samples > 2 else None
+    else:
+        other, less = OnePole(Exact(parse_number(number, "s", "it"))), None
     if not holds((device, law.replace(velocity_filter=other)), advice, contact):
         yield f"{advice}: not so"
+    if less and holds((device, law.replace(velocity_filter=less)), advice, contact):
+        yield f"{advice}: a shorter one will do"
+
+
+ADVISED = {
+    "spring": (PADDLE, zw.Wall(770)),
+    "delayed": (PADDLE.replace(delay="0.0013"), zw.Wall(120)),
+    "coarse": (PADDLE.replace(resolution="22.4e-4"), zw.Wall(150)),
+    "damped": (IDEAL, zw.Wall(200, "0.08")),
+    "filtered": (IDEAL, zw.Wall(280, "0.08", OnePole("0.001"))),
+    "much damped": (IDEAL, zw.Wall(100, "0.12")),
+    "passive spring": (PADDLE, zw.Wall(180)),
+    "passive damped": (IDEAL.replace(delay="0.0001"), zw.Wall(80, "0.02")),
+    "passive, negative virtual damping": (PADDLE, zw.Wall(80, "-0.02")),
+}
+
+
+@pytest.mark.parametrize("name", ADVISED)
+def test_advice_is_enough_and_no_more(name: str) -> None:
+    advice = check_by_closed_forms(*ADVISED[name], contact="kept").advice
+    of_filters = [a for a in advice if a.parameter == "velocity_filter"]
+    assert {a.kind for a in advice} == {"slack" if name.startswith("passive") else "change"}
+    assert any(a.to for a in advice if a not in of_filters)
+    assert all(a.current == "backward difference" for a in of_filters)
+    assert of_filters or name != "much damped"
+    assert list(faults(*ADVISED[name], "kept", random.Random(1))) == []
 
 
 def test_a_spring_behind_a_part_of_a_sample_has_its_own_slack() -> None:
@@ -187,7 +222,6 @@ def test_a_rate_of_whole_samples_stands_alone() -> None:
 
 
 def test_a_negative_damper_is_told_with_its_sign() -> None:
-    """From −0.02 down, not from 0.02 up."""
     verdict = zw.check(zw.Device(damping="0.2", rate="2 kHz"), zw.Wall(150, "-0.02"))
     (told,) = [advice for advice in verdict.advice if advice.parameter == "virtual_damping"]
     assert told.current == -0.02
@@ -200,3 +234,103 @@ def test_advice_is_the_bound_of_the_outcome_that_is_printed(seed: int) -> None:
     """At its value, and as it is printed, `check` says the same; just beyond it, it does not."""
     rng = random.Random(seed)
     assert list(faults(*drawn(rng), rng.choice(["made and broken"] * 3 + ["kept"]), rng)) == []
+
+
+_END = re.compile(r"(-?[\d.]+(?:e[+-]?\d+)? ?[^\s,;]*?) is (proved passive|active)")
+
+
+def ends(bracket: Bracket) -> set[tuple[str, str]]:
+    """(value, "proved passive" or "active") of both sentences that name them."""
+    return {*_END.findall(_claim(bracket)), *_END.findall(bracket.describe())}
+
+
+@pytest.mark.parametrize(
+    ("parameter", "unit", "proved", "refuted"),
+    [
+        ("environment.stiffness", "N/m", "123.456", "123.458"),
+        ("device.damping", "N*s/m", "123.458", "123.456"),
+    ],
+)
+def test_an_end_is_rounded_to_its_own_side(parameter: str, unit: str, proved: str, refuted: str) -> None:
+    """A proved stiffness down and a refuted one up, damping the other way; with the other end and without."""
+    found = passive_limit(zw.Device(damping="0.2", rate="1 kHz"), zw.Wall(100), iterate=False)
+    values = sorted((123.4568, 123.4572), reverse=parameter == "device.damping")
+    bracket = replace(
+        found, parameter=parameter, unit=unit, proved_passive=values[0], proved_active=values[1]
+    )
+    said = {text: value.split()[0] for value, text in ends(bracket)}
+    assert said == {"proved passive": proved, "active": refuted}
+    for missing in ("proved_passive", "proved_active"):
+        (alone,) = ends(replace(bracket, **{missing: None}))
+        assert alone[0].split()[0] == said[alone[1]]
+
+
+@seeds(4)
+def test_both_ends_hold_as_they_are_printed(seed: int) -> None:
+    """Given to `check`, the one is passive and the other active."""
+    rng = random.Random(seed)
+    loop = drawn(rng)
+    while not (loop[0].is_certain and loop[1].is_certain):
+        loop = drawn(rng)
+    names = ["device.damping", "device.coulomb_friction", "device.resolution", "device.delay", "device.rate"]
+    name = rng.choice([*names, "gain", *(["stiffness"] * 4 if hasattr(loop[1], "stiffness") else [])])
+    bracket = passive_limit(*loop, name, iterate=False, tolerance=rng.choice([0.1, 0.01, 0.001]))
+    assert bool(ends(bracket)) == (bracket.proved_passive is not None or bracket.proved_active is not None)
+    change = parameter_of(*loop, name).change
+    for value, said in ends(bracket):
+        turned = change(Exact(parse_number(value.strip(), bracket.unit, name)))
+        assert zw.check(*turned, iterate=False).outcome == said.removeprefix("proved ")
+
+
+STOP = zw.NonlinearSpring(positions=["0.01", "0.013"], forces=[0, 3])
+"""A bump stop of 1000 N/m, 10 mm away."""
+
+DETENTS = zw.NonlinearSpring.detents(3, "0.01", "0.5")
+"""±200 N/m."""
+
+LIGHT = zw.Device(mass="0.05", damping="0.05", coulomb_friction="0.1", resolution="1e-5", rate=1000)
+"""For which both are too stiff."""
+
+
+def is_proved(advice: Advice, at: zw.Device, spring: zw.NonlinearSpring, share: float) -> bool:
+    """Whether the checker accepts the loop with an advised value, times a share."""
+    value = advice.to * share
+    if advice.parameter == "stiffness":
+        forces = [round(float(f) * value / advice.current, 12) for f in spring.forces]
+        spring = zw.NonlinearSpring(positions=spring.positions, forces=forces)
+    else:
+        at = at.replace(**{advice.parameter: value})
+    return certify_spring(at, spring).covered() is not None
+
+
+@pytest.mark.parametrize("spring", [STOP, DETENTS], ids=["stop", "detents"])
+@pytest.mark.parametrize("delay", [0, "0.00003"])
+def test_each_change_is_proved_and_a_hundredth_less_is_not(
+    spring: zw.NonlinearSpring, delay: str | int
+) -> None:
+    """Each of rate, damping and slope alone; no change of the encoder or of Coulomb friction would do."""
+    given = LIGHT.replace(delay=delay)
+    advice = advise_on_spring(given, spring, passive=False)
+    assert {one.parameter for one in advice} == {"rate", "damping", "stiffness"}
+    for one in advice:
+        assert is_proved(one, given, spring, 1.0), one.text
+        less = 1.01 if one.parameter == "stiffness" else 0.99
+        assert not is_proved(one, given, spring, less), one.text
+
+
+def test_the_slack_of_a_spring_that_is_proved() -> None:
+    """How far each number may go, 2b/T = 2000 N/m for the slope; the encoder, with f_c, up to 2 f_c/s."""
+    verdict = zw.check(LIGHT.replace(damping=1), STOP)
+    assert verdict.outcome == "passive"
+    assert dict(verdict.rows())["limit"] == "sampling against viscous damping"
+    slack = {one.parameter: one.to for one in verdict.advice}
+    assert slack == pytest.approx(
+        {"stiffness": 2000, "damping": 0.5, "rate": 500, "resolution": 2e-4, "coulomb_friction": 0.005},
+        rel=1e-3,
+    )
+
+
+def test_where_no_condition_is_known_nothing_is_advised() -> None:
+    """Of a spring that pulls away for ever."""
+    pulling = zw.NonlinearSpring(positions=[0, "0.01"], forces=[0, -3])
+    assert zw.check(LIGHT, pulling).advice == ()

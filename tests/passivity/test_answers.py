@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import json
+import pickle
+from collections.abc import Callable
 from functools import cache
 from html import escape
 from math import isfinite
@@ -21,79 +24,66 @@ from zwidth.showing import Html
 PADDLE = zw.catalogue.device("haptic-paddle")
 HEAVY = PADDLE.replace(mass=0.04)
 HAND = zw.stability.HandImpedance(mass=0.1, stiffness=100, damping=1)
+BOUNDED = zw.render(zw.Wall(2000), zw.rendering.ForceBounding())
+ARM = zw.arms.built_in("two-link", damping=(1.0, 1.0))
+SLOPES = zw.coupling.SlopeBounds(0, 100, bounded_below=True)
 s = control.tf("s")
 
 
-@cache
-def answers() -> dict[str, Answer]:
-    """Of each kind."""
-    arm = zw.arms.built_in("two-link", damping=(1.0, 1.0))
-    return {
-        "passive": zw.check(PADDLE, zw.Wall(250)),
-        "active": zw.check(PADDLE, zw.Wall(770)),
-        "spring": zw.check(PADDLE, zw.NonlinearSpring([0, 0.001, 0.002], [0, 0.1, 0.35])),
-        "bounding": zw.formulas.check_bounding(
-            PADDLE, zw.render(zw.Wall(2000), zw.rendering.ForceBounding())
-        ),
-        "worst hand": zw.available_storage(PADDLE, zw.Wall(250), penetration=0.001, speed=0.1),
-        "arm": zw.workspace(arm, zw.Wall(1), rate=1000),
-        "port": zw.ports.passivity_indices((s + 2) / (s + 1)),
-        "active port": zw.ports.passivity_indices((s - 2) / (s * s + s + 1)),
-        "stable": zw.stability.coupled_stability(HEAVY, zw.Wall(500), HAND),
-        "unstable": zw.stability.coupled_stability(HEAVY, zw.Wall(50_000, -1), HAND),
-        "coupling": zw.coupling.coupling_condition(PADDLE, 100, 0.02),
-        "poor coupling": zw.coupling.coupling_condition(PADDLE, 1000, 0.2),
-        "springs": zw.coupling.transformed_condition(
-            PADDLE, zw.coupling.SlopeBounds(0, 100, bounded_below=True)
-        ),
-    }
-
-
-NAMES = [
-    "passive", "active", "spring", "bounding", "worst hand", "arm", "port", "active port", "stable",
-    "unstable", "coupling", "poor coupling", "springs",
-]  # fmt: skip
-OF_PASSIVITY = ["passive", "active", "spring", "bounding", "worst hand", "arm", "port", "active port"]
+ASKED: dict[str, Callable[[], Answer]] = {
+    "passive": lambda: zw.check(PADDLE, zw.Wall(250)),
+    "active": lambda: zw.check(PADDLE, zw.Wall(770)),
+    "spring": lambda: zw.check(PADDLE, zw.NonlinearSpring([0, 0.001, 0.002], [0, 0.1, 0.35])),
+    "bounding": lambda: zw.formulas.check_bounding(PADDLE, BOUNDED),
+    "worst hand": lambda: zw.available_storage(PADDLE, zw.Wall(250), penetration=0.001, speed=0.1),
+    "arm": lambda: zw.workspace(ARM, zw.Wall(1), rate=1000),
+    "port": lambda: zw.ports.passivity_indices((s + 2) / (s + 1)),
+    "active port": lambda: zw.ports.passivity_indices((s - 2) / (s * s + s + 1)),
+    "stable": lambda: zw.stability.coupled_stability(HEAVY, zw.Wall(500), HAND),
+    "unstable": lambda: zw.stability.coupled_stability(HEAVY, zw.Wall(50_000, -1), HAND),
+    "coupling": lambda: zw.coupling.coupling_condition(PADDLE, 100, 0.02),
+    "poor coupling": lambda: zw.coupling.coupling_condition(PADDLE, 1000, 0.2),
+    "springs": lambda: zw.coupling.transformed_condition(PADDLE, SLOPES),
+}
+OF_STABILITY = {"stable", "unstable", "coupling", "poor coupling", "springs"}
 YES = {"passive", "spring", "bounding", "worst hand", "arm", "port", "stable", "coupling", "springs"}
 
 
-@pytest.mark.parametrize("name", OF_PASSIVITY)
-def test_passive_is_the_outcome_and_nothing_else(name: str) -> None:
-    """True of a proof alone."""
-    answer = answers()[name]
-    assert isinstance(answer, PassivityAnswer)
-    assert answer.passive is (answer.outcome == "passive")
+@cache
+def answered(name: str) -> Answer:
+    return ASKED[name]()
 
 
-@pytest.mark.parametrize("name", NAMES)
+@cache
+def page(name: str) -> Html:
+    return answered(name)._repr_html_()
+
+
+@pytest.mark.parametrize("name", ASKED)
 def test_no_answer_is_true_or_false(name: str) -> None:
-    """`if verdict:` would take every answer for a proof; the message says what to ask, and that is a bool."""
-    answer = answers()[name]
+    """`if verdict:` would take every answer for a proof; the message says what to ask, and that is a bool.
+
+    The margin is on the side of the outcome: positive for yes, negative for no; some have none.
+    """
+    answer = answered(name)
     with pytest.raises(zw.InputError, match=rf"neither true nor false: ask \.{answer.YES}, which"):
         bool(answer)
     assert getattr(answer, answer.YES) is (name in YES)
+    assert isinstance(answer, PassivityAnswer) is (name not in OF_STABILITY)
+    if isinstance(answer, PassivityAnswer):
+        assert answer.passive is (answer.outcome == "passive")
+    assert (answer.margin is None) is (name in ("bounding", "worst hand"))
+    assert answer.margin is None or isfinite(answer.margin)
+    assert answer.margin is None or (answer.margin > 0) is (name in YES)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_the_margin_is_on_the_side_of_the_outcome(name: str) -> None:
-    """Positive for yes, negative for no; some have none."""
-    margin = answers()[name].margin
-    if name in ("bounding", "worst hand"):
-        assert margin is None
-    else:
-        assert margin is not None
-        assert isfinite(margin)
-        assert (margin > 0) is (name in YES)
-
-
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ASKED)
 def test_an_answer_says_the_same_everywhere(name: str, tmp_path: Path) -> None:
     """In a line, in a notebook, as plain data, and in a file, whose evidence the checker accepts."""
-    answer = answers()[name]
+    answer = answered(name)
     told = json.loads(answer.to_json())
-    page = answer._repr_html_()
-    assert isinstance(page, Html)
-    assert answer.outcome in page
+    assert isinstance(page(name), Html)
+    assert answer.outcome in page(name)
     assert type(answer).__name__.removeprefix("Linear") in repr(answer)
     assert told["format"].startswith("zwidth ")
     assert told["scope"]["contact"] == answer.scope.contact
@@ -109,49 +99,36 @@ def test_an_answer_says_the_same_everywhere(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["active", "worst hand", "arm", "port"])
 def test_an_answer_is_drawn(name: str, tmp_path: Path) -> None:
-    """A figure, saved where a path is given."""
+    """Into a file, and in a notebook: small, within the page, and said in words; in a line there is none."""
+    answer = answered(name)
     path = tmp_path / "picture.png"
-    assert answers()[name].plot(path).axes
+    assert answer.plot(path).axes
     assert path.stat().st_size > 1000
-
-
-@pytest.mark.parametrize("name", ["active", "worst hand", "arm", "port"])
-def test_a_notebook_shows_the_picture(name: str) -> None:
-    """Small, within the page, and said in words; in a line there is none."""
-    answer = answers()[name]
-    page = answer._repr_html_()
-    assert page.count('<img src="data:image/png;base64,') == 1
-    assert escape(answer.describe()) in page
-    assert len(page) < 200_000
+    assert page(name).count('<img src="data:image/png;base64,') == 1
+    assert escape(answer.describe()) in page(name)
+    assert len(page(name)) < 200_000
     assert "<img" not in repr(answer)
 
 
 @pytest.mark.parametrize("name", ["spring", "bounding", "coupling"])
-def test_where_there_is_nothing_to_draw_a_notebook_shows_the_rest(name: str) -> None:
-    """The claim all the same."""
-    page = answers()[name]._repr_html_()
-    assert "<img" not in page
-    assert escape(answers()[name].claim) in page
+def test_where_there_is_nothing_to_draw_a_notebook_shows_the_claim(name: str) -> None:
+    assert "<img" not in page(name)
+    assert escape(answered(name).claim) in page(name)
+    with pytest.raises(zw.InputError, match="no picture of this Bounding"):
+        answered("bounding").plot()
 
 
 def test_a_notebook_shows_what_to_change() -> None:
-    """Beside the claim, and not folded away."""
-    page, folded = answers()["active"]._repr_html_().split("<details>", 1)
+    shown, folded = page("active").split("<details>", 1)
     for text in ("what to change, any one of:", "lower the stiffness from 770 N/m to 300 N/m"):
-        assert text in page
+        assert text in shown
         assert text not in folded
 
 
-def test_what_has_no_picture_says_so() -> None:
-    """One sentence, by its name."""
-    with pytest.raises(zw.InputError, match="no picture of this Bounding"):
-        answers()["bounding"].plot()
-
-
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ASKED)
 def test_an_answer_is_a_row_of_a_table(name: str) -> None:
     """Outcome, claim, scope and numbers in pandas and in xarray, by the names of the plain data."""
-    answer = answers()[name]
+    answer = answered(name)
     row, data, stated = answer.to_pandas(), answer.to_xarray(), answer.stated()
     assert row["outcome"] == data["outcome"].item() == stated["outcome"]
     assert row["scope.contact"] == stated["scope"]["contact"]
@@ -173,3 +150,28 @@ def test_rows_make_a_table_with_units() -> None:
     data = xr.concat([verdict.to_xarray() for verdict in verdicts], xr.DataArray(walls, dims="stiffness"))
     assert data["margins.damping_N_s_per_m"].attrs == {"units": "N*s/m"}
     assert (data["margins.damping_N_s_per_m"].values > 0).tolist() == [True, True, False]
+
+
+IDEAL = zw.Device(damping="0.3", sample_period="0.001")
+FILTER = zw.PulseTransferFunction([1000, -990], [1, "-0.5"])
+LOOPS = {
+    "passive": (PADDLE, zw.Wall(300)),
+    "active": (PADDLE, zw.Wall(770)),
+    "filter": (IDEAL.replace(damping=9), FILTER),
+    "active filter": (IDEAL.replace(damping="0.1"), FILTER),
+    "touched": (IDEAL.replace(damping="0.025"), zw.Wall(10, "0.3", zw.rendering.OnePole("0.01"))),
+    "part of a sample": (IDEAL.replace(delay="0.0004"), zw.Wall(100)),
+    "interval": (PADDLE, zw.Wall(zw.Interval(200, 400))),
+    "row": (PADDLE, zw.render(zw.Wall(770), zw.rendering.ForceBounding())),
+    "spring of any form": (PADDLE, zw.NonlinearSpring([0, "0.001"], [0, "0.1"])),
+}
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_a_verdict_goes_to_another_process_and_comes_back(name: str) -> None:
+    """Outcome, scope and evidence are the same; the witness can still be made."""
+    verdict = zw.check(*LOOPS[name])
+    for again in (pickle.loads(pickle.dumps(verdict)), copy.deepcopy(verdict)):
+        assert again.to_dict() == verdict.to_dict()
+        assert (again.outcome, again.scope) == (verdict.outcome, verdict.scope)
+        assert (again.witness is None) is (verdict.witness is None)

@@ -9,15 +9,12 @@ import pytest
 
 import zwidth as zw
 from zwidth.model.scene import Contact, CoulombFriction, Mass, Spring
+from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.passivity.verdict import Verdict
 
-SCENE = zw.Scene(
-    [
-        Mass("handle", "0.05"),
-        Contact("handle", "ground", 2000, 1, "0.005"),
-        CoulombFriction("handle", "ground", "0.1"),
-    ]
-)
+WALL, RUBBING = Contact("handle", "ground", 2000, 1, "0.005"), CoulombFriction("handle", "ground", "0.1")
+SCENE = zw.Scene([Mass("handle", "0.05"), WALL, RUBBING])
+DEVICE = zw.Device(damping="0.5", rate=1000, resolution=0)
 
 
 def verdict(k: object, b: object, need: object, delay: object = 0, **more: object) -> Verdict:
@@ -32,6 +29,7 @@ def verdict(k: object, b: object, need: object, delay: object = 0, **more: objec
     ("k", "b", "delay", "need"),
     [
         (740, "0.13", 0, "0.5"),  # K T/2 + B
+        (0, "0.4", 0, "0.4"),
         (300, 0, "0.001", "0.6"),  # (d + 1)² K T/2
         (300, 0, "0.002", "1.35"),
         (400, "-0.1", 0, "0.4"),  # (K T)²/(2 (K T − 2 |B|))
@@ -52,9 +50,11 @@ def test_the_closed_forms_of_the_theorem_are_the_limit(
     assert below.certificate is None
 
 
-def test_the_verdict_says_what_it_rests_on() -> None:
-    """In its assumptions and its data; and by what it was decided."""
+def test_the_verdict_says_what_it_rests_on(tmp_path: Path) -> None:
+    """In its assumptions and its data; and by what it was decided; its certificate is in its file."""
     found = verdict(740, "0.13", 1)
+    found.save(tmp_path / "scene.json")
+    assert verify_document(read_document(tmp_path / "scene.json")).valid
     assert found.scope.law == ("behind a coupling",)
     assert any("gives out no energy" in line for line in found.assumptions)
     assert "coupling" in found.decided_by
@@ -62,7 +62,6 @@ def test_the_verdict_says_what_it_rests_on() -> None:
 
 
 def test_with_an_encoder_it_is_proved_without_its_steps() -> None:
-    """Coulomb friction makes no difference to that."""
     for friction in (0, 10):
         found = verdict(740, "0.13", 1, resolution="1e-5", coulomb_friction=friction)
         assert found.outcome == "passive without encoder steps"
@@ -71,7 +70,6 @@ def test_with_an_encoder_it_is_proved_without_its_steps() -> None:
 
 
 def test_no_coupling_and_one_that_loses_nothing_are_undecided() -> None:
-    """And the claim says why."""
     bare = zw.check(zw.Device(damping=1, rate=1000, resolution=0), SCENE)
     assert bare.outcome == "undecided"
     assert "VirtualCoupling" in bare.claim
@@ -84,41 +82,26 @@ def test_a_large_linear_scene_is_decided_by_its_coupling() -> None:
     """61 masses: passive where a small one is, without a word of H(z)."""
     chain = [Spring(f"m{i}", f"m{i + 1}", 300) for i in range(61)]
     scene = zw.Scene([*chain, *(Mass(f"m{i + 1}", "0.01") for i in range(61))], port="m0")
-    device = zw.Device(damping="0.5", rate=1000, resolution=0)
-    found = zw.check(device, zw.VirtualCoupling(740, "0.13", scene))
+    found = zw.check(DEVICE, zw.VirtualCoupling(740, "0.13", scene))
     assert (found.outcome, found.scope.law) == ("passive", ("behind a coupling",))
 
 
 def test_intervals_of_the_device_are_taken_at_their_worst() -> None:
-    """The least damping decides."""
     assert verdict(740, "0.13", ("0.5", "0.7")).outcome == "passive"
     assert verdict(740, "0.13", ("0.49", "0.7")).outcome == "undecided"
 
 
 def test_couplings_one_behind_the_other() -> None:
     """The hand's decides, and what lies behind it is passive if no damping in it is below 0."""
-    device = zw.Device(damping="0.5", rate=1000, resolution=0)
-    inner = zw.VirtualCoupling(5000, 1, SCENE)
-    assert zw.check(device, zw.VirtualCoupling(740, "0.13", inner)).outcome == "passive"
-    loose = zw.VirtualCoupling(5000, "-0.1", SCENE)
-    assert zw.check(device, zw.VirtualCoupling(740, "0.13", loose)).outcome == "undecided"
-
-
-def test_it_is_saved_and_verified(tmp_path: Path) -> None:
-    """The certificate of the coupling's condition is in the file."""
-    from zwidth.cli.main import main
-
-    path = tmp_path / "scene.json"
-    verdict(740, "0.13", 1).save(path)
-    assert main(["verify", str(path)]) == 0
+    for damping, outcome in ((1, "passive"), ("-0.1", "undecided")):
+        inner = zw.VirtualCoupling(5000, damping, SCENE)
+        assert zw.check(DEVICE, zw.VirtualCoupling(740, "0.13", inner)).outcome == outcome
 
 
 def test_a_limit_is_found_on_one_side() -> None:
-    """The stiffest coupling that is proved; nothing is refuted."""
-    device = zw.Device(damping="0.5", rate=1000, resolution=0)
-    bracket = zw.limit(device, zw.VirtualCoupling(100, "0.13", SCENE))
+    bracket = zw.limit(DEVICE, zw.VirtualCoupling(100, "0.13", SCENE))
     assert bracket.proved_passive == pytest.approx(740, rel=0.01)
     assert float(bracket.proved_passive or 0) <= 740
     assert bracket.proved_active is None
     with pytest.raises(zw.InputError, match="without encoder steps"):
-        zw.limit(device.replace(resolution="1e-5"), zw.VirtualCoupling(100, "0.13", SCENE))
+        zw.limit(DEVICE.replace(resolution="1e-5"), zw.VirtualCoupling(100, "0.13", SCENE))

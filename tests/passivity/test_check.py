@@ -11,6 +11,7 @@ import scipy.signal
 
 import zwidth as zw
 from zwidth import checker
+from zwidth.model.rendering import OnePole, VelocityFilter, Window
 from zwidth.passivity import value_iteration_fallback as gap
 from zwidth.passivity.advice import in_lines
 from zwidth.passivity.certificate import verify_document
@@ -20,12 +21,13 @@ from zwidth.quantity.text import to_json
 PADDLE = zw.Device(
     mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, sample_period=1e-3, name="paddle"
 )
-COARSE = PADDLE.replace(resolution=22.4e-4)
+COARSE, IDEAL = PADDLE.replace(resolution=22.4e-4), PADDLE.replace(resolution=0)
+TIMED = PADDLE.replace(sample_period=(0.0005, 0.001))
+ROUGH = zw.Device(damping="0.6", coulomb_friction=0, resolution="0.0005", sample_period="0.001")
 BILLIONTH = Fraction(1, 10**9)
 
 
 def assert_evidence(verdict):
-    """A verdict of either kind stands on evidence that the checker accepts."""
     if verdict.is_proved:
         assert verdict.certificate.verify()
         assert verdict.scope.contact in ("kept", verdict.certificate.covered().contact)
@@ -39,7 +41,6 @@ def assert_evidence(verdict):
 
 
 def kept(device, law):
-    """The verdict on a hand that keeps contact: the linear criterion alone."""
     return zw.check(device, law, contact="kept")
 
 
@@ -72,16 +73,12 @@ def test_paddle_beyond_its_limit():
     assert found["coulomb_friction"] is None
 
 
-def test_encoder_limit_of_the_paddle():
-    """2f_c/Δ ≈ 10 700 N/m does not bind: with damping enough for it, it is the limit."""
+def test_other_numbers_of_the_paddle():
+    """2f_c/Δ ≈ 10 700 N/m binds with damping enough for it alone; a fit without f_c, b = 0.41, says 820."""
     verdict = zw.check(PADDLE.replace(damping=20), zw.Wall(300))
     assert verdict.max_stiffness == pytest.approx(2 * 0.12 / 22.4e-6, rel=1e-15)
     assert verdict.max_stiffness == pytest.approx(10_700, rel=2e-3)
     assert verdict.limit == "quantization against Coulomb friction"
-
-
-def test_mass_damper_fit():
-    """A fit without Coulomb friction, b = 0.41, would have said 820 N/m."""
     assert zw.check(PADDLE.replace(damping=0.41), zw.Wall(300)).max_stiffness == 820
 
 
@@ -97,19 +94,13 @@ def test_coarse_encoder():
 
 
 @pytest.mark.parametrize(
-    ("k", "b", "needed", "outcome"),
-    [
-        (150, 0.02, 0.095, "passive"),
-        (150, 0.2, 0.275, "active"),
-        (1000, 0.05, 0.55, "active"),
-        (1000, 0.5, 1.0, "active"),
-    ],
+    ("k", "b", "needed"), [(150, 0.02, 0.095), (150, 0.2, 0.275), (1000, 0.05, 0.55), (1000, 0.5, 1.0)]
 )
-def test_walls_that_open_loop_tests_accept(k, b, needed, outcome):
+def test_walls_that_open_loop_tests_accept(k, b, needed):
     """Four damped walls on m = 0.1, b = 0.1, 1 kHz: three are active although device and wall are passive."""
     device = zw.Device(mass=0.1, damping=0.1, sample_period=1e-3)
     verdict = assert_evidence(zw.check(device, zw.Wall(k, b)))
-    assert verdict.outcome == outcome
+    assert verdict.outcome == ("passive" if needed < 0.1 else "active")
     assert verdict.required_damping == pytest.approx(needed, rel=1e-14)
 
 
@@ -117,38 +108,35 @@ CLASSES = {
     "spring": zw.Wall(1),
     "damped wall": zw.Wall(1, 0.05),
     "negative virtual damping": zw.Wall(1, -0.04),
-    "window": zw.Wall(1, 0.06, zw.rendering.Window(5)),
-    "one pole": zw.Wall(1, 0.01, zw.rendering.OnePole(0.01)),
-    "filter": zw.Wall(1, 0.02, zw.rendering.VelocityFilter([0.3, 0.1], [1, -0.6])),
+    "window": zw.Wall(1, 0.06, Window(5)),
+    "one pole": zw.Wall(1, 0.01, OnePole(0.01)),
+    "filter": zw.Wall(1, 0.02, VelocityFilter([0.3, 0.1], [1, -0.6])),
     "solid, backward": zw.StandardLinearSolid(1, 20, 0.1),
     "solid, Tustin": zw.StandardLinearSolid(1, 20, 0.1, "tustin"),
     "solid, zero-order hold": zw.StandardLinearSolid(1, 20, 0.1, "zoh"),
     "Prony": zw.GeneralizedMaxwell(1, [(20, 0.1), (9, 1)], "matched"),
     "coupling": zw.VirtualCoupling(1, 0.02, zw.Wall(500, 0.01)),
 }
-DELAYS = ["0", "0.001", "0.0022"]
 
 
-@pytest.mark.parametrize("delay", DELAYS)
+@pytest.mark.parametrize("delay", ["0", "0.001", "0.0022"])
 @pytest.mark.parametrize("name", CLASSES)
 def test_both_sides_of_the_largest_stiffness(name, delay):
-    """Passive with a certificate a billionth below max_stiffness, active with a motion a billionth above."""
-    device = PADDLE.replace(resolution=0, delay=delay)
-    law = CLASSES[name]
+    """Passive with a certificate at max_stiffness, a billionth above not proved, a hundredth above active."""
+    device, law = IDEAL.replace(delay=delay), CLASSES[name]
     top = kept(device, law).max_stiffness
     if top is None:
         assert not kept(device, law.replace(stiffness=0)).is_proved
         return
-    at = Fraction(repr(top))
-    assert assert_evidence(kept(device, law.replace(stiffness=zw.Exact(at)))).is_proved
-    below = law.replace(stiffness=zw.Exact(at * (1 - BILLIONTH)))
-    assert assert_evidence(kept(device, below)).is_proved
-    above = kept(device, law.replace(stiffness=zw.Exact(at * (1 + BILLIONTH))))
+    at, above, clearly = (
+        kept(device, law.replace(stiffness=zw.Exact(Fraction(repr(top)) * factor)))
+        for factor in (1, 1 + BILLIONTH, Fraction("1.01"))
+    )
+    assert assert_evidence(at).is_proved
     assert not above.is_proved
     if above.outcome == "active":
         assert_evidence(above)
-    clearly = assert_evidence(kept(device, law.replace(stiffness=zw.Exact(at * Fraction("1.01")))))
-    assert clearly.outcome == "active"
+    assert assert_evidence(clearly).outcome == "active"
 
 
 @pytest.mark.parametrize("delay", ["0", "0.0014"])
@@ -177,45 +165,30 @@ SYSTEMS = {
 
 @pytest.mark.parametrize("kind", SYSTEMS)
 def test_systems_of_other_packages(kind):
-    """A discrete system of python-control or scipy.signal is the same law as its coefficients."""
+    """Of python-control or scipy.signal: the law of its coefficients, at its own sample period alone."""
     expected = zw.check(PADDLE, zw.PulseTransferFunction(NUMERATOR, DENOMINATOR))
     verdict = zw.check(PADDLE, SYSTEMS[kind](0.001))
     assert verdict.outcome == expected.outcome
     assert verdict.required_damping == expected.required_damping
     assert verdict.margins == expected.margins
-
-
-@pytest.mark.parametrize("kind", SYSTEMS)
-def test_another_sample_period_is_refused(kind):
-    """A system sampled at 2 kHz is not a law for a loop at 1 kHz: one clear message."""
     with pytest.raises(zw.InputError, match="sample"):
         zw.check(PADDLE, SYSTEMS[kind](0.0005))
 
 
 @pytest.mark.parametrize("thing", [3.0, "wall", None, {"stiffness": 300}, control.tf([1], [1, 1])])
 def test_what_is_no_environment_is_refused(thing):
-    """A number, a text, a dict or a continuous system without a discretization: an input error."""
+    """A continuous system without a discretization, too; and arguments the wrong way round."""
     with pytest.raises(zw.InputError):
         zw.check(PADDLE, thing)
-
-
-def test_what_is_no_device_is_refused():
-    """The arguments the wrong way round: an input error."""
     with pytest.raises(zw.InputError, match="Device"):
         zw.check(zw.Wall(300), PADDLE)
 
 
-KEYS = {
-    "outcome", "claim", "scope", "assumptions", "limit", "max_stiffness_N_per_m", "margins", "advice",
-    "required_damping_N_s_per_m", "critical_frequency_Hz",
-}  # fmt: skip
-
-
 def test_json_of_a_passive_verdict():
     """All promised keys, units in them, and a certificate inside that verifies after the trip."""
-    verdict = zw.check(PADDLE, zw.Wall(300))
-    document = json.loads(verdict.to_json())
-    assert set(document) >= KEYS | {"certificate"}
+    document = json.loads(zw.check(PADDLE, zw.Wall(300)).to_json())
+    promised = {"outcome", "claim", "scope", "assumptions", "limit", "critical_frequency_Hz", "certificate"}
+    assert set(document) >= promised | {"advice", "required_damping_N_s_per_m"}
     assert document["margins"] == {"damping_N_s_per_m": 0.0, "coulomb_friction_N": pytest.approx(0.11664)}
     assert document["max_stiffness_N_per_m"] == 300
     assert verify_document(document).valid
@@ -226,34 +199,33 @@ def test_json_of_a_passive_verdict():
 def test_json_of_an_active_verdict(tmp_path):
     """The witness has its positions from rest at the surface, its period and its joules."""
     verdict = zw.check(PADDLE, zw.Wall(770))
-    document = json.loads(verdict.to_json())
+    verdict.save(tmp_path / "verdict.json")
+    document = json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))
     witness = document["witness"]
-    assert set(document) >= KEYS
     assert float(witness["positions_m"][0]) <= 0
     assert witness["sample_period_s"] == 0.001
     assert witness["energy_J"] == pytest.approx(verdict.witness.energy, rel=1e-12)
-    assert verify_document(document).valid
-    verdict.save(tmp_path / "verdict.json")
-    assert verify_document(json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))).energy > 0
+    assert verify_document(document).energy > 0
 
 
 def test_json_of_a_rotary_device():
-    """Torques and angles: N·m, rad and N·m·s/rad in every key."""
     knob = zw.Device(damping=0.002, coulomb_friction=0.004, resolution=0.0015, rate=2000, motion="rotary")
     passive = json.loads(zw.check(knob, zw.Wall(2)).to_json())
     assert passive["outcome"] == "passive"
     assert passive["max_stiffness_N_m_per_rad"] == pytest.approx(16 / 3, rel=1e-12)
     assert set(passive["margins"]) == {"damping_N_m_s_per_rad", "coulomb_friction_N_m"}
     assert "required_damping_N_m_s_per_rad" in passive
-    active = json.loads(zw.check(knob, zw.Wall(11)).to_json())
-    assert "positions_rad" in active["witness"]
-    assert verify_document(active).valid
+    active = zw.check(knob, zw.Wall(11))
+    document = json.loads(active.to_json())
+    assert "positions_rad" in document["witness"]
+    assert verify_document(document).valid
+    units = {a.parameter: a.unit for a in active.advice}
+    assert (units["damping"], units["stiffness"], units["resolution"]) == ("N*m*s/rad", "N*m/rad", "rad")
 
 
 def test_friction_bounds_of_a_damped_wall_with_an_encoder():
     """f_c ≥ (K + 2B/T)Δ/2 is proved, less than straddling gains is refuted, and between them it is said."""
-    device = zw.Device(damping="0.6", coulomb_friction=0, resolution="0.0005", sample_period="0.001")
-    law = zw.Wall(400, "0.03")
+    device, law = ROUGH, zw.Wall(400, "0.03")
     enough = (400 + 2 * Fraction("0.03") * 1000) * Fraction("0.0005") / 2
     assert enough == Fraction("0.115")
     proved = assert_evidence(zw.check(device.replace(coulomb_friction=enough), law))
@@ -264,15 +236,13 @@ def test_friction_bounds_of_a_damped_wall_with_an_encoder():
     assert short.outcome in ("active", "undecided")
     necessary = Fraction(short.decision.necessary_friction)
     assert 0 < necessary <= enough * (1 + BILLIONTH)
-    assert assert_evidence(
-        zw.check(device.replace(coulomb_friction=necessary * Fraction("0.999")), law)
-    ).outcome == ("active")
+    less = zw.check(device.replace(coulomb_friction=necessary * Fraction("0.999")), law)
+    assert assert_evidence(less).outcome == "active"
 
 
 def test_undecided_between_the_bounds(monkeypatch):
     """With a one-pole filter there is a gap between the proved bounds: undecided, and both are named."""
-    device = zw.Device(damping="0.6", coulomb_friction=0, resolution="0.0005", sample_period="0.001")
-    law = zw.Wall(100, "0.1", zw.rendering.OnePole("0.02"))
+    device, law = ROUGH, zw.Wall(100, "0.1", OnePole("0.02"))
     monkeypatch.setattr(gap, "EFFORT", 0.2)  # more would not decide it either
     decision = zw.check(device, law).decision
     low, high = decision.necessary_friction, float(decision.sufficient_friction)
@@ -287,42 +257,26 @@ def test_undecided_between_the_bounds(monkeypatch):
     assert assert_evidence(zw.check(device.replace(coulomb_friction=low * 0.4), law)).outcome == "active"
 
 
+SOLID = (50, 80), (20, 90), (0.01, 0.5)
 INTERVALS = {
     "device all passive": (
         PADDLE.replace(damping=(0.2, 0.4), coulomb_friction=(0.1, 0.2)), zw.Wall(380), "passive"
     ),
     "at the worst end": (PADDLE.replace(damping=(0.15, 0.4)), zw.Wall(300), "passive"),
     "wall all passive": (PADDLE, zw.Wall((100, 200), (-0.05, 0.05)), "passive"),
-    "timing, spring": (
-        PADDLE.replace(sample_period=(0.0005, 0.001), delay=(0, "0.0002")), zw.Wall(150), "passive"
-    ),
+    "timing, spring": (TIMED.replace(delay=(0, "0.0002")), zw.Wall(150), "passive"),
     "filter and timing": (
-        PADDLE.replace(resolution=0, sample_period=(0.0005, 0.001)),
-        zw.Wall((50, 80), (0.01, 0.1), zw.rendering.OnePole((0.001, 0.004))), "passive",
+        TIMED.replace(resolution=0), zw.Wall((50, 80), (0.01, 0.1), OnePole((0.001, 0.004))), "passive"
     ),
-    "window and timing": (
-        PADDLE.replace(sample_period=(0.0005, 0.001)),
-        zw.Wall((50, 80), (0.01, 0.05), zw.rendering.Window(4)), "passive",
-    ),
-    "any H(z) and timing": (
-        PADDLE.replace(sample_period=(0.0005, 0.001)),
-        zw.PulseTransferFunction([90, -20], [1, "-0.3"]), "passive",
-    ),
-    "every part of a solid": (
-        PADDLE.replace(resolution=0, sample_period=(0.0005, 0.001)),
-        zw.StandardLinearSolid((50, 80), (20, 90), (0.01, 0.5)), "passive",
-    ),
-    "every part of a solid, Tustin": (
-        PADDLE.replace(resolution=0),
-        zw.StandardLinearSolid((50, 80), (20, 90), (0.01, 0.5), "tustin"), "passive",
-    ),
-    "every part of a solid, mixed": (
-        PADDLE.replace(resolution=0), zw.StandardLinearSolid((200, 280), (20, 90), (0.01, 0.5)), "undecided"
-    ),
-    "timing, damped": (PADDLE.replace(sample_period=(0.0005, 0.001)), zw.Wall(100, 0.1), "passive"),
+    "window and timing": (TIMED, zw.Wall((50, 80), (0.01, 0.05), Window(4)), "passive"),
+    "any H(z) and timing": (TIMED, zw.PulseTransferFunction([90, -20], [1, "-0.3"]), "passive"),
+    "every part of a solid": (TIMED.replace(resolution=0), zw.StandardLinearSolid(*SOLID), "passive"),
+    "every part of a solid, Tustin": (IDEAL, zw.StandardLinearSolid(*SOLID, "tustin"), "passive"),
+    "every part of a solid, mixed": (IDEAL, zw.StandardLinearSolid((200, 280), *SOLID[1:]), "undecided"),
+    "timing, damped": (TIMED, zw.Wall(100, 0.1), "passive"),
     "solid": (PADDLE, zw.StandardLinearSolid((10, 150), 20, 0.1), "passive"),
     "device all active": (PADDLE.replace(damping=(0.1, 0.2)), zw.Wall(500), "active"),
-    "wall all active": (PADDLE.replace(resolution=0), zw.Wall((500, 900), (0.01, 0.1)), "active"),
+    "wall all active": (IDEAL, zw.Wall((500, 900), (0.01, 0.1)), "active"),
     "mixed damping": (PADDLE.replace(damping=(0.1, 0.2)), zw.Wall(290), "undecided"),
     "mixed stiffness": (PADDLE, zw.Wall((200, 400)), "undecided"),
     "mixed period": (PADDLE.replace(sample_period=(0.0005, 0.002)), zw.Wall(250), "undecided"),
@@ -343,7 +297,6 @@ def test_intervals(name):
 
 
 def box(device, law):
-    """The loops at the ends and at two places inside every interval."""
     loops = [(device, law)]
     for which, key in [*((0, k) for k in vars(device)), *((1, k) for k in vars(law))]:
         value = getattr((device, law)[which], key)
@@ -358,17 +311,13 @@ def box(device, law):
     return loops
 
 
+LATE = PADDLE.replace(delay="0.0001")
 UNPROVED = {
-    "timing of a filter with a delay": (
-        PADDLE.replace(sample_period=(0.0005, 0.001), delay="0.0002"),
-        zw.Wall(80, 0.02, zw.rendering.OnePole("0.003")),
-    ),
-    "filter with a delay": (
-        PADDLE.replace(delay="0.0001"), zw.Wall(80, 0.02, zw.rendering.OnePole((0.001, 0.002)))
-    ),
-    "branch with a delay": (PADDLE.replace(delay="0.0001"), zw.StandardLinearSolid(10, (20, 30), 0.1)),
-    "a Prony series": (PADDLE.replace(resolution=0), zw.GeneralizedMaxwell(10, [((20, 30), 0.1), (9, 1)])),
-}  # fmt: skip
+    "timing of a filter with a delay": (TIMED.replace(delay="0.0002"), zw.Wall(80, 0.02, OnePole("0.003"))),
+    "filter with a delay": (LATE, zw.Wall(80, 0.02, OnePole((0.001, 0.002)))),
+    "branch with a delay": (LATE, zw.StandardLinearSolid(10, (20, 30), 0.1)),
+    "a Prony series": (IDEAL, zw.GeneralizedMaxwell(10, [((20, 30), 0.1), (9, 1)])),
+}
 
 
 @pytest.mark.parametrize("name", UNPROVED)
@@ -381,7 +330,6 @@ def test_intervals_without_a_proof_between(name):
 
 
 def test_too_many_intervals_are_refused():
-    """Seven intervals of law and timing have too many corners: one clear message."""
     device = PADDLE.replace(delay=(0, "0.0001"), sample_period=("0.0005", "0.001"))
     branches = [((20, 30), ("0.1", "0.2")), ((9, 10), (1, 2))]
     with pytest.raises(zw.InputError, match="corners"):
@@ -389,7 +337,6 @@ def test_too_many_intervals_are_refused():
 
 
 def test_hidden_unstable_mode_is_not_passive():
-    """A controller that carries a growing mode which its port does not show is not called passive."""
     hidden = zw.PulseTransferFunction([200, -260], [1, "-1.3"])
     verdict = zw.check(PADDLE, hidden)
     assert verdict.outcome == "undecided"
@@ -418,80 +365,9 @@ def test_energy_out_of_a_spring_at_rest_on_a_count():
     assert setting.energy(Motion(again)) < energy
 
 
-ADVISED = {
-    "spring": (PADDLE, zw.Wall(770)),
-    "delayed": (PADDLE.replace(delay="0.0013"), zw.Wall(120)),
-    "coarse": (COARSE, zw.Wall(150)),
-    "damped": (PADDLE.replace(resolution=0), zw.Wall(200, "0.08")),
-    "filtered": (PADDLE.replace(resolution=0), zw.Wall(280, "0.08", zw.rendering.OnePole("0.001"))),
-    "passive spring": (PADDLE, zw.Wall(180)),
-    "passive damped": (PADDLE.replace(resolution=0, delay="0.0001"), zw.Wall(80, "0.02")),
-    "passive, negative virtual damping": (PADDLE, zw.Wall(80, "-0.02")),
-}
-
-
-def turned(device, law, parameter, value):
-    """The loop with one parameter of an advice set."""
-    value = zw.Exact(value)
-    if parameter == "stiffness":
-        return device, law.replace(stiffness=value)
-    if parameter == "virtual_damping":
-        return device, law.replace(damping=value)
-    if parameter == "time_constant":
-        return device, law.replace(velocity_filter=zw.rendering.OnePole(value))
-    return device.replace(**{parameter: value}), law
-
-
-@pytest.mark.parametrize("name", ADVISED)
-def test_advice_is_enough_and_no_more(name):
-    """At the value advised the loop is proved passive; a millionth short of it, it is not."""
-    device, law = ADVISED[name]
-    verdict = kept(device, law)
-    numeric = [a for a in verdict.advice if a.parameter != "velocity_filter"]
-    assert {a.kind for a in numeric} == {"slack" if name.startswith("passive") else "change"}
-    assert any(a.to for a in numeric)
-    for advice in numeric:
-        if advice.to is None or advice.to == float("inf"):
-            continue
-        to = zw.Exact(advice.to).fraction
-        assert kept(*turned(device, law, advice.parameter, to)).is_proved, advice
-        more = advice.parameter in ("rate", "damping", "coulomb_friction", "time_constant")
-        short = to * (1 - Fraction(1, 10**6)) if more else to * (1 + Fraction(1, 10**6)) + Fraction(1, 10**15)
-        if to or not more:
-            assert not kept(*turned(device, law, advice.parameter, short)).is_proved, advice
-
-
-def test_advice_on_estimators():
-    """Another velocity estimator is advised only if it makes the loop passive."""
-    device, law = PADDLE.replace(resolution=0), zw.Wall(100, "0.12")
-    advised = [a for a in zw.check(device, law).advice if a.parameter == "velocity_filter"]
-    assert advised
-    for advice in advised:
-        number = advice.to.split(" of ")[1].split()[0]
-        other = (
-            zw.rendering.Window(int(number))
-            if advice.to.startswith("window")
-            else zw.rendering.OnePole(Fraction(number))
-        )
-        assert advice.current == "backward difference"
-        if advice.to.startswith("window"):
-            assert zw.check(device, law.replace(velocity_filter=other)).is_proved
-            fewer = zw.check(device, law.replace(velocity_filter=zw.rendering.Window(other.samples - 1)))
-            assert other.samples == 2 or not fewer.is_proved
-
-
-def test_rotary_advice_has_rotary_units():
-    """Advice for a knob speaks of N·m and rad."""
-    knob = zw.Device(damping=0.002, coulomb_friction=0.004, resolution=0.0015, rate=2000, motion="rotary")
-    units = {a.parameter: a.unit for a in zw.check(knob, zw.Wall(11)).advice}
-    assert units["damping"] == "N*m*s/rad"
-    assert units["stiffness"] == "N*m/rad"
-    assert units["resolution"] == "rad"
-
-
 def test_assumptions_name_what_was_not_given():
     """Parameters taken as zero, the ideal sensor, sustained contact, and intervals are all said."""
-    loop = zw.Device(damping="0.3", rate=1000), zw.Wall(100, "0.44", zw.rendering.Window(2))
+    loop = zw.Device(damping="0.3", rate=1000), zw.Wall(100, "0.44", Window(2))
     bare = zw.check(*loop, contact="kept")
     text = "\n".join(bare.assumptions)
     for line in ("Coulomb friction was not given", "resolution was not given", "delay was not given"):
@@ -511,9 +387,8 @@ def test_assumptions_name_what_was_not_given():
 
 def test_rounded_coefficients_are_said():
     """A discretization through exponentials has rounded coefficients: an assumption."""
-    device = PADDLE.replace(resolution=0)
-    exact = zw.check(device, zw.StandardLinearSolid(50, 20, 0.1, "tustin"))
-    rounded = zw.check(device, zw.StandardLinearSolid(50, 20, 0.1, "zoh"))
+    exact = zw.check(IDEAL, zw.StandardLinearSolid(50, 20, 0.1, "tustin"))
+    rounded = zw.check(IDEAL, zw.StandardLinearSolid(50, 20, 0.1, "zoh"))
     assert not any("rounded" in line for line in exact.assumptions)
     assert any("rounded" in line for line in rounded.assumptions)
 
@@ -529,8 +404,7 @@ def test_rounding_does_not_make_a_solid_active(discretization):
 @pytest.mark.parametrize("delay", ["0", "0.0007"])
 def test_budget_adds_up(delay):
     """Hold, law and delay add up to what is required at the critical frequency, where contact lasts."""
-    device = PADDLE.replace(delay=delay, resolution=0)
-    verdict = zw.check(device, zw.Wall(90, "0.03", zw.rendering.OnePole("0.001")))
+    verdict = zw.check(IDEAL.replace(delay=delay), zw.Wall(90, "0.03", OnePole("0.001")))
     account = verdict.budget
     assert account.hold + account.dynamics + account.delay == pytest.approx(account.required, rel=1e-12)
     frequencies, needs = verdict.curve(2000)
@@ -566,15 +440,6 @@ def test_the_limit_is_claimed_only_at_the_limit(damping, said):
     assert ("exactly at its limit" in verdict.claim) is said
 
 
-@pytest.mark.parametrize(
-    "value", [Fraction(7, 2**90), Fraction(-3, 5**40), 10**40 + Fraction(1, 8), Fraction(1, 3)]
-)
-def test_a_rational_is_written_digit_for_digit(value):
-    """However many digits that takes: a motion may hang on the last one."""
-    (written,) = json.loads(to_json([value]), parse_float=str)
-    assert Fraction(written) == value
-
-
 def test_what_is_proved_for_whole_samples_alone_is_not_called_a_limit() -> None:
     """A solid a sample late: of delays between samples nothing is known, and the advice says no more."""
     device = zw.Device(
@@ -599,3 +464,12 @@ def test_what_was_looked_for_below_is_not_denied_above() -> None:
     assert told.to is None
     assert told.text == "no lower delay was found that would do alone"
     assert zw.check(device.replace(delay=1e-4), lead).passive
+
+
+@pytest.mark.parametrize(
+    "value", [Fraction(7, 2**90), Fraction(-3, 5**40), 10**40 + Fraction(1, 8), Fraction(1, 3)]
+)
+def test_a_rational_is_written_digit_for_digit(value):
+    """However many digits that takes: a motion may hang on the last one."""
+    (written,) = json.loads(to_json([value]), parse_float=str)
+    assert Fraction(written) == value

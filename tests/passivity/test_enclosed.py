@@ -1,4 +1,4 @@
-"""The checker's numbers with error bounds, and the motion behind the hold, against mpmath and by hand."""
+"""The checker's numbers with error bounds, functions of them and the held motion, against mpmath."""
 
 from __future__ import annotations
 
@@ -8,13 +8,11 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from strategies import seeds
 
-from zwidth.checker.exact.enclosed import Enclosed, between, in_z, known
+from zwidth.checker.exact.enclosed import Enclosed, in_z, inverse, known, root, sine_cosine
 from zwidth.checker.known_hand.held_motion import motion_of, sampled, sampled_free
 
 BITS = 200
-EPS = Fraction(1, 1 << 180)
 
 
 def value(x: Enclosed, places: Sequence[Fraction] = ()) -> tuple[Fraction, Fraction]:
@@ -23,29 +21,8 @@ def value(x: Enclosed, places: Sequence[Fraction] = ()) -> tuple[Fraction, Fract
     return Fraction(middle - x.radius, 1 << x.bits), Fraction(middle + x.radius, 1 << x.bits)
 
 
-@seeds(12)
-def test_sums_and_products_hold_the_true_number(seed: int) -> None:
-    """A random formula of three variables, at random places of a box: inside, and tight at the middle."""
-    rng = np.random.default_rng(seed)
-    ends = [sorted(Fraction(float(x)) for x in rng.uniform(-3, 3, 2)) for _ in range(3)]
-    x, y, z = (between(*pair, i, 3, BITS) for i, pair in enumerate(ends))
-    formula = (x * y - z.times(3)) * (x + known(Fraction(1, 3), BITS)).over(7) - (y * z).shifted(-2)
-    for _ in range(20):
-        e = tuple(Fraction(float(v)) for v in rng.uniform(-1, 1, 3))
-        a, b, c = ((lo + hi) / 2 + (hi - lo) / 2 * s for (lo, hi), s in zip(ends, e, strict=True))
-        low, high = value(formula, e)
-        assert low <= (a * b - 3 * c) * (a + Fraction(1, 3)) / 7 - b * c / 4 <= high
-    point = [known((lo + hi) / 2, BITS) for lo, hi in ends]
-    low, high = value(point[0] * point[1] * point[2])
-    assert high - low < EPS
-
-
-def test_what_is_shared_cancels() -> None:
-    """x − x is 0 over an interval, and its sign is certain to be 0; x − y of two intervals is open."""
-    x, y = between(Fraction(1), Fraction(2), 0, 2, BITS), between(Fraction(1), Fraction(2), 1, 2, BITS)
-    assert (x - x).sign == 0
-    assert (x - y).sign is None
-    assert (x + y).sign == 1
+def real(x: Fraction) -> mpmath.mpf:
+    return mpmath.mpf(x.numerator) / x.denominator
 
 
 def test_a_polynomial_shifted_to_z() -> None:
@@ -93,8 +70,7 @@ def test_the_held_motion_is_that_of_matrix_exponentials(
             low, high = value(mine)
             assert high - low < Fraction(1, 10**digits)
             slack = mpmath.mpf(10) ** -70 * max(abs(trace), 1)
-            assert mpmath.mpf(low.numerator) / low.denominator - slack <= true
-            assert true <= mpmath.mpf(high.numerator) / high.denominator + slack
+            assert real(low) - slack <= true <= real(high) + slack
 
 
 @pytest.mark.parametrize("delay", ["0", "0.0003", "0.0017"])
@@ -111,25 +87,38 @@ def test_a_free_mass_is_exact(delay: str) -> None:
         assert high - low < Fraction(1, 10**50)
 
 
-def test_an_interval_holds_every_motion_in_it() -> None:
-    """Polynomials of 30 random motions lie in those of the box, at their own place of it.
+# Functions, in fewer bits
 
-    Both are times M over the middle of its own bounds; what the box leaves open of a number may be anything.
-    """
-    ends = [(Fraction(1, 30), Fraction(1, 20)), (Fraction(0), Fraction(2)), (Fraction(100), Fraction(900))]
-    clock = [Fraction(1, 1000), Fraction(14, 10000)]
-    box = sampled(motion_of(*ends, *clock), BITS)
-    rng = np.random.default_rng(5)
-    for _ in range(30):
-        hand = [lo + (hi - lo) * Fraction(float(rng.uniform())) for lo, hi in ends]
-        one = sampled(motion_of(*((x, x) for x in hand), *clock), BITS)
-        e = [(2 * x - lo - hi) / (hi - lo) for x, (lo, hi) in zip(hand, ends, strict=True)]
-        times = 2 * hand[0] / sum(ends[0])
-        for wide, point in zip(
-            [*box.numerator, *box.denominator], [*one.numerator, *one.denominator], strict=True
-        ):
-            left = sum(map(abs, wide.slopes[3:]))
-            low, high = value(Enclosed(BITS, wide.middle, wide.slopes[:3], wide.radius + left), e)
-            a, b = value(Enclosed(BITS, point.middle, (), point.reach))
-            assert low <= times * b
-            assert times * a <= high
+
+FUNCTIONS = {
+    "sine": (lambda x: sine_cosine(x)[0], mpmath.sin, 20.0, 0.0),
+    "cosine": (lambda x: sine_cosine(x)[1], mpmath.cos, 20.0, 0.0),
+    "root": (root, mpmath.sqrt, 5.0, 5.1),
+    "inverse": (inverse, lambda x: 1 / x, 5.0, 5.1),
+    "inverse below 0": (inverse, lambda x: 1 / x, 5.0, -10.2),
+}
+
+
+@pytest.mark.parametrize("width", [0, 1e-6, 0.3])
+@pytest.mark.parametrize("radius", [0, 1e-5])
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_a_function_holds_its_values(name: str, width: float, radius: float) -> None:
+    """At every place of the box and both ends of the radius; wider by the square of the reach at most."""
+    function, true, size, shift = FUNCTIONS[name]
+    rng, one = np.random.default_rng(20), 1 << 80
+    places = [Fraction(float(e)) for e in (0, 1, -1, *rng.uniform(-1, 1, 6))]
+    for middle in rng.uniform(-size, size, 30) * (0.99 if shift else 1) + shift:
+        least = abs(middle) - width - radius
+        if shift and least < 0.5:
+            continue
+        x = Enclosed(80, int(middle * one), (int(width * one),), int(radius * one))
+        found = function(x)
+        with mpmath.workdps(60):
+            for e in places:
+                low, high = map(real, value(found, [e]))
+                for end in value(x, [e]):
+                    assert low <= true(real(end)) <= high
+        bend = 1 if not shift else float(max(2 / least**3, 1 / least**1.5))
+        steepest = 1 if not shift else float(max(1 / least**2, 1 / least**0.5))
+        reach = width + radius
+        assert found.radius / one <= 1.01 * (bend * reach**2 + steepest * radius) + 2.0**-70

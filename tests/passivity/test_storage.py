@@ -45,7 +45,6 @@ class Hand:
         return total
 
     def changed(self, x, size):
-        """The motion with one place moved, put beside an encoder edge, or stretched as a whole."""
         i, other, chance = self.random.randrange(1, len(x)), list(x), self.random.random()
         if chance < 0.1:
             stretch = self.random.uniform(0.5, 1.5)
@@ -62,7 +61,6 @@ class Hand:
         return self.energy(x) / (K * sum((b - a) ** 2 for a, b in pairwise(x)) + 1e-40)
 
     def best(self, samples, tries):
-        """The highest score found from rest at the surface."""
         swing = self.random.choice([1, -1])  # to and fro every sample is where a spring gains most
         x = [0.0] + [6e-3 + 2e-3 * swing ** (k % 2) + self.random.gauss(0, 1e-3) for k in range(samples)]
         most, size = self.score(x), 2e-3
@@ -81,7 +79,6 @@ def limit(whole, part):
 
 
 def piecewise(random):
-    """A spring law of slopes 0 or K between random places."""
     places = sorted(random.uniform(0, 5e-3) for _ in range(3))
     slopes = [random.choice([0.0, K]) for _ in range(4)]
 

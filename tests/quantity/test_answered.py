@@ -41,8 +41,7 @@ class _Pressed(Documented):
         return self.part
 
 
-def test_plain_data_has_the_unit_of_the_motion_in_each_key() -> None:
-    """A field by its name or key, a tuple by its names, a part as its own data, a path as text."""
+def test_plain_data_has_the_unit_of_the_motion_in_each_key():
     pressed = _Pressed("rotary", 2.0, (0.1, 0.2), _Part(7))
     assert pressed.to_dict() == {
         "format": "zwidth pressed 1",
@@ -74,13 +73,12 @@ class _Seen:
         return (2 * self.silent, 1.0)
 
 
-def test_a_part_says_what_it_declares_and_a_number_without_bound_is_null() -> None:
-    """JSON has no infinity, in a list as little as alone; a property means what its docstring says first."""
+def test_a_part_says_what_it_declares_and_a_number_without_bound_is_null():
     assert plain([_Seen(inf)]) == [{"silent_s": None, "twice_s": [None, 1.0]}]
     assert declared(_Seen)["twice"].meaning == "twice as long"
 
 
-def test_a_part_that_is_missing_is_null() -> None:
+def test_a_part_that_is_missing_is_null():
     """Its keys stay, so that whoever reads them needs to ask nothing."""
     data = data_of(_Pressed("linear", None, (0.0, 0.0)))
     assert (data["part"], data["bytes"], data["stiffness_N_per_m"]) == (None, None, None)
@@ -88,8 +86,7 @@ def test_a_part_that_is_missing_is_null() -> None:
     assert "note" not in data
 
 
-def test_rows_are_what_has_words_and_each_number_has_its_unit() -> None:
-    """A number that is None is none; one without bound is any."""
+def test_rows_are_what_has_words_and_each_number_has_its_unit():
     assert list(rows_of(_Pressed("linear", None, (1e-3, inf)))) == [
         ("largest stiffness", "none"),
         ("half", "1 ms"),
@@ -97,14 +94,13 @@ def test_rows_are_what_has_words_and_each_number_has_its_unit() -> None:
     ]
 
 
-def test_names_and_entries_of_a_tuple_must_be_as_many() -> None:
+def test_names_and_entries_of_a_tuple_must_be_as_many():
     """One name too few would leave a number out of every file."""
     with pytest.raises(ValueError, match="zip"):
-        data_of(_Pressed("linear", 1.0, (0.0, 1.0, 2.0)))  # type: ignore[arg-type]
+        data_of(_Pressed("linear", 1.0, (0.0, 1.0, 2.0)))
 
 
-def test_what_is_declared_is_known_of_class_and_result() -> None:
-    """Fields first, then what is computed."""
+def test_what_is_declared_is_known_of_class_and_result():
     names = ["motion", "stiffness", "late", "part", "cut", "note", "file", "twice", "inner"]
     assert list(declared(_Pressed)) == list(declared(_Pressed("linear", 1, (0, 0)))) == names
 
@@ -137,7 +133,7 @@ class _Limits(Documented):
         return {"delay": 0.5}
 
 
-def test_units_are_those_of_the_scope_and_of_quantities_inside() -> None:
+def test_units_are_those_of_the_scope_and_of_quantities_inside():
     """What is without bound is null, what is empty is left out, a 0 is not; a docstring says what it is."""
     limits = _Limits("to and fro", (inf, None, 2.0))
     assert limits.to_dict() == {

@@ -9,15 +9,7 @@ import pytest
 
 from zwidth.errors import InputError
 from zwidth.quantity import Exact, Interval
-from zwidth.quantity.parameter import (
-    Parametric,
-    flag,
-    listed,
-    parameter,
-    parameters_of,
-    plain,
-    word,
-)
+from zwidth.quantity.parameter import Parametric, flag, listed, parameter, parameters_of, plain, word
 from zwidth.quantity.text import unit_text
 
 
@@ -36,8 +28,7 @@ class Thing(Parametric):
     kind: str = word("one", "two", "three")
 
 
-def test_a_field_keeps_what_it_says() -> None:
-    """An exact number or an interval, an exact number, a float; a default is read as well."""
+def test_a_field_keeps_what_it_says():
     thing = Thing(("1 N/mm", "2000 N/m"))
     assert thing.stiffness == Interval(1000, 2000)
     assert thing.damping.fraction == Fraction(1, 10)
@@ -70,14 +61,12 @@ def test_a_field_keeps_what_it_says() -> None:
         ({"kind": "four"}, "kind is one of 'one', 'two', 'three', got 'four'"),
     ],
 )
-def test_a_slip_says_name_bound_and_reason(given, said) -> None:
-    """The bound itself is allowed where it says so."""
+def test_a_slip_says_name_bound_and_reason(given, said):
     with pytest.raises(InputError, match=said):
         Thing(**{"stiffness": 0, **given})
 
 
-def test_the_fields_say_what_a_reader_of_text_asks() -> None:
-    """Unit by motion, meaning, form, words, whether it must be given."""
+def test_the_fields_say_what_a_reader_of_text_asks():
     fields = parameters_of(Thing)
     assert [name for name, own in fields.items() if own.required] == ["stiffness"]
     forms = ["uncertain", "quantity", "quantity", "quantity", "list", "flag", "word"]
@@ -89,15 +78,13 @@ def test_the_fields_say_what_a_reader_of_text_asks() -> None:
     assert (fields["damping"].words, fields["kind"].words) == (("any",), ("one", "two", "three"))
 
 
-def test_a_number_is_shown_with_its_unit() -> None:
-    """As people write it, nothing where it was not given, no unit where it has none."""
+def test_a_number_is_shown_with_its_unit():
     thing = Thing(300, level=2)
     assert thing.with_unit("stiffness") == "300 N/m"
     assert thing.with_unit("damping", "rotary") == "0.1 N·m·s/rad"
     assert (thing.with_unit("level"), Thing(1).with_unit("level")) == ("2", "")
 
 
-def test_a_unit_is_printed_as_people_write_it() -> None:
-    """Middle dots, raised squares, one bar."""
+def test_a_unit_is_printed_as_people_write_it():
     units = ["1", "N", "N*m*s/rad", "kg*m^2", "m/N/s", "N*m*s/rad/J"]
     assert [unit_text(unit) for unit in units] == ["", "N", "N·m·s/rad", "kg·m²", "m/(N·s)", "N·m·s/(rad·J)"]

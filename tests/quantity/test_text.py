@@ -1,12 +1,12 @@
-"""Numbers and units as people read them."""
+"""Numbers and units as people read them, in the unit of angle in which the question was asked."""
 
-from __future__ import annotations
-
-from math import inf
+from math import inf, pi
 
 import pytest
 
-from zwidth.quantity.spoken import answers_in
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Interval
+from zwidth.quantity.spoken import answers_as_typed, answers_in, spoken
 from zwidth.quantity.text import (
     alike,
     enough,
@@ -18,8 +18,11 @@ from zwidth.quantity.text import (
     shown,
     shown_at_least,
     shown_at_most,
+    told,
+    told_quantity,
     unit_text,
 )
+from zwidth.quantity.units import parse, parse_number
 
 
 @pytest.mark.parametrize(
@@ -40,29 +43,25 @@ from zwidth.quantity.text import (
         (None, "N/m", "none"),
     ],
 )
-def test_a_value_with_its_unit(value: float | None, unit: str, text: str) -> None:
-    """Four digits, a prefix where people use one."""
+def test_a_value_with_its_unit(value, unit, text):
     assert shown(value, unit) == text
 
 
-def test_a_value_in_a_unit_that_is_kept() -> None:
-    """Six digits; a tiny one has a prefix, and what is no number is a word."""
+def test_a_value_in_a_unit_that_is_kept():
     assert in_unit(0.0123456789, "N*s/m") == "0.0123457 N·s/m"
     assert in_unit(-2.39684e-05, "N*m") == "-23.9684 µN·m"
     assert in_unit(7.123456e-05, "N*m*s/rad") == "71.2346 µN·m·s/rad"
     assert (in_unit(None, "N/m"), in_unit(inf, "N/m")) == ("none", "any")
 
 
-def test_units_and_keys_in_words() -> None:
-    """Of a rotary device its own unit; Coulomb is a name."""
+def test_units_and_keys_in_words():
     assert unit_text("kg*m^2") == "kg·m²"
     assert quantity_unit("damping") == "N·s/m"
     assert quantity_unit("stiffness", "rotary") == "N·m/rad"
     assert in_words("coulomb_friction") == "Coulomb friction"
 
 
-def test_a_number_in_a_table() -> None:
-    """Whole where there are more digits before the point, up to a million."""
+def test_a_number_in_a_table():
     numbers = (1234567.0, 12345.6, 999.96, 0.00012345)
     assert [in_a_table(number) for number in numbers] == ["1.235e+06", "12346", "1000", "0.0001234"]
     assert in_a_table(0.98765, 3) == "0.988"
@@ -85,12 +84,11 @@ def test_a_number_in_a_table() -> None:
         (5e-5, "1", "5e-05"),
     ],
 )
-def test_a_prefix_takes_the_place_of_an_exponent(value: float, unit: str, text: str) -> None:
-    """Where the unit has prefixes; of a number that is read easily the unit stays as it is."""
+def test_a_prefix_takes_the_place_of_an_exponent(value, unit, text):
     assert readable(value, unit) == text
 
 
-def test_values_of_one_line_have_one_prefix() -> None:
+def test_values_of_one_line_have_one_prefix():
     """Torques and angles that of the smallest, unless another is far above; lengths each their own."""
     assert alike("N*m*s/rad", (0, 3.781e-5), (4, 6)) == ("0 µN·m·s/rad", "37.81 µN·m·s/rad")
     assert alike("N*m*s/rad", (0.00125, 3.7e-5), (4, 6)) == ("1250 µN·m·s/rad", "37 µN·m·s/rad")
@@ -99,11 +97,72 @@ def test_values_of_one_line_have_one_prefix() -> None:
     assert alike("m", (0.3, 0.0001), (4, 4)) == ("0.3 m", "100 µm")
 
 
-def test_a_limit_is_rounded_to_the_side_on_which_it_holds() -> None:
-    """Also a tiny one with a prefix, and one in degrees."""
+def test_a_limit_is_rounded_to_the_side_on_which_it_holds():
     assert shown_at_most(416.96, "N/m") == "416.9 N/m"
     assert shown_at_least(416.92, "N/m") == "417 N/m"
     assert enough(7.12345612e-05, "N*m*s/rad") == "71.2346 µN·m·s/rad"
     with answers_in("deg"):
         assert shown_at_most(1.0, "N*m/rad") == "0.01745 N·m/deg"
         assert shown_at_least(1.0, "N*m/rad") == "0.01746 N·m/deg"
+
+
+ROTARY = ("rad", "rad/s", "N*m/rad", "N·m·s/rad", "s/rad", "N*m*s/rad/J", "N*m/rad^1.5")
+
+
+def test_nobody_asked():
+    assert all(spoken(unit) == (1.0, unit) for unit in ROTARY)
+    with answers_as_typed():
+        parse_number("0.3 N*m/rad", "N*m/rad", "stiffness")
+        assert all(spoken(unit) == (1.0, unit) for unit in ROTARY)
+
+
+def test_whoever_types_degrees():
+    """Every angle of the answer is in degrees once one was typed so, above and below the bar."""
+    with answers_as_typed():
+        value = parse_number("0.4 N*m/deg", "N*m/rad", "stiffness")
+        assert told_quantity(value, "stiffness", "rotary") == "0.4 N·m/deg"
+        assert told(parse_number("7", "rad", "position"), "rad") == f"{7 * 180 / pi:.6g} deg"
+        assert shown(0.0002, "N*m*s/rad") == "3.491 µN·m·s/deg"
+        assert in_unit(pi, "rad/s") == "180 deg/s"
+        assert readable(pi / 1800, "rad") == "0.1 deg"
+        assert told(2.0, "N*m/rad^1.5") == f"{2 * (pi / 180) ** 1.5:.6g} N·m/deg^1.5"
+        assert told(Interval(pi / 180, pi / 18), "rad") == "1 … 10 deg"
+        assert shown(3.0, "N*m") == "3 N·m"
+    assert shown(pi, "rad") == "3.142 rad"
+
+
+def test_an_interval_of_degrees():
+    with answers_as_typed():
+        parse("5 .. 10 °", "rad", "position")
+        assert spoken("rad") == (180 / pi, "deg")
+
+
+def test_what_was_refused_was_not_typed():
+    with answers_as_typed():
+        with pytest.raises(InputError, match="damping is in"):
+            parse_number("3 deg", "N*m*s/rad", "damping")
+        assert spoken("rad") == (1.0, "rad")
+
+
+def test_turns_and_rpm():
+    with answers_in("rpm"):
+        assert told(pi, "rad/s") == "30 rpm"
+        assert told(pi, "rad") == f"{pi:.6g} rad"
+    with answers_in("turn"):
+        assert told(pi, "N*m*s/rad") == f"{2 * pi**2:.6g} N·m·s/turn"
+    with answers_as_typed():
+        parse_number("120 rpm", "rad/s", "speed")
+        parse_number("3 deg/s", "rad/s", "speed")
+        assert (spoken("rad/s")[1], spoken("rad")[1]) == ("rpm", "deg")
+
+
+def test_an_unknown_angle():
+    with pytest.raises(InputError, match="rad, deg or turn"), answers_in("gon"):
+        pass
+
+
+def test_counts_are_no_turns():
+    """65 536 counts per turn is no answer in turns."""
+    with answers_as_typed():
+        parse_number("65536 counts/turn", "1", "counts_per_turn")
+        assert spoken("rad") == (1.0, "rad")

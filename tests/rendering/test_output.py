@@ -1,20 +1,17 @@
-"""The last laws before the converter: slew limit, dither, saturation."""
-
-from __future__ import annotations
+"""The last laws before the converter, slew limit, dither, saturation; and the spring that slips."""
 
 import numpy as np
 import pytest
-from prescribed import DEVICE, commands, touched, wandering
+from prescribed import DEVICE, PERIOD, commands, touched, wandering
 
 import zwidth as zw
-from zwidth.model.rendering import Dither, Saturation, SlewLimit
+from zwidth.model.rendering import Dither, Hysteresis, Saturation, SlewLimit
 
 WALL = zw.Wall(3000)
-BARE = zw.Device(damping=1, rate=1000)
+IDEAL = DEVICE.replace(resolution=0)
 
 
 def wall_force(read):
-    """K x inside."""
     return np.where(read > 0, 3000 * read, 0)
 
 
@@ -28,7 +25,6 @@ def slewed(force, most):
 
 @pytest.mark.parametrize("begin", [-1e-3, 2e-3])
 def test_the_force_changes_by_a_step_at_most(begin):
-    """Sample by sample; a hand that begins inside has its force from the first sample on."""
     x = begin + wandering() - wandering()[0]
     read, force = commands(x, SlewLimit(130), environment=WALL)
     expected = slewed(wall_force(read), 0.13)
@@ -44,7 +40,6 @@ def test_the_motor_says_how_fast():
 
 
 def test_saturation_goes_before_what_remembers():
-    """Without it the force first comes down from where it never was."""
     x = np.array([-1e-3, *[0.02] * 9, *[1e-3] * 9])
     alone, behind = (
         touched(x, *stages, environment=WALL, amplifier=None).actuator_force.values
@@ -56,7 +51,6 @@ def test_saturation_goes_before_what_remembers():
 
 
 def test_saturation():
-    """Both ways, at the device's force limit or below."""
     both = zw.PulseTransferFunction([9000], [1])
     for stage, limit in ((Saturation(), 9), (Saturation("0.7"), 0.7)):
         read, force = commands(wandering(), stage, environment=both)
@@ -80,7 +74,6 @@ def test_the_generator_is_the_published_one():
 
 
 def test_dither_is_the_documented_sequence():
-    """Running on outside, felt inside only."""
     x = wandering()
     read, force = commands(x, Dither("0.4"), environment=WALL)
     signs = np.where(np.arange(len(x)) % 2, -1, 1)
@@ -96,11 +89,10 @@ def test_dither_averages_the_steps_of_the_converter_out():
     """Steps of 0.02 N: the mean is wrong by half of one without, a quarter alternating, nothing random."""
     wrong = {"none": 0.0, "alternating": 0.0, "random": 0.0}
     stages = {"none": Saturation(), "alternating": Dither(), "random": Dither(kind="random")}
-    ideal = DEVICE.replace(resolution=0)
     for force in 1 + 0.02 * np.linspace(0, 1, 21):
         for name, stage in stages.items():
             trace = touched(
-                np.full(4001, force / 3000), stage, environment=WALL, device=ideal, amplifier=None
+                np.full(4001, force / 3000), stage, environment=WALL, device=IDEAL, amplifier=None
             )
             mean = float(trace.commanded_force[:4000].mean())
             wrong[name] = max(wrong[name], abs(mean - force))
@@ -109,39 +101,61 @@ def test_dither_averages_the_steps_of_the_converter_out():
     assert wrong["random"] < 5e-4
 
 
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        (lambda: SlewLimit(0), "rate must be > 0"),
-        (lambda: touched([0, 0], SlewLimit(), device=BARE), "rate was not given .* motor_inductance"),
-        (lambda: Saturation(-1), "limit must be > 0"),
-        (lambda: touched([0, 0], Saturation(), device=BARE), "limit was not given .* force_limit"),
-        (lambda: Dither(0), "amplitude must be > 0"),
-        (lambda: Dither(1, "white"), "kind is one of 'alternating', 'random'"),
-        (lambda: Dither(1, "random", 0), "seed must be > 0"),
-        (lambda: Dither(1, "random", 2**31 - 1), "seed is a whole number"),
-        (lambda: Dither(1, "random", 1.5), "seed is a whole number"),
-        (lambda: touched([0, 0], Dither(), device=BARE), "amplitude was not given .* force_resolution"),
-        (
-            lambda: touched([0, 0], Saturation(), device=DEVICE.replace(force_limit=(8, 9))),
-            "force_limit, which is not certain",
-        ),
-    ],
-)
-def test_bad_input(wrong, message):
-    """What was given, and what is wanted."""
-    with pytest.raises(zw.InputError, match=message):
-        wrong()
+def slipping(readings, width, stiffness):
+    """s of each sample, relaxed at the surface."""
+    s, before, result = 0.0, max(readings[0], 0.0), []
+    for x in readings:
+        u = max(x, 0.0)
+        s = float(np.clip(s + stiffness * (u - before), -width, width)) if x > 0 else 0.0
+        before = u
+        result.append(s)
+    return np.array(result)
 
 
-def test_descriptions():
-    """What is known of them."""
-    stages = (SlewLimit(5), SlewLimit(), Dither(2), Dither(kind="random"), Saturation(3), Saturation())
-    assert [s.describe("rotary") for s in stages] == [
-        "slew limit of 5 N·m/s",
-        "slew limit of the motor",
-        "alternating dither of 2 N·m",
-        "random dither of part of a converter step",
-        "saturation at 3 N·m",
-        "saturation at the force limit",
-    ]
+@pytest.mark.parametrize("clamped", [False, True])
+def test_the_spring_that_slips_commands_its_law(clamped):
+    read, force = commands(wandering(), Hysteresis("0.31", 870, clamped=clamped), environment=zw.Wall(400))
+    slip = slipping(read, 0.31, 870)
+    expected = np.where(read > 0, 400 * read + slip, 0)
+    assert expected.min() < -0.01
+    assert np.abs(slip).max() == 0.31
+    assert force == pytest.approx(np.maximum(expected, 0) if clamped else expected, abs=1e-12)
+
+
+def test_without_a_surface_the_spring_acts_everywhere():
+    x = wandering()
+    read, force = commands(x, Hysteresis("0.2", 500), environment=zw.PulseTransferFunction([70], [1]))
+    s, expected = 0.0, []
+    for now, before in zip(read, np.append(read[:1], read), strict=False):
+        s = float(np.clip(s + 500 * (now - before), -0.2, 0.2))
+        expected.append(70 * now + s)
+    assert force == pytest.approx(np.array(expected), abs=1e-12)
+
+
+def work_out(stiffness, speed, depth, *stages):
+    """Energy that a hand puts in on the way to a depth and back, behind a hold, friction aside [J]."""
+    x = np.arange(0, depth, speed * PERIOD)
+    way = np.concatenate((x, x[::-1]))
+    trace = touched(way, *stages, environment=zw.Wall(stiffness), device=IDEAL)
+    return float(-trace.actuator_work[-1])
+
+
+def test_the_width_of_the_spring_pays_for_the_hold_up_to_its_speed():
+    """½ K v T D leaks each way; h D each way is paid: a gain above v_max, a loss below."""
+    k, fastest, depth = 2000, 0.1, 0.01
+    law = Hysteresis(fastest=fastest)
+    leak = work_out(k, fastest, depth, Saturation(1e6))
+    assert leak == pytest.approx(-k * fastest * PERIOD * depth, rel=0.03)
+    assert abs(work_out(k, fastest, depth, law)) < 0.05 * abs(leak)
+    assert work_out(k, fastest / 2, depth, law) > 0.4 * abs(leak)
+    assert work_out(k, fastest * 2, depth, law) < -0.8 * abs(leak)
+    explicit = Hysteresis(k * fastest * PERIOD / 2, k)
+    assert work_out(k, 0.07, depth, law) == pytest.approx(work_out(k, 0.07, depth, explicit), rel=1e-9)
+
+
+def test_a_hand_to_and_fro_finds_the_same_forces_to_the_bit():
+    x = np.tile([0.00031, 0.00037, 0.00034, 0.00029], 1000)
+    _, force = commands(x, Hysteresis("0.31", 870), device=IDEAL)
+    rounds = np.reshape(force[4:], (-1, 4))
+    assert (rounds == rounds[0]).all()
+    assert len(set(rounds[0])) == 4

@@ -1,7 +1,5 @@
 """Laws that look ahead, against plain loops in numpy and an adaptive integrator."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -20,7 +18,6 @@ HAND = zw.operators.Tracking([REST], stiffness=SPRING, damping=1.3, mass=0.011)
 
 
 def simulated(law, duration=0.9, device=DEVICE, start=-0.017):
-    """Positions, velocities and commands at the samples."""
     trace = zw.simulate(device, law, HAND, duration, initial_position=start)
     return trace.position.values, trace.velocity.values, trace.commanded_force.values
 
@@ -44,21 +41,11 @@ def plain_loop(law, samples, start=-0.017):
 
 
 def assert_same(law, reference, tolerance=1e-9, samples=100):
-    """Positions and commands, sample by sample."""
     x, _, f = simulated(law)
     position, _, force = plain_loop(reference, samples)
     assert x[:samples] == pytest.approx(position, abs=tolerance * np.max(np.abs(position)))
     assert f[:samples] == pytest.approx(force, abs=tolerance * np.max(np.abs(force)))
     assert np.sum(np.diff(np.sign(position)) != 0) >= 4  # contact is made and broken
-
-
-def test_half_a_sample_is_virtual_damping():
-    """Extrapolated by ½ inside a wall K: the wall K with B = KT/2."""
-    ahead = simulated(zw.render(zw.Wall(731), Extrapolation()), 0.2, start=0.002)
-    damped = simulated(zw.Wall(731, 731 * T / 2), 0.2, start=0.002)
-    assert np.min(ahead[0]) > 0
-    assert ahead[0] == pytest.approx(damped[0], rel=1e-12)
-    assert ahead[2] == pytest.approx(damped[2], rel=1e-11)
 
 
 def test_extrapolations_in_a_row():
@@ -80,7 +67,6 @@ def test_half_sample_prediction_sample_by_sample():
 
 
 def test_at_the_first_sample_the_hand_is_taken_to_be_at_rest():
-    """One reading tells no velocity, and which force acted before is not known: none."""
     f = simulated(zw.render(zw.Wall(1900), HalfSamplePrediction(**FINGER)), start=0.006)[2]
     phi, gamma = hold(T / 2)
     assert f[0] == pytest.approx(1900 * (phi @ [0.006, 0] + gamma * SPRING * REST)[0], rel=1e-12)
@@ -105,7 +91,6 @@ def matched_by_numpy(stiffness, damping):
 
 @pytest.mark.parametrize("damping", [0, 4.1])
 def test_matched_poles_sample_by_sample(damping):
-    """The gains are Ackermann's and act on the true state."""
     wall, law = zw.Wall(2300, damping), PoleMatched(**FINGER)
     gains = matched_by_numpy(2300, damping)
     assert law.gains(LoopContext(DEVICE, wall)) == pytest.approx(gains, rel=1e-10)
@@ -121,7 +106,6 @@ def test_matched_poles_of_a_free_mass():
 
 
 def test_matched_poles_of_a_clamped_wall_never_pull():
-    """As the wall; without the word they do."""
     smallest = [
         np.min(simulated(zw.render(zw.Wall(2300, 4.1, clamped=c), PoleMatched(**FINGER)))[2])
         for c in (True, False)
@@ -190,7 +174,6 @@ def correcting(stiffness, damping=0.0, clamped=False, throughout=False):
 @pytest.mark.parametrize("throughout", [False, True])
 @pytest.mark.parametrize("stiffness", [900, 4100])
 def test_correction_sample_by_sample(stiffness, throughout):
-    """Two held forces after each crossing; between them the wall, or two more."""
     law = CrossingCorrection(throughout=throughout, **FINGER)
     assert_same(zw.render(zw.Wall(stiffness), law), correcting(stiffness, throughout=throughout), 1e-8, 60)
 
@@ -227,7 +210,6 @@ def bounces(law):
 
 
 def test_bounces_grow_are_bounded_and_are_kept():
-    """The three figures: original, prediction, correction."""
     wall = zw.Wall(5000)
     assert np.max(bounces(wall)) > 1
     predicted = bounces(zw.render(wall, HalfSamplePrediction(**UNDAMPED)))
@@ -240,7 +222,6 @@ def test_bounces_grow_are_bounded_and_are_kept():
 
 @pytest.mark.parametrize("stiffness", [500, 1300, 2000, 9000])
 def test_throughout_keeps_the_height_on_any_wall(stiffness):
-    """Also where the contact lasts for many samples."""
     law = zw.render(zw.Wall(stiffness), CrossingCorrection(throughout=True, **UNDAMPED))
     assert bounces(law) == pytest.approx(0.02, abs=1e-9)
 
@@ -251,50 +232,3 @@ def test_prediction_before_and_correction_after():
     one, other = simulated(zw.render(zw.Wall(900), *laws)), simulated(zw.render(zw.Wall(900), *laws[::-1]))
     assert np.array_equal(one, other)
     assert not np.array_equal(one[0], simulated(zw.render(zw.Wall(900), laws[1]))[0])
-
-
-def test_many_loops_are_one_each():
-    """simulate_batch ends where simulate does, to the last bit."""
-    law = zw.render(zw.Wall(1900), HalfSamplePrediction(**FINGER), CrossingCorrection(**FINGER))
-    masses = [0.31, 0.37]
-    batch = zw.simulation.simulate_batch(DEVICE, law, HAND, 0.9, vary={"device.mass": masses})
-    for mass, swing in zip(masses, batch.deepest_position.values, strict=True):
-        trace = zw.simulate(DEVICE.replace(mass=mass), law, HAND, 0.9)
-        assert swing == np.max(trace.position.values)
-
-
-def test_text():
-    """The finger that is known, in the units of the motion."""
-    law = zw.render(zw.Wall(900), Extrapolation(), HalfSamplePrediction(mass="0.3", **FINGER))
-    assert law.describe() == (
-        "wall, 900 N/m, with extrapolated by 0.5 samples, half-sample prediction "
-        "(mass 0.3 kg, finger 0.011 kg, 430 N/m, 1.3 N·s/m)"
-    )
-    assert PoleMatched().describe() == "poles matched (no finger)"
-    rotary = CrossingCorrection(throughout=True, finger_stiffness=2).describe("rotary")
-    assert rotary == "crossing correction (finger 2 N·m/rad, throughout)"
-
-
-def numbers(law, environment, **device):
-    return law.numbers(LoopContext(DEVICE.replace(**device), environment))
-
-
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: Extrapolation(samples=-1), "samples must be ≥ 0, got -1"),
-        (lambda: HalfSamplePrediction(mass=0), "mass must be > 0, got 0"),
-        (lambda: HalfSamplePrediction(finger_mass=-1), "finger_mass must be ≥ 0"),
-        (lambda: HalfSamplePrediction(finger_position="deep"), "finger_position is in m; got .deep.: exp"),
-        (lambda: numbers(HalfSamplePrediction(), zw.Wall(9), mass=None), "the device has none: give mass"),
-        (lambda: numbers(HalfSamplePrediction(finger_stiffness=1e6), zw.Wall(9)), "do not tell a velocity"),
-        (lambda: numbers(HalfSamplePrediction(finger_damping=1e9), zw.Wall(9)), "do not tell a velocity"),
-        (lambda: numbers(CrossingCorrection(), zw.Maxwell(3, 4)), "needs a Wall, got Maxwell"),
-        (lambda: numbers(PoleMatched(), zw.Maxwell(3, 4)), "needs a Wall, got Maxwell"),
-        (lambda: numbers(PoleMatched(), zw.Wall(1e6)), "swings half a turn"),
-    ],
-)
-def test_bad_input_has_one_clear_message(make, message):
-    """What was given, what is needed and why."""
-    with pytest.raises(zw.InputError, match=message):
-        make()

@@ -1,28 +1,13 @@
 """Environments updated every N samples, held or with a local spring in between."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from tempting import FORCE, LENGTH, T, device, energy_in, follow, same_in_other_units, tempt, wall
+from prescribed import T, device, energy_in, follow, tempt, wall
 
 import zwidth as zw
 from zwidth.model.rendering import DualRate, EnergyBounding, ForceBounding, Held
-
-
-def held(wish, samples):
-    """Every N-th force."""
-    last = {"k": 0, "f": 0.0}
-
-    def law(x):
-        if last["k"] % samples == 0:
-            last["f"] = wish(x)
-        last["k"] += 1
-        return last["f"]
-
-    return law
 
 
 def local(wish, samples, slope, jumps=False):
@@ -45,9 +30,10 @@ def local(wish, samples, slope, jumps=False):
 
 def test_held_forces_are_those_of_a_plain_loop():
     """Every 15th force of the wall."""
-    positions, forces = tempt(held(wall(400), 15), device(), 400, 1)
+    positions, _ = tempt(wall(400), device(), 400, 1)
     trace = follow(device(), zw.render(zw.Wall(400), Held(samples=15)), positions)
-    assert trace.commanded_force.to_numpy() == pytest.approx(forces, rel=1e-15)
+    expected = 400 * np.maximum(positions, 0)[np.arange(positions.size) // 15 * 15]
+    assert trace.commanded_force.to_numpy() == pytest.approx(expected, rel=1e-15)
 
 
 @pytest.mark.parametrize("samples", [1, 4, 15])
@@ -123,7 +109,6 @@ def test_jumps_at_updates_are_not_passive():
 
 @pytest.mark.parametrize(("share", "sign"), [("299.9", 1), ("300.1", -1)])
 def test_slopes_beyond_the_device_are_not_passive(share, sign):
-    """One sample in, one out, on one local spring."""
     positions = np.array([1e-4, *([1e-4, 1e-3] * 50), 1e-4])
     loop = zw.render(zw.Wall(5000), DualRate(samples=1000, slope=share))
     assert np.sign(energy_in(follow(device(), loop, positions))[-1]) == sign
@@ -148,35 +133,3 @@ def test_a_wall_at_66_7_hz_that_bounces_for_ever_is_passive_behind_a_law():
         assert least >= -1e-12
         assert (float(np.ptp(trace.position.to_numpy()[-500:])) < 1e-3) is quiet
     assert touch(zw.render(zw.Wall(30_000), DualRate(samples=15)))[1] >= -1e-12
-
-
-@pytest.mark.parametrize("updates", ["jump", "continuous"])
-def test_units_do_not_matter(updates):
-    """Length, force and time in other units: the same loop."""
-    positions, _ = tempt(local(wall(2048), 7, 300), device(), 300, 3)
-    walls = zw.Wall(2048), zw.Wall(2048 * FORCE / LENGTH)
-    law = DualRate(samples=7, updates=updates)
-    assert same_in_other_units(device(), law, law, *walls, positions)
-    given = DualRate(samples=7, slope=100), DualRate(samples=7, slope=100 * FORCE / LENGTH)
-    assert same_in_other_units(device(), *given, *walls, positions)
-    assert same_in_other_units(device(), Held(samples=3), Held(samples=3), *walls, positions)
-
-
-def test_messages():
-    """What is wrong is said."""
-    for bad in (0, 1.5, True, "2"):
-        with pytest.raises(zw.InputError, match="samples is a whole number of samples, at least 1"):
-            Held(samples=bad)
-        with pytest.raises(zw.InputError, match="samples is a whole number of samples, at least 1"):
-            DualRate(samples=bad)
-    with pytest.raises(zw.InputError, match="slope must be > 0, got -3: it is that of a local spring"):
-        DualRate(samples=2, slope=-3)
-    with pytest.raises(zw.InputError, match="updates is one of 'continuous', 'jump', got 'smooth'"):
-        DualRate(samples=2, updates="smooth")
-    with pytest.raises(zw.InputError, match="a local spring without slope pays for the force with"):
-        follow(device(damping=0), zw.render(zw.Wall(300), DualRate(samples=2)), [0.0, 0.001])
-    said = zw.render(zw.Wall(300), Held(samples=15), DualRate(samples=2, slope=70)).describe()
-    assert said == (
-        "wall, 300 N/m, with updated every 15 samples, "
-        "local spring (updated every 2 samples, slope 70 N/m, continuous updates)"
-    )

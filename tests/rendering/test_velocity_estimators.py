@@ -1,7 +1,5 @@
 """Dampers on estimators that are not linear: each against its law written plainly, and against the truth."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np
@@ -18,7 +16,6 @@ FREE = zw.PulseTransferFunction([0], [1])
 
 
 def estimated(positions, estimator, **options):
-    """(readings, estimated velocities)."""
     return commands(positions, Damper(1, estimator), environment=FREE, **options)
 
 
@@ -59,7 +56,6 @@ def ticks(readings, count, period):
 @pytest.mark.parametrize("fit", ["end", "best"])
 @pytest.mark.parametrize(("noise", "longest"), [(None, 15), (3.3e-5, 7), (1e-4, 40)])
 def test_the_window_is_that_of_its_definition(noise, longest, fit):
-    """The longest line from the newest reading that passes all others within the noise."""
     x = wandering()
     read, v = estimated(x, AdaptiveWindow(noise, longest, fit))
     expected = adaptive(read, COUNT if noise is None else noise, longest, fit == "best")
@@ -67,16 +63,7 @@ def test_the_window_is_that_of_its_definition(noise, longest, fit):
     assert len(np.unique(np.round(v, 9))) > 20
 
 
-def test_a_window_of_one_sample_is_the_backward_difference():
-    """As a wall's damper."""
-    x = wandering()
-    _, force = commands(x, Damper("2.3", AdaptiveWindow(longest=1)))
-    _, wall = commands(x, zw.rendering.Saturation(100), environment=zw.Wall(0, "2.3"))
-    assert force == pytest.approx(wall, abs=1e-12)
-
-
 def test_ticks_are_timed():
-    """Edges over the time since the last one, decaying, none counted twice at a turn."""
     x = wandering(speed=0.02)
     read, v = estimated(x, TickTime())
     assert v == pytest.approx(ticks(read, COUNT, PERIOD), abs=1e-9)
@@ -101,7 +88,6 @@ def test_trembling_about_an_edge_has_no_velocity():
 
 @pytest.mark.parametrize("density", [0.02, 1.0, 50.0, 3e4])
 def test_the_kalman_gains_are_those_of_the_riccati_equation(density):
-    """SciPy's solution for the same model."""
     a = np.array([[1, PERIOD], [0, 1]])
     q = density**2 * np.array([[PERIOD**3 / 3, PERIOD**2 / 2], [PERIOD**2 / 2, PERIOD]])
     scale = np.diag([1 / COUNT, PERIOD / COUNT])  # in counts per sample, so that SciPy keeps its digits
@@ -175,7 +161,6 @@ def test_a_fast_hand_is_followed_by_a_short_window():
 
 
 def test_inside_only_and_pushing_only():
-    """Behind a wall: nothing outside; clamped, the sum never pulls."""
     x = wandering()
     read, v = estimated(x, TickTime())
     spring = 300 * np.maximum(read, 0)
@@ -185,36 +170,3 @@ def test_inside_only_and_pushing_only():
     assert expected.min() < -0.01
     _, clamped = commands(x, Damper(4, TickTime(), clamped=True), environment=zw.Wall(300))
     assert clamped == pytest.approx(np.maximum(expected, 0), abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        (lambda: Damper(-1), "damping must be ≥ 0"),
-        (lambda: Damper(1, zw.rendering.Window(3)), "velocity is AdaptiveWindow"),
-        (lambda: Damper(1, clamped=1), "clamped is True for a sum"),
-        (lambda: AdaptiveWindow(-1e-6), "noise must be ≥ 0"),
-        (lambda: AdaptiveWindow(longest=0), "longest must be > 0"),
-        (lambda: AdaptiveWindow(longest=2.5), "whole number of samples"),
-        (lambda: AdaptiveWindow(longest=1001), "whole number of samples"),
-        (lambda: AdaptiveWindow(fit="worst"), "fit is one of 'end', 'best'"),
-        (lambda: Kalman(0), "acceleration must be > 0"),
-    ],
-)
-def test_bad_input(wrong, message):
-    """What was given, and what is wanted."""
-    with pytest.raises(zw.InputError, match=message):
-        wrong()
-
-
-def test_descriptions():
-    """Numbers with the unit of the motion."""
-    words = [e.describe("rotary") for e in (AdaptiveWindow(1e-4), Kalman(30), TickTime())]
-    assert words == [
-        "adaptive window of up to 15 samples within 0.0001 rad, end fit",
-        "Kalman filter for 30 (rad/s²)/√Hz",
-        "time between ticks",
-    ]
-    assert Damper(2, TickTime(), clamped=True).describe() == (
-        "damper of 2 N·s/m on time between ticks, never pulls"
-    )

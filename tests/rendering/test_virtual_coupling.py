@@ -1,7 +1,5 @@
 """The coupling: series stiffness, its own bound, bad input."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import control
@@ -17,7 +15,6 @@ Z = np.exp(1j * np.linspace(0.05, np.pi, 60))
 
 
 def evaluate(law, z=Z):
-    """H(z) in floats."""
     top, bottom = ([float(c) for c in p] for p in law.pulse_transfer_function(T))
     return np.polyval(top, z) / np.polyval(bottom, z)
 
@@ -64,13 +61,11 @@ def test_a_passive_environment_needs_no_more_than_the_coupling_alone(k, mu, eta)
 
 
 def test_a_rigid_environment_needs_what_the_coupling_alone_needs():
-    """The bound is met in the limit of a stiff wall."""
     law = zw.VirtualCoupling(820, 0.3, zw.Wall(1e12))
     assert required_damping(evaluate(law)) == pytest.approx(820 * 5e-4 + 0.3, rel=1e-6)
 
 
 def test_surface_and_rounding_follow_the_environment():
-    """Unilateral, rounded and uncertain exactly as what lies behind."""
     wall, free = zw.Wall(290, 1.3), zw.PulseTransferFunction([1], [1, 0.5])
     assert zw.VirtualCoupling(820, 2, wall).unilateral
     assert not zw.VirtualCoupling(820, 2, free).unilateral
@@ -81,37 +76,11 @@ def test_surface_and_rounding_follow_the_environment():
 
 
 def test_foreign_systems_are_accepted():
-    """A discrete python-control system lies behind the coupling as its transfer function."""
     system = control.tf([310.0, -250.0], [0.7, -0.5], 1e-3)
-    law = zw.VirtualCoupling(820, 2.1, system)
-    assert law.environment == zw.PulseTransferFunction(system)
-    zc = control.tf([820e-3 + 2.1, -2.1], [1e-3, 0], 1e-3)
-    assert evaluate(law) == pytest.approx((zc * system / (zc + system))(Z), rel=1e-9)
+    assert zw.VirtualCoupling(820, 2.1, system).environment == zw.PulseTransferFunction(system)
 
 
-def test_nested_couplings_and_text():
-    """Couplings in series; describe() from the outside in; repr() can be typed again."""
+def test_nested_couplings_are_typed_again():
     law = zw.VirtualCoupling(820, 2, zw.VirtualCoupling(700, 1, zw.Maxwell(3, 4)))
-    assert law.describe().startswith(
-        "virtual coupling, 820 N/m and 2 N·s/m, before virtual coupling, 700 N/m and 1 N·s/m, before Maxwell"
-    )
     assert eval(repr(law), vars(zw)) == law
     assert law.replace(stiffness=5).stiffness == 5
-
-
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: zw.VirtualCoupling(-1, 2, zw.Wall(3)), "stiffness must be ≥ 0"),
-        (lambda: zw.VirtualCoupling(1, "x", zw.Wall(3)), r"damping is in N\*s/m; got .x.: expected a number"),
-        (lambda: zw.VirtualCoupling(1, 2, None), "an environment is"),
-        (lambda: zw.VirtualCoupling(1, 2, control.tf([1], [1, 2])), "needs a discretization"),
-        (lambda: zw.VirtualCoupling((1, 2), 2, zw.Wall(3)).pulse_transfer_function(T), "interval"),
-        (lambda: zw.VirtualCoupling(0, 0, zw.Wall(0)).pulse_transfer_function(T), "add up to zero"),
-        (lambda: zw.VirtualCoupling(0, -3, zw.Wall(3000)).pulse_transfer_function(T), "still to come"),
-    ],
-)
-def test_bad_input_has_one_clear_message(make, message):
-    """What was given and what to give instead."""
-    with pytest.raises(zw.InputError, match=message):
-        make()

@@ -1,13 +1,10 @@
 """The windowed controller: by a plain loop, what it forgets and what it never does, in other units."""
 
-from __future__ import annotations
-
 from collections import deque
 
 import numpy as np
 import pytest
-from prescribed import wandering
-from tempting import FORCE, LENGTH, TIME, device, follow, same_in_other_units
+from prescribed import device, follow, wandering
 
 import zwidth as zw
 from zwidth.model.rendering import Hysteresis, PassivityController, WindowedController
@@ -43,7 +40,6 @@ def plain(positions, stiffness, window=30, slowest=0.01, share=0.9, largest_damp
 
 @pytest.mark.parametrize("name", OPTIONS)
 def test_it_does_what_a_plain_loop_does(name):
-    """Sample by sample, in and out of a wall."""
     options, positions = OPTIONS[name], wandering()
     trace = follow(DEVICE, zw.render(zw.Wall(1500), WindowedController(**options)), positions)
     expected = np.array(list(plain(positions, 1500.0, **options)))
@@ -71,7 +67,6 @@ def test_what_was_lost_long_ago_does_not_hide_what_comes_out_now():
 
 
 def test_what_the_spring_stores_is_never_forgotten():
-    """A hand that rests in the wall for longer than the window may go out slowly: nothing is added."""
     inside = np.concatenate([np.linspace(-1e-3, 2e-3, 400), np.full(500, 2e-3), np.linspace(2e-3, 3e-4, 400)])
     trace = follow(DEVICE, zw.render(zw.Wall(100), WindowedController(window=5)), inside)
     added = trace.commanded_force.values - 100 * np.maximum(inside, 0)
@@ -104,45 +99,3 @@ def test_a_clamped_amplifier_is_booked_as_it_was():
     cut = follow(weak, law, path).commanded_force.values
     assert np.abs(free[5:]).max() <= 0.0135 * (1 + 1e-9)
     assert (np.abs(cut[5:20]) > 0).all()
-
-
-def test_other_units_change_nothing():
-    """Metres, newtons and seconds scaled by powers of two: the same forces to the last bit."""
-    unit = FORCE * TIME / LENGTH
-    here = WindowedController(slowest="0.03", largest_damping="0.1", window=7, share="0.5")
-    there = WindowedController(
-        slowest=here.slowest.fraction * LENGTH / TIME,
-        largest_damping=here.largest_damping.fraction * unit,
-        window=7,
-        share="0.5",
-    )
-    walls = zw.Wall(1500), zw.Wall(1500 * FORCE / LENGTH)
-    assert same_in_other_units(DEVICE, here, there, *walls, wandering())
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        ({"window": 0}, "window is a whole number of samples, at least 1"),
-        ({"window": "2.5"}, "window is a whole number of samples"),
-        ({"window": 1001}, "window is 1000 samples at most, got 1001"),
-        ({"slowest": 0}, "slowest must be > 0"),
-        ({"share": "1.01"}, "share must be ≤ 1, got 1.01"),
-        ({"share": 0}, "share must be > 0"),
-        ({"largest_damping": -1}, "largest_damping must be > 0"),
-        ({"largest_damping": "unlimited"}, r"largest_damping is in N\*s/m; got .unlimited."),
-    ],
-)
-def test_what_it_refuses(options, said):
-    """One clear line."""
-    with pytest.raises(zw.InputError, match=said):
-        WindowedController(**options)
-
-
-def test_a_device_without_damping_pays_for_nothing():
-    """It is told when it is simulated; with a limit of its own it runs."""
-    undamped, path = device(damping=0), wandering(40)
-    with pytest.raises(zw.InputError, match="largest_damping was not given"):
-        follow(undamped, zw.render(zw.Wall(9), WindowedController()), path)
-    law = zw.render(zw.Wall(9), WindowedController(largest_damping="0.1"))
-    assert follow(undamped, law, path).commanded_force.size == 40

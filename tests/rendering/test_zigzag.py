@@ -1,12 +1,11 @@
 """Hands that turn, and step small, then large: what no controller gives out by default."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tempting import follow
+from prescribed import device as loop
+from prescribed import follow
 
 import zwidth as zw
 from zwidth.model.rendering import PassivityController, WindowedController
@@ -25,18 +24,6 @@ DEFAULTS = {
 
 steps = st.lists(st.tuples(st.floats(-4, 0), st.sampled_from([1, -1])), min_size=2, max_size=40)
 """Moves of all sizes over four decades, in no order."""
-
-
-def loop(damping=B, friction=0, resolution=0, **more):
-    """36 g at 1 kHz."""
-    return zw.Device(
-        mass="0.036",
-        damping=damping,
-        coulomb_friction=friction,
-        resolution=resolution,
-        sample_period="0.001",
-        **more,
-    )
 
 
 def zigzag(parts, start, times):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from zwidth.errors import InputError
-from zwidth.model.scene import Contact, CoulombFriction, Damper, Lever, Mass, Scene, SceneRun, Spring
+from zwidth.model.scene import Contact, Damper, Lever, Mass, Scene, SceneRun, Spring
 from zwidth.model.scene.parts import best_parts, cut_scene
 
 
@@ -149,27 +149,3 @@ def test_the_best_parts_cut_no_stiffer_spring_than_any_others_do():
 
 def test_a_node_without_mass_stays_with_its_stiffest_neighbour():
     assert best_parts(chain([500, 400], handle=1), 2) == {"part 1": ("handle", "m0", "m1"), "part 2": ("m2",)}
-
-
-@pytest.mark.parametrize(
-    ("parts", "more", "said"),
-    [
-        ({"a": ["handle", "m0"]}, {}, "in no part: m1"),
-        ({"a": ["handle", "m0", "m1"], "b": ["handle"]}, {}, "what has one mass"),
-        ({"a": ["handle", "m0"], "b": ["m0", "m1"], "c": ["m0"]}, {}, "is in 3 parts"),
-        ({"a": ["handle", "m0", "m1"], "b": []}, {}, "has no node"),
-        ({"a": ["handle", "m0", "m9"]}, {}, '"m9" of part "a" is no node'),
-        ({"a": ["handle", "m0"], "b": ["m1"]}, {"delay": 0}, "delay"),
-        ({"a": ["handle", "m0"], "b": ["m1"]}, {"impedances": {"mass m0": 1}}, "is not cut"),
-        ({"a": ["handle", "m0"], "b": ["m1"]}, {"impedances": {"spring m0–m1": 0}}, "impedance of spring"),
-    ],
-)
-def test_what_is_no_cut_is_refused(parts, more, said):
-    with pytest.raises(InputError, match=said):
-        cut_scene(chain([500]), parts, **{"delay": "1 ms", **more})
-
-
-def test_as_many_parts_as_springs_join():
-    scene = Scene([Spring("handle", "a", 1), Mass("a", 1), CoulombFriction("a", "b", 1), Mass("b", 1)])
-    with pytest.raises(InputError, match="from 1 to 1"):
-        best_parts(scene, 2)

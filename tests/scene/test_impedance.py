@@ -11,15 +11,13 @@ from scipy.linalg import eigh
 from strategies import seeds
 
 import zwidth as zw
-from zwidth import InputError
 from zwidth.model.environment import RationalFunction
-from zwidth.model.scene import Contact, Damper, Lever, Mass, SceneRun, Spring
+from zwidth.model.scene import Damper, Lever, Mass, SceneRun, Spring
 
 T = Fraction(1, 1000)
 
 
 def at(z: complex, function: RationalFunction) -> complex:
-    """The value at one z."""
     num, den = ([float(c) for c in side] for side in function)
     return complex(np.polyval(num, z) / np.polyval(den, z))
 
@@ -53,7 +51,7 @@ def node_matrix_impedance(scene: zw.Scene, z: complex) -> complex:
 
 
 @seeds(20)
-def test_it_is_that_of_the_node_equations(seed: int) -> None:
+def test_it_is_that_of_the_node_equations(seed):
     """Levers, loops and all, at points around the unit circle; E(z) is that of positions."""
     scene = random_scene(seed, 3 + seed % 12, LINEAR)
     z = np.exp(1j * (0.1 + seed % 1000 / 330)) * 1.05
@@ -63,8 +61,7 @@ def test_it_is_that_of_the_node_equations(seed: int) -> None:
 
 
 @seeds(12)
-def test_the_step_is_the_filter(seed: int) -> None:
-    """Impulse response of the compiled step, and that of H(z) in exact arithmetic."""
+def test_the_step_is_the_filter(seed):
     scene = random_scene(seed, 3 + seed % 8, LINEAR)
     num, den = scene.pulse_transfer_function(T)
     num = (Fraction(0),) * (len(den) - len(num)) + num
@@ -78,7 +75,7 @@ def test_the_step_is_the_filter(seed: int) -> None:
 
 
 @seeds(12)
-def test_it_is_positive_real_by_the_exact_checker(seed: int) -> None:
+def test_it_is_positive_real_by_the_exact_checker(seed):
     """ν ≥ 0 with a certificate, from velocity to force."""
     scene = random_scene(seed, 3 + seed % 8, LINEAR)
     port = zw.PulseTransferFunction(*scene.impedance(T), sample_period=T)
@@ -92,7 +89,7 @@ def chain(masses: int) -> zw.Scene:
     return zw.Scene([*springs, *(Mass(f"m{i}", "0.01") for i in range(1, masses + 1))], port="m0")
 
 
-def test_a_chain_of_a_hundred_masses_swings_as_its_modes_do() -> None:
+def test_a_chain_of_a_hundred_masses_swings_as_its_modes_do():
     """A mode of scipy's generalized eigenproblem, held and let go, goes round at tan(ωT/2) = ω_c T/2."""
     n, t = 100, 0.001
     stiffness = 400 * (2 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))
@@ -114,21 +111,7 @@ def test_a_chain_of_a_hundred_masses_swings_as_its_modes_do() -> None:
     assert np.abs(error).max() <= 1e-11 * np.abs(modal).max()
 
 
-def test_it_converges_with_the_square_of_the_step() -> None:
-    """Mass on a spring pulled at constant speed: x − y = v sin(ω t)/ω, the force K times that."""
-    k, m, v, end = 390.0, 0.1, 0.2, 0.4
-    omega = np.sqrt(k / m)
-    errors = []
-    for steps in (200, 400, 800):
-        run = SceneRun(zw.Scene([Spring("handle", "m", k), Mass("m", "0.1")]), Fraction(str(end)) / steps)
-        forces = run.follow(v * end * np.arange(1, steps + 1) / steps)
-        middle = (np.arange(steps) + 0.5) * end / steps
-        errors.append(np.abs(forces - k * v * np.sin(omega * middle) / omega).max())
-    assert errors[0] / errors[1] == pytest.approx(4, rel=0.05)
-    assert errors[1] / errors[2] == pytest.approx(4, rel=0.05)
-
-
-def test_levers_may_close_a_loop() -> None:
+def test_levers_may_close_a_loop():
     """Ties that agree are one tie; ties that contradict each other hold the node."""
     body = [
         Spring("handle", "a", 300),
@@ -143,33 +126,7 @@ def test_levers_may_close_a_loop() -> None:
     assert held.impedance(T) == zw.Scene([Spring("handle", "ground", 300)]).impedance(T)
 
 
-def test_a_hidden_part_cancels() -> None:
-    """What hangs on the ground alone is not felt."""
+def test_a_hidden_part_cancels():
     seen = [Spring("handle", "a", 300), Mass("a", "0.2"), Damper("a", "ground", "0.1")]
     more = [Mass("far", "0.3"), Spring("far", "ground", 20)]
     assert zw.Scene([*seen, *more]).impedance(T) == zw.Scene(seen).impedance(T)
-
-
-@pytest.mark.parametrize(
-    ("elements", "says"),
-    [
-        ([], "one element at least"),
-        ([Spring("a", "a", 1)], "both ends"),
-        ([Spring("a", "b", 1)], 'port "handle" is no node'),
-        ([Lever("handle", "ground"), Mass("handle", 1)], "tied to the ground"),
-        ("spring", "zwidth.scene"),
-    ],
-)
-def test_what_is_no_scene_is_refused(elements: object, says: str) -> None:
-    """With one message, that says what to do."""
-    with pytest.raises(InputError, match=says):
-        zw.Scene(elements)  # type: ignore[arg-type]
-
-
-def test_a_node_that_nothing_holds_is_named() -> None:
-    """A node between two contacts has more than one velocity."""
-    loose = zw.Scene(
-        [Contact("handle", "a", 100), Contact("a", "ground", 100), Damper("handle", "ground", 1)]
-    )
-    with pytest.raises(InputError, match='holds the node "a"'):
-        SceneRun(loose, T)

@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from needed import needed
 from strategies import texts, toml_values
 
 import zwidth as zw
+from zwidth.model.kind import Kind
 from zwidth.model.specification.environments import TYPES, build_environment, option_keys
 from zwidth.model.specification.read import DEVICE_KEYS, LARGEST_FILE, Specification, build_device, load
 from zwidth.model.specification.table import Table
@@ -40,7 +40,6 @@ def read(tmp_path: Path) -> Load:
 
 
 def message(call: Callable[[], object]) -> str:
-    """The message of the InputError that a call must raise."""
     with pytest.raises(zw.InputError) as caught:
         call()
     text = str(caught.value)
@@ -50,7 +49,6 @@ def message(call: Callable[[], object]) -> str:
 
 
 def outcome(call: Callable[[], object]) -> str:
-    """The message of an InputError, or nothing where all is well."""
     try:
         call()
     except zw.InputError as error:
@@ -58,8 +56,7 @@ def outcome(call: Callable[[], object]) -> str:
     return ""
 
 
-def test_numbers_are_exact(read: Load) -> None:
-    """A third of a millisecond, and TOML floats as they were typed."""
+def test_numbers_are_exact(read):
     device, wall = (s := read(DEVICE + "resolution = 22.4e-6\n" + WALL)).device, s.environment
     assert device.exact("sample_period") == Fraction(1, 3000)
     assert device.exact("resolution") == Fraction(224, 10**7)
@@ -68,22 +65,19 @@ def test_numbers_are_exact(read: Load) -> None:
     assert wall == zw.Wall(300)
 
 
-def test_one_file_or_two_or_a_catalogue_name(read: Load) -> None:
-    """In any order."""
+def test_one_file_or_two_or_a_catalogue_name(read):
     both = read(DEVICE + WALL)
     assert read(WALL, DEVICE.replace("[device]", '[device]\nname = "file0"')) == both
     paddle = load(["haptic-paddle"], {"stiffness": "0.3 N/mm"})
     assert paddle == Specification(zw.catalogue.device("haptic-paddle"), zw.Wall(300))
 
 
-def test_the_command_line_alone() -> None:
-    """A device and a wall without a file."""
+def test_the_command_line_alone():
     s = load([], {"damping": "0.15", "sample-period": "1 ms", "stiffness": "300", "virtual-damping": "-0.1"})
     assert s == Specification(zw.Device(damping=0.15, rate=1000), zw.Wall(300, -0.1))
 
 
-def test_overrides_replace_the_file(read: Load) -> None:
-    """Rate stands for the period, `damping` is the device's and `virtual_damping` the wall's."""
+def test_overrides_replace_the_file(read):
     text = (
         "[device]\ndamping = 1\nsample_period = 0.001\n"
         '[environment]\ntype = "wall"\nstiffness = 1\ndamping = 2\n'
@@ -97,24 +91,21 @@ def test_overrides_replace_the_file(read: Load) -> None:
     assert alias.environment == zw.Wall(1, 2)
 
 
-def test_a_catalogue_device_as_a_base(read: Load) -> None:
-    """Keys beside `catalogue` replace the published ones."""
+def test_a_catalogue_device_as_a_base(read):
     device = read('[device]\ncatalogue = "haptic-paddle"\nrate = "5 kHz"\n' + WALL).device
     assert device == zw.catalogue.device("haptic-paddle", rate=5000)
     named = read('[device]\ncatalogue = "phantom"\nname = "ours"\n' + WALL).device
     assert named.name == "ours"
 
 
-def test_intervals(read: Load) -> None:
-    """Lists in TOML, two points on the command line."""
+def test_intervals(read):
     s = read(DEVICE + 'mass = ["10 g", 0.02]\n' + WALL, resolution="10 .. 20 um", stiffness="100..200")
     assert s.device.mass == zw.Interval(0.01, 0.02)
     assert s.device.resolution == zw.Interval("1e-5", "2e-5")
     assert s.environment == zw.Wall((100, 200))
 
 
-def test_rotary_devices(read: Load) -> None:
-    """Rotary units throughout; linear ones once there is a handle."""
+def test_rotary_devices(read):
     wheel = '[device]\ninertia = "100 g*cm^2"\ndamping = "1e-3 N*m*s"\nrate = 1000\ncounts_per_turn = 4096\n'
     s = read(wheel, '[environment]\ntype = "wall"\nstiffness = "2 N*m/rad"\n')
     assert s.device == zw.rotary(inertia=1e-5, damping=1e-3, rate=1000, counts_per_turn=4096, name="file0")
@@ -134,7 +125,6 @@ ENVIRONMENTS: list[tuple[str, Callable[[], Any]]] = [
     ('type = "wall"\nstiffness = 1\ndamping = 2\n', lambda: zw.Wall(1, 2)),
     ('type = "wall"\nstiffness = 1\ndamping = 2\nclamped = true\n', lambda: zw.Wall(1, 2, clamped=True)),
     ('type = "maxwell"\nstiffness = 1\ndamping = 2\nclamped = false\n', lambda: zw.Maxwell(1, 2)),
-    ('type = "maxwell"\nstiffness = 1\ndamping = 2\n', lambda: zw.Maxwell(1, 2)),
     (SLS, lambda: zw.StandardLinearSolid(10, 1000, 3)),
     (SLS + 'clamped = "true"\n', lambda: zw.StandardLinearSolid(10, 1000, 3, clamped=True)),
     (SLS + 'discretization = "tustin"\n', lambda: zw.StandardLinearSolid(10, 1000, 3, "tustin")),
@@ -176,17 +166,25 @@ ENVIRONMENTS: list[tuple[str, Callable[[], Any]]] = [
 
 
 @pytest.mark.parametrize(("text", "expected"), ENVIRONMENTS)
-def test_every_type_of_environment(read: Load, text: str, expected: Callable[[], Any]) -> None:
-    """As its class makes it from the same numbers."""
+def test_every_type_of_environment(read, text, expected):
     assert read(DEVICE, "[environment]\n" + text).environment == expected()
+
+
+def needed(kind: Kind) -> dict[str, str]:
+    """A number with its unit for each key that has no default; what is more than numbers needs an example."""
+    keys = {key: own for key, own in kind.keys.items() if own.required}
+    assert all(own.is_number for own in keys.values()), f"give an example of {kind.class_name}"
+    return {
+        key: f"{value} {own.unit_for('linear')}".removesuffix(" 1")
+        for value, (key, own) in enumerate(keys.items(), start=2)
+    }
 
 
 WITH_A_ROW = {text.split('"')[1] for text, _ in ENVIRONMENTS}
 
 
 @pytest.mark.parametrize("name", ["wall", *sorted(set(TYPES) - WITH_A_ROW)])
-def test_every_other_type(read: Load, name: str) -> None:
-    """One that has no row above, from its fields: as its class makes it from the same texts."""
+def test_every_other_type(read, name):
     given = needed(TYPES[name])
     table = "".join(f'{key} = "{value}"\n' for key, value in given.items())
     found = read(DEVICE, f'[environment]\ntype = "{name}"\n{table}').environment
@@ -211,23 +209,20 @@ FILTERS: list[tuple[str, str, Any]] = [
 
 
 @pytest.mark.parametrize(("table", "text", "expected"), FILTERS)
-def test_velocity_filters(read: Load, table: str, text: str, expected: Any) -> None:
-    """As a table in the file and as a text on the command line."""
+def test_velocity_filters(read, table, text, expected):
     wall = zw.Wall(300, 0.1, expected)
     assert read(DEVICE + WALL + f"damping = 0.1\nvelocity_filter = {table}\n").environment == wall
     assert read(DEVICE + WALL, virtual_damping="0.1", velocity_filter=text).environment == wall
 
 
-def test_a_clamped_law_on_the_command_line() -> None:
-    """True or false as a word, over what the file says."""
+def test_a_clamped_law_on_the_command_line():
     given = {"stiffness": "300", "virtual-damping": "0.1"}
     assert load(["phantom"], {**given, "clamped": "true"}).environment == zw.Wall(300, 0.1, clamped=True)
     assert load(["phantom"], {**given, "clamped": "false"}).environment == zw.Wall(300, 0.1)
     assert "clamped is true or false" in message(lambda: load(["phantom"], {**given, "clamped": "TRUE"}))
 
 
-def test_lists_on_the_command_line(read: Load) -> None:
-    """Coefficients, branches, the type itself, and what lies behind a coupling."""
+def test_lists_on_the_command_line(read):
     s = load(["phantom"], {"type": "pulse-transfer-function", "numerator": "0.1", "denominator": "[1, -0.5]"})
     assert s.environment == zw.PulseTransferFunction([0.1], [1, -0.5])
     points = {"positions": "-1 mm, 0, 2 mm", "forces": "[-1, 0, 0.5 N]"}
@@ -251,7 +246,6 @@ SPRING = '[environment]\ntype = "nonlinear-spring"\n'
 
 
 def bad(device: str, environment: str = WALL) -> str:
-    """A specification whose [device] has these lines."""
     return f"[device]\n{device}\n{environment}"
 
 
@@ -264,12 +258,10 @@ BAD: list[tuple[str | bytes, str]] = [
     (DEVICE + CONTACT + 'stiffness = "300 N/m"\n', 'stiffness is a plain number; got "300 N/m"'),
     (DEVICE + CONTACT + "stiffness = [1, 2]\n", "stiffness is a plain number"),
     (DEVICE + CONTACT + 'stiffness = 1\ndissipation = "3 m/s"\n', "dissipation is in s/m"),
-    (DEVICE + CONTACT + "stiffness = 1\nexponent = 0.5\n", "exponent must be from 1 to 10"),
     (bad("rate = 1"), "damping"),
     (bad("damping = -1\nrate = 1"), "damping must be ≥ 0 N*s/m, got -1"),
     (bad("damping = 1\nrate = 1\ncoulomb_friction = -1e-9"), "coulomb_friction must be ≥ 0"),
     (bad("damping = nan\nrate = 1"), "finite"),
-    (bad("damping = 1\nrate = inf"), "finite"),
     (bad("damping = 1\nrate = 1e999"), "magnitudes"),
     (bad("damping = 1\nrate = 1e99999999999999999999999"), "file0.toml: a number"),
     (bad("damping = 1\nrate = 0x" + "f" * 9000), "digits"),
@@ -277,8 +269,6 @@ BAD: list[tuple[str | bytes, str]] = [
     (bad("damping = true\nrate = 1"), "true or false"),
     (bad("damping = 2020-01-01\nrate = 1"), "a value of type date"),
     (bad("damping = {a = 1}\nrate = 1"), "a table"),
-    (bad("damping = [1, 2, 3]\nrate = 1"), "two ends"),
-    (bad("damping = [2, 1]\nrate = 1"), "swap"),
     (bad('damping = "5 kHz"\nrate = 1'), 'damping is in N*s/m; got "5 kHz", a frequency (1/s)'),
     (bad("damping = 1\nrate = 1\nsample_period = 1"), "both"),
     (bad('damping = 1\nrate = "60 rad/s"'), "an angular speed"),
@@ -306,8 +296,6 @@ BAD: list[tuple[str | bytes, str]] = [
     (DEVICE + SPRING + "positions = 1\nforces = [0, 1]", "positions is a list of numbers"),
     (DEVICE + SPRING + 'positions = [0, "1 N"]\nforces = [0, 1]', "positions[1] is in m"),
     (DEVICE + SPRING + "positions = [0, nan]\nforces = [0, 1]", "finite"),
-    (DEVICE + SPRING + "positions = [1, 0]\nforces = [0, 1]", "positions must increase strictly"),
-    (DEVICE + SPRING + "positions = []\nforces = []", "2 to 10000 points, got 0"),
     (DEVICE + WALL + 'clamped = "yes"', 'clamped is true or false; got "yes"'),
     (DEVICE + WALL + "velocity_filter = 5", "velocity_filter is"),
     (DEVICE + WALL + 'velocity_filter = "windw 5"', 'did you mean "window"'),
@@ -347,8 +335,7 @@ BAD: list[tuple[str | bytes, str]] = [
 
 
 @pytest.mark.parametrize(("content", "part"), BAD, ids=range(len(BAD)))
-def test_slips_in_a_file(read: Load, content: str | bytes, part: str) -> None:
-    """One message that names the place, the key, what was given and what is allowed."""
+def test_slips_in_a_file(read, content, part):
     assert part in message(lambda: read(content))
 
 
@@ -361,8 +348,7 @@ def test_slips_in_a_file(read: Load, content: str | bytes, part: str) -> None:
         ("two-link", "an arm of several joints"),
     ],
 )
-def test_what_another_command_reads_is_sent_there(tmp_path: Path, name: str, part: str) -> None:
-    """By its ending, or as a built-in arm, which is no file."""
+def test_what_another_command_reads_is_sent_there(tmp_path, name, part):
     path = tmp_path / name
     if path.suffix:
         path.write_text("<robot/>: 1\n", encoding="utf-8")
@@ -385,13 +371,11 @@ def test_what_another_command_reads_is_sent_there(tmp_path: Path, name: str, par
         ({}, "no environment is given"),
     ],
 )
-def test_slips_on_the_command_line(overrides: dict[str, str], part: str) -> None:
-    """They are said to stand there."""
+def test_slips_on_the_command_line(overrides, part):
     assert part in message(lambda: load(["haptic-paddle"], overrides))
 
 
-def test_slips_in_the_sources(tmp_path: Path, read: Load) -> None:
-    """What is no file is one line, not a traceback."""
+def test_slips_in_the_sources(tmp_path, read):
     wall = {"stiffness": "1"}
     assert 'did you mean "haptic-paddle"' in message(lambda: load(["haptic-padle"], wall))
     assert "there is no file" in message(lambda: load(["missing.toml"], wall))
@@ -404,8 +388,7 @@ def test_slips_in_the_sources(tmp_path: Path, read: Load) -> None:
     assert "no device is given" in message(lambda: load([], wall))
 
 
-def test_command_line_names_are_not_shared() -> None:
-    """No name means one thing for the device and another for the environment."""
+def test_command_line_names_are_not_shared():
     assert not set(option_keys()) & set(DEVICE_KEYS)
     for row in TYPES.values():
         for key in row.keys.values():
@@ -419,17 +402,13 @@ VALUES = toml_values() | st.sampled_from([1, Decimal("0.5"), "1 ms", [1, 2], *TY
 
 @settings(max_examples=100, deadline=None)
 @given(st.dictionaries(KEYS, VALUES, max_size=6))
-def test_any_device_table_is_a_device_or_an_input_error(values: dict[str, Any]) -> None:
-    """Whatever stands in it; and a device that is accepted has a period and a damping."""
+def test_any_device_table_is_a_device_or_an_input_error(values):
     assert outcome(lambda: build_device(Table("x", {"damping": 1, "rate": 1000, **values}))).isprintable()
 
 
 @settings(max_examples=120, deadline=None)
 @given(st.sampled_from(sorted(TYPES)), st.dictionaries(KEYS, VALUES, max_size=4), st.data())
-def test_any_environment_table_is_one_or_an_input_error(
-    name: str, values: dict[str, Any], data: st.DataObject
-) -> None:
-    """With the keys of its own type, so that the values are reached."""
+def test_any_environment_table_is_one_or_an_input_error(name, values, data):
     own = {key: data.draw(VALUES) for key in TYPES[name].keys}
     assert outcome(lambda: build_environment(Table("x", {"type": name, **own}), "linear")).isprintable()
     assert outcome(lambda: build_environment(Table("x", {"type": name, **values}), "rotary")).isprintable()
@@ -437,32 +416,19 @@ def test_any_environment_table_is_one_or_an_input_error(
 
 @settings(max_examples=100, deadline=None)
 @given(st.dictionaries(KEYS, texts(), max_size=5), st.sampled_from([[], ["haptic-paddle"], ["phantom"]]))
-def test_any_command_line_is_read_or_an_input_error(overrides: dict[str, str], sources: list[str]) -> None:
-    """Names and values at random."""
+def test_any_command_line_is_read_or_an_input_error(overrides, sources):
     assert outcome(lambda: load(sources, overrides)).isprintable()
 
 
-PIECES = st.sampled_from(
-    [
-        "[device]\n",
-        "[environment]\n",
-        "damping=",
-        "rate=",
-        "type=",
-        '"wall"',
-        "stiffness=",
-        "1",
-        "\n",
-        "[",
-        "]",
-    ]
-)
+PIECES = st.sampled_from([
+    "[device]\n", "[environment]\n", "damping=", "rate=", "type=", '"wall"', "stiffness=",
+    "1", "\n", "[", "]",
+])  # fmt: skip
 
 
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.binary(max_size=200) | st.lists(PIECES | texts(), max_size=12).map(lambda p: "".join(p).encode()))
-def test_any_file_is_read_or_an_input_error(tmp_path: Path, content: bytes) -> None:
-    """Bytes at random, and TOML with pieces out of order."""
+def test_any_file_is_read_or_an_input_error(tmp_path, content):
     path = tmp_path / "fuzz.toml"
     path.write_bytes(content)
     assert outcome(lambda: load([path], {})).isprintable()
@@ -477,9 +443,7 @@ def test_any_file_is_read_or_an_input_error(tmp_path: Path, content: bytes) -> N
         ("300", "linear", 1.0),
     ],
 )
-def test_a_question_in_angles_keeps_a_device_about_its_axis(
-    stiffness: str, motion: str, friction: float, tmp_path: Path
-) -> None:
+def test_a_question_in_angles_keeps_a_device_about_its_axis(stiffness, motion, friction, tmp_path):
     """The radius says where one looks: at the hand in newtons, about the axis where one asks in angles."""
     file = tmp_path / "wheel.toml"
     friction_row = 'damping = "0.02 N*m*s/rad"\ncoulomb_friction = "0.14 N*m"'
@@ -490,3 +454,49 @@ def test_a_question_in_angles_keeps_a_device_about_its_axis(
     assert float(device.exact("coulomb_friction")) == pytest.approx(friction)
     file.write_text(f'{text}[environment]\ntype = "wall"\nstiffness = "{stiffness}"\n')
     assert zw.load(file).device == device
+
+
+WHEEL = '[device]\ninertia = 0.006\ndamping = "0.02 N*m*s/rad"\nrate = "1 kHz"\n'
+STOP = '[environment]\ntype = "wall"\nstiffness = "20 N*m/rad"\n'
+
+
+def written(folder: Path, text: str, name: str = "a.toml") -> Path:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_device_and_environment_in_files_of_their_own(tmp_path):
+    loop = zw.load(written(tmp_path, WHEEL), written(tmp_path, STOP, "b.toml"))
+    assert loop.device == zw.rotary(inertia="0.006", damping="0.02", sample_period="0.001", name="a")
+    assert loop.environment == zw.Wall(20)
+    assert zw.check(*loop).max_stiffness == 40
+
+
+def test_a_name_of_the_catalogue_and_a_law(tmp_path):
+    law = written(tmp_path, STOP.replace("20 N*m/rad", "20 N/m") + '[[law]]\ntype = "force-bounding"\n')
+    loop = zw.load("haptic-paddle", law)
+    assert loop.environment == zw.render(zw.Wall(20), zw.rendering.ForceBounding())
+    assert zw.check(*loop).passive
+
+
+def test_a_device_alone(tmp_path):
+    assert zw.load("haptic-paddle") == (zw.catalogue.device("haptic-paddle"), None)
+    with pytest.raises(zw.InputError, match="no file is given"):
+        zw.load()
+    with pytest.raises(zw.InputError, match=r"no file has an \[environment\]"):
+        zw.load("haptic-paddle", written(tmp_path, '[[law]]\ntype = "force-bounding"\n'))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[device]\nmass = 1\n", "sample_period"),
+        ("[devise]\nmass = 1\n", "devise"),
+        (WHEEL + "stiffness = 3\n", "stiffness"),
+        (STOP, "no device"),
+    ],
+)
+def test_what_cannot_be_used_is_said(text, message, tmp_path):
+    with pytest.raises(zw.InputError, match=message):
+        zw.load(written(tmp_path, text))

@@ -5,13 +5,12 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
-from needed import needed
+from test_read import needed
 
 import zwidth as zw
 from zwidth.model import rendering, scene
 from zwidth.model.rendering import LAWS
 from zwidth.model.specification.environments import TYPES
-from zwidth.model.specification.read import load
 from zwidth.model.specification.write import parsed, written
 
 THIRD = Fraction(1, 3)
@@ -76,7 +75,6 @@ CHOSEN = {
 
 
 def same(device: zw.Device, environment: object) -> None:
-    """What is read of what was written is the same."""
     found = parsed(written(device, environment))
     assert found.device.parameters() == device.parameters()
     assert (found.device.motion, found.device.assumed) == (device.motion, device.assumed)
@@ -84,34 +82,30 @@ def same(device: zw.Device, environment: object) -> None:
 
 
 @pytest.mark.parametrize("name", sorted({*TYPES, *ENVIRONMENTS}))
-def test_every_environment_is_read_as_it_was(name: str) -> None:
-    """Every type; also numbers that are no decimals, intervals, and a name with quotation marks."""
+def test_every_environment_is_read_as_it_was(name):
     environment = ENVIRONMENTS.get(name) or TYPES[name].made(**needed(TYPES[name]))
     same(DEVICE, environment)
     assert parsed(written(DEVICE, environment)).device.name == DEVICE.name
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_every_law_is_read_as_it_was(name: str) -> None:
-    """With what was chosen; what was left to the device is left to it again."""
+def test_every_law_is_read_as_it_was(name):
     chosen = CHOSEN.get(name) or needed(LAWS[name])
     same(DEVICE, zw.render(zw.Wall(300), LAWS[name].made(**chosen)))
 
 
-def test_no_limit_is_a_word() -> None:
-    """A key that has a number may have it in its place."""
+def test_no_limit_is_a_word():
     law = rendering.PassivityController(observer="past", largest_damping="unlimited")
     assert 'largest_damping = "unlimited"' in written(DEVICE, zw.render(zw.Wall(300), law))
     same(DEVICE, zw.render(zw.Wall(300), law))
 
 
-def test_laws_keep_their_order() -> None:
-    """And a coupling behind them stays behind them."""
+def test_laws_keep_their_order():
     laws = rendering.Saturation("0.5"), rendering.SlewLimit(100), rendering.Saturation("0.25")
     same(DEVICE, zw.render(zw.VirtualCoupling(1000, 2, zw.Wall(100)), *laws))
 
 
-def test_a_wheel_is_written_in_its_own_units() -> None:
+def test_a_wheel_is_written_in_its_own_units():
     """N·m and rad, an inertia in the place of a mass."""
     wheel = zw.rotary(inertia="0.01", damping="0.02", counts_per_turn=65536, rate=1000, delay="0.002")
     same(wheel, zw.render(zw.Wall(30, damping="0.1"), rendering.SlewLimit(50)))
@@ -120,15 +114,7 @@ def test_a_wheel_is_written_in_its_own_units() -> None:
     assert 'rate = "50 N*m/s"' in text
 
 
-def test_the_command_line_reads_it(tmp_path) -> None:
-    """It is the file that every command takes."""
-    (tmp_path / "loop.toml").write_text(written(DEVICE, zw.Wall(300)), encoding="utf-8")
-    assert load([tmp_path / "loop.toml"]).environment == zw.Wall(300)
-
-
-def test_what_has_no_words_is_refused() -> None:
-    """A law of one's own is in nobody else's program."""
-
+def test_what_has_no_words_is_refused():
     class Own(zw.Wall):
         """Somebody's wall."""
 
@@ -146,7 +132,6 @@ def test_what_has_no_words_is_refused() -> None:
         ("[operator]\ntype = 'finger'", "zwidth simulate"),
     ],
 )
-def test_what_is_no_loop_is_refused(text: str, said: str) -> None:
-    """In one message that says where."""
+def test_what_is_no_loop_is_refused(text, said):
     with pytest.raises(zw.InputError, match=said):
         parsed(text, "here")

@@ -1,13 +1,9 @@
 """Sweeps: each loop answered as by itself, the same bits however they are computed, one line on bad input."""
 
-from __future__ import annotations
-
 import signal
 import sys
-from collections.abc import Callable
+from functools import partial
 from math import inf, nextafter
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -20,7 +16,7 @@ from zwidth.study.chunks.layout import Worker
 from zwidth.study.sweeps import request as requests
 from zwidth.study.sweeps.axes import axis
 from zwidth.study.sweeps.loops import Loop, changed, parameter
-from zwidth.study.sweeps.questions import Line, checked
+from zwidth.study.sweeps.questions import checked
 from zwidth.study.sweeps.request import request
 from zwidth.study.sweeps.run import compute
 from zwidth.study.sweeps.springs import largest_spring
@@ -30,6 +26,7 @@ WALL = zw.Wall(100)
 GRID = {"stiffness": "50:600:7", "delay": "0:2 ms:5"}
 POLE = zw.Wall(100, "0.03", zw.rendering.OnePole("1 ms"))
 WINDOWED = zw.Wall(100, "0.03", zw.rendering.Window(2))
+swept = partial(zw.sweep, workers=1)
 
 
 @pytest.mark.parametrize(
@@ -46,7 +43,7 @@ WINDOWED = zw.Wall(100, "0.03", zw.rendering.Window(2))
         (["1 ms", 0.5], (0.001, 0.5)),
     ],
 )
-def test_values_are_read(given: object, values: tuple[float, ...]) -> None:
+def test_values_are_read(given, values):
     """Ranges, ranges of equal ratios and lists; each number the double nearest to what is meant."""
     assert axis("delay", given, "s").values == values
 
@@ -70,25 +67,26 @@ def test_values_are_read(given: object, values: tuple[float, ...]) -> None:
         ((1, 2, 3, "lin"), "may come"),
     ],
 )
-def test_bad_values_are_refused(given: object, message: str) -> None:
-    """One message each."""
+def test_bad_values_are_refused(given, message):
     with pytest.raises(zw.InputError, match=message):
         axis("delay", given, "s")
 
 
-def one_by_one(asked: requests.Request) -> dict[str, Any]:
-    """Every loop asked by itself."""
+def alike(asked):
+    """Every loop asked by itself has the words and numbers of all of them asked together."""
     shape = tuple(len(own.values) for own in asked.axes)
     found = {name: np.zeros(shape, own.kind) for name, own in asked.columns.items()}
-    lines: dict[tuple[int, ...], Line] = {}
+    lines = {}
     for place in np.ndindex(shape):
         for name, value in checked(asked.at(place), lines.setdefault(place[1:], {})).items():
             found[name][place] = asked.columns[name].kept(value)
-    return found
+    layers = compute(asked, (0,) * len(shape))
+    for name, expected in found.items():
+        np.testing.assert_array_equal(layers[name], expected, err_msg=name)
 
 
 @seeds(4)
-def test_springs_are_decided_as_by_check(seed: int) -> None:
+def test_springs_are_decided_as_by_check(seed):
     """Whatever is varied, at the limit and a double beyond it too: the same words and largest spring."""
     drawn = np.random.default_rng(seed)
     device = PADDLE.replace(
@@ -97,25 +95,13 @@ def test_springs_are_decided_as_by_check(seed: int) -> None:
         delay=drawn.choice(["0 ms", "0.3 ms", "1 ms", "2.5 ms"]),
     )
     largest = check_by_closed_forms(device, WALL).max_stiffness or 1.0
-    vary = {"stiffness": [0, largest, nextafter(largest, inf), largest * 1.3]} | dict(
-        drawn.permutation(
-            np.array(
-                [
-                    ("damping", "0, 0.15"),
-                    ("rate", "500, 1234.5"),
-                    ("delay", "0, 0.5, 1, 3.7 ms"),
-                    ("resolution", "0, 1, 300 um"),
-                    ("coulomb_friction", "0, 0.02"),
-                    ("mass", "30, 40 g"),
-                ]
-            )
-        )[:2]
-    )
+    others = {"damping": "0, 0.15", "rate": "500, 1234.5", "delay": "0, 0.5, 1, 3.7 ms", "mass": "30, 40 g"}
+    others |= {"resolution": "0, 1, 300 um", "coulomb_friction": "0, 0.02"}
+    vary = {"stiffness": [0, largest, nextafter(largest, inf), largest * 1.3]}
+    vary |= {str(name): others[name] for name in drawn.permutation(list(others))[:2]}
     asked = request("check", Loop(device, WALL), vary)
     assert asked.springs is not None
-    layers = compute(asked, (0,) * len(vary))
-    for name, expected in one_by_one(asked).items():
-        np.testing.assert_array_equal(layers[name], expected, err_msg=name)
+    alike(asked)
 
 
 @pytest.mark.parametrize(
@@ -126,7 +112,7 @@ def test_springs_are_decided_as_by_check(seed: int) -> None:
         ("0.0003", zw.rendering.OnePole("0.002")),
     ],
 )
-def test_walls_are_decided_as_by_check(delay: str, velocity: Any) -> None:
+def test_walls_are_decided_as_by_check(delay, velocity):
     """A line of stiffnesses, in no order, at both limits and beside them too: the same words and numbers."""
     device, wall = PADDLE.replace(delay=delay), zw.Wall(1, "0.05", velocity)
     limits = [
@@ -137,18 +123,16 @@ def test_walls_are_decided_as_by_check(delay: str, velocity: Any) -> None:
     values = {*near, *(nextafter(limit, inf) for limit in limits), *(3.0 * n for n in (1, 33, 20, 150, 600))}
     asked = request("check", Loop(device, wall), {"stiffness": sorted(values, key=lambda k: k % 7)})
     assert asked.of_walls
-    layers = compute(asked, (0,))
-    for name, expected in one_by_one(asked).items():
-        np.testing.assert_array_equal(layers[name], expected, err_msg=name)
+    alike(asked)
 
 
-def test_of_a_line_of_walls_few_are_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_of_a_line_of_walls_few_are_asked(monkeypatch):
     """All but the first of each part, and those about which doubles are in doubt."""
     module = sys.modules["zwidth.study.sweeps.questions"]
     asked = request("check", Loop(PADDLE, zw.Wall(1, "0.05")), {"stiffness": "10:400:200"})
-    told: list[Loop] = []
+    told = []
 
-    def counted(loop: Loop, line: Line) -> Any:
+    def counted(loop, line):
         told.append(loop)
         return checked(loop, line)
 
@@ -160,32 +144,28 @@ def test_of_a_line_of_walls_few_are_asked(monkeypatch: pytest.MonkeyPatch) -> No
     assert len(told) < 10
 
 
-def test_the_largest_spring_is_a_double_at_its_limit() -> None:
+def test_the_largest_spring_is_a_double_at_its_limit():
     """Passive there and not at the next, with and without friction as the limit; none without damping."""
     period, count = PADDLE.exact("sample_period"), PADDLE.exact("resolution")
     numbers = PADDLE.exact("damping"), PADDLE.exact("coulomb_friction"), count, period
     assert largest_spring(*numbers, period * 0) == 300
+    smooth = PADDLE.replace(coulomb_friction=numbers[1] / 1000)
     less = numbers[0], numbers[1] / 1000, count, period
-    assert (
-        largest_spring(*less, period * 0)
-        == check_by_closed_forms(PADDLE.replace(coulomb_friction=numbers[1] / 1000), WALL).max_stiffness
-    )
+    assert largest_spring(*less, period * 0) == check_by_closed_forms(smooth, WALL).max_stiffness
     assert largest_spring(numbers[0] * 0, *numbers[1:], period * 0) == 0
 
 
-def arrays(found: xr.Dataset) -> dict[str, bytes]:
+def arrays(found):
     """Every number and word of a sweep, bit by bit; a word has room for others, more or less."""
     rows = {str(name): values.values for name, values in found.variables.items()}
-    return {
-        name: row.astype("U99" if row.dtype.kind == "U" else row.dtype).tobytes()
-        for name, row in rows.items()
-    }
+    kinds = {name: "U99" if row.dtype.kind == "U" else row.dtype for name, row in rows.items()}
+    return {name: row.astype(kinds[name]).tobytes() for name, row in rows.items()}
 
 
-def stopped_after(chunks: int) -> Callable[[int, int], None]:
+def stopped_after(chunks):
     """A progress that stops the sweep, as Ctrl-C would."""
 
-    def report(done: int, total: int) -> None:
+    def report(done, total):
         if done >= chunks:
             raise KeyboardInterrupt
 
@@ -193,20 +173,18 @@ def stopped_after(chunks: int) -> Callable[[int, int], None]:
 
 
 @pytest.mark.parametrize("name", ["sweep.zarr", "sweep.parquet"])
-def test_a_sweep_goes_on(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_sweep_goes_on(tmp_path, name, monkeypatch):
     """Stopped twice and gone on with, from the file again, from the file alone: the same bits."""
     monkeypatch.setattr(requests, "BY_CLOSED_FORMS", 6)
-    whole = zw.sweep(PADDLE, WALL, vary=GRID, workers=1)
+    whole = swept(PADDLE, WALL, vary=GRID)
     path = tmp_path / name
     for _ in range(2):
         with pytest.raises(KeyboardInterrupt):
-            zw.sweep(PADDLE, WALL, vary=GRID, workers=1, path=path, progress=stopped_after(2))
+            swept(PADDLE, WALL, vary=GRID, path=path, progress=stopped_after(2))
     with pytest.raises(zw.InputError, match=r"no such file|not whole"):
         zw.load_sweep(path)
-    left: list[int] = []
-    found = zw.sweep(
-        PADDLE, WALL, vary=GRID, workers=1, path=path, progress=lambda done, total: left.append(done)
-    )
+    left = []
+    found = swept(PADDLE, WALL, vary=GRID, path=path, progress=lambda done, total: left.append(done))
     assert 3 < left[0] <= len(left) + left[0]
     again = zw.sweep(PADDLE, WALL, vary=GRID, path=path, progress=stopped_after(0))
     for other in (found, again, zw.load_sweep(path)):
@@ -218,19 +196,19 @@ def test_a_sweep_goes_on(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPa
 
 
 @pytest.mark.parametrize("name", ["sweep.zarr", "sweep.parquet", "map.zarr"])
-def test_one_process_at_a_time_writes_a_file(tmp_path: Path, name: str) -> None:
+def test_one_process_at_a_time_writes_a_file(tmp_path, name):
     """A second one is told so and harms nothing; the lock of one that is gone holds nobody up."""
     path = tmp_path / name
     (tmp_path / f".{name}.lock").touch()
-    refused: list[str] = []
+    refused = []
 
-    def computed(progress: Callable[[int, int], None]) -> xr.Dataset:
+    def computed(progress):
         if name == "map.zarr":
             area = {"stiffness": (0, 300), "virtual_damping": (0, 1), "cells": (4, 4)}
             return zw.z_width(PADDLE, **area, workers=1, path=path, progress=progress)
-        return zw.sweep(PADDLE, WALL, vary={"stiffness": "1, 2"}, workers=1, path=path, progress=progress)
+        return swept(PADDLE, WALL, vary={"stiffness": "1, 2"}, path=path, progress=progress)
 
-    def asked_again(done: int, total: int) -> None:
+    def asked_again(done, total):
         with pytest.raises(zw.InputError, match="is being written by another process") as told:
             computed(lambda done, total: None)
         refused.append(str(told.value))
@@ -241,14 +219,13 @@ def test_one_process_at_a_time_writes_a_file(tmp_path: Path, name: str) -> None:
     xr.testing.assert_identical(computed(lambda done, total: None), found)
 
 
-def test_processes_compute_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two of them, chunks in whatever order."""
+def test_processes_compute_the_same_bits(monkeypatch):
     monkeypatch.setattr(requests, "BY_CLOSED_FORMS", 6)
     alone, two = (zw.sweep(PADDLE, WALL, vary=GRID, workers=workers) for workers in (1, 2))
     assert arrays(alone) == arrays(two)
 
 
-def test_a_worker_that_is_gone_is_told() -> None:
+def test_a_worker_that_is_gone_is_told():
     """One that was killed: a message, and no waiting for ever; one that nobody asks any more ends."""
     asked = request("check", Loop(PADDLE, WALL), {"stiffness": "1, 2"})
     worker = Worker(compute, asked)
@@ -259,44 +236,36 @@ def test_a_worker_that_is_gone_is_told() -> None:
         worker.ask((0,))
     worker.dismiss()
     other = Worker(compute, asked)
-    assert other.process.stdin is not None
     other.process.stdin.close()
     assert other.process.wait() == 0
     other.dismiss()
 
 
-def test_every_question_is_answered_as_by_itself() -> None:
+def test_every_question_is_answered_as_by_itself():
     """A law with memory, a limit, a touch, a pair: the numbers of the function that answers one."""
     soft = zw.Maxwell(stiffness=100, damping=3)
-    found = zw.sweep(PADDLE, soft, vary={"stiffness": [100, 2000]}, workers=1)
+    found = swept(PADDLE, soft, vary={"stiffness": [100, 2000]})
     for k in found.stiffness.values:
         verdict = check_by_closed_forms(PADDLE, soft.replace(stiffness=k))
         one = found.sel(stiffness=k)
-        assert (one.outcome, one.contact, one.binding) == (
-            verdict.outcome,
-            verdict.scope.contact,
-            verdict.limit,
-        )
-        assert one.max_stiffness == verdict.max_stiffness
+        said = verdict.outcome, verdict.scope.contact, verdict.limit, verdict.max_stiffness
+        assert (one.outcome, one.contact, one.binding, one.max_stiffness) == said
     damped = zw.Wall(100, "0.05")
-    limits = zw.sweep(PADDLE, damped, of="limit", vary={"rate": "1, 2 kHz"}, workers=1, tolerance=0.1)
+    limits = swept(PADDLE, damped, of="limit", vary={"rate": "1, 2 kHz"}, tolerance=0.1)
     bracket = zw.limit(PADDLE.replace(rate="2 kHz"), damped, iterate=False, tolerance=0.1)
     assert limits.proved_passive.values[1] == bracket.proved_passive
     assert limits.proved_active.values[1] == bracket.proved_active
     pair = zw.Pair(PADDLE, PADDLE, stiffness=50)
-    pairs = zw.sweep(pair, of="pair", vary={"link-delay": "0, 2 ms", "rate": [1000]}, workers=1)
+    pairs = swept(pair, of="pair", vary={"link-delay": "0, 2 ms", "rate": [1000]})
     verdict_of_two = zw.check(pair.replace(delay="2 ms"))
     assert pairs.outcome.values[1, 0] == verdict_of_two.outcome
     assert pairs.max_stiffness.values[1, 0] == verdict_of_two.largest_stiffness
 
 
-def test_a_touch_is_simulated_as_by_itself() -> None:
-    """The measures of the traces, energy got out among them."""
+def test_a_touch_is_simulated_as_by_itself():
     hand = zw.operators.Dowel(force=1)
-    touches = zw.sweep(
-        PADDLE, zw.Wall(770), of="simulate", operator=hand, duration="0.05 s", workers=1,
-        vary={"operator.force": "1, 2", "stiffness": [770]},
-    )  # fmt: skip
+    vary = {"operator.force": "1, 2", "stiffness": [770]}
+    touches = swept(PADDLE, zw.Wall(770), of="simulate", operator=hand, duration="0.05 s", vary=vary)
     trace = zw.simulate(PADDLE, zw.Wall(770), zw.operators.Dowel(force=2), 0.05)
     row = zw.traces.compare_traces({"one": trace}).rows["one"]
     assert {name: float(touches[name].values[1, 0]) for name in row} == row
@@ -310,14 +279,12 @@ LAWS = (
 )
 
 
-def test_numbers_of_laws_in_a_chain_are_varied() -> None:
+def test_numbers_of_laws_in_a_chain_are_varied():
     """Also those that the device filled in, whole ones, and those of a law's velocity."""
     hand = zw.operators.Dowel(force=1)
     vary = {"law.2.largest-damping": "0.03, 0.2", "law.3.window": "3, 9", "law.1.velocity.longest": [2, 4]}
-    found = zw.sweep(
-        PADDLE, zw.render(zw.Wall(770), *LAWS), of="simulate", operator=hand, duration="0.03 s", vary=vary,
-        workers=1,
-    )  # fmt: skip
+    chain = zw.render(zw.Wall(770), *LAWS)
+    found = swept(PADDLE, chain, of="simulate", operator=hand, duration="0.03 s", vary=vary)
     assert found["law.2.largest_damping"].attrs["units"] == "N*s/m"
     chain = zw.render(
         zw.Wall(770),
@@ -331,76 +298,60 @@ def test_numbers_of_laws_in_a_chain_are_varied() -> None:
     assert len(np.unique(found.deepest_position.values)) > 1
 
 
+def poled(time_constant):
+    return zw.Wall(90, "0.03", zw.rendering.OnePole(time_constant))
+
+
+def coupled(time_constant):
+    return zw.VirtualCoupling(200, "0.01", zw.Wall(500, "0.02", zw.rendering.OnePole(time_constant)))
+
+
 @pytest.mark.parametrize(
     ("wall", "name", "values", "changed_wall"),
     [
+        (poled("1 ms"), "velocity_filter.time_constant", "1, 20 ms", poled("20 ms")),
+        (poled("1 ms"), "velocity_filter.cutoff", "50, 100 Hz", poled(zw.Exact(1 / (2 * np.pi * 100)))),
         (
-            zw.Wall(90, "0.03", zw.rendering.OnePole("1 ms")),
-            "velocity_filter.time_constant",
-            "1, 20 ms",
-            zw.Wall(90, "0.03", zw.rendering.OnePole("20 ms")),
-        ),
-        (
-            zw.Wall(90, "0.03", zw.rendering.OnePole("1 ms")),
-            "velocity_filter.cutoff",
-            "50, 100 Hz",
-            zw.Wall(90, "0.03", zw.rendering.OnePole(zw.Exact(1 / (2 * np.pi * 100)))),
-        ),
-        (
-            zw.Wall(90, "0.03", zw.rendering.Window(2)),
+            WINDOWED,
             "velocity_filter.samples",
             [2, 9],
-            zw.Wall(90, "0.03", zw.rendering.Window(9)),
+            WINDOWED.replace(velocity_filter=zw.rendering.Window(9)),
         ),
+        (coupled("1 ms"), "environment.velocity_filter.time_constant", "1, 5 ms", coupled("5 ms")),
         (
-            zw.VirtualCoupling(200, "0.01", zw.Wall(500, "0.02", zw.rendering.OnePole("1 ms"))),
-            "environment.velocity_filter.time_constant",
-            "1, 5 ms",
-            zw.VirtualCoupling(200, "0.01", zw.Wall(500, "0.02", zw.rendering.OnePole("5 ms"))),
-        ),
-        (
-            zw.render(zw.Wall(100), zw.rendering.RateTerm()),
+            zw.render(WALL, zw.rendering.RateTerm()),
             "law.time_constant",
             "0.1, 1 ms",
-            zw.render(zw.Wall(100), zw.rendering.RateTerm(time_constant="1 ms")),
+            zw.render(WALL, zw.rendering.RateTerm(time_constant="1 ms")),
         ),
         (
-            zw.render(zw.Wall(100), zw.rendering.ForceBounding()),
+            zw.render(WALL, zw.rendering.ForceBounding()),
             "stiffness",
             "100, 2000",
             zw.render(zw.Wall(2000), zw.rendering.ForceBounding()),
         ),
     ],
 )
-def test_what_a_law_is_made_of_is_varied(
-    wall: zw.Environment, name: str, values: Any, changed_wall: zw.Environment
-) -> None:
+def test_what_a_law_is_made_of_is_varied(wall, name, values, changed_wall):
     """Filters of a velocity, what is behind a coupling, a law in a chain: each as by itself."""
-    found = zw.sweep(PADDLE, wall, vary={name: values}, workers=1)
+    one = swept(PADDLE, wall, vary={name: values}).isel({name: 1})
     verdict = zw.check(PADDLE, changed_wall, iterate=False)
-    one = found.isel({name: 1})
-    assert (one.outcome, one.contact, one.binding) == (
-        verdict.outcome,
-        verdict.scope.contact,
-        getattr(verdict, "limit", ""),
-    )
+    said = verdict.outcome, verdict.scope.contact, getattr(verdict, "limit", "")
+    assert (one.outcome, one.contact, one.binding) == said
 
 
-def test_the_limit_behind_a_law_whose_number_is_varied() -> None:
-    """As `passive_limit` has it of each."""
+def test_the_limit_behind_a_law_whose_number_is_varied():
     chain = zw.render(zw.Wall(100), zw.rendering.RateTerm())
-    found = zw.sweep(PADDLE, chain, of="limit", vary={"law.time_constant": "0.1, 1 ms"}, workers=1)
+    found = swept(PADDLE, chain, of="limit", vary={"law.time_constant": "0.1, 1 ms"})
     for k in (0, 1):
         law = zw.rendering.RateTerm(time_constant=found["law.time_constant"].values[k])
         one = zw.limit(PADDLE, zw.render(zw.Wall(100), law), iterate=False)
         assert found.proved_passive.values[k] == one.proved_passive
 
 
-def test_what_an_outcome_is_about_stands_beside_it() -> None:
+def test_what_an_outcome_is_about_stands_beside_it():
     """No claim without its contact and encoder; what all have in common is in the scope."""
-    found = zw.sweep(
-        PADDLE, zw.Wall(90, "0.03", zw.rendering.OnePole("1 ms")), vary={"delay": "0, 1 ms"}, workers=1
-    )
+    found = swept(PADDLE, poled("1 ms"), vary={"delay": "0, 1 ms"})
     assert found.outcome.values.tolist() == ["passive", "passive in contact"]
     assert found.contact.values.tolist() == ["made and broken", "kept"]
     assert set(found.encoder.values.tolist()) == {"counted"}
@@ -408,28 +359,26 @@ def test_what_an_outcome_is_about_stands_beside_it() -> None:
     assert "by closed forms" in found.attrs["answers"]
 
 
-def test_a_wheel_in_degrees() -> None:
+def test_a_wheel_in_degrees():
     """Counts in a turn, degrees and revolutions, as options have them."""
-    wheel = zw.rotary(
-        inertia="6 g*m^2", damping="0.05", coulomb_friction="0.02", counts_per_turn=65536, rate=1000
-    )
+    numbers = {"inertia": "6 g*m^2", "damping": "0.05", "coulomb_friction": "0.02", "rate": 1000}
+    wheel = zw.rotary(counts_per_turn=65536, **numbers)
     wall = zw.Wall("2 N*m/rad")
     found = zw.sweep(wheel, wall, vary={"counts_per_turn": [4096, 65536], "stiffness": "1, 5 N*m/deg"})
     assert found.stiffness.attrs["units"] == "N*m/rad"
-    for n in (0, 1):
-        for k in (0, 1):
-            loop = Loop(wheel, wall)
-            own = [parameter(loop, name) for name in found.dims]
-            at = changed(loop, {own[0]: found.counts_per_turn.values[n], own[1]: found.stiffness.values[k]})
-            assert found.outcome.values[n, k] == check_by_closed_forms(at.subject, at.environment).outcome
+    loop = Loop(wheel, wall)
+    own = [parameter(loop, name) for name in found.dims]
+    for n, k in np.ndindex(2, 2):
+        at = changed(loop, {own[0]: found.counts_per_turn.values[n], own[1]: found.stiffness.values[k]})
+        assert found.outcome.values[n, k] == check_by_closed_forms(at.subject, at.environment).outcome
     coarse = zw.sweep(wheel, wall, vary={"resolution": "0.1, 1 deg"})
     assert coarse.resolution.values[1] == pytest.approx(np.pi / 180)
 
 
-def test_a_loop_that_cannot_be_is_said_to_be_refused() -> None:
+def test_a_loop_that_cannot_be_is_said_to_be_refused():
     """Two rates that do not go into each other: no answer, and why of the first."""
     pair = zw.Pair(PADDLE, PADDLE, stiffness=50)
-    found = zw.sweep(pair, of="pair", vary={"leader.rate": [1000, 1500, 2000]}, workers=1)
+    found = swept(pair, of="pair", vary={"leader.rate": [1000, 1500, 2000]})
     assert found.refused.values.tolist() == [False, True, False]
     assert found.outcome.values[1] == ""
     assert np.isnan(found.max_stiffness.values[1])
@@ -457,18 +406,18 @@ def test_a_loop_that_cannot_be_is_said_to_be_refused() -> None:
         ({"stiffness": "1, 2"}, {"workers": 0}, "workers must be"),
         ({"stiffness": "1, 2"}, {"path": "sweep.csv"}, r"ends in \.zarr or \.parquet"),
         ({"stiffness": "1, 2"}, {"path": "nowhere/sweep.zarr"}, "no directory"),
+        ({"delay": "0, 1 ms"}, {"hands": {"My hand": None}}, "small letters, such as finger"),
+        ({"delay": "0, 1 ms"}, {"hands": {"finger": 3}}, "hand"),
+        ({"delay": "0, 1 ms"}, {"hands": [None]}, "hands are given by their names"),
+        ({"delay": "0, 1 ms"}, {"device": PADDLE.replace(mass=None), "hands": {"none": None}}, "mass"),
     ],
 )  # fmt: skip
-def test_bad_input_is_refused_before_work_starts(
-    vary: dict[str, object], more: dict[str, Any], message: str
-) -> None:
-    """One message each."""
+def test_bad_input_is_refused_before_work_starts(vary, more, message):
     with pytest.raises(zw.InputError, match=message):
-        zw.sweep(PADDLE, **{"environment": WALL, **more}, vary=vary)
+        zw.sweep(**{"device": PADDLE, "environment": WALL, **more}, vary=vary)
 
 
-def test_a_file_that_is_no_sweep(tmp_path: Path) -> None:
-    """Neither read nor written over."""
+def test_a_file_that_is_no_sweep(tmp_path):
     foreign = tmp_path / "x.parquet"
     foreign.write_bytes(b"no table")
     with pytest.raises(zw.InputError, match="no sweep that can be read"):
@@ -482,11 +431,11 @@ def test_a_file_that_is_no_sweep(tmp_path: Path) -> None:
         zw.load_sweep(tmp_path / "y.nc")
 
 
-def test_of_hands_that_are_known_it_says_what_stability_says() -> None:
+def test_of_hands_that_are_known_it_says_what_stability_says():
     """Of each by its name, beside the verdict about every hand."""
     hands = {"none": None, "finger": zw.operators.Finger()}
     grid = {"stiffness": "100, 3000", "delay": "0, 2 ms"}
-    found = zw.sweep(PADDLE, zw.Wall(100, "0.05"), vary=grid, hands=hands, workers=1)
+    found = swept(PADDLE, zw.Wall(100, "0.05"), vary=grid, hands=hands)
     for stiffness in found["stiffness"].values:
         for delay in found["delay"].values:
             one = found.sel(stiffness=stiffness, delay=delay)
@@ -498,23 +447,3 @@ def test_of_hands_that_are_known_it_says_what_stability_says() -> None:
             assert one["outcome"].item() == check_by_closed_forms(device, wall).outcome
     assert set(found["stability_finger"].values.flat) == {"stable", "unstable"}
     assert "as long as it keeps contact" in found.attrs["answers"]
-
-
-@pytest.mark.parametrize(
-    ("hands", "message"),
-    [
-        ({"My hand": None}, "small letters, such as finger"),
-        ({"finger": 3}, "hand"),
-        ([None], "hands are given by their names"),
-    ],
-)
-def test_a_hand_that_cannot_be_is_refused_before_the_work(hands: Any, message: str) -> None:
-    """Its name becomes that of a column."""
-    with pytest.raises(zw.InputError, match=message):
-        zw.sweep(PADDLE, WALL, vary={"delay": "0, 1 ms"}, hands=hands, workers=1)
-
-
-def test_without_a_mass_nothing_is_said_of_hands() -> None:
-    """Refused before the work, not once for each loop."""
-    with pytest.raises(zw.InputError, match="mass"):
-        zw.sweep(PADDLE.replace(mass=None), WALL, vary={"delay": "0, 1 ms"}, hands={"none": None}, workers=1)

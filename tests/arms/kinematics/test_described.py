@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -23,23 +24,25 @@ def _joint(name: str, parent: str, child: str, x: float, kind: str = "revolute",
 LIMIT = '<limit lower="0.2" upper="2.4" effort="0.5" velocity="9"/><dynamics damping="{}" friction="0.002"/>'
 
 
-@pytest.fixture
-def urdf(tmp_path: Path) -> Path:
-    """A two-link arm of 0.12 and 0.09 m."""
-    path = tmp_path / "two.urdf"
-    path.write_text(
-        '<robot name="two">'
-        + "".join(LINK.format(n) for n in ("base", "upper", "lower", "tip"))
-        + _joint("shoulder", "base", "upper", 0.0, extra=LIMIT.format(0.02))
-        + _joint("elbow", "upper", "lower", 0.12, extra=LIMIT.format(0.01))
-        + _joint("hand", "lower", "tip", 0.09, "fixed")
-        + "</robot>"
-    )
+def robot(path: Path, links: Iterable[str], *joints: str) -> Path:
+    text = "".join([*map(LINK.format, links), *joints])
+    path.write_text(f'<robot name="{path.stem}">{text}</robot>', encoding="utf-8")
     return path
 
 
-def test_a_described_two_link_arm_is_the_closed_form(urdf: Path) -> None:
-    """Positions, Jacobians, friction and limits, and the same map."""
+SHOULDER = _joint("shoulder", "base", "upper", 0.0, extra=LIMIT.format(0.02))
+ELBOW = _joint("elbow", "upper", "lower", 0.12, extra=LIMIT.format(0.01))
+HAND = _joint("hand", "lower", "tip", 0.09, "fixed")
+
+
+@pytest.fixture
+def urdf(tmp_path: Path) -> Path:
+    """A two-link arm of 0.12 and 0.09 m."""
+    return robot(tmp_path / "two.urdf", ("base", "upper", "lower", "tip"), SHOULDER, ELBOW, HAND)
+
+
+def test_a_described_two_link_arm_is_the_closed_form(urdf):
+    """Positions, Jacobians and their bounds, friction and limits, and the same map."""
     arm = read_arm(urdf, frame="tip")
     assert (arm.damping, arm.coulomb_friction, arm.torque_limit) == ((0.02, 0.01), (0.002, 0.002), (0.5, 0.5))
     plain = PlanarChain(links=(0.12, 0.09), damping=(0.02, 0.01), joint_range=((0.2, 2.4), (0.2, 2.4)))
@@ -47,32 +50,20 @@ def test_a_described_two_link_arm_is_the_closed_form(urdf: Path) -> None:
     assert arm.forward(q)[..., :2] == pytest.approx(plain.forward(q), abs=1e-12)
     assert arm.jacobian(q)[..., :2, :] == pytest.approx(plain.jacobian(q), abs=1e-12)
     assert arm.jacobian(q)[..., 2, :] == pytest.approx(0)
+    assert arm.sites(9).change == pytest.approx(plain.sites(9).change)
     described, closed = (zw.workspace(a, zw.Wall(400), rate=1000, points=15) for a in (arm, plain))
     assert described.data["margin"].values == pytest.approx(closed.data["margin"].values, rel=1e-9)
     assert (described.data["proved"].values == closed.data["proved"].values).all()
     assert described.outcome == closed.outcome
 
 
-def test_the_bound_of_a_described_arm_holds_and_is_not_far_off(urdf: Path) -> None:
-    """The same as of the closed form, whose links it reads from the placements."""
-    arm = read_arm(urdf, frame="tip")
-    plain = PlanarChain(links=(0.12, 0.09), damping=(0.02, 0.01), joint_range=((0.2, 2.4), (0.2, 2.4)))
-    assert arm.sites(9).change == pytest.approx(plain.sites(9).change)
-
-
-def test_sliding_joints_and_joints_that_are_held(tmp_path: Path) -> None:
+def test_sliding_joints_and_joints_that_are_held(tmp_path):
     """A rail under two links: three joints, of which one is held; the bound covers random points."""
-    path = tmp_path / "rail.urdf"
     limit = '<limit lower="-0.1" upper="0.1" effort="5" velocity="1"/><dynamics damping="2"/>'
-    path.write_text(
-        '<robot name="rail">'
-        + "".join(LINK.format(n) for n in ("base", "car", "upper", "lower", "tip"))
-        + _joint("rail", "base", "car", 0.0, "prismatic", limit)
-        + _joint("shoulder", "car", "upper", 0.05, extra=LIMIT.format(0.02))
-        + _joint("elbow", "upper", "lower", 0.12, extra=LIMIT.format(0.01))
-        + _joint("hand", "lower", "tip", 0.09, "fixed")
-        + "</robot>"
-    )
+    rail = _joint("rail", "base", "car", 0.0, "prismatic", limit)
+    shoulder = _joint("shoulder", "car", "upper", 0.05, extra=LIMIT.format(0.02))
+    links = ("base", "car", "upper", "lower", "tip")
+    path = robot(tmp_path / "rail.urdf", links, rail, shoulder, ELBOW, HAND)
     arm = read_arm(path, frame="tip", hold={"elbow": 0.7})
     sites = arm.sites(12)
     assert [axis.unit for axis in sites.axes] == ["m", "rad"]
@@ -89,14 +80,23 @@ def test_sliding_joints_and_joints_that_are_held(tmp_path: Path) -> None:
         read_arm(path, hold={})
 
 
-def test_a_joint_may_have_the_name_of_its_link(urdf: Path) -> None:
-    """The hand is at the link."""
+MESH = "<visual><geometry><mesh filename='package://../../none.stl'/></geometry></visual>"
+
+
+@pytest.mark.parametrize(
+    ("part", "other"),
+    [
+        ('joint name="hand"', 'joint name="tip"'),  # that of its link
+        (LINK.format("tip"), f'<link name="tip">{MESH}</link>'),  # which is not opened
+    ],
+)
+def test_names_of_joints_and_meshes_do_not_matter(urdf, part, other):
     q = [0.4, 0.9]
-    expected = read_arm(urdf, frame="tip").forward(q)
-    urdf.write_text(
-        urdf.read_text(encoding="utf-8").replace('joint name="hand"', 'joint name="tip"'), encoding="utf-8"
-    )
-    assert read_arm(urdf, frame="tip").forward(q) == pytest.approx(expected)
+    expected = read_arm(urdf, frame="tip")
+    urdf.write_text(urdf.read_text(encoding="utf-8").replace(part, other), encoding="utf-8")
+    found = read_arm(urdf, frame="tip")
+    assert found.forward(q) == pytest.approx(expected.forward(q))
+    assert found.damping == (0.02, 0.01)
 
 
 INERTIA = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
@@ -142,7 +142,7 @@ BY_MUJOCO = {  # position and Jacobian by MuJoCo 4.0.0, mj_jacSite and mj_jacBod
 }
 
 
-def test_mjcf_is_read_as_mujoco_reads_it(tmp_path: Path) -> None:
+def test_mjcf_is_read_as_mujoco_reads_it(tmp_path):
     """Classes in classes, bodies without attributes, joints in frames, a slide in metres."""
     path = tmp_path / "many.xml"
     path.write_text(MANY)
@@ -181,7 +181,7 @@ def test_mjcf_is_read_as_mujoco_reads_it(tmp_path: Path) -> None:
         ("<joint/></body><body><joint/>", "damping=….*in <joint>"),
     ],
 )
-def test_what_mujoco_or_we_cannot_read_is_refused(inside: str, words: str, tmp_path: Path) -> None:
+def test_what_mujoco_or_we_cannot_read_is_refused(inside, words, tmp_path):
     """With the line of the element; advice is in the words of the format."""
     path = tmp_path / "arm.xml"
     path.write_text(f"<mujoco><worldbody><body>\n{inside}</body></worldbody></mujoco>")
@@ -207,17 +207,14 @@ MIMIC = '<mimic joint="lift" multiplier="3" offset="0.1"/>'
 
 
 @pytest.mark.parametrize("form", ["urdf", "xml"])
-def test_a_joint_that_follows_is_part_of_the_mechanism(form: str, tmp_path: Path) -> None:
+def test_a_joint_that_follows_is_part_of_the_mechanism(form, tmp_path):
     """J G of the three joints by themselves, Gᵀ b G, |G|ᵀ f; the bounds between the points hold."""
     both = tmp_path / f"both.{form}", tmp_path / f"apart.{form}"
     text, coupled = FOLLOWING, MIMIC
     if form == "xml":
         joint = '<joint name="{}" range="{}" damping="{}" frictionloss="{}"/>'
-        bodies = [
-            ("lift", "-0.5 0.5", 0.1, 0.02),
-            ("swing", "0.5 1.5", 0.1, 0.02),
-            ("follow", "-1.4 2", 0.001, 0.01),
-        ]
+        bodies = [("lift", "-0.5 0.5", 0.1, 0.02), ("swing", "0.5 1.5", 0.1, 0.02)]
+        bodies += [("follow", "-1.4 2", 0.001, 0.01)]
         inner = '<body name="tip" pos="0.2 0 0"/>'
         for place, each in reversed(list(enumerate(bodies))):
             inner = f'<body pos="{0.2 * (place > 0)} 0 0">{joint.format(*each)}{inner}</body>'
@@ -248,28 +245,28 @@ def test_a_joint_that_follows_is_part_of_the_mechanism(form: str, tmp_path: Path
     assert (arm.follows, apart.follows) == (True, False)
 
 
-def test_what_a_mechanism_with_a_follower_bears(tmp_path: Path) -> None:
+def test_what_a_mechanism_with_a_follower_bears(tmp_path):
     """By a proof on paper; a stiffer wall is refuted by a hand, who holds two joints and not three."""
     path = tmp_path / "mim.urdf"
     path.write_text(FOLLOWING)
     arm = read_arm(path, frame="tip")
     stiffest = zw.workspace(arm, zw.Wall(100), rate=1000, points=40).largest_stiffness
     q = arm.sites(40).joints
-    loads = np.linalg.eigvals(
-        np.linalg.solve(np.diag(arm.damping), (j := arm.jacobian(q)).swapaxes(-1, -2) @ j)
-    )
+    j = arm.jacobian(q)
+    loads = np.linalg.eigvals(np.linalg.solve(np.diag(arm.damping), j.swapaxes(-1, -2) @ j))
     assert stiffest == pytest.approx(2000 / loads.real.max(), rel=2e-3)
     spaces = [zw.workspace(arm, zw.Wall(k * stiffest), rate=1000, points=40) for k in (0.9, 1.1)]
     assert [space.outcome for space in spaces] == ["theorem", "active"]
     assert "follow others" in spaces[0].claim
     stepping = zw.workspace(arm.replace(resolution=(1e-4, 1e-4)), zw.Wall(10), rate=1000, points=10)
     assert (stepping.encoder, "not counted" in stepping.claim) == ("ideal", True)
-    path.write_text(FOLLOWING.replace('mimic joint="lift"', 'mimic joint="nobody"'))
-    with pytest.raises(zw.InputError, match="line 11: joint 'follow' follows 'nobody'"):
-        read_arm(path)
-    path.write_text(FOLLOWING.replace('mimic joint="lift"', 'mimic joint="follow"'))
-    with pytest.raises(zw.InputError, match="'follow' follows itself"):
-        read_arm(path)
+    for other, words in (
+        ("nobody", "line 11: joint 'follow' follows 'nobody'"),
+        ("follow", "'follow' follows itself"),
+    ):
+        path.write_text(FOLLOWING.replace('mimic joint="lift"', f'mimic joint="{other}"'))
+        with pytest.raises(zw.InputError, match=words):
+            read_arm(path)
 
 
 @pytest.mark.parametrize(
@@ -280,10 +277,7 @@ def test_what_a_mechanism_with_a_follower_bears(tmp_path: Path) -> None:
         ((10, 2), "round numbers, most likely"),
     ],
 )
-def test_damping_of_a_description_is_told_as_such(
-    damping: tuple[float, float], words: str, urdf: Path
-) -> None:
-    """In words and in the document; damping that is given says nothing."""
+def test_damping_of_a_description_is_told_as_such(damping, words, urdf):
     text = urdf.read_text(encoding="utf-8")
     for before, after in zip((0.02, 0.01), damping, strict=True):
         text = text.replace(f'damping="{before}"', f'damping="{after}"')
@@ -294,22 +288,18 @@ def test_damping_of_a_description_is_told_as_such(
     assert "joint_damping_source" not in given.to_dict()
 
 
-def test_urdf_is_read_as_pinocchio_reads_it(tmp_path: Path) -> None:
-    """Branches in the order of their joints' names, names of frames, limits, friction, and J."""
+def test_urdf_is_read_as_pinocchio_reads_it(tmp_path):
     pin = pytest.importorskip("pinocchio")
-    links = "".join(LINK.format(n) for n in "gfedcba")
-    path = tmp_path / "tree.urdf"
-    path.write_text(
-        f'<robot name="tree">{links}'
-        + _joint("z", "g", "f", 0.1, "continuous", '<dynamics damping="1"/>')
-        + _joint("B", "g", "e", 0.2, "prismatic", LIMIT.format(0.3))
-        + _joint("a", "e", "d", 0.3, "fixed")
-        + _joint("x", "d", "c", 0.4, extra=LIMIT.format(0.5) + '<origin xyz="0 1 2" rpy="1 2 3"/>').replace(
-            '<origin xyz="0.4 0 0"/>', ""
-        )
-        + _joint("c", "f", "b", 0.5, extra=LIMIT.format(0.6))
-        + _joint("y", "b", "a", 0.6, "fixed")
-        + "</robot>"
+    turned = _joint("x", "d", "c", 0.4, extra=LIMIT.format(0.5))
+    path = robot(
+        tmp_path / "tree.urdf",
+        "gfedcba",
+        _joint("z", "g", "f", 0.1, "continuous", '<dynamics damping="1"/>'),
+        _joint("B", "g", "e", 0.2, "prismatic", LIMIT.format(0.3)),
+        _joint("a", "e", "d", 0.3, "fixed"),
+        turned.replace('xyz="0.4 0 0"', 'xyz="0 1 2" rpy="1 2 3"'),
+        _joint("c", "f", "b", 0.5, extra=LIMIT.format(0.6)),
+        _joint("y", "b", "a", 0.6, "fixed"),
     )
     model = pin.buildModelFromUrdf(str(path))
     arm = read_arm(path, frame="c", pose=True, hold={"z": 0, "c": 1})
@@ -326,22 +316,24 @@ def test_urdf_is_read_as_pinocchio_reads_it(tmp_path: Path) -> None:
         assert arm.placed(q)[1] == pytest.approx(full, abs=1e-12)
 
 
-def test_what_cannot_be_read_is_said_in_one_message(tmp_path: Path, urdf: Path) -> None:
-    """No file, no XML, another ending, no damping, no such frame."""
-    broken = tmp_path / "broken.urdf"
-    broken.write_text("<robot")
-    undamped = tmp_path / "undamped.urdf"
-    undamped.write_text(urdf.read_text(encoding="utf-8").replace("damping", "nothing"))
-    for path, words in (
-        (tmp_path / "none.urdf", "no file"),
-        (broken, "broken.urdf cannot be read: it is no XML"),
-        (tmp_path / "arm.step", "described in"),
-        (undamped, "any damping"),
+def test_what_cannot_be_read_is_said_in_one_line(tmp_path, urdf, capfd):
+    """With the line of the file where it has one, and nothing on standard error."""
+    whole = urdf.read_text(encoding="utf-8")
+    for name, content, words in (
+        ("none.urdf", None, "no file"),
+        ("arm.step", None, "described in"),
+        ("broken.urdf", "<robot", "broken.urdf cannot be read: it is no XML"),
+        ("undamped.urdf", whole.replace("damping", "nothing"), "any damping"),
+        ("lost.urdf", whole.replace(LINK.format("tip"), ""), r"^lost.urdf cannot be read: line \d+: .*\w$"),
+        ("empty.xml", '<robot name="another format"/>', r"^empty.xml cannot be read: line \d+: .*\w$"),
     ):
+        if content is not None:
+            (tmp_path / name).write_text(content, encoding="utf-8")
         with pytest.raises(zw.InputError, match=words):
-            read_arm(path)
+            read_arm(tmp_path / name)
     with pytest.raises(zw.InputError, match="no frame"):
         read_arm(urdf, frame="hook")
+    assert capfd.readouterr() == ("", "")
 
 
 ENTITIES = "<!DOCTYPE robot [<!ENTITY a '{}'>{}]>".format(
@@ -360,9 +352,7 @@ ENTITIES = "<!DOCTYPE robot [<!ENTITY a '{}'>{}]>".format(
         ("", (2**25 + 1) * " ", "larger than"),
     ],
 )
-def test_descriptions_that_lead_elsewhere_or_without_end_are_refused(
-    start: str, inside: str, message: str, tmp_path: Path
-) -> None:
+def test_descriptions_that_lead_elsewhere_or_without_end_are_refused(start, inside, message, tmp_path):
     """Entities that stand for gigabytes or for other files, files in files, levels without end."""
     for ending in ("urdf", "xml"):
         path = tmp_path / f"arm.{ending}"
@@ -372,29 +362,7 @@ def test_descriptions_that_lead_elsewhere_or_without_end_are_refused(
         assert "\n" not in str(caught.value)
 
 
-def test_meshes_are_not_opened(urdf: Path) -> None:
-    """Wherever they are said to be: an arm is read without them."""
-    text = urdf.read_text(encoding="utf-8")
-    mesh = "<visual><geometry><mesh filename='package://../../none.stl'/></geometry></visual>"
-    urdf.write_text(text.replace('<link name="tip"/>', f'<link name="tip">{mesh}</link>'), encoding="utf-8")
-    assert read_arm(urdf, frame="tip").damping == (0.02, 0.01)
-
-
-def test_what_is_no_tree_or_of_another_format_is_said_in_one_line(
-    tmp_path: Path, urdf: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    """With the line of the file, and nothing on standard error."""
-    lost = tmp_path / "lost.urdf"
-    lost.write_text(urdf.read_text(encoding="utf-8").replace(LINK.format("tip"), ""))
-    empty = tmp_path / "empty.xml"
-    empty.write_text('<robot name="another format"/>')
-    for path in (lost, empty):
-        with pytest.raises(zw.InputError, match=rf"^{path.name} cannot be read: line \d+: .*\w$"):
-            read_arm(path)
-    assert capfd.readouterr() == ("", "")
-
-
-def test_a_joint_is_held_where_it_can_be(tmp_path: Path, urdf: Path) -> None:
+def test_a_joint_is_held_where_it_can_be(tmp_path, urdf):
     """At an end of its range, not past it, as degrees would be; a rail without limits anywhere."""
     assert read_arm(urdf, hold={"elbow": 2.4}).sites(3).region == (
         "shoulder from 0.2 to 2.4 rad; elbow held at 2.4 rad"

@@ -1,14 +1,18 @@
-"""Every arm: its Jacobian is the derivative of its position, and the bound inside a cell holds."""
+"""Every arm: its Jacobian is the derivative of its position, the bound inside a cell holds; damping."""
 
 from __future__ import annotations
 
 from math import cos, pi, sin
+from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import zwidth as zw
 from zwidth.model.arms import BUILT_IN, Arm, Leg, LeggedArm, PlanarChain, Sites, built_in
+from zwidth.model.arms.arm import joint_damping
 
 THREE_LINKS = PlanarChain(links=(0.12, 0.1, 0.05), damping=(0.01, 0.02, 0.03), joint_range=((-1, 1),) * 3)
 ARMS = [*(built_in(name, damping=0.003) for name in BUILT_IN), THREE_LINKS]
@@ -22,23 +26,21 @@ def _random_sites(arm: Arm, count: int) -> tuple[Sites, list[tuple[int, ...]]]:
 
 
 @pytest.mark.parametrize("arm", ARMS, ids=lambda arm: f"{arm.name}-{arm.joint_count}")
-def test_the_jacobian_is_the_derivative_of_the_position(arm: Arm) -> None:
+def test_the_jacobian_is_the_derivative_of_the_position(arm):
     """Central differences of forward()."""
     sites, places = _random_sites(arm, 5)
-    step = 1e-6
     for place in places:
         q = sites.joints[place]
-        numeric = np.stack(
-            [(arm.forward(q + step * e) - arm.forward(q - step * e)) / (2 * step) for e in np.eye(len(q))],
-            axis=-1,
-        )
+        steps = 1e-6 * np.eye(len(q))
+        moved = [(arm.forward(q + step) - arm.forward(q - step)) / 2e-6 for step in steps]
+        numeric = np.stack(moved, axis=-1)
         assert arm.jacobian(q) == pytest.approx(numeric, abs=2e-9)
         assert sites.jacobians[place] == pytest.approx(numeric, abs=2e-9)
         assert arm.forward(q) == pytest.approx(sites.positions[place], abs=1e-11)
 
 
 @pytest.mark.parametrize("arm", ARMS, ids=lambda arm: f"{arm.name}-{arm.joint_count}")
-def test_the_jacobian_stays_within_its_bound_inside_a_cell(arm: Arm) -> None:
+def test_the_jacobian_stays_within_its_bound_inside_a_cell(arm):
     """‖J(q) − J‖ ≤ change, at corners and at random points of the cell."""
     sites, places = _random_sites(arm, 60)
     rng = np.random.default_rng(3)
@@ -60,7 +62,7 @@ def test_the_jacobian_stays_within_its_bound_inside_a_cell(arm: Arm) -> None:
     assert checked > 30
 
 
-def test_a_chain_by_complex_numbers() -> None:
+def test_a_chain_by_complex_numbers():
     """p = Σ l_k e^{jφ_k}, and column i is j times what lies beyond joint i."""
     q = np.array([0.4, -0.9, 1.3])
     tips = np.cumsum(np.array(THREE_LINKS.links) * np.exp(1j * np.cumsum(q)))
@@ -70,7 +72,7 @@ def test_a_chain_by_complex_numbers() -> None:
     assert THREE_LINKS.jacobian(q)[0] + 1j * THREE_LINKS.jacobian(q)[1] == pytest.approx(beyond)
 
 
-def test_the_pantograph_by_intersecting_circles() -> None:
+def test_the_pantograph_by_intersecting_circles():
     """Two circles of 90 mm about the elbows meet at the hand."""
     arm = built_in("haply-2diy", damping=0.001)
     for p in ([0.01, 0.09], [-0.03, 0.11], [0.045, 0.06]):
@@ -85,7 +87,7 @@ def test_the_pantograph_by_intersecting_circles() -> None:
         assert elbows[0][0] < elbows[1][0]
 
 
-def test_the_falcon_by_its_published_quadratic() -> None:
+def test_the_falcon_by_its_published_quadratic():
     """tan(θ/2) solves l₂t² + l₁t + l₀ = 0, as the driver's kinematics write it."""
     a, b, c, d, f, r, s = 0.06, 0.1025, 0.01443, 0.01125, -0.025, 0.04, -0.02309
     arm = built_in("falcon", damping=0.001)
@@ -100,7 +102,7 @@ def test_the_falcon_by_its_published_quadratic() -> None:
             assert angle == pytest.approx(2 * np.arctan(half), abs=1e-12)
 
 
-def test_out_of_reach_is_nan_and_has_no_bound() -> None:
+def test_out_of_reach_is_nan_and_has_no_bound():
     """A region larger than the reach: the cells outside are not numbers, and never proved."""
     arm = built_in("haply-2diy", damping=0.1, lower=(-0.3, -0.3), upper=(0.3, 0.3))
     sites = arm.sites(30)
@@ -109,6 +111,10 @@ def test_out_of_reach_is_nan_and_has_no_bound() -> None:
     assert np.isinf(sites.change[outside]).all()
     far = np.hypot(sites.axes[0].middles[:, None] - 0.019, sites.axes[1].middles[None, :]) > 0.16
     assert outside[far].all()
+
+
+def two_links(damping: Any) -> PlanarChain:
+    return PlanarChain(links=(0.1, 0.1), damping=damping)
 
 
 @pytest.mark.parametrize(
@@ -124,16 +130,68 @@ def test_out_of_reach_is_nan_and_has_no_bound() -> None:
         (lambda: built_in("phantom", damping=1), "built in are"),
         (lambda: built_in("haply-2diy", damping=1, lower=(0, 0), upper=(0, 1)), "corners"),
         (lambda: built_in("two-link", damping=1).forward([1.0]), "2 joints"),
+        (lambda: two_links([[0.01, 0.002], [0.003, 0.01]]), r"symmetric: .* only \(δ \+ δᵀ\)/2"),
+        (lambda: two_links([[0.01, 0.002], [0.002 * (1 + 1e-9), 0.01]]), "symmetric"),
+        (lambda: two_links([[0.04, 0.06], [0.06, 0.09 * (1 - 1e-9)]]), "no negative eigenvalue"),
+        (lambda: two_links([[0.01, 1e-9], [1e-9, 0.0]]), "no negative eigenvalue"),
+        (lambda: two_links([[-0.01, 0], [0, 0.01]]), "≥ 0 on the diagonal"),
+        (lambda: two_links([[0.01, np.nan], [np.nan, 0.01]]), "finite"),
+        (lambda: two_links([[0.01, np.inf], [np.inf, 0.01]]), "finite"),
+        (lambda: two_links(np.eye(3)), r"for 2 joints is 2 × 2, got the shape \(3, 3\)"),
+        (lambda: two_links([[0.01, 0.002]]), r"is 2 × 2, got the shape \(1, 2\)"),
+        (lambda: two_links(np.ones((2, 2, 2))), "is 2 × 2"),
+        (lambda: two_links([[0.01, 0.0], [0.01]]), "one number for each joint, or a square matrix"),
+        (lambda: two_links("thick"), "one number for each joint, or a square matrix"),
+        (lambda: two_links([0.01]), "give one for each joint, 2 in all; got 1"),
+        (lambda: two_links([0.01, -0.01]), "≥ 0 in every joint"),
     ],
 )
-def test_bad_input_has_one_clear_message(make: object, words: str) -> None:
-    """What was given, and what to try."""
+def test_bad_input_has_one_clear_message(make, words):
     with pytest.raises(zw.InputError, match=words):
-        make()  # type: ignore[operator]
+        make()
 
 
-def test_a_paddle_turns_on_a_circle() -> None:
+def test_a_paddle_turns_on_a_circle():
     """|J| is the radius of the handle everywhere."""
     arm = built_in("hapkit", damping=0.001)
     q = np.linspace(-pi / 4, pi / 4, 7)[:, None]
     assert np.linalg.norm(arm.jacobian(q), axis=(-1, -2)) == pytest.approx(0.065659)
+
+
+BELT = np.array([[1.0, 0.0], [-0.7, 1.0]])
+"""The second motor sits in the base: its belt turns with q₂ − 0.7 q₁."""
+SHARED = BELT.T @ np.diag([0.013, 0.008]) @ BELT
+
+
+def test_a_matrix_is_kept_and_shown():
+    arm = built_in("two-link", damping=SHARED)
+    rows = tuple(map(tuple, SHARED.tolist()))
+    assert arm.damping == rows
+    assert f"damping={rows}" in repr(arm)
+    assert arm.replace(name="other").damping == rows
+    assert arm == built_in("two-link", damping=rows)
+
+
+def test_a_diagonal_matrix_is_one_number_for_each_joint():
+    told = (np.diag([0.02, 0.01]), ((0.02, 0), (0, 0.01)), (0.02, 0.01), [0.02, 0.01])
+    assert {joint_damping(damping, 2) for damping in told} == {(0.02, 0.01)}
+    assert joint_damping([[0.3]], 1) == joint_damping(0.3, 1) == (0.3,)
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(2, 7), st.integers(-6, 6))
+def test_shafts_with_friction_give_no_matrix_that_is_refused(seed, joints, power):
+    """Aᵀ diag(b) A, singular too, and joints in units that are as far apart as one likes."""
+    rng = np.random.default_rng(seed)
+    shafts = int(rng.integers(1, joints + 1))
+    scale = 10.0 ** (power * rng.random(joints))
+    turned = rng.normal(size=(shafts, joints)) * scale
+    damping = turned.T @ np.diag(rng.uniform(0.01, 1, shafts)) @ turned
+    kept = np.array(joint_damping(damping, joints))
+    assert np.array_equal(kept, kept.T)
+    assert np.allclose(kept, damping, rtol=1e-12, atol=0)
+
+
+def test_at_the_bound_it_is_taken():
+    """A matrix of which one motion costs nothing: the other side of what is refused."""
+    assert joint_damping([[0.04, 0.06], [0.06, 0.09]], 2) == ((0.04, 0.06), (0.06, 0.09))
+    assert joint_damping([[0.04, 0.06], [0.06, 0.09 * (1 + 1e-9)]], 2)

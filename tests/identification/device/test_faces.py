@@ -1,4 +1,4 @@
-"""What an identified device shows: table, file, curve, document; and what `zw.identify` reads."""
+"""What an identified device shows: table, file, curve, document, picture; and what `zw.identify` reads."""
 
 from __future__ import annotations
 
@@ -6,46 +6,42 @@ import dataclasses
 import json
 import tomllib
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
-from known_motion import COULOMB, DAMPING, MASS, PERIOD, STEP, Recording, paddle
+from known_motion import COULOMB, DAMPING, MASS, NOISE, PERIOD, STEP, paddle
 from scipy import stats
 
 import zwidth as zw
 from zwidth.data.identification.device.curve import friction_bins, lower_bounds
 from zwidth.data.identification.device.estimate import Estimate
+from zwidth.data.identification.device.pulses import PIECES, pulse
 from zwidth.data.identification.device.table import advice, limits, percent, rows
 from zwidth.model.specification.read import load
+from zwidth.show.plots.identified import expected_scatter, identification_figure
+
+Identified = zw.identification.Identified
 
 
-def log_of(recording: Recording) -> zw.Log:
-    """The arrays as a log."""
-    return zw.Log.from_arrays(
-        time=recording.time, position=recording.position, hand_force=recording.force, resolution=STEP
-    )
+def log_of(motion: str = "linear", **other: float) -> zw.Log:
+    time, position, force = paddle(**other)
+    return zw.Log.from_arrays(time=time, position=position, hand_force=force, resolution=STEP, motion=motion)
 
 
 @pytest.fixture(scope="module")
-def found() -> zw.identification.Identified:
-    """The device of the recording."""
-    return zw.identify(log_of(paddle()))
+def found() -> Identified:
+    return zw.identify(log_of())
 
 
-def test_the_numbers_are_those_of_the_device(found: zw.identification.Identified) -> None:
-    """Each within its interval at 99.9 %, and the intervals are a few per cent wide."""
+def test_the_numbers_are_those_of_the_device(found):
     for name, truth in (("mass", MASS), ("damping", DAMPING), ("coulomb_friction", COULOMB)):
         low, high = found.estimates[name].interval(0.999)
         assert low < truth < high
         assert high - low < 0.2 * truth
 
 
-def test_a_log_a_file_and_a_dataset_give_the_same(
-    found: zw.identification.Identified, tmp_path: Path
-) -> None:
-    """The same samples, whatever holds them; arguments of reading are passed on."""
+def test_a_log_a_file_and_a_dataset_give_the_same(found, tmp_path):
     time, position, force = paddle()
     counts = np.rint(position / STEP)
     path = tmp_path / "session.csv"
@@ -53,11 +49,8 @@ def test_a_log_a_file_and_a_dataset_give_the_same(
     np.savetxt(path, rows, delimiter=",", header="t_s,enc,F1_N", comments="", fmt="%.9g")
     names = {"position": "enc", "hand_force": "F1_N"}
     of_file = zw.identify(path, columns=names, units={"position": "counts"}, resolution="22.4 um")
-    variables = {
-        "position": ("time", position, {"units": "m"}),
-        "hand_force": ("time", force, {"units": "N"}),
-    }
-    data = xr.Dataset(variables, coords={"time": ("time", time, {"units": "s"})})
+    columns = {"time": (time, "s"), "position": (position, "m"), "hand_force": (force, "N")}
+    data = xr.Dataset({name: ("time", values, {"units": unit}) for name, (values, unit) in columns.items()})
     of_dataset = zw.identify(data, resolution=STEP)
     for name, estimate in found.estimates.items():
         assert of_file.estimates[name].value == pytest.approx(estimate.value, rel=1e-6)
@@ -65,35 +58,26 @@ def test_a_log_a_file_and_a_dataset_give_the_same(
     assert str(path) == of_file.source
 
 
-def test_a_log_is_not_read_twice() -> None:
-    """What is about reading a file says nothing about a log."""
-    with pytest.raises(zw.InputError, match="read already; units"):
-        zw.identify(log_of(paddle()), units={"position": "mm"})
-
-
-def test_a_mass_may_carry_a_unit() -> None:
-    """35.7 g is 0.0357 kg; a mass in metres is refused, and so is a model that is none."""
-    log = log_of(paddle())
+def test_a_mass_may_carry_a_unit():
+    log = log_of()
     with_unit, plain = zw.identify(log, mass="35.7 g"), zw.identify(log, mass=0.0357)
     assert with_unit.mass == plain.mass == 0.0357
     assert with_unit.estimates == plain.estimates
     assert "as given" in repr(plain)
     with pytest.raises(zw.InputError, match="mass is in kg"):
         zw.identify(log, mass="36 mm")
-    with pytest.raises(zw.InputError, match='model is "Coulomb and viscous" or "viscous"'):
-        zw.identify(log, model="mass")  # type: ignore[arg-type]
+    with pytest.raises(zw.InputError, match="read already; units"):
+        zw.identify(log, units={"position": "mm"})
 
 
-def test_progress_ends_with_every_sample() -> None:
-    """A bar can be drawn."""
+def test_progress_ends_with_every_sample():
     told: list[tuple[int, int]] = []
-    zw.identify(log_of(paddle()), progress=lambda done, total: told.append((done, total)))
+    zw.identify(log_of(), progress=lambda done, total: told.append((done, total)))
     assert told[-1] == (20_000, 20_000)
     assert [done for done, _ in told] == sorted(done for done, _ in told)
 
 
-def test_the_table_shows_every_number(found: zw.identification.Identified) -> None:
-    """In a terminal and in a notebook: parameters, the stiffness they allow, findings."""
+def test_the_table_shows_every_number(found):
     text, html = repr(found), found._repr_html_()
     for part in ("best guess", "95 %", "m ", "b ", "f_c", "2b/T", "2f_c/Δ", "N·s/m", "strokes", "r² ="):
         assert part in text
@@ -104,15 +88,7 @@ def test_the_table_shows_every_number(found: zw.identification.Identified) -> No
     assert max(len(line) for line in text.splitlines() if not line.startswith("·")) < 150
 
 
-def test_names_are_escaped_in_a_notebook(found: zw.identification.Identified) -> None:
-    """A log's name is text, never markup."""
-    odd = dataclasses.replace(found, source="<b>log.csv")
-    assert "<b>" in repr(odd)
-    assert "<b>" not in odd._repr_html_()
-
-
-def test_a_saved_device_is_read_back(found: zw.identification.Identified, tmp_path: Path) -> None:
-    """The strict reader gives the intervals, rounded outwards by less than a hundredth of a per cent."""
+def test_a_saved_device_is_read_back(found, tmp_path):
     path = tmp_path / "mine.toml"
     found.save(path, 0.97, delay="0.0003")
     read = load([path], {"stiffness": "100"}).device
@@ -122,16 +98,12 @@ def test_a_saved_device_is_read_back(found: zw.identification.Identified, tmp_pa
         assert there.low.fraction <= here.low.fraction < here.high.fraction <= there.high.fraction
         assert float(there.low) == pytest.approx(float(here.low), rel=1e-4)
         assert float(there.high) == pytest.approx(float(here.high), rel=1e-4)
-    assert (read.sample_period, read.resolution, read.delay) == (
-        own.sample_period,
-        own.resolution,
-        own.delay,
-    )
+    for name in ("sample_period", "resolution", "delay"):
+        assert getattr(read, name) == getattr(own, name)
     assert read.delay.fraction == Fraction(3, 10_000)
 
 
-def test_every_number_of_a_saved_device_says_where_it_comes_from(found: zw.identification.Identified) -> None:
-    """The log, the strokes, the method, the confidence, r²; no date."""
+def test_every_number_of_a_saved_device_says_where_it_comes_from(found):
     text = found.to_toml(0.99)
     assert "Identified from arrays" in text
     assert f"{found.strokes} strokes, {found.pulses} means" in text
@@ -149,16 +121,16 @@ def test_every_number_of_a_saved_device_says_where_it_comes_from(found: zw.ident
     assert "delay" not in best
 
 
-def test_a_name_with_quotes_and_line_ends_is_still_toml(found: zw.identification.Identified) -> None:
-    """Whatever the log or the device is called."""
-    odd = dataclasses.replace(found, source='a "b"\\\n[device]\n.csv')
+def test_names_are_text_and_never_markup_or_toml(found):
+    odd = dataclasses.replace(found, source='<b>a "b"\\\n[device]\n.csv')
+    assert "<b>" in repr(odd)
+    assert "<b>" not in odd._repr_html_()
     device = tomllib.loads(odd.to_toml())["device"]
-    assert device["name"] == 'identified from a "b"\\?[device]?.csv'
+    assert device["name"] == 'identified from <b>a "b"\\?[device]?.csv'
     assert tomllib.loads(found.to_toml(name='my "wheel"\x7f'))["device"]["name"] == 'my "wheel"?'
 
 
-def test_a_file_is_not_replaced_unasked(found: zw.identification.Identified, tmp_path: Path) -> None:
-    """An old file stays as it is; with force it is replaced, and nothing else is left."""
+def test_a_file_is_not_replaced_unasked(found, tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text("old")
     with pytest.raises(zw.InputError, match="exists"):
@@ -171,11 +143,8 @@ def test_a_file_is_not_replaced_unasked(found: zw.identification.Identified, tmp
         found.save(tmp_path / "nowhere" / "mine.toml")
 
 
-def test_a_rotary_device_is_saved_as_one(tmp_path: Path) -> None:
-    """Inertia in the place of mass, angles and torques."""
-    time, position, force = paddle()
-    log = zw.Log.from_arrays(time=time, position=position, hand_force=force, resolution=STEP, motion="rotary")
-    found = zw.identify(log)
+def test_a_rotary_device_is_saved_as_one(tmp_path):
+    found = zw.identify(log_of("rotary"))
     assert "inertia" in [row.name for row in rows(found)]
     found.save(tmp_path / "wheel.toml")
     read = load([tmp_path / "wheel.toml"], {"stiffness": "1"}).device
@@ -185,7 +154,7 @@ def test_a_rotary_device_is_saved_as_one(tmp_path: Path) -> None:
     assert "damping_N_m_s_per_rad" in found.to_dict()
 
 
-def test_an_inertia_that_may_be_nothing_is_left_out(found: zw.identification.Identified) -> None:
+def test_an_inertia_that_may_be_nothing_is_left_out(found):
     """No device has mass 0; nothing that is proved depends on it."""
     wide = Estimate(0.02, 0.05, 0.0, 100, "kg")
     vague = dataclasses.replace(found, estimates={**found.estimates, "mass": wide})
@@ -194,7 +163,7 @@ def test_an_inertia_that_may_be_nothing_is_left_out(found: zw.identification.Ide
     assert found.device(0.99).mass is not None
 
 
-def test_the_curve_lies_below_the_friction_of_the_device(found: zw.identification.Identified) -> None:
+def test_the_curve_lies_below_the_friction_of_the_device(found):
     """Bounds below the truth by a few per cent; the model below them proves nearly as stiff a wall."""
     curve = found.friction_curve(0.95)
     for speed, force in zip(curve.speeds, curve.forces, strict=True):
@@ -204,11 +173,10 @@ def test_the_curve_lies_below_the_friction_of_the_device(found: zw.identificatio
     assert 0.7 * DAMPING < float(best.damping) < DAMPING
 
 
-def test_friction_that_bends_is_bounded_below() -> None:
+def test_friction_that_bends_is_bounded_below():
     """f_c + b v + c v²: the bounds follow the bend, and no model of them is above it."""
     bent = 0.25
-    found = zw.identify(log_of(paddle(quadratic=bent)))
-    assert "bent friction" in [finding.kind for finding in found.findings]
+    found = zw.identify(log_of(quadratic=bent))
     curve = found.friction_curve(0.95)
     for speed, force in zip(curve.speeds, curve.forces, strict=True):
         v = float(speed)
@@ -218,7 +186,7 @@ def test_friction_that_bends_is_bounded_below() -> None:
     assert float(curve.largest_damping) > DAMPING
 
 
-def test_the_errors_of_the_bins_are_those_of_the_strokes(found: zw.identification.Identified) -> None:
+def test_the_errors_of_the_bins_are_those_of_the_strokes(found):
     """By another road: means at one speed, of whole strokes drawn with replacement, scatter as much."""
     points = found.points
     speed, friction = points["speed"].values, points["friction"].values
@@ -236,7 +204,7 @@ def test_the_errors_of_the_bins_are_those_of_the_strokes(found: zw.identificatio
     assert error == pytest.approx(float(np.std(means)), rel=0.2)
 
 
-def test_all_bounds_share_the_risk(found: zw.identification.Identified) -> None:
+def test_all_bounds_share_the_risk(found):
     """Half of 5 % is the slope's; of the other half each bin and each rest, both ways, has as much."""
     bins = friction_bins(found.points, 2)
     bounds = lower_bounds(found.points, 0.95, 2)
@@ -252,16 +220,12 @@ def test_all_bounds_share_the_risk(found: zw.identification.Identified) -> None:
 
 
 @pytest.mark.parametrize(("confidence", "bins"), [(0.0, 8), (1.0, 8), (float("nan"), 8), (0.9, 1)])
-def test_no_curve_without_confidence_or_bins(
-    found: zw.identification.Identified, confidence: float, bins: int
-) -> None:
-    """Certainty takes no data; one bin is no curve."""
+def test_no_curve_without_confidence_or_bins(found, confidence, bins):
     with pytest.raises(zw.InputError, match=r"confidence must be|two bins"):
         found.friction_curve(confidence, bins)
 
 
-def test_the_limits_are_those_of_the_parameters(found: zw.identification.Identified) -> None:
-    """2b/T and 2f_c/Δ, at the best guess and at both ends."""
+def test_the_limits_are_those_of_the_parameters(found):
     by_damping, by_friction = limits(found)
     assert by_damping.value == pytest.approx(2 * found.estimates["damping"].value / PERIOD, rel=1e-12)
     low, high = found.least_coulomb_friction(0.9), found.estimates["coulomb_friction"].interval(0.9)[1]
@@ -269,16 +233,18 @@ def test_the_limits_are_those_of_the_parameters(found: zw.identification.Identif
     assert 0.85 * COULOMB < low < found.estimates["coulomb_friction"].interval(0.9)[0]
 
 
-def test_the_check_is_at_the_limit_that_is_shown(found: zw.identification.Identified) -> None:
-    """Passive just below the low end of 2b/T, not proved just above it."""
+def test_the_check_is_at_the_limit_that_is_shown(found):
     low, _ = limits(found)[0].interval(0.99)
+    assert low == pytest.approx(2 * found.least_damping(0.99) / PERIOD, rel=1e-12)
     device = found.device(0.99)
     assert zw.check(device, zw.Wall(stiffness=0.9999 * low)).outcome == "passive"
     assert zw.check(device, zw.Wall(stiffness=1.0001 * low)).outcome != "passive"
     assert found.confidence(zw.Wall(stiffness=low)) == pytest.approx(0.99, abs=3e-4)
+    assert found.confidence(zw.Wall(stiffness=0.7 * low)) > 0.9999
+    assert found.confidence(zw.Wall(stiffness=1.4 * low)) == 0.0
 
 
-def test_advice_says_how_much_longer(found: zw.identification.Identified) -> None:
+def test_advice_says_how_much_longer(found):
     """The scatter falls as one over the root of the duration, the shift does not."""
 
     def told(error: float, shift: float) -> str:
@@ -292,29 +258,19 @@ def test_advice_says_how_much_longer(found: zw.identification.Identified) -> Non
     reach = float(stats.norm.ppf(0.995)) * 0.001
     assert "a log 9 times as long" in told(0.001, reach / 3)
     assert "a longer log would not halve" in told(0.001, 1.01 * reach)
-
-
-def test_coulomb_friction_limits_where_the_encoder_is_coarse(found: zw.identification.Identified) -> None:
-    """With a coarse step, 2f_c/Δ is below 2b/T."""
     coarse = dataclasses.replace(found, resolution=2e-3)
     assert advice(coarse, 0.99)[0].startswith("Coulomb friction limits the wall: 2f_c/Δ ≥")
 
 
-def test_the_wrong_model_is_said_everywhere() -> None:
-    """Numbers of a mass and a damper allow no wall where Coulomb friction is seen."""
-    found = zw.identify(log_of(paddle()), model="viscous")
-    assert found.estimates["damping"].value > 1.2 * DAMPING
+def test_the_wrong_model_is_said_everywhere():
+    found = zw.identify(log_of(), model="viscous")
     assert "wrong model" in repr(found)
     assert advice(found, 0.99) == (
         "fit Coulomb friction too: these numbers are of another model than the device",
     )
-    for refused in (found.device, found.to_toml):
-        with pytest.raises(zw.InputError, match="no device has them"):
-            refused()
 
 
-def test_the_document_is_json(found: zw.identification.Identified) -> None:
-    """Units in the keys; the same numbers."""
+def test_the_document_is_json(found):
     document = json.loads(json.dumps(found.to_dict(0.9)))
     assert document["format"] == "zwidth identification 1"
     assert document["damping_N_s_per_m"]["interval"] == list(found.estimates["damping"].interval(0.9))
@@ -327,6 +283,62 @@ def test_the_document_is_json(found: zw.identification.Identified) -> None:
     ("confidence", "text"),
     [(0.99, "99 %"), (0.999999, "99.9999 %"), (0.9, "90 %"), (0.99999996, "99.9999 %")],
 )
-def test_a_confidence_is_never_rounded_up(confidence: float, text: str) -> None:
-    """99.99999 % is shown as 99.9999 %."""
+def test_a_confidence_is_never_rounded_up(confidence, text):
     assert percent(confidence) == text
+
+
+def test_four_pictures_and_the_numbers(found):
+    figure = identification_figure(found)
+    friction, numbers, data, left, _ = figure.axes
+    assert friction.get_xlabel() == "velocity v, into the wall on the right [m/s]"
+    assert friction.get_ylabel() == "friction [N]"
+    assert (data.get_ylabel(), left.get_ylabel()) == ("force [N]", "left over [N]")
+    words = " ".join(text.get_text() for text in numbers.texts)
+    assert f"{found.estimates['damping'].value:.4g} N·s/m" in words
+    labels = " ".join(text.get_text() for text in friction.get_legend().get_texts())
+    never = "never: nothing is promised"
+    for part in ("fit, 95 % band", "mass–damper model", "promised, up to", "means", never):
+        assert part in labels
+    line = next(li for li in friction.get_lines() if str(li.get_label()).startswith("fit"))
+    drawn = np.polyfit(line.get_xdata(), line.get_ydata(), 1)
+    fit = [found.estimates[name].value for name in ("damping", "coulomb_friction")]
+    assert drawn == pytest.approx(fit, rel=1e-9)
+
+
+def test_a_given_mass_and_another_model_are_drawn_too():
+    """The force less m a in the place of the force; no mass–damper line beside a mass–damper fit."""
+    log = log_of("rotary")
+    given = identification_figure(zw.identify(log, mass=0.0357))
+    assert given.axes[2].get_ylabel() == "force less m a [N·m]"
+    assert given.axes[0].get_xlabel() == "velocity v, into the wall on the right [rad/s]"
+    labels = identification_figure(zw.identify(log, model="viscous")).axes[0].get_legend().get_texts()
+    assert not [text for text in labels if "mass–damper" in text.get_text()]
+
+
+def test_the_expected_scatter_is_that_of_what_is_left(found):
+    """Noise of the load cell and counts of the encoder, known here, make up what is left over."""
+    counts, noise = expected_scatter(found)
+    assert found.force_noise == pytest.approx(NOISE, rel=0.05)
+    assert float(np.hypot(counts, noise)) == pytest.approx(float(found.points["residual"].std()), rel=0.15)
+
+
+def test_the_force_of_counts_by_another_road(found):
+    """A resting device whose encoder reads counts at random: m times the second difference of its means."""
+    piece = round(found.pulse_length / PERIOD / PIECES)
+    random = np.random.default_rng(2)
+    bend = pulse(piece).bend / (piece * (piece * PERIOD) ** 2)
+    position = STEP * (random.random((20_000, bend.size)) - 0.5)
+    force = found.estimates["mass"].value * position @ bend
+    assert expected_scatter(found)[0] == pytest.approx(float(force.std()), rel=0.03)
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+def test_a_picture_is_saved_and_not_replaced_unasked(found, ending, tmp_path):
+    path = tmp_path / f"fig.{ending}"
+    path.touch()
+    with pytest.raises(zw.InputError, match="exists; choose another name"):
+        found.plot(path)
+    assert not path.stat().st_size
+    path = path if ending == "png" else tmp_path / f"new.{ending}"
+    found.plot(path, force=ending == "png")
+    assert path.stat().st_size > 5000

@@ -20,33 +20,28 @@ def test_information_is_the_closed_form_of_a_sine():
     """For short strokes, whose mean over ten seconds is nothing, M is made of the moments of a sine."""
     length, duration = 0.05, 0.2
     speed, acceleration = length / 2 * np.pi / duration, length / 2 * (np.pi / duration) ** 2
-    expected = [
-        [acceleration**2 / 2, 0, 0],
-        [0, speed**2 / 2, 2 * speed / np.pi],
-        [0, 2 * speed / np.pi, 1],
-    ]
+    both = 2 * speed / np.pi
+    expected = [[acceleration**2 / 2, 0, 0], [0, speed**2 / 2, both], [0, both, 1]]
     found = Stroke(length, duration).information()
     scale = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))
     assert np.allclose(found / scale, expected / scale, atol=0.01)
 
 
-@pytest.mark.parametrize("parameter", PARAMETERS)
-def test_the_shares_are_the_best(parameter):
+def test_the_shares_are_the_best():
     """No other share of the time among a thousand makes the variance smaller."""
     strokes = (Stroke(0.06, 1.0), Stroke(0.06, 0.25))
-    k = PARAMETERS.index(parameter)
 
-    def variance(share):
-        return covariance(strokes, (share, 1 - share), 0.1, 1e-3, 60)[k, k]
+    def variances(share):
+        return np.diag(covariance(strokes, (share, 1 - share), 0.1, 1e-3, 60))
 
-    found = best_shares(strokes, parameter)
-    assert sum(found) == pytest.approx(1)
-    least = min(variance(share) for share in np.linspace(0, 1, 1001))
-    assert variance(found[0]) == pytest.approx(least, rel=1e-4)
+    least = np.min([variances(share) for share in np.linspace(0, 1, 1001)], axis=0)
+    for k, parameter in enumerate(PARAMETERS):
+        found = best_shares(strokes, parameter)
+        assert sum(found) == pytest.approx(1)
+        assert variances(found[0])[k] == pytest.approx(least[k], rel=1e-4)
 
 
 def test_errors_fall_with_the_root_of_the_time():
-    """Four times as long, half the error; twice the noise, four times the time."""
     plan, noisy = (zw.plan(paddle(), force_noise=noise) for noise in (0.1, 0.2))
     for name, error in plan.errors(120).items():
         assert error == pytest.approx(plan.errors(30)[name] / 2, rel=1e-12)
@@ -62,23 +57,17 @@ def test_the_prediction_holds_within_thirty_per_cent(changes, noise):
 
     The root mean square of 14 numbers is itself known to 19 % only; so its own bounds are wider.
     """
-    device = paddle(**changes)
+    device, names = paddle(**changes), ("damping", "coulomb_friction")
     plan = zw.plan(device, force_noise=noise)
+    period, step = (float(device.exact(name)) for name in ("sample_period", "resolution"))
     errors, halves = [], []
     for seed in range(14):
-        log = recorded(
-            _kinds(plan, 40),
-            np.random.default_rng(seed),
-            period=float(device.exact("sample_period")),
-            resolution=float(device.exact("resolution")),
-            noise=noise,
-        )
-        found = [identify(log).estimates[name] for name in ("damping", "coulomb_friction")]
-        errors.append(
-            [e.value - TRUE[n] for e, n in zip(found, ("damping", "coulomb_friction"), strict=True)]
-        )
+        rng = np.random.default_rng(seed)
+        log = recorded(_kinds(plan, 40), rng, period=period, resolution=step, noise=noise)
+        found = [identify(log).estimates[name] for name in names]
+        errors.append([e.value - TRUE[n] for e, n in zip(found, names, strict=True)])
         halves.append([(e.interval()[1] - e.value) / 1.96 for e in found])
-    predicted = np.array([plan.errors(40)[name] for name in ("damping", "coulomb_friction")])
+    predicted = np.array([plan.errors(40)[name] for name in names])
     ratio = np.mean(halves, axis=0) / predicted
     assert ((ratio > 0.7) & (ratio < 1.3)).all()
     scatter = np.sqrt(np.mean(np.square(errors), axis=0)) / predicted
@@ -117,7 +106,6 @@ def test_what_limits_is_what_is_planned_for():
 
 
 def test_the_rule_asks_for_strokes_and_precision():
-    """Not reached with few strokes however sure, nor with many when unsure; reached with both."""
     log = recorded([(0.06, 1.0, 10), (0.06, 0.25, 20)], np.random.default_rng(3), noise=0.02)
     found = identify(log)
     loose, tight = (zw.plan(paddle(), force_noise=0.02, precision=p) for p in (0.1, 0.001))
@@ -129,7 +117,6 @@ def test_the_rule_asks_for_strokes_and_precision():
 
 
 def test_a_first_run_is_a_guess():
-    """Its numbers and its noise are taken; a plan from the truth asks for nearly the same time."""
     found = identify(recorded([(0.06, 1.0, 10), (0.06, 0.25, 20)], np.random.default_rng(8)))
     plan, true = zw.plan(found), zw.plan(paddle(), force_noise=0.1)
     assert plan.force_noise == found.force_noise == pytest.approx(0.1, rel=0.1)
@@ -137,7 +124,6 @@ def test_a_first_run_is_a_guess():
 
 
 def test_the_protocol_can_be_followed():
-    """It says how many strokes, how long, how quick, how hard, and when to stop."""
     text = repr(zw.plan(paddle(), force_noise=0.1))
     assert text.splitlines()[0].startswith("To know b within ±0.05 of itself")
     assert "9 strokes of some 6 cm, 1 s each" in text
@@ -165,18 +151,15 @@ def test_the_protocol_can_be_followed():
     ],
 )
 def test_bad_input_is_refused(changes, arguments, message):
-    """One message says what cannot be planned with."""
     with pytest.raises(zw.InputError, match=message):
         zw.plan(paddle(**changes), **{"force_noise": 0.1, **arguments})
 
 
-def test_of_an_interval_the_middle_is_the_guess():
-    """A device that was identified before is known in intervals."""
-    wide = zw.plan(paddle(damping=("0.1", "0.2"), mass=("0.03", "0.042")), force_noise=0.1)
-    assert wide.seconds == pytest.approx(zw.plan(paddle(), force_noise=0.1).seconds)
-
-
 def test_no_time_is_refused():
-    """Errors after no time at all are not defined."""
     with pytest.raises(zw.InputError, match="seconds"):
         zw.plan(paddle(), force_noise=0.1).errors(0)
+
+
+def test_of_an_interval_the_middle_is_the_guess():
+    wide = zw.plan(paddle(damping=("0.1", "0.2"), mass=("0.03", "0.042")), force_noise=0.1)
+    assert wide.seconds == pytest.approx(zw.plan(paddle(), force_noise=0.1).seconds)

@@ -2,21 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 import pytest
-
-STEP = 22.4e-6
-"""[m] of its encoder."""
-
-
-class Recording(NamedTuple):
-    """Time [s], position [m], force of the hand [N]."""
-
-    time: np.ndarray
-    position: np.ndarray
-    force: np.ndarray
+from known_motion import STEP, Recording
 
 
 @pytest.fixture

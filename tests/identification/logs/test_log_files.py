@@ -5,7 +5,6 @@ from __future__ import annotations
 import bz2
 import gzip
 import sys
-from pathlib import Path
 
 import h5py
 import numpy as np
@@ -13,35 +12,28 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 import scipy.io
+import xarray as xr
 
 import zwidth as zw
 from zwidth.data.logs.columns import name_and_unit
 from zwidth.data.logs.text import text_table
 
 HEADER = ("time_s", "position_mm", "force_N")
+UNITS = {"time": "s", "position": "mm", "hand_force": "N"}
 
 
-def rows_of(recording) -> list[tuple[float, ...]]:
-    """Rows in s, mm, N."""
-    return list(
-        zip(
-            recording.time.tolist(),
-            (recording.position * 1e3).tolist(),
-            recording.force.tolist(),
-            strict=True,
-        )
-    )
+def by_name(time: str, position: str, hand_force: str) -> dict[str, str]:
+    return {"time": time, "position": position, "hand_force": hand_force}
 
 
 def text_of(recording, sep=",", header=HEADER, decimal=".") -> str:
-    """The recording as a text."""
+    rows = np.stack([recording.time, recording.position * 1e3, recording.force], axis=1).tolist()
     lines = [sep.join(header)] if header else []
-    lines += [sep.join(map(repr, row)).replace(".", decimal) for row in rows_of(recording)]
+    lines += [sep.join(map(repr, row)).replace(".", decimal) for row in rows]
     return "\n".join(lines) + "\n"
 
 
 def assert_same(log: zw.Log, recording, force: bool = True) -> None:
-    """The log holds the recording, to rounding."""
     blocks = list(log.blocks())
     assert np.abs(np.concatenate([b.time for b in blocks]) - recording.time).max() < 1e-12
     assert np.abs(np.concatenate([b.position for b in blocks]) - recording.position).max() < 1e-15
@@ -67,37 +59,29 @@ def assert_same(log: zw.Log, recording, force: bool = True) -> None:
         ("comment.dat", " ", ("# written by savetxt\n# time_s", "position_mm", "force_N"), "."),
         ("json-comment.csv", ",", ('# {"who": "me"}\ntime_s', "position_mm", "force_N"), "."),
         ("other-delimiter.csv", ";", ("time_s,position_mm,force_N",), "."),
+        ("log.csv.gz", ",", HEADER, "."),
+        ("log.csv.bz2", ",", HEADER, "."),
     ],
 )
-def test_texts(name, sep, header, decimal, recording, tmp_path: Path) -> None:
-    """Delimiters, decimal signs, headers, preambles and lines of units as loggers write them."""
+def test_texts(name, sep, header, decimal, recording, tmp_path):
     path = tmp_path / name
-    path.write_text(text_of(recording, sep, header, decimal))
+    packed = {".gz": gzip.compress, ".bz2": bz2.compress}.get(path.suffix, bytes)
+    path.write_bytes(packed(text_of(recording, sep, header, decimal).encode()))
     assert_same(zw.read_log(path), recording)
 
 
-def test_texts_without_a_header_have_numbered_columns(recording, tmp_path: Path) -> None:
-    """The user says which is which, and their units."""
+def test_texts_without_a_header_have_numbered_columns(recording, tmp_path):
     path = tmp_path / "bare.txt"
     path.write_text(text_of(recording, " ", ()))
     with pytest.raises(zw.InputError, match='"column 1", "column 2", "column 3"'):
         zw.read_log(path)
-    columns = {"time": "column 1", "position": "column 2", "hand_force": "column 3"}
+    columns = by_name("column 1", "column 2", "column 3")
     with pytest.raises(zw.InputError, match="has no unit"):
         zw.read_log(path, columns=columns)
-    log = zw.read_log(path, columns=columns, units={"time": "s", "position": "mm", "hand_force": "N"})
-    assert_same(log, recording)
+    assert_same(zw.read_log(path, columns=columns, units=UNITS), recording)
 
 
-def test_compressed_text(recording, tmp_path: Path) -> None:
-    """gzip and bzip2 are unpacked while reading."""
-    for suffix, pack in (("gz", gzip.compress), ("bz2", bz2.compress)):
-        path = tmp_path / f"log.csv.{suffix}"
-        path.write_bytes(pack(text_of(recording).encode()))
-        assert_same(zw.read_log(path), recording)
-
-
-def test_the_first_rows_are_looked_at_once(tmp_path: Path) -> None:
+def test_the_first_rows_are_looked_at_once(tmp_path):
     """However many delimiters a line may have, and however often the file is opened."""
     path = tmp_path / "log.csv"
     lines = ["time_s,position_m,hand_force_N,motor_force_N"]
@@ -120,41 +104,34 @@ def test_the_first_rows_are_looked_at_once(tmp_path: Path) -> None:
     assert calls < 10 * 1000
 
 
-def test_texts_with_scars(recording, tmp_path: Path) -> None:
-    """A header again, a comment, a row too short, zero bytes at the end: said, and read around."""
-    text = text_of(recording)
-    (tmp_path / "twice.csv").write_text(text + text)
-    twice = zw.read_log(tmp_path / "twice.csv")
-    assert (twice.runs, twice.samples) == (2, 8000)
-    assert {"headers", "restart"} <= {f.kind for f in twice.findings}
+def test_texts_with_scars(recording, tmp_path):
+    path, text = tmp_path / "log.csv", text_of(recording)
     lines = text.splitlines(keepends=True)
     lines[100] = "# the hand let go\n" + lines[100]
     lines[500] = "0.2,0.4\n"
-    (tmp_path / "scars.csv").write_bytes("".join(lines).encode() + b"\0" * 70000)
-    log = zw.read_log(tmp_path / "scars.csv")
-    assert (log.runs, log.samples) == (2, 3999)
-    assert {"broken rows", "zeros", "gap"} <= {f.kind for f in log.findings}
-    (tmp_path / "cut.csv").write_text(text[:-9])
-    cut = zw.read_log(tmp_path / "cut.csv")
-    assert cut.samples == 3999
-    assert "unfinished" in {f.kind for f in cut.findings}
+    for content, counts, kinds in (
+        (text + text, (2, 8000), {"headers", "restart"}),
+        ("".join(lines) + "\0" * 70000, (2, 3999), {"broken rows", "zeros", "gap"}),
+        (text[:-9], (1, 3999), {"unfinished"}),
+    ):
+        path.write_text(content, encoding="utf-8")
+        log = zw.read_log(path)
+        assert (log.runs, log.samples) == counts
+        assert kinds <= {finding.kind for finding in log.findings}
 
 
-def test_dates_and_integers_in_text(recording, tmp_path: Path) -> None:
-    """ISO dates, and nanoseconds since 1970 that no double can hold."""
+def test_dates_and_integers_in_text(recording, tmp_path):
     nanoseconds = 1_700_000_000_000_000_000 + np.rint(recording.time * 1e9).astype(np.int64)
     dates = nanoseconds.astype("datetime64[ns]").astype(str)
     for name, stamps in (("timestamp", dates), ("t_ns", nanoseconds.tolist())):
         path = tmp_path / f"{name}.csv"
-        body = "".join(
-            f"{s},{x},note\n" for s, x in zip(stamps, (recording.position * 1e3).tolist(), strict=True)
-        )
+        rows = zip(stamps, (recording.position * 1e3).tolist(), strict=True)
+        body = "".join(f"{s},{x},note\n" for s, x in rows)
         path.write_text(f"{name},position_mm,remark\n{body}")
         assert_same(zw.read_log(path), recording, force=False)
 
 
-def test_parquet_in_any_types(recording, tmp_path: Path) -> None:
-    """Timestamps, integers, nulls, units in the metadata of a field; groups of rows of any size."""
+def test_parquet_in_any_types(recording, tmp_path):
     counts = np.rint(recording.position / 22.4e-6).astype(np.int16)
     stamps = pa.array(1_700_000_000_000_000 + np.rint(recording.time * 1e6).astype(np.int64)).cast(
         pa.timestamp("us")
@@ -172,8 +149,7 @@ def test_parquet_in_any_types(recording, tmp_path: Path) -> None:
     assert zw.read_log(tmp_path / "null.parquet", resolution="22.4 um").samples == 3999
 
 
-def test_hdf5_groups_matrices_and_compounds(recording, tmp_path: Path) -> None:
-    """Datasets by path with their units; columns of a matrix, either way up; fields of a compound."""
+def test_hdf5_groups_matrices_and_compounds(recording, tmp_path):
     path = tmp_path / "log.h5"
     matrix = np.stack([recording.time, recording.position * 1e3, recording.force], axis=1)
     with h5py.File(path, "w") as file:
@@ -183,28 +159,23 @@ def test_hdf5_groups_matrices_and_compounds(recording, tmp_path: Path) -> None:
         file["tall"], file["wide"] = matrix, matrix.T
         file["label"] = "a text"
         file["rows"] = np.rec.fromarrays(matrix.T, names="time_s,x_mm,fh_N")
-    assert_same(zw.read_log(path, columns={"position": "robot/left/position", "time": "robot/left/time",
-                                           "hand_force": "robot/left/force"}), recording)  # fmt: skip
-    units = {"time": "s", "position": "mm", "hand_force": "N"}
+    for names in (
+        ("robot/left/time", "robot/left/position", "robot/left/force"),
+        ("rows.time_s", "rows.x_mm", "rows.fh_N"),
+    ):
+        assert_same(zw.read_log(path, columns=by_name(*names)), recording)
     for name in ("tall", "wide"):
-        columns = {"time": f"{name}[0]", "position": f"{name}[1]", "hand_force": f"{name}[2]"}
-        assert_same(zw.read_log(path, columns=columns, units=units), recording)
-    columns = {"time": "rows.time_s", "position": "rows.x_mm", "hand_force": "rows.fh_N"}
-    assert_same(zw.read_log(path, columns=columns), recording)
+        columns = by_name(*(f"{name}[{k}]" for k in range(3)))
+        assert_same(zw.read_log(path, columns=columns, units=UNITS), recording)
     with pytest.raises(zw.InputError, match="may each be the time"):
         zw.read_log(path)
 
 
-def test_netcdf_is_unpacked(recording, tmp_path: Path) -> None:
-    """Units, fill values and packed integers as the conventions have them."""
-    import xarray as xr
-
+def test_netcdf_is_unpacked(recording, tmp_path):
     counts = np.rint(recording.position / 22.4e-6)
     counts[50] = np.nan
-    data = xr.Dataset(
-        {"encoder": ("time", counts * 22.4e-6, {"units": "m"})},
-        coords={"time": ("time", recording.time * 1e3, {"units": "milliseconds"})},
-    )
+    time = ("time", recording.time * 1e3, {"units": "milliseconds"})
+    data = xr.Dataset({"encoder": ("time", counts * 22.4e-6, {"units": "m"}), "time": time})
     packed = {"encoder": {"dtype": "int16", "scale_factor": 22.4e-6, "_FillValue": -32768}}
     data.to_netcdf(tmp_path / "log.nc", engine="h5netcdf", encoding=packed)
     log = zw.read_log(tmp_path / "log.nc")
@@ -213,15 +184,13 @@ def test_netcdf_is_unpacked(recording, tmp_path: Path) -> None:
     assert log.resolution == pytest.approx(22.4e-6, rel=1e-9)
 
 
-def test_matlab_old_and_new(recording, tmp_path: Path) -> None:
-    """Vectors, structures and matrices of version 5, and the HDF5 of 7.3."""
+def test_matlab_old_and_new(recording, tmp_path):
     vectors = {"time_s": recording.time, "position_mm": recording.position * 1e3, "force_N": recording.force}
     scipy.io.savemat(tmp_path / "v5.mat", {"log": {"run": vectors}, "note": "hello"})
     assert_same(zw.read_log(tmp_path / "v5.mat"), recording)
     scipy.io.savemat(tmp_path / "matrix.mat", {"data": np.stack(list(vectors.values()))})
-    columns = {"time": "data[0]", "position": "data[1]", "hand_force": "data[2]"}
-    units = {"time": "s", "position": "mm", "hand_force": "N"}
-    assert_same(zw.read_log(tmp_path / "matrix.mat", columns=columns, units=units), recording)
+    columns = by_name("data[0]", "data[1]", "data[2]")
+    assert_same(zw.read_log(tmp_path / "matrix.mat", columns=columns, units=UNITS), recording)
     with h5py.File(tmp_path / "v73.mat", "w", userblock_size=512) as file:
         for name, values in vectors.items():
             file[name] = values[np.newaxis, :]
@@ -231,8 +200,7 @@ def test_matlab_old_and_new(recording, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("storage", ["MCAP", "SQLITE3"])
-def test_rosbags(storage: str, recording, tmp_path: Path) -> None:
-    """Joint states and a wrench on a topic of its own, each with its header's stamp."""
+def test_rosbags(storage, recording, tmp_path):
     from rosbags.rosbag2 import StoragePlugin, Writer
     from rosbags.typesys import Stores, get_typestore
 
@@ -248,30 +216,24 @@ def test_rosbags(storage: str, recording, tmp_path: Path) -> None:
         for t, x, f in zip(*recording, strict=True):
             now = 1_700_000_000_000_000_000 + round(t * 1e9)
             for connection, late in ((first, 0), (second, 60_000)):
-                stamp = time_type(*divmod(now + late, 10**9))
-                header = header_type(stamp=stamp, frame_id="")
-                zero = vector(0.0, 0.0, 0.0)
-                message = (
-                    joint(header, ["stylus"], np.array([x]), none, none)
-                    if connection is first
-                    else stamped(header, wrench(force=vector(0.0, 0.0, f), torque=zero))
-                )
+                header = header_type(stamp=time_type(*divmod(now + late, 10**9)), frame_id="")
+                push = wrench(force=vector(0.0, 0.0, f), torque=vector(0.0, 0.0, 0.0))
+                joints = joint(header, ["stylus"], np.array([x]), none, none)
+                message = joints if connection is first else stamped(header, push)
                 data = store.serialize_cdr(message, connection.msgtype)
                 writer.write(connection, now + late + 300_000, data)
-    log = zw.read_log(path, columns={"hand_force": "/hand.wrench.force.z"}, units={"position": "m"})
+    asked = {"columns": {"hand_force": "/hand.wrench.force.z"}, "units": {"position": "m"}}
+    log = zw.read_log(path, **asked)
     assert_same(log, recording)
     assert {"dates", "two topics"} <= {f.kind for f in log.findings}
     with pytest.raises(zw.InputError, match=r"joint_states.position\[0\].*has no unit"):
         zw.read_log(path)
     (file,) = [p for p in path.iterdir() if p.suffix in (".mcap", ".db3")]
-    assert_same(
-        zw.read_log(file, columns={"hand_force": "/hand.wrench.force.z"}, units={"position": "m"}), recording
-    )
+    assert_same(zw.read_log(file, **asked), recording)
 
 
-def test_without_the_library_for_bags_its_name_is_said(tmp_path: Path, monkeypatch) -> None:
-    """The message says what to install."""
-    monkeypatch.setitem(__import__("sys").modules, "rosbags.highlevel", None)
+def test_without_the_library_for_bags_its_name_is_said(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
     path = tmp_path / "log.mcap"
     path.write_bytes(b"\x89MCAP0\r\n" + bytes(100) + b"\x89MCAP0\r\n")
     with pytest.raises(zw.InputError, match=r"zwidth\[logs\]"):
@@ -280,8 +242,7 @@ def test_without_the_library_for_bags_its_name_is_said(tmp_path: Path, monkeypat
 
 @pytest.mark.parametrize("suffix", ["nc", "parquet", "csv"])
 @pytest.mark.parametrize("rotary", [False, True])
-def test_traces_of_zwidth_are_logs(suffix: str, rotary: bool, tmp_path: Path) -> None:
-    """The encoder's reading at the samples alone, with period, step and motion as the trace says."""
+def test_traces_of_zwidth_are_logs(suffix, rotary, tmp_path):
     if rotary:
         device = zw.rotary(inertia=2e-5, damping=2e-4, coulomb_friction=2e-3, resolution=1e-4, rate=2000)
         trace = zw.simulate(device, zw.Wall(0.5), zw.operators.Finger(), 0.3, initial_position=-0.05)
@@ -309,14 +270,11 @@ def test_traces_of_zwidth_are_logs(suffix: str, rotary: bool, tmp_path: Path) ->
     assert all((a == b).all() for a, b in zip(direct[1:], block[1:], strict=True))
 
 
-def test_units_and_factors(recording, tmp_path: Path) -> None:
-    """Volts by a factor, counts by a step, degrees to radians, a sign turned round."""
+def test_units_and_factors(recording, tmp_path):
     path = tmp_path / "raw.csv"
     counts = np.rint(recording.position / 22.4e-6).astype(int)
-    body = "".join(
-        f"{t!r},{c},{f!r}\n"
-        for t, c, f in zip(recording.time.tolist(), counts, recording.force.tolist(), strict=True)
-    )
+    rows = zip(recording.time.tolist(), counts, recording.force.tolist(), strict=True)
+    body = "".join(f"{t!r},{c},{f!r}\n" for t, c, f in rows)
     path.write_text("t_s,enc_counts,load_cell_V\n" + body)
     with pytest.raises(zw.InputError, match="what a count is"):
         zw.read_log(path)
@@ -351,6 +309,5 @@ def test_units_and_factors(recording, tmp_path: Path) -> None:
         ("velocity_m_per_s", "position", ("velocity_m_per_s", None)),
     ],
 )
-def test_names_and_their_units(column: str, quantity: str, expected: tuple[str, str | None]) -> None:
-    """The word that is compared, and the unit behind it."""
+def test_names_and_their_units(column, quantity, expected):
     assert name_and_unit(column, quantity) == expected

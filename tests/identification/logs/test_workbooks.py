@@ -1,10 +1,12 @@
-"""Workbooks as testing machines and people write them: read as they are meant, or refused with what to do."""
+"""Spreadsheets as machines and people write them: read as they are meant, or refused with what to do."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from datetime import datetime, timedelta
+from functools import partial
 from pathlib import Path
+from typing import Any
 from zipfile import ZIP_DEFLATED, ZipFile
 
 import numpy as np
@@ -12,6 +14,7 @@ import pytest
 from openpyxl import Workbook
 
 import zwidth as zw
+from zwidth.data.logs.cells import clock, decimal_of, number
 from zwidth.data.tissue.experiment.columns import read_tests
 
 TIME = 0.25 * np.arange(40)
@@ -26,7 +29,6 @@ Rows = Iterable[Sequence[object]]
 
 
 def book(path: Path, **sheets: Rows) -> Path:
-    """A workbook with these rows on its sheets."""
     made = Workbook()
     made.remove(made.active)
     for name, rows in sheets.items():
@@ -37,41 +39,27 @@ def book(path: Path, **sheets: Rows) -> Path:
     return path
 
 
-def is_the_test(found: object) -> None:
-    """To the digit that the sheet has."""
-    assert found.time - found.time[0] == pytest.approx(TIME, abs=1e-6)  # type: ignore[attr-defined]
-    assert found.indentation == pytest.approx(DEPTH, abs=1e-9)  # type: ignore[attr-defined]
-    assert found.force == pytest.approx(FORCE, abs=1e-9)  # type: ignore[attr-defined]
+def is_the_test(found: Any) -> None:
+    assert found.time - found.time[0] == pytest.approx(TIME, abs=1e-6)
+    assert found.indentation == pytest.approx(DEPTH, abs=1e-9)
+    assert found.force == pytest.approx(FORCE, abs=1e-9)
 
 
 def with_commas(value: object) -> str:
-    """As text: 0,5."""
     return repr(value).replace(".", ",")
 
 
 START = datetime(2026, 11, 26, 23, 59, 55)
 TABLES: dict[str, list[Sequence[object]]] = {
     "a machine's report": [
-        ("Prüfprotokoll",),
-        ("Prüfer", "Müller"),
-        ("Vorkraft", 0.05, "N"),
-        (),
-        NAMES,
-        UNITS,
+        *[("Prüfprotokoll",), ("Prüfer", "Müller"), ("Vorkraft", 0.05, "N"), (), NAMES, UNITS],
         *ROWS,
-        ("Mittel", 1.7, 3.9),
-        ("Probe trocken",),
+        *[("Mittel", 1.7, 3.9), ("Probe trocken",)],
     ],
     "results above the raw data": [
-        ("Results Table 1",),
-        ("", "Maximum Load", "Extension at Maximum Load"),
-        ("", "(N)", "(mm)"),
+        *[("Results Table 1",), ("", "Maximum Load", "Extension at Maximum Load"), ("", "(N)", "(mm)")],
         *[(k, 4.4, 4.0) for k in range(5)],
-        (),
-        ("Raw data",),
-        ("Time", "Load", "Extension"),
-        ("(s)", "(N)", "(mm)"),
-        *ROWS,
+        *[(), ("Raw data",), ("Time", "Load", "Extension"), ("(s)", "(N)", "(mm)"), *ROWS],
     ],
     "commas in texts, a share of the length": [
         [*HEAD[0], "Dehnung"],
@@ -83,21 +71,17 @@ TABLES: dict[str, list[Sequence[object]]] = {
         *HEAD,
         *[((START + timedelta(seconds=t)).time(), f, x) for t, f, x in ROWS],
     ],
-    "empty rows, an empty column": [
-        *[(None, *row) for row in HEAD],
-        *[row for each in ROWS for row in ((None, *each), ())],
-    ],
+    "empty rows, an empty column": [(None, *HEAD[0]), *[row for each in ROWS for row in ((None, *each), ())]],
 }
 
 
 @pytest.mark.parametrize("name", TABLES)
-def test_a_sheet_is_read_as_it_is_meant(name: str, tmp_path: Path) -> None:
-    """Times, depths and forces: cells are numbers, texts, dates; titles and results stand about them."""
+def test_a_sheet_is_read_as_it_is_meant(name, tmp_path):
     (found,) = read_tests(book(tmp_path / "a.xlsx", Tabelle1=TABLES[name]))
     is_the_test(found)
 
 
-def test_texts_among_numbers(tmp_path: Path) -> None:
+def test_texts_among_numbers(tmp_path):
     """ "0,5" is 0.5 where the cells beside it are numbers; "1,018" alone may be 1018, and is refused."""
     rows = [(t, with_commas(f) if k % 9 else f, x) for k, (t, f, x) in enumerate(ROWS)]
     (found,) = read_tests(book(tmp_path / "a.xlsx", a=[*HEAD, *rows]))
@@ -107,7 +91,7 @@ def test_texts_among_numbers(tmp_path: Path) -> None:
         read_tests(book(tmp_path / "b.xlsx", a=[*HEAD, *rows]))
 
 
-def test_several_sheets_are_trials_and_one_may_be_named(tmp_path: Path) -> None:
+def test_several_sheets_are_trials_and_one_may_be_named(tmp_path):
     """Sheets of settings and results are none; a sheet that is hidden is read where it is named."""
     path = book(
         tmp_path / "a.xlsx",
@@ -130,7 +114,7 @@ def test_several_sheets_are_trials_and_one_may_be_named(tmp_path: Path) -> None:
     assert zw.read_log(path, columns=columns, sheet="Probe2").samples == 35
 
 
-def test_tests_under_each_other(tmp_path: Path) -> None:
+def test_tests_under_each_other(tmp_path):
     """Each with the names above it again: one table, in which the time begins anew."""
     one = [NAMES, UNITS, *ROWS]
     (found,) = read_tests(book(tmp_path / "a.xlsx", a=[("Zyklus 1",), *one, (), ("Zyklus 2",), *one]))
@@ -138,15 +122,14 @@ def test_tests_under_each_other(tmp_path: Path) -> None:
     assert np.isfinite(found.force).all()
 
 
-def test_another_table_is_left_out_and_said(tmp_path: Path) -> None:
-    """Not taken for the rest of the first."""
+def test_another_table_is_left_out_and_said(tmp_path):
     path = book(tmp_path / "a.xlsx", a=[*HEAD, *ROWS, (), ("Klasse", "Zahl", "Anteil"), *[(1, 2, 3)] * 4])
     (found,) = read_tests(path)
     is_the_test(found)
     assert [f.text for f in found.findings] == ["rows 44 to 47 of the sheet are another table and left out"]
 
 
-def test_formulas_are_what_was_kept_of_them(tmp_path: Path) -> None:
+def test_formulas_are_what_was_kept_of_them(tmp_path):
     """As the program that wrote the file computed them; without a result there is nothing to read."""
     path = book(tmp_path / "a.xlsx", a=[*HEAD, *[(t, f"={f}*1", x) for t, f, x in ROWS]])
     with pytest.raises(zw.InputError, match="results are not in the file"):
@@ -158,98 +141,247 @@ def test_formulas_are_what_was_kept_of_them(tmp_path: Path) -> None:
     lines = ["".join(map(cell, HEAD[0]))]
     lines += [f"{cell(t)}<c><f>1*{f}</f><v>{f}</v></c>{cell(x)}" for t, f, x in ROWS]
     whole = "".join(f"<row>{line}</row>" for line in lines).encode()
-    changed(path, {"xl/worksheets/sheet1.xml": lambda _: SHEET + whole + END})
+    sheet(path, whole)
     (found,) = read_tests(path)
     is_the_test(found)
 
 
-def changed(path: Path, parts: dict[str, Callable[[bytes], bytes]]) -> None:
-    """Write a workbook anew with some of its parts otherwise."""
+def with_part(path: Path, part: str, content: bytes) -> None:
     with ZipFile(path) as old:
         whole = {name: old.read(name) for name in old.namelist()}
+    zipped(path, whole | {part: content})
+
+
+def zipped(path: Path, parts: dict[str, bytes]) -> None:
     with ZipFile(path, "w", ZIP_DEFLATED) as new:
-        for name, content in whole.items():
-            new.writestr(name, parts.get(name, bytes)(content))
+        for name, content in parts.items():
+            new.writestr(name, content)
 
 
+SHEET_XML, BROKEN = "xl/worksheets/sheet1.xml", "open it in a spreadsheet program"
 SHEET = f'<worksheet xmlns="{MAIN}"><sheetData>'.encode()
 END = b"</sheetData></worksheet>"
 ENTITIES = b"".join(b'<!ENTITY e%d "%s">' % (k, b"&e%d;" % (k - 1) * 10) for k in range(1, 10))
 
 
-@pytest.mark.parametrize(
-    ("part", "content", "message"),
-    [
-        ("xl/worksheets/sheet1.xml", SHEET + b'<row r="1">' + b"<c/>" * 2_000_000 + b"</row>" + END, "a row"),
-        ("xl/worksheets/sheet1.xml", SHEET + b'<row r="9999999999"/>' + END, "more than"),
-        ("xl/worksheets/sheet1.xml", SHEET + b'<row r="1">', "open it in a spreadsheet program"),
-        ("xl/styles.xml", b"<styleSheet>" + b"<xf/>" * 500_000 + b"</styleSheet>", "are enough"),
-        (
-            "xl/worksheets/sheet1.xml",
-            b'<!DOCTYPE x [<!ENTITY e0 "haha">' + ENTITIES + b"]>" + SHEET + b"<row><c>&e9;</c></row>" + END,
-            "open it in a spreadsheet program",
-        ),
-        (
-            "xl/worksheets/sheet1.xml",
-            b'<!DOCTYPE x [<!ENTITY e SYSTEM "file:///etc/hostname">]>'
-            + SHEET
-            + b'<row><c t="inlineStr"><is><t>&e;</t></is></c></row>'
-            + END,
-            "open it in a spreadsheet program|no table",
-        ),
-    ],
-)
-def test_a_workbook_made_to_do_harm_is_refused(
-    part: str, content: bytes, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """One message, before the memory is full; nothing comes from another file."""
-    monkeypatch.setattr("zwidth.data.logs.workbook.MOST_ROWS", 1000)
-    path = book(tmp_path / "a.xlsx", a=[*HEAD, *ROWS])
-    changed(path, {part: lambda _: content})
-    with pytest.raises(zw.InputError, match=message) as caught:
-        read_tests(path)
-    assert "\n" not in str(caught.value)
+def sheet(path: Path, rows: bytes, head: bytes = b"") -> None:
+    with_part(path, SHEET_XML, head + SHEET + rows + END)
 
 
-def test_two_cells_far_apart_fill_no_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What lies between them counts."""
-    monkeypatch.setattr("zwidth.data.logs.workbook.MOST_CELLS", 10_000)
-    path = book(tmp_path / "a.xlsx", a=[*HEAD, *ROWS])
-    row = b'<row r="1"><c r="XFD1"><v>1</v></c></row>'
-    changed(path, {"xl/worksheets/sheet1.xml": lambda _: SHEET + row + END})
-    with pytest.raises(zw.InputError, match="cells"):
-        read_tests(path)
+HEADS = {
+    "grows": b'<!DOCTYPE x [<!ENTITY e0 "haha">' + ENTITIES + b"]>",
+    "leads elsewhere": b'<!DOCTYPE x [<!ENTITY e SYSTEM "file:///etc/hostname">]>',
+}
+STYLES = b"<styleSheet>" + b"<xf/>" * 500_000 + b"</styleSheet>"
+LED = b'<row><c t="inlineStr"><is><t>&e;</t></is></c></row>'
+CONTENT = {"content.xml": b""}
+OPEN = b"application/vnd.oasis.opendocument."
 
 
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda whole: whole[: len(whole) // 2], "cut off"),
-        (lambda whole: whole[:-900] + bytes(40) + whole[-860:], "cut off|copy it anew|cannot be read"),
+        (lambda path: sheet(path, b'<row r="1">' + b"<c/>" * 2_000_000 + b"</row>"), "a row"),
+        (lambda path: sheet(path, b'<row r="9999999999"/>'), "more than"),
+        (lambda path: with_part(path, SHEET_XML, SHEET + b'<row r="1">'), BROKEN),
+        (lambda path: with_part(path, "xl/styles.xml", STYLES), "are enough"),
+        (lambda path: sheet(path, b"<row><c>&e9;</c></row>", HEADS["grows"]), BROKEN),
+        (lambda path: sheet(path, LED, HEADS["leads elsewhere"]), f"{BROKEN}|no table"),
+        (lambda path: path.write_bytes(path.read_bytes()[:2500]), "cut off"),
+        (
+            lambda path: path.write_bytes(path.read_bytes()[:-900] + bytes(40) + path.read_bytes()[-860:]),
+            "cut off|copy it anew|cannot be read",
+        ),
+        (lambda path: zipped(path, CONTENT | {"xl/workbook.bin": b""}), "binary workbook"),
+        (lambda path: zipped(path, CONTENT | {"mimetype": OPEN + b"spreadsheet"}), "OpenDocument"),
+        (lambda path: zipped(path, CONTENT | {"mimetype": OPEN + b"text"}), "no workbook"),
     ],
 )
-def test_a_damaged_workbook_is_refused(
-    change: Callable[[bytes], bytes], message: str, tmp_path: Path
-) -> None:
+def test_what_is_no_workbook_or_made_to_do_harm_is_refused(change, message, tmp_path, monkeypatch):
+    """One message, before the memory is full; by what is inside, and nothing comes from another file."""
+    monkeypatch.setattr("zwidth.data.logs.workbook.MOST_ROWS", 1000)
     path = book(tmp_path / "a.xlsx", a=[*HEAD, *ROWS])
-    path.write_bytes(change(path.read_bytes()))
+    change(path)
+    with pytest.raises(zw.InputError, match=message) as caught:
+        read_tests(path)
+    assert "\n" not in str(caught.value)
+
+
+def test_two_cells_far_apart_fill_no_memory(tmp_path, monkeypatch):
+    """What lies between them counts."""
+    monkeypatch.setattr("zwidth.data.logs.workbook.MOST_CELLS", 10_000)
+    path = book(tmp_path / "a.xlsx", a=[*HEAD, *ROWS])
+    row = b'<row r="1"><c r="XFD1"><v>1</v></c></row>'
+    sheet(path, row)
+    with pytest.raises(zw.InputError, match="cells"):
+        read_tests(path)
+
+
+def test_a_text_has_no_sheets(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("Time [s],Force [N],Depth [mm]\n1,2,3\n2,3,4\n", encoding="utf-8")
+    with pytest.raises(zw.InputError, match="no workbook and has no sheets"):
+        read_tests(path, sheet="Probe 1")
+
+
+NAMED, TIMED = "Zeit (s);Kraft [mN];Eindringtiefe/mm\n", "Time;Kraft [mN];Weg/mm\n"
+
+
+COMMAS = str.maketrans(";.", ",,")
+
+
+def german(value: float, digits: int) -> str:
+    """1.234,5"""
+    return f"{value:,.{digits}f}".translate(str.maketrans(",.", ".,"))
+
+
+def english(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}"
+
+
+def watch(value: float, start: float = 36903.25) -> str:
+    at = value + start
+    return f"{int(at // 3600) % 24:02d}:{int(at % 3600 // 60):02d}:{at % 60:06.3f}"
+
+
+def rows(line: str, write=german) -> str:  # type: ignore[no-untyped-def]
+    return "".join(
+        line.format(t=write(t, 2), f=write(1000 * f, 1), x=write(1000 * x, 3), at=watch(t), k=k)
+        for k, (t, x, f) in enumerate(zip(TIME, DEPTH, FORCE, strict=True))
+    )
+
+
+def grouped(sign: str):  # type: ignore[no-untyped-def]
+    """1,234.5 with another sign between the thousands."""
+    return lambda v, d: f"{v:,.{d}f}".replace(",", sign)
+
+
+TEXT = NAMED + rows("{t};{f};{x}\n")
+TEXTS = {
+    "a mark of UTF-8, titles, Windows": "\ufeffProtokoll 3\nDatum;26.11.2026;\n\n" + TEXT,
+    "letters of Windows": ("Prüfer: Müller\n" + TEXT).encode("cp1252"),
+    "UTF-16": TEXT.encode("utf-16"),
+    "UTF-16 without a mark": TEXT.encode("utf-16-le"),
+    "old line ends": TEXT.replace("\n", "\r"),
+    "for a spreadsheet": "sep=;\n" + TEXT,
+    "units in a row": "Time,Load,Extension\n(s),(mN),(mm)\n" + rows('"{t}","{f}","{x}"\n', english),
+    "US thousands": "t [s],F [mN],x [mm]\n" + rows('{t},"{f}",{x}\n', grouped(",")),
+    "Swiss thousands": NAMED + rows("{t};{f};{x}\n", grouped("'")),
+    "thousands after spaces that do not break": NAMED
+    + rows("{t};{f};{x}\n", lambda v, d: german(v, d).replace(".", "\u00a0")),
+    "commas in quotes": '"Zeit (s)","Kraft [mN]","Weg/mm"\n' + rows('"{t}","{f}","{x}"\n'),
+    "minus as typeset": NAMED + rows("{t};−{f};{x}\n").replace("−-", ""),
+    "empty columns": "Zeit (s);;Kraft [mN];Weg/mm;\n" + rows("{t};;{f};{x};\n"),
+    "delimiters at the end of rows": NAMED + rows("{t};{f};{x};;\n"),
+    "a row for each number": "Nr;Zeit (s);Kraft [mN];Weg/mm\n" + rows("{k};{t};{f};{x}\n"),
+    "aligned": " Time [s]   Force [mN]  Depth [mm]\n" + rows("  {t}   {f}     {x}\n", english),
+    "notes below": TEXT + "\nMittel;1,7;3,9\nProbe trocken;;\n;;\n",
+    "times of day": "Uhrzeit;Kraft [mN];Weg/mm\n" + rows("{at};{f};{x}\n"),
+    "date and time": "Zeitstempel;Kraft [mN];Weg/mm\n" + rows("26.11.2026 {at};{f};{x}\n"),
+    "American date": TIMED + rows("11/26/2026 {at} AM;{f};{x}\n"),
+}
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "sheet.csv"
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_text_is_read_as_it_is_meant(name, path):
+    content = TEXTS[name]
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    (found,) = read_tests(path)
+    assert found.time - found.time[0] == pytest.approx(TIME, abs=1e-6)
+    assert found.indentation == pytest.approx(DEPTH, abs=1e-6)
+    assert np.abs(found.force) == pytest.approx(np.abs(FORCE), abs=6e-5)
+
+
+@pytest.mark.parametrize("word", ["--", "NaN", "n.a.", "****", "OL", "k.A.", "#DIV/0!", "?", "#NV"])
+def test_a_word_for_no_number(word, path):
+    lines = TEXT.splitlines()
+    lines[9] = ";".join([lines[9].split(";")[0], word, lines[9].split(";")[2]])
+    path.write_text("\n".join([*lines, ""]))
+    (found,) = read_tests(path)
+    assert np.flatnonzero(np.isnan(found.force)).tolist() == [8]
+    assert found.time.size == 40
+
+
+def test_tests_side_by_side(path):
+    for head, line in (
+        (
+            "Time 1 [s];Force 1 [mN];Depth 1 [mm];Time 2 [s];Force 2 [mN];Depth 2 [mm]",
+            "{t};{f};{x};{t};{x};{f}",
+        ),
+        ("Time [s];Force [mN];Depth [mm];Time [s];Force [mN];Depth [mm]", "{t};{f};{x};{t};{x};{f}"),
+        ("Time [s];Force 1 [mN];Depth 1 [mm];Force 2 [mN];Depth 2 [mm]", "{t};{f};{x};{x};{f}"),
+    ):
+        path.write_text(f"{head}\n" + rows(f"{line}\n"))
+        first, second = read_tests(path)
+        assert first.force == pytest.approx(FORCE, abs=6e-5)
+        assert second.indentation == pytest.approx(FORCE, abs=6e-5)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (NAMED.replace(";", ",") + rows("{t};{f};{x}\n", english).translate(COMMAS), "semicolons"),
+        ("Time,Force,Depth\n" + rows("{t} s,{f} mN,{x} mm\n", english), "hold a unit"),
+        ("Time [s],1,2,3,4,5,6,7,8,9,10,11\nForce [N],1,2,3,4,5,6,7,8,9,10,11\n", "transpose"),
+        (NAMED + rows("{t};{f};{x}\n").replace("\n0,50;", "\n0,50;viel", 1), "near line 4"),
+        (TEXT + 6 * TEXT.partition("\n")[2] + "Ende;;\n" * 60, "near line 282"),
+        (TIMED + rows("45987,4{k};{f};{x}\n"), "days"),
+        (f"{TIMED}01/02/2026 10:15:03;1;2\n01/03/2026 10:15:03;1;2\n", "day and month may be either"),
+        (TIMED + rows("10:{k};{f};{x}\n"), "unit|time"),
+    ],
+)
+def test_what_is_not_clear_is_refused_with_what_to_do(text, message, path):
+    path.write_text(text)
     with pytest.raises(zw.InputError, match=message):
         read_tests(path)
 
 
-def test_what_is_no_workbook(tmp_path: Path) -> None:
-    """By what is inside, whatever the name."""
-    path = tmp_path / "a.xlsx"
-    for name, content, message in (
-        ("xl/workbook.bin", b"", "binary workbook"),
-        ("mimetype", b"application/vnd.oasis.opendocument.spreadsheet", "OpenDocument"),
-        ("mimetype", b"application/vnd.oasis.opendocument.text", "no workbook"),
-    ):
-        with ZipFile(path, "w") as made:
-            made.writestr("content.xml", "")
-            made.writestr(name, content)
-        with pytest.raises(zw.InputError, match=message):
-            read_tests(path)
-    (tmp_path / "a.csv").write_text("Time [s],Force [N],Depth [mm]\n1,2,3\n2,3,4\n")
-    with pytest.raises(zw.InputError, match="no workbook and has no sheets"):
-        read_tests(tmp_path / "a.csv", sheet="Probe 1")
+def test_a_log_of_a_german_sheet(path):
+    steps = np.random.default_rng(1).integers(-9, 9, 400).cumsum()
+    lines = [f"{german(k, 0)};{german(0.5 * s, 1)};{german(100.0 * s, 1)}" for k, s in enumerate(steps)]
+    path.write_text("Zeit/ms;Weg/mm;Kraft/mN\n" + "\n".join(lines) + "\nEnde;;\n")
+    log = zw.read_log(path)
+    position = np.concatenate([block.position for block in log.blocks()])
+    assert position == pytest.approx(0.0005 * steps)
+    assert log.sample_period == pytest.approx(0.001)
+
+
+with_comma, with_point = (partial(number, decimal=sign) for sign in ",.")
+
+
+@pytest.mark.parametrize(
+    ("read", "field", "answer"),
+    [
+        (decimal_of, ["1", "1.018", "1,5"], ","),
+        (decimal_of, ["1.018", "1,018"], None),
+        (decimal_of, ["1.018,5"], ","),
+        (decimal_of, ["1,018.5"], "."),
+        (decimal_of, ["1.018.000"], ","),
+        (decimal_of, ["0.512"], "."),
+        (decimal_of, ["n.a.", "12"], None),
+        (with_comma, "1.018", 1018),
+        (with_point, "1.018", 1.018),
+        (with_point, "1'018.5", 1018.5),
+        (with_comma, "-12 345,5", -12345.5),
+        (with_comma, "1,5E-03", 0.0015),
+        (with_comma, "0.7", None),
+        (with_comma, "1.01,5", None),
+        (with_point, "12a", None),
+        (clock, "10:15:03.25", 36903.25),
+        (clock, "10:15:03,250", 36903.25),
+        (clock, "10:15:03:250", 36903.25),
+        (clock, "1:00:00 PM", 46800),
+        (clock, "12:00:00 am", 0),
+        (clock, "30:00:00", 108000),
+        (clock, "15:03.5", 903.5),
+        (clock, "10:15", None),
+        (clock, "10:75:00", None),
+    ],
+)
+def test_decimal_signs_numbers_and_clocks(read, field, answer):
+    assert read(field) == answer

@@ -10,13 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import zwidth as zw
-from zwidth.data.tissue import (
-    AdaptiveSolid,
-    RecursiveSolid,
-    Solid,
-    force_response,
-    required_damping,
-)
+from zwidth.data.tissue import AdaptiveSolid, RecursiveSolid, Solid, force_response, required_damping
 
 DAMPING, T = 0.27, 1e-3
 PHANTOM = zw.Device(damping=DAMPING, rate=1000)
@@ -67,13 +61,8 @@ def contacts(draw):
     size = 10.0 ** draw(st.floats(-6, -2))
     moves = draw(st.lists(st.floats(-1, 1), min_size=samples, max_size=samples))
     start = draw(st.floats(-1, 1))
-    targets = draw(
-        st.lists(
-            st.tuples(st.floats(0, 1e4), st.floats(0, 1e4), st.floats(0, 100)),
-            min_size=1,
-            max_size=8,
-        )
-    )
+    target = st.tuples(st.floats(0, 1e4), st.floats(0, 1e4), st.floats(0, 100))
+    targets = draw(st.lists(target, min_size=1, max_size=8))
     every = draw(st.integers(1, 9))
     x = size * (start + np.cumsum(moves))
     return x, np.array([targets[k // every % len(targets)] for k in range(samples)])
@@ -163,10 +152,8 @@ def test_an_unchanged_solid_is_the_environment():
     x = 1e-3 * (np.sin(60 * t - 1) + 0.4 * np.sin(333 * t)) - 2e-4
     wall = AdaptiveSolid(PHANTOM, (300, 150, 2))
     forces = [wall.force(here) for here in x]
-    law = zw.StandardLinearSolid(300, 150, 2)
-    device = PHANTOM.replace(mass=0.1)
-    hand = zw.operators.PrescribedMotion(x)
-    trace = zw.simulate(device, law, hand, 0.3, amplifier=zw.amplifiers.Ideal())
+    law, hand = zw.StandardLinearSolid(300, 150, 2), zw.operators.PrescribedMotion(x)
+    trace = zw.simulate(PHANTOM.replace(mass=0.1), law, hand, 0.3, amplifier=zw.amplifiers.Ideal())
     assert forces == pytest.approx(trace.commanded_force.values, rel=1e-9, abs=1e-12)
     assert np.count_nonzero(forces) > 50
 
@@ -178,9 +165,8 @@ def test_an_observed_tissue_is_what_is_rendered():
     force = force_response(zw.StandardLinearSolid(120, 60, 6), t, probe)
     force += np.random.default_rng(1).normal(0, 0.005, t.size)
     hand = 2e-3 * np.sin(9 * t)
-    wall = AdaptiveSolid(
-        PHANTOM, (10, 5, 0.5), tracking=RecursiveSolid(T, (10, 5, 0.5), forgetting="0.9998", noise="0.005")
-    )
+    tracking = RecursiveSolid(T, (10, 5, 0.5), forgetting="0.9998", noise="0.005")
+    wall = AdaptiveSolid(PHANTOM, (10, 5, 0.5), tracking=tracking)
     felt = []
     for x, *sample in zip(hand, probe, force, strict=True):
         wall.observe(*sample)
@@ -200,31 +186,26 @@ def test_what_is_met_inside_begins_as_nothing():
 
 def test_largest_energy():
     """With no credit kept, a rise is bought from the last move alone, or waits for the contact to end."""
-    free, strict = (
-        AdaptiveSolid(PHANTOM, (100, 50, 5), largest_energy=most).render(STROKE, STIFFER)
-        for most in (None, 0)
-    )
+    walls = (AdaptiveSolid(PHANTOM, (100, 50, 5), largest_energy=most) for most in (None, 0))
+    free, strict = (wall.render(STROKE, STIFFER) for wall in walls)
     assert strict.energy.max() <= 0
     assert 100 < strict.stiffness[400] < 101 < free.stiffness[400]
     assert strict.stiffness[-1] == 400
 
 
-def test_bad_input():
-    """What is wrong is said."""
-    with pytest.raises(zw.InputError, match="this one has none"):
-        AdaptiveSolid(zw.Device(damping=0, rate=1000), (1, 1, 1))
-    with pytest.raises(zw.InputError, match="proved without delay"):
-        AdaptiveSolid(PHANTOM.replace(delay="0.001"), (1, 1, 1))
-    with pytest.raises(zw.InputError, match="largest_energy must be ≥ 0"):
-        AdaptiveSolid(PHANTOM, (1, 1, 1), largest_energy=-1)
-    wall = AdaptiveSolid(PHANTOM, (1, 1, 1))
-    with pytest.raises(zw.InputError, match="≥ 0 and finite"):
-        wall.retune((1, -1, 1))
-    with pytest.raises(zw.InputError, match="≥ 0 and finite"):
-        wall.retune((1, float("nan"), 1))
-    with pytest.raises(zw.InputError, match="must be finite, got nan"):
-        wall.force(float("nan"))
-    with pytest.raises(zw.InputError, match="give tracking="):
-        wall.observe(0.0, 0.0)
-    with pytest.raises(zw.InputError, match="give as many rows"):
-        wall.render([0.0, 1.0], [[1, 1, 1]])
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda wall: AdaptiveSolid(zw.Device(damping=0, rate=1000), (1, 1, 1)), "this one has none"),
+        (lambda wall: AdaptiveSolid(PHANTOM.replace(delay="0.001"), (1, 1, 1)), "proved without delay"),
+        (lambda wall: AdaptiveSolid(PHANTOM, (1, 1, 1), largest_energy=-1), "largest_energy must be ≥ 0"),
+        (lambda wall: wall.retune((1, -1, 1)), "≥ 0 and finite"),
+        (lambda wall: wall.retune((1, float("nan"), 1)), "≥ 0 and finite"),
+        (lambda wall: wall.force(float("nan")), "must be finite, got nan"),
+        (lambda wall: wall.observe(0.0, 0.0), "give tracking="),
+        (lambda wall: wall.render([0.0, 1.0], [[1, 1, 1]]), "give as many rows"),
+    ],
+)
+def test_bad_input(make, words):
+    with pytest.raises(zw.InputError, match=words):
+        make(AdaptiveSolid(PHANTOM, (1, 1, 1)))

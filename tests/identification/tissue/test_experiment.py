@@ -1,4 +1,4 @@
-"""Tests of tissue: which test it is, the history of the probe, the noise, the model, the intervals."""
+"""Tests of tissue: which test it is, the probe's history, noise, the model, intervals, slow branches."""
 
 from __future__ import annotations
 
@@ -18,16 +18,32 @@ from zwidth.data.tissue.experiment.estimate import (
     solved,
     with_memory,
 )
-from zwidth.data.tissue.experiment.history import Trial, history_of, kind_of
+from zwidth.data.tissue.experiment.history import History, Trial, history_of, kind_of
 from zwidth.data.tissue.experiment.prediction import Task, derivatives, fines_of, predicted
 from zwidth.data.tissue.model import as_model
 
 SOLID = zw.StandardLinearSolid(420, 260, 90)
 TRUE = (420, 260, 90)
+ONE = ("standard-linear-solid",)
+
+
+def parameters(test: zw.tissue.TissueTest) -> list[float]:
+    return [test.best[name] for name in test.best.model.parameters]
+
+
+def remembering(white: np.ndarray, rho: np.ndarray | float) -> np.ndarray:
+    """Noise of one variance that keeps the share ρ of what it was."""
+    noise = white.copy()
+    for k, share in enumerate(np.broadcast_to(rho, white.size - 1)):
+        noise[k + 1] = share * noise[k] + np.sqrt(1 - share * share) * white[k + 1]
+    return noise
+
+
+def task_of(name: str, history: History, branches: int | None = None) -> Task:
+    return Task(as_model(name, branches, "force"), history, fines_of(history)[0], True)
 
 
 def relaxation(count: int = 300, begin: float = 0.5) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """4 mm within 0.3 s and a hold, without noise."""
     time = np.linspace(0, 6, count)
     s = np.clip((time - begin) / 0.3, 0, 1)
     depth = 0.004 * s**2 * (3 - 2 * s)
@@ -53,7 +69,6 @@ def strokes() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def creep() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """2 N within 0.2 s, held."""
     time = np.linspace(0, 8, 300)
     force = 2 * np.clip((time - 0.5) / 0.2, 0, 1)
     return time, zw.tissue.position_response(SOLID, time, force, 0.0), force
@@ -64,7 +79,6 @@ def creep() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 )
 @pytest.mark.parametrize("noisy", [0.0, 0.01])
 def test_which_test_it_is(arrays, kind, noisy):
-    """With noise of 1 % on all, with other origins, and the other way round."""
     rng = np.random.default_rng(4)
     time, x, f = arrays()
     x, f = (v + noisy * np.ptp(v) * rng.normal(size=v.size) for v in (x, f))
@@ -74,21 +88,19 @@ def test_which_test_it_is(arrays, kind, noisy):
 
 @pytest.mark.parametrize("arrays", [relaxation, creep, strokes])
 def test_without_noise_the_parameters_come_back_whatever_origin_and_sign(arrays):
-    """A ramp is followed as it was, between its samples too."""
     time, x, f = arrays()
     for test in (
-        zw.tissue.fit_test(time, x, f, models=("standard-linear-solid",)),
-        zw.tissue.fit_test(time + 55, 0.3 - x, 7 - f, models=("standard-linear-solid",)),
+        zw.tissue.fit_test(time, x, f, models=ONE),
+        zw.tissue.fit_test(time + 55, 0.3 - x, 7 - f, models=ONE),
     ):
-        assert [test.best[name] for name in test.best.model.parameters] == pytest.approx(TRUE, rel=3e-3)
+        assert parameters(test) == pytest.approx(TRUE, rel=3e-3)
 
 
 def test_a_step_before_the_first_sample():
-    """The hold alone gives all three numbers, and the finding says what was taken for granted."""
     time = np.geomspace(0.001, 8, 150)
     force = 0.004 * (420 + 260 * np.exp(-(time - 0.001) * 260 / 90))
-    test = zw.tissue.fit_test(time, np.full(150, 0.004), -force, models=("standard-linear-solid",))
-    assert [test.best[name] for name in test.best.model.parameters] == pytest.approx(TRUE, rel=1e-5)
+    test = zw.tissue.fit_test(time, np.full(150, 0.004), -force, models=ONE)
+    assert parameters(test) == pytest.approx(TRUE, rel=1e-5)
     assert test.test.starts_loaded
     assert any("begins loaded" in str(said) for said in test.best.findings)
 
@@ -102,11 +114,10 @@ def test_the_surface_is_found_where_the_probe_comes_from_outside():
 
 
 def test_what_branches_hold_after_a_hole_in_which_the_probe_moved():
-    """A third of a stroke is lost: the fit is as good as without the hole, and says so."""
     time, x, f = strokes()
     keep = np.r_[0:180, 215:400]
-    test = zw.tissue.fit_test(time[keep], x[keep], f[keep], models=("standard-linear-solid",))
-    assert [test.best[name] for name in test.best.model.parameters] == pytest.approx(TRUE, rel=3e-3)
+    test = zw.tissue.fit_test(time[keep], x[keep], f[keep], models=ONE)
+    assert parameters(test) == pytest.approx(TRUE, rel=3e-3)
     assert any("what the branches hold after it is fitted" in str(said) for said in test.best.findings)
 
 
@@ -115,7 +126,7 @@ def test_derivatives_are_those_of_differences(name):
     """With a surface, a zero, and two holes."""
     time, x, f = strokes()
     history = history_of(Trial(time, x, f, ()), "loading", "here")._replace(begins=(150, 250))
-    task = Task(as_model(name, None, "force"), history, fines_of(history)[0], True)
+    task = task_of(name, history)
     values = {"kelvin-voigt": (400, 20), "maxwell": (400, 90), "hunt-crossley": (4000, 1.4, 5)}
     own = values.get(name, (420, 200, 10, 260, 90))
     point = np.concatenate([np.log(own), [0.02], [0.15], np.full(task.held, 0.1)])
@@ -148,29 +159,22 @@ def test_a_memory_is_seen_and_white_noise_has_none():
     columns = np.stack([np.ones(500), time], axis=1)
     white = rng.normal(size=500)
     noise = with_memory(time, 0.03)
-    coloured = white.copy()
-    for k, rho in enumerate(noise.between):
-        coloured[k + 1] = rho * coloured[k] + np.sqrt(1 - rho * rho) * white[k + 1]
     assert noise_of(time, white, columns).memory == 0
-    assert 0.02 < noise_of(time, coloured, columns).memory < 0.045
+    assert 0.02 < noise_of(time, remembering(white, noise.between), columns).memory < 0.045
 
 
 def candidate(name: str, branches: int | None, criterion: float) -> Tried:
     time, x, f = relaxation(40)
     history = history_of(Trial(time, x, f, ()), "relaxation", "here")
-    task = Task(as_model(name, branches, "force"), history, fines_of(history)[0], True)
-    return Tried(task, None, criterion)  # type: ignore[arg-type]  # nothing here looks at the fit
+    return Tried(task_of(name, history, branches), None, criterion)  # type: ignore[arg-type]  # nothing here looks at the fit
 
 
 @pytest.mark.parametrize(
     ("criteria", "best", "others"),
     [
         ((0.0, 4.0, 90.0), "standard-linear-solid", ()),  # a branch more gains nothing
-        (
-            (5.9, 0.0, 90.0),
-            "standard-linear-solid",
-            ("generalized-maxwell",),
-        ),  # … or not enough to be believed
+        # … or not enough to be believed
+        ((5.9, 0.0, 90.0), "standard-linear-solid", ("generalized-maxwell",)),
         ((6.1, 0.0, 90.0), "generalized-maxwell", ()),
         ((0.0, 4.0, 5.9), "standard-linear-solid", ("hunt-crossley",)),  # neither contains the other
         ((0.0, 4.0, 6.1), "standard-linear-solid", ()),
@@ -186,7 +190,6 @@ def test_the_simplest_within_6_is_taken_and_rivals_are_named(criteria, best, oth
 
 
 def test_two_branches_are_told_from_one_and_a_misfit_is_said():
-    """The true model leaves noise; one branch too few does not, and then the intervals are doubted."""
     time, x, _ = relaxation(400)
     solid = zw.GeneralizedMaxwell(420, [(200, 10), (260, 200)])
     force = zw.tissue.force_response(solid, time, x) + np.random.default_rng(2).normal(0, 0.004, 400)
@@ -202,13 +205,9 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
     rng = np.random.default_rng(11)
     time, x, clean = relaxation(200)
     runs, held = 24, dict.fromkeys(("stiffness", "branch_stiffness", "branch_damping"), 0)
-    rho = np.exp(-1 / 3)
     for _ in range(runs):
-        white = rng.normal(0, 0.01, 200)
-        noise = white.copy()
-        for k in range(199):
-            noise[k + 1] = rho * noise[k] + np.sqrt(1 - rho**2) * white[k + 1]
-        best = zw.tissue.fit_test(time, x, clean + noise, models=("standard-linear-solid",)).best
+        noise = remembering(rng.normal(0, 0.01, 200), np.exp(-1 / 3))
+        best = zw.tissue.fit_test(time, x, clean + noise, models=ONE).best
         for name, value in zip(held, TRUE, strict=True):
             low, high = best.interval(name)
             held[name] += low <= value <= high
@@ -217,7 +216,6 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
 
 
 def test_a_fit_is_drawn():
-    """Of a test three panels, of a fit two, the fit in the colour of the line over the dots."""
     time, x, f = relaxation(60)
     test = zw.tissue.fit_test(time, x, f, models=("kelvin-voigt",))
     assert len(test.plot().axes) == 3
@@ -267,10 +265,7 @@ def test_noise_with_a_memory_is_no_touch():
     """It strays for some samples together, before the probe touches: the surface is found all the same."""
     time, x, _ = relaxation(400)
     depth = 1.2 * x - 0.0008
-    rng = np.random.default_rng(12)
-    noise = np.zeros(400)
-    for k in range(1, 400):
-        noise[k] = 0.8 * noise[k - 1] + 0.6 * rng.normal()
+    noise = remembering(np.append(0.0, np.random.default_rng(12).normal(size=399)), 0.8)
     force = zw.tissue.force_response(SOLID, time, np.maximum(depth, 0)) + 0.02 * noise
     history = history_of(Trial(time, depth, force, ()), "relaxation", "here")
     assert history.surface == pytest.approx(0.0008, abs=3e-4)
@@ -279,7 +274,7 @@ def test_noise_with_a_memory_is_no_touch():
 def test_a_branch_of_nothing_is_no_end_of_a_search():
     """It relaxes and creeps at one rate, as floats go: a search that strays there is told to come back."""
     history = history_of(Trial(*creep(), ()), "creep", "here")
-    task = Task(as_model("standard-linear-solid", None, "force"), history, fines_of(history)[0], True)
+    task = task_of("standard-linear-solid", history)
     found = predicted(task, np.append(np.log([420, 2.6e-38, 9e-39]), 0.0))
     assert (found == 0).all()
 
@@ -299,7 +294,7 @@ def test_the_ends_of_a_number_that_is_hardly_known():
     fine, measured = np.linspace(0, time[-1], 8 * 299 + 1), 0.0
     measured = left(np.append(np.log([400, 300, 6]), 0.0)) + np.random.default_rng(4).normal(0, 0.08, 300)
     test = history_of(Trial(time, motion(time), measured, ()), "loading", "here")._replace(surface=None)
-    task = Task(as_model("standard-linear-solid", None, "force"), test, fines_of(test)[0], True)
+    task = task_of("standard-linear-solid", test)
     found = solved(task)
     best = 2 * least_squares(left, found.point).cost
 
@@ -315,3 +310,50 @@ def test_the_ends_of_a_number_that_is_hardly_known():
     assert worse(-t * sigma * (1 + below * t)) == pytest.approx(t, rel=0.08)
     assert worse(t * sigma * (1 + above * t)) == pytest.approx(t, rel=0.08)
     assert worse(t * sigma) < 0.9 * t
+
+
+def short_ramp() -> tuple[np.ndarray, np.ndarray]:
+    time = np.linspace(0, 4, 120)
+    s = np.clip((time - 0.3) / 0.3, 0, 1)
+    return time, 0.004 * s**2 * (3 - 2 * s)
+
+
+def held(time_constant: float) -> zw.tissue.TissueTest:
+    """A solid of 400 N/m and 250 N/m under it, with noise of 10 mN."""
+    time, depth = short_ramp()
+    force = zw.tissue.force_response(zw.StandardLinearSolid(400, 250, 250 * time_constant), time, depth)
+    force = force + np.random.default_rng(1).normal(0, 0.01, time.size)
+    return zw.tissue.fit_test(time, depth, force, models=("maxwell", *ONE))
+
+
+def test_a_test_that_is_long_enough_says_nothing():
+    test = held(0.8)
+    assert test.slowest is None
+    assert not test.doubts
+
+
+@pytest.mark.parametrize("time_constant", [8.0, 100.0])
+def test_the_bounds_hold_the_truth(time_constant):
+    """A Maxwell body fits the second as well, and would have its own time known to a few per cent."""
+    test = held(time_constant)
+    slowest = test.slowest
+    assert slowest.at_least < time_constant
+    assert slowest.at_most is None or slowest.at_most > time_constant
+    assert "hold for longer" in test.doubts[0]
+    assert test.to_dict()["slowest_relaxation_time_s"]["at_least"] == slowest.at_least
+
+
+def test_at_the_bound_the_likelihood_is_what_it_should_be():
+    """By another road: rates on a grid, the springs and the zero by linear least squares."""
+    test, (time, depth) = held(8.0), short_ramp()
+    zeroed = test.test.force
+
+    def left(time_constant: float) -> float:
+        branch = zw.tissue.force_response(zw.Maxwell(1, time_constant), time, depth)
+        columns = np.stack([depth, branch, np.ones_like(time)], axis=1)
+        return float(np.linalg.lstsq(columns, zeroed, rcond=None)[1][0])
+
+    least = min(left(tau) for tau in np.geomspace(3, 40, 400))
+    variance = least / (time.size - 4)
+    for bound in (test.slowest.at_least, test.slowest.at_most):
+        assert (left(bound) - least) / variance == pytest.approx(1.658**2, rel=0.03)

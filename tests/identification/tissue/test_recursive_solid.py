@@ -1,33 +1,31 @@
-"""Tracking a tissue: who finds the truth under noise, what bounds and a dead zone do, and five parameters."""
+"""A solid as a recursion; who finds it under noise, what bounds and a dead zone do, and five parameters."""
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.signal import lfilter
 
 import zwidth as zw
-from zwidth.data.tissue import (
-    RecursiveSolid,
-    Solid,
-    coefficients,
-    force_response,
-    track_five_parameters,
-)
+from zwidth.data.tissue import RecursiveSolid, Solid, coefficients, force_response
 
 T = 1e-3
+PERIOD = Fraction(1, 1000)
 START = (200, 200, 20)
+positive = st.fractions(Fraction(1, 50), 900, max_denominator=997)
 
 
 def motion(samples):
-    """Inside, three tones."""
     t = T * np.arange(samples)
     tones = 3 * np.sin(4.4 * t) + np.sin(19.5 * t) + 0.5 * np.sin(71 * t)
     return t, 0.006 + 1e-3 * tones
 
 
 def tissue(samples, *solid, noise=0.0, seed=1):
-    """A position and the force of the material under it."""
     t, x = motion(samples)
     f = force_response(zw.StandardLinearSolid(*solid), t, x)
     return x, f + noise * np.random.default_rng(seed).normal(0, 1, samples)
@@ -71,10 +69,8 @@ def test_least_squares_is_the_textbook_recursion(rule):
 def test_each_rule_finds_what_its_controller_renders(rule, law):
     """Forces of the recursion itself, without noise: to the weight that the start has."""
     _, x = motion(3000)
-    solid = zw.StandardLinearSolid(300, 150, 3, law)
-    num, den = (
-        [float(c) for c in part] for part in solid.pulse_transfer_function(zw.Exact("0.001").fraction)
-    )
+    sides = zw.StandardLinearSolid(300, 150, 3, law).pulse_transfer_function(PERIOD)
+    num, den = ([float(c) for c in side] for side in sides)
     settings = RecursiveSolid(T, START, method="least-squares", rule=rule, noise="0.0001")
     track = settings.track(x, lfilter(num, den, x))
     assert [float(part[-1]) for part in track[:3]] == pytest.approx([300, 150, 3], rel=1e-5)
@@ -124,7 +120,6 @@ def test_maxwell_and_kelvin_voigt_are_solids_too():
 
 
 def test_a_tissue_that_changes_is_followed():
-    """The stiffness doubles at 20 s; with a memory of 2 s it is found anew, with λ = 1 it is not."""
     t, x = motion(40_000)
     soft, stiff = (force_response(zw.StandardLinearSolid(mu0, 150, 15), t, x) for mu0 in (300, 600))
     f = np.where(t < 20, soft, stiff) + np.random.default_rng(3).normal(0, 0.01, t.size)
@@ -165,7 +160,6 @@ def test_without_a_bound_it_does_wind_up():
 
 
 def test_dead_zone_and_outside_teach_nothing():
-    """Errors within the zone, and samples outside, leave the solid as it is to the last bit."""
     x, f = tissue(500, 300, 150, 15)
     deaf = RecursiveSolid(T, START, dead_zone=100).track(x, f)
     assert np.ptp(deaf.stiffness) == 0
@@ -179,27 +173,23 @@ def test_dead_zone_and_outside_teach_nothing():
     assert np.ptp(RecursiveSolid(T, START).track(x, f).stiffness) > 0
 
 
-def test_what_is_returned_is_admissible():
+@pytest.mark.parametrize("rule", ["ramp", "bilinear", "backward"])
+@pytest.mark.parametrize("method", ["least-squares", "instrumental", "output-error"])
+def test_what_is_returned_is_admissible(method, rule):
     """Forces that no solid gives: every number stays within its bounds, and those are reached."""
-    rng = np.random.default_rng(8)
-    _, x = motion(4000)
-    for method in ("least-squares", "instrumental", "output-error"):
-        for rule in ("ramp", "bilinear", "backward"):
-            settings = RecursiveSolid(
-                T, START, method=method, rule=rule, stiffest=500, relaxation_times=("0.002", "0.3")
-            )
-            track = settings.track(x, 5 * rng.normal(size=4000).cumsum())
-            mu0, mu1, eta1 = track[:3]
-            assert min(mu0.min(), mu1.min(), eta1.min()) >= 0
-            assert max(mu0.max(), mu1.max()) <= 500
-            relaxation = eta1[mu1 > 0] / mu1[mu1 > 0]
-            assert relaxation.min() >= 0.002 * (1 - 1e-9)
-            assert relaxation.max() <= 0.3 * (1 + 1e-9)
-            assert mu0.max() == 500 or mu0.min() == 0
+    bounds = {"stiffest": 500, "relaxation_times": ("0.002", "0.3")}
+    force = 5 * np.random.default_rng(8).normal(size=4000).cumsum()
+    track = RecursiveSolid(T, START, method=method, rule=rule, **bounds).track(motion(4000)[1], force)
+    mu0, mu1, eta1 = track[:3]
+    assert min(mu0.min(), mu1.min(), eta1.min()) >= 0
+    assert max(mu0.max(), mu1.max()) <= 500
+    relaxation = eta1[mu1 > 0] / mu1[mu1 > 0]
+    assert relaxation.min() >= 0.002 * (1 - 1e-9)
+    assert relaxation.max() <= 0.3 * (1 + 1e-9)
+    assert mu0.max() == 500 or mu0.min() == 0
 
 
 def test_sample_by_sample_is_the_same():
-    """`update` and `track` share their step; `forget` makes it learn anew."""
     x, f = tissue(300, 300, 150, 15, noise=0.01)
     settings = RecursiveSolid(T, START)
     tracker = settings.start()
@@ -214,7 +204,6 @@ def test_sample_by_sample_is_the_same():
 
 
 def test_a_sample_that_was_not_measured_is_passed_over():
-    """NaN and inf leave the solid as it is, and what comes after them finds the tissue all the same."""
     x, f = tissue(10_000, 300, 150, 15, noise=0.01)
     tracker = RecursiveSolid(T, START).start()
     tracker.track(x[:5000], f[:5000])
@@ -226,47 +215,95 @@ def test_a_sample_that_was_not_measured_is_passed_over():
 
 def test_five_parameters_are_not_identifiable():
     """Along the line of (1 + c z⁻¹) P grows as 1/λ per sample; the solid of equation (32) is anything."""
-    solid = 300.0, 150.0, 15.0
     _, x = motion(30_000)
-    p, b0, b1 = coefficients(*solid, T, "bilinear")
+    p, b0, b1 = coefficients(300.0, 150.0, 15.0, T, "bilinear")
     force = lfilter([b0, b1], [1, p], x - x[0]) + 300 * x[0]
-    exact = track_five_parameters(x[:2600], force[:2600], T, forgetting="0.99")
+    exact = zw.tissue.track_five_parameters(x[:2600], force[:2600], T, forgetting="0.99")
     grown = np.log(exact["trace"][2500] / exact["trace"][2000])
     assert grown == pytest.approx(-500 * np.log(0.99), rel=1e-3)
     assert abs(exact["stiffness"][2500] / 300 - 1) > 0.5
-    noisy = track_five_parameters(
-        x, force + np.random.default_rng(2).normal(0, 0.001, x.size), T, forgetting="0.9998"
-    )
-    three = RecursiveSolid(T, START, rule="bilinear", forgetting="0.9998", noise="0.001").track(
-        x, force + np.random.default_rng(2).normal(0, 0.001, x.size)
-    )
-    assert abs(noisy["stiffness"][-1] / 300 - 1) > 0.5
+    noisy = force + np.random.default_rng(2).normal(0, 0.001, x.size)
+    five = zw.tissue.track_five_parameters(x, noisy, T, forgetting="0.9998")
+    three = RecursiveSolid(T, START, rule="bilinear", forgetting="0.9998", noise="0.001").track(x, noisy)
+    assert abs(five["stiffness"][-1] / 300 - 1) > 0.5
     assert three.stiffness[-1] == pytest.approx(300, rel=0.01)
     assert three.branch_damping[-1] == pytest.approx(15, rel=0.05)
 
 
 def test_a_million_samples():
-    """The compiled step takes them all; what it ends with is the truth."""
     x, f = tissue(1_000_000, 300, 150, 15, noise=0.01)
     track = RecursiveSolid(T, START, forgetting="0.9999").track(x, f)
     assert mean_of_the_end(track, 100_000) == pytest.approx([300, 150, 15], rel=0.01)
 
 
-def test_bad_input():
-    """What is wrong is said."""
-    for arguments, options, said in (
-        ((0, START), {}, "sample_period must be > 0"),
-        ((T, (1, 2)), {}, "initial is \\(μ0, μ1, η1\\), three numbers"),
-        ((T, (1, 2, 0)), {}, "initial branch_damping must be > 0"),
-        ((T, START), {"method": "magic"}, 'method is "least-squares"'),
-        ((T, START), {"rule": "forward"}, 'rule is "ramp"'),
-        ((T, START), {"forgetting": 2}, "forgetting is at most 1"),
-        ((T, START), {"dead_zone": -1}, "dead_zone must be ≥ 0"),
-        ((T, START), {"relaxation_times": (1, 1)}, "\\(shortest, longest\\)"),
-    ):
-        with pytest.raises(zw.InputError, match=said):
-            RecursiveSolid(*arguments, **options)
-    with pytest.raises(zw.InputError, match="two arrays of one length"):
-        RecursiveSolid(T, START).track([1.0], [1.0, 2.0])
-    with pytest.raises(zw.InputError, match="two arrays of one length"):
-        track_five_parameters([1.0], [1.0, 2.0], T)
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: RecursiveSolid(0, START), "sample_period must be > 0"),
+        (lambda: RecursiveSolid(T, (1, 2)), r"initial is \(μ0, μ1, η1\), three numbers"),
+        (lambda: RecursiveSolid(T, (1, 2, 0)), "initial branch_damping must be > 0"),
+        (lambda: RecursiveSolid(T, START, method="magic"), 'method is "least-squares"'),
+        (lambda: RecursiveSolid(T, START, rule="forward"), 'rule is "ramp"'),
+        (lambda: RecursiveSolid(T, START, forgetting=2), "forgetting is at most 1"),
+        (lambda: RecursiveSolid(T, START, dead_zone=-1), "dead_zone must be ≥ 0"),
+        (lambda: RecursiveSolid(T, START, relaxation_times=(1, 1)), r"\(shortest, longest\)"),
+        (lambda: RecursiveSolid(T, START).track([1.0], [1.0, 2.0]), "two arrays of one length"),
+        (lambda: zw.tissue.track_five_parameters([1.0], [1.0, 2.0], T), "two arrays of one length"),
+        (lambda: zw.tissue.solid_of(*[Fraction(1)] * 3, PERIOD, "bilinear"), r"p is > −1 and < 1 .*, got 1"),
+        (lambda: zw.tissue.solid_of(0.2, 1.0, 1.0, T), "p is > −1 and < 0 for a solid that relaxes"),
+    ],
+)
+def test_bad_input(make, said):
+    with pytest.raises(zw.InputError, match=said):
+        make()
+
+
+@given(positive, positive, positive, st.sampled_from(["bilinear", "backward"]))
+def test_there_and_back_exactly(mu0, mu1, eta1, rule):
+    """For every rational solid, without rounding; equation (32) too, its slip in a1 corrected, at c = 1."""
+    p, b0, b1 = coefficients(mu0, mu1, eta1, PERIOD, rule)
+    assert zw.tissue.solid_of(p, b0, b1, PERIOD, rule) == (mu0, mu1, eta1)
+    a1, _, b1, _, b3 = zw.tissue.five_parameters(mu0, mu1, eta1, PERIOD)
+    assert zw.tissue.solid_of_five(a1, b1, b3, PERIOD) == (mu0, mu1, eta1)
+
+
+@given(positive, positive, positive)
+def test_there_and_back_of_the_material(mu0, mu1, eta1):
+    """With an exponential: to the rounding that 1 + p leaves."""
+    solid = [float(v) for v in (mu0, mu1, eta1)]
+    back = zw.tissue.solid_of(*coefficients(*solid, 1e-3), 1e-3)
+    lost = 1 + solid[2] / solid[1] / 1e-3 + solid[1] / solid[0] * solid[2] / solid[1] / 1e-3
+    assert back == pytest.approx(solid, rel=1e-14 * lost * (1 + solid[0] / solid[1]))
+
+
+@pytest.mark.parametrize(("rule", "method"), [("bilinear", "tustin"), ("backward", "backward")])
+def test_the_recursion_is_the_transfer_function_of_the_environment(rule, method):
+    """H(z) = (b0 + b1 z⁻¹)/(1 + p z⁻¹), exactly."""
+    solid = Fraction(31, 7), Fraction(13, 3), Fraction(2, 9)
+    num, den = zw.StandardLinearSolid(*solid, method).pulse_transfer_function(PERIOD)
+    p, b0, b1 = coefficients(*solid, PERIOD, rule)
+    assert (num[0] / den[0], num[1] / den[0], den[1] / den[0]) == (b0, b1, p)
+
+
+def test_the_ramp_recursion_is_the_material_under_straight_lines():
+    """Sample by sample, as the continuous-time response has it."""
+    x = np.cumsum(np.random.default_rng(2).normal(0, 1e-3, 300))
+    p, b0, b1 = coefficients(310.0, 150.0, 4.1, 1e-3)
+    expected = force_response(zw.StandardLinearSolid(310, 150, 4.1), 1e-3 * np.arange(300), x)
+    assert expected[1:] == pytest.approx(-p * expected[:-1] + b0 * x[1:] + b1 * x[:-1], abs=1e-12)
+
+
+def test_the_printed_parameters_are_one_of_a_line():
+    """Any factor (1 + c z⁻¹) explains the same forces exactly, and another c gives another solid."""
+    solid = Fraction(300), Fraction(150), Fraction(15)
+    x = [Fraction(int(v), 10**6) for v in np.random.default_rng(4).integers(0, 9000, 30)]
+    p, b0, b1 = coefficients(*solid, PERIOD, "bilinear")
+    force = [b0 * x[0]]
+    for now, before in zip(x[1:], x, strict=False):
+        force.append(-p * force[-1] + b0 * now + b1 * before)
+    for c in (Fraction(1), Fraction(0), Fraction(-3, 7)):
+        five = zw.tissue.five_parameters(*solid, PERIOD, c)
+        for k in range(2, 30):
+            terms = (-force[k - 1], -force[k - 2], x[k], x[k - 1], x[k - 2])
+            assert force[k] == sum(a * b for a, b in zip(five, terms, strict=True))
+        assert (zw.tissue.solid_of_five(five[0], five[2], five[4], PERIOD) == solid) is (c == 1)

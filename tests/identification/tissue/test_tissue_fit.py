@@ -1,10 +1,14 @@
-"""Fits: what is found, how often the intervals hold it, what cannot be found."""
+"""Fits: what is found, how often the intervals hold it, what cannot be found; the page on soft tissue."""
 
 from __future__ import annotations
+
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from printed import shows
 from scipy.signal import lfilter
 from scipy.stats import binom
 
@@ -17,7 +21,6 @@ TRUE = {"stiffness": 310, "branch_stiffness": 145, "branch_damping": 11}
 
 
 def motion(samples=300, period=0.004):
-    """A hand that wanders inside at several speeds."""
     t = period * np.arange(samples)
     return t, 0.006 + 0.002 * np.sin(8 * t) + 0.001 * np.sin(37 * t + 1) + 0.0004 * np.sin(150 * t)
 
@@ -33,7 +36,6 @@ RECORDS = {
 @pytest.mark.parametrize("model", RECORDS)
 @pytest.mark.parametrize("response", ["force", "position"])
 def test_a_record_without_noise_gives_the_parameters_back(model, response):
-    """From free motion, and from a force that wanders, to rounding."""
     solid, values, branches = RECORDS[model]
     t, path = motion()
     if response == "force":
@@ -48,17 +50,13 @@ def test_a_record_without_noise_gives_the_parameters_back(model, response):
 
 
 def test_relaxation_and_creep_tests():
-    """A step before the first sample: the hold alone gives all three numbers."""
     t = np.geomspace(1e-3, 3, 200)
     rng = np.random.default_rng(3)
     held, pushed = np.full(200, 0.01), np.full(200, 2.0)
     relaxed = force_response(SOLID, t, held, 0.0) + rng.normal(0, 0.01, 200)
     crept = position_response(SOLID, t, pushed, 0.0) + rng.normal(0, 1e-5, 200)
-    for fit in (
-        fit_tissue(t, held, relaxed, rest=0),
-        fit_tissue(t, crept, pushed, rest=0, response="position"),
-    ):
-        assert dict(fit.values) == pytest.approx(TRUE, rel=0.05)
+    for x, f, response in ((held, relaxed, "force"), (crept, pushed, "position")):
+        assert dict(fit_tissue(t, x, f, rest=0, response=response).values) == pytest.approx(TRUE, rel=0.05)
 
 
 def noisy(noise, rng, samples=None):
@@ -126,7 +124,6 @@ def test_what_a_record_does_not_say_is_remarked():
 
 
 def test_the_right_model_has_the_smallest_bic():
-    """One branch fits as well as two, with less; none and no spring do not fit."""
     t, x = motion(600)
     force = force_response(SOLID, t, x) + np.random.default_rng(2).normal(0, 0.01, 600)
     found = compare_tissues(t, x, force)
@@ -151,7 +148,6 @@ def test_offset_of_the_sensor():
 
 
 def test_a_hunt_crossley_contact():
-    """K, n and λ from strokes in and out; its environment simulates."""
     t = 0.002 * np.arange(800)
     x = 0.008 * np.sin(5 * t) ** 2 - 0.001
     depth, speed = np.maximum(x, 0), np.gradient(x, t)
@@ -170,7 +166,6 @@ def test_a_hunt_crossley_contact():
 
 
 def test_a_trace_is_read_as_it_is():
-    """A simulated touch, its readings and its forces by name, gives the rendered solid back."""
     device = zw.Device(mass=0.1, damping=1, rate=4000)
     t, x = motion(3000, 1 / 4000)
     hand = zw.operators.PrescribedMotion(x)
@@ -185,7 +180,6 @@ def test_a_trace_is_read_as_it_is():
 
 
 def test_what_becomes_of_a_fit():
-    """An environment of the estimates; one of joint intervals, wider than single ones; a verdict."""
     t, x, f = noisy("white", np.random.default_rng(6))
     fit = fit_tissue(t, x, f)
     law = fit.environment("tustin")
@@ -195,18 +189,13 @@ def test_what_becomes_of_a_fit():
     assert whole.stiffness.low < low < high < whole.stiffness.high
     paddle = zw.Device(damping=1, rate=1000)
     assert fit.verdict(paddle).outcome == "passive"
-    need = zw.formulas.standard_linear_solid_damping(*(whole_high(whole)), "0.001")
+    corner = (part.high for part in (whole.stiffness, whole.branch_stiffness, whole.branch_damping))
+    need = zw.formulas.standard_linear_solid_damping(*corner, "0.001")
     assert fit.verdict(paddle).required_damping == pytest.approx(float(need), rel=1e-12)
     assert fit.verdict(paddle.replace(damping="0.1"), level=None).outcome == "active"
 
 
-def whole_high(solid):
-    """The corner that asks for the most damping."""
-    return [part.high for part in (solid.stiffness, solid.branch_stiffness, solid.branch_damping)]
-
-
 def test_how_a_fit_shows_itself():
-    """Every number with its unit; as text, HTML and a dictionary."""
     fit = fit_tissue(*noisy("white", np.random.default_rng(6)), motion="rotary")
     text = repr(fit)
     assert "standard-linear-solid, 150 samples: r² = " in text
@@ -218,7 +207,6 @@ def test_how_a_fit_shows_itself():
 
 
 def test_bad_input():
-    """What is wrong is said."""
     t, x = motion()
     f = 300 * x
     for arguments, options, said in (
@@ -237,7 +225,20 @@ def test_bad_input():
         with pytest.raises(zw.InputError, match=said):
             fit_tissue(*arguments, **options)
     fit = fit_tissue(t, x, f, model="kelvin-voigt")
-    with pytest.raises(zw.InputError, match="there is no parameter 'mass'"):
-        fit.interval("mass")
-    with pytest.raises(zw.InputError, match="level is > 0 and < 1"):
-        fit.interval("stiffness", 95)
+    for asked, said in (
+        (("mass",), "there is no parameter 'mass'"),
+        (("stiffness", 95), "level is > 0 and < 1"),
+    ):
+        with pytest.raises(zw.InputError, match=said):
+            fit.interval(*asked)
+
+
+def test_the_page_says_what_comes_out():
+    page = (Path(__file__).parents[3] / "docs" / "tissue.md").read_text(encoding="utf-8")
+    names: dict[str, object] = {}
+    for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL):
+        exec(block, names)
+    (printed,) = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
+    assert shows(repr(names["fit"]) + "\n", printed)
+    assert names["models"].best.model.name == "standard-linear-solid"
+    assert names["verdict"].outcome == "passive"

@@ -16,6 +16,7 @@ import zwidth as zw
 from zwidth.checker import judge
 from zwidth.model.environment.bodies import Integrator
 
+passive_masses, heavy_body_damping = zw.coupling.passive_masses, zw.coupling.heavy_body_damping
 T = Fraction(1, 1000)
 B = Fraction(3, 20)
 DEVICE = zw.Device(damping=B, sample_period=T)
@@ -30,8 +31,7 @@ def body(stiffness, damping, **more):
 
 
 def masses(stiffness, damping, device=DEVICE, **more):
-    """The intervals of mass."""
-    return zw.coupling.passive_masses(device, body(stiffness, damping, **more))
+    return passive_masses(device, body(stiffness, damping, **more))
 
 
 def passive_on_a_grid(law, device, points=6000):
@@ -49,8 +49,6 @@ def passive_on_a_grid(law, device, points=6000):
     return bool(np.max(need) <= float(device.exact("damping")) * (1 + 1e-9))
 
 
-# The ends
-
 CASES = {
     "semi-implicit": (DEVICE, body(100, "0.05")),
     "Verlet": (DEVICE, body(200, "0.02", integrator="velocity-verlet")),
@@ -60,10 +58,7 @@ CASES = {
     "two samples late": (DEVICE.replace(delay="2 ms"), body(41, "0.0024")),
     "part of a sample late": (DEVICE.replace(delay="0.4 ms"), body(60, "0.03")),
     "another process": (DEVICE, body(10, "0.12", exchange_delay=2)),
-    "through a line": (
-        DEVICE,
-        body(100, "0.05", exchange_delay=3, wave_impedance=1),
-    ),
+    "through a line": (DEVICE, body(100, "0.05", exchange_delay=3, wave_impedance=1)),
 }
 
 
@@ -71,7 +66,7 @@ CASES = {
 def test_both_sides_of_every_end(case):
     """A certificate at it, energy out a millionth beyond; a grid agrees a thousandth off."""
     device, law = CASES[case]
-    found = zw.coupling.passive_masses(device, law)
+    found = passive_masses(device, law)
     assert found.limits
     for limit in found.limits:
         assert limit.passive.outcome == "passive"
@@ -121,9 +116,6 @@ def test_random_bodies_against_a_grid(seed):
         assert passive_on_a_grid(found.body.replace(virtual_mass=mass), device) is inside
 
 
-# What is proved on paper
-
-
 @seeds(10)
 def test_the_closed_form_of_semi_implicit_euler(seed):
     """M = (T/2) σ b/(b − σ), σ = K_c T/2 + B_c, where the quadratic of the proof has no root beyond it."""
@@ -146,7 +138,6 @@ def test_the_closed_form_of_semi_implicit_euler(seed):
 
 @pytest.mark.parametrize("integrator", EXPLICIT)
 def test_a_spring_alone_before_an_explicit_integrator(integrator):
-    """No mass, however much the device damps."""
     for damping in ("0.15", 15):
         assert masses(20, 0, DEVICE.replace(damping=damping), integrator=integrator).intervals == ()
 
@@ -170,7 +161,7 @@ def test_what_heavy_bodies_ask_of_the_coupling(integrator, exchange, delay):
     """A thousandth more than the closed form will do from some mass on, one less for no heavy one."""
     device = DEVICE.replace(delay=delay * T)
     stiffness = Fraction(8)
-    need = zw.coupling.heavy_body_damping(device, stiffness, integrator, exchange).fraction
+    need = heavy_body_damping(device, stiffness, integrator, exchange).fraction
     at = {"integrator": integrator, "exchange_delay": exchange}
     assert masses(stiffness, need * Fraction(1001, 1000), device, **at).largest == inf
     if need:
@@ -181,16 +172,15 @@ def test_what_heavy_bodies_ask_of_the_coupling(integrator, exchange, delay):
 def test_no_damping_of_the_device_makes_up_for_a_naive_exchange():
     """B_c > (φ + 2d) K_c T is asked for by stability alone; a device that damps much does not lower it."""
     firm = DEVICE.replace(damping=1000)
-    need = zw.coupling.heavy_body_damping(firm, 100, exchange_delay=1)
+    need = heavy_body_damping(firm, 100, exchange_delay=1)
     assert float(need) == pytest.approx(2 * 100 * 1e-3, rel=1e-3)
     assert masses(100, "0.1999", firm, exchange_delay=1).intervals == ()
 
 
 @pytest.mark.parametrize("case", ["semi-implicit", "another process"])
 def test_a_motion_gains_in_the_program_itself(case):
-    """The verdict's motion in the loop that a program steps: the hand gets energy out."""
     device, law = CASES[case]
-    light = law.replace(virtual_mass=zw.coupling.passive_masses(device, law).smallest * 0.9)
+    light = law.replace(virtual_mass=passive_masses(device, law).smallest * 0.9)
     positions = [Fraction(x) for x in zw.check(device, light).witness.positions]
     found = forces(light, T, positions)
     work = sum(
@@ -209,7 +199,7 @@ def test_the_stiffest_coupling_before_heavy_bodies(lag, integrator, exchange):
     for part, pays in ((0.999, True), (1.001, False)):
         stiffness = Fraction(part * limit)
         left = B - stiffness * T / 2
-        need = zw.coupling.heavy_body_damping(DEVICE, stiffness, integrator, exchange).fraction
+        need = heavy_body_damping(DEVICE, stiffness, integrator, exchange).fraction
         assert (need < left) is pays
         if pays:
             between = float((need + left) / 2)
@@ -218,12 +208,8 @@ def test_the_stiffest_coupling_before_heavy_bodies(lag, integrator, exchange):
 
 
 def test_the_limit_of_the_mass_is_the_lightest():
-    """`zw.limit` looks downward for it."""
     bracket = zw.limit(DEVICE, body(150, "0.0375"), "virtual_mass", tolerance=1e-3)
     assert bracket.proved_active < 2.25e-4 <= bracket.proved_passive < 2.26e-4
-
-
-# What it says
 
 
 def test_it_is_saved_and_verified():
@@ -231,13 +217,8 @@ def test_it_is_saved_and_verified():
     found = masses(200, "0.02", integrator="trapezoidal")
     document = found.to_dict()
     assert document["intervals_virtual_mass_kg"][1][1] is None
-    assert [one["outcome"] for one in document["verdicts"]] == [
-        "passive",
-        "passive",
-        "active",
-        "passive",
-        "active",
-    ]
+    outcomes = [one["outcome"] for one in document["verdicts"]]
+    assert outcomes == ["passive", "passive", "active", "passive", "active"]
     parts = judge(document).parts
     assert all(part.verification.valid for part in parts)
     assert len(parts) >= 5
@@ -246,7 +227,6 @@ def test_it_is_saved_and_verified():
 
 
 def test_it_says_its_masses():
-    """In a sentence, and in a table."""
     assert masses(200, 0).describe().startswith("passive for no mass: virtual coupling")
     assert masses(200, 0, integrator="backward-euler").describe().startswith("passive for every mass")
     two = masses(200, "0.02", integrator="trapezoidal")
@@ -255,7 +235,6 @@ def test_it_says_its_masses():
 
 
 def test_the_encoder_is_left_out_and_said_to_be():
-    """Masses are those of an ideal encoder."""
     stepped = masses(100, "0.05", zw.catalogue.device("haptic-paddle"))
     assert stepped.intervals == masses(100, "0.05").intervals
     assert any("encoder steps are left out" in line for line in stepped.assumptions)
@@ -266,20 +245,13 @@ def test_the_encoder_is_left_out_and_said_to_be():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (
-            lambda: zw.coupling.passive_masses(DEVICE, zw.Wall(3)),
-            "takes a Device and a CoupledBody, got Device and Wall",
-        ),
-        (lambda: zw.coupling.heavy_body_damping(DEVICE.replace(damping=0), 3), "a device with damping"),
-        (
-            lambda: zw.coupling.heavy_body_damping(DEVICE.replace(delay="0.5 ms"), 3),
-            "got 0.15 and 0.5 samples",
-        ),
+        (lambda: passive_masses(DEVICE, zw.Wall(3)), "takes a Device and a CoupledBody, got Device and Wall"),
+        (lambda: heavy_body_damping(DEVICE.replace(damping=0), 3), "a device with damping"),
+        (lambda: heavy_body_damping(DEVICE.replace(delay="0.5 ms"), 3), "got 0.15 and 0.5 samples"),
         (lambda: masses(1, "0.12", exchange_delay=40), "would take minutes to find: give a shorter delay"),
-        (lambda: zw.coupling.heavy_body_damping(DEVICE, 3, "euler"), "integrator is one of"),
+        (lambda: heavy_body_damping(DEVICE, 3, "euler"), "integrator is one of"),
     ],
 )
 def test_what_has_no_answer_is_refused(call, message):
-    """With what was given."""
     with pytest.raises(zw.InputError, match=message):
         call()

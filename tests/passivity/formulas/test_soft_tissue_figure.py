@@ -22,8 +22,11 @@ DAMPING = Fraction("0.27")
 MU1 = Fraction(10)
 DAMPING_AXIS = [Fraction(i, 100) for i in range(1, 27, 5)] + [Fraction(i, 2) for i in range(1, 29)]
 PERIOD_AXIS = [Fraction(i, 4000) for i in range(2, 21)]
-FIGURE_A = [(eta, Fraction(1, 1000)) for eta in DAMPING_AXIS]
-FIGURE_B = [(Fraction(1, 2), period) for period in PERIOD_AXIS]
+MILLISECOND, HALF = Fraction(1, 1000), Fraction(1, 2)
+FIGURES = {
+    "a": [(eta, MILLISECOND) for eta in DAMPING_AXIS],
+    "b": [(HALF, period) for period in PERIOD_AXIS],
+}
 
 
 def by_engine(environment, period, guess=100.0):
@@ -47,52 +50,35 @@ def kelvin_voigt(eta, period):
     return 2 * (DAMPING - forms.kelvin_voigt_damping(0, eta, period).fraction) / period
 
 
-@pytest.mark.parametrize(("eta", "period"), FIGURE_A + FIGURE_B)
-def test_standard_linear_solid_curve(eta, period):
-    """Both roads agree to 1e-12 at every point of both figures."""
-    found = by_engine(lambda k: zw.StandardLinearSolid(k, MU1, eta), period)
-    assert found == pytest.approx(float(standard_linear_solid(eta, period)), rel=1e-12)
+@pytest.mark.parametrize("figure", FIGURES)
+def test_both_roads_agree_at_every_point(figure):
+    """To 1e-12; beyond |B| = b no Kelvin–Voigt solid, not even of stiffness 0, is passive."""
+    for eta, period in FIGURES[figure]:
+        solid = by_engine(lambda k, eta=eta: zw.StandardLinearSolid(k, MU1, eta), period)
+        assert solid == pytest.approx(float(standard_linear_solid(eta, period)), rel=1e-12)
+        found, closed = by_engine(lambda k, eta=eta: zw.Wall(k, eta), period), kelvin_voigt(eta, period)
+        if eta > DAMPING:
+            assert closed < 0
+            assert found is None
+        else:
+            assert found == pytest.approx(float(closed), rel=1e-12)
 
 
-@pytest.mark.parametrize(("eta", "period"), FIGURE_A + FIGURE_B)
-def test_kelvin_voigt_curve(eta, period):
-    """Both roads agree to 1e-12 up to |B| = b; beyond it no stiffness, not even 0, is passive."""
-    found, closed = by_engine(lambda k: zw.Wall(k, eta), period), kelvin_voigt(eta, period)
-    if eta > DAMPING:
-        assert closed < 0
-        assert found is None
-    else:
-        assert found == pytest.approx(float(closed), rel=1e-12)
-
-
-def test_without_environment_damping_both_are_springs():
-    """At η1 = B = 0 both curves of figure 4(a) start at 2b/T = 540 N/m."""
-    period = Fraction(1, 1000)
-    assert kelvin_voigt(0, period) == 540
-    assert by_engine(lambda k: zw.Wall(k, 0), period) == 540
-    assert by_engine(lambda k: zw.StandardLinearSolid(k, MU1, 0), period) == 540
-
-
-def test_kelvin_voigt_curve_ends_at_the_device_damping():
-    """At B = b = 0.27 the critical stiffness is exactly 0, in figure 4(a) and for every T."""
+def test_the_ends_of_the_curves():
+    """At η1 = B = 0 both of figure 4(a) start at 2b/T = 540 N/m; at B = b no stiffness is left."""
+    assert kelvin_voigt(0, MILLISECOND) == 540
+    assert by_engine(lambda k: zw.Wall(k, 0), MILLISECOND) == 540
+    assert by_engine(lambda k: zw.StandardLinearSolid(k, MU1, 0), MILLISECOND) == 540
     for period in PERIOD_AXIS:
         assert kelvin_voigt(DAMPING, period) == 0
         assert by_engine(lambda k: zw.Wall(k, DAMPING), period) == 0
 
 
-def test_shape_of_figure_a():
-    """The solid's curve falls from 540 towards 540 − μ1 = 530 N/m and stays above Kelvin–Voigt."""
-    period = Fraction(1, 1000)
-    curve = [standard_linear_solid(eta, period) for eta in DAMPING_AXIS]
-    assert curve == sorted(curve, reverse=True)
-    assert all(530 < k < 540 for k in curve)
-    assert all(k > kelvin_voigt(eta, period) for k, eta in zip(curve, DAMPING_AXIS, strict=True))
-
-
-def test_shape_of_figure_b():
-    """The solid's curve falls with T; Kelvin–Voigt with B = 0.5 > b is negative at every T."""
-    eta = Fraction(1, 2)
-    curve = [standard_linear_solid(eta, period) for period in PERIOD_AXIS]
-    assert curve == sorted(curve, reverse=True)
-    assert (round(float(curve[0]), 3), round(float(curve[-1]), 3)) == (1070.050, 98.476)
-    assert all(kelvin_voigt(eta, period) < 0 for period in PERIOD_AXIS)
+def test_shapes_of_the_curves():
+    """The solid's falls from 540 towards 540 − μ1 = 530 N/m, above Kelvin–Voigt; and it falls with T."""
+    over_damping, over_period = ([standard_linear_solid(*at) for at in points] for points in FIGURES.values())
+    for curve in (over_damping, over_period):
+        assert curve == sorted(curve, reverse=True)
+    assert all(530 < k < 540 for k in over_damping)
+    assert all(k > kelvin_voigt(*at) for k, at in zip(over_damping, FIGURES["a"], strict=True))
+    assert [round(float(k), 3) for k in over_period[:: len(over_period) - 1]] == [1070.050, 98.476]

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import copy
 from fractions import Fraction
-from itertools import accumulate
+from itertools import pairwise
+from math import sqrt
 from random import Random
 
 import pytest
+from plain_loop import best_switch
 from strategies import seeds
 
 import zwidth as zw
-from zwidth import checker
 from zwidth.passivity import formulas as forms
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.check import check_by_closed_forms
@@ -77,7 +77,7 @@ def test_proved_at_each_bound_and_not_below_it(name, delay, clamped):
             assert verdict.scope.contact == "kept"
 
 
-@seeds(12)
+@seeds(8)
 def test_both_bounds_are_necessary_for_the_backward_difference(seed):
     """B ≥ 0 without delay: a thousandth below either bound a motion takes energy out."""
     random = Random(seed)
@@ -86,9 +86,8 @@ def test_both_bounds_are_necessary_for_the_backward_difference(seed):
     friction = forms.damped_wall_friction(k, b, step, T).fraction
     assert damping / (k * T) == Fraction(1, 2) + b / (k * T)  # β ≥ ½ + β_v
     assert friction / (k * step) == Fraction(1, 2) + b / (k * T)  # σ ≥ ½ + β_v
-    assert (
-        check_by_closed_forms(device(damping, friction, step, 0), zw.Wall(k, b)).certificate.kind == "contact"
-    )
+    enough = check_by_closed_forms(device(damping, friction, step, 0), zw.Wall(k, b))
+    assert enough.certificate.kind == "contact"
     short = 1 - Fraction(1, 1000)
     for active in (device(damping * short, friction, step, 0), device(damping, friction * short, step, 0)):
         verdict = check_by_closed_forms(active, zw.Wall(k, b))
@@ -100,11 +99,8 @@ def test_both_bounds_are_necessary_for_the_backward_difference(seed):
 def test_closed_forms(seed):
     """Both bounds by hand: any delay in whole samples, windows and one pole by the span of their memory."""
     random = Random(seed)
-    k, b, step = (
-        draw(random, 1, 1e4),
-        random.choice([-1, 1]) * draw(random, 1e-3, 9),
-        draw(random, 1e-6, 1e-2),
-    )
+    k, b = draw(random, 1, 1e4), random.choice([-1, 1]) * draw(random, 1e-3, 9)
+    step = draw(random, 1e-6, 1e-2)
     delay, samples, tau = random.randint(0, 5), random.randint(1, 30), draw(random, 1e-4, 1)
     for velocity, memory in (
         (zw.rendering.BackwardDifference(), T),
@@ -133,7 +129,6 @@ def test_closed_forms(seed):
     ],
 )
 def test_outside_the_hypotheses(call, message):
-    """A formula outside its hypotheses raises and names the number."""
     with pytest.raises(zw.InputError, match=message):
         call()
 
@@ -223,7 +218,6 @@ def touch(seed, surface):
 @pytest.mark.parametrize("surface", SURFACES)
 @pytest.mark.parametrize("seed", range(6))
 def test_no_hand_takes_energy_out_of_a_certified_wall(seed, surface):
-    """At the bounds no step of a greedy hand, in and out at will, takes out more than the storage loses."""
     hand, (damping, friction), law = touch(seed, surface)
     verdict = check_by_closed_forms(device(damping, friction, hand.step, hand.delay), law)
     assert (verdict.outcome, verdict.certificate.kind) == ("passive", "contact")
@@ -235,119 +229,108 @@ def test_no_hand_takes_energy_out_of_a_certified_wall(seed, surface):
 @pytest.mark.parametrize("share", [(Fraction("0.9"), 1), (1, Fraction("0.3"))])
 def test_the_same_hand_is_not_blind(share):
     """With less damping, or less friction where there is an encoder, some step breaks the storage."""
-    found = []
-    for seed in range(12):
+
+    def least(seed):
         hand, (damping, friction), _ = touch(seed, "anything allowed")
-        found.append(hand.least_left(damping * share[0], friction * share[1], 60)[0])
-    assert min(found) < 0
+        return hand.least_left(damping * share[0], friction * share[1], 60)[0]
+
+    assert any(least(seed) < 0 for seed in range(12))
+
+
+LATE = [Fraction(1, 2), Fraction(1, 10), Fraction("1.4"), Fraction("2.75")]
+"""Delays of part of a sample, in samples."""
+WEIGHTS = {"backward difference": [1.0], "window": [0.2] * 5, "finite response": [0.0, 1.5, -0.5]}
+
+
+def need(k, b, name, late):
+    """½ (Q + √(Q² + α(1 − α) S²)), Q = (2d + 1 + 2α) K T/2 + |B| Σ|w|, S = K T + 2 |B| Σ|w|."""
+    asked, alpha = abs(b) * FILTERS[name][1], float(late % 1)
+    linear = float(2 * late + 1) * k * float(T) / 2 + asked
+    return (linear + sqrt(linear**2 + alpha * (1 - alpha) * (k * float(T) + 2 * asked) ** 2)) / 2
+
+
+def encoded(seed, name):
+    """K, B, the encoder's step and the Coulomb friction that pays for it, in floats."""
+    random = Random(f"{seed} {name}")
+    k, b = random.uniform(10, 900), random.choice([-1, 1]) * random.uniform(0.01, 1)
+    step = random.choice([0, 2e-4])
+    return k, b, step, bounds(k, b, name, step, 0)[1] * (1 + 1e-12)
 
 
 @pytest.mark.parametrize("clamped", [False, True])
-@pytest.mark.parametrize("seed", range(3))
-def test_simulated_hands_take_nothing_out(seed, clamped):
-    """A bouncing dowel, a finger, a recorded and wild motion on certified walls: nothing comes out."""
-    random = Random(seed)
-    k, b, name = (
-        draw(random, 50, 400),
-        draw(random, 0.02, 0.3),
-        random.choice(["backward difference", "window"]),
+@pytest.mark.parametrize("late", LATE)
+@pytest.mark.parametrize("name", WEIGHTS)
+def test_part_of_a_sample_late_it_is_proved_from_the_root_on(name, late, clamped):
+    """A billionth above it the checker accepts contact made and broken; a billionth below, nothing."""
+    k, b, step, friction = encoded(late, name)
+    law = zw.Wall(k, b, FILTERS[name][0], clamped=clamped)
+    above, below = (
+        check_by_closed_forms(device(need(k, b, name, late) * share, friction, step, late), law)
+        for share in (1 + 1e-9, 1 - 1e-9)
     )
-    step = Fraction("0.0001")
-    damping, friction = bounds(k, b, name, step, 1)
-    held = device(damping, friction, step, 1).replace(mass="0.05")
-    wall = zw.Wall(k, b, FILTERS[name][0], clamped=clamped)
-    assert check_by_closed_forms(held, wall).certificate.kind == "contact"
-    wild = list(accumulate((random.gauss(0, 2e-3) for _ in range(300)), initial=-1e-3))
-    hands = (zw.operators.Dowel(), zw.operators.TypicalTouch(), zw.operators.PrescribedMotion(wild))
-    for hand in hands:
-        duration = 0.3 if isinstance(hand, zw.operators.PrescribedMotion) else 0.6
-        energy = zw.simulate(held, wall, hand, duration=duration).zwidth.energy
-        assert energy.extracted <= 1e-9 * energy.moved
+    assert (above.outcome, above.certificate.kind) == ("passive", "contact")
+    assert verify_document(above.certificate.to_dict()).valid
+    assert below.outcome != "passive"
+
+
+def forces(x, k, b, weights, step, surface):
+    """f(k) of a wall that acts inside only, or never pulls, or whatever |r| ≤ |B v| allows; in floats."""
+    out = []
+    random = Random(len(x))
+    read = [x[0]] * len(weights) + [step * (v // step) if step else v for v in x]
+    for place in range(len(weights), len(read)):
+        moves = [read[place - j] - read[place - j - 1] for j in range(len(weights))]
+        damper = b * sum(w * move for w, move in zip(weights, moves, strict=True)) / float(T)
+        q = read[place]
+        if surface == "anything allowed":
+            out.append(k * max(q, 0) + damper * random.choice([-1, 0, 1]))
+        else:
+            force = k * q + damper if q > 0 else 0.0
+            out.append(max(force, 0.0) if surface == "clamped" else force)
+    return out
+
+
+def motion(random, samples=60):
+    """From rest outside: in and out in a rhythm, with some chance, and out again."""
+    size = random.choice([1e-3, 3e-2, 1.0])
+    centre, rhythm = random.uniform(-1, 1) * size, random.choice([[1, -1], [1, 1, -1, -1], [1, 0, -1]])
+    inside = [
+        centre + size * rhythm[n % len(rhythm)] * random.uniform(0.7, 1) + random.gauss(0, size / 9)
+        for n in range(samples)
+    ]
+    return [-2 * size] * 3 + inside + [-2 * size] * 9
+
+
+def got(seed, surface, share):
+    """What a hand gets out along a motion at `share` of the damping of the theorem, and its largest work."""
+    random = Random(f"{seed} {surface}")
+    name, late = random.choice(list(WEIGHTS)), random.choice(LATE)
+    k, b, step, friction = encoded(seed, name)
+    x, part = motion(random), float(late % 1)
+    held = {"damping": need(k, b, name, late) * share, "friction": friction, "period": float(T)}
+    force = [0.0] * (int(late) + 1) + forces(x, k, b, WEIGHTS[name], step, surface)
+    total, most = 0.0, 0.0
+    for n, (here, there) in enumerate(pairwise(x)):
+        turn = best_switch(here, there, force[n], force[n + 1], part=part, **held)
+        for acting, way, time in ((force[n], turn - here, part), (force[n + 1], there - turn, 1 - part)):
+            work = acting * way + friction * abs(way) + held["damping"] * way * way / (time * held["period"])
+            total, most = total - work, max(most, abs(work))
+    return total, most
+
+
+@pytest.mark.parametrize("surface", ["masked", "clamped", "anything allowed"])
+def test_part_of_a_sample_late_no_hand_gets_energy_out_at_the_bound(surface):
+    """And with a third of the damping some hands do."""
+    for seed in range(60):
+        energy, most = got(seed, surface, 1.0)
+        assert energy <= 1e-12 * most
+    assert max(energy - 1e-9 * most for energy, most in (got(seed, surface, 0.33) for seed in range(60))) > 0
 
 
 DEVICE = device("0.5", "0.2", "0.0005", 1)
-DOCUMENTS = {
-    "backward difference": check_by_closed_forms(DEVICE, zw.Wall("180", "0.04")),
-    "window": check_by_closed_forms(DEVICE, zw.Wall("180", "-0.06", zw.rendering.Window(3))),
-    "one pole": check_by_closed_forms(
-        DEVICE, zw.Wall("180", "0.07", zw.rendering.OnePole("0.004"), clamped=True)
-    ),
-}
-
-
-@pytest.mark.parametrize("name", DOCUMENTS)
-def test_every_number_of_a_certificate_binds(name):
-    """Any number of the law or of H(z) changed, and any of the loop for the worse: rejected."""
-    honest = DOCUMENTS[name].certificate.to_dict()
-    assert checker.verify(honest).valid
-    for key in ("stiffness_N_per_m", "virtual_damping_N_s_per_m"):
-        for change in ("1.001", "0.999", "-1", "0"):
-            tampered = copy.deepcopy(honest)
-            tampered["law"][key] = str(Fraction(honest["law"][key]) * Fraction(change))
-            assert not checker.verify(tampered).valid, (key, change)
-    for place, value in _numbers(honest["law"]["weights"]):
-        tampered = copy.deepcopy(honest)
-        tampered["law"]["weights"][place] = str(Fraction(value) + Fraction(1, 1000))
-        assert not checker.verify(tampered).valid
-    for part in ("numerator", "denominator"):
-        for place, value in enumerate(honest["loop"][part]):
-            tampered = copy.deepcopy(honest)
-            tampered["loop"][part][place] = str(Fraction(value) + 1)
-            assert not checker.verify(tampered).valid
-    for key, value in {
-        "damping_N_s_per_m": "0.2",
-        "coulomb_friction_N": "0.04",
-        "resolution_m": "0.01",
-        "sample_period_s": "0.0011",
-        "delay_s": "0.003",
-        "unilateral": False,
-    }.items():
-        tampered = copy.deepcopy(honest)
-        tampered["loop"][key] = value
-        assert not checker.verify(tampered).valid, key
-
-
-def _numbers(weights):
-    return weights.items() if isinstance(weights, dict) else enumerate(weights)
-
-
-@pytest.mark.parametrize(
-    ("place", "value", "said"),
-    [
-        (("law",), None, "law must be an object"),
-        (("law", "weights"), {"pole": "1"}, "pole must be < 1"),
-        (("law", "weights"), {"pole": "-0.2"}, "pole must be ≥ 0"),
-        (("law", "weights"), [], "H(z) is not the wall"),
-        (("law", "weights"), "1", "weights must be a list"),
-        (("law", "stiffness_N_per_rad"), "3", "unit of stiffness"),
-        (("loop", "delay_s"), "0.0024", "damping is below"),
-        (("loop", "damping_N_s_per_m"), "0.3099", "damping is below"),
-        (("loop", "coulomb_friction_N"), "0.0649", "Coulomb friction is below"),
-    ],
-)
-def test_what_the_checker_says(place, value, said):
-    """Each hypothesis that fails is named."""
-    tampered = copy.deepcopy(DOCUMENTS["backward difference"].certificate.to_dict())
-    inner = tampered
-    for key in place[:-1]:
-        inner = inner[key]
-    inner[place[-1]] = value
-    verification = checker.verify(tampered)
-    assert not verification.valid
-    assert said in verification.reason
-
-
-def test_a_negative_spring_is_no_wall():
-    """K < 0 in law and H(z) alike is rejected."""
-    document = copy.deepcopy(DOCUMENTS["backward difference"].certificate.to_dict())
-    document["law"]["stiffness_N_per_m"] = "-180"
-    rate = Fraction(document["law"]["virtual_damping_N_s_per_m"]) / T
-    document["loop"] |= {"numerator": [str(rate - 180), str(-rate)], "denominator": ["1", "0"]}
-    assert "stiffness_N_per_m must be ≥ 0" in checker.verify(document).reason
 
 
 def test_rotary_certificate():
-    """A knob's law has N·m in its keys, and is accepted."""
     knob = zw.Device(
         damping="0.004", coulomb_friction="0.01", resolution="0.0015", rate=2000, motion="rotary"
     )
@@ -358,19 +341,14 @@ def test_rotary_certificate():
     assert verdict.certificate.verify()
 
 
-STILL_SUSTAINED = {
-    "a filter that needs less": (
-        device("0.2", "0.2", "0.0005", 0),
-        zw.Wall(180, "0.25", zw.rendering.Window(4)),
-    ),
-    "a solid with delay": (device("0.2", "0.2", "0.0005", 1), zw.StandardLinearSolid(100, 20, "0.1")),
-}
-
-
-@pytest.mark.parametrize("name", STILL_SUSTAINED)
-def test_where_it_does_not_apply(name):
+@pytest.mark.parametrize(
+    ("law", "delay"),
+    [(zw.Wall(180, "0.25", zw.rendering.Window(4)), 0), (zw.StandardLinearSolid(100, 20, "0.1"), 1)],
+    ids=["a filter that needs less", "a solid with delay"],
+)
+def test_where_it_does_not_apply(law, delay):
     """The linear proof stays, for sustained contact; clamped, the same law is undecided and says why."""
-    loop, law = STILL_SUSTAINED[name]
+    loop = device("0.2", "0.2", "0.0005", delay)
     verdict = check_by_closed_forms(loop, law)
     assert (verdict.outcome, verdict.certificate.kind) == ("passive in contact", "quantized")
     assert verdict.scope.contact == "kept"
@@ -378,6 +356,8 @@ def test_where_it_does_not_apply(name):
     assert (clamped.outcome, clamped.certificate, clamped.witness) == ("undecided", None, None)
     assert clamped.claim.startswith("The linear criterion does not cover a law whose force is clamped")
     assert clamped.scope.contact == "made and broken"
+    assert " N·s/m, the device has 0.2 N·s/m; Coulomb friction of " in clamped.claim
+    assert clamped.claim.endswith(" N, it has 0.2 N.")
 
 
 def test_an_active_clamped_wall_has_a_motion_of_its_own():
@@ -393,7 +373,6 @@ def test_an_active_clamped_wall_has_a_motion_of_its_own():
 
 
 def test_a_clamped_spring_is_the_spring():
-    """Without virtual damping there is nothing to clamp: the same verdict, the same motion."""
     for k in (300, 770):
         loop = device("0.15", "0.12", "0.0000224", 0)
         plain, clamped = (check_by_closed_forms(loop, zw.Wall(k, clamped=c)) for c in (False, True))
@@ -402,7 +381,6 @@ def test_a_clamped_spring_is_the_spring():
 
 @pytest.mark.parametrize(("short", "limited"), [(0, True), (TINY, False)])
 def test_the_limit_of_a_clamped_wall(short, limited):
-    """At the bound on b, and only there, the claim says that nothing is left."""
     loop = device(Fraction("0.25"), 1, 0, 0)
     verdict = check_by_closed_forms(loop, zw.Wall(300, Fraction("0.1") - short, clamped=True))
     assert verdict.outcome == "passive"
@@ -449,11 +427,3 @@ def test_intervals(name):
     assert verdict.certificate.covered().contact == ("made and broken" if covered else "kept")
     assert verdict.scope.contact == verdict.certificate.covered().contact
     assert verify_document(verdict.certificate.to_dict()).valid
-
-
-def test_what_is_enough_is_said_with_its_unit():
-    """Of a clamped wall that is not proved: damping and friction, asked for and there."""
-    loop, law = STILL_SUSTAINED["a filter that needs less"]
-    claim = check_by_closed_forms(loop, law.replace(clamped=True)).claim
-    assert " N·s/m, the device has 0.2 N·s/m; Coulomb friction of " in claim
-    assert claim.endswith(" N, it has 0.2 N.")

@@ -94,44 +94,32 @@ def test_the_linear_criterion_asks_for_half_the_first_force():
         assert zw.check(ideal, law).required_damping >= first / 2
 
 
-def played(surface, damping, friction, time_constant, counts=12, clamped=False):
-    """A wall of K = 1, B = 10 behind one pole, T = Δ = 1, with parts of what sustained contact asks for."""
+def played(surface, time_constant):
+    """A wall of K = 1, B = 10 behind one pole, T = Δ = 1, with 2 % more than sustained contact asks for."""
     wall = zw.Wall(1, damping=10, velocity_filter=zw.rendering.OnePole(time_constant))
-    branch = Fraction(10, 1 + time_constant)
-    need = Fraction(1, 2) + Fraction(10, 1 + 2 * time_constant), Fraction(1, 2) + branch
-    device = zw.Device(
-        damping=need[0] * Fraction(damping),
-        coulomb_friction=need[1] * Fraction(friction),
-        resolution=1,
-        sample_period=1,
-        delay=0,
-        mass=1,
+    damping, friction = (
+        (Fraction(1, 2) + Fraction(10, 1 + n * time_constant)) * Fraction("1.02") for n in (2, 1)
     )
-    law, losses = replace(finite_law(device, wall), surface=surface, clamped=clamped), losses_of(device)
-    return DynamicProgram(law, losses, domain_for(law, losses, counts, counts), "linear")
+    device = zw.Device(damping=damping, coulomb_friction=friction, resolution=1, sample_period=1)
+    law, losses = replace(finite_law(device, wall), surface=surface), losses_of(device)
+    return DynamicProgram(law, losses, domain_for(law, losses, 12, 12), "linear")
+
+
+@pytest.mark.parametrize(("surface", "time_constant"), [("penetration", 9), ("position", 1)])
+def test_the_criterion_holds_where_the_filter_is_fast_or_fed_with_the_penetration(surface, time_constant):
+    storage = played(surface, time_constant).prove(32)
+    assert storage is not None
+    assert storage.certificate().verify()
 
 
 def test_a_slow_filter_fed_with_the_position_breaks_the_criterion():
-    """Just enough for sustained contact: proved if fed with the penetration, a motion gains if not."""
-    storage = played("penetration", "1.02", "1.02", 9).prove(32)
-    assert storage is not None
-    assert storage.certificate().verify()
-    game = played("position", "1.02", "1.02", 9)
-    found = (game.refute(steps) for steps in (64, 256, 16))
+    found = (played("position", 9).refute(steps) for steps in (64, 256, 16))
     motion = next((m for m in found if m is not None), None)
     assert motion is not None
     assert motion.verify()
 
 
-def test_a_fast_filter_fed_with_the_position_keeps_it():
-    """With τ = T the game proves these hands."""
-    storage = played("position", "1.02", "1.02", 1).prove(32)
-    assert storage is not None
-    assert storage.certificate().verify()
-
-
 def test_the_claim_of_a_filtered_wall_says_that_contact_is_kept():
-    """What is proved of sustained contact alone is claimed of it alone."""
     device = zw.Device(damping="5.2", coulomb_friction="9", resolution=1, sample_period=1)
     filtered = check_by_closed_forms(device, zw.Wall(1, damping=10, velocity_filter=zw.rendering.Window(3)))
     assert filtered.outcome == "passive in contact"
@@ -144,15 +132,12 @@ def test_the_claim_of_a_filtered_wall_says_that_contact_is_kept():
 @pytest.mark.parametrize(
     ("solid", "delay", "covered"),
     [
-        (zw.StandardLinearSolid(100, 200, 1), 0, True),
         (zw.StandardLinearSolid(100, 200, 1), "0.001", True),
         (zw.StandardLinearSolid(100, 200, 1), "0.0005", False),
-        (zw.StandardLinearSolid(100, 200, 1, discretization="tustin"), 0, True),
-        (zw.GeneralizedMaxwell(100, [(200, 1), (50, 3)]), 0, True),
         (zw.GeneralizedMaxwell(100, [(200, 1), (50, 3)]), "0.001", False),
     ],
 )
-def test_solids_that_are_touched_and_left(solid, delay, covered):
+def test_solids_that_are_touched_and_left_late(solid, delay, covered):
     """The first assumption says whether that is covered, and the certificate is of it."""
     device = zw.Device(damping=2, coulomb_friction=1, resolution="0.0001", sample_period="0.001", delay=delay)
     verdict = check_by_closed_forms(device, solid)

@@ -51,7 +51,6 @@ def nearly_touching(order):
 
 @pytest.mark.parametrize("seed", range(2))
 def test_a_law_of_order_110_is_active_with_little_damping_and_passive_with_much(seed):
-    """Both outcomes with their evidence, which the checker accepts."""
     law = stable_law(110, seed)
     assert zw.check(DEVICE, law).outcome == "active"
     verdict = zw.check(DEVICE.replace(damping=1000), law)
@@ -60,7 +59,6 @@ def test_a_law_of_order_110_is_active_with_little_damping_and_passive_with_much(
 
 
 def test_the_largest_gain_is_a_boundary():
-    """Proved there, and not a thousandth of a millionth above it."""
     law = stable_law(60, 3)
     device = DEVICE.replace(damping=3, resolution="1 um")
     gain = zw.check(device, law).max_gain
@@ -95,7 +93,6 @@ def test_an_unstable_law_is_refuted_however_close_its_criterion_comes(monkeypatc
 
 
 def test_too_many_digits_are_refused_before_they_are_worked_with():
-    """Denominators without a common one: the message says what is too long and what to do."""
     random = Random(1)
     uneven = [Fraction(1, random.randint(10**49, 10**50)) for _ in range(120)]
     with pytest.raises(zw.InputError, match=f"more than {LARGEST_DIGITS} digits.*fewer digits"):
@@ -103,7 +100,6 @@ def test_too_many_digits_are_refused_before_they_are_worked_with():
 
 
 def test_many_corners_of_a_law_of_high_order_are_refused():
-    """Each would be decided and its proof checked: few of order 60, as ever of order 2."""
     device = zw.Device(
         damping=30, sample_period=("1 ms", "1.1 ms"), delay=("0.1 ms", "50.1 ms"), coulomb_friction=1
     )
@@ -115,7 +111,6 @@ def test_many_corners_of_a_law_of_high_order_are_refused():
 
 
 def test_pieces_of_a_delay_are_counted(monkeypatch):
-    """An interval of delays that would need more pieces than are tried stays undecided."""
     law = stable_law(10, 5)
     device = zw.Device(damping="22.75", sample_period="1 ms", delay=(0, "3 ms"))
     assert len(zw.check(device, law).certificate.documents[0]["proof"]["pieces"]) > 3

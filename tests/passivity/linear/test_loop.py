@@ -66,7 +66,6 @@ def needed(h, period, delay, turn):
 
 @seeds(20)
 def test_criterion_has_the_sign_of_what_the_formula_asks(seed):
-    """q(c) ≥ 0 exactly where b is at least what the formula with complex numbers asks for."""
     random = Random(seed)
     h, damping, period, delay = random_loop(random)
     loop = loop_from(h, damping, period, delay)
@@ -80,7 +79,6 @@ def test_criterion_has_the_sign_of_what_the_formula_asks(seed):
 
 @seeds(15)
 def test_required_damping_at_a_frequency(seed):
-    """The damping named for a frequency is the formula's, to 1e-9."""
     random = Random(1000 + seed)
     h, damping, period, delay = random_loop(random)
     loop = loop_from(h, damping, period, delay)
@@ -93,26 +91,7 @@ def test_required_damping_at_a_frequency(seed):
         assert loop.required_damping_at(c) == pytest.approx(float(expected), rel=1e-9, abs=1e-9 * scale)
 
 
-@seeds(15)
-def test_hold_is_minus_r_plus_one_plus_c_times_s(seed):
-    """−R + (1 + c) S with M D̄ = R + j sin θ S taken from complex values on the circle."""
-    random = Random(2000 + seed)
-    h, damping, period, delay = random_loop(random)
-    loop = loop_from(h, damping, period, delay)
-    whole, part = divmod(delay / period, 1)
-    alpha = mpmath.mpf(part.numerator) / part.denominator
-    for turn in (0.03, 0.11, 0.26, 0.49):
-        theta = 2 * mpmath.pi * turn
-        zeta = mpmath.expj(-theta)
-        n, d = (horner(part[::-1], zeta) for part in (loop.numerator, loop.denominator))
-        product = zeta ** int(whole) * (1 - alpha + alpha * zeta) * n * mpmath.conj(d)
-        expected = -product.real + (1 + mpmath.cos(theta)) * product.imag / mpmath.sin(theta)
-        value = horner([Fraction(int(c.p), int(c.q)) for c in loop.hold.coeffs()][::-1], mpmath.cos(theta))
-        assert mpmath.almosteq(value, expected, rel_eps=mpmath.mpf(10) ** -25, abs_eps=1e-8)
-
-
 def test_common_factors_are_cancelled():
-    """A pole–zero pair leaves the same loop as the law without it."""
     plain = loop_from(RationalFunction((Fraction(3), Fraction(-2)), (Fraction(5), Fraction(1))),
                       Fraction(2), Fraction(1, 500), Fraction(0))  # fmt: skip
     r = Fraction("0.3")
@@ -124,14 +103,12 @@ def test_common_factors_are_cancelled():
 
 
 def test_more_zeros_than_poles_is_refused():
-    """A law that needs samples still to come is an input error."""
     h = RationalFunction((Fraction(1), Fraction(2), Fraction(3)), (Fraction(4), Fraction(1)))
     with pytest.raises(zw.InputError, match="more zeros than poles"):
         loop_from(h, Fraction(1), Fraction(1, 1000), Fraction(0))
 
 
 def test_a_delay_beyond_reach_is_refused():
-    """A delay of more samples than can be certified is an input error that says so."""
     device = zw.Device(damping="0.4", rate=1000, delay=Fraction(LARGEST_DEGREE + 3, 1000))
     with pytest.raises(zw.InputError, match="can be certified"):
         linear_loop(device, zw.Wall(200))

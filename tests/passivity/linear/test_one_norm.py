@@ -91,27 +91,29 @@ def test_closed_forms():
 
 @pytest.mark.parametrize("denominator", [[1, -1], [1, 1], [1, "-1.01"], [1, "-0.8", 1]])
 def test_no_bound_for_laws_that_do_not_decay(denominator):
-    """A pole on or outside the circle has no bound, and nothing is claimed."""
     law = zw.PulseTransferFunction(["5.5", "2.5"], denominator)
     assert bound_one_norm(linear_loop(zw.Device(damping="0.3", rate=1000), law)) is None
+
+
+def filtered(random, least_tau):
+    """A decision about a random wall behind one pole, and its certificate."""
+    filtering = zw.rendering.OnePole(draw(random, least_tau, 0.02))
+    law = zw.Wall(draw(random, 5, 900), draw(random, 0.001, 1), filtering)
+    loop = linear_loop(zw.Device(damping=40, rate=1000), law)
+    decision = Decision(Setting(loop, Fraction(90), Fraction("0.0003"), True))
+    return decision, certify(decision)
 
 
 @seeds(12)
 def test_checker_finds_the_same_bound(seed):
     """The checker's own arithmetic gives the same rational, and any other inverse only a larger one."""
-    random = Random(100 + seed)
-    device = zw.Device(damping=40, rate=1000, coulomb_friction=30, resolution="0.0003")
-    law = zw.Wall(
-        draw(random, 5, 900), draw(random, 0.001, 1), zw.rendering.OnePole(draw(random, 0.001, 0.02))
-    )
-    loop = linear_loop(device, law)
-    decision = Decision(Setting(loop, Fraction(30), Fraction("0.0003"), True))
-    document = certify(decision)
+    random = Random(seed)
+    decision, document = filtered(random, 0.001)
     assert document["kind"] == "quantized"
     assert checker.verify(document).valid
     proof = document["proof"]["norm"]
     assert bound_of(document, proof) == decision.norm.bound
-    true, inverse = float(summed(loop)), [Fraction(c) for c in proof["inverse"]]
+    true, inverse = float(summed(decision.loop)), [Fraction(c) for c in proof["inverse"]]
     for _ in range(5):
         other = list(inverse)
         other[random.randrange(len(inverse))] += inverse[0] * Fraction(random.randint(-200, 200), 1000)
@@ -126,12 +128,7 @@ def test_checker_finds_the_same_bound(seed):
 def test_every_number_of_the_norm_proof_binds(seed):
     """Modes and rest must sum to H(z): any of their numbers changed, dropped or doubled is rejected."""
     random = Random(200 + seed)
-    device = zw.Device(damping=40, rate=1000, coulomb_friction=90, resolution="0.0003")
-    law = zw.Wall(
-        draw(random, 5, 900), draw(random, 0.001, 1), zw.rendering.OnePole(draw(random, 0.01, 0.02))
-    )
-    decision = Decision(Setting(linear_loop(device, law), Fraction(90), Fraction("0.0003"), True))
-    document = certify(decision)
+    _, document = filtered(random, 0.01)
     proof = document["proof"]["norm"]
     broken = []
     for key in ("rest_numerator", "rest_denominator"):

@@ -10,7 +10,6 @@ import pytest
 from strategies import seeds
 
 import zwidth as zw
-from zwidth import checker
 from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import available_storage
 from zwidth.passivity.storage.domain import Losses, inner_costs, outer_costs
@@ -71,33 +70,6 @@ def test_the_costs_enclose_the_loss(seed):
     assert all(losses.lost(n * step, Fraction(1)) / (unit * step) <= int(high[n]) for n in range(120))
 
 
-def test_the_checker_knows_the_curve():
-    """A model above the curve, another curve, none at all: refused."""
-    proof = available_storage(
-        DEVICE, zw.Wall(200), friction=STRIBECK, penetration=DEPTH, speed=1
-    ).certificate.documents[0]
-    assert checker.verify(proof).valid
-    loop = proof["loop"]
-    curve, models = "friction_curve_m_per_s_N", "friction_models_N_N_s_per_m"
-    too_much = [[str(Fraction(f) + Fraction(1, 1000)), b] for f, b in loop[models]]
-    too_steep = [*loop[models], ["0", "1"]]
-    less = [[v, str(Fraction(f) / 2)] for v, f in loop[curve]]
-    for key, bad in (
-        (models, too_much),
-        (models, too_steep),
-        (curve, less),
-        (curve, loop[curve][::-1]),
-        (models, []),
-    ):
-        assert not checker.verify({**proof, "loop": {**loop, key: bad}}).valid
-    motion = available_storage(
-        DEVICE, zw.Wall(900), friction=STRIBECK, penetration=DEPTH, speed=1
-    ).witness.to_dict()
-    assert checker.verify(motion).valid
-    more = [[v, str(20 * Fraction(f))] for v, f in motion["loop"][curve]]
-    assert not checker.verify({**motion, "loop": {**motion["loop"], curve: more}}).valid
-
-
 @pytest.mark.parametrize(
     ("change", "arguments", "said"),
     [
@@ -107,7 +79,6 @@ def test_the_checker_knows_the_curve():
     ],
 )
 def test_what_it_refuses(change, arguments, said):
-    """One line each."""
     with pytest.raises(zw.InputError, match=said):
         passive_limit(DEVICE.replace(**change), zw.Wall(100), **{"friction": STRIBECK, **arguments})
     with pytest.raises(zw.InputError, match="relaxes"):

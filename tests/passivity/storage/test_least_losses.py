@@ -24,7 +24,6 @@ pieces = st.lists(st.tuples(speeds, shares), min_size=1, max_size=12)
 
 
 def motion(made: list[tuple[Fraction, Fraction]]) -> list[tuple[Fraction, Fraction]]:
-    """Speeds, and for how long, one period in all."""
     whole = sum(share for _, share in made)
     return [(speed, PERIOD * share / whole) for speed, share in made]
 
@@ -43,20 +42,6 @@ def test_no_motion_loses_less(made):
     beyond = FRICTION * (length - abs(far)) + DAMPING * uneven
     assert beyond >= 0
     assert loss(ways) == PAID.lost(far, Fraction(1)) + beyond
-
-
-@given(speeds)
-def test_constant_speed_loses_the_least(speed):
-    """Equality."""
-    assert loss([(speed, PERIOD)]) == PAID.lost(speed * PERIOD, Fraction(1))
-
-
-@given(speeds, st.fractions(Fraction(1, 10**6), Fraction(1, 2), max_denominator=10**6))
-def test_any_other_speed_loses_more(speed, off):
-    """Faster in one half and slower in the other, by however little."""
-    assume(speed != 0)
-    uneven = [(speed * (1 + off), PERIOD / 2), (speed * (1 - off), PERIOD / 2)]
-    assert loss(uneven) > PAID.lost(speed * PERIOD, Fraction(1))
 
 
 @given(pieces, shares)

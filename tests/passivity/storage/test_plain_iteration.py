@@ -151,7 +151,6 @@ def test_the_same_value_in_every_state(name, approximation):
 
 @seeds(15)
 def test_what_gains_by_the_inner_costs_gains_by_the_outer_ones(seed):
-    """A motion that gains in the inner approximation gains in the outer one on the same nodes."""
     random = Random(seed)
     name = random.choice(list(LAWS))
     law, losses = drawn(random, name, Fraction(random.randint(50, 200), 100))
@@ -163,7 +162,6 @@ def test_what_gains_by_the_inner_costs_gains_by_the_outer_ones(seed):
 
 
 def test_nothing_is_iterated_when_there_is_no_time():
-    """With nothing left to do there is neither a value nor a cycle."""
     law, losses = drawn(Random(1), "damped", 1)
     iteration = value_iteration(Grid(law, losses, Domain(-3, 2, 2), 4, "outer"), Until(Effort(), 0.0))
     assert (iteration.value, iteration.cycle, iteration.rounds) == (None, (), 0)

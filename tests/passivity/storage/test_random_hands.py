@@ -1,31 +1,110 @@
-"""Soundness by another road: random, greedy and learning hands get nothing out of what is proved passive."""
+"""Soundness by another road: hands at random and downhill get nothing out of what is proved passive."""
 
 from __future__ import annotations
 
-from fractions import Fraction
 from functools import cache
 
 import numpy as np
 import pytest
-from crowd import Crowd
+from counted_device import counted, device
 
 import zwidth as zw
 from zwidth.passivity.storage import available_storage
 from zwidth.passivity.storage.program import program_of
 
+TINY = 2.0**-30
+
+
+def force(law, readings, resolution):
+    """The force for an array of readings, newest first in the last axis, in counts [N]."""
+    q = readings * resolution
+    if law.points:
+        x, f = (np.array([float(v) for v in column]) for column in zip(*law.points, strict=True))
+        total = np.interp(q[..., 0], x, f)
+    elif law.power is not None:
+        total = float(law.power[0]) * np.maximum(q[..., 0], 0.0) ** float(law.power[1])
+    else:
+        u = np.maximum(q, 0.0) if law.surface == "penetration" else q
+        total = sum(float(c) * u[..., i] for i, c in enumerate(law.taps))
+    if law.rate:
+        total = total * (1 + float(law.rate) * (q[..., 0] - q[..., 1]))
+    if law.clamped:
+        total = np.maximum(total, 0.0)
+    if law.force_step is not None:
+        total = float(law.force_step) * np.floor(total / float(law.force_step) + 0.5)
+    if law.force_limit is not None:
+        total = np.clip(total, -float(law.force_limit), float(law.force_limit))
+    return total if law.surface == "none" else np.where(readings[..., 0] > 0, total, 0.0)
+
+
+class Crowd:
+    """A grid, its losses, and hands that are somewhere on it: cells, places in them, readings before."""
+
+    def __init__(self, program, storage, seed):
+        self.law, self.losses, self.domain = program.law, program.losses, program.domain
+        self.taps = self.law.memory + 1
+        self.memory = self.taps - 1 + self.losses.delay
+        self.step, self.random = float(self.losses.resolution), np.random.default_rng(seed)
+        self.grid, self.value = storage.grid, storage.value * float(storage.grid.energy_unit)
+
+    def energy(self, cells, places, before, next_cells, next_places):
+        """What the hand takes out by one move [J]."""
+        readings = np.concatenate([cells[..., None], before], axis=-1)[..., self.losses.delay :]
+        moved = (next_cells - cells + (next_places - places)) * self.step
+        friction, drag = float(self.losses.coulomb_friction), float(self.losses.damping / self.losses.period)
+        work = force(self.law, readings[..., : self.taps], self.step) * moved
+        return -(work + friction * abs(moved) + drag * moved**2)
+
+    def stored(self, cells, places, before):
+        """V there [J], linear between the nodes."""
+        reach, column = self.domain.reach, np.zeros(cells.shape, np.int64)
+        newer = cells
+        for i in range(self.memory):
+            column = column * (2 * reach + 1) + before[..., i] - newer + reach
+            newer = before[..., i]
+        at = places * self.grid.steps
+        node = np.minimum(at.astype(np.int64), self.grid.steps - 1)
+        rows = cells - self.domain.lowest
+        low, high = self.value[rows, column, node], self.value[rows, column, node + 1]
+        return low + (at - node) * (high - low)
+
+    def somewhere(self, number):
+        """States at random: readings before as a hand could have left them."""
+        low, high, reach = self.domain.lowest, self.domain.highest, self.domain.reach
+        readings = [self.random.integers(low, high + 1, number)]
+        for _ in range(self.memory):
+            ahead = self.random.integers(-reach, reach + 1, number)
+            ahead = np.where(self.random.random(number) < 0.5, np.sign(ahead), ahead)
+            readings.append(np.clip(readings[-1] + ahead, low, high))
+        before = np.stack(readings[1:], axis=-1) if self.memory else np.zeros((number, 0), np.int64)
+        return readings[0], self.place(number), before
+
+    def place(self, number):
+        """Where in a cell: on its edges, next to them, on a node or anywhere."""
+        node, anywhere = self.random.integers(0, 64, number) / 64, self.random.random(number)
+        edges = (np.full(number, at) for at in (0, 1 - TINY, TINY))
+        choices = np.stack([*edges, node, anywhere])
+        return choices[self.random.integers(0, len(choices), number), np.arange(number)]
+
+    def wish(self, cells, places, before):
+        """A next position for each hand: stay, an edge, where it was, anywhere it can go."""
+        number, reach = cells.size, self.domain.reach
+        back = before[:, 0] if self.memory else cells
+        near, far = (self.random.integers(-most, most + 1, number) for most in (1, reach))
+        farthest = self.random.choice([-reach, reach], number)
+        wished = np.stack([cells, cells + near, back, cells + far, cells + farthest])
+        there = wished[self.random.integers(0, len(wished), number), np.arange(number)]
+        there = np.clip(there, self.domain.lowest, self.domain.highest)
+        stop = self.place(number)
+        too_far = abs(there - cells + (stop - places)) > float(self.domain.speed)
+        return np.where(too_far, cells, there), np.where(too_far, places, stop)
+
+    def after(self, cells, before):
+        """The readings before, one sample later."""
+        return np.concatenate([cells[:, None], before], axis=1)[:, : self.memory]
+
+
 BOUNDS = {"penetration": "0.0012", "speed": "0.6"}
-
-
-def device(damping, friction, delay=0, **more):
-    """A device of 0.1 mm a count at 1 kHz, the delay in samples."""
-    return zw.Device(
-        damping=damping,
-        coulomb_friction=friction,
-        resolution="0.0001",
-        sample_period="0.001",
-        delay=Fraction(delay, 1000),
-        **more,
-    )
 
 
 LOOPS = {
@@ -59,29 +138,15 @@ SLOW = {"spring, slow hand": "0.237", "damped, slow hand": "0.13"}
 
 
 def bounds(name):
-    """Of the hand."""
     return {**BOUNDS, "speed": SLOW.get(name, BOUNDS["speed"])}
-
-
-def counted(loop):
-    """Of the actuator, what is known."""
-    return {f"force_{key}": getattr(loop, f"force_{key}") is not None for key in ("limit", "resolution")}
 
 
 @cache
 def proved(name):
-    """The dynamic program and the storage function."""
     loop, law = LOOPS[name]
     found = available_storage(loop, law, **counted(loop), **bounds(name))
     assert found.outcome == "passive"
     return program_of(loop, law, **counted(loop), **bounds(name)), found.storage
-
-
-def weaker(name, share):
-    """The same on a device with a share of the damping and friction."""
-    loop, law = LOOPS[name]
-    less = {key: loop.exact(key) * share for key in ("damping", "coulomb_friction")}
-    return program_of(loop.replace(**less), law, **counted(loop), **bounds(name))
 
 
 def left_over(crowd, state, move):
@@ -95,20 +160,17 @@ def left_over(crowd, state, move):
 
 @pytest.mark.parametrize("name", LOOPS)
 def test_no_move_takes_out_more_than_the_storage_falls(name):
-    """200 000 moves from states at random, between the nodes too, most of them from edge to edge."""
+    """200 000 moves from states at random, between the nodes too, most of them from edge to edge.
+
+    Of 4000 of them the places are then changed at random for less left over: it never becomes negative.
+    """
     crowd = Crowd(*proved(name), seed=1)
     state = crowd.somewhere(200_000)
-    left, scale = left_over(crowd, state, crowd.wish(*state))
-    assert (left >= -1e-12 * scale.max()).all()
-
-
-@pytest.mark.parametrize("name", LOOPS)
-def test_no_move_that_is_sought_downhill_does(name):
-    """Places changed at random for less left over: it never becomes negative."""
-    crowd = Crowd(*proved(name), seed=2)
-    state = crowd.somewhere(4000)
     move = crowd.wish(*state)
     left, scale = left_over(crowd, state, move)
+    assert (left >= -1e-12 * scale.max()).all()
+    state, move = (tuple(part[:4000] for part in each) for each in (state, move))
+    left, scale = left[:4000], scale[:4000]
     for size in np.geomspace(0.3, 1e-9, 120):
         other = np.clip(state[1] + size * crowd.random.normal(size=4000), 0, 1 - 1e-12)
         stop = np.clip(move[1] + size * crowd.random.normal(size=4000), 0, 1 - 1e-12)
@@ -121,31 +183,6 @@ def test_no_move_that_is_sought_downhill_does(name):
         move = (move[0], np.where(less, stop, move[1]))
     assert left.min() >= -1e-12 * scale.max()
     assert left.min() <= 0.02 * scale.max()  # the search comes close: V is not far too large
-
-
-@pytest.mark.parametrize("name", LOOPS)
-def test_hands_get_out_no_more_than_was_stored_at_the_start(name):
-    """3000 hands over 60 samples, half of them greedy for what leaves the most, from rest outside or at 0."""
-    crowd = Crowd(*proved(name), seed=3)
-    number = 3000
-    cells = np.zeros(number, np.int64)
-    places = crowd.place(number)
-    before = np.zeros((number, crowd.memory), np.int64)
-    at_start, out, most = crowd.stored(cells, places, before), np.zeros(number), np.zeros(number)
-    for _ in range(60):
-        best = crowd.wish(cells, places, before)
-        left, _ = left_over(crowd, (cells, places, before), best)
-        for _ in range(12):
-            other = crowd.wish(cells, places, before)
-            found, _ = left_over(crowd, (cells, places, before), other)
-            take = (found < left) & (np.arange(number) % 2 == 0)
-            best = (np.where(take, other[0], best[0]), np.where(take, other[1], best[1]))
-            left = np.where(take, found, left)
-        out += crowd.energy(cells, places, before, *best)
-        before = crowd.after(cells, before)
-        cells, places = best
-        most = np.maximum(most, out)
-    assert (most <= at_start + 1e-12 * crowd.value.max()).all()
 
 
 @pytest.mark.parametrize("name", [n for n, (_, law) in LOOPS.items() if law.unilateral])
@@ -171,17 +208,3 @@ def test_nor_hands_that_go_far_away_in_between(name):
         left_the_grid |= cells < program.domain.lowest
     assert left_the_grid.mean() > 0.3
     assert (most <= at_start + 1e-12 * crowd.value.max()).all()
-
-
-@pytest.mark.parametrize("name", LOOPS)
-def test_no_cycle_is_learned(name):
-    """Cycles of two to six samples, changed at random for more energy: none ever gains.
-
-    On a device with seven tenths of damping and friction the same search finds one,
-    for it is the losses that hold it back.
-    """
-    crowd = Crowd(proved(name)[0], seed=5)
-    scale = float(crowd.losses.coulomb_friction) * crowd.step
-    assert max(crowd.climbed(samples, 300, 150) for samples in range(2, 7)) <= 1e-12 * scale
-    blunt = Crowd(weaker(name, Fraction(7, 10)), seed=5)
-    assert max(blunt.climbed(samples, 300, 150) for samples in range(2, 7)) > 0

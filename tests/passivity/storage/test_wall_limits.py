@@ -24,7 +24,6 @@ def draw(random, low, high):
 
 
 def program_of(device, wall, inside, reach):
-    """The dynamic program of so many counts."""
     law, losses = finite_law(device, wall), losses_of(device)
     outside = 1 - (law.memory + losses.delay + 1) * reach
     return DynamicProgram(law, losses, Domain(outside, inside, reach), device.motion)
@@ -38,7 +37,6 @@ def proved(program):
 
 
 def refuted(program):
-    """A motion that the checker accepts, or None."""
     found = (program.refute(steps) for steps in FINE)
     motion = next((m for m in found if m is not None), None)
     assert motion is None or motion.verify()
@@ -46,13 +44,11 @@ def refuted(program):
 
 
 def moves(motion):
-    """The moves of the cycle, in metres."""
     part = motion.motion.repeats[0]
     return [b - a for a, b in pairwise(motion.motion.positions[part.first : part.last + 1])]
 
 
 def device(damping, friction, step, period):
-    """A rigid device."""
     return zw.Device(damping=damping, coulomb_friction=friction, resolution=step, sample_period=period)
 
 

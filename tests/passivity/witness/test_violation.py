@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import deepcopy
 from fractions import Fraction
 from itertools import pairwise
 from math import acos, cos
@@ -11,16 +10,16 @@ from random import Random
 import mpmath
 import plain_loop
 import pytest
-from tampered import tampered
+from polynomials import product
 
 import zwidth as zw
-from zwidth import checker
 from zwidth.checker import judge
 from zwidth.checker.loop.linear import criterion
 from zwidth.checker.loop.loop import LOOP, loop_of
 from zwidth.checker.loop.violation import criterion_at
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.witness.motion import Motion
 
 T = Fraction(1, 1000)
 BILLIONTH = Fraction(1, 10**9)
@@ -33,22 +32,13 @@ def device(damping, delay=0, friction=0, resolution=0):
     return DEVICE.replace(damping=damping, delay=delay, coulomb_friction=friction, resolution=resolution)
 
 
-def times(a, b):
-    """The product of two polynomials."""
-    out = [Fraction(0)] * (len(a) + len(b) - 1)
-    for i, x in enumerate(a):
-        for j, y in enumerate(b):
-            out[i + j] += x * y
-    return out
-
-
 def with_resonance(base, radius, cosine, gain, zero):
     """base + gain (z − zero)/(z² − 2 r c z + r²), exact."""
     numerator, denominator = base
     poles = [Fraction(1), -2 * radius * cosine, radius * radius]
-    top, more = times(numerator, poles), times(denominator, [gain, -gain * zero])
+    top, more = product(numerator, poles), product(denominator, [gain, -gain * zero])
     more = [Fraction(0)] * (len(top) - len(more)) + more
-    return [x + y for x, y in zip(top, more, strict=True)], times(denominator, poles)
+    return [x + y for x, y in zip(top, more, strict=True)], product(denominator, poles)
 
 
 def random_law(random):
@@ -56,7 +46,7 @@ def random_law(random):
     denominator = [Fraction(1)]
     for _ in range(random.randint(0, 2)):
         r, c = Fraction(random.randint(0, 95), 100), Fraction(random.randint(-100, 100), 100)
-        denominator = times(denominator, [Fraction(1), -2 * r * c, r * r])
+        denominator = product(denominator, [Fraction(1), -2 * r * c, r * r])
     numerator = [Fraction(random.randint(-999, 999), 100) for _ in denominator]
     if len(denominator) > 1 and random.random() < 0.3:
         return numerator, denominator
@@ -111,37 +101,21 @@ def test_a_random_law_is_never_undecided(seed):
                 assert lacking(law, delay, damping, cosine) > 0, (law, delay, damping)
 
 
-@pytest.mark.parametrize("radius", ["0.999", "0.999999", "0.999999999"])
-def test_a_narrow_resonance_is_decided_on_both_sides(radius):
-    """A spring and a resonance as sharp as one sample in 1e9, whose motions would be too long."""
-    gain = (1 - Fraction(radius)) / 5
-    law = with_resonance(
-        ([Fraction(300)], [Fraction(1)]), Fraction(radius), Fraction(1, 2), gain, Fraction(1, 2)
-    )
-    environment = zw.PulseTransferFunction(*law)
-    need = Fraction(repr(zw.check(DEVICE, environment).required_damping))
-    assert need > Fraction("0.15")
-    assert zw.check(device(need * (1 + BILLIONTH)), environment).outcome == "passive"
-    assert zw.check(device(need * (1 - BILLIONTH)), environment).outcome == "active"
-
-
 UNSTABLE = {
     "solid": (zw.StandardLinearSolid(100, 100, -3), "5"),
     "solid, less damping": (zw.StandardLinearSolid(100, 100, -3), "0.5"),
     "pole outside": (zw.PulseTransferFunction([1, 0], [1, "-1.01"]), "900"),
     "integrator": (zw.PulseTransferFunction([1, 0], [1, -1]), "900"),
     "lossless, wrong sign": (zw.PulseTransferFunction(["-48", "168", "-120"], ["1", "-0.8", "1"]), "0.7"),
-    "double pole": (zw.PulseTransferFunction([1, -1], [1, "-1.2", "1.36", "-0.72", "0.36"]), "900"),
+    # (z² − 1.2 z + 1)²
+    "double pole": (zw.PulseTransferFunction([1, -1], [1, "-2.4", "3.44", "-2.4", 1]), "900"),
 }
 
 
 @pytest.mark.parametrize("delay", ["0", "0.001", "0.0004"])
 @pytest.mark.parametrize("name", UNSTABLE)
 def test_an_unstable_law_is_active(name, delay):
-    """Whatever the damping, the delay, Coulomb friction and the encoder are."""
     law, damping = UNSTABLE[name]
-    if name == "double pole":
-        law = zw.PulseTransferFunction([1, -1], [1, "-2.4", "3.44", "-2.4", 1])  # (z² − 1.2 z + 1)²
     for friction, resolution in ((0, 0), ("0.3", "0.001")):
         verdict = zw.check(device(damping, delay, friction, resolution), law)
         assert (verdict.outcome, verdict.violation.verify()) == ("active", True)
@@ -171,10 +145,7 @@ def test_a_force_that_grows_pays_for_everything():
         assert gained[1] > 1000 > gained[0]
 
 
-LOSSLESS = (
-    [48, -168, 120],
-    [1, -0.8, 1],
-)  # 120 (z − 1)(0.4 z − 1)/(z² − 0.8 z + 1): passive from b = 0.06 on
+LOSSLESS = [48, -168, 120], [1, -0.8, 1]  # 120 (z − 1)(0.4 z − 1)/(z² − 0.8 z + 1): passive from b = 0.06 on
 
 
 def behind_a_surface(numerator, moves, damping):
@@ -210,7 +181,6 @@ def test_a_violated_frequency_pays_for_everything():
 
 
 def test_a_clamped_law_is_not_covered():
-    """What is proved of the linear law says nothing of one that never pulls."""
     law = zw.StandardLinearSolid(100, 100, -3, clamped=True)
     assert check_by_closed_forms(device("0.5"), law).violation is None
 
@@ -248,76 +218,16 @@ VIOLATIONS = {
 }
 
 
-def documents():
-    """A violation of each kind, as plain data."""
-    return {name: zw.check(*loop).violation.to_dict() for name, loop in VIOLATIONS.items()}
-
-
-DOCUMENTS = documents()
-
-
-@pytest.mark.parametrize("name", DOCUMENTS)
+@pytest.mark.parametrize("name", VIOLATIONS)
 def test_honest_violations_are_accepted(name):
-    """What the prover wrote is accepted, by itself and in a saved verdict."""
-    assert checker.verify(DOCUMENTS[name]).valid
     verdict = zw.check(*VIOLATIONS[name])
+    assert verdict.violation.verify()
     assert all(part.verification.valid for part in judge(verdict.to_dict()).parts)
-
-
-TAMPERED = [
-    ("criterion", ("loop", "damping_N_s_per_m"), "0.4851"),  # K T/2 + B = 0.485
-    ("criterion", ("loop", "sample_period_s"), "0.0001"),
-    ("criterion", ("loop", "damping_N_s_per_m"), "-0.3"),
-    ("criterion", ("proof", "cosine"), "-1.5"),
-    ("criterion", ("proof", "cosine"), "2"),
-    ("criterion", ("proof", "cosine"), "nan"),
-    ("criterion", ("proof", "kind"), "negative static stiffness"),
-    ("criterion", ("proof", "kind"), "unstable environment"),
-    ("criterion", ("proof", "kind"), "anything"),
-    ("criterion", ("loop", "numerator", 0), "0"),
-    ("delayed", ("loop", "damping_N_s_per_m"), "5"),
-    ("delayed", ("loop", "numerator"), ["1", "0"]),
-    ("negative", ("loop", "numerator"), ["1", "-0.9"]),
-    ("negative", ("loop", "denominator"), ["1", "-1.5"]),
-    ("negative", ("loop", "denominator"), ["1", "-1"]),
-    ("unstable", ("loop", "denominator"), ["-1", "0.9"]),
-    ("unstable", ("loop", "numerator"), ["1", "-1.01"]),  # cancels the pole: no force comes of it
-    ("unstable", ("proof", "offset"), "0"),
-    ("unstable", ("proof", "offset"), "-1"),
-    ("unstable", ("proof", "kind"), "criterion"),
-    ("unstable, delayed", ("loop", "denominator"), ["1", "-0.9"]),
-    ("unstable, delayed", ("loop", "numerator"), ["1", "-1.01"]),
-]
-
-
-@pytest.mark.parametrize(("name", "path", "value"), TAMPERED)
-def test_a_changed_violation_is_refused(name, path, value):
-    """Another device, law, delay or place at which nothing is violated."""
-    assert not checker.verify(tampered(DOCUMENTS[name], path, value)).valid
-
-
-@pytest.mark.parametrize("name", DOCUMENTS)
-def test_what_is_not_read_is_refused(name):
-    """An entry more anywhere, or one less."""
-    for place in ((), ("proof",), ("loop",)):
-        changed = deepcopy(DOCUMENTS[name])
-        inner = changed
-        for key in place:
-            inner = inner[key]
-        inner["more"] = "1"
-        assert not checker.verify(changed).valid
-        for key in [k for k in inner if k not in ("more", "format")]:
-            less = deepcopy(DOCUMENTS[name])
-            there = less
-            for step in place:
-                there = there[step]
-            del there[key]
-            assert not checker.verify(less).valid
 
 
 def test_a_violation_proves_no_passivity():
     """Not under a verdict that says passive, and not as a corner of one."""
-    document = DOCUMENTS["criterion"]
+    document = zw.check(*VIOLATIONS["criterion"]).violation.to_dict()
     for claim in (
         {"outcome": "passive", "violation": document},
         {"outcome": "passive", "certificate": document},
@@ -329,28 +239,6 @@ def test_a_violation_proves_no_passivity():
     assert not any(p.verification.valid for p in judge({"outcome": "active", "violation": proof}).parts)
 
 
-def test_no_passive_loop_has_a_violation():
-    """Random places and offsets for loops that are proved passive: the checker accepts none of them."""
-    random = Random("no violation")
-    tried = 0
-    while tried < 60:
-        law, delay = random_law(random), random.choice((Fraction(0), T, T * Fraction(1, 3)))
-        verdict = check_by_closed_forms(device(3, delay), zw.PulseTransferFunction(*law))
-        if verdict.outcome != "passive":
-            continue
-        tried += 1
-        loop = verdict.certificate.to_dict()["loop"]
-        cosine = Fraction(random.randint(-1000, 1000), 1000)
-        for proof in (
-            {"kind": "criterion", "cosine": str(cosine)},
-            {"kind": "negative static stiffness"},
-            {"kind": "unstable environment", "offset": str(random.choice((1, 3, Fraction(1, 100))))},
-            {"kind": "unstable environment"},
-        ):
-            document = {"format": "zwidth violation 1", "kind": "violation", "loop": loop, "proof": proof}
-            assert not checker.verify(document).valid
-
-
 def test_two_roads_to_the_criterion():
     """The value at one point is that of the polynomial which the checker multiplies out for proofs."""
     random = Random("two roads")
@@ -358,15 +246,31 @@ def test_two_roads_to_the_criterion():
         law = random_law(random)
         delay = random.choice((Fraction(0), T, T * Fraction(random.randint(1, 2999), 1000)))
         setting = check_by_closed_forms(device("0.3", delay), zw.PulseTransferFunction(*law)).decision.setting
-        loop = loop_of(LOOP.read(setting_document(setting)["loop"], "loop", "linear"))
+        document = setting.document(Motion((Fraction(0), Fraction(0))), Fraction(0))
+        loop = loop_of(LOOP.read(document["loop"], "loop", "linear"))
         c = Fraction(random.randint(-1000, 1000), 1000)
         polynomial = sum(a * c**k for k, a in enumerate(criterion(loop)))
         power = 2 * len(loop.denominator) + loop.whole + 1
         assert criterion_at(loop, c) == polynomial * c.denominator**power
 
 
-def setting_document(setting):
-    """The loop of a setting as a document has it."""
-    from zwidth.passivity.witness.motion import Motion
+PADDLE = zw.catalogue.device("haptic-paddle")
+SLOW = {
+    "solid of 10 s": zw.StandardLinearSolid(310, 20, 200),
+    "Prony series to minutes": zw.GeneralizedMaxwell("605.2", [("44.43", "3.623"), ("20.31", 5978)], "zoh"),
+    "rounded": zw.GeneralizedMaxwell("22.5", [("291.6", "4.233"), ("115.6", "94.16")], "matched"),
+    "damped wall": zw.Wall(100, "0.2"),
+}
 
-    return setting.document(Motion((Fraction(0), Fraction(0))), Fraction(0))
+
+@pytest.mark.parametrize("delay", ["0", "0.0004", "0.001"])
+@pytest.mark.parametrize("name", SLOW)
+def test_a_clear_violation_is_shown_by_a_short_motion(name, delay):
+    verdict = zw.check(PADDLE.replace(delay=delay), SLOW[name])
+    assert verdict.outcome == "active"
+    witness = verdict.witness
+    assert witness.verify()
+    assert witness.motion.samples <= 202
+    x = witness.motion.positions
+    assert x[0] == x[-1] == 0
+    assert min(x[1:-1]) > 0

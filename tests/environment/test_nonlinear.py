@@ -1,10 +1,9 @@
-"""Springs through points: exact forces, slopes, the two constructors, bad input."""
-
-from __future__ import annotations
+"""Springs through points and contacts of Hunt and Crossley: exact forces, what they say and refuse."""
 
 import pickle
 import subprocess
 import sys
+from decimal import Decimal, localcontext
 from fractions import Fraction
 
 import numpy as np
@@ -13,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import zwidth as zw
+from zwidth.model.environment.nonlinear import resting_force
 
 places = st.fractions(-2, 2, max_denominator=997)
 tables = st.lists(places, min_size=2, max_size=12, unique=True).flatmap(
@@ -21,8 +21,7 @@ tables = st.lists(places, min_size=2, max_size=12, unique=True).flatmap(
 
 
 @given(tables, st.fractions(-3, 3, max_denominator=999))
-def test_the_force_is_linear_between_points_and_constant_beyond(table, x) -> None:
-    """As numpy.interp has it in doubles."""
+def test_the_force_is_linear_between_points_and_constant_beyond(table, x):
     positions, forces = table
     spring = zw.NonlinearSpring(positions, forces)
     expected = np.interp(float(x), [float(p) for p in positions], [float(f) for f in forces])
@@ -31,7 +30,7 @@ def test_the_force_is_linear_between_points_and_constant_beyond(table, x) -> Non
 
 
 @given(tables)
-def test_the_largest_slope_bounds_every_secant(table) -> None:
+def test_the_largest_slope_bounds_every_secant(table):
     """f(y) − f(x) ≤ s (y − x) for x < y, with equality for one pair of points; never below 0."""
     spring = zw.NonlinearSpring(*table)
     slope = spring.largest_slope.fraction
@@ -40,14 +39,13 @@ def test_the_largest_slope_bounds_every_secant(table) -> None:
     assert slope == max(0, *secants)
 
 
-def test_the_force_is_exact() -> None:
-    """A third of the way of a third of a newton is a ninth, not a double near to it."""
+def test_the_force_is_exact():
     spring = zw.NonlinearSpring([0, "0.03"], [0, Fraction(1, 3)])
     assert spring.force("0.01").fraction == Fraction(1, 9)
     assert spring.largest_slope.fraction == Fraction(100, 9)
 
 
-def test_detents_are_a_triangle_wave_through_places_of_rest() -> None:
+def test_detents_are_a_triangle_wave_through_places_of_rest():
     """f = 0 and rising at 0, p, 2p; ±F a quarter of a pitch beside; nothing far away."""
     spring = zw.NonlinearSpring.detents(3, 0.02, 0.5)
     assert [float(spring.force(k * Fraction(1, 50))) for k in range(3)] == [0, 0, 0]
@@ -58,7 +56,7 @@ def test_detents_are_a_triangle_wave_through_places_of_rest() -> None:
     assert len(zw.NonlinearSpring.detents(1, 1, 1).positions) == 4
 
 
-def test_a_bump_stop_hardens_and_its_chords_are_as_near_as_promised() -> None:
+def test_a_bump_stop_hardens_and_its_chords_are_as_near_as_promised():
     """K u + H u³ at the points, above it by at most ¾ H D³/(n − 1)² between them."""
     start, k, h, depth, points = Fraction(1, 10), 200, 10**6, Fraction(2, 100), 9
     spring = zw.NonlinearSpring.bump_stop(start, k, h, depth, points)
@@ -73,8 +71,7 @@ def test_a_bump_stop_hardens_and_its_chords_are_as_near_as_promised() -> None:
     assert len(zw.NonlinearSpring.bump_stop(0, 1, 0, 1).positions) == 32
 
 
-def test_it_is_bilateral_nonlinear_and_says_its_numbers() -> None:
-    """describe() for a person, linear or rotary; repr() to type again."""
+def test_it_is_bilateral_nonlinear_and_says_its_numbers():
     spring = zw.NonlinearSpring([-0.01, 0, 0.02], [-1, 0, 4])
     assert not any([spring.unilateral, spring.linear, spring.spring, spring.clamped])
     assert spring.is_certain
@@ -88,22 +85,70 @@ def test_it_is_bilateral_nonlinear_and_says_its_numbers() -> None:
     assert spring.replace(forces=[0, 0, 0]).largest_slope == 0
 
 
-def test_there_is_no_pulse_transfer_function() -> None:
-    """The message says what takes the law."""
-    spring = zw.NonlinearSpring([0, 1], [0, 1])
-    with pytest.raises(zw.InputError, match=r"no H\(z\): .*zwidth\.check"):
-        spring.pulse_transfer_function(Fraction(1, 1000))
-    with pytest.raises(zw.InputError, match="behind a coupling must be linear"):
-        zw.VirtualCoupling(100, 1, spring)
+def test_the_force_of_a_contact_is_exact_where_the_exponent_is_whole():
+    """K uⁿ (1 + λ v) with thirds in it."""
+    contact = zw.HuntCrossley(Fraction(2, 3), 2, "1.5")
+    assert contact.force(Fraction(1, 7), Fraction(1, 3)).fraction == Fraction(2, 3) / 49 * Fraction(3, 2)
+    assert zw.HuntCrossley(300, 1).force("0.001").fraction == Fraction(3, 10)
+    assert contact.force(Fraction(-1, 7), 5) == 0
+    assert contact.force(0, 5) == 0
+    assert zw.HuntCrossley(1000).force("0.0009").fraction == Fraction(27, 1000)  # a sphere on a plane
 
 
-def test_it_is_loaded_when_it_is_first_used() -> None:
+def test_a_contact_lets_go_without_pulling():
+    """For λ v < −1 no force, or one that pulls where it is not clamped."""
+    assert zw.HuntCrossley(300, 2, 3).force("0.1", "-0.5") == 0
+    assert zw.HuntCrossley(300, 2, 3, clamped=False).force("0.1", "-0.5").fraction == Fraction(-3, 2)
+    assert zw.HuntCrossley(300, 2, 3).force("0.1", "-0.2").fraction == Fraction(12, 10)
+
+
+@given(
+    st.fractions(Fraction(1, 1000), 10**6, max_denominator=1000),
+    st.fractions(1, 10, max_denominator=60),
+    st.fractions(Fraction(1, 10**6), 2, max_denominator=10**6),
+)
+def test_a_root_is_rounded_to_seventeen_digits(k, n, u):
+    """With n = a/b, the b-th power of the force is Kᵇ uᵃ, to as many digits."""
+    found = resting_force(k, n, u)
+    a, b = n.numerator, n.denominator
+    ratio = found**b / (k**b * u**a)
+    assert abs(ratio - 1) <= b * Fraction(51, 10**18)
+    with localcontext(prec=60):
+        assert (
+            b == 1 or len((Decimal(found.numerator) / found.denominator).normalize().as_tuple().digits) <= 17
+        )
+
+
+def test_what_a_contact_is_and_says():
+    contact = zw.HuntCrossley(2e4, "1.5", 2)
+    assert (contact.unilateral, contact.clamped, contact.is_certain) == (True, True, True)
+    assert (contact.linear, contact.spring) == (False, False)
+    assert contact.describe() == "Hunt–Crossley contact, 20000 N/m^1.5, exponent 1.5, 2 s/m, never pulls"
+    assert zw.HuntCrossley(300, 2, clamped=False).describe() == "Hunt–Crossley contact, 300 N/m², exponent 2"
+    assert "300 N·m/rad, exponent 1, 2 s/rad" in zw.HuntCrossley(300, 1, 2).describe("rotary")
+    assert eval(repr(contact), vars(zw) | {"HuntCrossley": zw.HuntCrossley}) == contact
+    assert pickle.loads(pickle.dumps(contact)) == contact
+    assert contact.replace(exponent=2).stiffness == 2e4
+    units = [contact.unit_of(key) for key in ("stiffness", "exponent", "dissipation")]
+    assert units == ["N/m^1.5", "1", "s/m"]
+
+
+def test_they_are_loaded_when_one_is_first_used():
     """Few loops have one."""
     code = (
-        "import sys, zwidth; assert 'zwidth.model.environment.nonlinear' not in sys.modules; "
-        "from zwidth.model.environment import NonlinearSpring as same; assert zwidth.NonlinearSpring is same"
+        "import sys, zwidth as zw; assert 'zwidth.model.environment.nonlinear' not in sys.modules; "
+        "from zwidth.model.environment import NonlinearSpring as same; assert zw.NonlinearSpring is same; "
+        "assert zw.HuntCrossley(1)"
     )
-    subprocess.run([sys.executable, "-c", code], check=True)
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+@pytest.mark.parametrize("law", [zw.NonlinearSpring([0, 1], [0, 1]), zw.HuntCrossley(1000)])
+def test_there_is_no_pulse_transfer_function(law):
+    with pytest.raises(zw.InputError, match=r"no H\(z\): .*zwidth\.check"):
+        law.pulse_transfer_function(Fraction(1, 1000))
+    with pytest.raises(zw.InputError, match="behind a coupling must be linear"):
+        zw.VirtualCoupling(100, 1, law)
 
 
 @pytest.mark.parametrize(
@@ -135,9 +180,18 @@ def test_it_is_loaded_when_it_is_first_used() -> None:
         (lambda: zw.NonlinearSpring.bump_stop(0, 1, 1, 0), "depth must be > 0"),
         (lambda: zw.NonlinearSpring.bump_stop(0, 1, 1, 1, 1), "points is a whole number from 2 to 10000"),
         (lambda: zw.NonlinearSpring.bump_stop("x", 1, 1, 1), "start is in m; got .x.: expected a number"),
+        (lambda: zw.HuntCrossley(-1), "stiffness must be ≥ 0"),
+        (lambda: zw.HuntCrossley(float("nan")), "stiffness is a plain number: expected a finite number"),
+        (lambda: zw.HuntCrossley((1, 2)), "stiffness is a plain number; got a list where a number belongs"),
+        (lambda: zw.HuntCrossley(1, "0.9"), "exponent must be from 1 to 10"),
+        (lambda: zw.HuntCrossley(1, 11), "exponent must be from 1 to 10"),
+        (lambda: zw.HuntCrossley(1, None), "exponent is a plain number; got nothing where a number belongs"),
+        (lambda: zw.HuntCrossley(1, 2, "-0.1"), "dissipation must be ≥ 0"),
+        (lambda: zw.HuntCrossley(1, 2, "2 N"), "dissipation is in s/m; got .2 N., a force"),
+        (lambda: zw.HuntCrossley(1, 2, 0, 1), "clamped is True"),
     ],
 )
-def test_bad_input_has_one_clear_message(make, message) -> None:
-    """What was given and what is wanted."""
-    with pytest.raises(zw.InputError, match=message):
+def test_bad_input_has_one_clear_message(make, message):
+    with pytest.raises(zw.InputError, match=message) as error:
         make()
+    assert "\n" not in str(error.value)

@@ -1,23 +1,19 @@
 """A file that is not there: one near it in name is told, and never one of another folder or kind."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
 
-from zwidth.cli.main import main
 from zwidth.missing import did_you_mean, near_file
 
 HERE = ("bumpstop.toml", "wheel.toml", "session.csv", "verdict.json", "leader.yaml", "arm.urdf", "touch.nc")
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(run, tmp_path):
     """With one file of each kind, and the process in it."""
     for name in HERE:
-        (tmp_path / name).touch()
-    monkeypatch.chdir(tmp_path)
+        Path(name).touch()
     return tmp_path
 
 
@@ -34,22 +30,16 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("traces tuoch.nc", "touch.nc"),
     ],
 )
-def test_commands_name_the_file_that_is_there(
-    folder: Path, capsys: pytest.CaptureFixture[str], words: str, meant: str
-) -> None:
-    """Of the same ending, or of the catalogue."""
+def test_commands_name_the_file_that_is_there(refused, folder, words, meant):
     (folder / "wheel.toml").write_text("[device]\ndamping = 1\nrate = 1000\n", encoding="utf-8")
-    assert main(words.split()) == 2
-    assert capsys.readouterr().err.endswith(f'did you mean "{meant}"?\n')
+    assert refused(words).endswith(f'did you mean "{meant}"?\n')
 
 
-def test_a_file_is_named_as_one_would_type_it(folder: Path) -> None:
-    """With the folder in which it was sought."""
+def test_a_file_is_named_as_one_would_type_it(folder):
     assert near_file(Path("..") / folder.name / "wheal.toml") == str(Path("..") / folder.name / "wheel.toml")
     assert near_file(folder / "wheal.toml") == str(folder / "wheel.toml")
 
 
 @pytest.mark.parametrize("name", ["quite-another.toml", "wheel.csv", "none/wheel.toml", "\0.toml"])
-def test_nothing_is_said_where_nothing_is_near(folder: Path, name: str) -> None:
-    """Another ending, a folder that is not there, a name that cannot be."""
+def test_nothing_is_said_where_nothing_is_near(folder, name):
     assert did_you_mean(folder / name) == ""

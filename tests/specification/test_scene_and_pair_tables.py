@@ -1,4 +1,4 @@
-"""Two arms and what joins them, in TOML tables: `zw.load` makes a `Pair` of them."""
+"""Scenes, and two arms and what joins them, in a file: what it may say, and what is said of a mistake."""
 
 from __future__ import annotations
 
@@ -7,6 +7,79 @@ from pathlib import Path
 import pytest
 
 import zwidth as zw
+from zwidth import InputError
+from zwidth.model.specification.environments import ELEMENTS, build_environment
+from zwidth.model.specification.table import Table
+
+SPRING = {"type": "spring", "first": "handle", "second": "ground", "stiffness": "1 N/m"}
+
+
+@pytest.mark.parametrize(
+    ("elements", "says"),
+    [
+        ("spring", "elements are tables"),
+        ([SPRING, {"type": "sprung"}], 'element 2: there is no element "sprung"; did you mean "spring"'),
+        ([{"first": "handle"}], "element 1: type is missing"),
+        ([{**SPRING, "damping": 1}], 'has no "damping"'),
+        ([{"type": "mass", "node": "handle"}], r"needs mass \[kg\]"),
+        ([{**SPRING, "stiffness": "-3 N/m"}], "must be > 0"),
+        ([{**SPRING, "stiffness": "3 kg"}], "stiffness"),
+        ([{**SPRING, "first": 7}], "name in quotes"),
+        ([{**SPRING, "first": "ground"}], "both ends"),
+    ],
+)
+def test_a_mistake_is_named_with_its_place(elements, says):
+    with pytest.raises(InputError, match=says):
+        build_environment(Table("[environment]", {"type": "scene", "elements": elements}), "linear")
+
+
+def test_a_rotary_device_has_rotary_scenes():
+    element = {**SPRING, "stiffness": "2 N*m/rad"}
+    found = build_environment(Table("x", {"type": "scene", "elements": [element]}), "rotary")
+    assert found == zw.Scene([zw.scene.Spring("handle", "ground", 2)])
+
+
+def test_every_element_of_the_package_has_a_name():
+    from zwidth.model import scene
+
+    made = {kind.made for kind in ELEMENTS.values()}
+    assert made == {
+        thing
+        for thing in (getattr(scene, name) for name in scene.__all__)
+        if isinstance(thing, type) and issubclass(thing, scene.Element) and thing is not scene.Element
+    }
+
+
+WORLD = """
+[device]
+damping = "0.5 N*s/m"
+coulomb_friction = 0
+resolution = 0
+rate = "1 kHz"
+delay = 0
+[environment]
+type = "virtual-coupling"
+stiffness = "600 N/m"
+damping = "0.1 N*s/m"
+[environment.environment]
+type = "scene"
+port = "tool"
+elements = [
+  {type = "mass", node = "tool", mass = "50 g"},
+  {type = "contact", first = "tool", second = "ground", stiffness = "2 N/mm", gap = "5 mm"},
+]
+"""
+
+
+def test_a_file_is_checked(tmp_path, capsys):
+    from zwidth.cli.main import main
+
+    path = tmp_path / "world.toml"
+    path.write_text(WORLD, encoding="utf-8")
+    assert main(["check", str(path)]) == 0
+    assert "coupling" in capsys.readouterr().out
+    assert main(["check", str(path), "--stiffness", "1200"]) == 3
+
 
 ARMS = '[leader]\ndamping = 0.2\nrate = 1000\n[follower]\ncatalogue = "haptic-paddle"\n'
 ALIKE = "[device]\ninertia = 0.006\ndamping = 0.02\nrate = 1000\n"
@@ -14,14 +87,12 @@ COUPLING = '[coupling]\nstiffness = "0.1 N/mm"\n'
 
 
 def read(folder: Path, text: str) -> zw.Pair:
-    """What `load` makes of a text."""
     path = folder / "two.toml"
     path.write_text(text, encoding="utf-8")
     return zw.load(path)
 
 
-def test_every_key_is_an_argument_of_a_pair(tmp_path: Path) -> None:
-    """A plain number is SI, a text has its unit."""
+def test_every_key_is_an_argument_of_a_pair(tmp_path):
     more = (
         'damping = "20 mN*s/m"\nlocal_damping = 0.03\nfollower_stiffness = 120\nfollower_damping = -0.01\n'
         'follower_local_damping = "0.04 N*s/m"\nlink_delay = "2 ms"\nlink_delay_back = 0.003\n'
@@ -33,20 +104,10 @@ def test_every_key_is_an_argument_of_a_pair(tmp_path: Path) -> None:
         follower_stiffness=120, follower_damping="-0.01", follower_local_damping="0.04",
         delay=("0.002", "0.003"),
     )  # fmt: skip
-
-
-def test_one_link_delay_is_for_both_ways(tmp_path: Path) -> None:
-    """And the virtual damping may be called so."""
-    pair = read(tmp_path, ARMS + COUPLING + 'virtual_damping = 0.02\nlink_delay = "2 ms"\n')
-    assert pair.delay == (zw.Exact("0.002"), zw.Exact("0.002"))
-    assert pair.damping == zw.Exact("0.02")
-
-
-def test_one_device_is_both_arms_and_may_turn(tmp_path: Path) -> None:
-    """A rotary device has a spring in N·m/rad, and its name from the file."""
-    pair = read(tmp_path, ALIKE + '[coupling]\nstiffness = "3 N*m/rad"\n')
+    coupling = '[coupling]\nstiffness = "3 N*m/rad"\nvirtual_damping = 0.02\nlink_delay = "2 ms"\n'
+    pair = read(tmp_path, ALIKE + coupling)
     wheel = zw.rotary(inertia="0.006", damping="0.02", rate=1000, name="two")
-    assert pair == zw.Pair(wheel, wheel, stiffness=3)
+    assert pair == zw.Pair(wheel, wheel, stiffness=3, damping="0.02", delay=("0.002", "0.002"))
 
 
 @pytest.mark.parametrize(
@@ -72,20 +133,18 @@ def test_one_device_is_both_arms_and_may_turn(tmp_path: Path) -> None:
         ("[leeder]\ndamping = 1\n" + COUPLING, 'did you mean "leader"'),
     ],
 )  # fmt: skip
-def test_what_cannot_be_used_is_said(text: str, message: str, tmp_path: Path) -> None:
-    """In one message that says where it stands and what there may be."""
+def test_what_cannot_be_used_is_said(text, message, tmp_path):
     with pytest.raises(zw.InputError, match=message):
         read(tmp_path, text)
 
 
-def test_a_pair_is_read_alone(tmp_path: Path) -> None:
-    """A second file would be ignored."""
+def test_a_pair_is_read_alone(tmp_path):
     (tmp_path / "two.toml").write_text(ARMS + COUPLING, encoding="utf-8")
     with pytest.raises(zw.InputError, match="read alone"):
         zw.load("haptic-paddle", tmp_path / "two.toml")
 
 
-def test_compensation_of_friction_is_of_both_sides_unless_told(tmp_path: Path) -> None:
+def test_compensation_of_friction_is_of_both_sides_unless_told(tmp_path):
     """A number that the follower has none of is the leader's; 0 where it has none of that."""
     law = 'compensation_coulomb = "80 mN"\ncompensation_viscous = 0.01\ncompensation_speed = "2 cm/s"\n'
     both = zw.FrictionCompensation(coulomb="0.08", viscous="0.01", speed="0.02")

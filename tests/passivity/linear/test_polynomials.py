@@ -1,8 +1,9 @@
-"""Signs on [−1, 1] decided exactly, against polynomials of known roots and against mpmath's roots."""
+"""Signs and real roots on [−1, 1] and stability, exactly: of known roots, and by another road."""
 
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import product as choices
 from math import lcm
 from random import Random
 
@@ -14,17 +15,22 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import seeds
 
+from zwidth.checker.exact.roots import inside_unit_circle
 from zwidth.passivity.linear import positivity
+from zwidth.passivity.linear.exact_algebra import is_schur, rational_roots_inside, real_roots, roots_inside
 from zwidth.passivity.linear.positivity import Positivity, TooClose, prove_nonnegative
 
 
-def product(*factors):
-    """The product of factors in ascending rational coefficients, as an integer polynomial."""
+def integers(*factors):
+    """The product of factors in rational coefficients, made whole."""
     total = polynomials.product(*factors)
-    scale = 1
-    for c in total:
-        scale = lcm(scale, c.denominator)
-    return fmpz_poly([int(c * scale) for c in total])
+    scale = lcm(*(c.denominator for c in total))
+    return [int(c * scale) for c in total]
+
+
+def product(*factors):
+    """The same of ascending coefficients, as a polynomial."""
+    return fmpz_poly(integers(*factors))
 
 
 def value(p, c):
@@ -57,6 +63,7 @@ def root(r):
 
 
 TINY = Fraction(1, 10**30)
+NEAR = Fraction(1, 2**120)
 NONNEGATIVE = {
     "touches inside": [root("0.37"), root("0.37")],
     "touches both ends": [(1, -1), (1, 1)],
@@ -86,20 +93,12 @@ NEGATIVE = {
 }
 
 
-@pytest.mark.parametrize("name", NONNEGATIVE)
-def test_nonnegative(name):
-    """Polynomials that are never negative on [−1, 1] are proved, however closely they touch."""
-    assert_sound(product(*NONNEGATIVE[name]), True)
-
-
-@pytest.mark.parametrize("name", NEGATIVE)
-def test_negative_somewhere(name):
-    """Polynomials that are negative somewhere get a point inside where they are."""
-    assert_sound(product(*NEGATIVE[name]), False)
+@pytest.mark.parametrize("name", [*NONNEGATIVE, *NEGATIVE])
+def test_a_sign_that_is_known(name):
+    assert_sound(product(*(NONNEGATIVE | NEGATIVE)[name]), name in NONNEGATIVE)
 
 
 def test_zero():
-    """The zero polynomial is nonnegative."""
     assert isinstance(prove_nonnegative(fmpz_poly([])), Positivity)
 
 
@@ -121,7 +120,6 @@ def test_degree_sixty(seed):
 @pytest.mark.filterwarnings("ignore:Descending")
 @seeds(20)
 def test_against_roots(seed):
-    """Random polynomials agree with the sign between the real roots that mpmath finds."""
     random = Random(seed)
     degree = random.randint(1, 14)
     p = fmpz_poly([random.randint(-50, 50) for _ in range(degree)] + [random.choice([-3, 2, 17])])
@@ -203,3 +201,128 @@ def test_a_valley_narrower_than_the_digits_of_its_lowest_point(sign):
     on_unit = (half**2 + Fraction(sign, 2**700), -4 * half**2, 4 * half**2)  # c = low + 2 half t
     answer = positivity._valley(product(dip), product(on_unit), low, high)
     assert answer is True if sign > 0 else value(product(dip), answer) < 0
+
+
+PLACED = {
+    "none": [],
+    "dyadic, where halving meets them": ["0", "0.5", "-0.5", "0.25"],
+    "thirds": ["1/3", "-2/3"],
+    "next to each other": [Fraction("0.3"), Fraction("0.3") + Fraction(1, 10**25)],
+    "next to the ends": [1 - TINY, TINY - 1],
+    "beyond the ends": ["1.5", "-7", "0.1"],
+    "at the ends": ["1", "-1", "0.7"],
+    "more than once": ["0.4"] * 3 + ["-0.25"] * 2,
+}
+
+
+@pytest.mark.parametrize("name", PLACED)
+def test_placed_roots(name):
+    """Each root inside is found once, to 120 bits, and those at the ends and beyond are not."""
+    places = {Fraction(r) for r in PLACED[name]}
+    expected = sorted(r for r in places if -1 < r < 1)
+    found = sorted(roots_inside(product(*map(root, PLACED[name]), (7, 0, 3))))
+    assert len(found) == len(expected)
+    assert all(abs(a - b) < NEAR for a, b in zip(found, expected, strict=True))
+
+
+@seeds(12)
+def test_random_polynomials(seed):
+    random = Random(seed)
+    cosines = [random.randint(-(10**6), 10**6) for _ in range(random.randint(2, 40))]
+    p = sum((c * fmpz_poly.chebyshev_t(j) for j, c in enumerate(cosines)), fmpz_poly([]))
+    expected = sorted(c for c in real_roots(p) if -1 < c < 1)
+    found = sorted(roots_inside(p))
+    assert len(found) == len(expected)
+    assert all(abs(a - b) < NEAR for a, b in zip(found, expected, strict=True))
+
+
+def test_rational_roots():
+    """The rational ones alone, and of these the simple ones inside."""
+    p = product(root("0.123456789"), root("-2/7"), *[root("0.5")] * 2, root(3), (-2, 0, 7), (1, 1, 1))
+    assert sorted(rational_roots_inside(p)) == [Fraction(-2, 7), Fraction("0.123456789")]
+
+
+def test_a_root_that_is_nearly_rational():
+    """What agrees with a short fraction to 40 digits and is another number is told apart."""
+    near = Fraction(1, 3) + Fraction(1, 10**40)
+    assert rational_roots_inside(product(root(near))) == [near]
+    assert rational_roots_inside(product((Fraction(-1, 9) - Fraction(1, 10**40), 0, 1))) == []
+
+
+def pair(radius, cosine):
+    """z² − 2 r cos φ z + r²: a complex pair."""
+    r = Fraction(radius)
+    return (1, -2 * r * Fraction(cosine), r * r)
+
+
+def assert_stable(descending, expected):
+    assert is_schur(descending[::-1]) is expected
+    assert inside_unit_circle([Fraction(c) for c in descending]) is expected
+
+
+HAIR = Fraction(1, 10**12)
+KNOWN = {
+    "real, a hair inside": ([(1, HAIR - 1)], True),
+    "real, a hair outside": ([(1, -1 - HAIR)], False),
+    "pair, a hair inside": ([pair(1 - HAIR, "0.3")], True),
+    "pair, a hair outside": ([pair(1 + HAIR, "0.3")], False),
+    "at 1": ([(1, -1), (1, "-0.4")], False),
+    "at −1": ([(1, 1), (1, "-0.4")], False),
+    "pair on the circle": ([pair(1, "-0.7"), (1, "0.2")], False),
+    "double pair on the circle": ([pair(1, "0.6"), pair(1, "0.6")], False),
+    "reciprocal pair": ([(1, "-0.4"), (1, "-2.5")], False),
+    "reciprocal complex pairs": ([pair("0.8", "0.1"), pair("1.25", "0.1")], False),
+    "reciprocal with opposite signs": ([(1, "-0.5"), (1, 2)], False),
+    "product of roots −1": ([(1, "-0.5"), (1, 2), (1, "0.1")], False),
+    "roots at zero": ([(1, 0), (1, 0), (1, "0.9")], True),
+    "a constant": ([(7,)], True),
+    "negative leading coefficient": ([(-3, 2)], True),
+    "order 40, all close to the circle": ([pair("0.9999", Fraction(k, 21)) for k in range(1, 21)], True),
+    "order 40, one pair outside": (
+        [pair("0.9999", Fraction(k, 21)) for k in range(1, 20)] + [pair("1.0001", "0.95")],
+        False,
+    ),
+    "order 40, one pair on the circle": (
+        [pair("0.99", Fraction(k, 21)) for k in range(1, 20)] + [pair(1, "0.95")],
+        False,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_known_roots(name):
+    factors, expected = KNOWN[name]
+    assert_stable(integers(*factors), expected)
+
+
+def test_zero_is_not_stable():
+    assert not is_schur([])
+    assert not is_schur([0, 0])
+
+
+@seeds(20)
+def test_random_roots(seed):
+    random = Random(seed)
+    factors, stable = [], True
+    for _ in range(random.randint(1, 6)):
+        radius = Fraction(f"{random.choice([random.uniform(0, 1), random.uniform(0.99, 1.005)]):.4f}")
+        cosine = Fraction(f"{random.uniform(-1, 1):.3f}")
+        factors.append(
+            pair(radius, cosine) if random.random() < 0.6 else (1, random.choice([1, -1]) * radius)
+        )
+        stable &= radius < 1
+    assert_stable(integers((Fraction("-2.3"),), *factors), stable)
+
+
+def test_every_small_cubic():
+    """Small whole numbers make a reflection of exactly 1 on the way, which no balls decide."""
+    for descending in choices(range(-3, 4), repeat=4):
+        if descending[0]:
+            expected = inside_unit_circle([Fraction(c) for c in descending])
+            assert is_schur(descending[::-1]) is expected, descending
+
+
+@pytest.mark.parametrize(("furthest", "expected"), [(1 - HAIR, True), (1 + HAIR, False)])
+def test_order_one_hundred_and_ten(furthest, expected):
+    """A cluster of poles near 1 and one pole a hair inside or outside: decided, whatever the digits."""
+    assert is_schur(integers(*[(1, Fraction("-0.99"))] * 109, (1, -furthest))[::-1]) is expected
