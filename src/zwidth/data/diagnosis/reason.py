@@ -226,9 +226,9 @@ def doubt(cause: str, seen: Evidence) -> str | None:
     if _may_be_commanded(cause, seen):
         left = 100 * (1.0 if seen.law is None else min(1.0, seen.law.unexplained))
         return (
-            "the position that the law aims at, beside the other columns (target_position), or a stretch in "
-            f"which it stands still: a spring and a damper about one place leave {left:.2g} % of the force "
-            "unexplained, and a motion that is commanded looks like this"
+            "the law that was programmed beside the file, and the position that it aims at where that moves "
+            f"(target_position): a spring and a damper about one place leave {left:.2g} % of the force "
+            "unexplained, as in a motion that is commanded"
         )
     mains = min(_MAINS, key=lambda at: abs(at - vibration.frequency))
     if cause == "structural resonance" and abs(mains - vibration.frequency) < _NEAR:
