@@ -38,6 +38,7 @@ _OF_AN_ARM = ("position", "commanded_force", "actuator_force")
 _QUANTITIES = (
     "time",
     *_OF_AN_ARM,
+    "target_position",
     *(f"{arm}_{name}" for arm in ("leader", "follower") for name in _OF_AN_ARM),
 )
 
@@ -55,8 +56,8 @@ OPTIONS = (
     },
     "log",
     {
-        "--column QUANTITY=NAME... > columns": "column of time, position, commanded_force, actuator_force "
-        "(repeatable)",
+        "--column QUANTITY=NAME... > columns": "column of time, position, commanded_force, actuator_force, "
+        "target_position (repeatable)",
         "--unit QUANTITY=UNIT... > units": "unit of a column where neither file nor name states it "
         "(repeatable)",
         "--scale QUANTITY=FACTOR...": "what a number in a column stands for: actuator_force='2 N/A' "

@@ -64,6 +64,38 @@ def is_named(cause: str, p: float, seen: Evidence) -> bool:
 
 
 def likelihoods(seen: Evidence) -> dict[str, float]:
+    """p of each cause: from the features; of a command alone whose loop is known to feed itself, less what its
+    own energies speak against."""
+    learnt = by_features(seen)
+    if not _feeds_itself(seen):
+        return learnt
+    weighed = {name: p * (1.0 if _speaks_for(name, seen) else _LITTLE) for name, p in learnt.items()}
+    whole = sum(weighed.values())
+    return {name: p / whole for name, p in weighed.items()}
+
+
+_LITTLE = 0.02
+"""Of p that is left to a cause which the energies speak against: the features may know better, but seldom."""
+
+
+def _feeds_itself(seen: Evidence) -> bool:
+    """The law is known, and with the delay as it is stated it gives what friction takes."""
+    known = seen.recorded == "command" and seen.known.delay > 0 and follows(seen)
+    return known and seen.lost is not None and seen.energy > _ENOUGH * seen.lost
+
+
+def _speaks_for(cause: str, seen: Evidence) -> bool:
+    """Nothing is missing that another one would have to put in."""
+    return (
+        _gives(seen, cause) if cause in TERMS[:4] else cause == "encoder buzz" and CAUSES[cause].shown(seen)
+    )
+
+
+_ENOUGH = 0.8
+"""Of what friction takes, which is known to 15 %."""
+
+
+def by_features(seen: Evidence) -> dict[str, float]:
     """p of each cause, from the features alone; what the recording does not say counts as the usual."""
     names, middle, spread, weights = _learnt()[seen.recorded]
     z = (vector(features(seen), names) - middle) / spread
@@ -91,9 +123,22 @@ def _force(seen: Evidence) -> str:
     return "N*m" if seen.rotary else "N"
 
 
-def _share(seen: Evidence, term: str) -> str:
+def _given(seen: Evidence, term: str) -> float:
+    """Share that a term has in what all of them give in a cycle."""
     given = sum(max(0.0, w) for w in seen.supplied.values()) or 1.0
-    return f"{100 * max(0.0, seen.supplied[term]) / given:.0f} % of the energy that the law gives in a cycle"
+    return max(0.0, seen.supplied[term]) / given
+
+
+def _gives(seen: Evidence, term: str) -> bool:
+    return _given(seen, term) > _SPEAKS
+
+
+_SPEAKS = 0.05
+"""Share of the energy from which a term speaks for its cause."""
+
+
+def _share(seen: Evidence, term: str) -> str:
+    return f"{100 * _given(seen, term):.0f} % of the energy that the law gives in a cycle"
 
 
 def _sampling(seen: Evidence) -> Iterator[str]:
@@ -106,7 +151,7 @@ def _sampling(seen: Evidence) -> Iterator[str]:
 
 
 def _delay(seen: Evidence) -> Iterator[str]:
-    if seen.sees_delay:
+    if seen.sees_delay or _gives(seen, "delay"):
         yield (
             f"the force comes up to {shown(seen.delay, 's', 3)} after its sample, "
             f"{seen.delay / seen.loop_period:.0f} samples; the hold alone is half a sample"
@@ -200,7 +245,8 @@ def _weakening(seen: Evidence) -> Iterator[str]:
             f"in a cycle the motor gives {shown(seen.energy, 'J', 2)} and friction should take "
             f"{shown(seen.lost, 'J', 2)}"
         )
-    yield f"it stands still for {100 * seen.standing:.0f} % of the time, a sine does for 6 %"
+    if seen.standing > _STICKS:
+        yield f"it stands still for {100 * seen.standing:.0f} % of the time, a sine does for 6 %"
 
 
 def _limit(seen: Evidence) -> Iterator[str]:
@@ -231,6 +277,14 @@ def follows(seen: Evidence) -> bool:
 
 _MOST_UNEXPLAINED = 0.1
 """Share of the force's variance: of a hundred simulated faults one leaves more to its own law."""
+
+
+def _brakes_late(seen: Evidence) -> bool:
+    """A damper accounts for what lies between the two forces, better than a delay; it feeds the motion, as far
+    as that is known."""
+    d = seen.drive
+    feeds = seen.law is None or seen.supplied["drive damping"] > 0
+    return d is not None and d.damping > 0 and d.by_damper < d.by_delay and feeds
 
 
 def _missing(seen: Evidence) -> bool:
@@ -276,21 +330,21 @@ CAUSES: Mapping[str, Cause] = {
         Cause(
             "sampling",
             "the spring is held from sample to sample and so pushes out harder than it was pressed in",
-            lambda s: s.supplied["sampling"] > 0 and follows(s),
+            lambda s: _gives(s, "sampling") and follows(s),
             _sampling,
             _DEVICE,
         ),
         Cause(
             "delay",
             "the force comes late: it still pushes out where a spring would have let go",
-            lambda s: (s.sees_delay and s.delay > 0) or _behind(s),
+            lambda s: (s.delay > 0 and _gives(s, "delay")) or (not s.sees_delay and _behind(s)),
             _delay,
             _BOTH,
         ),
         Cause(
             "differenced velocity",
             "virtual damping from differenced positions comes so late that it drives the motion",
-            lambda s: s.law is not None and s.law.damping > 0,
+            lambda s: s.law is not None and s.law.damping > 0 and _gives(s, "differenced velocity"),
             _velocity,
             _EVERY,
         ),
@@ -304,28 +358,34 @@ CAUSES: Mapping[str, Cause] = {
         Cause(
             "drive damping",
             "the drive damps by itself, from a speed that is old, and so drives the motion",
-            lambda s: s.recorded == "both" or s.recorded == "motor" or _adds(s),
+            lambda s: _brakes_late(s) if s.drive is not None else s.recorded == "motor" or _adds(s),
             _drive,
             _BOTH,
         ),
         Cause(
             "friction compensation",
             "more friction is compensated than there is: the compensation drives the motion",
-            lambda s: s.law is not None and s.law.compensation > 0 and follows(s),
+            lambda s: s.law is not None and _gives(s, "friction compensation") and follows(s),
             _compensation,
             _EVERY,
         ),
         Cause(
             "velocity-weakening friction",
             "the device sticks and slips: its friction is larger at rest than in motion",
-            lambda s: (_missing(s) or s.energy <= 0) and (s.sees_delay or s.standing > _STICKS),
+            lambda s: (
+                (_missing(s) or s.energy <= 0)
+                and (s.sees_delay or s.standing > _STICKS)
+                and (s.lost is not None or s.standing > _STICKS)
+            ),
             _weakening,
             "the same motion with the motor off, moved by hand: does it still stick and slip?",
         ),
         Cause(
             "actuator limit",
             "the motor cannot follow: its force comes late because it changes no faster",
-            lambda s: s.recorded == "both" or _climbs_straight(s) or _behind(s),
+            lambda s: (
+                _gives(s, "actuator limit") if s.drive is not None else _climbs_straight(s) or _behind(s)
+            ),
             _limit,
             _BOTH,
         ),

@@ -172,9 +172,9 @@ class _Loop:
         try:
             device, law = self.built(**changes)
             covered = covering(device, law) if laws_of(law) else (device, law)
-        except InputError:
+            return None if covered is None else check_by_closed_forms(*covered)
+        except InputError:  # such as a delay of more samples than a proof has room for
             return None
-        return None if covered is None else check_by_closed_forms(*covered)
 
 
 def change_for(cause: str, seen: Evidence, device: Device) -> Change | None:

@@ -139,6 +139,8 @@ class Evidence:
     """Share of the time in which the motor's force changes about as fast as it ever does; None without it."""
     stated: Stated | None = None
     """The law as somebody stated it, beside the force; None where nobody did."""
+    aimed: float | None = None
+    """How far the target moves at the frequency, against the motion; None where the file has none."""
 
     @property
     def recorded(self) -> str:
@@ -164,6 +166,8 @@ class _Aligned(NamedTuple):
     """The file around the vibration, forces positive against the motion; `steady` is the vibration in it."""
 
     x: Array
+    error: Array
+    """From the target to the position; the position where there is no target."""
     commanded: Array | None
     applied: Array | None
     period: float
@@ -237,26 +241,33 @@ def gather(
         by_inside=fitted.by_inside,
         ramps=None if applied is None else drive.ramps(applied),
         stated=fitted.stated,
+        aimed=None if recording.target is None else _aimed(file, vibration, X),
     )
+
+
+def _aimed(file: _Aligned, vibration: Vibration, X: complex) -> float:
+    target = (file.x - file.error)[file.steady]
+    return float(abs(phasors(target, vibration.frequency, file.period)[0]) / abs(X))
 
 
 def _aligned(recording: Recording, vibration: Vibration, known: Known) -> _Aligned:
     around, period = vibration.around, recording.period
     steady = slice(vibration.rows.start - around.start, vibration.rows.stop - around.start)
     x = recording.position[around]
+    error = x if recording.target is None else x - recording.target[around]
     forces = [None if f is None else f[around] for f in (recording.commanded, recording.applied)]
     seen = next(f for f in forces if f is not None)
-    sign = _sign(x[steady], seen[steady])
+    sign = _sign(error[steady], seen[steady])
     commanded, applied = (None if f is None else sign * f for f in forces)
     loop_period = known.period or _loop_period(commanded, period)
-    return _Aligned(x, commanded, applied, period, loop_period, 1 / vibration.frequency, steady)
+    return _Aligned(x, error, commanded, applied, period, loop_period, 1 / vibration.frequency, steady)
 
 
 def _fitted(file: _Aligned, stated: Environment | None) -> _Fitted:
     """Over all of the file; what an Evidence keeps of it is of the vibration alone."""
     force = file.applied if file.commanded is None else file.commanded
     assert force is not None
-    seen = file.x, force, file.period, file.loop_period, _lags(file)
+    seen = file.error, force, file.period, file.loop_period, _lags(file)
     told = None
     if stated is not None and np.ptp(force):
         told = _accounted(file, compare(stated, *seen, file.commanded is not None))
@@ -271,7 +282,7 @@ def _fitted(file: _Aligned, stated: Environment | None) -> _Fitted:
         told,
         commanded,
         between and replace(between, applied=between.applied[file.steady]),
-        drive.inside(force, file.x, file.period, file.cycle) if commanded is None else None,
+        drive.inside(force, file.error, file.period, file.cycle) if commanded is None else None,
     )
 
 
@@ -403,6 +414,8 @@ def _terms(fitted: _Fitted, motion: _Motion, delay: float, seen: Array) -> dict[
             "actuator limit": between.by_rate,
         }
         least = min(accounts, key=lambda name: accounts[name])
+        if accounts["delay"] <= _ALIKE:
+            least = "delay"  # the simplest of those that account for it
         added = motion.work(motion.phasors(between.applied - seen))
         supplied |= dict.fromkeys(accounts, 0.0)
         if between.by_nothing > _ALIKE:

@@ -5,7 +5,8 @@ The reader of logs knows one column of the actuator's force. Here the two that a
     commanded   what the law computed from the newest sample, before any delay
     applied     what the motor gave, from its current
 
-because what lies between them, a delay, a limit, a damper inside the drive, is among the causes.
+because what lies between them, a delay, a limit, a damper inside the drive, is among the causes.  Where the
+file has the position that was aimed at, the law is of the error, and a target that moves is seen to.
 """
 
 from __future__ import annotations
@@ -18,9 +19,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.data.logs import Log
-from zwidth.data.logs.columns import role_of_force
+from zwidth.data.logs.columns import is_target, role_of_force
 from zwidth.data.logs.read import log_of, opened
-from zwidth.data.logs.table import Block, Motion, Table, whole_runs
+from zwidth.data.logs.survey import Still
+from zwidth.data.logs.table import Block, Motion, Table, listed, whole_runs
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
@@ -30,6 +32,9 @@ if TYPE_CHECKING:
 
 COMMANDED = "commanded_force"
 """The key of the law's own force among `columns`, `units` and `scale`."""
+
+TARGET = "target_position"
+"""The key of the position that the law aims at."""
 
 MOST_SAMPLES = 400_000
 """Looked at, of the longest run: the last ones."""
@@ -56,6 +61,8 @@ class Recording:
     column."""
     findings: tuple[str, ...]
     """What was odd in the file, and what was supposed."""
+    target: Array | None = None
+    """[m; rad] the position that the law aims at; None where there is no such column."""
 
 
 def read(
@@ -116,13 +123,51 @@ def _read(
         role: log(**_arguments(role, column, columns, units, scale), **reading)
         for role, column in roles.items()
     }
+    target, of_target = _target(names, source, log, columns, units, scale, reading)
     first = next(iter(logs.values()))
     supposed = tuple(
         f'"{column}" is taken as the force that the law asked for'
         for role, column in roles.items()
         if role == "force"
     )
-    return _recording(first, logs.get(COMMANDED) or logs.get("force"), logs.get("actuator_force"), supposed)
+    asked, given = logs.get(COMMANDED) or logs.get("force"), logs.get("actuator_force")
+    return _recording(first, asked, given, (*supposed, *of_target), target)
+
+
+def _target(
+    names: list[str],
+    source: str,
+    log: Callable[..., Log],
+    columns: Mapping[str, str | None],
+    units: Mapping[str, str],
+    scale: Mapping[str, object],
+    reading: Mapping[str, Any],
+) -> tuple[Log | float | None, tuple[str, ...]]:
+    """The log whose position is that of the target, or where it stands still, and what is said of it."""
+    likely = [name for name in names if is_target(name) and name not in columns.values()]
+    if TARGET not in columns and len(likely) > 1:
+        return None, (f'{listed(likely)} may each be the target: say which with columns={{"{TARGET}": …}}',)
+    column = columns[TARGET] if TARGET in columns else next(iter(likely), None)
+    if column is None:
+        return None, ()
+    own = {k: v for k, v in columns.items() if k not in (COMMANDED, TARGET)}
+    arguments: dict[str, Any] = {
+        "columns": {**own, "position": column, "actuator_force": None, "hand_force": None}
+    }
+    for name, table in (("units", units), ("scale", scale)):
+        kept = {k: v for k, v in table.items() if k == "time"}
+        if (of_position := table.get(TARGET, table.get("position"))) is not None:
+            kept["position"] = of_position
+        if kept:
+            arguments[name] = kept
+    try:
+        return log(**arguments, **reading), (f'"{column}" is taken as the position that is aimed at',)
+    except Still:
+        return 0.0, (f'"{column}", the position that is aimed at, stands still',)
+    except InputError as error:
+        if TARGET in columns:
+            raise
+        return None, (f'"{column}" may be a target and is left out: {error}',)
 
 
 def _roles(names: list[str], source: str, wanted: Mapping[str, str | None]) -> dict[str, str]:
@@ -174,10 +219,12 @@ def _arguments(
     """How to read the log in which the actuator's force is that column."""
     chosen = {**columns, "actuator_force": column, "hand_force": None}
     chosen.pop(COMMANDED, None)
+    chosen.pop(TARGET, None)
     key = COMMANDED if role == "force" else role
     given: dict[str, Any] = {"columns": chosen}
     for name, table in (("units", units), ("scale", scale)):
-        own = {k: v for k, v in table.items() if k not in (COMMANDED, "actuator_force", "hand_force")}
+        others = (COMMANDED, TARGET, "actuator_force", "hand_force")
+        own = {k: v for k, v in table.items() if k not in others}
         if key in table:
             own["actuator_force"] = table[key]
         if own:
@@ -185,7 +232,13 @@ def _arguments(
     return given
 
 
-def _recording(log: Log, commanded: Log | None, applied: Log | None, supposed: tuple[str, ...]) -> Recording:
+def _recording(
+    log: Log,
+    commanded: Log | None,
+    applied: Log | None,
+    supposed: tuple[str, ...],
+    target: Log | float | None = None,
+) -> Recording:
     if log is applied and "actuator_force" not in log.channels:
         raise InputError(
             f"{log.source} holds no force of the actuator, and without it nobody can say where the energy "
@@ -207,7 +260,18 @@ def _recording(log: Log, commanded: Log | None, applied: Log | None, supposed: t
         commanded=asked,
         applied=given,
         findings=(*supposed, *(finding.text for finding in log.findings if finding.kind != "no hand force")),
+        target=None if target is None else _at(longest.time, target),
     )
+
+
+def _at(times: Array, target: Log | float) -> Array:
+    """[m; rad] the target at these times: rows that one column lacks are not missing in another.  Where it
+    stands does not count."""
+    if not isinstance(target, Log):
+        return np.full_like(times, target)
+    blocks = list(target.blocks())
+    known = np.concatenate([block.time for block in blocks])
+    return np.interp(times, known, np.concatenate([block.position for block in blocks]))
 
 
 _AGAINST = "the motor's force is the command with the other sign: both are taken to count alike"

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from zwidth.data.diagnosis.law import Law
 from zwidth.errors import InputError
 from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering.friction_compensation import FrictionCompensation
+from zwidth.model.rendering.limits import Saturation
 from zwidth.model.rendering.rendered import Rendered
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import shown
@@ -114,17 +115,29 @@ class Stated:
         )
 
 
-def _compensated(environment: Environment) -> tuple[Environment, FrictionCompensation | None]:
-    """The law without its compensation of friction, and that."""
+class _Parts(NamedTuple):
+    """A law, and what stands behind it."""
+
+    bare: Environment
+    helping: FrictionCompensation | None
+    limit: float
+    """[N; N·m] where it is cut off; infinite where that is the device's, which shows in the file."""
+
+
+def _parts(environment: Environment) -> _Parts:
     if not isinstance(environment, Rendered):
-        return environment, None
-    (helping, *others) = environment.laws
-    if others or not isinstance(helping, FrictionCompensation) or helping.viscous:
+        return _Parts(environment, None, np.inf)
+    laws = list(environment.laws)
+    cut = laws.pop() if isinstance(laws[-1], Saturation) else None
+    helping = laws.pop() if laws and isinstance(laws[-1], FrictionCompensation) else None
+    if laws or (helping is not None and helping.viscous):
         raise InputError(
             f"{environment.describe()}: a recording is compared with an environment, behind which may stand "
-            "a friction-compensation of Coulomb friction alone; without a law, it is looked for in the file"
+            "a friction-compensation of Coulomb friction alone and a saturation; without a law, it is looked "
+            "for in the file"
         )
-    return environment.environment, helping
+    limit = np.inf if cut is None or cut.limit is None else float(cut.limit.fraction)
+    return _Parts(environment.environment, helping, limit)
 
 
 def transfer(environment: Environment, period: float) -> tuple[Array, Array]:
@@ -154,11 +167,11 @@ def compare(
 
     times = np.arange(position.size, dtype=np.float64) * row_period
     samples = np.arange(0.0, times[-1] + loop_period / 2, loop_period)
-    bare, helping = _compensated(environment)
+    bare, helping, limit = _parts(environment)
     moved = np.interp(samples, times, position)
     helped = _helped(helping, np.diff(moved, prepend=moved[0]) / loop_period)
     answer = lfilter(*transfer(bare, loop_period), moved - moved[0]) + helped
-    ends = float(force.min()), float(force.max())
+    ends = max(float(force.min()), -limit), min(float(force.max()), limit)
     spread = float(np.var(force)) or 1.0
     free = np.flatnonzero(law.free(force))
 

@@ -84,7 +84,8 @@ def find(position: Array, period: float) -> Vibration | None:
     found = _above(LOWEST, position, period)
     if found is None or found.regular < _IRREGULAR:
         slow = _above(SLOWEST, position, period)
-        if slow is not None and slow.frequency < LOWEST and slow.regular > _REGULAR:
+        near = found is not None and slow is not None and slow.frequency >= LOWEST
+        if slow is not None and not near and slow.regular > _REGULAR:
             return slow
     return found
 

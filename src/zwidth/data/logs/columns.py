@@ -375,6 +375,20 @@ def role_of_force(column: str) -> str | None:
     )
 
 
+_AIMED = set("target goal desired des reference ref setpoint command commanded cmd planned soll".split())
+_OF_A_PLACE = set("position pos q qpos x angle theta joint encoder displacement weg winkel lage".split())
+
+
+def is_target(column: str) -> bool:
+    """True of a column that is by its name the position that a law aims at: "goal_position", "q_des"."""
+    if _VECTOR.search(column.lower()):
+        return False
+    word = re.sub(r"^soll(?=position|weg|winkel|lage)", "soll_", name_and_unit(column, "position")[0])
+    words = {each for each in word.split("_") if each and not each.isdigit()}
+    alone = bool(words) and words <= {"target", "goal", "setpoint", "reference"}
+    return alone or (words <= _AIMED | _OF_A_PLACE and bool(words & _AIMED) and bool(words & _OF_A_PLACE))
+
+
 def _counted(word: str) -> str | None:
     return "counts" if word in ("encoder_counts", "enc_counts") else None
 
@@ -408,6 +422,13 @@ def _checked(columns: Mapping[str, Any], chosen: Mapping[str, str | None], sourc
             near = get_close_matches(column, list(columns), n=1)
             hint = f'; did you mean "{near[0]}"?' if near else ""
             raise InputError(f'{source} has no column "{column}"{hint}; there are {listed(columns)}')
+    taken: dict[str, str] = {}
+    for quantity, column in chosen.items():
+        if column is not None and (other := taken.setdefault(column, quantity)) != quantity:
+            raise InputError(
+                f'{source}: column "{column}" is given as the {other} and as the {quantity}; one column holds '
+                "one quantity: which is it?"
+            )
     return {quantity: column for quantity, column in chosen.items() if column is not None}
 
 

@@ -185,6 +185,10 @@ _COUNTED = {
 """What the rows were counted for: the finding's kind, its sentence, and the count of its samples."""
 
 
+class Still(InputError):
+    """A position that never changes: of a target it may be so."""
+
+
 def refuse_survey(survey: Survey, tally: Counter[str], source: str) -> None:
     """Refuse a log that says nothing."""
     if survey.samples < 2:
@@ -203,7 +207,7 @@ def refuse_survey(survey: Survey, tally: Counter[str], source: str) -> None:
             f"(intervals around {survey.period:.4g} s); a log needs samples at a fixed rate"
         )
     if survey.jumps.low == survey.jumps.high:
-        raise InputError(
+        raise Still(
             f"{source}: the position never changes, it is {survey.jumps.low:g} throughout; is it the right "
             "column?"
         )
