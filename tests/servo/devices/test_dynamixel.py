@@ -3,10 +3,9 @@
 import math
 
 import pytest
-from servo.bad_answers import ANSWERS, NO_FAULTS, changing
-from servo.drive import drive, drive_into
+from servo.bad_answers import changing
+from servo.drive import drive
 from servo.emulators.dynamixel import DynamixelEmulator
-from servo.emulators.faults import Fault
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.connection import GOOD, READING, REFUSED, UNTIL
@@ -87,33 +86,6 @@ def test_a_dynamixel_whose_watchdog_has_expired_is_served_again():
     assert other.table[98] == 0
     with pytest.raises(InputError, match="two sample periods"):
         Dynamixel("/dev/null", torque_per_current=K).open(0.021)
-
-
-@pytest.mark.parametrize("fault", list(ANSWERS))
-def test_a_fault_of_a_dynamixel_bus_ends_the_torque(fault):
-    """It is known at its first exchange; a torque is held for one period at most, then 0 arrives."""
-    expected = [GOOD] * (AT - OPENING) + ANSWERS[fault]
-
-    def attempt(wait):
-        with DynamixelEmulator(COUNTS, fault, AT) as other:
-            return other, drive(servo(other), 100, lambda reading: 0.3, wait=wait)
-
-    other, run = drive_into(expected, attempt)
-    assert run.statuses == expected
-    assert run.forces[-1] == 0.0
-    assert run.zeroed_after == len(ANSWERS[fault]) - 1
-    if fault is not Fault.CLOSED:
-        assert other.commands[-1].force == 0
-        assert other.table[64] == 0
-
-
-@pytest.mark.parametrize("fault", NO_FAULTS)
-def test_every_sample_of_a_dynamixel_is_of_its_own_question(fault):
-    """Answers that come twice, or in pieces."""
-    with DynamixelEmulator(COUNTS, fault, AT) as other:
-        run = drive(servo(other), 300, wall)
-    assert run.statuses == [GOOD] * 300
-    assert run.readings == pytest.approx(in_radians(COUNTS, 300), rel=1e-14)
 
 
 def test_positions_that_look_like_a_header():
@@ -232,14 +204,6 @@ def test_a_dynamixel_that_is_not_to_be_served_is_left_alone():
         assert bytes(other.table) == before
 
 
-def test_nobody_on_a_dynamixel_bus(monkeypatch):
-    """Said when it is opened."""
-    monkeypatch.setattr("zwidth.machine.servo.devices.serial_port._WAIT", 100_000_000)
-    nobody = pytest.raises(InputError, match=r"Dynamixel servo 1 .* does not answer")
-    with DynamixelEmulator(COUNTS, identifier=7) as other, nobody:
-        servo(other).open(1e-3)
-
-
 def test_what_is_wrong_with_a_dynamixel_is_said_when_it_is_opened():
     """A hardware error, by its name."""
     with DynamixelEmulator(COUNTS) as other:
@@ -247,22 +211,3 @@ def test_what_is_wrong_with_a_dynamixel_is_said_when_it_is_opened():
         other.put(70, 1, 0b100100)
         with pytest.raises(InputError, match="overheating, overload"):
             servo(other).open(1e-3)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"torque_per_current": 0.0}, "torque per current must be > 0"),
-        ({"torque_per_current": math.nan}, "torque per current must be > 0"),
-        ({"torque_per_current": 1.0, "identifier": 253}, "identifier must be 0 to 252"),
-        ({"torque_per_current": 1.0, "identifier": 1.5}, "identifier must be 0 to 252"),
-        ({"torque_per_current": 1.0, "watchdog": 0.0}, "watchdog must be 20 ms"),
-        ({"torque_per_current": 1.0, "watchdog": 2.56}, "watchdog must be 20 ms"),
-        ({"torque_per_current": 1.0, "watchdog": math.inf}, "watchdog must be 20 ms"),
-        ({"torque_per_current": 1.0, "current_unit": -1.0}, "current unit must be > 0"),
-    ],
-)
-def test_numbers_of_a_dynamixel_out_of_bounds(options, message):
-    """Said with the bound and its reason."""
-    with pytest.raises(InputError, match=message):
-        Dynamixel("/dev/null", **options)

@@ -3,9 +3,8 @@
 import math
 
 import pytest
-from servo.bad_answers import ANSWERS, NO_FAULTS, changing
-from servo.drive import drive, drive_into
-from servo.emulators.faults import Fault
+from servo.bad_answers import changing
+from servo.drive import drive
 from servo.emulators.feetech import FeetechEmulator
 
 from zwidth.errors import InputError
@@ -63,33 +62,6 @@ def test_a_feetech_servo_is_left_as_it_was_found():
     assert other.saved == []
 
 
-@pytest.mark.parametrize("fault", list(ANSWERS))
-def test_a_fault_of_a_feetech_bus_ends_the_torque(fault):
-    """It is known at its first exchange; a duty is held for one period at most, then 0 arrives."""
-    expected = [GOOD] * AT + ANSWERS[fault]
-
-    def attempt(wait):
-        with FeetechEmulator(COUNTS, fault, AT) as other:
-            return other, drive(servo(other), 100, lambda reading: 0.3, wait=wait)
-
-    other, run = drive_into(expected, attempt)
-    assert run.statuses == expected
-    assert run.forces[-1] == 0.0
-    assert run.zeroed_after == len(ANSWERS[fault]) - 1
-    if fault is not Fault.CLOSED:
-        assert other.commands[-1].force == 0.0
-        assert other.table[40] == 0
-
-
-@pytest.mark.parametrize("fault", NO_FAULTS)
-def test_every_sample_of_a_feetech_servo_is_of_its_own_question(fault):
-    """Answers that come twice, or in pieces."""
-    with FeetechEmulator(COUNTS, fault, AT) as other:
-        run = drive(servo(other), 300, wall)
-    assert run.statuses == [GOOD] * 300
-    assert run.readings == pytest.approx(in_radians(COUNTS, 300), rel=1e-14)
-
-
 def test_a_feetech_servo_is_counted_on_over_its_turns():
     """In either sense, where the counts jump by almost a turn; and where they are a magnitude with a sign."""
     with FeetechEmulator([4000, 4090, 5, 100, 4091, -6, -100]) as other:
@@ -140,25 +112,3 @@ def test_counts_that_are_no_4096th_of_a_turn_are_refused():
         with pytest.raises(InputError, match="angular resolution 3"):
             servo(other).open(1e-3)
         assert other.table[40] == 1
-
-
-def test_nobody_on_a_feetech_bus(monkeypatch):
-    """Said when it is opened."""
-    monkeypatch.setattr("zwidth.machine.servo.devices.serial_port._WAIT", 100_000_000)
-    nobody = pytest.raises(InputError, match=r"Feetech servo 1 .* does not answer")
-    with FeetechEmulator(COUNTS, identifier=7) as other, nobody:
-        servo(other).open(1e-3)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"full_duty_torque": 0.0}, "full-duty torque must be > 0"),
-        ({"full_duty_torque": math.inf}, "full-duty torque must be > 0"),
-        ({"full_duty_torque": 1.0, "identifier": 254}, "identifier must be 0 to 253"),
-    ],
-)
-def test_numbers_of_a_feetech_servo_out_of_bounds(options, message):
-    """Said with the bound and its reason."""
-    with pytest.raises(InputError, match=message):
-        Feetech("/dev/null", **options)

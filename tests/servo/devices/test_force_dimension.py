@@ -203,9 +203,3 @@ def test_what_is_no_axis_or_index_is_refused(arguments: dict[str, object]) -> No
     """Before anything is opened."""
     with pytest.raises(InputError):
         ForceDimension(**arguments)  # type: ignore[arg-type]
-
-
-def test_a_period_that_the_watchdog_forbids() -> None:
-    """Two of them must fit into 20 ms."""
-    with pytest.raises(InputError, match="below 10 ms"):
-        ForceDimension().open(10e-3)

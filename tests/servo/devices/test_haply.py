@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -138,48 +137,6 @@ def test_a_fault_is_told_and_ends_in_no_force(fault: Fault, status: int, of_forc
         assert board.commands[-1].force == 0.0
 
 
-@pytest.mark.parametrize("fault", [Fault.DUPLICATE, Fault.SLOW])
-def test_answers_that_come_twice_or_in_pieces_are_no_fault(fault: Fault) -> None:
-    """No later sample is old by them."""
-    with HaplyEmulator(jumping, fault, at=100) as board:
-        run = drive(HaplyPantograph(board.port), 500)
-    assert set(run.statuses) == {GOOD}
-    expected = [jumping(1 + 2 * period)[0] for period in range(500)]
-    assert run.readings == pytest.approx(expected, abs=COUNT)
-
-
-def once_faulty(fault: Fault) -> Callable[[float], tuple[HaplyEmulator, Driven]]:
-    """Sixty periods, of which the answer in period 50 has the fault."""
-
-    def attempt(wait: float) -> tuple[HaplyEmulator, Driven]:
-        with HaplyEmulator(jumping, fault, at=101) as board:
-            board.until = 102
-            return board, drive(HaplyPantograph(board.port), 60, wait=wait)
-
-    return attempt
-
-
-def test_an_answer_that_comes_late_once_is_no_later_sample() -> None:
-    """The next question waits for it, and is answered by its own."""
-    statuses = [GOOD] * 50 + [SILENT] + [GOOD] * 9
-    run = drive_into(statuses, once_faulty(Fault.LATE_ANSWERS))[1]
-    assert run.statuses == statuses
-    expected = [jumping(1 + 2 * period)[0] for period in range(60)]
-    del run.readings[50], expected[50]
-    assert run.readings == pytest.approx(expected, abs=COUNT)
-
-
-@pytest.mark.parametrize("fault", [Fault.HALF_FRAME, Fault.GARBAGE])
-def test_one_answer_that_means_nothing_costs_one_sample(fault: Fault) -> None:
-    """Where the next one begins is known again."""
-    statuses = [GOOD] * 50 + [GARBLED] + [GOOD] * 9
-    run = drive_into(statuses, once_faulty(fault))[1]
-    assert run.statuses == statuses
-    expected = [jumping(1 + 2 * period)[0] for period in range(60)]
-    del run.readings[50], expected[50]
-    assert run.readings == pytest.approx(expected, abs=COUNT)
-
-
 def test_one_motor_has_its_angle_and_its_torque() -> None:
     """In radians and newton metres; port 1 of the board."""
     with HaplyEmulator(lambda exchange: (0.02, 0.1)) as board:
@@ -189,34 +146,6 @@ def test_one_motor_has_its_angle_and_its_torque() -> None:
     assert (board.motors, board.encoders, board.setup) == (b"\1", b"\0", (90.0, 36000.0))
     assert board.commands[-3].force == 0.25
     assert motor.motion == "rotary"
-
-
-def test_nobody_at_the_port(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A board that does not answer is refused when it is opened, with what to look at."""
-    monkeypatch.setattr("zwidth.machine.servo.devices.haply._FIRST_ANSWER", 0.1e9)
-    with (
-        HaplyEmulator(fault=Fault.SILENCE) as board,
-        pytest.raises(InputError, match=r"no answer in time.*firmware"),
-    ):
-        HaplyPantograph(board.port).open(1e-3)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"axis": "z"}, "axis is one of"),
-        ({"version": 1}, "version is one of"),
-        ({"number": 0}, "from 1 to 255"),
-        ({"joints": [HaplyJoint(1, "ccw", 0.0, 4880.0)]}, "2 joints"),
-        ({"joints": [HaplyJoint(1, "ccw", 0.0, 4880.0)] * 2}, "ports 1, 1"),
-        ({"links": (0.07, -0.09, 0.0)}, "links must be > 0"),
-        ({"links": (0.07, 0.09)}, "three lengths"),
-    ],
-)
-def test_what_is_no_such_board_is_refused(arguments: dict[str, object], message: str) -> None:
-    """One message, before anything is opened."""
-    with pytest.raises(InputError, match=message):
-        HaplyPantograph("/dev/null", **arguments)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

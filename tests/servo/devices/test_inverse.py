@@ -10,9 +10,7 @@ from servo.emulators.inverse import InverseEmulator
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.connection import (
-    CLOSED,
     FORCE,
-    GARBLED,
     GOOD,
     INDEX,
     READING,
@@ -57,43 +55,6 @@ def test_two_thousand_exchanges():
     assert min(given) < -0.3
     assert all(force == {"x": 0, "y": 0} for force in service.others)
     assert service.closed_by_client
-
-
-@pytest.mark.parametrize(
-    ("fault", "expected"),
-    [
-        (Fault.CLOSED, [CLOSED]),
-        (Fault.HALF_FRAME, [GARBLED, GARBLED]),
-        (Fault.GARBAGE, [GARBLED, GARBLED]),
-        (Fault.SILENCE, [SILENT, SILENT]),
-        (Fault.LATE_ANSWERS, [SILENT, STALE]),
-    ],
-)
-def test_a_fault_is_told_at_its_first_exchange_and_the_force_ends(fault, expected):
-    """What the line was; a force held for one period at most, then 0, which is the last that arrives."""
-    good = AT - OPENING
-
-    def attempt(wait):
-        with InverseEmulator(fault, AT) as service:
-            return service, served(service, 100, wait=wait)
-
-    service, run = drive_into([GOOD] * good + expected, attempt)
-    assert run.statuses == [GOOD] * good + expected
-    assert run.readings[:good] == answered(service, good)
-    assert run.forces[good - 1] < 0.0
-    assert run.forces[good:] == ([0.0] if fault is Fault.CLOSED else [run.forces[good - 1], 0.0])
-    assert run.zeroed_after == len(expected) - 1
-    if fault is not Fault.CLOSED:
-        assert service.commands[-1].force == 0.0
-
-
-@pytest.mark.parametrize("fault", [Fault.DUPLICATE, Fault.SLOW])
-def test_what_is_no_fault_leaves_every_sample_fresh(fault):
-    """Answers that come twice, or in pieces: the position is that of the newest exchange all along."""
-    with InverseEmulator(fault, AT) as service:
-        run = served(service, 300)
-    assert run.statuses == [GOOD] * 300
-    assert run.readings == answered(service, 300)
 
 
 @pytest.mark.parametrize(
@@ -158,21 +119,6 @@ def test_behind_a_pause_the_position_is_asked_for_anew():
         connection.close()
     # exchange 0 is that of opening; the first sample, and those behind a pause, ask for themselves
     assert found == [service.positions[exchange]["z"] for exchange in (1, 2, 3, 5, 6, 8, 9)]
-
-
-def test_one_late_answer_costs_one_sample():
-    """The measurement behind it reads two answers, and takes the newest."""
-    good = AT - OPENING
-    expected = [GOOD] * good + [SILENT] + [GOOD] * (39 - good)
-
-    def attempt(wait):
-        with InverseEmulator(Fault.LATE_ANSWERS, AT) as service:
-            service.until = AT + 1
-            return service, served(service, 40, wait=wait)
-
-    service, run = drive_into(expected, attempt)
-    assert run.statuses == expected
-    assert run.readings[good + 1 :] == answered(service, 40)[good + 1 :]
 
 
 def test_an_answer_that_never_comes_ends_the_run():

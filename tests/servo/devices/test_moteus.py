@@ -5,9 +5,8 @@ from itertools import islice
 
 import numpy as np
 import pytest
-from servo.bad_answers import ANSWERS, NO_FAULTS, changing
-from servo.drive import drive, drive_into
-from servo.emulators.faults import Fault
+from servo.bad_answers import changing
+from servo.drive import drive
 from servo.emulators.moteus import MoteusEmulator
 
 from zwidth.errors import InputError
@@ -76,33 +75,6 @@ def test_what_is_said_of_a_moteus_after_its_watchdog_is_what_it_does(mode, speed
     assert f"(servo.timeout_mode {mode})" in device.on_silence
     assert ("goes limp" in device.on_silence) == (other.torque(speed) == 0.0)
     assert ("brakes" in device.on_silence) == (mode == 15)
-
-
-@pytest.mark.parametrize("fault", list(ANSWERS))
-def test_a_fault_of_a_moteus_line_ends_the_torque(fault):
-    """It is known at its first exchange; a torque is held for one period at most, then 0 arrives."""
-    expected = [GOOD] * (AT - OPENING) + ANSWERS[fault]
-
-    def attempt(wait):
-        with MoteusEmulator(TURNS, fault, AT, checksums=True) as other:
-            return other, drive(Moteus(other.port, checksums=True), 100, lambda reading: 0.3, wait=wait)
-
-    other, run = drive_into(expected, attempt)
-    assert run.statuses == expected
-    assert run.forces[-1] == 0.0
-    assert run.zeroed_after == len(ANSWERS[fault]) - 1
-    if fault is not Fault.CLOSED:
-        assert other.commands[-1].force == 0.0
-        assert other.mode == 0
-
-
-@pytest.mark.parametrize("fault", NO_FAULTS)
-def test_every_sample_of_a_moteus_is_of_its_own_question(fault):
-    """Answers that come twice, or in pieces."""
-    with MoteusEmulator(TURNS, fault, AT) as other:
-        run = drive(Moteus(other.port), 300, wall)
-    assert run.statuses == [GOOD] * 300
-    assert run.readings == in_radians(TURNS, 300)
 
 
 @pytest.fixture
@@ -183,14 +155,6 @@ def test_a_position_that_is_no_number_is_refused():
     assert run.statuses == [GOOD] * (10 - OPENING) + [REFUSED]
 
 
-@pytest.mark.usefixtures("_at_once")
-def test_nobody_on_the_bus_of_a_moteus():
-    """Said when it is opened."""
-    nobody = pytest.raises(InputError, match=r"moteus 1 .* does not answer.*id\.id")
-    with MoteusEmulator(TURNS, identifier=2) as other, nobody:
-        Moteus(other.port).open(1e-3)
-
-
 @pytest.mark.usefixtures("_soon")
 def test_what_is_wrong_with_a_moteus_is_said_when_it_is_opened():
     """A fault that comes back; an adapter whose bus is off."""
@@ -231,28 +195,6 @@ def test_a_configuration_that_bears_on_the_torque_of_a_moteus_is_told_or_refused
 def test_every_fault_of_a_moteus_has_a_name(code):
     """As fw/error.h numbers them."""
     assert code in moteus._FAULTS
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"identifier": 112}, "identifier must be 1 to 111"),
-        ({"identifier": 0}, "identifier must be 1 to 111"),
-        ({"watchdog": 0.0005}, "watchdog must be 1 ms"),
-        ({"watchdog": 40.0}, "watchdog must be 1 ms"),
-        ({"watchdog": math.nan}, "watchdog must be 1 ms"),
-    ],
-)
-def test_numbers_of_a_moteus_out_of_bounds(options, message):
-    """Said with the bound and its reason."""
-    with pytest.raises(InputError, match=message):
-        Moteus("/dev/null", **options)
-
-
-def test_a_watchdog_shorter_than_two_periods():
-    """It would end the run at one late sample; no port is opened."""
-    with pytest.raises(InputError, match="two sample periods"):
-        Moteus("/dev/null", watchdog=0.01).open(0.006)
 
 
 def test_closing_a_moteus_twice():

@@ -11,7 +11,7 @@ from servo.emulators.handle import Handle
 from servo.emulators.odrive import ODriveEmulator
 
 from zwidth.errors import InputError
-from zwidth.machine.servo.connection import CLOSED, GARBLED, GOOD, REFUSED, SILENT, STALE
+from zwidth.machine.servo.connection import GOOD, REFUSED, SILENT
 from zwidth.machine.servo.devices.odrive import ODrive
 
 AT = 21
@@ -37,69 +37,6 @@ def test_two_thousand_exchanges():
     assert given[1:-2] == pytest.approx(run.forces, abs=0.6e-6)
     assert given[-2:] == [0.0, 0.0]
     assert min(given) < -0.01
-
-
-@pytest.mark.parametrize(
-    ("fault", "expected"),
-    [
-        (Fault.CLOSED, [CLOSED]),
-        (Fault.HALF_FRAME, [GARBLED, GARBLED]),
-        (Fault.GARBAGE, [GARBLED, GARBLED]),
-        (Fault.SILENCE, [SILENT, SILENT]),
-        (Fault.WRONG_CHECKSUM, [GARBLED, GARBLED]),
-        (Fault.LATE_ANSWERS, [SILENT, STALE]),
-    ],
-)
-def test_a_fault_is_told_at_its_first_exchange_and_the_torque_ends(fault, expected):
-    """What the line was; a torque held for one period at most, then 0, which is the last that arrives."""
-
-    def attempt(wait):
-        with ODriveEmulator(fault, AT) as motor:
-            return motor, served(motor, 100, wait=wait)
-
-    motor, run = drive_into([GOOD] * AT + expected, attempt)
-    assert run.statuses == [GOOD] * AT + expected
-    assert run.readings[:AT] == pytest.approx(motor.positions[:AT], rel=1e-15)
-    held = run.forces[AT - 1]
-    assert held < 0.0
-    assert run.forces[AT:] == ([0.0] if fault is Fault.CLOSED else [held, 0.0])
-    if fault is not Fault.CLOSED:
-        assert motor.commands[-1].force == 0.0
-        assert motor.properties["axis0.current_state"] == "1"
-
-
-@pytest.mark.parametrize("fault", [Fault.DUPLICATE, Fault.SLOW])
-def test_what_is_no_fault_leaves_every_sample_fresh(fault):
-    """Answers that come twice, or in pieces: the position is that of the newest question all along."""
-    with ODriveEmulator(fault, AT) as motor:
-        run = served(motor, 300)
-    assert run.statuses == [GOOD] * 300
-    assert run.readings == pytest.approx(motor.positions, rel=1e-15)
-
-
-@pytest.mark.parametrize(
-    ("fault", "status"),
-    [
-        (Fault.HALF_FRAME, GARBLED),
-        (Fault.GARBAGE, GARBLED),
-        (Fault.SILENCE, SILENT),
-        (Fault.WRONG_CHECKSUM, GARBLED),
-        (Fault.LATE_ANSWERS, SILENT),
-    ],
-)
-def test_one_bad_exchange_costs_one_sample(fault, status):
-    """The state is asked for behind it, so that no old position is taken for a new one."""
-    expected = [GOOD] * AT + [status] + [GOOD] * (59 - AT)
-
-    def attempt(wait):
-        with ODriveEmulator(fault, AT) as motor:
-            motor.until = AT + 1
-            return motor, served(motor, 60, wait=wait)
-
-    motor, run = drive_into(expected, attempt)
-    assert run.statuses == expected
-    fresh = AT + 1
-    assert run.readings[fresh:] == pytest.approx(motor.positions[fresh:], rel=1e-15)
 
 
 def test_one_lost_answer_about_the_state_costs_one_sample():
@@ -255,26 +192,6 @@ def test_a_port_where_no_odrive_answers(monkeypatch):
     monkeypatch.setattr("zwidth.machine.servo.devices.odrive._ANSWER_TIME", PATIENCE)
     with ODriveEmulator() as motor, pytest.raises(InputError, match=r"has no axis1\.current_state"):
         ODrive(port=motor.port, axis=1).open(1e-3)
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        ({"axis": 2}, "must be 0 or 1"),
-        ({"watchdog": 0.0}, "must be > 0"),
-        ({"watchdog": float("nan")}, "must be > 0"),
-    ],
-)
-def test_numbers_out_of_range(options, said):
-    """Told before the port is opened."""
-    with pytest.raises(InputError, match=said):
-        ODrive(port="/dev/null", **options)
-
-
-def test_a_watchdog_that_one_lost_sample_would_wake():
-    """The bound is four sample periods."""
-    with pytest.raises(InputError, match=r"give 0\.08 s or more"):
-        ODrive(port="/dev/null").open(0.02)
 
 
 def test_what_it_says_of_itself():
