@@ -3,8 +3,7 @@
 import math
 
 import pytest
-from servo.bad_answers import changing
-from servo.drive import drive
+from servo.drive import changing, drive
 from servo.emulators.dynamixel import DynamixelEmulator
 
 from zwidth.errors import InputError

@@ -5,8 +5,7 @@ from itertools import islice
 
 import numpy as np
 import pytest
-from servo.bad_answers import changing
-from servo.drive import drive
+from servo.drive import changing, drive
 from servo.emulators.moteus import MoteusEmulator
 
 from zwidth.errors import InputError
