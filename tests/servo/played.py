@@ -79,7 +79,6 @@ class Played(CompiledConnection):
 
     @property
     def forces(self) -> np.ndarray:
-        """Given along the axis, sample by sample."""
         n = self.readings.size
         return self.opened.memory[SCRIPT + 2 * n :]
 
@@ -105,7 +104,7 @@ class Library(LibraryConnection):
         return "nothing: it is a list"
 
     def open(self, sample_period: float) -> None:
-        """Nothing to open."""
+        pass
 
     def measure(self, until: int) -> tuple[int, float]:
         k, self.asked = self.asked, self.asked + 1
@@ -118,7 +117,7 @@ class Library(LibraryConnection):
         return GOOD
 
     def close(self) -> None:
-        """Nothing was taken."""
+        pass
 
     def describe(self) -> str:
         return "a list"

@@ -1,7 +1,5 @@
 """`zw.servo.doctor`: lateness, its cost and what to change, in one report."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np
@@ -82,7 +80,6 @@ def test_what_is_saved_has_a_unit_in_every_key(machine, tmp_path):
 
 
 def test_the_picture_shows_every_step_of_both(machine, tmp_path):
-    """A histogram each, over powers of ten."""
     machine()
     found = doctor(duration=1)
     figure = found.plot(tmp_path / "late.png")
@@ -109,8 +106,6 @@ def test_the_picture_shows_every_step_of_both(machine, tmp_path):
     ],
 )
 def test_what_cannot_be_told_is_refused_before_the_wait(arguments, said, monkeypatch):
-    """Nothing is measured."""
-
     def never(*_, **__):
         raise AssertionError
 
@@ -120,7 +115,6 @@ def test_what_cannot_be_told_is_refused_before_the_wait(arguments, said, monkeyp
 
 
 def test_it_measures_this_machine():
-    """Not all of its steps were missed, and none was early."""
     found = doctor(sample_period="1 ms", duration="1 s")
     for lateness in (found.ordinary, found.real_time):
         if lateness is not None:

@@ -1,7 +1,5 @@
 """Two devices, each served by a process of its own, joined by one line over real sockets; one is killed."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

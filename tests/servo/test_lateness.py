@@ -1,7 +1,5 @@
 """The loop that does nothing but be on time: every sample is a step or missed, none is early."""
 
-from __future__ import annotations
-
 import threading
 
 import numpy as np
@@ -34,7 +32,6 @@ def test_every_sample_is_a_step_or_missed(period):
 
 
 def test_a_turn_ends_when_it_is_told_to():
-    """Long before its time, as by Ctrl-C."""
     late, told = np.zeros(10**6, np.int64), np.zeros(4, np.int64)
     thread = threading.Thread(target=run_turn, args=(1_000_000, 0, late, told))
     thread.start()
@@ -90,7 +87,6 @@ def test_turns_of_both_kinds_alternate(monkeypatch):
 
 
 def test_without_priority_all_turns_are_ordinary(monkeypatch):
-    """And what was refused is handed on."""
     no = Granted((Answer("priority", False, "not permitted"),))
     asked, turn = _counted(no)
     monkeypatch.setattr(measured, "turn", turn)

@@ -1,7 +1,5 @@
 """What lateness costs in stiffness: the largest proved one as given, and with the lateness."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest
@@ -43,7 +41,6 @@ def test_both_figures_are_limits_of_loops_that_check_knows(stage):
 
 
 def test_a_law_without_stiffness_is_refused():
-    """There is nothing to tell the cost in."""
     law = zw.PulseTransferFunction(numerator=[3, -1], denominator=[1, 0])
     with pytest.raises(InputError, match="has none: name a wall"):
         stiffness_cost(zw.Device(**PLAIN), law, 1e-5)

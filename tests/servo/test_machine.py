@@ -1,7 +1,5 @@
 """What the system tells of itself: read from its files, or said to be unknown."""
 
-from __future__ import annotations
-
 import pytest
 
 from zwidth.machine.servo import checkup
@@ -39,7 +37,6 @@ def _told(root, changes, granted=ALL, before=None):
 
 
 def test_nothing_is_to_be_changed_where_all_is_well(tmp_path):
-    """And everything could be read."""
     found = _told(tmp_path, {})
     assert [one.about for one in found.values() if one.advice or one.seen is None] == []
     assert "PREEMPT_RT" in found["kernel"].seen
@@ -86,7 +83,6 @@ def test_what_cannot_be_read_is_said_to_be_unknown(tmp_path):
     ],
 )
 def test_what_makes_a_loop_late_is_told_with_what_helps(about, changes, seen, advice, tmp_path):
-    """From the file that says it."""
     one = _told(tmp_path, changes)[about]
     assert seen in one.seen
     assert advice in one.advice
@@ -94,7 +90,6 @@ def test_what_makes_a_loop_late_is_told_with_what_helps(about, changes, seen, ad
 
 
 def test_no_usb_port_is_no_unknown_one(tmp_path):
-    """A system with a bus and no such port."""
     gone = {"sys/bus/usb-serial/devices/ttyUSB0/latency_timer": None, "sys/bus/pci/x": "1"}
     one = _told(tmp_path, gone)["USB serial ports"]
     assert one.seen.startswith("none")
@@ -102,7 +97,6 @@ def test_no_usb_port_is_no_unknown_one(tmp_path):
 
 
 def test_a_deep_sleep_is_told_where_it_is_not_forbidden(tmp_path):
-    """The deepest that is not disabled."""
     states = {
         f"{CPU}/cpu1/cpuidle/state2/latency": "133",
         f"{CPU}/cpu1/cpuidle/state3/latency": "890",
@@ -145,7 +139,6 @@ def test_memory_that_is_not_locked_matters_where_there_is_swap(tmp_path, monkeyp
 
 
 def test_priority_that_is_refused_is_told_with_the_limit_to_ask_for(tmp_path):
-    """By the line in the file of limits."""
     one = _told(tmp_path, {}, NONE)["real-time priority"]
     assert one.seen == "not granted: no"
     assert "@realtime - rtprio 40" in one.advice

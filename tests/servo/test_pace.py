@@ -1,7 +1,5 @@
 """The wait for a deadline: never early, and a margin that follows how late a sleeping thread awakes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -12,7 +10,6 @@ SHARE = 1 / 256
 
 @pytest.mark.parametrize("spin", [0, 30_000, 10_000_000])
 def test_nobody_awakes_before_the_deadline(spin):
-    """Whether most of the wait is slept or watched."""
     for ahead in (1_000, 150_000, 2_000_000):
         deadline = now() + ahead
         overslept = until(deadline, spin)
@@ -52,6 +49,5 @@ def test_the_margin_stays_between_its_ends():
 
 
 def test_only_a_loop_with_priority_watches_the_clock():
-    """Less than half of a period; another sleeps until the deadline."""
     assert 0 < most_awake(200_000, True) < 100_000
     assert most_awake(200_000, False) == 0

@@ -1,7 +1,5 @@
 """A real device at the end of a line: the port's forces and packets, and the end of both at a fault."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from servo.played import Library, Played
@@ -50,17 +48,14 @@ def pushed(run, count, seed=5):
 
 
 def without_runs(packets):
-    """What two ports of the same motion tell alike."""
     return [packet and (packet.number, packet.wave, packet.energy, packet.position) for packet in packets]
 
 
 def run_on(connection, device=LATE, **more):
-    """The run of a device, with nothing else."""
     return PortRun(WavePort(device), connection, "line", **more)
 
 
 def stepped(run, count):
-    """The packets of each step, None where nothing was sent."""
     return [run.step({"line": [packet]}).get("line") for packet in pushed(run, count)]
 
 
@@ -172,7 +167,6 @@ def test_one_sample_without_an_answer_is_held_and_two_end_the_force(bad, held):
     ],
 )
 def test_a_fault_ends_force_and_packets_at_once(change, bad, said):
-    """And the device is told force 0."""
     readings = np.round(20 * np.sin(0.05 * np.arange(100))) * STEP
     for k, value in change.items():
         readings[k] = value
@@ -190,8 +184,6 @@ def test_a_fault_ends_force_and_packets_at_once(change, bad, said):
 
 
 class Unplugged(Library):
-    """Takes no force any more, from the fiftieth on."""
-
     def apply(self, force):
         return CLOSED if len(self.forces) >= 50 else super().apply(force)
 
@@ -204,7 +196,6 @@ class Unplugged(Library):
     ],
 )
 def test_a_cable_that_is_out_is_a_line_that_closed(connection):
-    """A library raises an error of the system, or says so when it is given a force."""
     run = run_on(connection)
     told = stepped(run, 100)
     assert "has closed" in run.ended
@@ -282,14 +273,11 @@ def test_the_safety_s_force_is_the_port_s_own_limit():
     ],
 )
 def test_what_does_not_go_together_is_refused(arguments, said):
-    """Before the device is reached."""
     with pytest.raises(InputError, match=said):
         run_on(Library([0.0]), **arguments)
 
 
 def test_of_a_protocol_that_carries_the_force_with_the_next_question_one_sample_is_known():
-    """Its delay cannot be less."""
-
     class Later(Library):
         late = 2
 
@@ -298,8 +286,6 @@ def test_of_a_protocol_that_carries_the_force_with_the_next_question_one_sample_
 
 
 class Tube(Channel):
-    """Two ends of a list."""
-
     def __init__(self, mine, other):
         self.mine, self.other = mine, other
 
@@ -312,11 +298,10 @@ class Tube(Channel):
         return found
 
     def close(self):
-        """Nothing to close."""
+        pass
 
 
 def test_two_devices_over_one_line_take_nothing_from_each_other_and_one_alone_feels_nothing():
-    """Simulated, in hands; the ledger of each is that of its own simulation.  Then one end is gone."""
     a, b = [], []
     devices = {
         "ann": Simulated(device=LATE, hand=zw.operators.Finger(), duration=2),
@@ -350,7 +335,6 @@ def test_two_devices_over_one_line_take_nothing_from_each_other_and_one_alone_fe
 
 
 def test_packets_are_what_they_are():
-    """The stand-in for the other end makes packets with energy in them."""
     packets = pushed(run_on(Library([0.0])), 50)
     assert all(isinstance(packet, Packet) for packet in packets)
     assert packets[-1].energy > 0

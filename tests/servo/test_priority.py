@@ -1,7 +1,5 @@
 """What a loop asks of the system: it is told what it was granted, and gives everything back."""
 
-from __future__ import annotations
-
 import ctypes
 import mmap
 import os
@@ -19,7 +17,6 @@ linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="asked f
 
 
 def _state():
-    """Policy, priority, cores and timer slack of this thread, and how much of the process is locked."""
     with open("/proc/self/status", encoding="utf-8") as told:
         locked = next(line for line in told if line.startswith("VmLck"))
     slack = ctypes.CDLL(None).prctl(30, 0, 0, 0, 0)
@@ -38,7 +35,6 @@ def _in_a_thread(work):
 
 @linux
 def test_all_is_as_it_was_afterwards():
-    """Priority, core, timers and memory; and while it lasts they are as the answers say."""
     core = max(os.sched_getaffinity(0))
 
     def work():
@@ -125,13 +121,11 @@ def test_memory_of_a_limited_user_is_never_locked(monkeypatch):
 
 
 def test_an_ordinary_thread_asks_for_no_priority():
-    """What is not asked for is not in the answers."""
     with RealTime(priority=0, memory=False) as granted:
         assert {answer.wish for answer in granted.answers} == {"timers", "awake cores"}
 
 
 def test_elsewhere_than_on_linux_nothing_is_granted(monkeypatch):
-    """And that is said of every wish."""
     monkeypatch.setattr(priority, "_LINUX", False)
     with RealTime() as granted:
         assert len(granted.answers) == 4
@@ -141,14 +135,12 @@ def test_elsewhere_than_on_linux_nothing_is_granted(monkeypatch):
 
 @pytest.mark.parametrize("wrong", [100, -1, True, 2.5])
 def test_a_priority_outside_its_range_is_refused(wrong):
-    """1 to 99, or 0 for none."""
     with pytest.raises(InputError, match="from 1 to 99"):
         RealTime(priority=wrong)
 
 
 @linux
 def test_a_core_that_is_not_there_is_refused():
-    """With those that are."""
     most = max(os.sched_getaffinity(0))
     with pytest.raises(InputError, match=f"core {most + 1} .*{most}"):
         RealTime(core=most + 1)

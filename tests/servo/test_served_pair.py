@@ -1,7 +1,5 @@
 """Two arms in one loop: the simulator's own forces, refused unless proved, both at 0 after a fault of one."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from servo.played import Library, Played
@@ -60,7 +58,6 @@ def seen(arms):
 
 @pytest.mark.parametrize("pair", [PAIR, PAIR.replace(reflection="0.5", follower_stiffness=30)])
 def test_a_served_pair_is_the_simulated_one(pair):
-    """Readings and forces of both arms, to the last bit, over a regular clock."""
     leader, follower = hands()
     wanted = zw.simulate(pair, leader, follower, 1.5)
     connections = [
@@ -140,7 +137,6 @@ def served(leader, follower, duration="0.15 s", **more):
     ],
 )
 def test_a_fault_of_one_arm_ends_the_force_of_both(bad, ended, held, monkeypatch):
-    """One bad answer is held; two, or a closed line, end both."""
     monkeypatch.setattr(PairServo, "measure", lambda self: None)
     monkeypatch.setattr(PairServo, "judge", lambda self: zw.check(self.pair))
     leader, follower = played(bad)
@@ -159,7 +155,6 @@ def test_a_fault_of_one_arm_ends_the_force_of_both(bad, ended, held, monkeypatch
 
 @pytest.mark.parametrize(("value", "said"), [(float("nan"), "no number"), (0.05, "jumped")])
 def test_a_reading_that_cannot_be_ends_both(value, said, monkeypatch):
-    """Of the follower alone."""
     monkeypatch.setattr(PairServo, "measure", lambda self: None)
     monkeypatch.setattr(PairServo, "judge", lambda self: zw.check(self.pair))
     leader, follower = played()
@@ -171,7 +166,6 @@ def test_a_reading_that_cannot_be_ends_both(value, said, monkeypatch):
 
 
 def stalled(clock, arms, at=70):
-    """At this sample the law takes 60 ms."""
     rows = seen(arms)
     law = arms._law.forces
 
@@ -183,7 +177,6 @@ def stalled(clock, arms, at=70):
 
 
 def test_a_loop_that_did_not_run_ends_both(clock, monkeypatch):
-    """For more than 50 ms."""
     monkeypatch.setattr(PairServo, "measure", lambda self: None)
     monkeypatch.setattr(PairServo, "judge", lambda self: zw.check(self.pair))
     leader, follower = played()
@@ -228,7 +221,6 @@ def test_arms_that_begin_apart_wait_until_their_forces_are_near_0(monkeypatch):
 
 
 def test_the_safety_cuts_and_counts(monkeypatch):
-    """A limit below the forces of the pair."""
     monkeypatch.setattr(PairServo, "measure", lambda self: None)
     monkeypatch.setattr(PairServo, "judge", lambda self: zw.check(self.pair))
     leader, follower = played()
@@ -251,7 +243,6 @@ def test_readings_and_forces_are_along_each_arm_s_own_axis(monkeypatch):
 
 
 def test_what_is_not_proved_is_refused_and_gives_no_force():
-    """A spring ten times too stiff; `anyway` serves it."""
     stiff = PAIR.replace(stiffness=4000, damping=0)
     leader, follower = played()
     with PairServo(stiff, leader, follower) as arms:
@@ -295,13 +286,11 @@ def test_the_delay_that_was_measured_is_in_the_verdict(monkeypatch):
     ],
 )
 def test_what_cannot_be_served_is_refused(make, said):
-    """Before a device is reached."""
     with pytest.raises(InputError, match=said):
         make(*played())
 
 
 def test_an_arm_that_does_not_answer_is_told(monkeypatch):
-    """When it is measured, with force 0."""
     leader, follower = played(dict.fromkeys(range(200), SILENT))
     with PairServo(PAIR, leader, follower) as arms, pytest.raises(InputError, match="no answer in time"):
         arms.run("0.1 s")
@@ -310,7 +299,6 @@ def test_an_arm_that_does_not_answer_is_told(monkeypatch):
 
 
 def test_a_report_has_units_and_says_what_was_met():
-    """In keys; and neither arm has been met."""
     report = served(*played(), safety=Safety(start_force=1))
     told = report.to_dict()
     assert told["format"] == "zwidth served pair 1"
@@ -320,7 +308,6 @@ def test_a_report_has_units_and_says_what_was_met():
 
 
 def test_it_is_ended_from_another_thread():
-    """Long before its time, and the forces are 0."""
     leader, follower = played(size=3000)
     with PairServo(PAIR, leader, follower) as arms:
         law = arms._law.forces

@@ -41,7 +41,6 @@ def test_what_is_said_of_no_answer(garbled, stale, said):
 
 
 def test_bytes_are_waited_for_until_the_time_is_over():
-    """What has come is taken even after it; then there is nothing, and in the end a closed line."""
     near, far = os.pipe()
     os.set_blocking(near, False)
     inbox = np.zeros(16, np.uint8)
@@ -55,7 +54,6 @@ def test_bytes_are_waited_for_until_the_time_is_over():
 
 
 def test_bytes_that_were_looked_at_are_dropped():
-    """The rest moves to the beginning."""
     inbox = np.frombuffer(b"abcdefgh", np.uint8).copy()
     assert dropped(inbox, 3, 7) == 4
     assert inbox[:4].tobytes() == b"defg"

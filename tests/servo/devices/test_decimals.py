@@ -30,14 +30,12 @@ def written(value, decimals):
     st.sampled_from(["", "e3", "E-4", "e+2"]),
 )
 def test_fifteen_digits_are_read_to_the_nearest_float(digits, point, exponent):
-    """The same float as Python's own reading gives, bit by bit, and the place where the number ends."""
     text = f"{Decimal(digits).scaleb(point):f}{exponent}"
     assert read(text + ",") == (float(text), len(text))
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False, min_value=-1e200, max_value=1e200))
 def test_any_float_is_read_within_its_last_places(value):
-    """All 17 digits of it, an exponent where Python writes one."""
     found, end = read(repr(value) + " ")
     assert end == len(repr(value))
     assert found == pytest.approx(value, rel=3 * np.finfo(float).eps, abs=1e-300)
@@ -90,7 +88,6 @@ def test_eight_digits_of_a_float32_come_back():
 
 
 def test_rounding_is_half_away_from_zero():
-    """Of quarters, which floats hold exactly."""
     for quarters in range(-50, 51):
         exact = Decimal(quarters) / 4
         assert Decimal(written(quarters / 4, 1)) == exact.quantize(Decimal("0.1"), ROUND_HALF_UP)

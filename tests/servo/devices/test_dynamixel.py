@@ -24,22 +24,18 @@ COUNTS = [round(2048 + 900 * math.sin(0.017 * k)) for k in range(2_100)]
 
 
 def wall(reading):
-    """A wall at 3.5 rad, in the way of greater angles."""
     return -1.5 * max(0.0, reading - 3.5)
 
 
 def in_radians(counts, periods):
-    """What the first measurements should have read."""
     return [2 * math.pi * x / 4096 for x in counts[OPENING : OPENING + periods]]
 
 
 def servo(other, **options):
-    """The adapter to it."""
     return Dynamixel(other.port, torque_per_current=K, **options)
 
 
 def test_two_thousand_exchanges_of_a_dynamixel():
-    """Each position is that of its own exchange; each torque arrives to half a count of current."""
     with DynamixelEmulator(COUNTS) as other:
         run = drive(servo(other), 2_000, wall)
     assert run.statuses == [GOOD] * 2_000
@@ -52,7 +48,6 @@ def test_two_thousand_exchanges_of_a_dynamixel():
 
 
 def test_a_dynamixel_is_left_as_it_was_found():
-    """Mode and delay as before, torque off; no current before the loop, although a new mode sets one."""
     with DynamixelEmulator(COUNTS) as other:
         run = drive(servo(other, watchdog=0.05), 20, lambda reading: 0.5)
         table = other.table
@@ -103,7 +98,6 @@ def test_positions_that_look_like_a_header():
 
 
 def test_a_dynamixel_is_counted_on_over_its_turns():
-    """In either sense, where the counts jump by almost a turn."""
     with DynamixelEmulator([4000, 4000, 4090, 5, 100, 4091, 3990]) as other:
         run = drive(servo(other), 6)
     counts = [reading * 4096 / (2 * math.pi) for reading in run.readings]
@@ -112,7 +106,6 @@ def test_a_dynamixel_is_counted_on_over_its_turns():
 
 @pytest.mark.parametrize("what", ["watchdog", "torque off", "hardware"])
 def test_a_dynamixel_that_gives_no_torque_any_more_is_refused(what):
-    """Its watchdog has expired, it has switched its torque off, its hardware has a problem: at once."""
     with DynamixelEmulator(COUNTS) as other:
 
         def change():
@@ -204,7 +197,6 @@ def test_a_dynamixel_that_is_not_to_be_served_is_left_alone():
 
 
 def test_what_is_wrong_with_a_dynamixel_is_said_when_it_is_opened():
-    """A hardware error, by its name."""
     with DynamixelEmulator(COUNTS) as other:
         other.alert = True
         other.put(70, 1, 0b100100)

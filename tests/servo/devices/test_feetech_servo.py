@@ -21,23 +21,19 @@ COUNTS = [round(2048 + 900 * math.sin(0.017 * k)) for k in range(2_100)]
 
 
 def wall(reading):
-    """A wall at 3.5 rad, in the way of greater angles."""
     return -1.5 * max(0.0, reading - 3.5)
 
 
 def in_radians(counts, periods):
-    """What the first measurements should have read."""
     return [2 * math.pi * x / 4096 for x in counts[:periods]]
 
 
 def servo(other, **options):
-    """The adapter to it."""
     return Feetech(other.port, full_duty_torque=FULL, **options)
 
 
 @pytest.mark.parametrize("reverse", [False, True])
 def test_two_thousand_exchanges_of_a_feetech_servo(reverse):
-    """Each position is that of its own exchange; each torque arrives as a duty, to half a thousandth."""
     periods = 1_000 if reverse else 2_000
     with FeetechEmulator(COUNTS) as other:
         run = drive(servo(other, reverse=reverse), periods, wall)
@@ -70,7 +66,6 @@ def test_a_feetech_servo_is_counted_on_over_its_turns():
 
 
 def test_a_feetech_servo_that_reports_a_fault_is_refused():
-    """At once; and by its name when it is opened."""
     with FeetechEmulator(COUNTS) as other:
 
         def change():
@@ -97,7 +92,6 @@ def test_a_torque_beyond_the_torque_limit_is_given_as_the_limit():
 
 
 def test_what_a_feetech_servo_does_when_the_host_dies_is_said():
-    """It has no watchdog."""
     device = Feetech("/dev/null", full_duty_torque=FULL)
     assert "no watchdog" in device.on_silence
     assert "duty" in device.describe()

@@ -1,7 +1,5 @@
 """A Hapkit, reached over a pseudo-terminal: its frames, and what goes wrong."""
 
-from __future__ import annotations
-
 import random
 
 import pytest
@@ -14,13 +12,13 @@ from zwidth.machine.servo.devices.hapkit import Hapkit
 COUNT = 13e-6
 
 
-def jumping(exchange: int) -> int:
+def jumping(exchange):
     """Anywhere in 32 bits, at every exchange somewhere else."""
     return random.Random(exchange).randrange(-(2**31), 2**31)
 
 
 @pytest.mark.parametrize("count", [COUNT, -COUNT])
-def test_two_thousand_exchanges(count: float) -> None:
+def test_two_thousand_exchanges(count):
     """Each position is that of its own exchange; each force comes as it was given, in the counts' sense."""
     with HapkitEmulator(jumping) as board:
         run = drive(Hapkit(board.port, count), 2_000, lambda x: 1e-2 * x)
@@ -34,12 +32,9 @@ def test_two_thousand_exchanges(count: float) -> None:
     assert [command.exchange for command in board.commands][:-2] == [2 + period for period in range(2_000)]
 
 
-def test_bytes_that_mean_nothing_before_an_answer_are_passed_over() -> None:
-    """Even where they begin as an answer does."""
-
+def test_bytes_that_mean_nothing_before_an_answer_are_passed_over():
     class Noisy(HapkitEmulator):
-        def write(self, data: bytes) -> None:
-            """A first byte of a frame, and others."""
+        def write(self, data):
             super().write(b"\x5a\x5a\x01" + data)
 
     with Noisy(jumping) as board:
@@ -48,8 +43,7 @@ def test_bytes_that_mean_nothing_before_an_answer_are_passed_over() -> None:
     assert run.readings == [COUNT * jumping(1 + period) for period in range(300)]
 
 
-def test_a_board_that_has_cut_its_force_ends_the_run() -> None:
-    """It tells so with the next position."""
+def test_a_board_that_has_cut_its_force_ends_the_run():
     with HapkitEmulator(jumping) as board:
         board.cut_at = 11
         run = drive(Hapkit(board.port, COUNT), 50)
@@ -57,15 +51,14 @@ def test_a_board_that_has_cut_its_force_ends_the_run() -> None:
     assert run.zeroed_after == 0
 
 
-def test_a_board_that_starts_slowly_is_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_board_that_starts_slowly_is_asked_again(monkeypatch):
     """Opening the port resets most boards: the first questions are lost."""
     monkeypatch.setattr("zwidth.machine.servo.devices.hapkit._ONE_TRY", 0.2e9)
 
     class Booting(HapkitEmulator):
         deaf = 1
 
-        def hear(self, data: bytes) -> None:
-            """Not at first."""
+        def hear(self, data):
             if self.deaf:
                 self.deaf -= 1
             else:

@@ -1,12 +1,9 @@
 """The sketch of examples/hapkit, compiled here: frames, sensor, motor, and how it cuts its force."""
 
-from __future__ import annotations
-
 import binascii
 import math
 import os
 import struct
-from pathlib import Path
 
 import pytest
 from servo.drive import drive
@@ -24,18 +21,17 @@ START, ASK, FORCE = 1, 2, 3
 
 
 @pytest.fixture(scope="module")
-def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Compiled once."""
+def library(tmp_path_factory):
     return compiled(tmp_path_factory.mktemp("sketch"))
 
 
-def frame(kind: int, number: int = 0, millinewtons: int = 0) -> bytes:
+def frame(kind, number=0, millinewtons=0):
     """To the board, as docs/devices/hapkit.md has it."""
     body = struct.pack("<BBBh", 0xA5, kind, number, millinewtons)
     return body + struct.pack("<H", binascii.crc_hqx(body, 0xFFFF))
 
 
-def asked(sketch: Sketch, data: bytes) -> tuple[int, int, int]:
+def asked(sketch, data):
     """The number, the state and the counts of its one answer."""
     sketch.hear(data)
     sketch.turn()
@@ -45,8 +41,7 @@ def asked(sketch: Sketch, data: bytes) -> tuple[int, int, int]:
     return number, state, counts
 
 
-def test_the_board_is_made_ready(library: Path) -> None:
-    """Motor off, its pins driven, a rate that 16 MHz divides; no force before a start."""
+def test_the_board_is_made_ready(library):
     sketch = Sketch(library)
     assert sketch.motor[0] == 0
     assert sketch.board.board_is_output(5)
@@ -58,8 +53,7 @@ def test_the_board_is_made_ready(library: Path) -> None:
     assert asked(sketch, frame(ASK, 7)) == (7, 1, 0)
 
 
-def test_it_answers_by_number(library: Path) -> None:
-    """A start and a question are answered with their own; a force is not answered."""
+def test_it_answers_by_number(library):
     sketch = Sketch(library)
     assert asked(sketch, frame(START, 200)) == (200, 0, 0)
     assert asked(sketch, frame(ASK, 201)) == (201, 0, 0)
@@ -68,8 +62,7 @@ def test_it_answers_by_number(library: Path) -> None:
     assert sketch.told() == b""
 
 
-def test_a_start_begins_anew(library: Path) -> None:
-    """The position is 0 there, and the force that acted is gone."""
+def test_a_start_begins_anew(library):
     sketch = Sketch(library)
     asked(sketch, frame(START))
     sketch.hear(frame(FORCE, 1, 2000))
@@ -79,7 +72,7 @@ def test_a_start_begins_anew(library: Path) -> None:
     assert sketch.motor[0] == 0
 
 
-def test_a_wrong_frame_is_passed_over_and_the_right_one_in_it_found(library: Path) -> None:
+def test_a_wrong_frame_is_passed_over_and_the_right_one_in_it_found(library):
     """Every single wrong bit is seen; what follows is not lost."""
     sketch = Sketch(library)
     asked(sketch, frame(START))
@@ -96,7 +89,7 @@ def test_a_wrong_frame_is_passed_over_and_the_right_one_in_it_found(library: Pat
 
 
 @pytest.mark.parametrize(("millinewtons", "level"), [(500, 1), (-500, 0), (3000, 1)])
-def test_the_pulse_width_is_that_of_the_torque(library: Path, millinewtons: int, level: int) -> None:
+def test_the_pulse_width_is_that_of_the_torque(library, millinewtons, level):
     """By hand: the motor's torque τ = F r_h r_p/r_s, width √(τ/0.03 N·m) of 255."""
     sketch = Sketch(library)
     asked(sketch, frame(START))
@@ -106,8 +99,7 @@ def test_the_pulse_width_is_that_of_the_torque(library: Path, millinewtons: int,
     assert sketch.motor == (round(255 * math.sqrt(torque / 0.03)), level)
 
 
-def test_the_largest_force_is_full_width(library: Path) -> None:
-    """No more than the motor has."""
+def test_the_largest_force_is_full_width(library):
     sketch = Sketch(library)
     asked(sketch, frame(START))
     sketch.hear(frame(FORCE, 1, -32767))
@@ -116,8 +108,7 @@ def test_the_largest_force_is_full_width(library: Path) -> None:
 
 
 @pytest.mark.parametrize("step", [7, -7])
-def test_counts_go_on_over_the_jumps_of_the_sensor(library: Path, step: int) -> None:
-    """Many turns of the magnet, either way; a reading within a jump is left out."""
+def test_counts_go_on_over_the_jumps_of_the_sensor(library, step):
     sketch = Sketch(library, 500)
     asked(sketch, frame(START))
     before = 500
@@ -132,7 +123,7 @@ def test_counts_go_on_over_the_jumps_of_the_sensor(library: Path, step: int) -> 
         before = position
 
 
-def test_force_is_cut_when_nothing_has_come_for_20_ms(library: Path) -> None:
+def test_force_is_cut_when_nothing_has_come_for_20_ms(library):
     """5000 ticks of 4 µs, whatever the timer's count is when they begin; and it stays cut until a start."""
     sketch = Sketch(library)
     for _ in range(20):  # the timer has 65536: some of these rounds pass over its end
@@ -151,7 +142,7 @@ def test_force_is_cut_when_nothing_has_come_for_20_ms(library: Path) -> None:
         assert asked(sketch, frame(ASK, 3))[1] == 1
 
 
-def test_a_silence_without_force_cuts_nothing(library: Path) -> None:
+def test_a_silence_without_force_cuts_nothing(library):
     """The host may be long in proving its law."""
     sketch = Sketch(library)
     asked(sketch, frame(START))
@@ -163,8 +154,7 @@ def test_a_silence_without_force_cuts_nothing(library: Path) -> None:
     assert asked(sketch, frame(ASK))[1] == 0
 
 
-def test_a_question_keeps_the_force(library: Path) -> None:
-    """Any right frame tells that the host lives."""
+def test_a_question_keeps_the_force(library):
     sketch = Sketch(library)
     asked(sketch, frame(START))
     sketch.hear(frame(FORCE, 1, 2000))
@@ -174,7 +164,7 @@ def test_a_question_keeps_the_force(library: Path) -> None:
     assert sketch.motor[0] > 0
 
 
-def test_sketch_and_adapter_understand_each_other(library: Path) -> None:
+def test_sketch_and_adapter_understand_each_other(library):
     """A handle that moves by 5 counts each exchange, for 2000 of them, over the jumps; force 0 at the end."""
     sketch = Sketch(library, 0)
     with SketchEmulator(sketch, lambda exchange: 5 * exchange % SPAN) as board:
@@ -186,11 +176,10 @@ def test_sketch_and_adapter_understand_each_other(library: Path) -> None:
     assert sketch.motor[0] == 0
 
 
-def test_the_adapter_hears_that_the_sketch_has_cut(library: Path) -> None:
-    """After a silence of the host."""
+def test_the_adapter_hears_that_the_sketch_has_cut(library):
     sketch = Sketch(library, 0)
 
-    def reading(exchange: int) -> int:
+    def reading(exchange):
         if exchange == 30:
             sketch.turn(5001)
         return 0

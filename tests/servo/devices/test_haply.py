@@ -1,7 +1,5 @@
 """A Haply board, reached over a pseudo-terminal: its frames, its kinematics, and what goes wrong."""
 
-from __future__ import annotations
-
 import math
 import random
 
@@ -9,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from servo.drive import Driven, drive, drive_into
+from servo.drive import drive, drive_into
 from servo.emulators.faults import Fault
 from servo.emulators.haply import BASE, INNER, OUTER, HaplyEmulator, angles_of
 
@@ -25,14 +23,14 @@ COUNT = 2e-4
 places = st.tuples(st.floats(-0.03, 0.07), st.floats(0.06, 0.12))
 
 
-def jumping(exchange: int) -> tuple[float, float]:
+def jumping(exchange):
     """Somewhere else at every exchange: an answer to another question is seen at once."""
     draw = random.Random(exchange)
     return draw.uniform(-0.02, 0.06), draw.uniform(0.07, 0.11)
 
 
 @given(place=places)
-def test_the_tip_is_where_the_angles_of_the_other_road_put_it(place: tuple[float, float]) -> None:
+def test_the_tip_is_where_the_angles_of_the_other_road_put_it(place):
     """The law of cosines gives the angles of a place; they give the place again."""
     first, second = map(math.radians, angles_of(*place))
     found = np.zeros(6)
@@ -41,8 +39,7 @@ def test_the_tip_is_where_the_angles_of_the_other_road_put_it(place: tuple[float
 
 
 @given(place=places)
-def test_the_change_with_the_angles_is_that_of_differences(place: tuple[float, float]) -> None:
-    """Central ones."""
+def test_the_change_with_the_angles_is_that_of_differences(place):
     angles = np.radians(angles_of(*place))
     found, ahead, back = np.zeros(6), np.zeros(6), np.zeros(6)
     locate(*angles, ARMS, found)
@@ -55,14 +52,12 @@ def test_the_change_with_the_angles_is_that_of_differences(place: tuple[float, f
 
 
 @pytest.mark.parametrize("angles", [(math.pi, 0.0), (0.0, math.pi / 2), (math.nan, 1.0), (math.inf, 1.0)])
-def test_arms_that_cannot_meet_are_told(angles: tuple[float, float]) -> None:
-    """Too far apart; or no angles at all."""
+def test_arms_that_cannot_meet_are_told(angles):
     far = np.array([0.07, 0.03, 0.038])
     assert not locate(*angles, far, np.zeros(6))
 
 
-def test_the_setup_is_what_the_firmware_reads() -> None:
-    """Ports, directions, offsets and counts of the 2DIY, by port; the axis asked for; no force yet."""
+def test_the_setup_is_what_the_firmware_reads():
     with HaplyEmulator() as board:
         drive(HaplyPantograph(board.port), 1, lambda x: 0.0)
     assert board.resets == 1
@@ -72,7 +67,7 @@ def test_the_setup_is_what_the_firmware_reads() -> None:
 
 
 @pytest.mark.parametrize(("axis", "periods"), [("x", 1000), ("y", 500)])
-def test_two_thousand_exchanges(axis: str, periods: int) -> None:
+def test_two_thousand_exchanges(axis, periods):
     """Each position is that of its own exchange; two exchanges a period, since to give a force is one too."""
     with HaplyEmulator(jumping) as board:
         run = drive(HaplyPantograph(board.port, axis), periods, lambda x: 0.0)
@@ -85,9 +80,7 @@ def test_two_thousand_exchanges(axis: str, periods: int) -> None:
 @pytest.mark.parametrize("of", ["x", "y"])
 @pytest.mark.parametrize("axis", ["x", "y"])
 @pytest.mark.parametrize(("place", "force"), [((0.01, 0.08), 1.5), ((0.04, 0.1), -0.7)])
-def test_the_torques_are_those_of_a_force_along_the_axis(
-    place: tuple[float, float], force: float, axis: str, of: str
-) -> None:
+def test_the_torques_are_those_of_a_force_along_the_axis(place, force, axis, of):
     """As the board's side finds it from its own kinematics; along the other axis there is none."""
     with HaplyEmulator(lambda exchange: place, axis=of) as board:
         drive(HaplyPantograph(board.port, axis), 3, lambda x: force)
@@ -100,7 +93,7 @@ def test_the_torques_are_those_of_a_force_along_the_axis(
     assert given[-1] == 0.0
 
 
-def test_a_question_repeats_the_force() -> None:
+def test_a_question_repeats_the_force():
     """To read is to give torques as well: those that act already."""
     forces = iter([1.0, 2.0, 3.0, 4.0])
     with HaplyEmulator() as board:
@@ -120,12 +113,12 @@ def test_a_question_repeats_the_force() -> None:
     ],
 )
 @pytest.mark.parametrize("of_force", [False, True])
-def test_a_fault_is_told_and_ends_in_no_force(fault: Fault, status: int, of_force: bool) -> None:
+def test_a_fault_is_told_and_ends_in_no_force(fault, status, of_force):
     """Whether it begins with the answer to a question, or with that to a force."""
     period = 50
     expected = [GOOD] * (period + of_force) + [status]
 
-    def attempt(wait: float) -> tuple[HaplyEmulator, Driven]:
+    def attempt(wait):
         with HaplyEmulator(jumping, fault, at=1 + 2 * period + of_force) as board:
             return board, drive(HaplyPantograph(board.port), 200, wait=wait)
 
@@ -137,8 +130,7 @@ def test_a_fault_is_told_and_ends_in_no_force(fault: Fault, status: int, of_forc
         assert board.commands[-1].force == 0.0
 
 
-def test_one_motor_has_its_angle_and_its_torque() -> None:
-    """In radians and newton metres; port 1 of the board."""
+def test_one_motor_has_its_angle_and_its_torque():
     with HaplyEmulator(lambda exchange: (0.02, 0.1)) as board:
         motor = HaplyMotor(board.port, 36000.0, offset=math.pi / 2, rotation="cw", motor="ccw")
         run = drive(motor, 5, lambda angle: 0.25)
@@ -152,7 +144,6 @@ def test_one_motor_has_its_angle_and_its_torque() -> None:
     "arguments",
     [(3, "ccw", 0.0, 4880.0), (1, "left", 0.0, 4880.0), (1, "cw", 0.0, 0.0), (1, "cw", math.nan, 1.0)],
 )
-def test_what_is_no_joint_is_refused(arguments: tuple[int, str, float, float]) -> None:
-    """A port that the firmware does not have, a direction, counts."""
+def test_what_is_no_joint_is_refused(arguments):
     with pytest.raises(InputError):
         HaplyJoint(*arguments)

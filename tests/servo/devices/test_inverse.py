@@ -29,7 +29,6 @@ AT = 21
 
 
 def wall(reading):
-    """A wall at 10 mm, in the way of greater positions."""
     return -300.0 * max(0.0, reading - 0.010)
 
 
@@ -38,7 +37,6 @@ def served(service, periods, **options):
 
 
 def answered(service, periods):
-    """The positions that the first measurements should have read."""
     return [position["z"] for position in service.positions[OPENING : OPENING + periods]]
 
 
@@ -69,7 +67,6 @@ def test_long_and_split_messages(padding, parts):
 
 
 def test_a_ping_is_answered():
-    """With its own payload, and the position that follows it is read."""
     with InverseEmulator() as service:
         service.ping_before = AT
         run = served(service, 40)
@@ -78,7 +75,6 @@ def test_a_ping_is_answered():
 
 
 def test_a_device_that_goes_or_reports_that_it_is_not_ready_is_refused():
-    """The service goes on answering: the force ends at once."""
     with InverseEmulator() as service:
         service.not_ready_from = AT
         run = served(service, 100)
@@ -88,7 +84,6 @@ def test_a_device_that_goes_or_reports_that_it_is_not_ready_is_refused():
 
 
 def test_one_of_several_devices_is_driven():
-    """By its name; the command names it, and the position is its own."""
     with InverseEmulator(devices=("04BA", "049D")) as service:
         run = drive(Inverse(address=service.address, device="049D"), 20, wall)
     assert run.readings == answered(service, 20)
@@ -96,7 +91,6 @@ def test_one_of_several_devices_is_driven():
 
 @pytest.mark.parametrize(("axis", "reading"), [("x", 0.0125), ("y", -0.12)])
 def test_the_axis_is_the_one_asked_for(axis, reading):
-    """Its position, and the force along it alone."""
     with InverseEmulator() as service:
         run = drive(Inverse(address=service.address, axis=axis), 5, lambda reading: 0.25)
     assert run.readings == [reading] * 5
@@ -161,7 +155,6 @@ def test_a_device_that_the_service_finds_late_is_served(monkeypatch, number):
     ],
 )
 def test_what_cannot_be_served_is_refused_at_once(monkeypatch, options, asked, said):
-    """With what was found, in one message, and the line is closed."""
     monkeypatch.setattr("zwidth.machine.servo.devices.inverse._BETWEEN", 0.0)
     with InverseEmulator(**options) as service, pytest.raises(InputError, match=said):
         Inverse(address=service.address, **asked).open(1e-3)
@@ -182,7 +175,6 @@ def test_a_service_that_answers_no_force_is_refused(monkeypatch):
 
 
 def test_nobody_and_somebody_else_listening():
-    """The message has the address."""
     with socket.create_server(("127.0.0.1", 0)) as listener:
         address = f"127.0.0.1:{listener.getsockname()[1]}"
 
@@ -206,7 +198,6 @@ def test_nobody_and_somebody_else_listening():
     "options", [{"axis": "w"}, {"address": "localhost"}, {"address": ":1"}, {"address": "a:0"}]
 )
 def test_an_axis_or_address_that_is_none(options):
-    """Told before anything is reached."""
     with pytest.raises(InputError, match=r"must be (x, y or z|host:port)"):
         Inverse(**options)
 

@@ -34,13 +34,11 @@ def array(text):
 
 
 def value_at(data, at):
-    """The value that starts there, by Python."""
     return json.loads(bytes(data[at : skip_value(data, at, len(data))]))
 
 
 @given(st.dictionaries(NAMES, VALUES, max_size=6), LAYOUTS)
 def test_each_member_is_found_and_no_other(document, layout):
-    """Whatever its value and whatever stands before it."""
     data = array(json.dumps(document, ensure_ascii=False, **layout))
     for name, value in document.items():
         assert value_at(data, member(data, 0, len(data), array(name))) == value
@@ -50,7 +48,6 @@ def test_each_member_is_found_and_no_other(document, layout):
 
 @given(st.lists(VALUES, max_size=6), LAYOUTS)
 def test_each_element_is_found_in_its_order(values, layout):
-    """An empty array has none."""
     data = array(json.dumps(values, **layout))
     found, at = [], first_element(data, 0, len(data))
     while at >= 0:
@@ -86,7 +83,6 @@ def test_a_name_within_another_is_not_that_name():
 
 
 def test_a_string_is_compared_to_its_end():
-    """Neither a beginning nor a continuation is the same."""
     data = array('"049D"')
     assert is_string(data, 0, len(data), array("049D"))
     assert not is_string(data, 0, len(data), array("049"))

@@ -24,7 +24,6 @@ TURNS = [0.4 * math.sin(0.013 * k) + 0.07 for k in range(2_100)]
 
 
 def wall(reading):
-    """A wall at 0.5 rad, in the way of greater angles."""
     return -2.0 * max(0.0, reading - 0.5)
 
 
@@ -35,7 +34,6 @@ def in_radians(turns, periods):
 
 @pytest.mark.parametrize("checksums", [False, True])
 def test_two_thousand_exchanges_of_a_moteus(checksums):
-    """Each position is that of its own exchange; each torque arrives as a single, in the torque mode."""
     periods = 1_000 if checksums else 2_000
     with MoteusEmulator(TURNS, checksums=checksums) as other:
         run = drive(Moteus(other.port, watchdog=0.08, checksums=checksums), periods, wall)
@@ -84,7 +82,6 @@ def _soon(monkeypatch):
 
 @pytest.fixture
 def _at_once(_soon, monkeypatch):
-    """And no answer is waited for."""
     monkeypatch.setattr("zwidth.machine.servo.devices.moteus._ONE_TRY", 0.1e9)
 
 
@@ -99,7 +96,6 @@ def test_an_answer_without_the_checksum_that_was_asked_for_is_garbled():
 
 @pytest.mark.parametrize(("mode", "code"), [(1, 38), (11, 0), (12, 0), (0, 0)])
 def test_a_moteus_that_leaves_its_mode_is_refused(mode, code):
-    """A fault, its watchdog, a stop: the torque ends at once."""
     with MoteusEmulator(TURNS) as other:
 
         def change():
@@ -148,7 +144,6 @@ def test_a_moteus_is_counted_on_where_its_position_begins_anew():
 
 
 def test_a_position_that_is_no_number_is_refused():
-    """As of a controller without a valid encoder."""
     with MoteusEmulator([0.1] * 10 + [math.nan]) as other:
         run = drive(Moteus(other.port), 20)
     assert run.statuses == [GOOD] * (10 - OPENING) + [REFUSED]
@@ -156,7 +151,6 @@ def test_a_position_that_is_no_number_is_refused():
 
 @pytest.mark.usefixtures("_soon")
 def test_what_is_wrong_with_a_moteus_is_said_when_it_is_opened():
-    """A fault that comes back; an adapter whose bus is off."""
     with MoteusEmulator(TURNS) as other:
         other._command = lambda values, written: None
         other.mode, other.fault_code = 1, 36
@@ -197,7 +191,6 @@ def test_every_fault_of_a_moteus_has_a_name(code):
 
 
 def test_closing_a_moteus_twice():
-    """And before it was ever opened."""
     device = Moteus("/dev/null")
     device.close()
     with MoteusEmulator(TURNS) as other:

@@ -18,7 +18,6 @@ AT = 21
 
 
 def wall(reading):
-    """A wall at 1 rad, in the way of greater angles."""
     return -0.2 * max(0.0, reading - 1.0)
 
 
@@ -27,7 +26,6 @@ def served(motor, periods, **options):
 
 
 def test_two_thousand_exchanges():
-    """Each position read is the one just asked for; each torque arrives to its last digit, 0 at the end."""
     with ODriveEmulator() as motor:
         run = served(motor, 2_000)
     assert run.statuses == [GOOD] * 2_000
@@ -131,7 +129,6 @@ def test_the_watchdog_runs_while_the_torque_is_not_0():
 
 
 def test_closing_leaves_the_settings_as_they_were():
-    """The motor idle; may be done twice, and before opening."""
     with ODriveEmulator() as motor:
         motor.properties["axis0.config.enable_watchdog"] = "1"
         before = dict(motor.properties)
@@ -147,7 +144,6 @@ def test_closing_leaves_the_settings_as_they_were():
 
 
 def test_it_can_be_served_again_behind_a_pause():
-    """The lines and the settings begin anew."""
     with ODriveEmulator() as motor:
         connection = ODrive(motor.port)
         first, second = drive(connection, 20, wall), drive(connection, 20, wall)
@@ -164,7 +160,6 @@ def test_what_has_not_answered_is_told_to_do_nothing(monkeypatch):
 
 
 def test_an_axis_that_does_not_start_is_told_with_its_errors(monkeypatch):
-    """As the firmware names them."""
     monkeypatch.setattr("zwidth.machine.servo.devices.odrive._START_TIME", 0.1)
     with ODriveEmulator(starts=False) as motor:
         motor.properties["axis0.error"] = "2048"
@@ -173,7 +168,6 @@ def test_an_axis_that_does_not_start_is_told_with_its_errors(monkeypatch):
 
 
 def test_a_setting_that_does_not_stay_is_told():
-    """A watchdog that was not set is none."""
     with ODriveEmulator() as motor:
         motor.frozen.add("axis0.config.watchdog_timeout")
         with pytest.raises(InputError, match=r"watchdog_timeout .* stays 0.000000 when set to 0.05"):
@@ -181,7 +175,6 @@ def test_a_setting_that_does_not_stay_is_told():
 
 
 def test_a_port_where_no_odrive_answers(monkeypatch):
-    """Nothing, or something without that axis."""
     monkeypatch.setattr("zwidth.machine.servo.devices.odrive._ANSWER_TIME", 0.1)
     near, far = os.openpty()
     tty.setraw(far)
@@ -195,7 +188,6 @@ def test_a_port_where_no_odrive_answers(monkeypatch):
 
 
 def test_what_it_says_of_itself():
-    """Which axis where, what ends the torque, and what was tried."""
     connection = ODrive(port="/dev/ttyACM0", watchdog=0.1)
     assert "ODrive axis 0 at /dev/ttyACM0" in connection.describe()
     assert "only an emulator" in connection.describe()

@@ -66,7 +66,6 @@ def test_the_registers_of_a_dynamixel_are_those_of_its_list():
 
 
 def test_the_registers_of_a_feetech_servo_are_those_of_its_list():
-    """As of a Dynamixel."""
     with FeetechEmulator([2048] * 20) as other:
         reached, changed = touched(Feetech(other.port, full_duty_torque=1.0), other)
     assert reached - POSITIONS == addresses(Feetech, *set(DONE) - {LEAVES})
@@ -74,7 +73,6 @@ def test_the_registers_of_a_feetech_servo_are_those_of_its_list():
 
 
 def test_the_properties_of_an_odrive_are_those_of_its_list():
-    """Read, or set and put back; its state besides."""
     with ODriveEmulator() as other:
         drive(ODrive(other.port), 40)
     said = [line.split() for line in other.lines if line[:1] in ("r", "w")]
@@ -85,7 +83,6 @@ def test_the_properties_of_an_odrive_are_those_of_its_list():
 
 
 def test_the_configuration_of_a_moteus_that_is_read_is_that_of_its_list():
-    """Nothing of it is set."""
     with MoteusEmulator([0.1]) as other:
         drive(Moteus(other.port), 5)
     assert other.asked_for == named(Moteus, *set(DONE) - {LEAVES, SETS})

@@ -1,7 +1,5 @@
 """What is made of the rows of a loop: curves, deadlines missed, and the line of words."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,8 +10,7 @@ from zwidth.machine.servo.live.rows import CURVES, LATENESS, MARGIN, Tally, Watc
 from zwidth.machine.servo.ring import AT, LATE, SAMPLE, WIDTH, Rows
 
 
-def test_each_row_is_news_once() -> None:
-    """Whoever looks gets every row, none twice, and nothing where nothing was written."""
+def test_each_row_is_news_once():
     rows = WrittenRows(np.arange(100.0))
     watched = Watched(rows)
     found = []
@@ -25,7 +22,7 @@ def test_each_row_is_news_once() -> None:
 
 
 @pytest.mark.parametrize("motion", ["linear", "rotary"])
-def test_curves_are_the_columns_and_the_margin(motion: str) -> None:
+def test_curves_are_the_columns_and_the_margin(motion):
     """By their names, wherever they stand; the margin is friction loss less energy out."""
     rows = WrittenRows(np.arange(9.0), motion=motion)
     rows.count = 9
@@ -41,7 +38,7 @@ def test_curves_are_the_columns_and_the_margin(motion: str) -> None:
 
 
 @pytest.mark.parametrize("kept", [10**9, 3])
-def test_samples_that_were_not_taken_are_missed_deadlines(kept: int) -> None:
+def test_samples_that_were_not_taken_are_missed_deadlines(kept):
     """Rows that a slow reader did not get are none; what was missed among them is counted all the same."""
     samples = np.array([0, 1, 2, 6, 7, 8, 9, 11, 12.0])
     rows = WrittenRows(samples, kept=kept, late_s=2e-4)
@@ -60,11 +57,10 @@ def test_samples_that_were_not_taken_are_missed_deadlines(kept: int) -> None:
     np.testing.assert_allclose(lateness, late_by, rtol=1e-12)
 
 
-def test_the_ring_of_a_loop_is_read_as_it_is() -> None:
-    """Its own rows, its own columns, written over while somebody sleeps."""
+def test_the_ring_of_a_loop_is_read_as_it_is():
     kept, written = np.zeros((64, WIDTH)), np.zeros(1, np.int64)
     ring = Rows(
-        SimpleNamespace(motion="linear", tells=("current_A",)),  # type: ignore[arg-type]
+        SimpleNamespace(motion="linear", tells=("current_A",)),
         kept, written, 0, period=0.5, title="", about={},
     )  # fmt: skip
     watched = Watched(ring)
@@ -79,8 +75,7 @@ def test_the_ring_of_a_loop_is_read_as_it_is() -> None:
     assert news.times[-1] == 0.5 * 202
 
 
-def test_the_line_says_what_was_counted() -> None:
-    """Phase, law, rate, position, force, margin, lateness, deadlines, bad answers."""
+def test_the_line_says_what_was_counted():
     status = np.zeros(3000)
     status[[5, 700, 2000]] = 1
     late = np.full(3000, 4e-5)
@@ -103,8 +98,7 @@ def test_the_line_says_what_was_counted() -> None:
 @pytest.mark.parametrize(
     ("phase", "law", "words"), [(0, -1, "measuring"), (1, -1, "waiting"), (3, 0, "ended, law 0")]
 )
-def test_before_the_first_law_there_is_none_to_name(phase: int, law: int, words: str) -> None:
-    """Laws are counted from 0."""
+def test_before_the_first_law_there_is_none_to_name(phase, law, words):
     rows = WrittenRows(np.arange(5.0), phase=float(phase), law=float(law))
     rows.count = 5
     tally = Tally(rows)
@@ -112,7 +106,7 @@ def test_before_the_first_law_there_is_none_to_name(phase: int, law: int, words:
     assert tally.line.split(" · ")[0] == words
 
 
-def test_the_margin_is_a_curve_of_the_hand() -> None:
+def test_the_margin_is_a_curve_of_the_hand():
     """A hand that puts in 3 mJ against friction and 1 mJ into a spring has a margin of 4 mJ."""
     rows = WrittenRows(np.arange(1.0), energy_out_J=-0.001, friction_loss_J=0.003)
     rows.count = 1

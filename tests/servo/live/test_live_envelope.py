@@ -1,7 +1,5 @@
 """The last seconds of a curve: lowest and highest in equal spans of time."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -13,8 +11,7 @@ SPANS = 20
 WIDTH = SPAN / SPANS
 
 
-def filled(times: np.ndarray, values: np.ndarray, cuts: list[int]) -> Envelope:
-    """An envelope that was given its samples in parts."""
+def filled(times, values, cuts):
     envelope = Envelope(1, SPANS)
     for part in np.split(np.arange(len(times)), sorted(cuts)):
         envelope.add(times[part], values[part, None])
@@ -26,12 +23,12 @@ def filled(times: np.ndarray, values: np.ndarray, cuts: list[int]) -> Envelope:
     cuts=st.lists(st.integers(0, 80), max_size=6),
     seed=st.integers(0, 99),
 )
-def test_every_span_has_its_lowest_and_highest(gaps: list[float], cuts: list[int], seed: int) -> None:
+def test_every_span_has_its_lowest_and_highest(gaps, cuts, seed):
     """Whatever the rate and however the samples come: the spans of the last seconds, that of now left out."""
     times = np.cumsum(gaps)
     values = np.random.default_rng(seed).normal(size=len(times))
     band = filled(times, values, cuts).after(-1)
-    spans: dict[int, list[float]] = {}
+    spans = {}
     for time, value in zip(times, values, strict=True):
         spans.setdefault(int(time // WIDTH), []).append(value)
     newest = max(spans)
@@ -41,7 +38,7 @@ def test_every_span_has_its_lowest_and_highest(gaps: list[float], cuts: list[int
     assert list(band.high[:, 0]) == [max(of) for of in expected.values()]
 
 
-def test_a_buzz_is_not_lost() -> None:
+def test_a_buzz_is_not_lost():
     """A sine of 497 Hz that one sample in each span would show as a slow wave fills its whole height."""
     times = np.arange(0, 4, 1e-3)
     envelope = filled(times, np.sin(2 * np.pi * 497 * times), [])
@@ -52,8 +49,7 @@ def test_a_buzz_is_not_lost() -> None:
     assert (high[known] > 0.99).all()
 
 
-def test_no_span_comes_twice() -> None:
-    """Whoever asks for what is new gets each span once, when it is over."""
+def test_no_span_comes_twice():
     envelope, number, found = Envelope(1, SPANS), -1, []
     for k in range(137):
         envelope.add(np.array([0.1 * k + 0.05]), np.array([[float(k)]]))
@@ -64,7 +60,7 @@ def test_no_span_comes_twice() -> None:
 
 
 @pytest.mark.parametrize("columns", [1, 7, SPANS, 33])
-def test_any_width_is_drawn(columns: int) -> None:
+def test_any_width_is_drawn(columns):
     """The first column is 10 s ago, the last is now."""
     envelope = filled(np.arange(0, 30, 0.25), np.arange(120.0), [50])
     low, high = envelope.drawn(columns)
@@ -73,16 +69,14 @@ def test_any_width_is_drawn(columns: int) -> None:
     assert low[0, 0] == 80
 
 
-def test_an_empty_envelope_draws_nothing() -> None:
-    """Before the first sample there is no number anywhere."""
+def test_an_empty_envelope_draws_nothing():
     envelope = Envelope(3, SPANS)
     envelope.add(np.zeros(0), np.zeros((0, 3)))
     assert np.isnan(envelope.drawn(5)).all()
     assert len(envelope.after(-1).times) == 0
 
 
-def test_what_is_no_number_hides_nothing() -> None:
-    """A reading that failed leaves the rest of its span as it is."""
+def test_what_is_no_number_hides_nothing():
     envelope = Envelope(1, SPANS)
     envelope.add(np.array([0.1, 0.2, 0.3, 0.9]), np.array([[2.0], [np.nan], [-1.0], [0.0]]))
     band = envelope.after(-1)

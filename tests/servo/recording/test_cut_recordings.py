@@ -1,9 +1,5 @@
 """A recording that was cut off, changed or broken is read up to there, never beyond, never with an error."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 from written_rows import COLUMNS, drawn
@@ -21,13 +17,12 @@ TABLE = drawn(20 * EACH)
 TAKEN = np.arange(len(TABLE)) * 1_000_000
 
 
-def pieces() -> list[slice]:
-    """The rows of each chunk."""
+def pieces():
     return [slice(k, k + EACH) for k in range(0, len(TABLE), EACH)]
 
 
 @pytest.fixture
-def chunked(tmp_path: Path) -> tuple[Path, list[int]]:
+def chunked(tmp_path):
     """A file, and where each of its chunks ends: before the index of its messages."""
     file = McapFile(tmp_path / "run.mcap", HEAD)
     ends = []
@@ -39,7 +34,7 @@ def chunked(tmp_path: Path) -> tuple[Path, list[int]]:
     return tmp_path / "run.mcap", ends
 
 
-def is_prefix(path: Path, rows: int) -> None:
+def is_prefix(path, rows):
     """Exactly so many rows are read, as they were written; there is no end."""
     found = read_recording(path)
     assert not found.whole
@@ -47,7 +42,7 @@ def is_prefix(path: Path, rows: int) -> None:
     assert np.column_stack(list(found.columns.values())).tobytes() == TABLE[:rows].tobytes()
 
 
-def test_cut_at_any_byte(chunked: tuple[Path, list[int]], tmp_path: Path) -> None:
+def test_cut_at_any_byte(chunked, tmp_path):
     """Every whole chunk is read, and no other; before its head a file is no recording."""
     path, ends = chunked
     data = path.read_bytes()
@@ -66,8 +61,7 @@ def test_cut_at_any_byte(chunked: tuple[Path, list[int]], tmp_path: Path) -> Non
             read_recording(cut)
 
 
-def test_changed_bytes_end_what_is_read(chunked: tuple[Path, list[int]], tmp_path: Path) -> None:
-    """The checksum of a chunk sees them: none of its rows is believed."""
+def test_changed_bytes_end_what_is_read(chunked, tmp_path):
     path, ends = chunked
     data = bytearray(path.read_bytes())
     data[ends[6] - 40] ^= 1
@@ -76,9 +70,7 @@ def test_changed_bytes_end_what_is_read(chunked: tuple[Path, list[int]], tmp_pat
     is_prefix(changed, 6 * EACH)
 
 
-def test_a_chunk_that_is_passed_over_ends_what_is_read(
-    chunked: tuple[Path, list[int]], tmp_path: Path
-) -> None:
+def test_a_chunk_that_is_passed_over_ends_what_is_read(chunked, tmp_path):
     """A record of an unknown kind is passed over; the rows behind it are not those that follow."""
     path, ends = chunked
     data = bytearray(path.read_bytes())
@@ -90,7 +82,7 @@ def test_a_chunk_that_is_passed_over_ends_what_is_read(
     is_prefix(changed, 4 * EACH)
 
 
-def test_any_changed_byte_is_no_crash(chunked: tuple[Path, list[int]], tmp_path: Path) -> None:
+def test_any_changed_byte_is_no_crash(chunked, tmp_path):
     """What is read is a beginning of what was written, or the file is refused; it is whole only if all is."""
     path, ends = chunked
     data = path.read_bytes()
@@ -114,14 +106,13 @@ def test_any_changed_byte_is_no_crash(chunked: tuple[Path, list[int]], tmp_path:
     assert 0 < refused < 200
 
 
-def test_a_whole_file_reads_to_its_end(chunked: tuple[Path, list[int]]) -> None:
+def test_a_whole_file_reads_to_its_end(chunked):
     """Otherwise the tests above would show little."""
     assert read_recording(chunked[0]).whole
     assert read_recording(chunked[0]).samples == len(TABLE)
 
 
-def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
-    """A text, a folder, nothing at all: each with one message."""
+def test_what_is_no_recording_is_refused(tmp_path):
     (tmp_path / "text.mcap").write_text("time,position\n0,1\n")
     (tmp_path / "folder.mcap").mkdir()
     for name in ("text.mcap", "folder.mcap", "nothing.mcap"):
@@ -129,8 +120,7 @@ def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
             read_recording(tmp_path / name)
 
 
-def test_a_recording_of_another_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Rather than read wrongly."""
+def test_a_recording_of_another_version_is_refused(tmp_path, monkeypatch):
     with monkeypatch.context() as patch:
         patch.setattr("zwidth.data.logs.contents.FORMAT", "zwidth recording 2")
         McapFile(tmp_path / "run.mcap", HEAD).close()

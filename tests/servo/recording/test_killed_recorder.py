@@ -1,7 +1,5 @@
 """A process that is killed leaves everything that its recorder said was in the file."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess
@@ -31,7 +29,7 @@ while True:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal")
-def test_after_kill_9(tmp_path: Path) -> None:
+def test_after_kill_9(tmp_path):
     """Killed once it has said that the rows of three looks are written; they are read back, bit by bit."""
     path = tmp_path / "run.mcap"
     child = subprocess.Popen(

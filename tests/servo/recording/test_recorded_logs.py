@@ -1,9 +1,5 @@
 """A recording is a log as it stands: `zwidth identify` knows its columns, units and signs by themselves."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 from known_motion import COULOMB, DAMPING, MASS, PERIOD, STEP, paddle
@@ -14,8 +10,7 @@ from zwidth.machine.servo.recording.recorder import Recorder
 from zwidth.machine.servo.recording.recording import read_recording
 
 
-def moved(kept: int = 1 << 20) -> WrittenRows:
-    """A device that its own actuator moves to and fro: nobody holds it."""
+def moved(kept=1 << 20):
     recording = paddle()
     table = drawn(len(recording.time))
     table[:, COLUMNS.index("time_s")] = recording.time
@@ -24,14 +19,13 @@ def moved(kept: int = 1 << 20) -> WrittenRows:
     return WrittenRows(table, kept=kept, period=PERIOD)
 
 
-def written(rows: WrittenRows, path: Path) -> Path:
-    """All the rows in a file."""
+def written(rows, path):
     with Recorder(rows, path):
         rows.written = len(rows.after(0)[1]) or 20_000
     return path
 
 
-def test_a_recording_is_identified(tmp_path: Path) -> None:
+def test_a_recording_is_identified(tmp_path):
     """As from arrays, number for number; the signs are those that make the mass positive and right."""
     path = written(moved(), tmp_path / "run.mcap")
     known = paddle()
@@ -45,8 +39,7 @@ def test_a_recording_is_identified(tmp_path: Path) -> None:
         assert found.estimates[name].value == pytest.approx(true, rel=0.05)
 
 
-def test_a_log_of_a_recording(tmp_path: Path) -> None:
-    """Time, position as read and force as given, of every sample; the step of the encoder is seen."""
+def test_a_log_of_a_recording(tmp_path):
     log = zw.read_log(written(moved(), tmp_path / "run.mcap"))
     known = paddle()
     assert (log.motion, log.sample_period, log.channels) == ("linear", PERIOD, ("actuator_force",))
@@ -56,7 +49,7 @@ def test_a_log_of_a_recording(tmp_path: Path) -> None:
     assert np.array_equal(np.concatenate([b.actuator_force for b in blocks]), -known.force)
 
 
-def test_a_sample_without_an_answer_has_no_position(tmp_path: Path) -> None:
+def test_a_sample_without_an_answer_has_no_position(tmp_path):
     """What stands in the row then is an older reading: the log begins a new run behind it."""
     rows = moved()
     rows._table[4000:4003, COLUMNS.index("status")] = 1.0
@@ -65,8 +58,7 @@ def test_a_sample_without_an_answer_has_no_position(tmp_path: Path) -> None:
     assert log.samples == 20_000 - 3
 
 
-def test_what_was_lost_or_cut_is_said(tmp_path: Path) -> None:
-    """Among the findings of the log."""
+def test_what_was_lost_or_cut_is_said(tmp_path):
     path = written(moved(kept=15_000), tmp_path / "run.mcap")
     lost = {finding.kind: finding.samples for finding in zw.read_log(path).findings}
     assert lost["rows lost"] == 5000
@@ -78,7 +70,7 @@ def test_what_was_lost_or_cut_is_said(tmp_path: Path) -> None:
     assert "cut off" in {finding.kind for finding in zw.read_log(path).findings}
 
 
-def test_another_column_can_be_chosen(tmp_path: Path) -> None:
+def test_another_column_can_be_chosen(tmp_path):
     """Names and units as they stand in the file; None leaves a quantity out."""
     path = written(moved(), tmp_path / "run.mcap")
     log = zw.read_log(path, columns={"actuator_force": "wished_force_N"})
@@ -87,8 +79,7 @@ def test_another_column_can_be_chosen(tmp_path: Path) -> None:
     assert read_recording(path).log(sample_rate=1000).samples == 20_000
 
 
-def test_a_rotary_recording(tmp_path: Path) -> None:
-    """Its columns are in rad and N·m."""
+def test_a_rotary_recording(tmp_path):
     rows = moved()
     rows.motion = "rotary"
     rows.COLUMNS = tuple(name.replace("_N", "_N_m") if name.endswith("_N") else name for name in COLUMNS)
@@ -98,8 +89,7 @@ def test_a_rotary_recording(tmp_path: Path) -> None:
     assert log.channels == ("actuator_force",)
 
 
-def test_a_recording_as_a_dataset(tmp_path: Path) -> None:
-    """Names as in a trace where it has them, units in the attributes; a log can be made of that as well."""
+def test_a_recording_as_a_dataset(tmp_path):
     recording = read_recording(written(moved(), tmp_path / "run.mcap"))
     data = recording.dataset()
     units = {name: variable.attrs["units"] for name, variable in data.data_vars.items()}

@@ -1,9 +1,6 @@
 """What a recorder writes is what the loop wrote, to the last bit; what it could not write it says."""
 
-from __future__ import annotations
-
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,17 +10,15 @@ from written_rows import COLUMNS, WrittenRows, drawn
 from zwidth import InputError
 from zwidth.machine.servo.live.rows import field_name
 from zwidth.machine.servo.recording.recorder import Recorder
-from zwidth.machine.servo.recording.recording import Recording, read_recording
+from zwidth.machine.servo.recording.recording import read_recording
 
 
-def stacked(recording: Recording) -> np.ndarray:
-    """The columns as they stood in the rows."""
+def stacked(recording):
     assert tuple(recording.columns) == COLUMNS
     return np.column_stack(list(recording.columns.values()))
 
 
-def test_what_is_read_is_what_was_written(tmp_path: Path) -> None:
-    """Rows with infinities and tiny numbers, events, and what the loop says of itself."""
+def test_what_is_read_is_what_was_written(tmp_path):
     table = drawn(5000)
     table[7, 3:6] = np.inf, -0.0, 5e-324
     rows = WrittenRows(table)
@@ -46,7 +41,7 @@ def test_what_is_read_is_what_was_written(tmp_path: Path) -> None:
     assert found.samples == 5000
 
 
-def test_rows_that_the_ring_wrote_over_are_counted(tmp_path: Path) -> None:
+def test_rows_that_the_ring_wrote_over_are_counted(tmp_path):
     """A recorder that comes too late says how many are lost, and between which samples."""
     rows = WrittenRows(drawn(1000), kept=100)
     with Recorder(rows, tmp_path / "run.mcap") as recorder:
@@ -64,7 +59,7 @@ def test_rows_that_the_ring_wrote_over_are_counted(tmp_path: Path) -> None:
     assert stacked(found).tobytes() == drawn(1000)[900:].tobytes()
 
 
-def test_missed_samples_are_not_lost_rows(tmp_path: Path) -> None:
+def test_missed_samples_are_not_lost_rows(tmp_path):
     """The loop numbers its samples: what is missing in the numbers was never a row."""
     table = np.delete(drawn(100), [10, 11, 50], axis=0)
     rows = WrittenRows(table)
@@ -74,8 +69,7 @@ def test_missed_samples_are_not_lost_rows(tmp_path: Path) -> None:
     assert (found.missed, found.rows_lost) == (3, 0)
 
 
-def test_a_recording_without_rows_is_whole(tmp_path: Path) -> None:
-    """A loop that never began leaves a file that says so."""
+def test_a_recording_without_rows_is_whole(tmp_path):
     Recorder(WrittenRows(drawn(5)), tmp_path / "run.mcap").close()
     found = read_recording(tmp_path / "run.mcap")
     assert found.whole
@@ -83,8 +77,7 @@ def test_a_recording_without_rows_is_whole(tmp_path: Path) -> None:
     assert "samples" in repr(found)
 
 
-def test_what_is_there_is_replaced_only_when_asked(tmp_path: Path) -> None:
-    """With force the new recording takes the place of the old one."""
+def test_what_is_there_is_replaced_only_when_asked(tmp_path):
     path = tmp_path / "run.mcap"
     for seed in (1, 2):
         rows = WrittenRows(drawn(40 * seed, seed))
@@ -97,15 +90,13 @@ def test_what_is_there_is_replaced_only_when_asked(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["run.csv", "run", "run.parquet", "missing/run.mcap"])
-def test_a_place_that_cannot_be_written_is_refused_before_the_loop_begins(tmp_path: Path, name: str) -> None:
-    """With one message, and no file."""
+def test_a_place_that_cannot_be_written_is_refused_before_the_loop_begins(tmp_path, name):
     with pytest.raises(InputError):
         Recorder(WrittenRows(drawn(1)), tmp_path / name)
     assert not list(tmp_path.iterdir())
 
 
-def test_a_full_disk_ends_the_recording_and_nothing_else(tmp_path: Path) -> None:
-    """What was written before is read; the report says what happened."""
+def test_a_full_disk_ends_the_recording_and_nothing_else(tmp_path):
     rows = WrittenRows(drawn(4000))
     recorder = Recorder(rows, tmp_path / "run.mcap")
     before = recorder.so_far().size
@@ -120,8 +111,7 @@ def test_a_full_disk_ends_the_recording_and_nothing_else(tmp_path: Path) -> None
     assert found.samples == done.rows == 0
 
 
-def test_a_table_that_others_read(tmp_path: Path) -> None:
-    """rosbags reads each row as a message with its time."""
+def test_a_table_that_others_read(tmp_path):
     table = drawn(300)
     rows = WrittenRows(table)
     rows.events.append({"event": "began"})
@@ -147,13 +137,12 @@ def test_a_table_that_others_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "column", ["force_N", "wished_force_N_m", "true_velocity_m_per_s", "motor__Current_A_"]
 )
-def test_names_of_fields(column: str) -> None:
+def test_names_of_fields(column):
     """Small letters, digits and single underscores, as the interface definition of ROS 2 has it."""
     assert re.fullmatch("[a-z](?:_?[a-z0-9]+)*", field_name(column))
 
 
-def test_the_index_leads_to_every_chunk(tmp_path: Path) -> None:
-    """A reader that starts from the end of the file finds checksums, counts and metadata in order."""
+def test_the_index_leads_to_every_chunk(tmp_path):
     reader = pytest.importorskip("mcap.reader")
     rows = WrittenRows(drawn(300))
     with Recorder(rows, tmp_path / "run.mcap"):
@@ -168,7 +157,7 @@ def test_the_index_leads_to_every_chunk(tmp_path: Path) -> None:
         )
 
 
-def test_a_file_that_another_program_wrote_anew(tmp_path: Path) -> None:
+def test_a_file_that_another_program_wrote_anew(tmp_path):
     """Other chunks and compression, channels inside, messages of others between: the rows are the same."""
     mcap_reader, mcap_writer = pytest.importorskip("mcap.reader"), pytest.importorskip("mcap.writer")
     rows = WrittenRows(drawn(700))
@@ -182,7 +171,7 @@ def test_a_file_that_another_program_wrote_anew(tmp_path: Path) -> None:
         said = list(reader.iter_metadata())
         writer.add_metadata(said[0].name, said[0].metadata)
         other = writer.register_channel("/other", "json", 0)
-        channels: dict[str, int] = {}
+        channels = {}
         for schema, channel, message in reader.iter_messages():
             if channel.topic not in channels:
                 kind = writer.register_schema(schema.name, schema.encoding, schema.data)

@@ -1,7 +1,5 @@
 """The page on recordings names what is in them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -14,21 +12,19 @@ PAGE = (Path(__file__).parents[3] / "docs" / "recording.md").read_text(encoding=
 
 
 @pytest.fixture(scope="module")
-def columns() -> tuple[str, ...]:
-    """Of a simulated device."""
+def columns():
     device = zw.catalogue.device("haptic-paddle")
     return column_names(Simulated(device=device, hand=zw.operators.Finger(), duration="10 ms"))
 
 
-def test_every_column_is_on_the_page(columns: tuple[str, ...]) -> None:
+def test_every_column_is_on_the_page(columns):
     """In the order of the rows; of what a simulated device tells, position and velocity."""
     own = columns[: columns.index("true_position_m") + 2]
     places = [PAGE.index(f"`{name}`") for name in own]
     assert places == sorted(places)
 
 
-def test_every_phase_is_on_the_page() -> None:
-    """With its number."""
+def test_every_phase_is_on_the_page():
     row = next(line for line in PAGE.splitlines() if line.startswith("| `phase` |"))
     assert [row.find(name) for name in PHASES] == sorted(row.find(name) for name in PHASES)
     assert all(f"{number} {name}" in row for number, name in enumerate(PHASES))

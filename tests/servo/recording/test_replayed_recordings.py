@@ -1,9 +1,6 @@
 """A recording simulated again gives the recorded forces to the last bit, and says so where it does not."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,10 +24,8 @@ Save = Callable[[np.ndarray, zw.Device, Any], Recording]
 
 
 @pytest.fixture
-def save(tmp_path: Path) -> Save:
-    """Writes rows into a file that says what was served, and reads it back."""
-
-    def through_a_file(table: np.ndarray, device: zw.Device, *laws: Any, **others: Any) -> Recording:
+def save(tmp_path):
+    def through_a_file(table, device, *laws, **others):
         rows = WrittenRows(table, **others)
         rows.events += [{"specification": written(device, law)} for law in laws]
         with Recorder(rows, tmp_path / "run.mcap", force=True):
@@ -40,12 +35,11 @@ def save(tmp_path: Path) -> Save:
     return through_a_file
 
 
-def column(table: np.ndarray, name: str) -> np.ndarray:
-    """One column, to be read or written."""
+def column(table, name):
     return table[:, COLUMNS.index(name)]
 
 
-def touched(device: zw.Device, law: object, seed: int) -> np.ndarray:
+def touched(device, law, seed):
     """A hand goes in and out of the wall; the clock is late and misses samples: a loop would write this."""
     timing = Timing(lateness=6e-4, missed=0.04, seed=seed)
     times = 1e-3 * np.arange(SAMPLES + 1)
@@ -72,7 +66,7 @@ def touched(device: zw.Device, law: object, seed: int) -> np.ndarray:
     ],
     ids=["wall", "window", "passivity controller", "time between ticks", "force bounding"],
 )
-def test_a_touch_is_replayed(save: Save, law: Any) -> None:
+def test_a_touch_is_replayed(save, law):
     """Walls, estimators and laws with a memory; late and missed samples; a saturated, stepped converter."""
     device = paddle(force_limit=0.5, force_resolution="1 mN")
     table = touched(device, law, seed=4)
@@ -84,7 +78,7 @@ def test_a_touch_is_replayed(save: Save, law: Any) -> None:
     assert "to the last bit" in found.describe()
 
 
-def test_forces_by_another_road(save: Save) -> None:
+def test_forces_by_another_road(save):
     """K max(x, 0) at readings that jump and lie between the encoder's counts: nothing is rounded."""
     table = drawn(400)
     position = column(table, "position_m")
@@ -95,7 +89,7 @@ def test_forces_by_another_road(save: Save) -> None:
     assert (found.samples, found.different) == (400, 0)
 
 
-def test_a_force_that_is_not_the_laws_is_found(save: Save) -> None:
+def test_a_force_that_is_not_the_laws_is_found(save):
     """By how much, and in how many samples; not where the safety cut it, and says so."""
     device = paddle()
     table = touched(device, WALL, seed=2)
@@ -110,13 +104,12 @@ def test_a_force_that_is_not_the_laws_is_found(save: Save) -> None:
     assert (found.samples, found.different) == (len(table) - 1, 0)
 
 
-def test_another_law_gives_other_forces(save: Save) -> None:
-    """Device and environment can be given in the place of what the recording says."""
+def test_another_law_gives_other_forces(save):
     table = touched(paddle(), WALL, seed=2)
     assert replay(save(table, paddle(), WALL), environment=zw.Wall(stiffness=299)).different > 100
 
 
-def test_a_sample_without_an_answer_is_missed(save: Save) -> None:
+def test_a_sample_without_an_answer_is_missed(save):
     """Its row has an old reading and the force held: the law did not run."""
     device = paddle()
     table = touched(device, WALL, seed=9)
@@ -131,7 +124,7 @@ def test_a_sample_without_an_answer_is_missed(save: Save) -> None:
     assert (found.samples, found.different) == (whole, 0)
 
 
-def test_the_second_law_begins_at_rest(save: Save) -> None:
+def test_the_second_law_begins_at_rest(save):
     """What the first one remembered is gone; each is replayed by its own number."""
     device, soft = paddle(), zw.Wall(stiffness=100, damping="0.1 N*s/m")
     first, second = touched(device, WALL, seed=1), touched(device, soft, seed=3)
@@ -145,7 +138,7 @@ def test_the_second_law_begins_at_rest(save: Save) -> None:
         replay(recording, law=2)
 
 
-def test_what_cannot_be_replayed_is_refused(save: Save) -> None:
+def test_what_cannot_be_replayed_is_refused(save):
     """Lost rows, another rate, a law of one's own, one that needs the step of an encoder without steps."""
     device, law = paddle(), render(WALL, Damper(damping="0.1 N*s/m", velocity=TickTime()))
     table = touched(device, law, seed=5)
@@ -160,7 +153,7 @@ def test_what_cannot_be_replayed_is_refused(save: Save) -> None:
         replay(save(table, device, law))
 
 
-def test_rows_that_were_lost_behind_a_law_do_not_matter(save: Save) -> None:
+def test_rows_that_were_lost_behind_a_law_do_not_matter(save):
     """The ring wrote over rows of the time before: the law began later."""
     device = paddle()
     table = touched(device, WALL, seed=5)
@@ -173,8 +166,7 @@ def test_rows_that_were_lost_behind_a_law_do_not_matter(save: Save) -> None:
     assert replay(recording).different == 0
 
 
-def test_the_clock_of_a_recording(save: Save) -> None:
-    """Lateness and missed samples are those that were recorded, counted from where the law began."""
+def test_the_clock_of_a_recording(save):
     device = paddle()
     touch = touch_of(save(touched(device, WALL, seed=8), device, WALL))
     timing = Timing(lateness=6e-4, missed=0.04, seed=8)
@@ -191,7 +183,7 @@ def test_the_clock_of_a_recording(save: Save) -> None:
     [Placement(), Placement(origin=-3.3e-6, sense=-1)],
     ids=["at a count", "between counts"],
 )
-def test_a_served_touch_is_replayed(tmp_path: Path, placement: Placement) -> None:
+def test_a_served_touch_is_replayed(tmp_path, placement):
     """A loop in real time, whatever this machine made it miss: the same forces, and nothing lost."""
     device = paddle(rate="500 Hz", sample_period=None)
     hand = zw.operators.Finger(force=1.5, speed=0.3, start=-2e-3)

@@ -1,9 +1,5 @@
 """A touch served on a simulated device becomes a whole trace, equal to what the loop wrote down."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 from recordings import paddle
@@ -14,9 +10,8 @@ from zwidth import InputError
 from zwidth.loop.energy import ledger
 from zwidth.machine.servo import Safety
 from zwidth.machine.servo.devices import Simulated
-from zwidth.machine.servo.recording import Recorder, Recording, read_recording, trace_of
+from zwidth.machine.servo.recording import Recorder, read_recording, trace_of
 from zwidth.machine.servo.session import Servo
-from zwidth.model.operator import Operator
 
 SLOW = Safety(longest_gap="60 s", host_timeout="60 s")
 """A machine that stands still makes a loop miss samples, and does not end it."""
@@ -24,8 +19,7 @@ SLOW = Safety(longest_gap="60 s", host_timeout="60 s")
 WALL = zw.Wall(stiffness=300, damping="0.2 N*s/m")
 
 
-def tracking(size: float) -> Operator:
-    """A hand that follows a path in and out of the wall."""
+def tracking(size):
     times = 2e-3 * np.arange(151)
     return zw.operators.Tracking(
         -size * np.cos(30 * times) + 2e-3 * np.sin(61 * times), stiffness=300.0, damping=1.0
@@ -33,7 +27,7 @@ def tracking(size: float) -> Operator:
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Recording:
+def served(tmp_path_factory):
     """In real time, with whatever lateness this machine has; a delay, and friction at rest."""
     path = tmp_path_factory.mktemp("served") / "run.mcap"
     device = paddle(rate="500 Hz", sample_period=None, stiction=0.2, delay="0.7 ms")
@@ -46,7 +40,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Recording:
     return read_recording(path)
 
 
-def test_the_trace_is_what_was_served(served: Recording) -> None:
+def test_the_trace_is_what_was_served(served):
     """Positions, velocities, forces and energies at the samples, bit by bit; and its energies add up."""
     trace = trace_of(served, tracking(2e-3))
     good = served.columns["phase"] == 2.0
@@ -67,14 +61,12 @@ def test_the_trace_is_what_was_served(served: Recording) -> None:
     assert ledger(trace).closes
 
 
-def test_another_hand_is_refused(served: Recording) -> None:
-    """Its touch was another one."""
+def test_another_hand_is_refused(served):
     with pytest.raises(InputError, match="with this hand the position is another"):
         trace_of(served, tracking(2.001e-3))
 
 
-def test_a_real_device_has_no_such_trace(tmp_path: Path) -> None:
-    """Nobody knows what its hand did."""
+def test_a_real_device_has_no_such_trace(tmp_path):
     rows = WrittenRows(drawn(10))
     with Recorder(rows, tmp_path / "run.mcap"):
         rows.written = 10
