@@ -4,8 +4,6 @@ An emulator counts the positions that it is asked for: the first is exchange 0. 
 answers as it should; from there on its fault decides what becomes of every answer.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from enum import StrEnum
@@ -44,15 +42,7 @@ class Command:
 class Emulator(ABC):
     """The other side of a line; it calls `answer` for every position asked, `command` for every force.
 
-    Parameters
-    ----------
-    fault, at
-        What goes wrong, and from which exchange on; None for a device that does everything right.
-
-    Attributes
-    ----------
-    until
-        The exchange from which everything is right again; None for never.
+    From the exchange `at` to that `until` which everything is right again, or for ever, it has the fault.
     """
 
     def __init__(self, fault: Fault | None = None, at: int = 0) -> None:
@@ -70,23 +60,20 @@ class Emulator(ABC):
 
     @abstractmethod
     def hang_up(self) -> None:
-        """Close the line."""
+        """Close it."""
 
     def with_wrong_checksum(self, frame: bytes) -> bytes:
         """The same frame with the checksum of another one."""
         raise NotImplementedError(f"the frames of {type(self).__name__} have no checksum")
 
     def nonsense(self, count: int) -> bytes:
-        """Bytes that mean nothing."""
         return self._random.randbytes(count)
 
     def pieces(self, frame: bytes) -> list[bytes]:
-        """The frame in three."""
         third = max(1, len(frame) // 3)
         return [frame[:third], frame[third : 2 * third], frame[2 * third :]]
 
     def command(self, force: float) -> None:
-        """Remember a force that was asked for."""
         self.commands.append(Command(self.exchange, force))
 
     def answer(self, frame: bytes) -> None:

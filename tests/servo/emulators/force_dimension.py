@@ -4,8 +4,6 @@ The package takes hold of hundreds of functions of the library when it is import
 here are in it as well, and fail.
 """
 
-from __future__ import annotations
-
 import ctypes
 import importlib.util
 import os
@@ -73,12 +71,10 @@ class Device:
 
     @property
     def asked(self) -> int:
-        """How often for its position."""
         return int(self.library.fd_asked())
 
     @property
     def forces(self) -> list[tuple[float, float, float]]:
-        """All that were given [N]."""
         given = range(self.library.fd_given())
         return [tuple(self.library.fd_force(k, axis) for axis in range(3)) for k in given]  # type: ignore[misc]
 

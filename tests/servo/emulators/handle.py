@@ -1,7 +1,5 @@
 """What an emulated device moves: a mass that a hand holds as a spring with some damping."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

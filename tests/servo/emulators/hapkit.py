@@ -1,7 +1,5 @@
 """A Hapkit with its sketch, written from docs/devices/hapkit.md: at the other end of a pseudo-terminal."""
 
-from __future__ import annotations
-
 import binascii
 import struct
 from collections.abc import Callable

@@ -4,8 +4,6 @@ On connecting it sends its inventory; then one state for each message.  Written 
 "WebSocket Protocol" and "Simulation Channel" of docs.haply.co, with Python's json and struct.
 """
 
-from __future__ import annotations
-
 import json
 import socket
 import struct
@@ -31,18 +29,9 @@ def frame(payload: bytes, kind: int = 1, last: bool = True) -> bytes:
 
 
 class InverseEmulator(Emulator):
-    """Listens on a free port of this machine; `address` is where.
+    """Listens on a free port of this machine; `address` is where.  The last of its devices moves.
 
-    Parameters
-    ----------
-    fault, at
-        See `Emulator`; the exchange that the adapter makes when it is opened counts, and is the first.
-    devices
-        Their names; the last one is the one that moves.
-    padding
-        Bytes of an unknown member in each state, to make it longer.
-    status
-        Of every device.
+    `padding` are bytes of an unknown member in each state, to make it longer.
     """
 
     def __init__(
@@ -62,12 +51,10 @@ class InverseEmulator(Emulator):
         self.positions: list[dict[str, float]] = []
         self.others: list[dict[str, float]] = []
         self.pongs: list[bytes] = []
-        self.kinds: list[int] = []
         self.closed_by_client = False
         self.asked_again = 0
         self.found_when_asked: int | None = None
         self.ping_before: int | None = None
-        self.leave_out = False
         self.not_ready_from: int | None = None
         self._devices, self._padding, self._status, self._scale = devices, padding, status, scale
         self._greeting, self._parts = greeting, parts
@@ -77,13 +64,11 @@ class InverseEmulator(Emulator):
         self._thread = Thread(target=self._serve, daemon=True)
 
     def write(self, data: bytes) -> None:
-        """Put bytes on the line at once."""
         if self._line is not None:
             with suppress(OSError):
                 self._line.sendall(data)
 
     def hang_up(self) -> None:
-        """Close the line."""
         line, self._line = self._line, None
         if line is not None:
             with suppress(OSError):
@@ -140,7 +125,6 @@ class InverseEmulator(Emulator):
         return True
 
     def _hear(self, kind: int, payload: bytes) -> None:
-        self.kinds.append(kind)
         if kind == 10:
             self.pongs.append(payload)
         if kind == 8:
@@ -204,8 +188,6 @@ class InverseEmulator(Emulator):
                 status = {"ready": False}
             device: dict[str, Any] = {"config": config} if full else {}
             devices.append({**device, "status": status, "state": state, "device_id": name})
-        if self.leave_out and not full:
-            devices = devices[:-1]
         document = {"padding": "]}" * (self._padding // 2), "session_id": 7, "inverse3": devices}
         return json.dumps(document, indent=1 if full else None).encode()
 

@@ -1,7 +1,5 @@
 """The sketch of examples/hapkit itself, compiled for this machine: a board whose pins are seen."""
 
-from __future__ import annotations
-
 import ctypes
 import shutil
 import subprocess
@@ -43,16 +41,13 @@ class Sketch:
         self.board.board_turn(ticks)
 
     def sense(self, reading: int) -> None:
-        """What the sensor reads from now on."""
         self.board.board_sensor(reading)
 
     def hear(self, data: bytes) -> None:
-        """Bytes come over the line."""
         for byte in data:
             self.board.board_hear(byte)
 
     def told(self) -> bytes:
-        """What it has sent since."""
         return bytes(self._into[: self.board.board_tell(self._into)])
 
     @property

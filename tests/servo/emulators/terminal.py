@@ -1,7 +1,5 @@
 """A device at the other end of a pseudo-terminal, which has the bytes of a serial port but no baud rate."""
 
-from __future__ import annotations
-
 import os
 import tty
 from abc import abstractmethod
@@ -29,7 +27,6 @@ class TerminalEmulator(Emulator):
         """Take bytes that came, however they were cut."""
 
     def write(self, data: bytes) -> None:
-        """Put bytes on the line at once."""
         with suppress(OSError):
             os.write(self._near, data)
 
