@@ -81,10 +81,7 @@ def together(peers, clock, seconds, tick=1e-3):
 
 def test_two_people_in_one_scene_over_different_bad_links_take_out_no_energy():
     clock = Clock()
-    hands = {
-        "ann": zw.operators.Finger(),
-        "bob": zw.operators.Finger(start=-0.01, speed=0.05),
-    }
+    hands = {"ann": zw.operators.Finger(), "bob": zw.operators.Finger(start=-0.01, speed=0.05)}
     runs, channels, peers = {}, {}, []
     for i, (name, hand) in enumerate(hands.items()):
         runs[name] = DeviceRun(WavePort(PADDLE), hand, 2, name)

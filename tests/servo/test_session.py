@@ -321,11 +321,7 @@ def test_served_touch_is_the_simulated_one_to_the_last_bit(device, law, operator
     late, missed = np.zeros(simulated.samples + 1), np.ones(simulated.samples + 1, bool)
     late[taken], missed[taken] = rows["late_s"], False
     trace = zw.simulate(
-        device,
-        law,
-        simulated.scripted,
-        "0.6",
-        timing=zw.simulation.Timing(lateness=late, missed=missed),
+        device, law, simulated.scripted, "0.6", timing=zw.simulation.Timing(lateness=late, missed=missed)
     )
     again = {
         "true_position_m": "position",

@@ -24,11 +24,7 @@ def written(value, decimals):
     return bytes(into[3:end]).decode()
 
 
-@given(
-    st.integers(-(10**15) + 1, 10**15 - 1),
-    st.integers(-15, 0),
-    st.sampled_from(["", "e3", "E-4", "e+2"]),
-)
+@given(st.integers(-(10**15) + 1, 10**15 - 1), st.integers(-15, 0), st.sampled_from(["", "e3", "E-4", "e+2"]))
 def test_fifteen_digits_are_read_to_the_nearest_float(digits, point, exponent):
     text = f"{Decimal(digits).scaleb(point):f}{exponent}"
     assert read(text + ",") == (float(text), len(text))

@@ -9,16 +9,7 @@ from servo.emulators.faults import Fault
 from servo.emulators.inverse import InverseEmulator
 
 from zwidth.errors import InputError
-from zwidth.machine.servo.connection import (
-    FORCE,
-    GOOD,
-    INDEX,
-    READING,
-    REFUSED,
-    SILENT,
-    STALE,
-    UNTIL,
-)
+from zwidth.machine.servo.connection import FORCE, GOOD, INDEX, READING, REFUSED, SILENT, STALE, UNTIL
 from zwidth.machine.servo.devices import websocket
 from zwidth.machine.servo.devices.inverse import Inverse
 

@@ -88,10 +88,7 @@ def test_what_limits_the_torque_of_an_odrive_is_told():
 
 @pytest.mark.parametrize(
     ("name", "value", "said"),
-    [
-        ("config.enable_sensorless_mode", "1", "spins the motor"),
-        ("motor.config.motor_type", "2", "is volts"),
-    ],
+    [("config.enable_sensorless_mode", "1", "spins the motor"), ("motor.config.motor_type", "2", "is volts")],
 )
 def test_an_odrive_that_takes_no_torque_is_refused(name, value, said):
     """Before anything is set, and before the axis is in closed loop control."""

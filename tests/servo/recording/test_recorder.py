@@ -53,9 +53,7 @@ def test_rows_that_the_ring_wrote_over_are_counted(tmp_path):
     assert found.whole
     assert found.rows_lost == 900
     assert found.missed == 0
-    assert found.events == [
-        {"event": "rows lost", "rows": 900, "after_sample": None, "before_sample": 900.0},
-    ]
+    assert found.events == [{"event": "rows lost", "rows": 900, "after_sample": None, "before_sample": 900.0}]
     assert stacked(found).tobytes() == drawn(1000)[900:].tobytes()
 
 

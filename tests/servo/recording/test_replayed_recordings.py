@@ -179,9 +179,7 @@ def test_the_clock_of_a_recording(save):
 
 
 @pytest.mark.parametrize(
-    "placement",
-    [Placement(), Placement(origin=-3.3e-6, sense=-1)],
-    ids=["at a count", "between counts"],
+    "placement", [Placement(), Placement(origin=-3.3e-6, sense=-1)], ids=["at a count", "between counts"]
 )
 def test_a_served_touch_is_replayed(tmp_path, placement):
     """A loop in real time, whatever this machine made it miss: the same forces, and nothing lost."""
