@@ -27,14 +27,19 @@ def at_once(device, law):
     return zw.check(PADDLE, law)
 
 
-def served(connection, law=SOFT, change=None, anyway=False, **arguments):
+def served(connection, law=SOFT, change=None, anyway=False, duration=None, **arguments):
     with Servo(PADDLE, law, connection, decide=at_once, **arguments) as servo:
         servo.measure("20 ms")
-        servo.start(anyway=anyway)
+        servo.start(duration, anyway=anyway)
         if change is not None:
             change(servo)
         servo.wait()
     return servo
+
+
+def until(servo, rows):
+    while servo.running and servo.rows.count < rows:
+        time.sleep(1e-3)
 
 
 def column(servo, name):
@@ -170,8 +175,7 @@ def test_law_changes_when_the_hand_is_outside():
     device = Played(np.concatenate([INSIDE, np.full(400, 5e-3), out, INSIDE]))
 
     def change(servo):
-        while servo.rows.count < 120:
-            time.sleep(1e-3)
+        until(servo, 120)
         assert servo.change(zw.Wall(stiffness=200)).outcome == "passive"
         with pytest.raises(zw.InputError, match="another law waits to begin"):
             servo.change(zw.Wall(stiffness=400))
@@ -193,8 +197,7 @@ def test_what_is_not_proved_passive_is_refused():
     assert refused.value.verdict.outcome == "active"
 
     def change(servo):
-        while servo.rows.count < 5:
-            time.sleep(1e-3)
+        until(servo, 5)
         with pytest.raises(proving.NotProved):
             servo.change(hard)
 
@@ -235,20 +238,14 @@ def test_energy_is_that_of_the_rows():
 
 def test_library_in_python_is_served_alike():
     device = Library(np.concatenate([np.full(20, -1e-3), INSIDE]))
-    with Servo(PADDLE, SOFT, device, decide=at_once) as servo:
-        servo.measure("10 ms")
-        servo.start("150 ms")
-        servo.wait()
+    served(device, duration="150 ms")
     assert min(device.forces) == pytest.approx(-1.5, abs=1e-3)
     assert device.forces[-3:] == [0, 0, 0]
 
 
 def test_a_cable_that_is_out_is_a_line_that_closed():
     device = Library(INSIDE, fails=120)
-    with Servo(PADDLE, SOFT, device, decide=at_once) as servo:
-        servo.measure("10 ms")
-        servo.start("1 s")
-        servo.wait()
+    servo = served(device, duration="1 s")
     assert device.forces[-3:] == [0, 0, 0]
     assert min(device.forces) < -1
     assert "the other side has closed" in servo.report().ended
@@ -276,19 +273,16 @@ def test_exception_of_a_library_ends_in_no_force():
 
 
 def test_exception_of_the_program_ends_in_no_force():
-    device = Played(np.concatenate([INSIDE, np.full(5000, 5e-3)]))
-    servo = Servo(PADDLE, SOFT, device, decide=at_once)
+    device, left = Played(np.concatenate([INSIDE, np.full(5000, 5e-3)])), []
 
-    def fail():
-        with servo:
-            servo.measure("10 ms")
-            servo.start()
-            while servo.rows.count < 150:
-                time.sleep(1e-3)
-            raise ZeroDivisionError
+    def fail(servo):
+        left.append(servo)
+        until(servo, 150)
+        raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
-        fail()
+        served(device, change=fail)
+    (servo,) = left
     last = int(column(servo, "sample")[-1])
     assert not device.forces[last - 2 : last + 1].any()
     assert "failed" in servo.report().ended
@@ -343,17 +337,13 @@ OUTSIDE = np.full(600, -1e-3)
 TOUCH = np.concatenate([np.full(300, -1e-3), np.linspace(-1e-3, 2e-3, 100), np.full(200, 2e-3)])
 
 
-def until_begun(servo, laws=1):
-    while servo.running and servo.report().laws < laws:
-        time.sleep(1e-3)
-
-
 def test_another_run_serves_the_law_that_was_judged_last():
     """After a change and an end the law of the beginning is not served with the new one's proof."""
     with Servo(PADDLE, zw.Wall(stiffness=5000), Played(TOUCH), decide=at_once) as servo:
         servo.measure("20 ms")
         servo.start(anyway=True)
-        until_begun(servo)
+        while servo.running and not servo.report().laws:
+            time.sleep(1e-3)
         servo.change(zw.Wall(stiffness=200))
         servo.stop()
         servo.wait()
@@ -369,8 +359,7 @@ def test_report_speaks_of_the_law_that_began():
     with Servo(PADDLE, zw.Wall(stiffness=5000), Played(TOUCH), decide=at_once) as servo:
         servo.measure("20 ms")
         servo.start(anyway=True)
-        while servo.running and servo.rows.count < 420:
-            time.sleep(1e-3)
+        until(servo, 420)
         servo.change(zw.Wall(stiffness=200))
         servo.wait()
         found = servo.report()
