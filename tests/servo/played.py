@@ -48,6 +48,7 @@ class Played(CompiledConnection):
     """Readings of a list; `bad` has the statuses of samples that are not good."""
 
     motion = "linear"
+    on_silence = "nothing: it is a list"
     measure: ClassVar[Any] = _measure
     apply: ClassVar[Any] = _apply
 
@@ -60,10 +61,6 @@ class Played(CompiledConnection):
     @property
     def samples(self) -> int:
         return self.readings.size - 1
-
-    @property
-    def on_silence(self) -> str:
-        return "nothing: it is a list"
 
     def open(self, sample_period: float) -> Opened:
         n = self.readings.size
@@ -93,15 +90,12 @@ class Library(LibraryConnection):
     """The same as a library in Python; at sample `fails` it raises."""
 
     motion = "linear"
+    on_silence = "nothing: it is a list"
 
     def __init__(self, readings: Any, fails: int = -1) -> None:
         self.readings, self.fails = list(readings), fails
         self.forces: list[float] = []
         self.asked = 0
-
-    @property
-    def on_silence(self) -> str:
-        return "nothing: it is a list"
 
     def open(self, sample_period: float) -> None:
         pass

@@ -6,7 +6,7 @@ from servo.played import Library, Played
 
 import zwidth as zw
 from zwidth.errors import InputError
-from zwidth.links import Packet, WavePort
+from zwidth.links import WavePort
 from zwidth.machine.network import Channel, Peer
 from zwidth.machine.network.runs import DeviceRun
 from zwidth.machine.servo import port_run
@@ -51,6 +51,11 @@ def without_runs(packets):
     return [packet and (packet.number, packet.wave, packet.energy, packet.position) for packet in packets]
 
 
+def later(samples):
+    """A library whose protocol carries a force so many samples later."""
+    return type("Later", (Library,), {"late": samples})
+
+
 def run_on(connection, device=LATE, **more):
     return PortRun(WavePort(device), connection, "line", **more)
 
@@ -76,19 +81,14 @@ def test_a_simulated_device_feels_what_the_simulator_s_own_run_gives_it():
     assert served == forces
     assert sent[0] is None
     assert without_runs(sent[1:]) == without_runs(wanted[:-1])
-    run.close()
 
 
 @pytest.mark.parametrize(("late", "waits"), [(0, 1), (0, 3), (1, 1), (1, 2)])
 def test_a_force_is_given_at_the_reading_from_which_the_port_lets_it_act(late, waits):
     """`delay` samples after its own; a protocol that carries it with the next question does one of them."""
     readings = np.round(30 * np.sin(0.05 * np.arange(300))) * STEP
-    connection = Library(readings)
-    type(connection).late = late
-    try:
-        run = run_on(connection, PADDLE.replace(delay=waits * 1e-3))
-    finally:
-        type(connection).late = 0
+    connection = later(late)(readings)
+    run = run_on(connection, PADDLE.replace(delay=waits * 1e-3))
     acting = []
     for packet in pushed(run, 300):
         run.step({"line": [packet]})
@@ -96,7 +96,6 @@ def test_a_force_is_given_at_the_reading_from_which_the_port_lets_it_act(late, w
     assert max(map(abs, acting)) > 0.01
     at_the_device = [0.0] * late + connection.forces
     assert at_the_device[: len(acting)] == acting
-    run.close()
 
 
 def test_what_the_packets_tell_is_never_more_than_what_came_and_was_put_in():
@@ -116,7 +115,7 @@ def test_what_the_packets_tell_is_never_more_than_what_came_and_was_put_in():
             lost += 0.12 * np.sum(np.abs(np.diff(readings[: k + 1])))
             assert sent <= came - work + lost + 1e-15
     assert sent > 0
-    run.close()
+    assert came > 0
 
 
 def test_a_reading_s_zero_and_sense_change_nothing():
@@ -128,8 +127,6 @@ def test_a_reading_s_zero_and_sense_change_nothing():
     assert told[0] == told[1]
     assert plain.forces == [-f for f in turned.forces]
     assert any(plain.forces)
-    for run in runs:
-        run.close()
 
 
 @pytest.mark.parametrize(
@@ -153,7 +150,6 @@ def test_one_sample_without_an_answer_is_held_and_two_end_the_force(bad, held):
         assert not forces[41:].any()
         assert run.forces == {"line": 0.0}
         assert run.report().held == 1
-    run.close()
 
 
 @pytest.mark.parametrize(
@@ -202,7 +198,6 @@ def test_a_cable_that_is_out_is_a_line_that_closed(connection):
     assert run.failed
     assert len([packet for packet in told if packet is not None]) in (49, 50)
     assert told[51:] == [None] * 49
-    run.close()
 
 
 def test_a_loop_that_did_not_run_ends_the_force_and_long_periods_are_counted(time):
@@ -220,7 +215,6 @@ def test_a_loop_that_did_not_run_ends_the_force_and_long_periods_are_counted(tim
     assert "did not run" in run.ended
     assert connection.forces[99] != 0.0
     assert connection.forces[100] == 0.0
-    run.close()
 
 
 def test_a_gap_ends_a_port_that_gave_no_force_just_then(time):
@@ -233,7 +227,6 @@ def test_a_gap_ends_a_port_that_gave_no_force_just_then(time):
     time[1] = 51_000_000
     run.step()
     assert "did not run" in run.ended
-    run.close()
 
 
 @pytest.mark.parametrize(("counts", "ended"), [(10_000, False), (20_000, True)])
@@ -247,7 +240,6 @@ def test_how_far_a_hand_goes_is_asked_of_the_time_that_passed(counts, ended, tim
         time[1] = 30_000_000 if k == 20 else 1_000_000
         run.step({"line": [packets[k]]})
     assert ("jumped" in run.ended) == ended
-    run.close()
 
 
 def test_the_safety_s_force_is_the_port_s_own_limit():
@@ -257,8 +249,7 @@ def test_the_safety_s_force_is_the_port_s_own_limit():
     runs = [run_on(free), run_on(limited, safety=Safety(force="30 mN"))]
     for run in runs:
         stepped(run, 300)
-        run.close()
-    assert max(map(abs, free.forces)) > 0.03
+        assert max(map(abs, free.forces)) > 0.03
     assert max(map(abs, limited.forces)) == pytest.approx(0.03)
     assert runs[1].port.device.force_limit == 0.03
 
@@ -267,22 +258,15 @@ def test_the_safety_s_force_is_the_port_s_own_limit():
     ("arguments", "said"),
     [
         ({"device": PADDLE}, "delay must be ≥ 1 ms, got 0 s"),
-        ({"device": LATE, "safety": Safety(slew=5)}, "leave out slew"),
-        ({"device": LATE, "longest_period": "0.9 ms"}, "longest_period must be ≥ 1 ms"),
+        ({"connection": later(2)([0.0])}, "delay must be ≥ 2 ms, got 1 ms"),
+        ({"safety": Safety(slew=5)}, "leave out slew"),
+        ({"longest_period": "0.9 ms"}, "longest_period must be ≥ 1 ms"),
         ({"device": zw.Device(damping=1, rate=1000, delay=1e-3, motion="rotary")}, "connection is linear"),
     ],
 )
 def test_what_does_not_go_together_is_refused(arguments, said):
     with pytest.raises(InputError, match=said):
-        run_on(Library([0.0]), **arguments)
-
-
-def test_of_a_protocol_that_carries_the_force_with_the_next_question_one_sample_is_known():
-    class Later(Library):
-        late = 2
-
-    with pytest.raises(InputError, match="delay must be ≥ 2 ms, got 1 ms"):
-        run_on(Later([0.0]))
+        run_on(**{"connection": Library([0.0]), **arguments})
 
 
 class Tube(Channel):
@@ -297,8 +281,7 @@ class Tube(Channel):
         self.mine.clear()
         return found
 
-    def close(self):
-        pass
+    def close(self): ...
 
 
 def test_two_devices_over_one_line_take_nothing_from_each_other_and_one_alone_feels_nothing():
@@ -329,12 +312,5 @@ def test_two_devices_over_one_line_take_nothing_from_each_other_and_one_alone_fe
     for one, other in (("ann", "bob"), ("bob", "ann")):
         heard, sent = peers[one].links["line"].report(), peers[other].links["line"].report()
         assert 0 < heard.energy_received <= sent.energy_sent
-    for peer, run in zip(peers.values(), runs.values(), strict=True):
+    for peer in peers.values():
         peer.close()
-        run.close()
-
-
-def test_packets_are_what_they_are():
-    packets = pushed(run_on(Library([0.0])), 50)
-    assert all(isinstance(packet, Packet) for packet in packets)
-    assert packets[-1].energy > 0

@@ -41,30 +41,40 @@ def asked(sketch, data):
     return number, state, counts
 
 
-def test_the_board_is_made_ready(library):
+@pytest.fixture
+def sketch(library):
+    """A board that was told to start."""
+    board = Sketch(library)
+    asked(board, frame(START))
+    return board
+
+
+def forced(sketch, millinewtons, ticks=10):
+    sketch.hear(frame(FORCE, 1, millinewtons))
+    sketch.turn(ticks)
+    return sketch.motor
+
+
+def test_the_board_is_made_ready_and_gives_no_force_before_a_start(library):
     sketch = Sketch(library)
     assert sketch.motor[0] == 0
     assert sketch.board.board_is_output(5)
     assert sketch.board.board_is_output(8)
-    assert sketch.board.board_baud() == 1_000_000
-    sketch.hear(frame(FORCE, 1, 5000))
-    sketch.turn()
-    assert sketch.motor[0] == 0
+    assert sketch.board.board_baud() == 1_000_000  # 16 MHz divides it
+    assert forced(sketch, 5000)[0] == 0
     assert asked(sketch, frame(ASK, 7)) == (7, 1, 0)
 
 
-def test_it_answers_by_number(library):
+def test_it_answers_a_start_and_a_question_by_number_and_no_force(library):
     sketch = Sketch(library)
     assert asked(sketch, frame(START, 200)) == (200, 0, 0)
     assert asked(sketch, frame(ASK, 201)) == (201, 0, 0)
-    sketch.hear(frame(FORCE, 202, 100))
-    sketch.turn()
+    forced(sketch, 100)
     assert sketch.told() == b""
 
 
-def test_a_start_begins_anew(library):
-    sketch = Sketch(library)
-    asked(sketch, frame(START))
+def test_a_start_begins_anew(sketch):
+    """The position is 0 there, and the force that acted is gone."""
     sketch.hear(frame(FORCE, 1, 2000))
     sketch.sense(530)
     assert asked(sketch, frame(ASK))[2] == 30
@@ -72,10 +82,8 @@ def test_a_start_begins_anew(library):
     assert sketch.motor[0] == 0
 
 
-def test_a_wrong_frame_is_passed_over_and_the_right_one_in_it_found(library):
+def test_a_wrong_frame_is_passed_over_and_the_right_one_in_it_found(sketch):
     """Every single wrong bit is seen; what follows is not lost."""
-    sketch = Sketch(library)
-    asked(sketch, frame(START))
     right = frame(FORCE, 3, 1234)
     for bit in range(8 * len(right)):
         wrong = bytearray(right)
@@ -89,22 +97,14 @@ def test_a_wrong_frame_is_passed_over_and_the_right_one_in_it_found(library):
 
 
 @pytest.mark.parametrize(("millinewtons", "level"), [(500, 1), (-500, 0), (3000, 1)])
-def test_the_pulse_width_is_that_of_the_torque(library, millinewtons, level):
+def test_the_pulse_width_is_that_of_the_torque(sketch, millinewtons, level):
     """By hand: the motor's torque τ = F r_h r_p/r_s, width √(τ/0.03 N·m) of 255."""
-    sketch = Sketch(library)
-    asked(sketch, frame(START))
-    sketch.hear(frame(FORCE, 1, millinewtons))
-    sketch.turn()
     torque = abs(millinewtons) / 1000 * 0.07 * 0.004191 / 0.075
-    assert sketch.motor == (round(255 * math.sqrt(torque / 0.03)), level)
+    assert forced(sketch, millinewtons) == (round(255 * math.sqrt(torque / 0.03)), level)
 
 
-def test_the_largest_force_is_full_width(library):
-    sketch = Sketch(library)
-    asked(sketch, frame(START))
-    sketch.hear(frame(FORCE, 1, -32767))
-    sketch.turn()
-    assert sketch.motor == (255, 0)
+def test_the_largest_force_is_full_width(sketch):
+    assert forced(sketch, -32767) == (255, 0)
 
 
 @pytest.mark.parametrize("step", [7, -7])
@@ -123,41 +123,31 @@ def test_counts_go_on_over_the_jumps_of_the_sensor(library, step):
         before = position
 
 
-def test_force_is_cut_when_nothing_has_come_for_20_ms(library):
+def test_force_is_cut_when_nothing_has_come_for_20_ms(sketch):
     """5000 ticks of 4 µs, whatever the timer's count is when they begin; and it stays cut until a start."""
-    sketch = Sketch(library)
     for _ in range(20):  # the timer has 65536: some of these rounds pass over its end
         asked(sketch, frame(START))
-        sketch.hear(frame(FORCE, 1, 2000))
-        sketch.turn(0)
-        assert sketch.motor[0] > 0
+        assert forced(sketch, 2000, ticks=0)[0] > 0
         for _ in range(50):
             sketch.turn(100)
         assert sketch.motor[0] > 0
         sketch.turn(1)
         assert sketch.motor[0] == 0
-        sketch.hear(frame(FORCE, 2, 2000))
-        sketch.turn(0)
-        assert sketch.motor[0] == 0
+        assert forced(sketch, 2000, ticks=0)[0] == 0
         assert asked(sketch, frame(ASK, 3))[1] == 1
 
 
-def test_a_silence_without_force_cuts_nothing(library):
+def test_a_silence_without_force_cuts_nothing(sketch):
     """The host may be long in proving its law."""
-    sketch = Sketch(library)
-    asked(sketch, frame(START))
     for _ in range(10):
         sketch.turn(60_000)
-    sketch.hear(frame(FORCE, 1, 2000))
-    sketch.turn(0)
-    assert sketch.motor[0] > 0
+    assert forced(sketch, 2000, ticks=0)[0] > 0
     assert asked(sketch, frame(ASK))[1] == 0
 
 
-def test_a_question_keeps_the_force(library):
-    sketch = Sketch(library)
-    asked(sketch, frame(START))
-    sketch.hear(frame(FORCE, 1, 2000))
+def test_a_question_keeps_the_force(sketch):
+    """Any right frame tells that the host lives."""
+    forced(sketch, 2000, ticks=0)
     for _ in range(10):
         sketch.turn(4000)
         asked(sketch, frame(ASK))
