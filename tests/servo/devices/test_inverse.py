@@ -9,7 +9,7 @@ from servo.emulators.faults import Fault
 from servo.emulators.inverse import InverseEmulator
 
 from zwidth.errors import InputError
-from zwidth.machine.servo.connection import FORCE, GOOD, INDEX, READING, REFUSED, SILENT, STALE, UNTIL
+from zwidth.machine.servo.connection import FORCE, GOOD, INDEX, READING, SILENT, STALE, UNTIL
 from zwidth.machine.servo.devices import websocket
 from zwidth.machine.servo.devices.inverse import Inverse
 
@@ -31,21 +31,6 @@ def answered(service, periods):
     return [position["z"] for position in service.positions[OPENING : OPENING + periods]]
 
 
-def test_two_thousand_exchanges():
-    """Each position read is the one that answers the force before; each force arrives to its last digit."""
-    with InverseEmulator() as service:
-        run = served(service, 2_000)
-    assert run.statuses == [GOOD] * 2_000
-    assert run.readings == answered(service, 2_000)
-    given = [command.force for command in service.commands]
-    assert given[:2] == [0.0, 0.0]
-    assert given[2:-2] == pytest.approx(run.forces, abs=0.6e-6)
-    assert given[-2:] == [0.0, 0.0]
-    assert min(given) < -0.3
-    assert all(force == {"x": 0, "y": 0} for force in service.others)
-    assert service.closed_by_client
-
-
 @pytest.mark.parametrize(
     ("padding", "parts"), [(0, 1), (100, 3), (40_000, 1), (64_000, 1), (64_000, 7), (65_200, 1), (100_000, 1)]
 )
@@ -63,15 +48,6 @@ def test_a_ping_is_answered():
         run = served(service, 40)
     assert run.statuses == [GOOD] * 40
     assert service.pongs == [b"are you there"]
-
-
-def test_a_device_that_goes_or_reports_that_it_is_not_ready_is_refused():
-    with InverseEmulator() as service:
-        service.not_ready_from = AT
-        run = served(service, 100)
-    assert run.statuses == [GOOD] * (AT - OPENING) + [REFUSED]
-    assert run.forces[-1] == 0.0
-    assert service.commands[-1].force == 0.0
 
 
 def test_one_of_several_devices_is_driven():

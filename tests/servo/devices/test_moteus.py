@@ -3,9 +3,8 @@
 import math
 from itertools import islice
 
-import numpy as np
 import pytest
-from servo.drive import changing, drive
+from servo.drive import drive
 from servo.emulators.moteus import MoteusEmulator
 
 from zwidth.errors import InputError
@@ -16,34 +15,11 @@ from zwidth.machine.servo.devices.moteus import Moteus
 OPENING = 2
 """Exchanges that opening makes: the controller operates at the second."""
 
-BEFORE = 2
-"""Commands that opening gives, all 0."""
-
-AT = 30
-TURNS = [0.4 * math.sin(0.013 * k) + 0.07 for k in range(2_100)]
+TURNS = [0.4 * math.sin(0.013 * k) + 0.07 for k in range(30)]
 
 
 def wall(reading):
     return -2.0 * max(0.0, reading - 0.5)
-
-
-def in_radians(turns, periods):
-    """What the first measurements should have read: singles on the wire."""
-    return [2 * math.pi * float(np.float32(x)) for x in turns[OPENING : OPENING + periods]]
-
-
-@pytest.mark.parametrize("checksums", [False, True])
-def test_two_thousand_exchanges_of_a_moteus(checksums):
-    periods = 1_000 if checksums else 2_000
-    with MoteusEmulator(TURNS, checksums=checksums) as other:
-        run = drive(Moteus(other.port, watchdog=0.08, checksums=checksums), periods, wall)
-    assert run.statuses == [GOOD] * periods
-    assert run.readings == in_radians(TURNS, periods)
-    given = [command.force for command in other.commands[BEFORE:]]
-    assert given == [float(np.float32(force)) for force in run.forces] + [0.0, 0.0]
-    assert min(given) < -3.0
-    assert other.complaints == []
-    assert other.mode == 0
 
 
 def test_the_watchdog_of_a_moteus_runs_only_in_the_loop():
@@ -74,37 +50,14 @@ def test_what_is_said_of_a_moteus_after_its_watchdog_is_what_it_does(mode, speed
     assert ("brakes" in device.on_silence) == (mode == 15)
 
 
-@pytest.fixture
-def _soon(monkeypatch):
-    """A controller that does not come to operate is given up at its first answer, or without one, soon."""
-    monkeypatch.setattr("zwidth.machine.servo.devices.moteus._START_TIME", 0.0)
-
-
-@pytest.fixture
-def _at_once(_soon, monkeypatch):
-    monkeypatch.setattr("zwidth.machine.servo.devices.moteus._ONE_TRY", 0.1e9)
-
-
-@pytest.mark.usefixtures("_at_once")
-def test_an_answer_without_the_checksum_that_was_asked_for_is_garbled():
+def test_an_answer_without_the_checksum_that_was_asked_for_is_garbled(monkeypatch):
     """A UART that lost the end of its lines is not believed."""
+    monkeypatch.setattr("zwidth.machine.servo.devices.moteus._START_TIME", 0.0)
+    monkeypatch.setattr("zwidth.machine.servo.devices.moteus._ONE_TRY", 0.1e9)
     with MoteusEmulator(TURNS, checksums=True) as other:
         other.line = lambda text: text + b"\r\n"
         with pytest.raises(InputError, match="does not answer"):
             Moteus(other.port, checksums=True).open(1e-3)
-
-
-@pytest.mark.parametrize(("mode", "code"), [(1, 38), (11, 0), (12, 0), (0, 0)])
-def test_a_moteus_that_leaves_its_mode_is_refused(mode, code):
-    with MoteusEmulator(TURNS) as other:
-
-        def change():
-            other.mode, other.fault_code = mode, code
-            other._command = lambda values, written: other.command(values.get(0x022, 0.0))
-
-        run = drive(Moteus(other.port), 100, changing(AT - OPENING, change))
-    assert run.statuses == [GOOD] * (AT - OPENING) + [REFUSED]
-    assert run.forces[-1] == 0.0
 
 
 def test_what_limits_the_torque_of_a_moteus_is_recorded():
@@ -120,17 +73,6 @@ def test_what_limits_the_torque_of_a_moteus_is_recorded():
         device.close()
     assert told == [0, 99, 102, 0]
     assert Moteus.tells == ("fault_code",)
-
-
-def test_an_adapter_that_says_err_is_refused():
-    """To a torque as well, although the question behind it may be answered."""
-    with MoteusEmulator(TURNS) as other:
-
-        def change():
-            other.write(b"ERR no such thing\r\n")
-
-        run = drive(Moteus(other.port), 100, changing(AT - OPENING, change))
-    assert run.statuses == [GOOD] * (AT - OPENING) + [REFUSED]
 
 
 def test_a_moteus_is_counted_on_where_its_position_begins_anew():
@@ -149,45 +91,26 @@ def test_a_position_that_is_no_number_is_refused():
     assert run.statuses == [GOOD] * (10 - OPENING) + [REFUSED]
 
 
-@pytest.mark.usefixtures("_soon")
-def test_what_is_wrong_with_a_moteus_is_said_when_it_is_opened():
-    with MoteusEmulator(TURNS) as other:
-        other._command = lambda values, written: None
-        other.mode, other.fault_code = 1, 36
-        with pytest.raises(InputError, match=r"mode 1, fault 36 \(motor not configured"):
-            Moteus(other.port).open(1e-3)
-    with MoteusEmulator(TURNS) as other:
-        other.bus_is_off = True
-        with pytest.raises(InputError, match="ERR"):
-            Moteus(other.port).open(1e-3)
-
-
-@pytest.mark.usefixtures("_soon")
-def test_a_moteus_that_has_heard_a_checksum_is_told_from_one_whose_bus_is_off():
+def test_a_moteus_that_has_heard_a_checksum_is_told_from_one_whose_bus_is_off(monkeypatch):
     """It wants them until it is switched off."""
+    monkeypatch.setattr("zwidth.machine.servo.devices.moteus._START_TIME", 0.0)
     refused = pytest.raises(InputError, match="give checksums = true")
     with MoteusEmulator(TURNS, checksums=True) as other, refused:
         Moteus(other.port).open(1e-3)
 
 
-def test_a_configuration_that_bears_on_the_torque_of_a_moteus_is_told_or_refused():
-    """Before it is told to operate; what its firmware does not know is left out."""
+def test_a_configuration_that_bears_on_the_torque_of_a_moteus_is_told():
+    """What its firmware does not know is left out."""
     with MoteusEmulator(TURNS) as other:
         other.configuration["motor.cogging_dq_scale"] = 0.25
         del other.configuration["servo.inertia_feedforward"]
         drive(device := Moteus(other.port), 3)
     assert "servo.max_current_A 100, motor.cogging_dq_scale 0.25;" in device.describe()
-    with MoteusEmulator(TURNS) as other:
-        other.configuration["servo.fixed_voltage_mode"] = 1
-        with pytest.raises(InputError, match="gives no torque"):
-            Moteus(other.port).open(1e-3)
-    assert other.commands == []
 
 
-@pytest.mark.parametrize("code", [*range(32, 51)])
-def test_every_fault_of_a_moteus_has_a_name(code):
+def test_every_fault_of_a_moteus_has_a_name():
     """As fw/error.h numbers them."""
-    assert code in moteus._FAULTS
+    assert set(range(32, 51)) <= set(moteus._FAULTS)
 
 
 def test_closing_a_moteus_twice():
