@@ -5,10 +5,12 @@ import math
 import pytest
 from servo.drive import changing, drive
 from servo.emulators.dynamixel import DynamixelEmulator
+from servo.emulators.feetech import FeetechEmulator
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.connection import GOOD, READING, REFUSED, UNTIL
 from zwidth.machine.servo.devices.dynamixel import Dynamixel
+from zwidth.machine.servo.devices.feetech import Feetech
 
 COUNTS = [2048] * 40 + [2500]
 
@@ -17,31 +19,36 @@ def servo(other, **options):
     return Dynamixel(other.port, torque_per_current=1.8, **options)
 
 
+def feetech(other):
+    return Feetech(other.port, full_duty_torque=2.9)
+
+
 @pytest.mark.parametrize(
-    ("other", "adapter", "wanted"),
+    ("emulator", "adapter", "counts", "read"),
     [
         (
-            DynamixelEmulator([4000, 4000, 4090, 5, 100, 4091, 3990]),
+            DynamixelEmulator,
             servo,
+            [4000, 4000, 4090, 5, 100, 4091, 3990],
             [4000, 4090, 4101, 4196, 4091, 3990],
         ),
-        (
-            FeetechEmulator([4000, 4090, 5, 100, 4091, -6, -100]),  # a magnitude with a sign
-            lambda other: Feetech(other.port, full_duty_torque=2.9),
+        (  # a magnitude with a sign
+            FeetechEmulator,
+            feetech,
+            [4000, 4090, 5, 100, 4091, -6, -100],
             [4000, 4090, 4101, 4196, 4091, 4090, 3996],
         ),
     ],
-    ids=["dynamixel", "feetech"],
 )
-def test_turns_are_counted_on(other, adapter, wanted):
+def test_turns_are_counted_on(emulator, adapter, counts, read):
     """In either sense, where the counts jump by almost a turn."""
-    with other:
-        run = drive(adapter(other), len(wanted))
-    assert [reading * 4096 / math.tau for reading in run.readings] == pytest.approx(wanted)
+    with emulator(counts) as other:
+        run = drive(adapter(other), len(read))
+    assert [reading * 4096 / math.tau for reading in run.readings] == pytest.approx(read)
 
 
 def test_a_torque_beyond_the_limit_of_a_dynamixel_is_given_as_the_limit():
-    """Without that the servo would refuse it, unseen; of the two registers of its voltage the lower is told."""
+    """Without that the servo would refuse it, unseen; of two registers of its voltage the lower is told."""
     with DynamixelEmulator(COUNTS) as other:
         other.put(38, 2, 200)
         other.put(100, 2, 177)
@@ -54,7 +61,7 @@ def test_a_torque_beyond_the_limit_of_a_feetech_servo_is_given_as_the_limit():
     """The register that the servo itself limits its duty by; it has no watchdog."""
     with FeetechEmulator(COUNTS) as other:
         other.table[48:50] = (500).to_bytes(2, "little")
-        device = Feetech(other.port, full_duty_torque=2.9)
+        device = feetech(other)
         assert "duty" in device.describe()
         drive(device, 3, lambda reading: 50.0)
     assert {command.force for command in other.commands} == {0.0, 0.5}

@@ -68,15 +68,13 @@ def test_the_axis_is_the_one_asked_for(axis, reading):
 def test_behind_a_pause_the_position_is_asked_for_anew():
     """A loop that missed samples, or begins again: the answer to its last force is old, and is not read."""
     with InverseEmulator() as service:
-        connection = Inverse(address=service.address)
-        memory, inbox, outbox = connection.open(1e-3)
-        kind = type(connection)
+        memory, inbox, outbox = (connection := Inverse(address=service.address)).open(1e-3)
         found = []
         for index in (0, 1, 2, 5, 6, 0, 1):
             memory[INDEX], memory[UNTIL], memory[FORCE] = index, 2.0**62, 0.5
-            assert kind.measure(memory, inbox, outbox) == GOOD
+            assert Inverse.measure(memory, inbox, outbox) == GOOD
             found.append(memory[READING])
-            kind.apply(memory, inbox, outbox)
+            Inverse.apply(memory, inbox, outbox)
         connection.close()
     # exchange 0 is that of opening; the first sample, and those behind a pause, ask for themselves
     assert found == [service.positions[exchange]["z"] for exchange in (1, 2, 3, 5, 6, 8, 9)]
