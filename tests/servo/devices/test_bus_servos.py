@@ -24,7 +24,7 @@ def feetech(other):
 
 
 @pytest.mark.parametrize(
-    ("emulator", "adapter", "counts", "read"),
+    ("emulator", "adapter", "counts", "on"),
     [
         (
             DynamixelEmulator,
@@ -40,11 +40,11 @@ def feetech(other):
         ),
     ],
 )
-def test_turns_are_counted_on(emulator, adapter, counts, read):
-    """In either sense, where the counts jump by almost a turn."""
+def test_turns_are_counted_on(emulator, adapter, counts, on):
+    """In either sense, where the counts jump by almost a turn; Feetech's are a magnitude with a sign."""
     with emulator(counts) as other:
-        run = drive(adapter(other), len(read))
-    assert [reading * 4096 / math.tau for reading in run.readings] == pytest.approx(read)
+        run = drive(adapter(other), 1 + len(on))
+    assert [reading * 4096 / math.tau for reading in run.readings] == pytest.approx([4000, *on])
 
 
 def test_a_torque_beyond_the_limit_of_a_dynamixel_is_given_as_the_limit():
