@@ -26,17 +26,12 @@ def feetech(other):
 @pytest.mark.parametrize(
     ("emulator", "adapter", "counts", "on"),
     [
-        (
-            DynamixelEmulator,
-            servo,
-            [4000, 4000, 4090, 5, 100, 4091, 3990],
-            [4000, 4090, 4101, 4196, 4091, 3990],
-        ),
+        (DynamixelEmulator, servo, [4000, 4000, 4090, 5, 100, 4091, 3990], [4090, 4101, 4196, 4091, 3990]),
         (  # a magnitude with a sign
             FeetechEmulator,
             feetech,
             [4000, 4090, 5, 100, 4091, -6, -100],
-            [4000, 4090, 4101, 4196, 4091, 4090, 3996],
+            [4090, 4101, 4196, 4091, 4090, 3996],
         ),
     ],
 )
