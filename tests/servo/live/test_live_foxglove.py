@@ -113,8 +113,8 @@ def test_ros_2_has_the_numbers_of_the_rows():
 
 def test_names_of_ros_2_are_its_own():
     """Small letters, digits, single underscores; the column as it is in a comment, with its unit."""
-    definition = ros2_schema(["force_N", "wished_force_N_m", "current__A", "x0_m"]).decode()
-    fields = ["force_n", "wished_force_n_m", "current_a", "x0_m"]
+    definition = ros2_schema(["force_N", "wished_force_N_m", "motor__Current_A_", "x0_m"]).decode()
+    fields = ["force_n", "wished_force_n_m", "motor_current_a", "x0_m"]
     assert [line.split()[1] for line in definition.splitlines()] == fields
     assert definition.splitlines()[1] == "float64 wished_force_n_m  # wished_force_N_m"
 

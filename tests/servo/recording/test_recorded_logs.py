@@ -1,13 +1,17 @@
 """A recording is a log as it stands: `zwidth identify` knows its columns, units and signs by themselves."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from known_motion import COULOMB, DAMPING, MASS, PERIOD, STEP, paddle
 from written_rows import COLUMNS, WrittenRows, drawn
 
 import zwidth as zw
+from zwidth.machine.servo.devices import Simulated
 from zwidth.machine.servo.recording.recorder import Recorder
 from zwidth.machine.servo.recording.recording import read_recording
+from zwidth.machine.servo.ring import PHASES, column_names
 
 
 def moved(kept=1 << 20):
@@ -25,9 +29,13 @@ def written(rows, path):
     return path
 
 
-def test_a_recording_is_identified(tmp_path):
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    return written(moved(), tmp_path_factory.mktemp("recorded") / "run.mcap")
+
+
+def test_a_recording_is_identified(path):
     """As from arrays, number for number; the signs are those that make the mass positive and right."""
-    path = written(moved(), tmp_path / "run.mcap")
     known = paddle()
     found = zw.identify(path)
     same = zw.identify(
@@ -39,8 +47,8 @@ def test_a_recording_is_identified(tmp_path):
         assert found.estimates[name].value == pytest.approx(true, rel=0.05)
 
 
-def test_a_log_of_a_recording(tmp_path):
-    log = zw.read_log(written(moved(), tmp_path / "run.mcap"))
+def test_a_log_of_a_recording(path):
+    log = zw.read_log(path)
     known = paddle()
     assert (log.motion, log.sample_period, log.channels) == ("linear", PERIOD, ("actuator_force",))
     assert log.resolution == pytest.approx(STEP, rel=1e-9)
@@ -70,9 +78,8 @@ def test_what_was_lost_or_cut_is_said(tmp_path):
     assert "cut off" in {finding.kind for finding in zw.read_log(path).findings}
 
 
-def test_another_column_can_be_chosen(tmp_path):
+def test_another_column_can_be_chosen(path):
     """Names and units as they stand in the file; None leaves a quantity out."""
-    path = written(moved(), tmp_path / "run.mcap")
     log = zw.read_log(path, columns={"actuator_force": "wished_force_N"})
     assert log.channels == ("actuator_force",)
     assert zw.read_log(path, columns={"actuator_force": None}).channels == ()
@@ -89,24 +96,34 @@ def test_a_rotary_recording(tmp_path):
     assert log.channels == ("actuator_force",)
 
 
-def test_a_recording_as_a_dataset(tmp_path):
-    recording = read_recording(written(moved(), tmp_path / "run.mcap"))
-    data = recording.dataset()
+def test_a_recording_as_a_dataset(path, tmp_path):
+    data = read_recording(path).dataset()
     units = {name: variable.attrs["units"] for name, variable in data.data_vars.items()}
     assert units == {
-        "sample": "1",
-        "late": "s",
+        **dict.fromkeys(["sample", "status", "phase", "law", "limited"], "1"),
+        **dict.fromkeys(["late", "exchange"], "s"),
         "measured_position": "m",
-        "wished_force": "N",
-        "commanded_force": "N",
-        "energy_out": "J",
-        "friction_loss": "J",
-        "status": "1",
-        "phase": "1",
-        "law": "1",
-        "limited": "1",
-        "exchange": "s",
+        **dict.fromkeys(["wished_force", "commanded_force"], "N"),
+        **dict.fromkeys(["energy_out", "friction_loss"], "J"),
     }
     assert np.array_equal(data["commanded_force"].values, -paddle().force)
     assert zw.Log.from_arrays(data).channels == ("actuator_force",)
     data.to_netcdf(tmp_path / "run.nc", engine="h5netcdf")
+
+
+PAGE = (Path(__file__).parents[3] / "docs" / "recording.md").read_text(encoding="utf-8")
+
+
+def test_every_column_is_on_the_page():
+    """In the order of the rows; of what a simulated device tells, position and velocity."""
+    device = zw.catalogue.device("haptic-paddle")
+    columns = column_names(Simulated(device=device, hand=zw.operators.Finger(), duration="10 ms"))
+    own = columns[: columns.index("true_position_m") + 2]
+    places = [PAGE.index(f"`{name}`") for name in own]
+    assert places == sorted(places)
+
+
+def test_every_phase_is_on_the_page():
+    row = next(line for line in PAGE.splitlines() if line.startswith("| `phase` |"))
+    assert [row.find(name) for name in PHASES] == sorted(row.find(name) for name in PHASES)
+    assert all(f"{number} {name}" in row for number, name in enumerate(PHASES))

@@ -1,38 +1,29 @@
 """A recording simulated again gives the recorded forces to the last bit, and says so where it does not."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 from recordings import paddle
-from written_rows import COLUMNS, WrittenRows, drawn
+from written_rows import COLUMNS, drawn
 
 import zwidth as zw
 from zwidth import InputError
 from zwidth.loop.timing import Timing
 from zwidth.machine.servo import Placement, Safety
 from zwidth.machine.servo.devices import Simulated
-from zwidth.machine.servo.recording import Recorder, Recording, read_recording, replay, touch_of
+from zwidth.machine.servo.recording import Recorder, read_recording, replay, touch_of
 from zwidth.machine.servo.session import Servo
 from zwidth.model.rendering import Damper, ForceBounding, PassivityController, TickTime, Window, render
 from zwidth.model.specification.write import written
 
 SAMPLES = 1500
 WALL = zw.Wall(stiffness=300, damping="0.2 N*s/m")
-Save = Callable[[np.ndarray, zw.Device, Any], Recording]
 
 
 @pytest.fixture
-def save(tmp_path):
-    def through_a_file(table, device, *laws, **others):
-        rows = WrittenRows(table, **others)
-        rows.events += [{"specification": written(device, law)} for law in laws]
-        with Recorder(rows, tmp_path / "run.mcap", force=True):
-            rows.written = len(table)
-        return read_recording(tmp_path / "run.mcap")
-
-    return through_a_file
+def save(record):
+    return lambda table, device, *laws, **others: record(
+        table, *({"specification": written(device, law)} for law in laws), **others
+    )
 
 
 def column(table, name):

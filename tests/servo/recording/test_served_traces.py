@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from recordings import paddle
-from written_rows import WrittenRows, drawn
+from written_rows import drawn
 
 import zwidth as zw
 from zwidth import InputError
@@ -66,9 +66,6 @@ def test_another_hand_is_refused(served):
         trace_of(served, tracking(2.001e-3))
 
 
-def test_a_real_device_has_no_such_trace(tmp_path):
-    rows = WrittenRows(drawn(10))
-    with Recorder(rows, tmp_path / "run.mcap"):
-        rows.written = 10
+def test_a_real_device_has_no_such_trace(record):
     with pytest.raises(InputError, match="of a real device"):
-        trace_of(read_recording(tmp_path / "run.mcap"), tracking(2e-3))
+        trace_of(record(drawn(10)), tracking(2e-3))
