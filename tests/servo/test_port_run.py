@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from network.tube import Tube
 from servo.played import Library, Played
 
 import zwidth as zw
 from zwidth.errors import InputError
 from zwidth.links import WavePort
-from zwidth.machine.network import Channel, Peer
+from zwidth.machine.network import Peer
 from zwidth.machine.network.runs import DeviceRun
 from zwidth.machine.servo import port_run
 from zwidth.machine.servo.connection import CLOSED, GARBLED, REFUSED, SILENT, Placement
@@ -269,29 +270,13 @@ def test_what_does_not_go_together_is_refused(arguments, said):
         run_on(**{"connection": Library([0.0]), **arguments})
 
 
-class Tube(Channel):
-    def __init__(self, mine, other):
-        self.mine, self.other = mine, other
-
-    def send(self, datagram):
-        self.other.append(datagram)
-
-    def receive(self):
-        found = list(self.mine)
-        self.mine.clear()
-        return found
-
-    def close(self): ...
-
-
 def test_two_devices_over_one_line_take_nothing_from_each_other_and_one_alone_feels_nothing():
-    a, b = [], []
     devices = {
         "ann": Simulated(device=LATE, hand=zw.operators.Finger(), duration=2),
         "bob": Simulated(device=LATE, hand=zw.operators.Finger(start=-0.01, speed=0.05), duration=2),
     }
     runs = {name: run_on(device) for name, device in devices.items()}
-    channels = {"ann": Tube(a, b), "bob": Tube(b, a)}
+    channels = dict(zip(("ann", "bob"), Tube.pair(), strict=True))
     peers = {name: Peer(run, {"line": channels[name]}, 1e-3) for name, run in runs.items()}
     felt, put_in = {"ann": [], "bob": []}, []
     for k in range(1500):
