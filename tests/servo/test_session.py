@@ -317,16 +317,13 @@ def test_served_touch_is_the_simulated_one_to_the_last_bit(device, law, operator
     trace = zw.simulate(
         device, law, simulated.scripted, "0.6", timing=zw.simulation.Timing(lateness=late, missed=missed)
     )
+    energies = ("hand_work", "actuator_work", "viscous_loss", "coulomb_loss", "hand_source_work")
     again = {
         "true_position_m": "position",
         "true_velocity_m_per_s": "velocity",
         "position_m": "measured_position",
         "force_N": "commanded_force",
-        "hand_work_J": "hand_work",
-        "actuator_work_J": "actuator_work",
-        "viscous_loss_J": "viscous_loss",
-        "coulomb_loss_J": "coulomb_loss",
-        "hand_source_work_J": "hand_source_work",
+        **{f"{name}_J": name for name in energies},
     }
     assert taken.size > 500
     for served_name, simulated_name in again.items():

@@ -1,4 +1,4 @@
-"""A recording simulated again gives the recorded forces to the last bit, and says so where it does not."""
+"""A recording simulated again gives the recorded forces, and of a simulated device the trace, bit by bit."""
 
 import numpy as np
 import pytest
@@ -7,14 +7,17 @@ from written_rows import COLUMNS, drawn
 
 import zwidth as zw
 from zwidth import InputError
+from zwidth.loop.energy import ledger
 from zwidth.loop.timing import Timing
 from zwidth.machine.servo import Placement, Safety
 from zwidth.machine.servo.devices import Simulated
-from zwidth.machine.servo.recording import Recorder, read_recording, replay, touch_of
+from zwidth.machine.servo.recording import Recorder, read_recording, replay, touch_of, trace_of
 from zwidth.machine.servo.session import Servo
 from zwidth.model.rendering import Damper, ForceBounding, PassivityController, TickTime, Window, render
 from zwidth.model.specification.write import written
 
+SLOW = Safety(longest_gap="60 s", host_timeout="60 s")
+"""A machine that stands still makes a loop miss samples, and does not end it."""
 SAMPLES = 1500
 WALL = zw.Wall(stiffness=300, damping="0.2 N*s/m")
 
@@ -169,25 +172,67 @@ def test_the_clock_of_a_recording(save):
     assert touch.duration == last * device.exact("sample_period")
 
 
+def serve(device, hand, folder, **more):
+    simulated = Simulated(device=device, hand=hand, duration="300 ms")
+    with Servo(device, WALL, simulated, safety=SLOW, **more) as servo:
+        servo.measure("20 ms")
+        with Recorder(servo.rows, folder / "run.mcap") as recorder:
+            servo.start(anyway=True)
+            servo.wait()
+    recording = read_recording(folder / "run.mcap")
+    assert recording.samples == servo.rows.count == recorder.close().rows
+    return recording
+
+
 @pytest.mark.parametrize(
     "placement", [Placement(), Placement(origin=-3.3e-6, sense=-1)], ids=["at a count", "between counts"]
 )
 def test_a_served_touch_is_replayed(tmp_path, placement):
     """A loop in real time, whatever this machine made it miss: the same forces, and nothing lost."""
-    device = paddle(rate="500 Hz", sample_period=None)
     hand = zw.operators.Finger(force=1.5, speed=0.3, start=-2e-3)
-    simulated = Simulated(device=device, hand=hand, duration="300 ms")
-    slow = Safety(longest_gap="60 s", host_timeout="60 s")  # a machine that stands still ends no loop
-    with Servo(device, WALL, simulated, placement=placement, safety=slow) as servo:
-        servo.measure("20 ms")
-        with Recorder(servo.rows, tmp_path / "run.mcap") as recorder:
-            servo.start(anyway=True)
-            servo.wait()
-    recording = read_recording(tmp_path / "run.mcap")
+    recording = serve(paddle(rate="500 Hz", sample_period=None), hand, tmp_path, placement=placement)
     assert recording.whole
-    assert recording.samples == servo.rows.count == recorder.close().rows
     assert replay(recording).different == 0
     data = recording.dataset()  # its true position is told in the device's own coordinates
     answered = data["status"].values == 0
     away = np.abs(data["position"].values - data["measured_position"].values)[answered]
     assert away.max() < 22.4e-6 * (1 + 1e-9)
+
+
+def tracking(size):
+    times = 2e-3 * np.arange(151)
+    path = -size * np.cos(30 * times) + 2e-3 * np.sin(61 * times)
+    return zw.operators.Tracking(path, stiffness=300.0, damping=1.0)
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory):
+    """In real time, with whatever lateness this machine has; a delay, and friction at rest."""
+    device = paddle(rate="500 Hz", sample_period=None, stiction=0.2, delay="0.7 ms")
+    return serve(device, tracking(2e-3), tmp_path_factory.mktemp("served"))
+
+
+def test_the_trace_is_what_was_served(served):
+    """Positions, velocities, forces and energies at the samples, bit by bit; and its energies add up."""
+    trace = trace_of(served, tracking(2e-3))
+    good = served.columns["phase"] == 2.0
+    at = served.columns["sample"][good].astype(int)
+    pairs = {
+        **{name: f"{name}_J" for name in ("hand_work", "viscous_loss", "coulomb_loss")},
+        **{"time": "time_s", "measured_position": "position_m", "commanded_force": "force_N"},
+        **{"position": "true_position_m", "velocity": "true_velocity_m_per_s"},
+    }
+    for name, column in pairs.items():
+        assert np.array_equal(trace[name].values[at], served.columns[column][good]), name
+    assert trace.attrs["format"] == "zwidth trace 1"
+    assert ledger(trace).closes
+
+
+def test_another_hand_is_refused(served):
+    with pytest.raises(InputError, match="with this hand the position is another"):
+        trace_of(served, tracking(2.001e-3))
+
+
+def test_a_real_device_has_no_such_trace(record):
+    with pytest.raises(InputError, match="of a real device"):
+        trace_of(record(drawn(10)), tracking(2e-3))
