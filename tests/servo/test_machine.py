@@ -93,7 +93,7 @@ VERSION = "Linux version 6.8.0-31 (b@d) #31 SMP PREEMPT_DYNAMIC"
         ("clock", {CLOCK: "hpet"}, "hpet", "tsc was given up", {}),
         ("sleep of the cores", DEEP, "133 µs", "cpu_dma_latency", {"granted": NONE}),
         ("sleep of the cores", DEEP, "133 µs.*forbidden|forbidden.*133 µs", None, {"granted": ALL}),
-        ("virtual machine", TAKEN, r"\b8 % of the time", "", {"before": BEFORE}),
+        ("virtual machine", TAKEN, r"\b8 % of the time", " ", {"before": BEFORE}),
         (
             "virtual machine",
             {**GUEST, "proc/stat": TAKEN["proc/stat"].replace("127", "7")},

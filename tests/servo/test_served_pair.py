@@ -50,15 +50,12 @@ def _at_once(monkeypatch):
 at_once = pytest.mark.usefixtures("_at_once")
 
 
-HANDS = (
-    zw.operators.Finger(start=0.0, speed=0.05),
-    zw.operators.Finger(start=0.0, speed=0.02, force=0.6),
-)
+HANDS = (zw.operators.Finger(start=0.0, speed=0.05), zw.operators.Finger(start=0.0, speed=0.02, force=0.6))
 
 
-def simulated(pair, duration):
+def simulated(pair):
     devices = zip((pair.leader, pair.follower), HANDS, strict=True)
-    return [Simulated(device=device, hand=hand, duration=duration) for device, hand in devices]
+    return [Simulated(device=device, hand=hand, duration=1.5) for device, hand in devices]
 
 
 def seen(arms):
@@ -75,8 +72,9 @@ def seen(arms):
 
 @pytest.mark.parametrize("pair", [PAIR, PAIR.replace(reflection="0.5", follower_stiffness=30)])
 def test_a_served_pair_is_the_simulated_one(pair):
+    """To the last bit; and its energies are W = −Σ f Δx of each arm, and b Δx²/T + f_c |Δx|, summed here."""
     wanted = zw.simulate(pair, *HANDS, 1.5)
-    with PairServo(pair, *simulated(pair, 1.5)) as arms:
+    with PairServo(pair, *simulated(pair)) as arms:
         rows = seen(arms)
         report = arms.run("1.5 s", anyway=True)
     found = np.array(rows[: wanted.sizes["time"]]).T
@@ -88,18 +86,9 @@ def test_a_served_pair_is_the_simulated_one(pair):
     assert np.abs(found[2:]).max() > 0.1
     assert report.samples == 1501
     assert report.ended == "ended, since the time was over"
-
-
-def test_the_energies_are_those_of_readings_and_forces():
-    """W = −Σ f Δx of each arm, and b Δx²/T + f_c |Δx|, summed here."""
-    with PairServo(PAIR, *simulated(PAIR, 1)) as arms:
-        rows = seen(arms)
-        report = arms.run("1 s", anyway=True)
-    table = np.array(rows)
-    moved = np.diff(table[:, :2], axis=0)
-    work = -(table[:-1, 2:] * moved).sum(axis=0)
+    moved, forces = np.diff(np.array(rows)[:, :2], axis=0), np.array(rows)[:-1, 2:]
     loss = (np.array([0.15, 0.2]) * moved**2 / 1e-3 + 0.12 * np.abs(moved)).sum(axis=0)
-    assert report.energy_out == pytest.approx(tuple(work), rel=1e-9)
+    assert report.energy_out == pytest.approx(tuple(-(forces * moved).sum(axis=0)), rel=1e-9)
     assert report.friction_loss == pytest.approx(tuple(loss), rel=1e-9)
 
 

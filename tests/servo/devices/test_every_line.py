@@ -320,11 +320,7 @@ LEFT = {
             lambda other: other.configuration.update({"servo.fixed_voltage_mode": 1}),
             "gives no torque",
         ),
-        (
-            "odrive",
-            has("config.enable_sensorless_mode", "1"),
-            "spins the motor",
-        ),
+        ("odrive", has("config.enable_sensorless_mode", "1"), "spins the motor"),
         ("odrive", has("motor.config.motor_type", "2"), "is volts"),
         (
             "odrive",

@@ -96,15 +96,11 @@ def test_a_wrong_frame_is_passed_over_and_the_right_one_in_it_found(sketch):
     assert sketch.told()[1] == 9
 
 
-@pytest.mark.parametrize(("millinewtons", "level"), [(500, 1), (-500, 0), (3000, 1)])
+@pytest.mark.parametrize(("millinewtons", "level"), [(500, 1), (-500, 0), (3000, 1), (-32767, 0)])
 def test_the_pulse_width_is_that_of_the_torque(sketch, millinewtons, level):
-    """By hand: the motor's torque τ = F r_h r_p/r_s, width √(τ/0.03 N·m) of 255."""
+    """By hand: the motor's torque τ = F r_h r_p/r_s, width √(τ/0.03 N·m) of 255, and no more than that."""
     torque = abs(millinewtons) / 1000 * 0.07 * 0.004191 / 0.075
-    assert forced(sketch, millinewtons) == (round(255 * math.sqrt(torque / 0.03)), level)
-
-
-def test_the_largest_force_is_full_width(sketch):
-    assert forced(sketch, -32767) == (255, 0)
+    assert forced(sketch, millinewtons) == (min(255, round(255 * math.sqrt(torque / 0.03))), level)
 
 
 @pytest.mark.parametrize("step", [7, -7])

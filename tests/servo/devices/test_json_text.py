@@ -159,13 +159,6 @@ def test_edges_of_writing(value, text):
     assert written(value, 3) == text
 
 
-def test_eight_digits_of_a_float32_come_back():
-    """What firmware prints of its float32 with nine digits is the same float32 again."""
-    for value in np.random.default_rng(3).normal(0.0, 0.2, 300).astype(np.float32):
-        found, _ = read(f"{value:.9g} ")
-        assert np.float32(found) == value
-
-
 def test_rounding_is_half_away_from_zero():
     for quarters in range(-50, 51):
         exact = Decimal(quarters) / 4

@@ -69,13 +69,6 @@ def test_the_checksum_of_a_line(line):
     assert remainder(np.frombuffer(line + b"\0", np.uint8).copy(), len(line)) == checksum(line)
 
 
-def test_a_line_with_a_checksum():
-    line = text(put_question(OUT, 1, 0x71, True))
-    body, _, digits = line.partition(b"*")
-    assert body == b"can send f101 11001d01110f "
-    assert int(digits, 16) == checksum(body)
-
-
 def test_the_answer_of_the_documentation():
     """The example of "CAN protocol" has other registers: it is no answer of ours."""
     assert read(b"rcv 100 2404000a005000000170ff230d181400", source=0)[0] == BROKEN

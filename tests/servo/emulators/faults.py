@@ -13,22 +13,14 @@ from random import Random
 class Fault(StrEnum):
     """From the exchange `at` on, at every exchange."""
 
-    CLOSED = "closed"
-    """The other side closes the line instead of answering."""
-    HALF_FRAME = "half frame"
-    """The first half of the answer comes, and no more."""
-    GARBAGE = "garbage"
-    """As many bytes as the answer has come, and mean nothing."""
-    SILENCE = "silence"
-    """Nothing comes."""
-    DUPLICATE = "duplicate"
-    """The answer comes twice, in one piece: no fault to the loop, and no later sample may be old by it."""
-    SLOW = "slow"
-    """The answer comes a few bytes at a time, in time: no fault to the loop."""
-    WRONG_CHECKSUM = "wrong checksum"
-    """The answer comes whole, and its checksum is that of another."""
-    LATE_ANSWERS = "late answers"
-    """To every question comes the answer to the question before, to the first of them nothing."""
+    CLOSED = "closed"  # the other side closes the line instead of answering
+    HALF_FRAME = "half frame"  # the first half of the answer comes, and no more
+    GARBAGE = "garbage"  # as many bytes as the answer has come, and mean nothing
+    SILENCE = "silence"  # nothing comes
+    DUPLICATE = "duplicate"  # the answer comes twice, in one piece: no later sample may be old by it
+    SLOW = "slow"  # the answer comes a few bytes at a time, in time: no fault to the loop
+    WRONG_CHECKSUM = "wrong checksum"  # the answer comes whole, and its checksum is that of another
+    LATE_ANSWERS = "late answers"  # to each question comes the answer to the one before, to the first nothing
 
 
 @dataclass(frozen=True)
@@ -42,7 +34,7 @@ class Command:
 class Emulator(ABC):
     """The other side of a line; it calls `answer` for every position asked, `command` for every force.
 
-    From the exchange `at` to that `until` which everything is right again, or for ever, it has the fault.
+    It has the fault from the exchange `at` on, up to that of `until` or for ever.
     """
 
     def __init__(self, fault: Fault | None = None, at: int = 0) -> None:

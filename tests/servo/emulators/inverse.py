@@ -11,7 +11,6 @@ from base64 import b64encode
 from contextlib import suppress
 from hashlib import sha1
 from threading import Thread
-from types import TracebackType
 from typing import Any, Self
 
 from servo.emulators.faults import Emulator, Fault
@@ -79,9 +78,7 @@ class InverseEmulator(Emulator):
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         with suppress(OSError):  # one who waits for a line waits no more
             socket.create_connection(self._listener.getsockname(), timeout=60).close()
         self._thread.join(timeout=60)

@@ -5,7 +5,6 @@ import tty
 from abc import abstractmethod
 from contextlib import suppress
 from threading import Thread
-from types import TracebackType
 from typing import Self
 
 from servo.emulators.faults import Emulator, Fault
@@ -40,9 +39,7 @@ class TerminalEmulator(Emulator):
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         if self._far is not None:
             os.close(self._far)  # where the adapter has closed too, the thread's read now ends
             self._far = None

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from live_rows import WrittenRows
 
-from zwidth.machine.servo.live.rows import CURVES, LATENESS, MARGIN, SPAN, Envelope, Tally, Watched
+from zwidth.machine.servo.live.rows import CURVES, LATENESS, SPAN, Envelope, Tally, Watched
 from zwidth.machine.servo.ring import AT, LATE, SAMPLE, WIDTH, Rows
 
 
@@ -106,13 +106,6 @@ def test_before_the_first_law_there_is_none_to_name(phase, law, words):
     tally = Tally(rows)
     tally.add(Watched(rows).news())
     assert tally.line.split(" · ")[0] == words
-
-
-def test_the_margin_is_a_curve_of_the_hand():
-    """A hand that puts in 3 mJ against friction and 1 mJ into a spring has a margin of 4 mJ."""
-    rows = WrittenRows(np.arange(1.0), energy_out_J=-0.001, friction_loss_J=0.003)
-    rows.count = 1
-    assert Watched(rows).news().curves[0, MARGIN] == pytest.approx(0.004, rel=1e-12)
 
 
 SPANS = 20

@@ -9,7 +9,7 @@ import pytest
 from live_rows import WrittenRows
 from rich.console import Console
 
-from zwidth.machine.servo.live.terminal import EMPTY, cells, watch_in_terminal
+from zwidth.machine.servo.live.terminal import cells, watch_in_terminal
 
 DOT = {"1": (0, 0), "2": (1, 0), "3": (2, 0), "7": (3, 0), "4": (0, 1), "5": (1, 1), "6": (2, 1), "8": (3, 1)}
 
@@ -52,10 +52,6 @@ def test_a_curve_is_where_its_numbers_are():
     assert picture.shape == (8, 6)
     reached = [set(np.flatnonzero(column[::-1])) for column in picture.T]
     assert reached == [{0}, {0, 1, 2}, {2, 3, 4, 5}, set(), {6, 7}, {6}]  # they join on
-
-
-def test_an_empty_graph_has_no_dot():
-    assert (cells(np.full(8, np.nan), np.full(8, np.nan), 3, 0.0, 1.0) == EMPTY).all()
 
 
 def test_the_graphs_have_their_names_units_and_ranges():
