@@ -119,7 +119,7 @@ def test_bridged_samples_allow_for_a_longer_way():
 
 @pytest.mark.parametrize("outside", [False, True])
 def test_loop_that_was_held_up_gives_no_force_after(outside):
-    """Beyond the longest gap no force is taken up again, nor begun: the hand may be deep in the wall by now."""
+    """Beyond the longest gap none is taken up again, nor begun: the hand may be deep in the wall by now."""
     readings = np.concatenate([np.full(151, -1e-3), np.full(400, 2e-2)]) if outside else INSIDE
     device = Played(readings, paused=(150, 0.08))
     servo = served(device)
