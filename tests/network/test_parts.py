@@ -67,13 +67,10 @@ def test_every_joule_is_in_a_part_or_on_its_way(late):
     runs = running(cut_scene(scene, best_parts(scene, 2), "1 ms"))
     moves = np.diff(swing(T), prepend=0.0)
     felt = np.array(run_parts(runs, moves, dict.fromkeys(["spring m1–m2"], late)))
-    put_in = float(felt @ moves)
-    taken = 0.0
-    for run in runs.values():
-        account = run.account()
-        taken += float(account["stored"].sum() + account["lost"].sum())
-    assert put_in == pytest.approx(taken, rel=1e-9)
-    line = sum(float(r.account()["lost"].sel(element="spring m1–m2")) for r in runs.values())
+    accounts = [run.account() for run in runs.values()]
+    taken = sum(float(account["stored"].sum() + account["lost"].sum()) for account in accounts)
+    assert float(felt @ moves) == pytest.approx(taken, rel=1e-9)
+    line = sum(float(account["lost"].sel(element="spring m1–m2")) for account in accounts)
     assert line > -1e-12
 
 

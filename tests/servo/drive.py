@@ -1,7 +1,5 @@
 """Measures and gives forces as the loop does, as fast as the other side answers; keeps what became of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import count

@@ -1,7 +1,5 @@
 """A device that reads what a script says, and keeps the forces it was given."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar
 
 import numpy as np

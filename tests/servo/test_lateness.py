@@ -57,7 +57,7 @@ def test_a_quantile_is_the_lateness_that_so_many_steps_kept():
     assert document["lateness_s"]["of_99_9_percent"] == told.quantile(0.999)
 
 
-def _counted(granted):
+def _counted(monkeypatch, granted):
     """`measure_lateness` with turns that are not waited for, but counted; by the priority they asked for."""
     asked = []
 
@@ -66,16 +66,14 @@ def _counted(granted):
         progress(1.0)
         return Lateness(np.array([1e-6, 2e-6]), 1, 0.0, granted)
 
-    return asked, turn
+    monkeypatch.setattr(measured, "turn", turn)
+    monkeypatch.setattr(RealTime, "__enter__", lambda self: granted)
+    return asked
 
 
 def test_turns_of_both_kinds_alternate(monkeypatch):
     """30 s: three of 5 s each, which see the same load; the progress ends at all of it."""
-    yes = Granted((Answer("priority", True, "SCHED_FIFO 40"),))
-    asked, turn = _counted(yes)
-    monkeypatch.setattr(measured, "turn", turn)
-    monkeypatch.setattr(RealTime, "__enter__", lambda self: yes)
-    seen = []
+    asked, seen = _counted(monkeypatch, Granted((Answer("priority", True, "SCHED_FIFO 40"),))), []
     found = measure_lateness(2e-3, 30.0, progress=lambda done, total: seen.append((done, total)))
     kinds = [bool(priority) for priority, *_ in asked[1:]]
     assert kinds == [False, True] * 3
@@ -88,9 +86,7 @@ def test_turns_of_both_kinds_alternate(monkeypatch):
 
 def test_without_priority_all_turns_are_ordinary(monkeypatch):
     no = Granted((Answer("priority", False, "not permitted"),))
-    asked, turn = _counted(no)
-    monkeypatch.setattr(measured, "turn", turn)
-    monkeypatch.setattr(RealTime, "__enter__", lambda self: no)
+    asked = _counted(monkeypatch, no)
     found = measure_lateness(1e-3, 12.0)
     assert [priority for priority, *_ in asked[1:]] == [0, 0]
     assert found.real_time is None

@@ -7,8 +7,7 @@ import struct
 
 import pytest
 from servo.drive import drive
-from servo.emulators.hapkit import HapkitEmulator
-from servo.emulators.sketch import COMPILER, Sketch, SketchEmulator, compiled
+from servo.emulators.hapkit import COMPILER, HapkitEmulator, Sketch, SketchEmulator, compiled
 
 from zwidth.machine.servo.connection import GOOD, REFUSED
 from zwidth.machine.servo.devices.hapkit import Hapkit

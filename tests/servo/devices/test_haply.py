@@ -102,16 +102,11 @@ def test_a_question_repeats_the_force():
     assert given == [0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 0.0, 0.0]
 
 
-@pytest.mark.parametrize(
-    ("fault", "status"),
-    [
-        (Fault.CLOSED, CLOSED),
-        (Fault.HALF_FRAME, GARBLED),
-        (Fault.GARBAGE, GARBLED),
-        (Fault.SILENCE, SILENT),
-        (Fault.LATE_ANSWERS, SILENT),
-    ],
-)
+TOLD = {Fault.CLOSED: CLOSED, Fault.HALF_FRAME: GARBLED, Fault.GARBAGE: GARBLED}
+TOLD |= {Fault.SILENCE: SILENT, Fault.LATE_ANSWERS: SILENT}
+
+
+@pytest.mark.parametrize(("fault", "status"), TOLD.items())
 @pytest.mark.parametrize("of_force", [False, True])
 def test_a_fault_is_told_and_ends_in_no_force(fault, status, of_force):
     """Whether it begins with the answer to a question, or with that to a force."""

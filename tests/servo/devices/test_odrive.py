@@ -4,8 +4,7 @@ from math import tau
 
 import pytest
 from servo.drive import drive, drive_into
-from servo.emulators.faults import Fault
-from servo.emulators.handle import Handle
+from servo.emulators.faults import Fault, Handle
 from servo.emulators.odrive import ODriveEmulator
 
 from zwidth.errors import InputError

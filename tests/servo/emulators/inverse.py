@@ -13,8 +13,7 @@ from hashlib import sha1
 from threading import Thread
 from typing import Any, Self
 
-from servo.emulators.faults import Emulator, Fault
-from servo.emulators.handle import Handle
+from servo.emulators.faults import Emulator, Fault, Handle
 
 
 def frame(payload: bytes, kind: int = 1, last: bool = True) -> bytes:

@@ -8,8 +8,7 @@ from functools import reduce
 from math import tau
 from operator import xor
 
-from servo.emulators.faults import Fault
-from servo.emulators.handle import Handle
+from servo.emulators.faults import Fault, Handle
 from servo.emulators.terminal import TerminalEmulator
 
 
