@@ -161,9 +161,8 @@ def test_an_uncertain_period_is_refused_and_an_uncertain_friction_is_not():
 
 def test_what_is_saved_has_units_and_says_what_has_no_bound():
     """JSON knows no infinity: a device without delay and a wall that is passive at any stiffness."""
-    found = stiffness_cost(
-        zw.Device(damping="0.2", rate="1 kHz", motion="rotary"), zw.Wall(stiffness=1), 1e-4
-    )
+    device = zw.Device(damping="0.2", rate="1 kHz", motion="rotary")
+    found = stiffness_cost(device, zw.Wall(stiffness=1), 1e-4)
     document = data_of(found)
     assert set(document["max_stiffness_N_m_per_rad"]) == {"nominal", "longer_period", "later_force"}
     assert document["lateness_s"] == 1e-4

@@ -69,7 +69,6 @@ def test_wall_lies_where_it_is_placed():
 
 @pytest.mark.parametrize("status", [SILENT, GARBLED, STALE])
 def test_one_sample_without_a_good_answer_is_bridged(status):
-    """The force is held for it, the law not computed, and the sample counted."""
     device = Played(INSIDE, bad={150: status})
     servo = served(device)
     assert device.forces[150] == device.forces[149] != 0
@@ -262,7 +261,6 @@ class Mistaken(Library):
 
 
 def test_exception_of_a_library_ends_in_no_force():
-    """The last force is 0, and what was raised comes out of `wait`."""
     device = Mistaken(INSIDE)
     with Servo(PADDLE, SOFT, device, decide=at_once) as servo:
         servo.measure("10 ms")
@@ -304,7 +302,6 @@ def test_exception_of_the_program_ends_in_no_force():
     ],
 )
 def test_served_touch_is_the_simulated_one_to_the_last_bit(device, law, operator):
-    """Simulated again with the lateness that was recorded, every position, force and energy is the same."""
     simulated = Simulated(device=device, hand=operator, duration="0.6 s")
     with Servo(device, law, simulated) as servo:
         servo.start(anyway=True)
@@ -337,7 +334,6 @@ TOUCH = np.concatenate([np.full(300, -1e-3), np.linspace(-1e-3, 2e-3, 100), np.f
 
 
 def test_another_run_serves_the_law_that_was_judged_last():
-    """After a change and an end the law of the beginning is not served with the new one's proof."""
     with Servo(PADDLE, zw.Wall(stiffness=5000), Played(TOUCH), decide=at_once) as servo:
         servo.measure("20 ms")
         servo.start(anyway=True)

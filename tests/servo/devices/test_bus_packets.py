@@ -35,11 +35,8 @@ BUSES = [dynamixel_heard, feetech_heard]
 
 
 def status_of(bus, parameters, identifier=1, state=0):
-    """An answer of one of the two."""
-    body = bytes([state, *parameters])
-    return (
-        sts.packet(identifier, body) if bus is feetech_heard else x_series.packet(identifier, b"\x55" + body)
-    )
+    packet, kind = (sts.packet, b"") if bus is feetech_heard else (x_series.packet, b"\x55")
+    return packet(identifier, kind + bytes([state, *parameters]))
 
 
 def test_the_question_and_the_answer_of_the_e_manual():

@@ -158,7 +158,6 @@ ONCE = [("odrive", fault) for fault in TOLD if fault is not Fault.CLOSED]
 ONCE += [("haply", Fault.HALF_FRAME), ("haply", Fault.GARBAGE), ("haply", Fault.LATE_ANSWERS)]
 ONCE += [("inverse", Fault.LATE_ANSWERS)]
 
-
 TURNED = {
     "feetech": LINES["feetech"]._replace(
         adapter=lambda other: Feetech(other.port, full_duty_torque=2.9, reverse=True),

@@ -176,8 +176,5 @@ def test_what_it_says_of_itself():
         text = connection.describe()
         connection.close()
         connection.close()
-    assert "049D" in text
-    assert "force_gate" in text
-    assert "no certificate covers" in text
-    assert "emulator" in text
+    assert all(part in text for part in ("049D", "force_gate", "no certificate covers", "emulator"))
     assert "not documented" in connection.on_silence

@@ -1,7 +1,6 @@
 """mjbots' moteus, emulated at a pseudo-terminal."""
 
 import math
-from itertools import islice
 
 import pytest
 from servo.drive import drive
@@ -28,7 +27,7 @@ def test_the_watchdog_of_a_moteus_runs_only_in_the_loop():
         drive(Moteus(other.port, watchdog=0.08), 20, wall)
     assert all(math.isnan(time) for time in other.watchdogs[:OPENING])
     assert other.watchdogs[OPENING:] == pytest.approx([0.08] * 22)
-    assert [command.force for command in islice(other.commands, OPENING)] == [0.0] * OPENING
+    assert [command.force for command in other.commands[:OPENING]] == [0.0] * OPENING
 
 
 @pytest.mark.parametrize("mode", [0, 10, 12, 13, 15, None])
@@ -81,7 +80,7 @@ def test_a_moteus_is_counted_on_where_its_position_begins_anew():
     with MoteusEmulator(turns) as other:
         run = drive(Moteus(other.port), 5)
     assert run.readings == pytest.approx(
-        [2 * math.pi * x for x in (32767.5, 32767.75, 32768, 32768.5, 32769.75)]
+        [math.tau * x for x in (32767.5, 32767.75, 32768, 32768.5, 32769.75)]
     )
 
 

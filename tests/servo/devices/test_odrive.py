@@ -103,9 +103,8 @@ def test_closing_leaves_the_settings_as_they_were():
         connection = ODrive(motor.port)
         connection.close()
         connection.open(1e-3)
-        assert motor.properties["axis0.current_state"] == "8"
-        assert motor.properties["axis0.controller.config.control_mode"] == "1"
-        assert motor.properties["axis0.controller.config.input_mode"] == "1"
+        names = ("current_state", "controller.config.control_mode", "controller.config.input_mode")
+        assert [motor.properties[f"axis0.{name}"] for name in names] == ["8", "1", "1"]
         connection.close()
         connection.close()
     assert motor.properties == {**before, "axis0.requested_state": "1"}

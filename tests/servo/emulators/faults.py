@@ -117,7 +117,6 @@ class Handle:
     speed: float = 0.0
 
     def step(self, force: float) -> None:
-        """Go on for one step under a force."""
         pull = self.stiffness * (self.hand - self.position) - self.damping * self.speed
         self.speed += self.step_length * (force + pull) / self.mass
         self.position += self.step_length * self.speed

@@ -7,7 +7,6 @@ _MODE, _TORQUE, _DUTY, _LOCK, _POSITION = 33, 40, 44, 55, 56
 
 
 def packet(identifier: int, body: bytes) -> bytes:
-    """Instruction (or state) and parameters with what stands around them."""
     inner = bytes([identifier, len(body) + 1]) + body
     return b"\xff\xff" + inner + bytes([255 - sum(inner) % 256])
 

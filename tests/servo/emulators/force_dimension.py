@@ -34,7 +34,6 @@ class Failure(IntEnum):
 
 
 def built(folder: Path) -> Path:
-    """The folder of an SDK with the library in it."""
     assert PACKAGE is not None
     assert PACKAGE.origin is not None
     wanted = set()
@@ -52,8 +51,6 @@ def built(folder: Path) -> Path:
 
 
 class Device:
-    """What the test sees of it, and does to it."""
-
     def __init__(self, folder: Path, present: bool = True, watchdog: bool = True) -> None:
         (library,) = folder.rglob("libdrd.so.*")
         self.library = ctypes.CDLL(str(library))
@@ -101,6 +98,5 @@ def installed(folder: Path) -> Iterator[None]:
 
 
 def forget() -> None:
-    """The package, as if it had never been imported."""
     for name in [name for name in sys.modules if name.split(".")[0] == "forcedimension_core"]:
         del sys.modules[name]

@@ -67,7 +67,6 @@ PWM, DIRECTION = 5, 8
 
 
 def compiled(folder: Path) -> Path:
-    """A library of the sketch and of the board that it finds here; warnings are errors."""
     library = folder / "hapkit.so"
     command = [str(COMPILER), "-std=c++11", "-Wall", "-Wextra", "-Werror", "-O1", "-shared", "-fPIC"]
     files = ["-I", str(ARDUINO), "-x", "c++", str(SKETCH), str(ARDUINO / "board.cpp")]

@@ -85,7 +85,6 @@ class HaplyEmulator(TerminalEmulator):
         self.answer(struct.pack(f"<B{self.joints}f", self.device, *self._angles(self.exchange)))
 
     def _angles(self, exchange: int) -> list[float]:
-        """By port; in whole counts."""
         first, second = angles_of(*self.tip(exchange))
         by_port = (second, first) if self.joints == 2 else (first,)
         counts = [

@@ -17,7 +17,6 @@ from servo.emulators.faults import Emulator, Fault, Handle
 
 
 def frame(payload: bytes, kind: int = 1, last: bool = True) -> bytes:
-    """One frame of a server."""
     first = (0x80 if last else 0) | kind
     if len(payload) < 126:
         return bytes([first, len(payload)]) + payload
@@ -148,7 +147,6 @@ class InverseEmulator(Emulator):
         self.answer(self._split(self._document()))
 
     def _split(self, payload: bytes) -> bytes:
-        """One message, in so many frames."""
         size = -(-len(payload) // self._parts)
         pieces = [payload[i : i + size] for i in range(0, len(payload), size)]
         return b"".join(

@@ -115,7 +115,6 @@ class MoteusEmulator(TerminalEmulator):
             give(self.line(b"rcv %x %s E B F" % (to, answer.hex().encode())))
 
     def _registers(self, data: bytes) -> bytes:
-        """Write what is written, and the answer to what is read."""
         answer = b""
         written: dict[int, tuple[str, float]] = {}
         at = 0

@@ -56,7 +56,6 @@ class ODriveEmulator(TerminalEmulator):
             self._command(line.decode())
 
     def with_wrong_checksum(self, frame: bytes) -> bytes:
-        """One more than it should be."""
         text, asterisk, checksum = frame.strip().partition(b"*")
         return text + b"*" + str((int(checksum) + 1) % 256).encode() + b"\r\n" if asterisk else frame
 

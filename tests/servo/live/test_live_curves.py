@@ -25,7 +25,6 @@ def test_each_row_is_news_once():
 
 @pytest.mark.parametrize("motion", ["linear", "rotary"])
 def test_curves_are_the_columns_and_the_margin(motion):
-    """By their names, wherever they stand; the margin is friction loss less energy out."""
     rows = WrittenRows(np.arange(9.0), motion=motion)
     rows.count = 9
     x, f = ("position_rad", "force_N_m") if motion == "rotary" else ("position_m", "force_N")

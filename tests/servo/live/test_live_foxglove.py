@@ -204,8 +204,6 @@ def test_a_reader_that_is_slow_holds_up_nobody():
 
 
 def test_nothing_is_made_for_a_topic_that_nobody_reads(monkeypatch):
-    """No row is asked for before somebody subscribes, and no JSON is made for who reads the other topic."""
-
     def unwanted(*_):
         raise AssertionError("nobody reads this")
 

@@ -34,7 +34,6 @@ def waited(condition):
 
 
 def buzzing(count=40000, **more):
-    """A slow sine with a fast one on it, at 1 kHz."""
     t = np.arange(count) * 1e-3
     x = 0.004 * np.sin(t) + 0.0005 * np.sin(2 * np.pi * 331 * t)
     return WrittenRows(np.arange(float(count)), **{"position_m": x, "late_s": 2e-4, **more})
@@ -63,7 +62,6 @@ class Viewer:
         make_document(self.document, loop.shown)
 
     def look(self, frames=1):
-        """What it has been sent after some more frames."""
         for _ in range(frames):
             for frame in self.document.session_callbacks:
                 frame.callback()
@@ -116,7 +114,6 @@ def test_a_viewer_is_sent_what_the_loop_has_written(page):
 
 
 def test_lowest_and_highest_of_every_curve_are_shown(loop):
-    """In millimetres, newtons, millijoules: a buzz stays visible."""
     data = Viewer(loop).look()
     assert len(data["time"]) == 599
     for curve, name, scale in ((0, "position_m", 1e3), (2, "force_N", 1.0), (3, "energy_out_J", 1e3)):
@@ -142,7 +139,6 @@ def test_what_is_never_late_is_still_on_the_axis():
 
 
 def test_what_comes_is_added_and_what_is_old_is_left_out(loop):
-    """Ten seconds are kept, however long the loop runs, in order and without a gap."""
     viewer = Viewer(loop)
     for count in range(6000, 40001, 50):
         loop.runs(count)

@@ -60,7 +60,6 @@ def test_a_curve_is_where_its_numbers_are():
 
 
 def test_the_graphs_have_their_names_units_and_ranges():
-    """Position, force, energy and lateness; the asked force beside the given one; then the words."""
     wished = 8 * np.sin(np.arange(4000) * 0.01)
     columns = {"wished_force_N": wished, "force_N": np.clip(wished, -5, 5), "position_m": wished * 1e-3}
     text = watched(terminal(), **columns)
@@ -86,7 +85,6 @@ def test_any_size_is_drawn(width, height):
 
 
 def test_where_there_is_no_terminal_lines_come():
-    """As in a log: each whole, on one line, without colours."""
     lines = watched(terminal(force_terminal=False, width=20), looks=1).splitlines()
     assert len(lines) == 2  # one, and one at the end
     assert all(line.startswith("serving, law 1 · at ") and line.endswith(" missed") for line in lines)

@@ -38,9 +38,8 @@ def test_a_recording_is_identified(path):
     """As from arrays, number for number; the signs are those that make the mass positive and right."""
     known = paddle()
     found = zw.identify(path)
-    same = zw.identify(
-        zw.Log.from_arrays(time=known.time, position=known.position, actuator_force=-known.force)
-    )
+    log = zw.Log.from_arrays(time=known.time, position=known.position, actuator_force=-known.force)
+    same = zw.identify(log)
     truth = {"mass": MASS, "damping": DAMPING, "coulomb_friction": COULOMB}
     for name, true in truth.items():
         assert found.estimates[name].value == same.estimates[name].value
