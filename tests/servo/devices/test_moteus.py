@@ -79,9 +79,8 @@ def test_a_moteus_is_counted_on_where_its_position_begins_anew():
     turns = [32767.5, 32767.5, 32767.5, 32767.75, -32768.0, -32767.5, -32766.25]
     with MoteusEmulator(turns) as other:
         run = drive(Moteus(other.port), 5)
-    assert run.readings == pytest.approx(
-        [math.tau * x for x in (32767.5, 32767.75, 32768, 32768.5, 32769.75)]
-    )
+    read = [32767.5, 32767.75, 32768, 32768.5, 32769.75]
+    assert run.readings == pytest.approx([math.tau * x for x in read])
 
 
 def test_a_position_that_is_no_number_is_refused():
