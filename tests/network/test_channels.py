@@ -1,7 +1,6 @@
 """Datagrams through real sockets and memory: whole, in order, lost and doubled as said; never waiting."""
 
 import os
-import socket
 import subprocess
 import sys
 import time
@@ -9,21 +8,13 @@ import uuid
 from itertools import pairwise
 
 import pytest
+from free_channels import free_ports
+from network.tube import Tube
 
 from zwidth.errors import InputError
 from zwidth.links import Schedule
 from zwidth.machine.network import UDP, Lossy, SharedMemory, Zenoh, open_channel
-from zwidth.machine.network.channel import LARGEST, Channel
-
-
-def free_ports(n):
-    sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(n)]
-    for s in sockets:
-        s.bind(("127.0.0.1", 0))
-    ports = [s.getsockname()[1] for s in sockets]
-    for s in sockets:
-        s.close()
-    return ports
+from zwidth.machine.network.channel import LARGEST
 
 
 def udp_pair():
@@ -125,16 +116,11 @@ def test_memory_that_others_may_have_laid_there_is_not_used(tmp_path, monkeypatc
     """By either side: open to others, of two names, a link, a folder, of another user; it stays as it was."""
     monkeypatch.setattr("zwidth.machine.network.carriers._place", tmp_path.joinpath)
 
-    def left(name, mode=0o600):
+    for name, mode in {"640": 0o640, "604": 0o604, "602": 0o602, "two": 0o600, "mine": 0o600}.items():
         (tmp_path / name).touch()
         (tmp_path / name).chmod(mode)
-
-    for mode in (0o640, 0o604, 0o602):
-        left(f"{mode:o}", mode)
-    left("two")
     os.link(tmp_path / "two", tmp_path / "names")
     os.symlink(tmp_path / "nothing", tmp_path / "astray")
-    left("mine")
     os.symlink(tmp_path / "mine", tmp_path / "link")
     (tmp_path / "folder").mkdir()
     os.mkfifo(tmp_path / "pipe", 0o600)
@@ -186,27 +172,11 @@ with SharedMemory({name!r}, False) as memory:
         assert torn == 0
 
 
-class Loop(Channel):
-    """What is sent comes back."""
-
-    def __init__(self):
-        self.waiting = []
-
-    def send(self, datagram):
-        self.waiting.append(datagram)
-
-    def receive(self):
-        found, self.waiting = self.waiting, []
-        return found
-
-    def close(self):
-        pass
-
-
 def test_a_lossy_channel_does_what_it_says():
     now = [0.0]
     bad = Schedule(delay=0.01, jitter=0.005, loss=0.3, burst=3, duplicates=0.1)
-    channel = Lossy(Loop(), bad, clock=lambda: now[0])
+    waiting = []  # what is sent comes back
+    channel = Lossy(Tube(waiting, waiting), bad, clock=lambda: now[0])
     came, order = {}, []
     for k in range(20_000):
         now[0] = 0.001 * k

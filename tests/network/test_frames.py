@@ -6,24 +6,11 @@ import struct
 import zlib
 
 import pytest
+from network.tube import Tube
 
 from zwidth.links import Packet
 from zwidth.machine.network import Frame, Link
 from zwidth.machine.network.peer import WINDOW
-
-
-class Wire:
-    """A list of datagrams that the test fills and empties."""
-
-    def __init__(self):
-        self.sent, self.coming = [], []
-
-    def send(self, datagram):
-        self.sent.append(datagram)
-
-    def receive(self):
-        found, self.coming = self.coming, []
-        return found
 
 
 def test_a_frame_comes_back_as_it_was():
@@ -65,14 +52,14 @@ def told(number, energy=0.0, sent=0.0, **runs):
 
 def test_each_packet_is_taken_once_and_all_are_counted():
     now = [10.0]
-    wire = Wire()
+    wire = Tube([], [])
     link = Link(wire, clock=lambda: now[0])
     frames = {k: told(k, 0.25 * (k + 1), float(k)) for k in range(10)}
     link.send(packet(0, run=2, to=0))
-    wire.coming = [frames[0], frames[2], frames[2], frames[1], b"noise", frames[5]]
+    wire.mine += [frames[0], frames[2], frames[2], frames[1], b"noise", frames[5]]
     assert link.receive() == [packet(k, 0.25 * (k + 1)) for k in (0, 2, 1, 5)]
     now[0] = 11.0
-    wire.coming = [frames[1], frames[5], frames[6][:-1], b"zw\x01\x00" + bytes(72)]
+    wire.mine += [frames[1], frames[5], frames[6][:-1], b"zw\x01\x00" + bytes(72)]
     assert link.receive() == []
     link.send(packet(1, 4.0, run=2, to=1))
     seen = link.report()
@@ -82,13 +69,13 @@ def test_each_packet_is_taken_once_and_all_are_counted():
     assert math.isnan(seen.round_trip[0])
     assert "4 received" in repr(seen)
     assert "3 datagrams, 1 of another version of zwidth" in repr(seen)
-    back = Frame.from_bytes(wire.sent[1])
+    back = Frame.from_bytes(wire.other[1])
     assert (back.packet.number, back.echo, back.held) == (1, 5.0, 1.0)
 
 
 def test_the_round_trip_needs_no_common_clock():
     here, there = [0.0], [1e6]
-    a, b = Wire(), Wire()
+    a, b = Tube.pair()
     one, other = Link(a, clock=lambda: here[0]), Link(b, clock=lambda: there[0])
 
     def wait(seconds):
@@ -98,36 +85,34 @@ def test_the_round_trip_needs_no_common_clock():
     for k in range(200):
         one.send(packet(k))
         wait(0.003)
-        b.coming, a.sent = a.sent, []
         other.receive()
         wait(0.010)
         other.send(packet(k, run=2, to=1))
         wait(0.004)
-        a.coming, b.sent = b.sent, []
         one.receive()
     assert one.report().round_trip == pytest.approx((0.007, 0.007, 0.007), abs=1e-9)
 
 
 def test_what_is_too_old_to_be_remembered_is_not_taken():
-    wire = Wire()
+    wire = Tube([], [])
     link = Link(wire)
     for k in range(3 * WINDOW):
         if k != 5:
-            wire.coming.append(told(k))
+            wire.mine.append(told(k))
     assert len(link.receive()) == 3 * WINDOW - 1
-    wire.coming = [told(5), told(3 * WINDOW - 1)]
+    wire.mine += [told(5), told(3 * WINDOW - 1)]
     assert link.receive() == []
     assert link.report().doubled == 2
 
 
 def test_each_run_of_the_other_side_is_counted_by_itself():
     """Its numbers begin anew; of energy what is for this side, and of what was sent what was for each run."""
-    wire = Wire()
+    wire = Tube([], [])
     link = Link(wire)
     for k, (to, energy) in enumerate([(0, 1.0), (1, 2.0), (1, 3.0), (4, 0.5)]):
         link.send(packet(k, energy, run=2, to=to))
-    wire.coming = [told(k, 0.5 * k) for k in (7, 9)]
-    wire.coming += [told(k, 0.25 * k, run=4) for k in (0, 1, 1, 3)] + [told(10, 8.0, to=5)]
+    wire.mine += [told(k, 0.5 * k) for k in (7, 9)]
+    wire.mine += [told(k, 0.25 * k, run=4) for k in (0, 1, 1, 3)] + [told(10, 8.0, to=5)]
     assert len(link.receive()) == 6
     seen = link.report()
     assert (seen.received, seen.lost, seen.doubled, seen.late) == (6, 2, 1, 0)

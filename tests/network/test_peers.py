@@ -4,11 +4,12 @@ import random
 
 import numpy as np
 import pytest
+from network.tube import Tube
 
 import zwidth as zw
 from zwidth.errors import InputError
 from zwidth.links import Schedule, WavePort
-from zwidth.machine.network import Channel, Lossy
+from zwidth.machine.network import Lossy
 from zwidth.machine.network.peer import Peer
 from zwidth.machine.network.runs import DeviceRun, PartRun
 from zwidth.model.scene import Contact, Damper, LineEnd, Mass, Scene, Spring
@@ -31,43 +32,11 @@ class Clock:
         self.now += seconds
 
 
-class Tube(Channel):
-    """Two ends of a list."""
-
-    def __init__(self, mine, other):
-        self.mine, self.other, self.is_open = mine, other, True
-
-    @classmethod
-    def pair(cls):
-        a, b = [], []
-        return cls(a, b), cls(b, a)
-
-    def send(self, datagram):
-        self.other.append(datagram)
-
-    def receive(self):
-        found = list(self.mine)
-        self.mine.clear()
-        return found
-
-    def close(self):
-        self.is_open = False
-
-
 def room(*names):
     """A tool of 50 g before a bed, held by lines of these names."""
-    return Part(
-        "room",
-        Scene(
-            [
-                *(LineEnd("tool", 0.15, name) for name in names),
-                Mass("tool", 0.05),
-                Damper("tool", "ground", 0.2),
-                Contact("tool", "ground", 80, gap=0.003),
-            ],
-            "",
-        ),
-    )
+    lines = [LineEnd("tool", 0.15, name) for name in names]
+    bed = Contact("tool", "ground", 80, gap=0.003)
+    return Part("room", Scene([*lines, Mass("tool", 0.05), Damper("tool", "ground", 0.2), bed], ""))
 
 
 def together(peers, clock, seconds, tick=1e-3):
@@ -81,10 +50,7 @@ def together(peers, clock, seconds, tick=1e-3):
 
 def test_two_people_in_one_scene_over_different_bad_links_take_out_no_energy():
     clock = Clock()
-    hands = {
-        "ann": zw.operators.Finger(),
-        "bob": zw.operators.Finger(start=-0.01, speed=0.05),
-    }
+    hands = {"ann": zw.operators.Finger(), "bob": zw.operators.Finger(start=-0.01, speed=0.05)}
     runs, channels, peers = {}, {}, []
     for i, (name, hand) in enumerate(hands.items()):
         runs[name] = DeviceRun(WavePort(PADDLE), hand, 2, name)
@@ -110,10 +76,8 @@ def test_a_peer_that_is_gone_is_felt_as_no_force():
     clock = Clock()
     run = DeviceRun(WavePort(PADDLE), zw.operators.Finger(), 2, "line")
     here, there = Tube.pair()
-    device, scene = (
-        Peer(run, {"line": here}, "1 ms"),
-        Peer(PartRun(room("line"), "5 ms"), {"line": there}, "5 ms"),
-    )
+    device = Peer(run, {"line": here}, "1 ms")
+    scene = Peer(PartRun(room("line"), "5 ms"), {"line": there}, "5 ms")
     together([(1, device), (5, scene)], clock, 1)
     together([(1, device)], clock, 0.5)
     force = run.trace()["actuator_force"].values

@@ -1,9 +1,8 @@
 """Measures and gives forces as the loop does, as fast as the other side answers; keeps what became of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import count
 from typing import TypeVar
 
 from zwidth.machine.servo.connection import (
@@ -107,3 +106,15 @@ def drive_into(expected: list[int], attempt: Callable[[float], tuple[Other, Driv
         if run.statuses[: len(expected)] == expected:
             break
     return other, run
+
+
+def changing(sample: int, change: Callable[[], object], force: float = 0.2) -> Callable[[float], float]:
+    """A law of a constant force that, at its sample of this number, changes the other side."""
+    samples = count(1)
+
+    def law(reading: float) -> float:
+        if next(samples) == sample:
+            change()
+        return force
+
+    return law

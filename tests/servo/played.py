@@ -1,7 +1,5 @@
 """A device that reads what a script says, and keeps the forces it was given."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar
 
 import numpy as np
@@ -48,6 +46,7 @@ class Played(CompiledConnection):
     """Readings of a list; `bad` has the statuses of samples that are not good."""
 
     motion = "linear"
+    on_silence = "nothing: it is a list"
     measure: ClassVar[Any] = _measure
     apply: ClassVar[Any] = _apply
 
@@ -60,10 +59,6 @@ class Played(CompiledConnection):
     @property
     def samples(self) -> int:
         return self.readings.size - 1
-
-    @property
-    def on_silence(self) -> str:
-        return "nothing: it is a list"
 
     def open(self, sample_period: float) -> Opened:
         n = self.readings.size
@@ -79,7 +74,6 @@ class Played(CompiledConnection):
 
     @property
     def forces(self) -> np.ndarray:
-        """Given along the axis, sample by sample."""
         n = self.readings.size
         return self.opened.memory[SCRIPT + 2 * n :]
 
@@ -94,18 +88,15 @@ class Library(LibraryConnection):
     """The same as a library in Python; at sample `fails` it raises."""
 
     motion = "linear"
+    on_silence = "nothing: it is a list"
 
     def __init__(self, readings: Any, fails: int = -1) -> None:
         self.readings, self.fails = list(readings), fails
         self.forces: list[float] = []
         self.asked = 0
 
-    @property
-    def on_silence(self) -> str:
-        return "nothing: it is a list"
-
     def open(self, sample_period: float) -> None:
-        """Nothing to open."""
+        pass
 
     def measure(self, until: int) -> tuple[int, float]:
         k, self.asked = self.asked, self.asked + 1
@@ -118,7 +109,7 @@ class Library(LibraryConnection):
         return GOOD
 
     def close(self) -> None:
-        """Nothing was taken."""
+        pass
 
     def describe(self) -> str:
         return "a list"

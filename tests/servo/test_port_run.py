@@ -1,15 +1,19 @@
-"""A real device at the end of a line: the port's forces and packets, and the end of both at a fault."""
+"""A real device at the end of a line, and two in processes: forces, packets, the end of both at a fault."""
 
-from __future__ import annotations
+import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
+from free_channels import udp, zenoh
+from network.tube import Tube
 from servo.played import Library, Played
 
 import zwidth as zw
 from zwidth.errors import InputError
-from zwidth.links import Packet, WavePort
-from zwidth.machine.network import Channel, Peer
+from zwidth.links import WavePort
+from zwidth.machine.network import Peer
 from zwidth.machine.network.runs import DeviceRun
 from zwidth.machine.servo import port_run
 from zwidth.machine.servo.connection import CLOSED, GARBLED, REFUSED, SILENT, Placement
@@ -50,17 +54,19 @@ def pushed(run, count, seed=5):
 
 
 def without_runs(packets):
-    """What two ports of the same motion tell alike."""
     return [packet and (packet.number, packet.wave, packet.energy, packet.position) for packet in packets]
 
 
+def later(samples):
+    """A library whose protocol carries a force so many samples later."""
+    return type("Later", (Library,), {"late": samples})
+
+
 def run_on(connection, device=LATE, **more):
-    """The run of a device, with nothing else."""
     return PortRun(WavePort(device), connection, "line", **more)
 
 
 def stepped(run, count):
-    """The packets of each step, None where nothing was sent."""
     return [run.step({"line": [packet]}).get("line") for packet in pushed(run, count)]
 
 
@@ -81,19 +87,14 @@ def test_a_simulated_device_feels_what_the_simulator_s_own_run_gives_it():
     assert served == forces
     assert sent[0] is None
     assert without_runs(sent[1:]) == without_runs(wanted[:-1])
-    run.close()
 
 
 @pytest.mark.parametrize(("late", "waits"), [(0, 1), (0, 3), (1, 1), (1, 2)])
 def test_a_force_is_given_at_the_reading_from_which_the_port_lets_it_act(late, waits):
     """`delay` samples after its own; a protocol that carries it with the next question does one of them."""
     readings = np.round(30 * np.sin(0.05 * np.arange(300))) * STEP
-    connection = Library(readings)
-    type(connection).late = late
-    try:
-        run = run_on(connection, PADDLE.replace(delay=waits * 1e-3))
-    finally:
-        type(connection).late = 0
+    connection = later(late)(readings)
+    run = run_on(connection, PADDLE.replace(delay=waits * 1e-3))
     acting = []
     for packet in pushed(run, 300):
         run.step({"line": [packet]})
@@ -101,7 +102,6 @@ def test_a_force_is_given_at_the_reading_from_which_the_port_lets_it_act(late, w
     assert max(map(abs, acting)) > 0.01
     at_the_device = [0.0] * late + connection.forces
     assert at_the_device[: len(acting)] == acting
-    run.close()
 
 
 def test_what_the_packets_tell_is_never_more_than_what_came_and_was_put_in():
@@ -121,7 +121,7 @@ def test_what_the_packets_tell_is_never_more_than_what_came_and_was_put_in():
             lost += 0.12 * np.sum(np.abs(np.diff(readings[: k + 1])))
             assert sent <= came - work + lost + 1e-15
     assert sent > 0
-    run.close()
+    assert came > 0
 
 
 def test_a_reading_s_zero_and_sense_change_nothing():
@@ -133,8 +133,6 @@ def test_a_reading_s_zero_and_sense_change_nothing():
     assert told[0] == told[1]
     assert plain.forces == [-f for f in turned.forces]
     assert any(plain.forces)
-    for run in runs:
-        run.close()
 
 
 @pytest.mark.parametrize(
@@ -158,7 +156,6 @@ def test_one_sample_without_an_answer_is_held_and_two_end_the_force(bad, held):
         assert not forces[41:].any()
         assert run.forces == {"line": 0.0}
         assert run.report().held == 1
-    run.close()
 
 
 @pytest.mark.parametrize(
@@ -172,7 +169,6 @@ def test_one_sample_without_an_answer_is_held_and_two_end_the_force(bad, held):
     ],
 )
 def test_a_fault_ends_force_and_packets_at_once(change, bad, said):
-    """And the device is told force 0."""
     readings = np.round(20 * np.sin(0.05 * np.arange(100))) * STEP
     for k, value in change.items():
         readings[k] = value
@@ -190,8 +186,6 @@ def test_a_fault_ends_force_and_packets_at_once(change, bad, said):
 
 
 class Unplugged(Library):
-    """Takes no force any more, from the fiftieth on."""
-
     def apply(self, force):
         return CLOSED if len(self.forces) >= 50 else super().apply(force)
 
@@ -204,14 +198,12 @@ class Unplugged(Library):
     ],
 )
 def test_a_cable_that_is_out_is_a_line_that_closed(connection):
-    """A library raises an error of the system, or says so when it is given a force."""
     run = run_on(connection)
     told = stepped(run, 100)
     assert "has closed" in run.ended
     assert run.failed
     assert len([packet for packet in told if packet is not None]) in (49, 50)
     assert told[51:] == [None] * 49
-    run.close()
 
 
 def test_a_loop_that_did_not_run_ends_the_force_and_long_periods_are_counted(time):
@@ -229,7 +221,6 @@ def test_a_loop_that_did_not_run_ends_the_force_and_long_periods_are_counted(tim
     assert "did not run" in run.ended
     assert connection.forces[99] != 0.0
     assert connection.forces[100] == 0.0
-    run.close()
 
 
 def test_a_gap_ends_a_port_that_gave_no_force_just_then(time):
@@ -242,7 +233,6 @@ def test_a_gap_ends_a_port_that_gave_no_force_just_then(time):
     time[1] = 51_000_000
     run.step()
     assert "did not run" in run.ended
-    run.close()
 
 
 @pytest.mark.parametrize(("counts", "ended"), [(10_000, False), (20_000, True)])
@@ -256,7 +246,6 @@ def test_how_far_a_hand_goes_is_asked_of_the_time_that_passed(counts, ended, tim
         time[1] = 30_000_000 if k == 20 else 1_000_000
         run.step({"line": [packets[k]]})
     assert ("jumped" in run.ended) == ended
-    run.close()
 
 
 def test_the_safety_s_force_is_the_port_s_own_limit():
@@ -266,8 +255,7 @@ def test_the_safety_s_force_is_the_port_s_own_limit():
     runs = [run_on(free), run_on(limited, safety=Safety(force="30 mN"))]
     for run in runs:
         stepped(run, 300)
-        run.close()
-    assert max(map(abs, free.forces)) > 0.03
+        assert max(map(abs, free.forces)) > 0.03
     assert max(map(abs, limited.forces)) == pytest.approx(0.03)
     assert runs[1].port.device.force_limit == 0.03
 
@@ -276,54 +264,24 @@ def test_the_safety_s_force_is_the_port_s_own_limit():
     ("arguments", "said"),
     [
         ({"device": PADDLE}, "delay must be ≥ 1 ms, got 0 s"),
-        ({"device": LATE, "safety": Safety(slew=5)}, "leave out slew"),
-        ({"device": LATE, "longest_period": "0.9 ms"}, "longest_period must be ≥ 1 ms"),
+        ({"connection": later(2)([0.0])}, "delay must be ≥ 2 ms, got 1 ms"),
+        ({"safety": Safety(slew=5)}, "leave out slew"),
+        ({"longest_period": "0.9 ms"}, "longest_period must be ≥ 1 ms"),
         ({"device": zw.Device(damping=1, rate=1000, delay=1e-3, motion="rotary")}, "connection is linear"),
     ],
 )
 def test_what_does_not_go_together_is_refused(arguments, said):
-    """Before the device is reached."""
     with pytest.raises(InputError, match=said):
-        run_on(Library([0.0]), **arguments)
-
-
-def test_of_a_protocol_that_carries_the_force_with_the_next_question_one_sample_is_known():
-    """Its delay cannot be less."""
-
-    class Later(Library):
-        late = 2
-
-    with pytest.raises(InputError, match="delay must be ≥ 2 ms, got 1 ms"):
-        run_on(Later([0.0]))
-
-
-class Tube(Channel):
-    """Two ends of a list."""
-
-    def __init__(self, mine, other):
-        self.mine, self.other = mine, other
-
-    def send(self, datagram):
-        self.other.append(datagram)
-
-    def receive(self):
-        found = list(self.mine)
-        self.mine.clear()
-        return found
-
-    def close(self):
-        """Nothing to close."""
+        run_on(**{"connection": Library([0.0]), **arguments})
 
 
 def test_two_devices_over_one_line_take_nothing_from_each_other_and_one_alone_feels_nothing():
-    """Simulated, in hands; the ledger of each is that of its own simulation.  Then one end is gone."""
-    a, b = [], []
     devices = {
         "ann": Simulated(device=LATE, hand=zw.operators.Finger(), duration=2),
         "bob": Simulated(device=LATE, hand=zw.operators.Finger(start=-0.01, speed=0.05), duration=2),
     }
     runs = {name: run_on(device) for name, device in devices.items()}
-    channels = {"ann": Tube(a, b), "bob": Tube(b, a)}
+    channels = dict(zip(("ann", "bob"), Tube.pair(), strict=True))
     peers = {name: Peer(run, {"line": channels[name]}, 1e-3) for name, run in runs.items()}
     felt, put_in = {"ann": [], "bob": []}, []
     for k in range(1500):
@@ -344,13 +302,59 @@ def test_two_devices_over_one_line_take_nothing_from_each_other_and_one_alone_fe
     for one, other in (("ann", "bob"), ("bob", "ann")):
         heard, sent = peers[one].links["line"].report(), peers[other].links["line"].report()
         assert 0 < heard.energy_received <= sent.energy_sent
-    for peer, run in zip(peers.values(), runs.values(), strict=True):
+    for peer in peers.values():
         peer.close()
-        run.close()
 
 
-def test_packets_are_what_they_are():
-    """The stand-in for the other end makes packets with energy in them."""
-    packets = pushed(run_on(Library([0.0])), 50)
-    assert all(isinstance(packet, Packet) for packet in packets)
-    assert packets[-1].energy > 0
+CHILD = """
+import json, os, signal, sys
+import zwidth as zw
+from zwidth.links import WavePort
+from zwidth.machine.network import Peer, open_channel
+from zwidth.machine.servo import PortRun
+from zwidth.machine.servo.devices import Simulated
+
+channel, first, seconds, start = sys.argv[1], sys.argv[2] == "first", float(sys.argv[3]), float(sys.argv[4])
+device = zw.Device(mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, sample_period=2e-3)
+hand = zw.operators.Finger(start=start, speed=0.05)
+run = PortRun(
+    WavePort(device),
+    Simulated(device=device, hand=hand, duration=20),
+    "line",
+    safety=zw.servo.Safety(longest_gap="30 s"),
+)
+peer = Peer(run, {"line": open_channel(channel, first)}, "2 ms")
+assert peer.meet(30) == ()
+felt = []
+report = peer.run(seconds, lambda k: felt.append(abs(run.forces["line"])))
+told = report.to_dict() | {"felt_N": felt, "device": run.report().to_dict()}
+print(json.dumps(told), flush=True)
+if not first:
+    os.kill(os.getpid(), signal.SIGKILL)
+run.close()
+peer.close()
+"""
+
+
+def _child(channel, side, seconds, start):
+    command = [sys.executable, "-c", CHILD, channel, side, str(seconds), str(start)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+
+
+@pytest.mark.real_time
+@pytest.mark.skipif(sys.platform == "win32", reason="a process kills itself")
+@pytest.mark.parametrize("kind", [udp, zenoh])
+def test_no_side_hears_of_more_than_was_sent_and_a_killed_one_is_felt_as_no_force(kind):
+    """Both feel each other while both live; of the dead one nothing is left at the end."""
+    channel = kind()
+    lives, dies = _child(channel, "first", 2.5, -0.003), _child(channel, "second", 1.2, -0.01)
+    alive, dead = (json.loads(child.communicate()[0]) for child in (lives, dies))
+    assert (lives.returncode == 0, dies.returncode < 0) == (True, True)
+    assert max(alive["felt_N"]) > 0.02
+    assert max(dead["felt_N"]) > 0.02
+    assert not any(alive["felt_N"][-100:])
+    mine, its = alive["links"]["line"], dead["links"]["line"]
+    assert mine["last_force_N"] == 0
+    assert 0 < mine["energy_received_J"] <= its["energy_sent_J"]
+    assert 0 < its["energy_received_J"] <= mine["energy_sent_J"]
+    assert alive["device"]["samples"] == alive["steps"] == 1250

@@ -1,7 +1,5 @@
 """Two arms in one loop: the simulator's own forces, refused unless proved, both at 0 after a fault of one."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from servo.played import Library, Played
@@ -42,8 +40,22 @@ def clock(monkeypatch):
     return time
 
 
-def hands():
-    return zw.operators.Finger(start=0.0, speed=0.05), zw.operators.Finger(start=0.0, speed=0.02, force=0.6)
+@pytest.fixture
+def _at_once(monkeypatch):
+    """Served without a measurement before: the first reading of a script is that of the first sample."""
+    monkeypatch.setattr(PairServo, "measure", lambda self: None)
+    monkeypatch.setattr(PairServo, "judge", lambda self: zw.check(self.pair))
+
+
+at_once = pytest.mark.usefixtures("_at_once")
+
+
+HANDS = (zw.operators.Finger(start=0.0, speed=0.05), zw.operators.Finger(start=0.0, speed=0.02, force=0.6))
+
+
+def simulated(pair):
+    devices = zip((pair.leader, pair.follower), HANDS, strict=True)
+    return [Simulated(device=device, hand=hand, duration=1.5) for device, hand in devices]
 
 
 def seen(arms):
@@ -60,14 +72,9 @@ def seen(arms):
 
 @pytest.mark.parametrize("pair", [PAIR, PAIR.replace(reflection="0.5", follower_stiffness=30)])
 def test_a_served_pair_is_the_simulated_one(pair):
-    """Readings and forces of both arms, to the last bit, over a regular clock."""
-    leader, follower = hands()
-    wanted = zw.simulate(pair, leader, follower, 1.5)
-    connections = [
-        Simulated(device=device, hand=hand, duration=1.5)
-        for device, hand in zip((pair.leader, pair.follower), (leader, follower), strict=True)
-    ]
-    with PairServo(pair, *connections) as arms:
+    """To the last bit; and its energies are W = −Σ f Δx of each arm, and b Δx²/T + f_c |Δx|, summed here."""
+    wanted = zw.simulate(pair, *HANDS, 1.5)
+    with PairServo(pair, *simulated(pair)) as arms:
         rows = seen(arms)
         report = arms.run("1.5 s", anyway=True)
     found = np.array(rows[: wanted.sizes["time"]]).T
@@ -79,22 +86,9 @@ def test_a_served_pair_is_the_simulated_one(pair):
     assert np.abs(found[2:]).max() > 0.1
     assert report.samples == 1501
     assert report.ended == "ended, since the time was over"
-
-
-def test_the_energies_are_those_of_readings_and_forces():
-    """W = −Σ f Δx of each arm, and b Δx²/T + f_c |Δx|, summed here."""
-    connections = [
-        Simulated(device=device, hand=hand, duration=1)
-        for device, hand in zip((PAIR.leader, PAIR.follower), hands(), strict=True)
-    ]
-    with PairServo(PAIR, *connections) as arms:
-        rows = seen(arms)
-        report = arms.run("1 s", anyway=True)
-    table = np.array(rows)
-    moved = np.diff(table[:, :2], axis=0)
-    work = -(table[:-1, 2:] * moved).sum(axis=0)
+    moved, forces = np.diff(np.array(rows)[:, :2], axis=0), np.array(rows)[:-1, 2:]
     loss = (np.array([0.15, 0.2]) * moved**2 / 1e-3 + 0.12 * np.abs(moved)).sum(axis=0)
-    assert report.energy_out == pytest.approx(tuple(work), rel=1e-9)
+    assert report.energy_out == pytest.approx(tuple(-(forces * moved).sum(axis=0)), rel=1e-9)
     assert report.friction_loss == pytest.approx(tuple(loss), rel=1e-9)
 
 
@@ -120,10 +114,13 @@ def test_a_law_that_is_served_for_long_is_that_of_all_its_readings():
     assert (np.abs(found) < 5).mean() > 0.1
 
 
-def played(bad=None, size=200):
+SWING = np.round(20 * np.sin(0.03 * np.arange(200))) * STEP
+REST = np.zeros(200)
+
+
+def played(bad=None):
     """A pair of scripts that part slowly, and begin together."""
-    one = np.round(20 * np.sin(0.03 * np.arange(size))) * STEP
-    return Played(one, bad), Played(-one)
+    return Played(SWING, bad), Played(-SWING)
 
 
 def served(leader, follower, duration="0.15 s", **more):
@@ -139,10 +136,8 @@ def served(leader, follower, duration="0.15 s", **more):
         ({60: CLOSED}, "closed", 0),
     ],
 )
-def test_a_fault_of_one_arm_ends_the_force_of_both(bad, ended, held, monkeypatch):
-    """One bad answer is held; two, or a closed line, end both."""
-    monkeypatch.setattr(PairServo, "measure", lambda self: None)
-    monkeypatch.setattr(PairServo, "judge", lambda self: zw.check(self.pair))
+@at_once
+def test_a_fault_of_one_arm_ends_the_force_of_both(bad, ended, held):
     leader, follower = played(bad)
     report = served(leader, follower)
     assert ended in report.ended
@@ -158,10 +153,8 @@ def test_a_fault_of_one_arm_ends_the_force_of_both(bad, ended, held, monkeypatch
 
 
 @pytest.mark.parametrize(("value", "said"), [(float("nan"), "no number"), (0.05, "jumped")])
-def test_a_reading_that_cannot_be_ends_both(value, said, monkeypatch):
-    """Of the follower alone."""
-    monkeypatch.setattr(PairServo, "measure", lambda self: None)
-    monkeypatch.setattr(PairServo, "judge", lambda self: zw.check(self.pair))
+@at_once
+def test_a_reading_that_cannot_be_ends_both(value, said):
     leader, follower = played()
     follower.readings[90] = value
     report = served(leader, follower)
@@ -170,48 +163,31 @@ def test_a_reading_that_cannot_be_ends_both(value, said, monkeypatch):
     assert leader.forces[80:90].all()
 
 
-def stalled(clock, arms, at=70):
-    """At this sample the law takes 60 ms."""
-    rows = seen(arms)
-    law = arms._law.forces
-
-    def stall(x, y):
-        clock[1] = 60_000_000 if len(rows) == at else 0
-        return law(x, y)
-
-    arms._law.forces = stall
-
-
-def test_a_loop_that_did_not_run_ends_both(clock, monkeypatch):
-    """For more than 50 ms."""
-    monkeypatch.setattr(PairServo, "measure", lambda self: None)
-    monkeypatch.setattr(PairServo, "judge", lambda self: zw.check(self.pair))
-    leader, follower = played()
+@pytest.mark.parametrize(
+    ("one", "other", "ended"), [(SWING, -SWING, True), (REST, REST, True), (REST, REST + 0.01, False)]
+)
+@at_once
+def test_a_gap_of_more_than_50_ms_ends_a_law_that_is_served_and_not_one_that_waits(one, other, ended, clock):
+    """Though it gave no force: where the arms stand together the law is served, and 1 cm apart it waits."""
+    leader, follower = Played(one), Played(other)
     with PairServo(PAIR, leader, follower) as arms:
-        stalled(clock, arms)
-        report = arms.run("0.18 s", anyway=True)
-    assert "did not run" in report.ended
-    assert report.missed == 60
+        rows, law = seen(arms), arms._law.forces
 
+        def stall(x, y):
+            clock[1] = 60_000_000 if len(rows) == 70 else 0
+            return law(x, y)
 
-@pytest.mark.parametrize(("apart", "ended"), [(0.0, True), (0.01, False)])
-def test_a_gap_ends_a_law_that_gave_no_force_and_not_one_that_waits(apart, ended, clock, monkeypatch):
-    """As in a served loop: where the arms stand together the law is served, and 1 cm apart it waits."""
-    monkeypatch.setattr(PairServo, "measure", lambda self: None)
-    monkeypatch.setattr(PairServo, "judge", lambda self: zw.check(self.pair))
-    leader, follower = Played(np.zeros(200)), Played(np.full(200, apart))
-    with PairServo(PAIR, leader, follower) as arms:
-        stalled(clock, arms)
+        arms._law.forces = stall
         report = arms.run("0.18 s", anyway=True)
     assert ("did not run" in report.ended) == ended
     assert report.missed == 60
-    assert not leader.forces.any()
+    assert leader.forces[50:70].any() == one.any()
+    assert not leader.forces[72:].any()
 
 
-def test_arms_that_begin_apart_wait_until_their_forces_are_near_0(monkeypatch):
+@at_once
+def test_arms_that_begin_apart_wait_until_their_forces_are_near_0():
     """Force 0 until then; from there the law, as if both had always been there."""
-    monkeypatch.setattr(PairServo, "measure", lambda self: None)
-    monkeypatch.setattr(PairServo, "judge", lambda self: zw.check(self.pair))
     leader, follower = played()
     follower.readings = leader.readings + np.linspace(0.02, -0.02, 200)
     report = served(leader, follower, "0.199 s")
@@ -227,20 +203,17 @@ def test_arms_that_begin_apart_wait_until_their_forces_are_near_0(monkeypatch):
     assert report.samples == 200
 
 
-def test_the_safety_cuts_and_counts(monkeypatch):
-    """A limit below the forces of the pair."""
-    monkeypatch.setattr(PairServo, "measure", lambda self: None)
-    monkeypatch.setattr(PairServo, "judge", lambda self: zw.check(self.pair))
+@at_once
+def test_the_safety_cuts_and_counts():
     leader, follower = played()
     report = served(leader, follower, safety=Safety(force="20 mN"))
     assert max(np.abs(leader.forces).max(), np.abs(follower.forces).max()) == pytest.approx(0.02)
     assert report.cut > 50
 
 
-def test_readings_and_forces_are_along_each_arm_s_own_axis(monkeypatch):
+@at_once
+def test_readings_and_forces_are_along_each_arm_s_own_axis():
     """A follower that is measured the other way round feels the same, turned round."""
-    monkeypatch.setattr(PairServo, "measure", lambda self: None)
-    monkeypatch.setattr(PairServo, "judge", lambda self: zw.check(self.pair))
     plain, turned = played(), played()
     turned[1].readings = 0.3 - turned[1].readings
     served(*plain)
@@ -251,7 +224,6 @@ def test_readings_and_forces_are_along_each_arm_s_own_axis(monkeypatch):
 
 
 def test_what_is_not_proved_is_refused_and_gives_no_force():
-    """A spring ten times too stiff; `anyway` serves it."""
     stiff = PAIR.replace(stiffness=4000, damping=0)
     leader, follower = played()
     with PairServo(stiff, leader, follower) as arms:
@@ -271,9 +243,7 @@ def test_the_delay_that_was_measured_is_in_the_verdict(monkeypatch):
         return zw.check(pair)
 
     monkeypatch.setattr(module, "check", check)
-    size = 3000
-    leader, follower = Library(np.zeros(size)), Library(np.zeros(size))
-    with PairServo(PAIR, leader, follower) as arms:
+    with PairServo(PAIR, Library([0.0]), Library([0.0])) as arms:
         arms.measured = module.measured(np.full(9, 30e-6), np.full(9, 240e-6), 0, 0)
         arms.judge()
     assert asked[0].leader.delay == asked[0].follower.delay == 240e-6
@@ -295,13 +265,11 @@ def test_the_delay_that_was_measured_is_in_the_verdict(monkeypatch):
     ],
 )
 def test_what_cannot_be_served_is_refused(make, said):
-    """Before a device is reached."""
     with pytest.raises(InputError, match=said):
         make(*played())
 
 
-def test_an_arm_that_does_not_answer_is_told(monkeypatch):
-    """When it is measured, with force 0."""
+def test_an_arm_that_does_not_answer_is_told():
     leader, follower = played(dict.fromkeys(range(200), SILENT))
     with PairServo(PAIR, leader, follower) as arms, pytest.raises(InputError, match="no answer in time"):
         arms.run("0.1 s")
@@ -310,7 +278,6 @@ def test_an_arm_that_does_not_answer_is_told(monkeypatch):
 
 
 def test_a_report_has_units_and_says_what_was_met():
-    """In keys; and neither arm has been met."""
     report = served(*played(), safety=Safety(start_force=1))
     told = report.to_dict()
     assert told["format"] == "zwidth served pair 1"
@@ -320,16 +287,9 @@ def test_a_report_has_units_and_says_what_was_met():
 
 
 def test_it_is_ended_from_another_thread():
-    """Long before its time, and the forces are 0."""
-    leader, follower = played(size=3000)
-    with PairServo(PAIR, leader, follower) as arms:
+    with PairServo(PAIR, *played()) as arms:
         law = arms._law.forces
-
-        def forces(x, y):
-            arms.stop()
-            return law(x, y)
-
-        arms._law.forces = forces
+        arms._law.forces = lambda x, y: arms.stop() or law(x, y)
         report = arms.run("2.9 s", anyway=True)
     assert report.ended == "ended, since it was asked to end"
     assert report.samples < 5

@@ -1,6 +1,7 @@
-"""Values found in JSON text, against Python's own reader."""
+"""Values found in JSON text, and decimal numbers read and written, against Python's own."""
 
 import json
+from decimal import ROUND_HALF_UP, Decimal
 
 import numpy as np
 import pytest
@@ -13,7 +14,9 @@ from zwidth.machine.servo.devices.json_text import (
     is_string,
     member,
     next_element,
+    read_decimal,
     skip_value,
+    write_decimal,
 )
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_characters='"\\', min_codepoint=32), max_size=6)
@@ -34,13 +37,11 @@ def array(text):
 
 
 def value_at(data, at):
-    """The value that starts there, by Python."""
     return json.loads(bytes(data[at : skip_value(data, at, len(data))]))
 
 
 @given(st.dictionaries(NAMES, VALUES, max_size=6), LAYOUTS)
 def test_each_member_is_found_and_no_other(document, layout):
-    """Whatever its value and whatever stands before it."""
     data = array(json.dumps(document, ensure_ascii=False, **layout))
     for name, value in document.items():
         assert value_at(data, member(data, 0, len(data), array(name))) == value
@@ -50,7 +51,6 @@ def test_each_member_is_found_and_no_other(document, layout):
 
 @given(st.lists(VALUES, max_size=6), LAYOUTS)
 def test_each_element_is_found_in_its_order(values, layout):
-    """An empty array has none."""
     data = array(json.dumps(values, **layout))
     found, at = [], first_element(data, 0, len(data))
     while at >= 0:
@@ -86,9 +86,80 @@ def test_a_name_within_another_is_not_that_name():
 
 
 def test_a_string_is_compared_to_its_end():
-    """Neither a beginning nor a continuation is the same."""
     data = array('"049D"')
     assert is_string(data, 0, len(data), array("049D"))
     assert not is_string(data, 0, len(data), array("049"))
     assert not is_string(data, 0, len(data), array("049DD"))
     assert not is_string(data, 0, len(data), array("049E"))
+
+
+def read(text, start=0):
+    data = np.frombuffer(text.encode(), np.uint8)
+    return read_decimal(data, start, len(data))
+
+
+def written(value, decimals):
+    into = np.full(40, ord("#"), np.uint8)
+    end = write_decimal(value, decimals, into, 3)
+    assert bytes(into[:3]) == b"###"
+    assert bytes(into[end:]) == b"#" * (40 - end)
+    assert end - 3 <= 12 + decimals
+    return bytes(into[3:end]).decode()
+
+
+@given(st.integers(-(10**15) + 1, 10**15 - 1), st.integers(-15, 0), st.sampled_from(["", "e3", "E-4", "e+2"]))
+def test_fifteen_digits_are_read_to_the_nearest_float(digits, point, exponent):
+    text = f"{Decimal(digits).scaleb(point):f}{exponent}"
+    assert read(text + ",") == (float(text), len(text))
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False, min_value=-1e200, max_value=1e200))
+def test_any_float_is_read_within_its_last_places(value):
+    found, end = read(repr(value) + " ")
+    assert end == len(repr(value))
+    assert found == pytest.approx(value, rel=3 * np.finfo(float).eps, abs=1e-300)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "-", ".", "x1", "1.", "1.,", "1e", "1e,", "-,", "12", "1.5", "1e5", "+1,"]
+)
+def test_what_is_no_number_or_not_finished_is_not_read(text):
+    """A number that the text ends with may go on in what has not come yet."""
+    assert read(text)[1] == -1
+
+
+@given(st.floats(-1e6, 1e6), st.integers(1, 9))
+def test_what_is_written_is_the_value_rounded(value, decimals):
+    """Half a unit of the last decimal away at most, apart from the one rounding of the product."""
+    text = written(value, decimals)
+    whole, _, fraction = text.partition(".")
+    assert len(fraction) == decimals
+    assert whole.lstrip("-") == str(int(whole.lstrip("-")))
+    half = Decimal("0.5").scaleb(-decimals)
+    assert abs(Decimal(text) - Decimal(value)) <= half + abs(Decimal(value)) * Decimal(2) ** -52
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0.000"),
+        (-0.0, "0.000"),
+        (-0.0004, "0.000"),
+        (-0.0006, "-0.001"),
+        (0.9996, "1.000"),
+        (999.9996, "1000.000"),
+        (float("nan"), "0.000"),
+        (float("inf"), "0.000"),
+        (1e30, "1000000000.000"),
+        (-1e30, "-1000000000.000"),
+    ],
+)
+def test_edges_of_writing(value, text):
+    """Neither −0 nor a number that C would not read; what is no number is 0."""
+    assert written(value, 3) == text
+
+
+def test_rounding_is_half_away_from_zero():
+    for quarters in range(-50, 51):
+        exact = Decimal(quarters) / 4
+        assert Decimal(written(quarters / 4, 1)) == exact.quantize(Decimal("0.1"), ROUND_HALF_UP)

@@ -31,7 +31,6 @@ OUT = np.zeros(512, np.uint8)
 
 
 def text(count):
-    """What was written."""
     return OUT[:count].tobytes()
 
 
@@ -43,7 +42,6 @@ def read(line, checked=False, servo=1, source=112):
 
 
 def answer(mode=10, position=0.25, fault=0):
-    """The data of an answer, in hexadecimal digits."""
     return (
         struct.pack("<BBb", 0x21, 0x00, mode)
         + struct.pack("<BBf", 0x2D, 0x01, position)
@@ -71,14 +69,6 @@ def test_the_checksum_of_a_line(line):
     assert remainder(np.frombuffer(line + b"\0", np.uint8).copy(), len(line)) == checksum(line)
 
 
-def test_a_line_with_a_checksum():
-    """Over all before the asterisk, with the space."""
-    line = text(put_question(OUT, 1, 0x71, True))
-    body, _, digits = line.partition(b"*")
-    assert body == b"can send f101 11001d01110f "
-    assert int(digits, 16) == checksum(body)
-
-
 def test_the_answer_of_the_documentation():
     """The example of "CAN protocol" has other registers: it is no answer of ours."""
     assert read(b"rcv 100 2404000a005000000170ff230d181400", source=0)[0] == BROKEN
@@ -86,7 +76,6 @@ def test_the_answer_of_the_documentation():
 
 @pytest.mark.parametrize("flags", ["", " ", " E B F", " E b F t1234 f-1"])
 def test_a_right_answer(flags):
-    """Its numbers are remembered; the digits may be large or small."""
     for data in (answer(), answer().upper()):
         kind, memory = read(f"rcv 170 {data}{flags}".encode())
         assert (kind, memory[MODE], memory[TURNS], memory[FAULT]) == (RIGHT, 10, 0.25, 0)
@@ -119,7 +108,6 @@ def test_a_right_answer(flags):
     ],
 )
 def test_other_lines(line, kind):
-    """What an adapter may say, and what noise may make of it."""
     assert read(line)[0] == kind
 
 

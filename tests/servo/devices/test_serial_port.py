@@ -36,7 +36,6 @@ def test_nothing_yet_differs_from_a_closed_line(terminal):
 
 
 def test_a_port_is_open_for_one_alone(terminal):
-    """A second program would take the answers of the first."""
     near, name = terminal
     port = open_port(name, 115_200)
     with pytest.raises(InputError, match="in use"):
@@ -49,13 +48,11 @@ def test_a_port_is_open_for_one_alone(terminal):
     ("name", "said"), [("/dev/no-such-port", "there is no port"), ("/dev/null", "no serial port that can be")]
 )
 def test_what_is_no_port(name, said):
-    """With the ports that there are."""
     with pytest.raises(InputError, match=rf"{said}.*\(.*\)"):
         open_port(name, 115_200)
 
 
 def test_a_rate_that_is_none(terminal):
-    """In one message as well."""
     near, name = terminal
     with pytest.raises(InputError, match="does not take -5 baud"):
         open_port(name, -5)
@@ -63,7 +60,6 @@ def test_a_rate_that_is_none(terminal):
 
 
 def test_without_pyserial_the_message_says_what_to_install(monkeypatch):
-    """And nothing else of this package needs it."""
     monkeypatch.setitem(sys.modules, "serial", None)
     with pytest.raises(InputError, match=r"pip install 'zwidth\[serve\]'"):
         open_port("/dev/null", 9600)

@@ -56,25 +56,24 @@ def test_every_connection_lists_what_can_change_its_force(name):
     assert all(effect and source for _, _, effect, _, source in made.settings)
 
 
-def test_the_registers_of_a_dynamixel_are_those_of_its_list():
+@pytest.mark.parametrize(
+    ("emulator", "servo", "options"),
+    [
+        (DynamixelEmulator, Dynamixel, {"torque_per_current": 1.0}),
+        (FeetechEmulator, Feetech, {"full_duty_torque": 1.0}),
+    ],
+)
+def test_the_registers_of_a_servo_are_those_of_its_list(emulator, servo, options):
     """Every one that is listed as read or set is reached, and no other."""
-    with DynamixelEmulator([2048] * 20) as other:
-        other.put(10, 1, 8)
-        reached, changed = touched(Dynamixel(other.port, torque_per_current=1.0), other)
-    assert reached - POSITIONS == addresses(Dynamixel, *set(DONE) - {LEAVES})
-    assert not changed & addresses(Dynamixel, *set(DONE) - {SETS})
-
-
-def test_the_registers_of_a_feetech_servo_are_those_of_its_list():
-    """As of a Dynamixel."""
-    with FeetechEmulator([2048] * 20) as other:
-        reached, changed = touched(Feetech(other.port, full_duty_torque=1.0), other)
-    assert reached - POSITIONS == addresses(Feetech, *set(DONE) - {LEAVES})
-    assert not changed & addresses(Feetech, *set(DONE) - {SETS})
+    with emulator([2048] * 20) as other:
+        if servo is Dynamixel:
+            other.put(10, 1, 8)
+        reached, changed = touched(servo(other.port, **options), other)
+    assert reached - POSITIONS == addresses(servo, *set(DONE) - {LEAVES})
+    assert not changed & addresses(servo, *set(DONE) - {SETS})
 
 
 def test_the_properties_of_an_odrive_are_those_of_its_list():
-    """Read, or set and put back; its state besides."""
     with ODriveEmulator() as other:
         drive(ODrive(other.port), 40)
     said = [line.split() for line in other.lines if line[:1] in ("r", "w")]
@@ -85,7 +84,6 @@ def test_the_properties_of_an_odrive_are_those_of_its_list():
 
 
 def test_the_configuration_of_a_moteus_that_is_read_is_that_of_its_list():
-    """Nothing of it is set."""
     with MoteusEmulator([0.1]) as other:
         drive(Moteus(other.port), 5)
     assert other.asked_for == named(Moteus, *set(DONE) - {LEAVES, SETS})

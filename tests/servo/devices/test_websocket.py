@@ -48,7 +48,6 @@ def test_frames_of_the_standard(frame, found):
 
 @pytest.mark.parametrize("frame", ["", "81", "82 7e", "82 7e 01", "82 7f 00 00 00 00 00 01 00"])
 def test_a_header_that_has_not_come_whole(frame):
-    """Byte by byte is a way for it to come."""
     assert read(bytes.fromhex(frame)) == UNFINISHED
 
 
@@ -65,7 +64,6 @@ def test_a_header_that_has_not_come_whole(frame):
     ],
 )
 def test_what_no_server_may_send(frame, why):
-    """Nothing behind it can be understood."""
     assert read(bytes.fromhex(frame)) == WRONG, why
 
 
@@ -94,7 +92,6 @@ def test_what_is_masked_is_the_payload_again(count):
 
 
 def test_masks_do_not_come_again():
-    """32 bits, never 0, no two the same in a hundred thousand frames."""
     mask, seen = 0xDEADBEEF, set()
     for _ in range(100_000):
         mask = next_mask(mask)

@@ -4,8 +4,6 @@ Its positions are those of its shaft, its commands the currents that turn the sh
 of both is for the host to find out.
 """
 
-from __future__ import annotations
-
 import struct
 
 from servo.emulators.faults import Fault
@@ -36,19 +34,7 @@ def packet(identifier: int, body: bytes) -> bytes:
 
 
 class DynamixelEmulator(TerminalEmulator):
-    """Its position is scripted.
-
-    Parameters
-    ----------
-    positions
-        Counts of present position, at each exchange; the last one stays.
-    model, firmware
-        Of the control table.
-    indirect_data
-        Address of the first register of indirect data.
-    identifier
-        On the bus.
-    """
+    """Its position is scripted: counts at each exchange, of which the last one stays."""
 
     def __init__(
         self,
@@ -81,15 +67,12 @@ class DynamixelEmulator(TerminalEmulator):
             self.put(168 + 2 * i, 2, indirect_data + i)
 
     def put(self, address: int, count: int, value: int) -> None:
-        """Into the control table."""
         self.table[address : address + count] = (value & (1 << 8 * count) - 1).to_bytes(count, "little")
 
     def value(self, address: int, count: int) -> int:
-        """Of the control table."""
         return int.from_bytes(self.table[address : address + count], "little")
 
     def hear(self, data: bytes) -> None:
-        """Take bytes that came, however they were cut."""
         self._heard += data
         while True:
             start = self._heard.find(HEADER)
@@ -105,7 +88,6 @@ class DynamixelEmulator(TerminalEmulator):
                 self._obey(whole[4], body[0], body[1:])
 
     def with_wrong_checksum(self, frame: bytes) -> bytes:
-        """The same frame with the checksum of another one."""
         return frame[:-2] + bytes([frame[-2] ^ 1, frame[-1]])
 
     def _obey(self, identifier: int, instruction: int, parameters: bytes) -> None:
@@ -153,10 +135,7 @@ class DynamixelEmulator(TerminalEmulator):
         self.put(132, 4, -self.positions[index] if self.table[_DRIVE] & 1 else self.positions[index])
         values = bytes(self.table[self._behind(i)] for i in range(address, address + count))
         frame = self._status(0, values)
-        if counted:
-            self.answer(frame)
-        else:
-            self.write(frame)
+        (self.answer if counted else self.write)(frame)
 
     def _behind(self, address: int) -> int:
         """Where a register of indirect data leads to."""

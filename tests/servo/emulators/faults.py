@@ -1,10 +1,8 @@
-"""What the other side of a connection can do wrong, the same for every device that is emulated.
+"""What the other side of a connection can do wrong, the same for every emulated device; and what it moves.
 
 An emulator counts the positions that it is asked for: the first is exchange 0.  Up to exchange `at` it
 answers as it should; from there on its fault decides what becomes of every answer.
 """
-
-from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -15,22 +13,14 @@ from random import Random
 class Fault(StrEnum):
     """From the exchange `at` on, at every exchange."""
 
-    CLOSED = "closed"
-    """The other side closes the line instead of answering."""
-    HALF_FRAME = "half frame"
-    """The first half of the answer comes, and no more."""
-    GARBAGE = "garbage"
-    """As many bytes as the answer has come, and mean nothing."""
-    SILENCE = "silence"
-    """Nothing comes."""
-    DUPLICATE = "duplicate"
-    """The answer comes twice, in one piece: no fault to the loop, and no later sample may be old by it."""
-    SLOW = "slow"
-    """The answer comes a few bytes at a time, in time: no fault to the loop."""
-    WRONG_CHECKSUM = "wrong checksum"
-    """The answer comes whole, and its checksum is that of another."""
-    LATE_ANSWERS = "late answers"
-    """To every question comes the answer to the question before, to the first of them nothing."""
+    CLOSED = "closed"  # the other side closes the line instead of answering
+    HALF_FRAME = "half frame"  # the first half of the answer comes, and no more
+    GARBAGE = "garbage"  # as many bytes as the answer has come, and mean nothing
+    SILENCE = "silence"  # nothing comes
+    DUPLICATE = "duplicate"  # the answer comes twice, in one piece: no later sample may be old by it
+    SLOW = "slow"  # the answer comes a few bytes at a time, in time: no fault to the loop
+    WRONG_CHECKSUM = "wrong checksum"  # the answer comes whole, and its checksum is that of another
+    LATE_ANSWERS = "late answers"  # to each question comes the answer to the one before, to the first nothing
 
 
 @dataclass(frozen=True)
@@ -44,15 +34,7 @@ class Command:
 class Emulator(ABC):
     """The other side of a line; it calls `answer` for every position asked, `command` for every force.
 
-    Parameters
-    ----------
-    fault, at
-        What goes wrong, and from which exchange on; None for a device that does everything right.
-
-    Attributes
-    ----------
-    until
-        The exchange from which everything is right again; None for never.
+    It has the fault from the exchange `at` on, up to that of `until` or for ever.
     """
 
     def __init__(self, fault: Fault | None = None, at: int = 0) -> None:
@@ -70,23 +52,20 @@ class Emulator(ABC):
 
     @abstractmethod
     def hang_up(self) -> None:
-        """Close the line."""
+        """Close it."""
 
     def with_wrong_checksum(self, frame: bytes) -> bytes:
         """The same frame with the checksum of another one."""
         raise NotImplementedError(f"the frames of {type(self).__name__} have no checksum")
 
     def nonsense(self, count: int) -> bytes:
-        """Bytes that mean nothing."""
         return self._random.randbytes(count)
 
     def pieces(self, frame: bytes) -> list[bytes]:
-        """The frame in three."""
         third = max(1, len(frame) // 3)
         return [frame[:third], frame[third : 2 * third], frame[2 * third :]]
 
     def command(self, force: float) -> None:
-        """Remember a force that was asked for."""
         self.commands.append(Command(self.exchange, force))
 
     def answer(self, frame: bytes) -> None:
@@ -120,3 +99,24 @@ class Emulator(ABC):
                 if self._held:
                     self.write(self._held)
                 self._held = frame
+
+
+@dataclass
+class Handle:
+    """``m a = f + k (h − x) − b v``, one semi-implicit step of Euler for each command; all in SI units.
+
+    The same numbers serve a handle that turns: kg m², N·m/rad, N·m·s/rad, rad.
+    """
+
+    mass: float = 0.1
+    hand: float = 0.02
+    stiffness: float = 80.0
+    damping: float = 0.6
+    step_length: float = 1e-3
+    position: float = 0.0137
+    speed: float = 0.0
+
+    def step(self, force: float) -> None:
+        pull = self.stiffness * (self.hand - self.position) - self.damping * self.speed
+        self.speed += self.step_length * (force + pull) / self.mass
+        self.position += self.step_length * self.speed

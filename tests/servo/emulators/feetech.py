@@ -1,7 +1,5 @@
 """A Feetech servo of the STS series on a bus, written from its memory table and protocol manual."""
 
-from __future__ import annotations
-
 from servo.emulators.faults import Fault
 from servo.emulators.terminal import TerminalEmulator
 
@@ -9,21 +7,12 @@ _MODE, _TORQUE, _DUTY, _LOCK, _POSITION = 33, 40, 44, 55, 56
 
 
 def packet(identifier: int, body: bytes) -> bytes:
-    """Instruction (or state) and parameters with what stands around them."""
     inner = bytes([identifier, len(body) + 1]) + body
     return b"\xff\xff" + inner + bytes([255 - sum(inner) % 256])
 
 
 class FeetechEmulator(TerminalEmulator):
-    """Its position is scripted; what is written where it stays after switching off is kept in `saved`.
-
-    Parameters
-    ----------
-    positions
-        Counts of the present position, at each exchange; the last one stays.
-    identifier
-        On the bus.
-    """
+    """Its position is scripted; what is written where it stays after switching off is kept in `saved`."""
 
     def __init__(
         self, positions: list[int], fault: Fault | None = None, at: int = 0, *, identifier: int = 1
@@ -40,7 +29,6 @@ class FeetechEmulator(TerminalEmulator):
         self._heard = b""
 
     def hear(self, data: bytes) -> None:
-        """Take bytes that came, however they were cut."""
         self._heard += data
         while True:
             start = self._heard.find(b"\xff\xff")
@@ -55,7 +43,6 @@ class FeetechEmulator(TerminalEmulator):
                 self._obey(whole[2], whole[4], whole[5:-1])
 
     def with_wrong_checksum(self, frame: bytes) -> bytes:
-        """The same frame with the checksum of another one."""
         return frame[:-1] + bytes([frame[-1] ^ 1])
 
     def _obey(self, identifier: int, instruction: int, parameters: bytes) -> None:
@@ -89,7 +76,4 @@ class FeetechEmulator(TerminalEmulator):
         word = abs(position) | (0x8000 if position < 0 else 0)
         self.table[_POSITION : _POSITION + 2] = word.to_bytes(2, "little")
         frame = packet(self.identifier, bytes([self.state]) + bytes(self.table[address : address + count]))
-        if address == _POSITION:
-            self.answer(frame)
-        else:
-            self.write(frame)
+        (self.answer if address == _POSITION else self.write)(frame)

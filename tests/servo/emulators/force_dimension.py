@@ -4,8 +4,6 @@ The package takes hold of hundreds of functions of the library when it is import
 here are in it as well, and fail.
 """
 
-from __future__ import annotations
-
 import ctypes
 import importlib.util
 import os
@@ -36,7 +34,6 @@ class Failure(IntEnum):
 
 
 def built(folder: Path) -> Path:
-    """The folder of an SDK with the library in it."""
     assert PACKAGE is not None
     assert PACKAGE.origin is not None
     wanted = set()
@@ -54,8 +51,6 @@ def built(folder: Path) -> Path:
 
 
 class Device:
-    """What the test sees of it, and does to it."""
-
     def __init__(self, folder: Path, present: bool = True, watchdog: bool = True) -> None:
         (library,) = folder.rglob("libdrd.so.*")
         self.library = ctypes.CDLL(str(library))
@@ -73,12 +68,10 @@ class Device:
 
     @property
     def asked(self) -> int:
-        """How often for its position."""
         return int(self.library.fd_asked())
 
     @property
     def forces(self) -> list[tuple[float, float, float]]:
-        """All that were given [N]."""
         given = range(self.library.fd_given())
         return [tuple(self.library.fd_force(k, axis) for axis in range(3)) for k in given]  # type: ignore[misc]
 
@@ -105,6 +98,5 @@ def installed(folder: Path) -> Iterator[None]:
 
 
 def forget() -> None:
-    """The package, as if it had never been imported."""
     for name in [name for name in sys.modules if name.split(".")[0] == "forcedimension_core"]:
         del sys.modules[name]

@@ -5,8 +5,6 @@ made from the position by inverse kinematics.  The forces that it remembers are 
 axis, by differences of the inverse kinematics, F = Σ τᵢ ∂θᵢ/∂x, and so for y.
 """
 
-from __future__ import annotations
-
 import math
 import struct
 from collections.abc import Callable
@@ -29,17 +27,7 @@ def _elbow(x: float, y: float, bend: int) -> float:
 
 
 class HaplyEmulator(TerminalEmulator):
-    """Joint 1 at port 2, joint 2 at port 1, as on the 2DIY.
-
-    Parameters
-    ----------
-    tip
-        Position at an exchange [m].
-    fault, at
-        As of every emulator.
-    axis
-        Of the forces that are remembered.
-    """
+    """Joint 1 at port 2, joint 2 at port 1, as on the 2DIY; its tip [m] is where an exchange has it."""
 
     def __init__(
         self,
@@ -54,7 +42,6 @@ class HaplyEmulator(TerminalEmulator):
         self.device = 0
         self.setup: tuple[float, ...] = ()
         self.resets = 0
-        self.torques: list[tuple[int, tuple[float, ...]]] = []
         self._heard = b""
 
     def hear(self, data: bytes) -> None:
@@ -76,7 +63,6 @@ class HaplyEmulator(TerminalEmulator):
 
     @property
     def joints(self) -> int:
-        """How many were set up."""
         return len(self.setup) // 2
 
     def _reset(self, frame: bytes) -> None:
@@ -95,12 +81,10 @@ class HaplyEmulator(TerminalEmulator):
         if frame[1] != self.device:
             return
         torques = struct.unpack(f"<{self.joints}f", frame[2:])
-        self.torques.append((self.exchange, torques))
         self.command(self._force(torques))
         self.answer(struct.pack(f"<B{self.joints}f", self.device, *self._angles(self.exchange)))
 
     def _angles(self, exchange: int) -> list[float]:
-        """By port; in whole counts."""
         first, second = angles_of(*self.tip(exchange))
         by_port = (second, first) if self.joints == 2 else (first,)
         counts = [

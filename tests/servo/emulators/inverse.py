@@ -4,8 +4,6 @@ On connecting it sends its inventory; then one state for each message.  Written 
 "WebSocket Protocol" and "Simulation Channel" of docs.haply.co, with Python's json and struct.
 """
 
-from __future__ import annotations
-
 import json
 import socket
 import struct
@@ -13,15 +11,12 @@ from base64 import b64encode
 from contextlib import suppress
 from hashlib import sha1
 from threading import Thread
-from types import TracebackType
 from typing import Any, Self
 
-from servo.emulators.faults import Emulator, Fault
-from servo.emulators.handle import Handle
+from servo.emulators.faults import Emulator, Fault, Handle
 
 
 def frame(payload: bytes, kind: int = 1, last: bool = True) -> bytes:
-    """One frame of a server."""
     first = (0x80 if last else 0) | kind
     if len(payload) < 126:
         return bytes([first, len(payload)]) + payload
@@ -31,18 +26,9 @@ def frame(payload: bytes, kind: int = 1, last: bool = True) -> bytes:
 
 
 class InverseEmulator(Emulator):
-    """Listens on a free port of this machine; `address` is where.
+    """Listens on a free port of this machine; `address` is where.  The last of its devices moves.
 
-    Parameters
-    ----------
-    fault, at
-        See `Emulator`; the exchange that the adapter makes when it is opened counts, and is the first.
-    devices
-        Their names; the last one is the one that moves.
-    padding
-        Bytes of an unknown member in each state, to make it longer.
-    status
-        Of every device.
+    `padding` are bytes of an unknown member in each state, to make it longer.
     """
 
     def __init__(
@@ -62,12 +48,10 @@ class InverseEmulator(Emulator):
         self.positions: list[dict[str, float]] = []
         self.others: list[dict[str, float]] = []
         self.pongs: list[bytes] = []
-        self.kinds: list[int] = []
         self.closed_by_client = False
         self.asked_again = 0
         self.found_when_asked: int | None = None
         self.ping_before: int | None = None
-        self.leave_out = False
         self.not_ready_from: int | None = None
         self._devices, self._padding, self._status, self._scale = devices, padding, status, scale
         self._greeting, self._parts = greeting, parts
@@ -77,13 +61,11 @@ class InverseEmulator(Emulator):
         self._thread = Thread(target=self._serve, daemon=True)
 
     def write(self, data: bytes) -> None:
-        """Put bytes on the line at once."""
         if self._line is not None:
             with suppress(OSError):
                 self._line.sendall(data)
 
     def hang_up(self) -> None:
-        """Close the line."""
         line, self._line = self._line, None
         if line is not None:
             with suppress(OSError):
@@ -94,9 +76,7 @@ class InverseEmulator(Emulator):
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         with suppress(OSError):  # one who waits for a line waits no more
             socket.create_connection(self._listener.getsockname(), timeout=60).close()
         self._thread.join(timeout=60)
@@ -140,7 +120,6 @@ class InverseEmulator(Emulator):
         return True
 
     def _hear(self, kind: int, payload: bytes) -> None:
-        self.kinds.append(kind)
         if kind == 10:
             self.pongs.append(payload)
         if kind == 8:
@@ -168,7 +147,6 @@ class InverseEmulator(Emulator):
         self.answer(self._split(self._document()))
 
     def _split(self, payload: bytes) -> bytes:
-        """One message, in so many frames."""
         size = -(-len(payload) // self._parts)
         pieces = [payload[i : i + size] for i in range(0, len(payload), size)]
         return b"".join(
@@ -204,8 +182,6 @@ class InverseEmulator(Emulator):
                 status = {"ready": False}
             device: dict[str, Any] = {"config": config} if full else {}
             devices.append({**device, "status": status, "state": state, "device_id": name})
-        if self.leave_out and not full:
-            devices = devices[:-1]
         document = {"padding": "]}" * (self._padding // 2), "session_id": 7, "inverse3": devices}
         return json.dumps(document, indent=1 if full else None).encode()
 

@@ -4,8 +4,6 @@ What it does after its watchdog is the rule of mjbots/moteus db1a7623, fw/bldc_s
 1152 and 1451 to 1477; when it wants checksums, that of fw/uart_fdcanusb_micro_server.h, lines 223 to 270.
 """
 
-from __future__ import annotations
-
 import math
 import struct
 
@@ -27,21 +25,10 @@ def checksum(line: bytes) -> int:
 
 
 class MoteusEmulator(TerminalEmulator):
-    """Operates one answer after it was told to; its position is scripted, turn by turn.
+    """Operates one answer after it was told to; its positions [turn] are scripted, the last one stays.
 
-    Parameters
-    ----------
-    positions
-        [turns], at each exchange; the last one stays.
-    identifier
-        Its id.id.
-    checksums
-        True for one that has heard a line with a checksum, and wants them from now on.
-
-    Attributes
-    ----------
-    configuration
-        What "conf get" tells, as delivered.
+    With `checksums` it has heard a line with one, and wants them from now on; its configuration is what
+    "conf get" tells, as delivered.
     """
 
     def __init__(
@@ -89,22 +76,18 @@ class MoteusEmulator(TerminalEmulator):
         return -0.2 * speed if way == 15 else 0.0  # the short-circuited motor's own constant is for itself
 
     def hear(self, data: bytes) -> None:
-        """Take bytes that came, however they were cut."""
         *lines, self._heard = (self._heard + data).split(b"\n")
         for line in lines:
             self._obey(line)
 
     def with_wrong_checksum(self, frame: bytes) -> bytes:
-        """The same frame with the checksum of another one."""
         body, _, digits = frame.rstrip(b"\r\n").rpartition(b"*")
         return body + b"*%02X\r\n" % (int(digits, 16) ^ 1)
 
     def nonsense(self, count: int) -> bytes:
-        """A line that means nothing."""
         return super().nonsense(count - 1).replace(b"\n", b" ").replace(b"\r", b" ") + b"\n"
 
     def line(self, text: bytes) -> bytes:
-        """As it goes over the wire."""
         return text + (b" *%02X" % checksum(text + b" ") if self.checksums else b"") + b"\r\n"
 
     def _obey(self, line: bytes) -> None:
@@ -132,7 +115,6 @@ class MoteusEmulator(TerminalEmulator):
             give(self.line(b"rcv %x %s E B F" % (to, answer.hex().encode())))
 
     def _registers(self, data: bytes) -> bytes:
-        """Write what is written, and the answer to what is read."""
         answer = b""
         written: dict[int, tuple[str, float]] = {}
         at = 0

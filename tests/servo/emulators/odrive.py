@@ -4,29 +4,18 @@ Written from docs.odriverobotics.com ("ASCII Protocol") and the behaviour of fir
 delivered it has.
 """
 
-from __future__ import annotations
-
+from functools import reduce
 from math import tau
+from operator import xor
 
-from servo.emulators.faults import Fault
-from servo.emulators.handle import Handle
+from servo.emulators.faults import Fault, Handle
 from servo.emulators.terminal import TerminalEmulator
 
 
 class ODriveEmulator(TerminalEmulator):
-    """Its properties are those of axis 0 that matter here.
+    """Its properties are those of axis 0 that matter here; `torques` gave its motor at every position asked.
 
-    Parameters
-    ----------
-    fault, at
-        See `Emulator`; a fault is one of all answers, those to other questions as well.
-    starts
-        False for an axis that stays idle.
-
-    Attributes
-    ----------
-    torques
-        Those that the motor gave [N·m], at every position asked.
+    A fault is one of all answers, those to other questions as well; one that does not start stays idle.
     """
 
     def __init__(self, fault: Fault | None = None, at: int = 0, *, starts: bool = True) -> None:
@@ -62,32 +51,24 @@ class ODriveEmulator(TerminalEmulator):
         self._data = b""
 
     def hear(self, data: bytes) -> None:
-        """Take bytes that came, however they were cut."""
         *lines, self._data = (self._data + data).split(b"\n")
         for line in lines:
             self._command(line.decode())
 
     def with_wrong_checksum(self, frame: bytes) -> bytes:
-        """One more than it should be."""
         text, asterisk, checksum = frame.strip().partition(b"*")
         return text + b"*" + str((int(checksum) + 1) % 256).encode() + b"\r\n" if asterisk else frame
 
     def _command(self, line: str) -> None:
         text, asterisk, checksum = line.partition("*")
-        total = 0
-        for byte in text.encode():
-            total ^= byte
-        if asterisk and int(checksum) != total:
+        if asterisk and int(checksum) != reduce(xor, text.encode()):
             return
         self.lines.append(text)
         answer = self._answer(text.split())
         if answer is None:
             return
         if asterisk:
-            total = 0
-            for byte in answer.encode():
-                total ^= byte
-            answer += f"*{total}"
+            answer += f"*{reduce(xor, answer.encode())}"
         frame = f"{answer}\r\n".encode()
         if text.startswith("f"):
             self.answer(frame)

@@ -1,13 +1,10 @@
 """A device at the other end of a pseudo-terminal, which has the bytes of a serial port but no baud rate."""
 
-from __future__ import annotations
-
 import os
 import tty
 from abc import abstractmethod
 from contextlib import suppress
 from threading import Thread
-from types import TracebackType
 from typing import Self
 
 from servo.emulators.faults import Emulator, Fault
@@ -29,7 +26,6 @@ class TerminalEmulator(Emulator):
         """Take bytes that came, however they were cut."""
 
     def write(self, data: bytes) -> None:
-        """Put bytes on the line at once."""
         with suppress(OSError):
             os.write(self._near, data)
 
@@ -43,9 +39,7 @@ class TerminalEmulator(Emulator):
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         if self._far is not None:
             os.close(self._far)  # where the adapter has closed too, the thread's read now ends
             self._far = None

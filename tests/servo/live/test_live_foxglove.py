@@ -1,23 +1,19 @@
 """A running loop for programs that read Foxglove's WebSocket."""
 
-from __future__ import annotations
-
 import json
 import struct
 import sys
 import time
-from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from socket import SO_RCVBUF, SOL_SOCKET, create_connection
 from socket import socket as Socket
-from typing import Any
 
 import numpy as np
 import pytest
 from live_rows import WrittenRows
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from websockets.exceptions import ConnectionClosed, InvalidStatus
-from websockets.sync.client import ClientConnection, connect
+from websockets.sync.client import connect
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.live.foxglove import serve_foxglove
@@ -26,20 +22,19 @@ from zwidth.machine.servo.live.stream import JSON_TOPIC, ROS2_TOPIC, ros2_schema
 HANGS = 60.0
 """Nothing comes any more [s]."""
 
-
 PAGE = "https://app.example"
 """Of a web application that is named, or not."""
 
 
 @contextmanager
-def reading(address: str, topic: str, **more: Any) -> Iterator[tuple[ClientConnection, dict[str, Any]]]:
+def reading(address, topic, **more):
     """A client of the protocol `foxglove.sdk.v1` that reads one topic, and what it was told of it.
 
     One whose queue is full does not read that the other side ends it, and waits for that.
     """
     more = {"subprotocols": ["foxglove.sdk.v1"], "max_queue": None, **more}
     with connect(address, **more) as socket:
-        channels: dict[str, dict[str, Any]] = {}
+        channels = {}
         while topic not in channels:
             said = json.loads(socket.recv(timeout=HANGS))
             channels |= {channel["topic"]: channel for channel in said.get("channels", [])}
@@ -48,9 +43,9 @@ def reading(address: str, topic: str, **more: Any) -> Iterator[tuple[ClientConne
         yield socket, channels[topic]
 
 
-def messages(socket: ClientConnection, wanted: int) -> list[tuple[int, bytes]]:
+def messages(socket, wanted):
     """The first rows that come after the subscription: their time stamps [ns], and what is in them."""
-    found: list[tuple[int, bytes]] = []
+    found = []
     while len(found) < wanted:
         got = socket.recv(timeout=HANGS)
         if isinstance(got, bytes) and got[0] == 1:
@@ -61,30 +56,26 @@ def messages(socket: ClientConnection, wanted: int) -> list[tuple[int, bytes]]:
 
 
 class Growing(WrittenRows):
-    """Rows of which some more are there at each look."""
-
     more = 10
 
-    def after(self, count: int) -> tuple[int, Any]:
-        """Ten more."""
+    def after(self, count):
         self.count = min(self.count + self.more, len(self.table))
         return super().after(count)
 
 
-def growing(count: int = 20000) -> Growing:
+def growing(count=20000):
     """Every third reading is no number."""
     rows = Growing(np.arange(float(count)))
     rows.table[::3, rows.COLUMNS.index("position_m")] = np.nan
     return rows
 
 
-def by_time(rows: WrittenRows) -> dict[float, np.ndarray]:
-    """Each row by its time."""
+def by_time(rows):
     return {row[rows.COLUMNS.index("time_s")]: row for row in rows.table}
 
 
-def test_json_has_the_numbers_of_the_rows() -> None:
-    """Bit by bit, under the names of the columns; what is no number is left out."""
+def test_json_has_the_numbers_of_the_rows():
+    """Stamps are as far apart as the samples, to the nanosecond that they are made of, in the time of day."""
     rows = growing()
     with serve_foxglove(rows, 0) as page, reading(page.address, JSON_TOPIC) as (socket, channel):
         assert (channel["encoding"], channel["schemaEncoding"]) == ("json", "jsonschema")
@@ -98,9 +89,14 @@ def test_json_has_the_numbers_of_the_rows() -> None:
         without += len(expected) - len(known)
         assert row == known
     assert without == 20
+    stamps = np.array([stamp for stamp, _ in got], np.int64)
+    times = np.array([json.loads(data)["time_s"] for _, data in got])
+    assert (np.diff(stamps) > 0).all()
+    np.testing.assert_allclose((stamps - stamps[0]) * 1e-9, times - times[0], rtol=0, atol=2e-9)
+    assert abs(stamps[0] * 1e-9 - time.time()) < 3600
 
 
-def test_ros_2_has_the_numbers_of_the_rows() -> None:
+def test_ros_2_has_the_numbers_of_the_rows():
     """As a reader of ROS 2 messages finds them that has nothing but the definition that comes with them."""
     rows = growing()
     with serve_foxglove(rows, 0) as page, reading(page.address, ROS2_TOPIC) as (socket, channel):
@@ -115,32 +111,19 @@ def test_ros_2_has_the_numbers_of_the_rows() -> None:
         np.testing.assert_array_equal(found, written[row.time_s])
 
 
-def test_time_stamps_are_as_far_apart_as_the_samples() -> None:
-    """To a nanosecond, of which stamps are made; in the time of the day."""
-    rows = growing()
-    with serve_foxglove(rows, 0) as page, reading(page.address, JSON_TOPIC) as (socket, _):
-        got = messages(socket, 30)
-    stamps = np.array([stamp for stamp, _ in got], np.int64)
-    times = np.array([json.loads(data)["time_s"] for _, data in got])
-    assert (np.diff(stamps) > 0).all()
-    np.testing.assert_allclose((stamps - stamps[0]) * 1e-9, times - times[0], rtol=0, atol=2e-9)
-    assert abs(stamps[0] * 1e-9 - time.time()) < 3600
-
-
-def test_names_of_ros_2_are_its_own() -> None:
+def test_names_of_ros_2_are_its_own():
     """Small letters, digits, single underscores; the column as it is in a comment, with its unit."""
-    definition = ros2_schema(["force_N", "wished_force_N_m", "current__A", "x0_m"]).decode()
-    fields = ["force_n", "wished_force_n_m", "current_a", "x0_m"]
+    definition = ros2_schema(["force_N", "wished_force_N_m", "motor__Current_A_", "x0_m"]).decode()
+    fields = ["force_n", "wished_force_n_m", "motor_current_a", "x0_m"]
     assert [line.split()[1] for line in definition.splitlines()] == fields
     assert definition.splitlines()[1] == "float64 wished_force_n_m  # wished_force_N_m"
 
 
-def test_a_reader_takes_either_name_of_the_protocol() -> None:
-    """The first that both know; what it is told to begin with is the same."""
+def test_a_reader_takes_either_name_of_the_protocol():
     told = []
     with serve_foxglove(growing(), 0) as page:
         for offered in (["other", "foxglove.websocket.v1"], ["foxglove.websocket.v1", "foxglove.sdk.v1"]):
-            with connect(page.address, subprotocols=offered) as socket:  # type: ignore[arg-type]
+            with connect(page.address, subprotocols=offered) as socket:
                 assert socket.subprotocol == offered[1]
                 told.append([json.loads(socket.recv(timeout=HANGS)) for _ in range(2)])
     assert told[0] == told[1]
@@ -153,7 +136,7 @@ def test_a_reader_takes_either_name_of_the_protocol() -> None:
 @pytest.mark.parametrize(
     "origin", [None, "http://localhost:8080", "http://127.0.0.1", "https://[::1]:3000", "file://", PAGE]
 )
-def test_programs_and_pages_of_this_machine_are_let_in(origin: Any) -> None:
+def test_programs_and_pages_of_this_machine_are_let_in(origin):
     """PlotJuggler names no origin, Electron a file; a web application is let in where it is named."""
     with (
         serve_foxglove(growing(), 0, PAGE + "/") as page,
@@ -176,8 +159,7 @@ def test_programs_and_pages_of_this_machine_are_let_in(origin: Any) -> None:
     ],
 )
 @pytest.mark.parametrize("site", ["cross-site", "none"])
-def test_pages_of_others_are_refused(origin: Any, site: str) -> None:
-    """Before anybody asks the loop for a row."""
+def test_pages_of_others_are_refused(origin, site):
     rows = growing()
     with serve_foxglove(rows, 0) as page, pytest.raises(InvalidStatus, match="403"):
         connect(page.address, origin=origin, additional_headers={"Sec-Fetch-Site": site})
@@ -185,7 +167,7 @@ def test_pages_of_others_are_refused(origin: Any, site: str) -> None:
 
 
 @pytest.mark.parametrize("origin", [None, "http://elsewhere.example:PORT", "http://127.0.0.1:PORT", PAGE])
-def test_a_name_that_comes_to_mean_this_machine_is_refused(origin: Any) -> None:
+def test_a_name_that_comes_to_mean_this_machine_is_refused(origin):
     """Whatever page asks: of the same origin as that name, of this machine, of one that may, or of none."""
     rows = growing()
     with serve_foxglove(rows, 0, PAGE) as page:
@@ -197,13 +179,13 @@ def test_a_name_that_comes_to_mean_this_machine_is_refused(origin: Any) -> None:
 
 
 @pytest.mark.parametrize("origin", ["null", "*", "app.example", "https://app.example/page", "https://", ""])
-def test_what_is_no_origin_is_not_let_in(origin: str) -> None:
+def test_what_is_no_origin_is_not_let_in(origin):
     """Any site can have pages that a browser calls null."""
     with pytest.raises(InputError, match="is no origin of pages"):
         serve_foxglove(growing(), 0, origin)
 
 
-def test_a_reader_that_is_slow_holds_up_nobody() -> None:
+def test_a_reader_that_is_slow_holds_up_nobody():
     """Who keeps up gets every row meanwhile; who does not gets the newest when he reads on, and not all."""
     rows = growing(40000)
     rows.more = 100
@@ -221,10 +203,8 @@ def test_a_reader_that_is_slow_holds_up_nobody() -> None:
     assert len(got) < 9000
 
 
-def test_nothing_is_made_for_a_topic_that_nobody_reads(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No row is asked for before somebody subscribes, and no JSON is made for who reads the other topic."""
-
-    def unwanted(*_: Any) -> Any:
+def test_nothing_is_made_for_a_topic_that_nobody_reads(monkeypatch):
+    def unwanted(*_):
         raise AssertionError("nobody reads this")
 
     monkeypatch.setattr("zwidth.machine.servo.live.stream.json_messages", unwanted)
@@ -236,8 +216,7 @@ def test_nothing_is_made_for_a_topic_that_nobody_reads(monkeypatch: pytest.Monke
             assert len(messages(socket, 30)) == 30
 
 
-def test_a_subscription_ends_when_it_is_asked_to() -> None:
-    """And its number can be used for the other topic; the loop is asked for nothing while there is none."""
+def test_a_subscription_ends_when_it_is_asked_to():
     with serve_foxglove(growing(), 0) as page, reading(page.address, JSON_TOPIC) as (socket, channel):
         messages(socket, 3)
         socket.send(json.dumps({"op": "unsubscribe", "subscriptionIds": [7]}))
@@ -262,8 +241,7 @@ def test_a_subscription_ends_when_it_is_asked_to() -> None:
         '{"op": "unsubscribe", "subscriptionIds": 7}',
     ],
 )
-def test_what_is_not_of_the_protocol_ends_that_reader_alone(said: str | bytes) -> None:
-    """With the reason; nothing of it is shown or logged."""
+def test_what_is_not_of_the_protocol_ends_that_reader_alone(said):
     with serve_foxglove(growing(), 0) as page, reading(page.address, JSON_TOPIC) as (socket, _):
         with connect(page.address) as other:
             other.send(said)
@@ -272,21 +250,17 @@ def test_what_is_not_of_the_protocol_ends_that_reader_alone(said: str | bytes) -
         assert len(messages(socket, 30)) == 30
 
 
-def test_what_is_not_offered_is_passed_over() -> None:
-    """A topic that is not there, and wishes of programs that know more of the protocol."""
+def test_what_is_not_offered_is_passed_over():
     with serve_foxglove(growing(), 0) as page, reading(page.address, JSON_TOPIC) as (socket, _):
         socket.send(json.dumps({"op": "subscribe", "subscriptions": [{"id": 8, "channelId": 99}]}))
         socket.send(json.dumps({"op": "getParameters", "parameterNames": []}))
         assert len(messages(socket, 30)) == 30
 
 
-def test_a_loop_that_cannot_be_read_ends_the_stream_and_nothing_else(
-    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """It is said that no more will come."""
+def test_a_loop_that_cannot_be_read_ends_the_stream_and_nothing_else(caplog, monkeypatch):
     rows = growing()
 
-    def failing(_: int) -> Any:
+    def failing(_):
         raise RuntimeError("gone")
 
     with serve_foxglove(rows, 0) as page:
@@ -300,36 +274,27 @@ def test_a_loop_that_cannot_be_read_ends_the_stream_and_nothing_else(
             assert json.loads(other.recv(timeout=HANGS))["op"] == "serverInfo"
 
 
-def test_nobody_on_another_machine_is_answered() -> None:
-    """The address is that of the machine itself."""
+def test_a_port_in_use_is_refused():
     with serve_foxglove(growing(), 0) as page:
-        assert page.address.startswith("ws://127.0.0.1:")
-
-
-def test_a_port_in_use_is_refused() -> None:
-    """With what to do about it."""
-    with serve_foxglove(growing(), 0) as page:
+        assert page.address.startswith("ws://127.0.0.1:")  # nobody on another machine is answered
         port = int(page.address.rpartition(":")[2])
         with pytest.raises(InputError, match=rf"^port {port} .*give another one, or 0 for a free one$"):
             serve_foxglove(growing(), port)
 
 
 @pytest.mark.parametrize("port", [-1, 65536, 1.5, True, "8765"])
-def test_what_is_no_port_is_refused(port: Any) -> None:
-    """Before anything is opened."""
+def test_what_is_no_port_is_refused(port):
     with pytest.raises(InputError, match="is no port"):
         serve_foxglove(growing(), port)
 
 
-def test_without_tornado_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """And what needs none."""
+def test_without_tornado_it_says_how_to_get_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "tornado.netutil", None)
     with pytest.raises(InputError, match=r"pip install 'zwidth\[serve\]'"):
         serve_foxglove(growing(), 0)
 
 
-def test_close_ends_it_once() -> None:
-    """Again is no fault; whoever reads is told so, and nobody asks the loop any more."""
+def test_close_ends_it_once():
     rows = growing()
     page = serve_foxglove(rows, 0)
     with reading(page.address, JSON_TOPIC) as (socket, _):

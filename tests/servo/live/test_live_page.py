@@ -1,13 +1,9 @@
 """A running loop in the browser: the page, and what each of its viewers is sent."""
 
-from __future__ import annotations
-
 import re
 import sys
 import time
-from collections.abc import Callable, Iterator
 from socket import create_connection
-from typing import Any
 from urllib.parse import urlsplit
 from urllib.request import urlopen
 
@@ -16,21 +12,20 @@ import pytest
 from bokeh.client import pull_session
 from bokeh.document import Document
 from bokeh.models import ColumnDataSource, Div, Plot, Toggle
-from live_rows import Array, WrittenRows
+from live_rows import WrittenRows
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.live.browser import SPANS, Shown, make_document, open_page
-from zwidth.machine.servo.live.page import HOST, Page
+from zwidth.machine.servo.live.page import HOST
 from zwidth.machine.servo.live.rows import CURVES, Envelope, Tally, Watched
 
 HANGS = 6000
 """So many looks without what was waited for: it does not come any more."""
 
 
-def waited(condition: Callable[[], bool]) -> bool:
-    """True once it holds."""
+def waited(condition):
     for _ in range(HANGS):
         if condition():
             return True
@@ -38,8 +33,7 @@ def waited(condition: Callable[[], bool]) -> bool:
     return False
 
 
-def buzzing(count: int = 40000, **more: object) -> WrittenRows:
-    """A slow sine with a fast one on it, at 1 kHz."""
+def buzzing(count=40000, **more):
     t = np.arange(count) * 1e-3
     x = 0.004 * np.sin(t) + 0.0005 * np.sin(2 * np.pi * 331 * t)
     return WrittenRows(np.arange(float(count)), **{"position_m": x, "late_s": 2e-4, **more})
@@ -48,12 +42,11 @@ def buzzing(count: int = 40000, **more: object) -> WrittenRows:
 class Loop:
     """Rows, and what the page's reader makes of them."""
 
-    def __init__(self, rows: WrittenRows, surface: float | None = 0.0) -> None:
+    def __init__(self, rows, surface=0.0):
         self.rows, self._watched = rows, Watched(rows)
         self.shown = Shown(rows, Envelope(len(CURVES), SPANS), Tally(rows), surface, 0.05)
 
-    def runs(self, count: int) -> Loop:
-        """Until so many rows are written."""
+    def runs(self, count):
         self.rows.count = count
         news = self._watched.news()
         self.shown.tally.add(news)
@@ -64,35 +57,31 @@ class Loop:
 class Viewer:
     """A page in a browser, but for the browser: the document, and what the browser would say to it."""
 
-    def __init__(self, loop: Loop) -> None:
+    def __init__(self, loop):
         self.document = Document()
         make_document(self.document, loop.shown)
 
-    def look(self, frames: int = 1) -> dict[str, Array]:
-        """What it has been sent after some more frames."""
+    def look(self, frames=1):
         for _ in range(frames):
             for frame in self.document.session_callbacks:
                 frame.callback()
         return {name: np.asarray(values) for name, values in self.one(ColumnDataSource).data.items()}
 
-    def one(self, kind: type) -> Any:
-        """The part of the page of some kind."""
+    def one(self, kind):
         return self.document.select_one({"type": kind})
 
-    def says(self) -> None:
+    def says(self):
         """That it has drawn all it was sent."""
         self.one(Div).tags = [int(self.one(ColumnDataSource).data["number"][-1])]
 
 
 @pytest.fixture
-def loop() -> Loop:
-    """Six seconds are written."""
+def loop():
     return Loop(buzzing()).runs(6000)
 
 
 @pytest.fixture
-def page() -> Iterator[Page]:
-    """As it is served; in nobody's browser."""
+def page():
     rows = buzzing()
     rows.count = 6000
     with open_page(rows, open_browser=False) as page:
@@ -100,14 +89,14 @@ def page() -> Iterator[Page]:
         yield page
 
 
-def spans(rows: WrittenRows, name: str, data: dict[str, Array]) -> list[Array]:
+def spans(rows, name, data):
     """The numbers of a column that belong to each point of a graph: of a hundredth of a second each."""
     of = np.rint(data["time"] / 0.01 - 0.5)
     mine = np.floor(rows.column("time_s") / 0.01)
     return [rows.column(name)[mine == n] for n in of]
 
 
-def test_nothing_comes_from_elsewhere(page: Page) -> None:
+def test_nothing_comes_from_elsewhere(page):
     """What the page loads is on this machine, and is there; an icon may be missing."""
     text = urlopen(page.address).read().decode()
     assert not re.findall(r"""(?:src|href)=["'](?:https?:)?//""", text)
@@ -117,16 +106,14 @@ def test_nothing_comes_from_elsewhere(page: Page) -> None:
     assert all(urlopen(page.address + path.lstrip("/")).status == 200 for path in loaded)
 
 
-def test_a_viewer_is_sent_what_the_loop_has_written(page: Page) -> None:
-    """Over the network, from its first sight on: six seconds, but for the hundredth that is not over."""
+def test_a_viewer_is_sent_what_the_loop_has_written(page):
     session = pull_session(url=page.address)
     source = session.document.select_one({"type": ColumnDataSource})
     assert len(source.data["time"]) == 599
     session.close()
 
 
-def test_lowest_and_highest_of_every_curve_are_shown(loop: Loop) -> None:
-    """In millimetres, newtons, millijoules: a buzz stays visible."""
+def test_lowest_and_highest_of_every_curve_are_shown(loop):
     data = Viewer(loop).look()
     assert len(data["time"]) == 599
     for curve, name, scale in ((0, "position_m", 1e3), (2, "force_N", 1.0), (3, "energy_out_J", 1e3)):
@@ -136,8 +123,7 @@ def test_lowest_and_highest_of_every_curve_are_shown(loop: Loop) -> None:
     assert (data["high_0"] - data["low_0"]).min() > 0.7  # of 1 mm
 
 
-def test_a_missed_deadline_is_marked() -> None:
-    """Where the loop came a period late or more, and nowhere else."""
+def test_a_missed_deadline_is_marked():
     samples = np.arange(6000.0)
     samples[3000:] += 2
     data = Viewer(Loop(WrittenRows(samples, late_s=2e-5)).runs(6000)).look()
@@ -147,14 +133,12 @@ def test_a_missed_deadline_is_marked() -> None:
     assert data["late"][~marked] == pytest.approx(20.0)
 
 
-def test_what_is_never_late_is_still_on_the_axis() -> None:
-    """A logarithm has no 0: a tenth of a microsecond stands for less."""
+def test_what_is_never_late_is_still_on_the_axis():
     data = Viewer(Loop(WrittenRows(np.arange(200.0), late_s=0.0)).runs(200)).look()
     assert set(data["late"]) == {0.1}
 
 
-def test_what_comes_is_added_and_what_is_old_is_left_out(loop: Loop) -> None:
-    """Ten seconds are kept, however long the loop runs, in order and without a gap."""
+def test_what_comes_is_added_and_what_is_old_is_left_out(loop):
     viewer = Viewer(loop)
     for count in range(6000, 40001, 50):
         loop.runs(count)
@@ -165,7 +149,7 @@ def test_what_comes_is_added_and_what_is_old_is_left_out(loop: Loop) -> None:
     assert data["time"][-1] == pytest.approx(39.985)
 
 
-def test_a_viewer_that_says_nothing_is_sent_three_pictures(loop: Loop) -> None:
+def test_a_viewer_that_says_nothing_is_sent_three_pictures(loop):
     """A browser that sleeps fills no memory here; awake again it is sent what is new."""
     viewer, sent = Viewer(loop), []
     for count in range(6000, 30001, 50):
@@ -176,8 +160,7 @@ def test_a_viewer_that_says_nothing_is_sent_three_pictures(loop: Loop) -> None:
     assert viewer.look()["time"][-1] == pytest.approx(29.985)
 
 
-def test_pause_stops_one_viewer_alone(loop: Loop) -> None:
-    """The other goes on; going on, the graphs jump to now, and scroll."""
+def test_pause_stops_one_viewer_alone(loop):
     viewer, other = Viewer(loop), Viewer(loop)
     button = viewer.one(Toggle)
     button.active = True
@@ -192,16 +175,14 @@ def test_pause_stops_one_viewer_alone(loop: Loop) -> None:
     assert np.diff(viewer.look()["time"]) == pytest.approx(0.01)
 
 
-def test_four_graphs_over_one_time(loop: Loop) -> None:
-    """Whoever moves one moves all; each axis has its unit."""
+def test_four_graphs_over_one_time(loop):
     figures = list(Viewer(loop).document.select({"type": Plot}))
     labels = {figure.yaxis[0].axis_label for figure in figures}
     assert labels == {"position [mm]", "force [N]", "energy [mJ]", "lateness [µs]"}
     assert len({figure.x_range.id for figure in figures}) == 1
 
 
-def test_the_words_are_text_of_the_page(loop: Loop) -> None:
-    """They change with the loop; a title of others is shown and not obeyed."""
+def test_the_words_are_text_of_the_page(loop):
     viewer = Viewer(loop)
     assert "a paddle &lt;b&gt;in a wall&lt;/b&gt;" in viewer.one(Div).text
     assert "serving, law 1 · at 6.0 s" in viewer.one(Div).text
@@ -211,22 +192,19 @@ def test_the_words_are_text_of_the_page(loop: Loop) -> None:
 
 
 @pytest.mark.parametrize("surface", [0.003, None])
-def test_the_wall_is_shaded_from_its_surface_on(surface: float | None) -> None:
-    """In the unit of the axis; nothing where there is no wall."""
+def test_the_wall_is_shaded_from_its_surface_on(surface):
     wall = Viewer(Loop(buzzing(), surface).runs(100)).document.select_one({"name": "wall"})
     assert (wall is None) if surface is None else wall.bottom == pytest.approx(3.0)
 
 
-def test_rotary_devices_have_their_units() -> None:
-    """Milliradians and millinewton metres."""
+def test_rotary_devices_have_their_units():
     viewer = Viewer(Loop(WrittenRows(np.arange(100.0), motion="rotary", force_N_m=0.25)).runs(100))
     labels = {figure.yaxis[0].axis_label for figure in viewer.document.select({"type": Plot})}
     assert labels > {"position [mrad]", "force [mN·m]"}
     assert viewer.look()["high_2"] == pytest.approx(250.0)
 
 
-def test_a_loop_that_has_not_begun_has_a_page() -> None:
-    """Empty graphs, and the first sample when it comes."""
+def test_a_loop_that_has_not_begun_has_a_page():
     loop = Loop(buzzing())
     viewer = Viewer(loop.runs(0))
     assert len(viewer.look()["time"]) == 0
@@ -234,7 +212,7 @@ def test_a_loop_that_has_not_begun_has_a_page() -> None:
     assert len(viewer.look()["time"]) == 9
 
 
-def test_pages_of_others_are_refused(page: Page) -> None:
+def test_pages_of_others_are_refused(page):
     """A page that another site serves gets no rows, although the person's browser could reach them."""
     found = re.search(r'"token":"([^"]+)"', urlopen(page.address).read().decode())
     assert found
@@ -254,14 +232,11 @@ def test_pages_of_others_are_refused(page: Page) -> None:
         assert "ACK" in socket.recv(timeout=60)
 
 
-def test_a_loop_that_cannot_be_read_ends_the_graphs_and_nothing_else(
-    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The page still answers, and it is said that no more will come."""
+def test_a_loop_that_cannot_be_read_ends_the_graphs_and_nothing_else(caplog, monkeypatch):
     rows = buzzing()
     rows.count = 6000
 
-    def failing(_: int) -> Any:
+    def failing(_):
         raise RuntimeError("gone")
 
     with open_page(rows, open_browser=False) as page:
@@ -270,8 +245,7 @@ def test_a_loop_that_cannot_be_read_ends_the_graphs_and_nothing_else(
         assert urlopen(page.address).status == 200
 
 
-def test_a_port_in_use_is_refused(page: Page) -> None:
-    """With what to do about it; a port that was let go can be served again."""
+def test_a_port_in_use_is_refused(page):
     port = int(page.address.rstrip("/").rpartition(":")[2])
     with pytest.raises(InputError, match="give another one, or 0"):
         open_page(buzzing(), port, open_browser=False)
@@ -280,16 +254,14 @@ def test_a_port_in_use_is_refused(page: Page) -> None:
     open_page(buzzing(), port, open_browser=False).close()
 
 
-def test_without_bokeh_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """And what needs none."""
+def test_without_bokeh_it_says_how_to_get_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "bokeh.application", None)
     with pytest.raises(InputError, match=r"pip install 'zwidth\[serve\]'.*terminal"):
         open_page(buzzing(), open_browser=False)
 
 
-def test_the_browser_is_opened_if_asked(monkeypatch: pytest.MonkeyPatch) -> None:
-    """At the address that is served."""
-    opened: list[str] = []
+def test_the_browser_is_opened_if_asked(monkeypatch):
+    opened = []
     monkeypatch.setattr("webbrowser.open", opened.append)
     with open_page(buzzing()) as page:
         assert opened == [page.address]

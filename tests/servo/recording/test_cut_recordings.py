@@ -1,7 +1,9 @@
 """A recording that was cut off, changed or broken is read up to there, never beyond, never with an error."""
 
-from __future__ import annotations
-
+import os
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -15,31 +17,29 @@ from zwidth.machine.servo.recording.recording import read_recording
 
 EACH = 50
 """Rows of a chunk."""
+INDEX = 9 + 6 + 16 * EACH
+"""Bytes behind it: kind and size; channel and bytes; a time and a place for each row."""
 
 HEAD = Head(columns=COLUMNS, motion="linear", period=1e-3, title="a wall", about={"laws": []})
 TABLE = drawn(20 * EACH)
 TAKEN = np.arange(len(TABLE)) * 1_000_000
 
 
-def pieces() -> list[slice]:
-    """The rows of each chunk."""
-    return [slice(k, k + EACH) for k in range(0, len(TABLE), EACH)]
-
-
 @pytest.fixture
-def chunked(tmp_path: Path) -> tuple[Path, list[int]]:
+def chunked(tmp_path):
     """A file, and where each of its chunks ends: before the index of its messages."""
     file = McapFile(tmp_path / "run.mcap", HEAD)
     ends = []
-    for k in pieces():
-        file.write(TABLE[k], TAKEN[k], [], 0)
-        index = 9 + 6 + 16 * EACH  # kind and size; channel and bytes; a time and a place for each row
-        ends.append(file.size - index)
+    for k in range(0, len(TABLE), EACH):
+        file.write(TABLE[k : k + EACH], TAKEN[k : k + EACH], [], 0)
+        ends.append(file.size - INDEX)
     file.close()
+    whole = read_recording(tmp_path / "run.mcap")
+    assert (whole.whole, whole.samples) == (True, len(TABLE))
     return tmp_path / "run.mcap", ends
 
 
-def is_prefix(path: Path, rows: int) -> None:
+def is_prefix(path, rows):
     """Exactly so many rows are read, as they were written; there is no end."""
     found = read_recording(path)
     assert not found.whole
@@ -47,7 +47,7 @@ def is_prefix(path: Path, rows: int) -> None:
     assert np.column_stack(list(found.columns.values())).tobytes() == TABLE[:rows].tobytes()
 
 
-def test_cut_at_any_byte(chunked: tuple[Path, list[int]], tmp_path: Path) -> None:
+def test_cut_at_any_byte(chunked, tmp_path):
     """Every whole chunk is read, and no other; before its head a file is no recording."""
     path, ends = chunked
     data = path.read_bytes()
@@ -66,31 +66,22 @@ def test_cut_at_any_byte(chunked: tuple[Path, list[int]], tmp_path: Path) -> Non
             read_recording(cut)
 
 
-def test_changed_bytes_end_what_is_read(chunked: tuple[Path, list[int]], tmp_path: Path) -> None:
-    """The checksum of a chunk sees them: none of its rows is believed."""
+@pytest.mark.parametrize(
+    ("chunk", "place", "flipped"),
+    [(6, -40, 1), (3, INDEX, 0x80)],
+    ids=["which the checksum sees", "to an unknown kind of record, which is passed over"],
+)
+def test_a_changed_byte_ends_what_is_read(chunked, chunk, place, flipped):
+    """The rows of the chunk are not believed, and those behind it do not follow."""
     path, ends = chunked
     data = bytearray(path.read_bytes())
-    data[ends[6] - 40] ^= 1
-    changed = tmp_path / "changed.mcap"
-    changed.write_bytes(data)
-    is_prefix(changed, 6 * EACH)
+    assert place < 0 or data[ends[chunk] + place] == 6  # the kind of the next chunk
+    data[ends[chunk] + place] ^= flipped
+    path.write_bytes(data)
+    is_prefix(path, (chunk + (place > 0)) * EACH)
 
 
-def test_a_chunk_that_is_passed_over_ends_what_is_read(
-    chunked: tuple[Path, list[int]], tmp_path: Path
-) -> None:
-    """A record of an unknown kind is passed over; the rows behind it are not those that follow."""
-    path, ends = chunked
-    data = bytearray(path.read_bytes())
-    index = 9 + 6 + 16 * EACH
-    assert data[ends[3] + index] == 6  # the kind of the next chunk
-    data[ends[3] + index] = 0x86
-    changed = tmp_path / "changed.mcap"
-    changed.write_bytes(data)
-    is_prefix(changed, 4 * EACH)
-
-
-def test_any_changed_byte_is_no_crash(chunked: tuple[Path, list[int]], tmp_path: Path) -> None:
+def test_any_changed_byte_is_no_crash(chunked, tmp_path):
     """What is read is a beginning of what was written, or the file is refused; it is whole only if all is."""
     path, ends = chunked
     data = path.read_bytes()
@@ -106,22 +97,13 @@ def test_any_changed_byte_is_no_crash(chunked: tuple[Path, list[int]], tmp_path:
         except InputError:
             refused += 1
             continue
-        assert tuple(found.columns) == COLUMNS
-        assert found.about == HEAD.about
-        assert found.period == HEAD.period
+        assert (tuple(found.columns), found.about, found.period) == (COLUMNS, HEAD.about, HEAD.period)
         assert np.column_stack(list(found.columns.values())).tobytes() == TABLE[: found.samples].tobytes()
         assert not found.whole or found.samples == len(TABLE)
     assert 0 < refused < 200
 
 
-def test_a_whole_file_reads_to_its_end(chunked: tuple[Path, list[int]]) -> None:
-    """Otherwise the tests above would show little."""
-    assert read_recording(chunked[0]).whole
-    assert read_recording(chunked[0]).samples == len(TABLE)
-
-
-def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
-    """A text, a folder, nothing at all: each with one message."""
+def test_what_is_no_recording_is_refused(tmp_path):
     (tmp_path / "text.mcap").write_text("time,position\n0,1\n")
     (tmp_path / "folder.mcap").mkdir()
     for name in ("text.mcap", "folder.mcap", "nothing.mcap"):
@@ -129,10 +111,42 @@ def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
             read_recording(tmp_path / name)
 
 
-def test_a_recording_of_another_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Rather than read wrongly."""
+def test_a_recording_of_another_version_is_refused(tmp_path, monkeypatch):
     with monkeypatch.context() as patch:
         patch.setattr("zwidth.data.logs.contents.FORMAT", "zwidth recording 2")
         McapFile(tmp_path / "run.mcap", HEAD).close()
     with pytest.raises(InputError, match="zwidth recording 2"):
         read_recording(tmp_path / "run.mcap")
+
+
+WRITER = """
+import sys, time
+sys.path.insert(0, sys.argv[1])
+from written_rows import WrittenRows, drawn
+from zwidth.machine.servo.recording.recorder import Recorder
+rows = WrittenRows(drawn(200_000), kept=200_000)
+recorder = Recorder(rows, sys.argv[2])
+while True:
+    time.sleep(0.01)
+    rows.written += 37
+    print(recorder.so_far().rows, flush=True)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal")
+def test_after_kill_9(tmp_path):
+    """Killed once it has said that the rows of three looks are written; they are read back, bit by bit."""
+    path = tmp_path / "run.mcap"
+    command = [sys.executable, "-c", WRITER, str(Path(__file__).parents[2]), str(path)]
+    child = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    said = [0]
+    while len(set(said)) < 4:
+        said.append(int(child.stdout.readline()))
+    os.kill(child.pid, signal.SIGKILL)
+    child.wait()
+    child.stdout.close()
+    found = read_recording(path)
+    assert not found.whole
+    assert found.samples >= said[-1] > 0
+    rows = np.column_stack(list(found.columns.values()))
+    assert rows.tobytes() == drawn(200_000)[: found.samples].tobytes()
