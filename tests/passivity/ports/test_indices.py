@@ -133,11 +133,7 @@ HARD = {
     "static gain": (control.tf([2], [1]), 2, Fraction(1, 2)),
     "negative static gain": (control.tf([-2], [1]), -2, Fraction(-1, 2)),
     "improper": (s + 1, 1, 0),
-    "fast": (
-        control.ss(np.diag([-3e12, -2e12]), [[0], [1]], [[-1, 2]], [[0]]),
-        0,
-        Fraction(10**12),
-    ),
+    "fast": (control.ss(np.diag([-3e12, -2e12]), [[0], [1]], [[-1, 2]], [[0]]), 0, Fraction(10**12)),
     "fast lag": (2 / (s + 2e6), 0, Fraction(10**6)),
 }
 
