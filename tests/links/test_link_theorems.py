@@ -27,7 +27,6 @@ def test_waves_are_passive_up_to_the_damping_of_the_device(delay: object, fricti
     at = zw.links.check(HeldWaves(device, impedance=DAMPING), link)
     beyond = zw.links.check(HeldWaves(device, impedance=DAMPING * Fraction(1001, 1000)), link)
     assert (at.outcome, beyond.outcome) == ("theorem", "active")
-    assert beyond.witness is not None
     assert beyond.witness.exact_energy > 0
 
 

@@ -190,7 +190,6 @@ def test_a_round_takes_what_the_form_says(seed):
     def energy_out(rounds: int) -> Fraction:
         motions = [Motion(tuple(Fraction(v) for v in path[:-1] * rounds + [0])) for path in paths]
         energy = energy_of(bare, *motions)
-        assert energy is not None
         return energy
 
     moved = np.array([np.fft.fft(np.diff(path)) for path in paths]) / q
@@ -260,7 +259,6 @@ def test_energy_of_any_motion_by_the_definitions(drives, reflected, seed):
         y = tuple(v + count * Fraction(int(random.integers(-9, 9)), 5) for v in x[:-1]) if arm.part else ()
         motions.append(Motion(tuple(x), y, (Repeat(2 * often, 4 * often, 40),)))
     energy = energy_of(pair, *motions)
-    assert energy is not None
     listed = [motion.listed() for motion in motions]
     by_definition = taken(
         pair, [list(m.positions) for m in listed], [list(m.switch_positions) for m in listed]

@@ -92,21 +92,6 @@ def test_the_checker_refuses_a_false_motion_of_several_axes():
     assert [checker.verify(document).valid for document in false] == [False] * len(false)
 
 
-def test_matrix_evidence_is_verified_from_the_command_line(tmp_path, capsys):
-    """`zwidth verify` accepts both and says which index they speak of."""
-    from zwidth.cli.main import main
-
-    index = proved()
-    index.certificate().save(tmp_path / "proof.json")
-    index.refute(5).save(tmp_path / "motion.json")
-    for name, says in (
-        ("proof", "Of the port below, proved: the input index is at least"),
-        ("motion", "is less than 5"),
-    ):
-        assert main(["verify", str(tmp_path / f"{name}.json")]) in (0, None)
-        assert says in " ".join(capsys.readouterr().out.split())
-
-
 def hermitian(seed, size):
     """A Hermitian matrix of small Gaussian integers."""
     rng = np.random.default_rng(seed)

@@ -72,7 +72,6 @@ def test_both_sides_wherever_the_wall_rests(kind: str, tmp_path: Path) -> None:
     limit = _space(arm, wall).stiffness_factor
     over = _space(arm, _times(wall, 1.001 * limit))
     assert over.outcome == "active"
-    assert over.motion is not None
     assert np.linalg.norm(over.motion.positions[:, 3:], axis=1).max() < 0.2  # it turns about that rest
     under = _space(arm, _times(wall, 0.9 * limit))
     assert under.outcome == "passive"
@@ -142,7 +141,6 @@ def test_the_reported_energy_by_pinocchio(tmp_path: Path) -> None:
     arm: Any = _arm(tmp_path, 6, moving=1)
     wall = WALLS["as stiff every way"]
     motion = _space(arm, _times(wall, 1.05 * _space(arm, wall).stiffness_factor)).motion
-    assert motion is not None
     wall = _times(wall, 1.05 * _space(arm, wall).stiffness_factor)
     model = pin.buildModelFromUrdf(str(tmp_path / "arm.urdf"))
     data, number = model.createData(), model.getFrameId(arm.frame)
@@ -180,7 +178,6 @@ def test_seven_joints_are_proved_up_to_what_a_hand_feels(tmp_path: Path) -> None
     assert _space(arm, _times(wall, 0.95 * min(factors)), 200).outcome == "passive"
     over = _space(arm, _times(wall, 1.5 * min(factors)), 200)
     assert over.outcome == "active"
-    assert over.motion is not None
     assert over.motion.imposed_by == "links"
 
 
@@ -277,7 +274,6 @@ def test_a_held_torque_in_pose() -> None:
 def test_the_turn_costs_where_the_torque_is_held(tmp_path: Path) -> None:
     """½ (h F + h_e M) T more of every joint, with h_e half the number of joints that turn the hand."""
     arm = _arm(tmp_path, 3)
-    assert arm.curvature is not None
     wall, held = zw.arms.MatrixWall.in_pose(100, 1), (4, 2)
     price = (arm.curvature * 4 + 1.5 * 2) * 0.001 / 2
     more = arm.replace(damping=tuple(np.array(arm.damping) + price))
