@@ -241,14 +241,10 @@ def test_feedback_of_the_output_index_is_at_the_limit():
 def test_every_kind_of_system_is_read():
     """Transfer functions, state spaces and zeros–poles–gain models of both libraries are one system."""
     num, den = [1, 3], [1, 3, 2]
-    same = [
-        control.tf(num, den),
-        control.ss([[0, 1], [-2, -3]], [[0], [1]], [[3, 1]], [[0]]),
-        scipy.signal.TransferFunction(num, den),
-        scipy.signal.StateSpace([[0, 1], [-2, -3]], [[0], [1]], [[3, 1]], [[0]]),
-        scipy.signal.ZerosPolesGain([-3], [-1, -2], 1),
-    ]
-    found = [indices(g) for g in same]
+    states = [[0, 1], [-2, -3]], [[0], [1]], [[3, 1]], [[0]]
+    same = [control.tf(num, den), scipy.signal.TransferFunction(num, den)]
+    same += [control.ss(*states), scipy.signal.StateSpace(*states)]
+    found = [indices(g) for g in (*same, scipy.signal.ZerosPolesGain([-3], [-1, -2], 1))]
     assert {f.input.exact for f in found} == {Fraction(0)}
     assert {f.output.exact for f in found} == {Fraction(0)}
 

@@ -19,11 +19,13 @@ from zwidth.checker.port.index import _principal_sums
 from zwidth.passivity.ports.circle import product
 from zwidth.passivity.ports.port import leverrier, multiplied
 
+indices = zw.ports.passivity_indices
+
 
 def proved():
     """A port of two axes with the input index 1 − 1/32."""
     lead = ([1, 3], [1, 2])
-    return zw.ports.passivity_indices(matrix([[lead, ([1], [1, 2])], [([0], [1]), lead]])).input
+    return indices(matrix([[lead, ([1], [1, 2])], [([0], [1]), lead]])).input
 
 
 def test_the_checker_refuses_a_false_matrix_proof():
@@ -53,7 +55,7 @@ def test_the_checker_refuses_a_false_matrix_proof():
 def test_the_checker_refuses_an_unstable_port_of_positive_eigenvalues():
     """diag(1/(1 − s), 1): positive on the axis; with its true resolvent a root lies outside."""
     lag, nothing, one = ([1], [1, 1]), ([0], [1]), ([1], [1])
-    good = zw.ports.passivity_indices(matrix([[lag, nothing], [nothing, one]])).input.certificate(0).to_dict()
+    good = indices(matrix([[lag, nothing], [nothing, one]])).input.certificate(0).to_dict()
     assert checker.verify(good).valid
     bad = tampered(good, ("system",), {**good["system"], "denominator": ["-1", "1"]})
     bad["system"]["numerators"] = [[["1"], ["0"]], [["0"], ["-1", "1"]]]
@@ -67,13 +69,10 @@ def test_the_checker_refuses_an_unstable_port_of_positive_eigenvalues():
 
 def test_the_checker_refuses_a_false_motion_of_several_axes():
     """Not smooth, of one axis only, below the level, a polynomial not from rest, the wrong time."""
-    burst = zw.ports.passivity_indices(random_system(0, 4, 2, throughput=0)).witness.to_dict()
-    grown = zw.ports.passivity_indices(
-        matrix([[([1], [-1, 1]), ([0], [1])], [([0], [1]), ([1], [1, 1])]])
-    ).witness.to_dict()
-    late = zw.ports.passivity_indices(
-        random_system(2, 3, 2, throughput=-0.1, discrete=True)
-    ).witness.to_dict()
+    split = matrix([[([1], [-1, 1]), ([0], [1])], [([0], [1]), ([1], [1, 1])]])
+    delayed = random_system(2, 3, 2, throughput=-0.1, discrete=True)
+    systems = (random_system(0, 4, 2, throughput=0), split, delayed)
+    burst, grown, late = (indices(system).witness.to_dict() for system in systems)
     assert [d["motion"]["kind"] for d in (burst, grown, late)] == ["burst", "polynomial", "sequence"]
     assert all(checker.verify(document).valid for document in (burst, grown, late))
     false = [
@@ -92,17 +91,12 @@ def test_the_checker_refuses_a_false_motion_of_several_axes():
     assert [checker.verify(document).valid for document in false] == [False] * len(false)
 
 
-def hermitian(seed, size):
-    """A Hermitian matrix of small Gaussian integers."""
-    rng = np.random.default_rng(seed)
-    a = rng.integers(-4, 5, (size, size)) + 1j * rng.integers(-4, 5, (size, size))
-    return a + a.conj().T
-
-
 @pytest.mark.parametrize("size", [1, 2, 3, 5])
 def test_the_checkers_sums_of_principal_minors(size):
     """Berkowitz's recursion against every principal minor by numpy."""
-    a = hermitian(size, size)
+    rng = np.random.default_rng(size)
+    a = rng.integers(-4, 5, (size, size)) + 1j * rng.integers(-4, 5, (size, size))
+    a = a + a.conj().T
     found = _principal_sums([[(int(x.real), int(x.imag)) for x in line] for line in a])
     for k in range(1, size + 1):
         minors = [np.linalg.det(a[np.ix_(s, s)]).real for s in combinations(range(size), k)]
@@ -113,21 +107,11 @@ def test_the_checkers_sums_of_principal_minors(size):
 def test_leverrier_against_flint(size):
     """Characteristic polynomial, determinant and adjugate of rational matrices."""
     rng = np.random.default_rng(size)
-    a = [
-        [
-            fmpq(int(p), int(q))
-            for p, q in zip(rng.integers(-9, 9, size), rng.integers(1, 9, size), strict=True)
-        ]
-        for _ in range(size)
-    ]
+    a = [[fmpq(int(rng.integers(-9, 9)), int(rng.integers(1, 9))) for _ in range(size)] for _ in range(size)]
     found = leverrier(a, fmpq(1))
     assert [1, *found.minors] == [(-1) ** k * c for k, c in enumerate(fmpq_mat(a).charpoly().coeffs()[::-1])]
-    assert (
-        multiplied(a, found.adjugate)
-        == (
-            fmpq_mat.det(fmpq_mat(a)) * fmpq_mat([[int(i == j) for j in range(size)] for i in range(size)])
-        ).tolist()
-    )
+    unit = fmpq_mat([[int(i == j) for j in range(size)] for i in range(size)])
+    assert multiplied(a, found.adjugate) == (fmpq_mat(a).det() * unit).tolist()
 
 
 def test_numbers_on_the_circle():
