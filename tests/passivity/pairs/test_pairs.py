@@ -1,9 +1,13 @@
-"""Two arms that follow each other: the criterion by other roads, both sides of every limit."""
+"""Two arms that follow each other: the criterion by other roads, both sides of limits, motions in time."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise, product
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +20,7 @@ from zwidth.checker.pair.passive import PAIR_PROOF, criterion
 from zwidth.passivity.linear.boundary import largest_holding
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
 from zwidth.passivity.pairs import PairCriterion, largest_spring
-from zwidth.passivity.pairs.evidence import energy_of, pair_document
+from zwidth.passivity.pairs.evidence import MOST, energy_in_time, energy_of, pair_document
 from zwidth.passivity.witness.motion import Motion, Repeat
 
 BILLIONTH = Fraction(1, 10**9)
@@ -62,16 +66,11 @@ def random_pair(
     )
 
 
-def stiffer(pair: zw.Pair, stiffness: Fraction) -> zw.Pair:
-    """Both springs in proportion."""
-    return pair.stiffened(stiffness)
-
-
 def limit_of(pair: zw.Pair) -> Fraction | None:
     """The largest stiffness that the criterion allows, to the last double."""
-    found = largest_holding(lambda k: not k or PairCriterion(stiffer(pair, k)).holds, 1.0)
+    found = largest_holding(lambda k: not k or PairCriterion(pair.stiffened(k)).holds, 1.0)
     exact = Fraction(repr(found)) if found else None
-    return exact if exact and PairCriterion(stiffer(pair, exact / 2)).holds else None
+    return exact if exact and PairCriterion(pair.stiffened(exact / 2)).holds else None
 
 
 def age_of(pair: zw.Pair, i: int) -> int:
@@ -79,32 +78,44 @@ def age_of(pair: zw.Pair, i: int) -> int:
     return int(np.ceil(float(pair.sides[i].link_delay / pair.sample_period) - 1e-12))
 
 
-def form_of_work(pair: zw.Pair, samples: int, younger: np.random.Generator | None = None) -> np.ndarray:
-    """What two hands give over so many samples, as a matrix in the moves of each part of each reading.
+def forces_of(pair: zw.Pair, i: int, moves: int, reading: Callable, age: Callable) -> list:
+    """What acts on arm i from tick to tick, by the definitions; readings are numbers or linear forms."""
+    often, period = pair.own_readings, float(pair.sample_period)
+    side, every = pair.sides[i], often // pair.readings[i]
 
-    From the definitions alone: readings, taps, held forces, viscous friction.  With `younger` each reading
-    that is received is as old as said or less, at random.
-    """
-    often = pair.own_readings
-    step, moves = float(pair.sample_period) / often, samples * often
-    size = 4 * moves
-    unit = np.eye(size).reshape(moves, 2, 2, size)  # of each reading and arm the early and the late move
-    x = np.concatenate((np.zeros((1, 2, size)), np.cumsum(unit.sum(axis=2), axis=0)))
-
-    def reading(i: int, k: int) -> np.ndarray:
-        return x[max(k, 0), i]
-
-    every = [often // own for own in pair.readings]
-
-    def coupling(i: int, k: int, finer: int) -> np.ndarray:
+    def coupling(i: int, k: int, finer: int) -> Any:
         """Of arm i at tick k, its own speed over so many ticks."""
-        side = pair.sides[i]
-        K, B = float(side.stiffness), float(side.virtual_damping)
+        K, B = float(pair.sides[i].stiffness), float(pair.sides[i].virtual_damping)
         sent = often * (k // often - age(i, k // often))
         own, was = reading(i, k), reading(i, k - finer)
         other, old = reading(1 - i, sent), reading(1 - i, sent - often)
-        return K * (own - other) + B * ((own - was) / finer - (other - old) / often) / step
+        return K * (own - other) + B * often / period * ((own - was) / finer - (other - old) / often)
 
+    D, share = float(side.local_damping), float(side.reflection)
+    forces = [0 * reading(i, 0)] * (int(side.delay // pair.sample_period) + 1)
+    for k in range(moves):
+        sent = often * (k // often - age(i, k // often))
+        at = every * (k // every)
+        local = D * (reading(i, at) - reading(i, at - every)) * often / (every * period)
+        forces.append(coupling(i, at, every) + local - share * coupling(1 - i, sent, often))
+    return forces
+
+
+def part_of(side: Any, pair: zw.Pair) -> float:
+    """What its delay is beyond whole samples, in samples."""
+    return float(side.delay / pair.sample_period % 1)
+
+
+def form_of_work(pair: zw.Pair, samples: int, younger: np.random.Generator | None = None) -> np.ndarray:
+    """What two hands give over so many samples, as a matrix in the moves of each part of each reading.
+
+    Held forces and viscous friction.  With `younger` each reading that is received is as old as said or
+    less, at random.
+    """
+    step, moves = float(pair.sample_period) / pair.own_readings, samples * pair.own_readings
+    size = 4 * moves
+    unit = np.eye(size).reshape(moves, 2, 2, size)  # of each reading and arm the early and the late move
+    x = np.concatenate((np.zeros((1, 2, size)), np.cumsum(unit.sum(axis=2), axis=0)))
     ages: dict[tuple[int, int], int] = {}
 
     def age(i: int, j: int) -> int:
@@ -113,16 +124,8 @@ def form_of_work(pair: zw.Pair, samples: int, younger: np.random.Generator | Non
 
     total = np.zeros((size, size))
     for i, side in enumerate(pair.sides):
-        weight = 1.0 if i == 0 else float(pair.power_ratio)
-        D, share = float(side.local_damping), float(side.reflection)
-        whole = int(side.delay // pair.sample_period)
-        part = float(side.delay / pair.sample_period - whole)
-        forces = [np.zeros(size)] * (whole + 1)
-        for k in range(moves):
-            sent = often * (k // often - age(i, k // often))
-            at = every[i] * (k // every[i])
-            local = D * (reading(i, at) - reading(i, at - every[i])) / (every[i] * step)
-            forces.append(coupling(i, at, every[i]) + local - share * coupling(1 - i, sent, often))
+        weight, part = 1.0 if i == 0 else float(pair.power_ratio), part_of(side, pair)
+        forces = forces_of(pair, i, moves, lambda i, k: x[max(k, 0), i], age)
         for k in range(moves):
             for n, length in enumerate((part, 1 - part)):
                 move = unit[k, i, n]
@@ -131,8 +134,12 @@ def form_of_work(pair: zw.Pair, samples: int, younger: np.random.Generator | Non
     return (total + total.T) / 2
 
 
-@pytest.mark.parametrize("reflected", [False, True])
-@pytest.mark.parametrize("drives", [False, True, "unequal"])
+of_each_kind = pytest.mark.parametrize(
+    ("drives", "reflected"), list(product([False, True, "unequal"], [False, True]))
+)
+
+
+@of_each_kind
 @pytest.mark.parametrize("seed", range(6))
 def test_short_motions_against_the_limit(seed, drives, reflected):
     """The form of them all, made from the definitions, is nowhere negative just below, and is well above."""
@@ -141,13 +148,12 @@ def test_short_motions_against_the_limit(seed, drives, reflected):
     if limit is None:
         return
     samples = 12 if drives else 30
-    values = np.linalg.eigvalsh(form_of_work(stiffer(pair, limit * Fraction("0.999")), samples))
+    values = np.linalg.eigvalsh(form_of_work(pair.stiffened(limit * Fraction("0.999")), samples))
     assert values[0] >= -1e-9 * values[len(values) // 2]
-    assert np.linalg.eigvalsh(form_of_work(stiffer(pair, limit * 2), samples))[0] < 0
+    assert np.linalg.eigvalsh(form_of_work(pair.stiffened(limit * 2), samples))[0] < 0
 
 
-@pytest.mark.parametrize("reflected", [False, True])
-@pytest.mark.parametrize("drives", [False, True, "unequal"])
+@of_each_kind
 @seeds(3)
 def test_younger_readings_change_nothing_for_springs_alone(seed, drives, reflected):
     """Ages at random from sample to sample, up to that of the pair: no motion gains just below its limit."""
@@ -155,7 +161,7 @@ def test_younger_readings_change_nothing_for_springs_alone(seed, drives, reflect
     pair = random_pair(seed, parts=False, drives=drives, reflected=reflected)
     delay = tuple(Fraction(int(n), 1000) for n in random.integers(0, 6, 2))
     pair = pair.replace(damping=0, local_damping=0, delay=delay)
-    below = stiffer(pair, limit_of(pair) * Fraction("0.999"))
+    below = pair.stiffened(limit_of(pair) * Fraction("0.999"))
     verdict = zw.check(below.replace(leader=rubbed(below.leader), follower=rubbed(below.follower)))
     assert any("or any younger one" in text for text in verdict.assumptions)
     assert "younger" in zw.verify(verdict.certificate.to_dict()).reason
@@ -188,9 +194,7 @@ def test_a_round_takes_what_the_form_says(seed):
     paths = [[0, *(int(v) for v in random.integers(-9, 9, q - 1)), 0] for _ in (0, 1)]
 
     def energy_out(rounds: int) -> Fraction:
-        motions = [Motion(tuple(Fraction(v) for v in path[:-1] * rounds + [0])) for path in paths]
-        energy = energy_of(bare, *motions)
-        return energy
+        return energy_of(bare, *(Motion(tuple(map(Fraction, path[:-1] * rounds + [0]))) for path in paths))
 
     moved = np.array([np.fft.fft(np.diff(path)) for path in paths]) / q
     found = sum(
@@ -200,74 +204,47 @@ def test_a_round_takes_what_the_form_says(seed):
     assert float(energy_out(6) - energy_out(5)) == pytest.approx(-found * q * 1000, rel=1e-9)
 
 
-def taken(pair: zw.Pair, paths: list[list[Fraction]], turns: list[list[Fraction]]) -> float:
+def taken(pair: zw.Pair, motions: list[Motion]) -> float:
     """Energy out of a motion, every reading listed, from the definitions."""
-    often = pair.own_readings
-    step, total = float(pair.sample_period) / often, 0.0
-    read = []
-    for side, path in zip(pair.sides, paths, strict=True):
-        count = side.resolution
-        read.append([float(count * (x // count) if count else x) for x in path])
-
-    every = [often // own for own in pair.readings]
-
-    def coupling(i: int, k: int, finer: int) -> float:
-        side = pair.sides[i]
-        K, B = float(side.stiffness), float(side.virtual_damping)
-        sent = often * (k // often - age_of(pair, i))
-        own, was = (read[i][max(at, 0)] for at in (k, k - finer))
-        other, old = (read[1 - i][max(at, 0)] for at in (sent, sent - often))
-        return K * (own - other) + B * ((own - was) / finer - (other - old) / often) / step
-
-    for i, side in enumerate(pair.sides):
-        weight = 1.0 if i == 0 else float(pair.power_ratio)
-        D, share = float(side.local_damping), float(side.reflection)
-        whole = int(side.delay // pair.sample_period)
-        part = float(side.delay / pair.sample_period - whole)
-        own = read[i]
-        forces = [0.0] * (whole + 1)
-        for k in range(len(own) - 1):
-            sent = often * (k // often - age_of(pair, i))
-            at = every[i] * (k // every[i])
-            local = D * (own[at] - own[max(at - every[i], 0)]) / (every[i] * step)
-            forces.append(coupling(i, at, every[i]) + local - share * coupling(1 - i, sent, often))
-        for k in range(len(own) - 1):
-            x, y, z = (
-                float(v) for v in (paths[i][k], turns[i][k] if turns[i] else paths[i][k], paths[i][k + 1])
-            )
-            for held, move, length in ((forces[k], y - x, part), (forces[k + 1], z - y, 1 - part)):
+    step, total = float(pair.sample_period) / pair.own_readings, 0.0
+    counts = [side.resolution for side in pair.sides]
+    read = [
+        [float(count * (x // count) if count else x) for x in motion.positions]
+        for count, motion in zip(counts, motions, strict=True)
+    ]
+    for i, (side, motion) in enumerate(zip(pair.sides, motions, strict=True)):
+        weight, part = 1.0 if i == 0 else float(pair.power_ratio), part_of(side, pair)
+        path = [float(x) for x in motion.positions]
+        turns = [float(x) for x in motion.switch_positions] or path
+        reading = lambda i, k: read[i][max(k, 0)]  # noqa: E731
+        forces = forces_of(pair, i, len(path) - 1, reading, lambda i, _: age_of(pair, i))
+        for k, (x, z) in enumerate(pairwise(path)):
+            for held, move, length in (
+                (forces[k], turns[k] - x, part),
+                (forces[k + 1], z - turns[k], 1 - part),
+            ):
                 rubbed = float(side.damping) / (length * step) * move**2 if length else 0.0
                 total -= weight * (held * move + rubbed + float(side.coulomb_friction) * abs(move))
     return total
 
 
-@pytest.mark.parametrize("reflected", [False, True])
-@pytest.mark.parametrize("drives", [False, True, "unequal"])
+@of_each_kind
 @seeds(15)
 def test_energy_of_any_motion_by_the_definitions(drives, reflected, seed):
     """Encoders, friction, delays, parts that lead on many times: the sums are those of all rounds."""
-    pair, random = (
-        random_pair(seed, drives=drives, reflected=reflected, counted=True),
-        np.random.default_rng(seed),
-    )
-    often, motions = pair.own_readings, []
-    arms = PairCriterion(pair).arms
-    for arm in arms:
+    pair = random_pair(seed, drives=drives, reflected=reflected, counted=True)
+    random, often, motions = np.random.default_rng(seed), pair.own_readings, []
+    for arm in PairCriterion(pair).arms:
         count = arm.side.resolution
         x = [Fraction(0), *(Fraction(int(v), 7) * count for v in random.integers(-40, 40, 6 * often))]
         x[4 * often] = x[2 * often] + count * int(random.integers(-3, 4))  # whole counts on in each round
         y = tuple(v + count * Fraction(int(random.integers(-9, 9)), 5) for v in x[:-1]) if arm.part else ()
         motions.append(Motion(tuple(x), y, (Repeat(2 * often, 4 * often, 40),)))
-    energy = energy_of(pair, *motions)
-    listed = [motion.listed() for motion in motions]
-    by_definition = taken(
-        pair, [list(m.positions) for m in listed], [list(m.switch_positions) for m in listed]
-    )
-    assert float(energy) == pytest.approx(by_definition, rel=1e-9)
+    by_definition = taken(pair, [motion.listed() for motion in motions])
+    assert float(energy_of(pair, *motions)) == pytest.approx(by_definition, rel=1e-9)
 
 
-@pytest.mark.parametrize("reflected", [False, True])
-@pytest.mark.parametrize("drives", [False, True, "unequal"])
+@of_each_kind
 @seeds(12)
 def test_prover_and_checker_have_one_criterion(drives, reflected, seed):
     """Made by other steps: the checker's is that of the prover times 2 − 2c, and its square."""
@@ -285,18 +262,17 @@ def test_prover_and_checker_have_one_criterion(drives, reflected, seed):
         assert a[a.degree()] * b[b.degree()] > 0
 
 
-@pytest.mark.parametrize("reflected", [False, True])
-@pytest.mark.parametrize("drives", [False, True, "unequal"])
+@of_each_kind
 @seeds(8)
 def test_both_sides_of_the_limit(drives, reflected, seed):
     """At K (1 − 1e-9) the checker accepts the certificate; at K (1 + 1e-9) a motion of both hands gains."""
     pair = random_pair(seed, drives=drives, reflected=reflected)
     limit = limit_of(pair)
     if limit is not None:
-        below = zw.check(stiffer(pair, limit * (1 - BILLIONTH)))
+        below = zw.check(pair.stiffened(limit * (1 - BILLIONTH)))
         assert below.outcome == "passive"
         assert below.certificate.verify()
-    above = zw.check(stiffer(pair, limit * (1 + BILLIONTH) if limit else Fraction(1)))
+    above = zw.check(pair.stiffened(limit * (1 + BILLIONTH) if limit else Fraction(1)))
     assert above.outcome == "active"
     assert above.violation.verify()
     assert above.witness.verify()
@@ -310,7 +286,7 @@ def test_both_sides_of_friction(seed):
     limit = limit_of(pair)
     if limit is None:
         return
-    pair = stiffer(pair, limit / 2)
+    pair = pair.stiffened(limit / 2)
     needed = zw.check(pair).required_friction
 
     def rubbed(leader: Fraction, follower: Fraction) -> zw.Pair:
@@ -343,7 +319,7 @@ def test_springs_are_decided_at_rest_as_by_every_frequency(reflected, seed):
     pair = random_pair(seed, reflected=reflected)
     pair = pair.replace(damping=zw.Exact(0), local_damping=zw.Exact(0))
     limit = limit_of(pair)
-    near = [] if limit is None else [stiffer(pair, limit * (1 + n * BILLIONTH)) for n in (-1, 0, 1)]
+    near = [] if limit is None else [pair.stiffened(limit * (1 + n * BILLIONTH)) for n in (-1, 0, 1)]
     for one in (pair, *near):
         criterion = PairCriterion(one)
         assert criterion.of_springs
@@ -356,17 +332,14 @@ def test_springs_are_decided_at_rest_as_by_every_frequency(reflected, seed):
 @pytest.mark.parametrize(
     "change",
     [
-        {"stiffness": zw.Exact(2)},
-        {"follower_damping": zw.Exact("-0.02")},
-        {"delay": (zw.Exact("0.001"), zw.Exact("0.4"))},
-        {"delay": (zw.Exact("0.001"), zw.Exact("-0.4"))},
-        {"delay": (0, "401 ms")},
-        {"stiffness": zw.Exact(-2)},
-        {"stiffness": zw.Exact(0)},
-        {"drive_rate": zw.Exact(1500)},
+        *({"stiffness": zw.Exact(k)} for k in (2, -2, 0)),
+        *({"delay": (zw.Exact("0.001"), zw.Exact(back))} for back in ("0.4", "-0.4")),
+        *({"follower_damping": zw.Exact("-0.02")}, {"delay": (0, "401 ms")}, {"drive_rate": zw.Exact(1500)}),
+        *(
+            {"follower": PADDLE.replace(**numbers)}
+            for numbers in ({"rate": "3.5 kHz"}, {"coulomb_friction": 0.2})
+        ),
         {"leader": PADDLE.replace(damping=(1, 2))},
-        {"follower": PADDLE.replace(rate="3.5 kHz")},
-        {"follower": PADDLE.replace(coulomb_friction="0.2")},
     ],
 )
 def test_what_is_changed_alone_is_read_as_if_all_were_given(change):
@@ -389,15 +362,9 @@ def test_springs_whose_force_is_sent(ages, shares):
     """(b_l − κ Σ (2 lag + 1) K)(w b_f − …) ≥ (N S κ)²: what comes back is as old as there and back."""
     ratio, n = Fraction(shares[0]), sum(ages) + 1
     back = Fraction(shares[1])
-    pair = zw.Pair(
-        PADDLE,
-        PADDLE.replace(damping="0.8"),
-        stiffness=0,
-        follower_stiffness=1,
-        reflection=ratio,
-        follower_reflection=back,
-        delay=tuple(Fraction(age, 1000) for age in ages),
-    )
+    numbers = {"follower_stiffness": 1, "reflection": ratio, "follower_reflection": back}
+    delay = tuple(Fraction(age, 1000) for age in ages)
+    pair = zw.Pair(PADDLE, PADDLE.replace(damping="0.8"), stiffness=0, delay=delay, **numbers)
     found = limit_of(pair)
     weight = pair.power_ratio
     assert weight == ratio, "the leader's spring is that which is sent to it"
@@ -406,9 +373,8 @@ def test_springs_whose_force_is_sent(ages, shares):
     follower = weight * (Fraction(4, 5) - kappa)
     assert float(leader * follower) == pytest.approx(float(n * ratio * kappa) ** 2, rel=1e-9)
     if ages == (0, 0):  # without any delay it is the same as positions sent
-        assert found == pytest.approx(
-            limit_of(pair.replace(stiffness=ratio, reflection=0, follower_reflection=0))
-        )
+        sent = pair.replace(stiffness=ratio, reflection=0, follower_reflection=0)
+        assert found == pytest.approx(limit_of(sent))
 
 
 def test_equal_arms_need_the_delay_and_a_sample():
@@ -427,8 +393,8 @@ def test_a_spring_inside_the_drive_needs_less():
         fast = slow.replace(drive_rate="20 kHz")
         limit = limit_of(fast)
         assert float(limit / limit_of(slow)) == pytest.approx(gained, rel=1e-12)
-        assert zw.check(stiffer(fast, limit * Fraction("0.99"))).outcome == "passive"
-        above = zw.check(stiffer(fast, limit * Fraction("1.01")))
+        assert zw.check(fast.stiffened(limit * Fraction("0.99"))).outcome == "passive"
+        above = zw.check(fast.stiffened(limit * Fraction("1.01")))
         assert above.outcome == "active"
         assert above.witness.verify()
 
@@ -436,9 +402,8 @@ def test_a_spring_inside_the_drive_needs_less():
 def test_a_drive_that_reads_a_thousand_times_has_a_proof_of_few_digits():
     """With numbers of 14 digits, to the thousandth power: the losses of the proof are rounded down."""
     arm = PADDLE.replace(damping="0.52234567891234", rate=20)
-    pair = zw.Pair(
-        arm, arm, stiffness="4.123456789", damping="0.123456789", delay="20 ms", drive_rate="20 kHz"
-    )
+    springs = {"stiffness": "4.123456789", "damping": "0.123456789"}
+    pair = zw.Pair(arm, arm, **springs, delay="20 ms", drive_rate="20 kHz")
     verdict = zw.check(pair)
     assert verdict.passive
     criterion = PairCriterion(pair)
@@ -535,7 +500,6 @@ def test_damping_of_the_coupling_helps_and_then_hurts(age, damping):
 
 
 def test_an_arm_without_damping_is_active():
-    """Nothing pays for the hold."""
     free = PADDLE.replace(damping=0)
     for device in (free, free.replace(delay="0.3 ms")):
         verdict = zw.check(zw.Pair(device, PADDLE, stiffness=10))
@@ -578,15 +542,55 @@ def test_a_verdict_tells_what_is_needed():
     ],
 )
 def test_bad_input_is_told(change, message):
-    """What was given, the bound, and why."""
     with pytest.raises(zw.InputError, match=message):
         zw.Pair(**{"leader": PADDLE, "follower": PADDLE, "stiffness": 10, **change})
 
 
 def test_a_pair_stands_alone():
-    """Its coupling is in itself."""
     pair = zw.Pair(PADDLE, PADDLE, stiffness=10)
     with pytest.raises(zw.InputError, match="holds its coupling in itself"):
         zw.check(pair, zw.Wall(10))
     with pytest.raises(zw.InputError, match="the environment is missing"):
         zw.check(PADDLE)
+
+
+COUNTED = PADDLE.replace(resolution="1e-4")
+SLOW = zw.Pair(COUNTED, COUNTED, stiffness=300, delay="4 ms")
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [
+        SLOW,
+        zw.Pair(PADDLE.replace(delay="0.4 ms"), COUNTED, stiffness=300, delay="2 ms"),
+        zw.Pair(COUNTED, COUNTED, stiffness=90, damping="0.3", delay="2 ms"),
+        zw.Pair(COUNTED.replace(coulomb_friction="0.004"), COUNTED, stiffness=50, delay="2 ms"),
+        zw.Pair(COUNTED, COUNTED, stiffness=300, local_damping="0.6", delay="1 ms", drive_rate="3 kHz"),
+    ],
+)
+def test_every_beginning_is_a_motion_of_its_own(pair):
+    """Without any repeated part, sample by sample; to the end, where it is the energy of the whole."""
+    witness = zw.check(pair).witness
+    times, energies = energy_in_time(witness)
+    listed = [motion.listed() for motion in (witness.leader, witness.follower)]
+    step = pair.sample_period / pair.own_readings
+    assert len(times) > 3
+    assert times[-1] == witness.samples * step
+    assert energies[-1] == witness.exact_energy
+    for time, energy in list(zip(times, energies, strict=True))[1:]:
+        last = int(time / step)
+        parts = [
+            replace(m, positions=m.positions[: last + 1], switch_positions=m.switch_positions[:last])
+            for m in listed
+        ]
+        assert energy_of(pair, *parts) == energy
+
+
+def test_of_many_rounds_some_are_told():
+    """The first and the last, and others between them, as many as are seen."""
+    witness = zw.check(SLOW).witness
+    many = replace(witness, leader=witness.leader.repeated(10**6), follower=witness.follower.repeated(10**6))
+    times, energies = energy_in_time(many)
+    assert len(times) == len(energies) == 1 + 2 * (1 + MOST)
+    assert times == sorted(set(times))
+    assert times[-1] == Fraction(2 + 2 * 10**6, 1000)

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import json
+from functools import cache
+
 import pytest
 
 import zwidth as zw
+from zwidth.cli.main import main
+from zwidth.passivity.certificate import read_document, verify_document
 
 PLANTS = {
     1: (["0.1", 0], [1, "-1.8", "0.81"]),
@@ -26,20 +31,23 @@ NYQUIST = {1: 36.1, 2: 2.7455, 3: 0.3124, 4: 7.907, 5: 2.4475, 6: 1.0870}
 """−1/G at its first real negative value; 36.1, 2.7455, 7.907 are D(−1)/−N(−1) by hand."""
 
 
-@pytest.fixture(scope="module", params=sorted(PLANTS))
-def case(request):
-    """(number, result) of a plant, without the motions."""
-    top, bottom = PLANTS[request.param]
-    plant = zw.PulseTransferFunction(top, bottom)
-    return request.param, zw.stability.absolute_stability(plant, motions=False)
+@cache
+def found(number):
+    """What is proved of a plant; of the last one the motions, too."""
+    plant = zw.PulseTransferFunction(*PLANTS[number])
+    return zw.stability.absolute_stability(plant, motions=number == 6)
 
 
-def test_slopes_are_the_published_ones(case):
+of_each = pytest.mark.parametrize("number", sorted(PLANTS))
+
+
+@of_each
+def test_slopes_are_the_published_ones(number):
     """Circle, Tsypkin and odd Zames–Falb to three digits; the linear limit is the Nyquist value.
 
     The circle is implied by Tsypkin and by Jury–Lee, each of them by a Zames–Falb multiplier.
     """
-    number, result = case
+    result = found(number)
     names = ("circle", "Tsypkin", "Zames–Falb, odd")
     for name, value in zip(names, PUBLISHED[number], strict=True):
         assert float(result.slope(name)) == pytest.approx(value, rel=5e-4)
@@ -55,10 +63,10 @@ def test_slopes_are_the_published_ones(case):
     assert words.endswith(f"refuted: {result.linear_limit.slope:.6g}>")
 
 
-def test_certificates_verify_and_no_more_slope_does(case):
+@of_each
+def test_certificates_verify_and_no_more_slope_does(number):
     """Each certificate is accepted, and with one percent more slope the same multiplier is refused."""
-    _, result = case
-    for row in result.proved:
+    for row in found(number).proved:
         assert row.certificate.verify()
         (document,) = row.certificate.documents
         more = {**document, "slope": str(float(row.slope) * 1.01)}
@@ -67,13 +75,12 @@ def test_certificates_verify_and_no_more_slope_does(case):
 
 def test_walls_that_are_not_odd_get_less():
     """Example 6: 0.9115 for any monotone wall, 1.0870 for odd ones."""
-    result = zw.stability.absolute_stability(zw.PulseTransferFunction(*PLANTS[6]), motions=False)
-    assert float(result.slope("Zames–Falb")) == pytest.approx(0.9115, abs=5e-5)
+    assert float(found(6).slope("Zames–Falb")) == pytest.approx(0.9115, abs=5e-5)
 
 
 def test_a_one_sided_wall_just_above_what_is_proved_for_it_vibrates():
     """Example 6: a motion of three samples, below the linear limit, within a percent of the proof."""
-    result = zw.stability.absolute_stability(zw.PulseTransferFunction(*PLANTS[6]))
+    result = found(6)
     motion = result.pressing
     assert motion.period == 3
     assert motion.slope == pytest.approx(175 / 192, rel=1e-6)  # x = −½, −¼ − K, −⅛ − 0.96 K with g = −1
@@ -86,3 +93,19 @@ def test_a_one_sided_wall_just_above_what_is_proved_for_it_vibrates():
         x.append(0.5 * x[-1] - 2 * f[-1] - 0.92 * f[-2])
         f.append(motion.slope * max(x[-1] - motion.gap, 0.0))
     assert x[-3:] == pytest.approx([motion.positions[(3002 - 3 + i) % 3] for i in range(3)], abs=1e-9)
+
+
+def test_saved_with_the_result_and_verified(tmp_path, capsys) -> None:
+    """Slopes and motions are verified from one file; the command line says that it vibrates."""
+    path = tmp_path / "six.json"
+    found(6).save(path)
+    assert verify_document(read_document(path)).valid
+    assert main(["verify", str(path)]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "to rest" in told
+    assert "vibrates" in told
+    assert "passive" not in told
+    doc = json.loads(path.read_text(encoding="utf-8"))
+    doc["witness"]["slope"] = "0.9"
+    path.write_text(json.dumps(doc))
+    assert main(["verify", str(path)]) == 1

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import copy
-import json
 from fractions import Fraction
 
 import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.cli.main import main
 from zwidth.model.operator.operator import LinearHand
-from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.passivity.stability.absolute import given_plant, periodic_motion, touched_plant
 
 SIX = {"numerator": ["2", "0.92"], "denominator": ["1", "-0.5", "0"]}
@@ -128,21 +125,3 @@ def test_every_motion_found_has_a_certificate(top: list, bottom: list, slope: fl
     (doc,) = motion.certificate.documents
     assert sum(doc["inside"]) == sum(motion.inside)
     assert not checker.verify({**doc, "slope": str(slope / 2)}).valid
-
-
-def test_saved_with_the_result_and_verified(tmp_path, capsys) -> None:
-    """Slopes and motions are verified from one file; the command line says that it vibrates."""
-    found = zw.stability.absolute_stability(zw.PulseTransferFunction(*SIX.values()))
-    assert found.pressing is not None
-    path = tmp_path / "six.json"
-    found.save(path)
-    assert verify_document(read_document(path)).valid
-    assert main(["verify", str(path)]) == 0
-    told = " ".join(capsys.readouterr().out.split())
-    assert "to rest" in told
-    assert "vibrates" in told
-    assert "passive" not in told
-    doc = json.loads(path.read_text(encoding="utf-8"))
-    doc["witness"]["slope"] = "0.9"
-    path.write_text(json.dumps(doc))
-    assert main(["verify", str(path)]) == 1

@@ -63,7 +63,7 @@ def test_accepted(wall: zw.Wall) -> None:
     ],
 )
 def test_tampered(which: int, path: str, value: Any) -> None:
-    """Numbers no longer fit or suffice; contact broken, the loop that is proved has just the activity less."""
+    """Numbers no longer fit or suffice; contact broken, the loop proved has just the activity less."""
     proof = proofs(zw.Wall(100, 0.05))[which]
     assert not checker.verify(tampered(proof, path.split("."), value)).valid
 

@@ -204,8 +204,8 @@ def test_what_the_checker_refuses_is_undecided(monkeypatch: pytest.MonkeyPatch) 
 def test_saved_and_read_by_the_command_line(tmp_path, capsys) -> None:
     """`zwidth verify` says that the loop comes to rest, never that it is passive, and notices a change."""
     path = tmp_path / "known.json"
-    certificate = coupled(PADDLE.replace(motion="rotary"), zw.Wall(1000, 1), BOX).certificate
-    certificate.save(path)
+    hands = Hand(stiffness=(0, 100), damping=(1, 2))
+    coupled(PADDLE.replace(motion="rotary"), zw.Wall(1000, 1), hands).certificate.save(path)
     assert main(["verify", str(path)]) == 0
     told = " ".join(capsys.readouterr().out.split())
     assert "come to rest" in told
