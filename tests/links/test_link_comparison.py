@@ -54,7 +54,6 @@ def test_every_kind_of_port_has_its_row(compared: LinkComparison) -> None:
 
 
 def test_two_hands_put_in_what_friction_takes(compared: LinkComparison) -> None:
-    """With the ledger the sum of both hands' work never falls below 0."""
     for trace in compared.traces["waves with a ledger"].values():
         assert trace["hand_work"].values.sum(axis=0).min() >= -1e-12
 
@@ -109,7 +108,6 @@ def test_a_rotary_device_has_its_own_units() -> None:
 
 
 def test_ports_that_do_not_fit_are_refused() -> None:
-    """Two rates cannot be simulated together, nor what is no port."""
     one = zw.Device(mass=0.05, damping=0.1, rate=1000, delay=0)
     with pytest.raises(zw.InputError, match="one sample period"):
         zw.links.compare(one, one.replace(rate=500))
@@ -119,7 +117,6 @@ def test_ports_that_do_not_fit_are_refused() -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_hands_of_flesh_take_nothing_out_either(seed: int) -> None:
-    """A push on both, in continuous time with masses and stiction: their work never falls below 0."""
     leader = zw.Device(
         mass=0.03, damping=0.2, coulomb_friction=0.05, resolution="22.4 um", rate=1000, delay="1 ms"
     )
@@ -134,7 +131,6 @@ def test_hands_of_flesh_take_nothing_out_either(seed: int) -> None:
 
 
 def test_a_force_that_is_kept_back_acts_after_whole_samples() -> None:
-    """1.4 ms at 1 kHz are 2 ms, 0.6 ms more; 2 ms stay as they are."""
     late, held = held_back(WHEEL)
     assert (late.exact("delay"), held) == (Fraction(2, 1000), Fraction(6, 10000))
     assert held_back(late) == (late, 0)
@@ -154,7 +150,6 @@ def test_the_answer_says_that_forces_are_kept_back() -> None:
 
 
 def test_scores_are_told_in_the_angle_that_was_asked_for() -> None:
-    """0.02 rad are 1.15 deg, 2.1 N·m/rad are 0.0367 N·m/deg; the document stays SI."""
     found = LinkComparison({"waves": ROW}, "rotary", Schedule(), {})
     with answers_in("deg"):
         text = str(found)

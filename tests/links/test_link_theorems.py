@@ -48,7 +48,6 @@ def test_an_encoder_makes_waves_without_a_ledger_active(friction: object) -> Non
 
 @pytest.mark.parametrize("late", [0, 2, 10])
 def test_waves_of_the_textbook_diverge_in_samples(late: int) -> None:
-    """A short push, and nobody on either side: 0.1 kg, 5 N·s/m; with the ledger it comes to rest."""
     device = arm(mass="0.1 kg", coulomb_friction=0, resolution=0)
     push = zw.operators.RecordedForce(np.r_[np.full(50, 0.1), np.zeros(1950)])
     link = Schedule(delay=Fraction(late, 1000))
@@ -95,7 +94,6 @@ def test_arms_do_not_drift_apart_when_half_is_lost() -> None:
 
 
 def test_smoothing_takes_the_chatter_of_jitter() -> None:
-    """Two milliseconds: a fifth of the steps of the force from sample to sample, or less."""
     device = arm(coulomb_friction="0.05", resolution="22.4 um")
     link = Schedule(delay="20 ms", jitter="10 ms", loss=0.5, burst=4)
     path = zw.operators.PrescribedMotion(lambda t: 0.02 * np.sin(np.pi * min(t, 1.0)) ** 2)

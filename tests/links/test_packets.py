@@ -73,7 +73,6 @@ def test_numbers_that_cannot_be_are_refused(whole: Any, given: dict[str, Any], s
 
 
 def test_a_port_refuses_what_it_cannot_book() -> None:
-    """Bytes, displacements that are no counts or no numbers, delays of part of a sample."""
     device = zw.Device(damping=0.1, resolution="10 um", rate=1000, delay=0)
     port = WavePort(device)
     with pytest.raises(zw.InputError, match="Packet objects"):
@@ -91,7 +90,6 @@ def test_a_port_refuses_what_it_cannot_book() -> None:
 
 
 def test_a_schedule_keeps_to_its_numbers() -> None:
-    """Delay and jitter in samples, the shares of what is lost and doubled, bursts of the length asked for."""
     count = 20_000
     link = Schedule(delay="3 ms", jitter="2 ms", loss=0.3, burst=5, duplicates=0.1)
     when, again = link.arrivals(count, MS, 0)
@@ -106,7 +104,6 @@ def test_a_schedule_keeps_to_its_numbers() -> None:
 
 
 def test_a_schedule_is_the_same_again_and_another_on_the_way_back() -> None:
-    """By its seed."""
     link = Schedule(loss=0.5)
     there, same, back = (link.arrivals(100, MS, way)[0] for way in (0, 0, 1))
     other = Schedule(loss=0.5, seed=2).arrivals(100, MS, 0)[0]
@@ -131,7 +128,6 @@ class Mail:
 
 
 def test_the_first_two_examples_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> None:
-    """Two ports over a link that loses every other packet; packets from a socket, broken ones left out."""
     names: dict[str, Any] = {}
     for block in re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)[:2]:
         exec(block, names)

@@ -164,7 +164,6 @@ def test_what_is_lost_comes_with_the_next_packet() -> None:
 
 
 def test_one_push_and_six_followers_one_after_another() -> None:
-    """Each hears packet 0 again, then the last: what the first has taken none takes a second time."""
     device = arm(friction="0.05")
     leader, told = WavePort(device), list[Packet]()
     work, back = Fraction(0), list[Packet]()
@@ -278,7 +277,6 @@ def test_two_hands_take_nothing_out_whichever_end_starts_anew(resolution: str, s
 
 
 def test_an_actuator_that_gives_less_is_booked_as_it_gives() -> None:
-    """A force limit and steps of the converter: the port asks for what is given, and no energy comes out."""
     device = arm(friction="0.02", resolution="1e-5", force_limit="0.03", force_resolution="0.004")
     ends = Ends([device, device], random.Random(3))
     move, seen = greedy(ends), set()
@@ -291,7 +289,6 @@ def test_an_actuator_that_gives_less_is_booked_as_it_gives() -> None:
 
 @seeds(3)
 def test_unlike_ends_take_nothing_out_of_each_other(seed: int) -> None:
-    """Other damping, friction, encoder and impedance at each end."""
     draw = random.Random(seed)
     leader = arm(damping="0.5", friction="0.05", resolution="5e-5")
     follower = arm(damping="0.03", delay="1 ms")
@@ -302,7 +299,6 @@ def test_unlike_ends_take_nothing_out_of_each_other(seed: int) -> None:
 
 
 def test_ends_of_two_rates_come_to_the_same_place() -> None:
-    """A wave of the slower end is spread over two periods of the quicker; what goes back comes in pairs."""
     slow, quick = WavePort(arm()), WavePort(zw.Device(damping="0.15", rate=2000, delay=0))
     there, back = list[Packet](), list[Packet]()
     gone = followed = 0.0
@@ -335,7 +331,6 @@ def test_receive_and_send_are_called_in_turn() -> None:
 
 
 def test_the_force_of_a_period_is_the_one_that_acts_in_it() -> None:
-    """Of a device with a delay of two samples, the one that was computed two receives before."""
     port, other = WavePort(arm(delay=Fraction(2, 1000))), WavePort(arm())
     computed, acted = [], []
     for _ in range(6):

@@ -47,7 +47,6 @@ def growth(mass, k, c, period, body_damping, body_stiffness, integration, sensor
     st.floats(-6, 2).map(lambda e: 10**e),
 )
 def test_it_is_where_the_eigenvalues_say(how, k, c, body_damping, body_stiffness, mass):
-    """Strictly between the two masses no mode grows, outside one does."""
     integration, sensor = how
     factor = growth(mass, k, c, 0.001, body_damping, body_stiffness, *how)
     assume(abs(factor - 1) > 1e-6)
@@ -73,7 +72,6 @@ def test_by_hand(k, c, options, lightest):
 
 
 def test_a_heavier_body_may_be_worse():
-    """Explicit behind a mean sensor there is a heaviest mass as well, found by eigenvalues too."""
     how = {"body_damping": 9, "integration": "explicit", "sensor": "mean"}
     low, high = masses_of(8000, "0.5", "0.001", **how)
     assert high < inf
@@ -92,7 +90,6 @@ def test_a_heavier_body_may_be_worse():
     ],
 )
 def test_both_sides_in_a_simulation(k, c, options):
-    """A hundredth above the lightest mass the motion dies out, a hundredth below it grows."""
     low, _ = masses_of(k, c, "0.001", **options)
     hand = zw.operators.Tracking([0, 0.001], stiffness=float(k), damping=float(c))
     body = {key[5:]: value for key, value in options.items() if key.startswith("body_")}

@@ -72,7 +72,6 @@ SHAPES = {
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_both_sides_of_the_largest_share(shape):
-    """Equal arms: a part in 10⁹ below the checker accepts the certificate, above a motion gains."""
     pair = PAIR.replace(**SHAPES[shape])
     share = largest_share(pair)
     assert zw.check(pair).largest_compensation == pytest.approx(float(share), rel=1e-6)
@@ -114,7 +113,6 @@ def test_the_limit_is_where_constant_speeds_gain():
 
 
 def test_each_side_has_its_own():
-    """None on the follower: it needs what it needed before."""
     one = PAIR.replace(follower_compensation=Law())
     bare = PAIR.replace(compensation=None)
     assert PAIR.compensations == (LAW, LAW)
@@ -126,7 +124,6 @@ def test_each_side_has_its_own():
 
 
 def test_needs_are_limits():
-    """At the required damping and friction it is passive, a part in 10⁵ below them it is not."""
     pair = with_share(PAIR, Fraction("1.7")).replace(follower_compensation=LAW)
     verdict = zw.check(pair)
     assert verdict.outcome == "active"
@@ -233,7 +230,6 @@ def test_encoders_are_paid_first():
 @pytest.mark.parametrize("drives", [False, True])
 @seeds(15)
 def test_no_motion_gains_where_none_is_said_to(drives, seed):
-    """Hands at any speed, at random, in rounds and straight on, near the limit of any two arms."""
     random = np.random.default_rng(seed)
 
     def number(low: float, high: float) -> str:
@@ -284,7 +280,6 @@ def test_numbers_of_a_law_have_bounds(given, message):
 
 
 def test_it_is_told():
-    """In the description of the pair, in what is taken for granted, and in the numbers."""
     verdict = zw.check(PAIR)
     assert "compensation of friction by 0.3 N tanh(v/(0.35 m/s)) and 0.06 N·s/m" in PAIR.describe()
     assert "any mean of each arm's moves over past samples" in " ".join(verdict.assumptions)

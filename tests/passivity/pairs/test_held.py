@@ -100,7 +100,6 @@ def test_the_law_that_is_felt_is_that_of_both_arms_run(seed: int) -> None:
 
 @seeds(6)
 def test_a_certificate_up_to_the_limit_and_a_violation_beyond(seed: int) -> None:
-    """A part in 10⁵ beside the damping that is needed."""
     question = random_question(seed)
     verdict = zw.check(question.pair, **{question.held: question.hand})
     need = verdict.required_damping
@@ -114,7 +113,6 @@ def test_a_certificate_up_to_the_limit_and_a_violation_beyond(seed: int) -> None
 
 
 def test_nobody_and_a_hand_on_either_arm() -> None:
-    """Beyond what two hands allow; the limits stand in their order, and each is one."""
     assert zw.check(UNKNOWN.replace(stiffness=60), follower=None).passive  # where two hands allow it
     stiff = PAIR.replace(stiffness="100.5")
     assert zw.check(stiff).outcome == "active"
@@ -132,7 +130,6 @@ def test_nobody_and_a_hand_on_either_arm() -> None:
 
 
 def test_the_hand_may_be_anything_that_damps_as_much() -> None:
-    """Where the pair with that damping in the arm is passive; friction of the held arm is then no matter."""
     rubbed = PAIR.replace(follower=ARM.replace(coulomb_friction=1), stiffness=200)
     found = zw.check(rubbed, follower=Hand(damping=2))
     assert found.passive
@@ -154,7 +151,6 @@ def test_friction_of_the_held_arm_is_not_left_out() -> None:
 
 
 def test_friction_of_the_free_arm_covers_both_encoders() -> None:
-    """On both sides of what is needed, which is no less than by half a count held still."""
     counted = ARM.replace(resolution="10 um")
     pair = zw.Pair(counted.replace(coulomb_friction=1), counted, stiffness=250, delay="2 ms")
     found = zw.check(pair, follower=HAND)
@@ -168,7 +164,6 @@ def test_friction_of_the_free_arm_covers_both_encoders() -> None:
 
 
 def test_a_hand_within_intervals() -> None:
-    """Every hand between them is proved; one that gains makes it active."""
     between = Hand(mass=(0, "5 g"), stiffness=(90, 100), damping=("1.9", 2))
     passive, active = (zw.check(PAIR.replace(stiffness=k), follower=between) for k in (248, 300))
     assert passive.passive
@@ -227,7 +222,6 @@ def test_bad_input(pair: zw.Pair, arguments: dict, phrase: str) -> None:
 
 
 def test_the_verdict_as_data_and_as_text() -> None:
-    """Its numbers have units in their keys; the report says what is taken for granted."""
     found = zw.check(PAIR.replace(stiffness=248), follower=HAND)
     told = found.to_dict()
     assert told["format"] == "zwidth held pair 1"
@@ -242,7 +236,6 @@ def test_the_verdict_as_data_and_as_text() -> None:
 
 @pytest.mark.parametrize(("stiffness", "gains"), [(250, False), (300, True)])
 def test_in_the_simulator_the_wave_gains_beyond_the_limit_alone(stiffness: int, gains: bool) -> None:
-    """The leader goes to and fro at the worst frequency; what it takes out is what the checker found."""
     pair = zw.Pair(ARM.replace(coulomb_friction="0.05"), ARM, stiffness=300, delay="2 ms")
     wave = zw.check(pair, follower=HAND).witness
     assert wave.verify()

@@ -134,6 +134,5 @@ def _of_one(pair: zw.Pair, advice: Advice, rng: random.Random) -> Iterator[str]:
 
 @seeds(3)
 def test_advice_on_a_pair_is_the_bound_of_its_outcome(seed: int) -> None:
-    """At its value, and as it is printed, `check` says passive; just beyond it, it does not."""
     rng = random.Random(seed)
     assert list(faults(drawn(rng), rng)) == []

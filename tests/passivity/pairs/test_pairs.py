@@ -156,7 +156,6 @@ def test_short_motions_against_the_limit(seed, drives, reflected):
 @of_each_kind
 @seeds(3)
 def test_younger_readings_change_nothing_for_springs_alone(seed, drives, reflected):
-    """Ages at random from sample to sample, up to that of the pair: no motion gains just below its limit."""
     random = np.random.default_rng(seed)
     pair = random_pair(seed, parts=False, drives=drives, reflected=reflected)
     delay = tuple(Fraction(int(n), 1000) for n in random.integers(0, 6, 2))
@@ -231,7 +230,6 @@ def taken(pair: zw.Pair, motions: list[Motion]) -> float:
 @of_each_kind
 @seeds(15)
 def test_energy_of_any_motion_by_the_definitions(drives, reflected, seed):
-    """Encoders, friction, delays, parts that lead on many times: the sums are those of all rounds."""
     pair = random_pair(seed, drives=drives, reflected=reflected, counted=True)
     random, often, motions = np.random.default_rng(seed), pair.own_readings, []
     for arm in PairCriterion(pair).arms:
@@ -265,7 +263,6 @@ def test_prover_and_checker_have_one_criterion(drives, reflected, seed):
 @of_each_kind
 @seeds(8)
 def test_both_sides_of_the_limit(drives, reflected, seed):
-    """At K (1 − 1e-9) the checker accepts the certificate; at K (1 + 1e-9) a motion of both hands gains."""
     pair = random_pair(seed, drives=drives, reflected=reflected)
     limit = limit_of(pair)
     if limit is not None:
@@ -281,7 +278,6 @@ def test_both_sides_of_the_limit(drives, reflected, seed):
 
 @seeds(12)
 def test_both_sides_of_friction(seed):
-    """Coulomb friction a part in 10⁹ below what the steps of both encoders ask for, on either side."""
     pair = random_pair(seed, counted=True)
     limit = limit_of(pair)
     if limit is None:
@@ -315,7 +311,6 @@ def test_springs_have_a_closed_form():
 @pytest.mark.parametrize("reflected", [False, True])
 @seeds(20)
 def test_springs_are_decided_at_rest_as_by_every_frequency(reflected, seed):
-    """Also a hair to either side of the limit, and with delays of part of a sample."""
     pair = random_pair(seed, reflected=reflected)
     pair = pair.replace(damping=zw.Exact(0), local_damping=zw.Exact(0))
     limit = limit_of(pair)
@@ -400,7 +395,6 @@ def test_a_spring_inside_the_drive_needs_less():
 
 
 def test_a_drive_that_reads_a_thousand_times_has_a_proof_of_few_digits():
-    """With numbers of 14 digits, to the thousandth power: the losses of the proof are rounded down."""
     arm = PADDLE.replace(damping="0.52234567891234", rate=20)
     springs = {"stiffness": "4.123456789", "damping": "0.123456789"}
     pair = zw.Pair(arm, arm, **springs, delay="20 ms", drive_rate="20 kHz")
@@ -431,7 +425,6 @@ def test_a_drive_that_gains_by_itself(damping):
 
 
 def test_what_is_held_for_how_long():
-    """With a drive each arm's own part of the force is held for a period of the drive."""
     arm = zw.Device(damping=1, coulomb_friction="0.1", resolution=0, delay=0, rate="200 Hz")
     pair = zw.Pair(arm, arm, stiffness="0.1")
     assert "each force is held for a period" in " ".join(zw.check(pair).assumptions)
@@ -472,7 +465,6 @@ def test_as_the_period_vanishes_it_is_the_condition_of_delayed_springs(b, f):
 
 
 def test_a_reading_is_used_at_the_next_sample():
-    """A link of 1.2 samples is one of two."""
     late, later = (zw.Pair(PADDLE, PADDLE, stiffness=1, delay=d) for d in ("1.2 ms", "2 ms"))
     assert largest_spring(late) == largest_spring(later)
 
@@ -509,7 +501,6 @@ def test_an_arm_without_damping_is_active():
 
 
 def test_a_verdict_tells_what_is_needed():
-    """Margins are limits: at them passive, beyond them not."""
     verdict = zw.check(zw.Pair(PADDLE, PADDLE, stiffness=300, delay="1 ms"))
     assert verdict.outcome == "active"
     assert verdict.margin == pytest.approx(250 - 300, abs=1e-3)
@@ -569,7 +560,6 @@ SLOW = zw.Pair(COUNTED, COUNTED, stiffness=300, delay="4 ms")
     ],
 )
 def test_every_beginning_is_a_motion_of_its_own(pair):
-    """Without any repeated part, sample by sample; to the end, where it is the energy of the whole."""
     witness = zw.check(pair).witness
     times, energies = energy_in_time(witness)
     listed = [motion.listed() for motion in (witness.leader, witness.follower)]
@@ -587,7 +577,6 @@ def test_every_beginning_is_a_motion_of_its_own(pair):
 
 
 def test_of_many_rounds_some_are_told():
-    """The first and the last, and others between them, as many as are seen."""
     witness = zw.check(SLOW).witness
     many = replace(witness, leader=witness.leader.repeated(10**6), follower=witness.follower.repeated(10**6))
     times, energies = energy_in_time(many)

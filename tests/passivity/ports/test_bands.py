@@ -31,7 +31,6 @@ def test_a_band_begins_where_the_real_part_vanishes():
 
 
 def test_two_bands_each_with_a_motion():
-    """Two pairs of zeros near the axis: two bands, and a burst inside each that the checker accepts."""
     zeros = (s**2 + 0.1 * s + 1) * (s**2 - 0.01 * s + 9)
     found = indices(zeros / ((s + 1) ** 2 * (s + 2) ** 2))
     assert len(found.bands) == 2

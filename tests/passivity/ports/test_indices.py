@@ -66,7 +66,6 @@ def as_double(value):
 
 @pytest.mark.parametrize("name", ZOO)
 def test_closed_forms(name):
-    """Indices and the frequencies where they are reached, computed by hand."""
     g, nu, nu_at, rho, rho_at = ZOO[name]
     found = indices(g)
     for index, value, at in ((found.input, nu, nu_at), (found.output, rho, rho_at)):
@@ -111,7 +110,6 @@ def random_passive(seed):
 @settings(max_examples=25, deadline=None)
 @given(systems)
 def test_a_dense_grid_never_falls_below(seed):
-    """Re G and Re 1/G on 20001 frequencies: never below, and near it somewhere."""
     g = random_passive(seed)
     found = indices(g)
     omega = np.concatenate([[0], np.geomspace(1e-4, 1e5, 20001)])
@@ -124,7 +122,6 @@ def test_a_dense_grid_never_falls_below(seed):
 
 @pytest.mark.parametrize("name", ZOO)
 def test_both_sides_of_an_index(name):
-    """The checker accepts the proof at the index and a motion just above it; nothing proves more."""
     found = indices(ZOO[name][0])
     for index in (found.input, found.output):
         if abs(index.value) < inf:
@@ -153,7 +150,6 @@ def test_both_sides_of_an_index(name):
     ],
 )
 def test_a_motion_replayed_by_scipy(g, kind):
-    """lsim answers the input with the output that the motion says, and the integral is the share."""
     motion = indices(g).witness
     assert motion.kind == kind
     t, u, y = (np.array(x) for x in motion.signals(20001))
@@ -174,7 +170,6 @@ def test_a_motion_replayed_by_scipy(g, kind):
     ],
 )
 def test_a_discrete_motion_replayed_by_scipy(g):
-    """lfilter answers the samples; more comes out than goes in."""
     motion = indices(g).witness
     _, u, y = motion.signals()
     num, den = g.num[0][0], g.den[0][0]
@@ -239,7 +234,6 @@ def test_feedback_of_the_output_index_is_at_the_limit():
 
 
 def test_every_kind_of_system_is_read():
-    """Transfer functions, state spaces and zeros–poles–gain models of both libraries are one system."""
     num, den = [1, 3], [1, 3, 2]
     states = [[0, 1], [-2, -3]], [[0], [1]], [[3, 1]], [[0]]
     same = [control.tf(num, den), scipy.signal.TransferFunction(num, den)]
@@ -250,7 +244,6 @@ def test_every_kind_of_system_is_read():
 
 
 def test_a_hidden_mode_is_told():
-    """What cancels is not in the index; that it does not decay is said."""
     found = indices(control.tf([1, -1], [1, 0, -1]))
     assert found.output.exact == 1
     assert not found.hidden_modes_decay
@@ -285,7 +278,6 @@ def test_sampled_damping_is_an_input_index(delay):
 
 
 def test_sampled_damping_of_a_continuous_law():
-    """A continuous system needs a device and a discretization; an environment brings its own."""
     device = zw.Device(damping="0.3", rate=1000)
     solid = scipy.signal.TransferFunction([0.2, 150], [1])
     found = indices(solid, device, "backward")
@@ -314,7 +306,6 @@ def test_what_is_refused(arguments, message):
 
 
 def test_the_checker_refuses_a_false_proof():
-    """A higher level, another system, an unstable one, a wrong factor: none passes."""
     index = indices((s + 2) / (s + 9)).input
     document = index.certificate().to_dict()
     assert checker.verify(document).valid
@@ -341,7 +332,6 @@ def test_the_checker_refuses_an_unstable_port_that_is_positive_on_the_axis():
 
 
 def test_the_checker_refuses_a_false_motion():
-    """A burst that is not smooth, one below the level, a polynomial not from rest, the wrong time."""
     burst = indices((s + 3) / (s + 1) ** 2).witness.to_dict()
     grown = indices(1 / (1 - s)).witness.to_dict()
     false = [
@@ -360,7 +350,6 @@ def test_the_checker_refuses_a_false_motion():
 
 
 def test_evidence_is_saved_and_verified_from_the_command_line(tmp_path, capsys):
-    """`zwidth verify` accepts both and says which index they speak of."""
     lead, none = ([1, 3], [1, 2]), ([0], [1])
     one, two = indices((s + 3) / (s + 1) ** 2), indices(matrix([[lead, ([1], [1, 2])], [none, lead]])).input
     for evidence, says in (
@@ -375,7 +364,6 @@ def test_evidence_is_saved_and_verified_from_the_command_line(tmp_path, capsys):
 
 
 def test_it_says_what_it_found():
-    """The representations name both indices with their frequency, and why one is infinite."""
     found = indices(1 / (s + 1) - 1e-9)
     assert repr(found).startswith("<PassivityIndices active: input index ν = −1e−09 as the frequency grows")
     assert "unstable zero at s = 1e+09" in found._repr_html_()
@@ -386,7 +374,6 @@ def test_it_says_what_it_found():
 
 
 def test_what_is_given_is_told_what_to_do_with_it():
-    """A plant is a device, a measured response is fitted, a law is discretized; complex zeros are real."""
     device, s = zw.Device(damping=0.3, rate=1000), control.tf("s")
     for call, said in (
         (lambda: zw.check(1 / (0.1 * s**2 + 0.3 * s), zw.Wall(stiffness=100)), "Device(mass=m, damping=b"),
@@ -403,7 +390,6 @@ def test_what_is_given_is_told_what_to_do_with_it():
 
 @pytest.mark.parametrize("size", [1, 2])
 def test_a_discrete_system_that_does_not_say_its_period(size):
-    """The device says it; where nobody does, frequencies are about samples of 1 s, and that is told."""
     system = control.ss(0.5 * np.eye(size), np.eye(size), np.eye(size), 2 * np.eye(size), True)
     alone = indices(system)
     assert alone.input.frequency == 0.5

@@ -29,7 +29,6 @@ def proved():
 
 
 def test_the_checker_refuses_a_false_matrix_proof():
-    """A higher level, another system, wrong factors, powers or resolvent: none passes."""
     assert proved().exact == Fraction(31, 32)
     document = proved().certificate().to_dict()
     assert checker.verify(document).valid
@@ -68,7 +67,6 @@ def test_the_checker_refuses_an_unstable_port_of_positive_eigenvalues():
 
 
 def test_the_checker_refuses_a_false_motion_of_several_axes():
-    """Not smooth, of one axis only, below the level, a polynomial not from rest, the wrong time."""
     split = matrix([[([1], [-1, 1]), ([0], [1])], [([0], [1]), ([1], [1, 1])]])
     delayed = random_system(2, 3, 2, throughput=-0.1, discrete=True)
     systems = (random_system(0, 4, 2, throughput=0), split, delayed)
@@ -115,7 +113,6 @@ def test_leverrier_against_flint(size):
 
 
 def test_numbers_on_the_circle():
-    """a(ζ) b̄(ζ) and products of such numbers against complex arithmetic at one angle."""
     theta = 0.7
     zeta = exp(-1j * theta)
     a, b, e = [1, -2, 3, 5], [4, 0, -1, 2], [2, 7, 1, -3]

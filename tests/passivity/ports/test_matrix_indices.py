@@ -49,7 +49,6 @@ ZOO = {  # system, ν, its frequency [Hz], ρ, its frequency [Hz]
 
 @pytest.mark.parametrize("name", ZOO)
 def test_matrices_in_closed_form(name):
-    """Indices and the frequencies where they are reached, computed by hand; both sides replayed."""
     g, nu, nu_at, rho, rho_at = ZOO[name]
     found = indices(g)
     for index, value, at in ((found.input, nu, nu_at), (found.output, rho, rho_at)):
@@ -78,7 +77,6 @@ REFUSED = {
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_poles_that_no_level_allows(name):
-    """A pole that may not be where it is: no level holds, and a motion takes energy out."""
     index = indices(REFUSED[name]).input
     assert index.value == -inf
     assert index.reason
@@ -111,7 +109,6 @@ seeds = st.integers(0, 2**32 - 1)
 @settings(max_examples=15, deadline=None)
 @given(seeds, st.integers(2, 3), st.integers(1, 6), st.booleans())
 def test_a_dense_grid_of_eigenvalues_never_falls_below(seed, axes, order, discrete):
-    """The least eigenvalue at 3001 frequencies: never below, near it somewhere."""
     g = random_system(seed, order, axes, discrete=discrete)
     found = indices(g)
     omega = np.linspace(0, pi / 0.01, 3001) if discrete else np.r_[0, np.geomspace(1e-3, 1e5, 3001)]
@@ -138,7 +135,6 @@ entries = st.tuples(st.lists(quarters, min_size=2, max_size=3), st.lists(quarter
 @settings(max_examples=15, deadline=None)
 @given(st.lists(entries, min_size=2, max_size=3))
 def test_a_diagonal_system_has_the_least_index_of_its_entries(parts):
-    """Each axis by itself, by the code for one axis; the brackets of both meet."""
     size = range(len(parts))
     together = indices(matrix([[parts[i] if i == j else NOTHING for j in size] for i in size]))
     alone = [indices(control.tf(*part)) for part in parts]
@@ -155,7 +151,6 @@ def test_a_diagonal_system_has_the_least_index_of_its_entries(parts):
 
 @pytest.mark.parametrize(("seed", "discrete"), [(0, False), (1, False), (2, True), (5, True)])
 def test_both_sides_of_a_matrix_index(seed, discrete):
-    """Proved at (1 − 1e-9) of the index, refuted by a motion at (1 + 1e-4)."""
     index = indices(random_system(seed, 4, 2, discrete=discrete)).input
     size = Fraction(repr(abs(index.value)))
     assert index.certificate(index.bounds[0] - size / 10**9).verify()
@@ -187,7 +182,6 @@ def in_state_space(g):
     ],
 )
 def test_a_motion_of_several_axes_replayed_by_scipy(g, kind):
-    """lsim answers the inputs with the outputs that the motion says, and the integral is the share."""
     motion = indices(g).witness
     assert motion.kind == kind
     system = in_state_space(g)
@@ -201,7 +195,6 @@ def test_a_motion_of_several_axes_replayed_by_scipy(g, kind):
 
 @pytest.mark.parametrize("seed", [2, 5, 8])
 def test_a_discrete_motion_of_several_axes_replayed_by_scipy(seed):
-    """dlsim answers the samples; more comes out than goes in."""
     g = random_system(seed, 3, 2, throughput=-0.1, discrete=True)
     motion = indices(g).witness
     _, u, y = motion.signals()
@@ -261,7 +254,6 @@ HIDDEN = {  # and whether what is hidden decays
 
 @pytest.mark.parametrize("why", HIDDEN)
 def test_hidden_modes_of_several_axes(why):
-    """A mode that no input reaches or no output sees, and that does not decay, is told."""
     g, decay = HIDDEN[why]
     found = indices(g)
     assert found.hidden_modes_decay == decay

@@ -50,7 +50,6 @@ def test_a_late_spring_of_two_axes(late):
 
 
 def test_axes_that_do_not_act_on_each_other_need_the_larger_damping():
-    """Two laws with memory, decided one by one by the criterion of one axis."""
     parts, nothing = [([90, -60, 5], [1, -0.5, 0.25]), ([40, 30, -50], [1, 0.3, 0])], ([0], [1])
     alone = [indices(control.tf(*part, 0.002)).sampled_damping.required for part in parts]
     both = indices(matrix([[parts[0], nothing], [nothing, parts[1]]], 0.002)).sampled_damping

@@ -15,7 +15,6 @@ NETWORK = SimpleNamespace(f=[1.0, 2.0, 3.0], s=[[[0.96]], [[1.02j]], [[1.04]]])
 
 
 def test_a_measured_response_with_error_bars():
-    """Broken by more than the error, within it, and kept: by hand."""
     found = FIVE
     assert found.violated == (False, False, True, False, False)
     assert found.possible == (False, True, True, True, False)
@@ -79,7 +78,6 @@ def test_no_module_has_the_name_of_what_it_offers():
 
 
 def test_the_picture_tells_three_kinds_of_samples_apart():
-    """Each sample once, with its error, and the bands up to the samples beside them."""
     figure = FIVE.plot()
     (axes,) = figure.axes
     assert axes.get_title(loc="left") == "1 of 5 samples violate"

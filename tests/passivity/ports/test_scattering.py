@@ -29,7 +29,6 @@ ACTIVE = {
 
 @pytest.mark.parametrize("name", PASSIVE)
 def test_bounded_real_is_passive_with_a_proof(name):
-    """What no wave leaves larger is proved so, open and short ends and a gyrator too."""
     found = zw.ports.scattering_passivity(PASSIVE[name])
     assert found.passive
     assert found.certificate.verify()
@@ -105,7 +104,6 @@ def test_the_relative_index_of_an_improper_port():
 
 @pytest.mark.parametrize("system", [PASSIVE["gyrator"], ACTIVE["one way"][0]])
 def test_what_is_saved_is_verified(system, tmp_path, capsys):
-    """`zwidth verify` accepts the proof and the waves for what the document says."""
     zw.ports.scattering_passivity(system).save(tmp_path / "s.json")
     assert main(["verify", str(tmp_path / "s.json")]) == 0
     assert "VALID" in capsys.readouterr().out
@@ -134,7 +132,6 @@ def table(*gains, **more):
 
 
 def test_samples_above_one_are_told_with_what_lies_beside_them():
-    """Which run of samples violates, and between which samples its edges lie."""
     found = zw.ports.scattering_table(table(0.5, 1.1j, -1.2, 0.9, 1.0, 1.3))
     assert found.violates
     first, last = found.bands

@@ -22,7 +22,6 @@ ARM = built_in("two-link", damping=(0.02, 0.012))
 
 
 def test_the_saved_verdict_verifies(tmp_path: Path) -> None:
-    """As JSON, numbers as the decimals that were given; with more in the wall it is refused."""
     space = zw.workspace(ARM, zw.Wall("610.1", "0.01"), rate=1500, points=20)
     space.save(tmp_path / "proof.json")
     document = read_document(tmp_path / "proof.json")
@@ -41,7 +40,6 @@ def test_the_saved_verdict_verifies(tmp_path: Path) -> None:
 
 
 def test_a_budget_too_small_leaves_a_theorem(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What doubles show, and why there is no certificate, with the number."""
     monkeypatch.setattr(arm_cells, "MOST_WORK", 60)
     space = zw.workspace(ARM, zw.Wall(500), rate=1000, points=20)
     assert (space.outcome, space.certificate) == ("theorem", None)
@@ -118,7 +116,6 @@ def test_virtual_damping_of_both_signs(delay: int) -> None:
 
 
 def test_a_held_torque_is_said() -> None:
-    """With the force and the curvature in the document."""
     space = zw.workspace(ARM, zw.Wall(300), rate=1000, points=20, torque_held_up_to=8)
     assert space.outcome == "passive"
     assert "is held, for forces up to 8 N" in checker.verify(space.certificate.documents[0]).reason
@@ -175,7 +172,6 @@ def test_described_arms_of_every_kind_of_joint(tmp_path: Path) -> None:
 
 
 def test_joints_beside_the_way_to_the_hand_are_left_out(tmp_path: Path) -> None:
-    """A gripper moves nothing that the wall feels; it is not in the document."""
     arm = (("a", "revolute", "l0", "l1", 0.05), ("b", "revolute", "l1", "l2", 0.04))
     grip = (("g", "revolute", "l2", "l3", 0.0),)
     joints = [

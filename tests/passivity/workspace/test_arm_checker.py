@@ -60,7 +60,6 @@ def surplus_of(document: dict[str, Any], joints: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_the_matrix_of_a_chain_is_that_of_its_motion(seed: int) -> None:
-    """Against complex steps through homogeneous matrices, joints that turn and slide."""
     rng = np.random.default_rng(seed)
     document = random_chain(rng, int(rng.integers(1, 7)))
     q = rng.uniform(-0.2, 0.3, len(document["arm"]["joints"])).round(6)
@@ -72,7 +71,6 @@ def test_the_matrix_of_a_chain_is_that_of_its_motion(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_the_matrix_of_legs_is_that_of_their_angles(seed: int) -> None:
-    """Against the gradients of the angles, found by arcs; both elbows, with and without an offset."""
     rng = np.random.default_rng(seed)
     size = 2 + seed % 2
     legs = []
@@ -120,7 +118,6 @@ def test_the_matrix_of_legs_is_that_of_their_angles(seed: int) -> None:
     ],
 )
 def test_the_slopes_are_those_of_the_matrix(document: dict[str, Any], place: list[float]) -> None:
-    """Enclosed over a cell around a place, they are the differences across it, and hardly more is left."""
     width, matrix = 2.0**-20, claim(document).matrix
     middle = [constant(Fraction(repr(x))) for x in place]
     half = 1 << BITS - 20
@@ -142,7 +139,6 @@ def test_the_slopes_are_those_of_the_matrix(document: dict[str, Any], place: lis
 
 
 def test_a_held_torque_takes_its_price_from_every_joint() -> None:
-    """h F T/2 from the diagonal, nothing beside it."""
     place = [Fraction("0.7"), Fraction("1.3")]
     free, held = (matrix_at(d, place) for d in (two_link(), two_link(**HELD)))
     assert free[0][0] - held[0][0] == pytest.approx(0.26 * 2 * 0.001 / 2)
@@ -152,7 +148,6 @@ def test_a_held_torque_takes_its_price_from_every_joint() -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_the_verdict_on_a_chain_is_that_of_a_fine_grid(seed: int) -> None:
-    """Just above the damping that a fine grid asks for it is accepted, just below refused."""
     rng = np.random.default_rng(seed)
     document = random_chain(rng, 1 + seed % 3)
     joints = document["arm"]["joints"]
@@ -170,7 +165,6 @@ def test_the_verdict_on_a_chain_is_that_of_a_fine_grid(seed: int) -> None:
 
 @pytest.mark.parametrize("stiffness", [[1, 0, 0], [0, 1, 0], [3, 0, 4]])
 def test_the_verdict_on_legs_is_that_of_a_fine_grid(stiffness: list[int]) -> None:
-    """A wall 1 % below what the worst point bears is accepted, 1 % above refused."""
     a, b, c = stiffness
     shape = np.array([[a + 1, b], [b, c + 1]])
     legs = [
@@ -208,7 +202,6 @@ MIXED = {
     ids=["chain", "mixed", "delay", "held", "legs", "rank one"],
 )  # fmt: skip
 def test_what_holds_is_accepted(document: dict[str, Any]) -> None:
-    """With the assumptions in its words."""
     found = checker.verify(document)
     assert found.valid, found.reason
     assert "read without encoder steps" in found.reason
@@ -280,14 +273,12 @@ SMALL = {"arm__low_m": ["0", "0.08"], "arm__high_m": ["0.002", "0.082"]}
     "document", [two_link(), pantograph(**SMALL), *(chain_in_pose(4, 2, every) for every in (True, False))]
 )
 def test_every_place_is_read_with_care(document: dict[str, Any]) -> None:
-    """Whatever stands in any place of a document, the answer is a verification."""
     for path in places({k: document[k] for k in ("arm", "wall", "loop")}):
         for junk in (None, "x", [], {}, "1/0", True, "-1"):
             assert isinstance(checker.verify(put(document, path, junk)).valid, bool)
 
 
 def test_more_cells_than_the_budget_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With the number in the reason."""
     monkeypatch.setattr(arm_cells, "MOST_WORK", 240)
     found = checker.verify(two_link())
     assert (found.valid, found.reason) == (False, "more than 20 cells would be needed")
@@ -361,7 +352,6 @@ LESS = repr(float(counted()["arm"]["joints"][0]["coulomb_friction_N_m"]) * (1 - 
     ],
 )
 def test_encoder_steps_are_paid_for(changes: dict[str, Any], reason: str) -> None:
-    """What the formula asks for is accepted, and 1 part in 10⁵ less friction, or anything worse, refused."""
     found = checker.verify(counted())
     assert found.valid, found.reason
     assert "its encoder steps counted" in found.reason
@@ -379,7 +369,6 @@ def test_every_number_of_the_encoders_is_needed(key: str) -> None:
 
 
 def test_readings_may_be_a_step_outside_the_region() -> None:
-    """The condition, and the bounds on the columns, are proved one step around it."""
     edge = counted(arm__joints__1__low_rad="0.45", arm__joints__0__largest_column_m_per_rad="0.1756")
     for joint in edge["arm"]["joints"]:
         joint["coulomb_friction_N_m"] = "1"
@@ -398,10 +387,8 @@ def test_a_joint_that_is_held_has_no_steps() -> None:
 
 
 def test_no_encoders_of_parallel_arms() -> None:
-    """How their Jacobian changes over a step is not bounded."""
     assert "not bounded" in checker.verify(pantograph(loop=counted()["loop"])).reason
 
 
 def test_words_say_no_more_than_is_proved() -> None:
-    """The force is rounded down."""
     assert "up to 2.99999 N" in checker.verify(counted(loop__largest_force_N="2.9999999")).reason

@@ -52,7 +52,6 @@ WALLS = {
 
 @pytest.mark.parametrize("kind", WALLS)
 def test_both_sides_of_the_limit_of_six_joints(kind: str, tmp_path: Path) -> None:
-    """Past the limit a motion takes energy out, at it every point holds, below it every cell is proved."""
     arm, wall = _arm(tmp_path, 6, moving=1), WALLS[kind]
     limit = _space(arm, wall).stiffness_factor
     over = _space(arm, _times(wall, 1.001 * limit))
@@ -81,7 +80,6 @@ def test_both_sides_wherever_the_wall_rests(kind: str, tmp_path: Path) -> None:
 
 
 def test_no_closed_path_takes_energy_out_wherever_the_wall_rests(tmp_path: Path) -> None:
-    """Of an arm proved for every rest, with rests far and near; close to the limit at the rest itself."""
     arm: Any = read_arm(random_arm(tmp_path / "arm.urdf", 21, 2), pose=True)
     wall, rng, least = WALLS["rotation alone"], np.random.default_rng(10), np.inf
     wall = _times(wall, 0.97 * _space(arm, wall, 20).stiffness_factor)
@@ -127,21 +125,13 @@ def test_the_work_of_a_held_force_is_that_of_the_difference(tmp_path: Path) -> N
     assert work == pytest.approx(force @ (arm.forward(end) - arm.forward(start)), rel=1e-9)
 
 
-def test_the_proof_comes_close_to_the_limit(tmp_path: Path) -> None:
-    """One joint moves, in a thousand cells: 0.99 of the limit is proved, 1.001 of it refuted."""
-    arm, wall = _arm(tmp_path, 6, moving=1), WALLS["as stiff every way"]
-    limit = _space(arm, wall, 1000).stiffness_factor
-    assert _space(arm, _times(wall, 0.99 * limit), 1000).outcome == "passive"
-    assert _space(arm, _times(wall, 1.001 * limit), 1000).outcome == "active"
-
-
 def test_the_reported_energy_by_pinocchio(tmp_path: Path) -> None:
     """Summed again with rotation vectors from pinocchio, without the code that found it."""
     pin = pytest.importorskip("pinocchio")
     arm: Any = _arm(tmp_path, 6, moving=1)
     wall = WALLS["as stiff every way"]
-    motion = _space(arm, _times(wall, 1.05 * _space(arm, wall).stiffness_factor)).motion
     wall = _times(wall, 1.05 * _space(arm, wall).stiffness_factor)
+    motion = _space(arm, wall).motion
     model = pin.buildModelFromUrdf(str(tmp_path / "arm.urdf"))
     data, number = model.createData(), model.getFrameId(arm.frame)
 
@@ -165,7 +155,7 @@ def test_the_reported_energy_by_pinocchio(tmp_path: Path) -> None:
 
 
 def test_seven_joints_are_proved_up_to_what_a_hand_feels(tmp_path: Path) -> None:
-    """The factor is that of (J δ_m⁻¹ Jᵀ)⁻¹; beyond it hands that hold the links refute."""
+    """The factor is that of (J δ_m⁻¹ Jᵀ)⁻¹."""
     arm, wall = _arm(tmp_path, 7, moving=1), WALLS["coupled"]
     space = _space(arm, wall, 200)
     (need,) = wall_need(wall, 0.001, 0, 6).matrices
@@ -176,9 +166,6 @@ def test_seven_joints_are_proved_up_to_what_a_hand_feels(tmp_path: Path) -> None
         factors.append(1 / np.linalg.eigvals(np.linalg.solve(felt, need)).real.max())
     assert space.stiffness_factor == pytest.approx(min(factors), rel=1e-6)
     assert _space(arm, _times(wall, 0.95 * min(factors)), 200).outcome == "passive"
-    over = _space(arm, _times(wall, 1.5 * min(factors)), 200)
-    assert over.outcome == "active"
-    assert over.motion.imposed_by == "links"
 
 
 def test_one_joint_that_turns_the_hand(tmp_path: Path) -> None:
@@ -194,7 +181,6 @@ def test_one_joint_that_turns_the_hand(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("joints", [2, 4])
 def test_without_rotational_stiffness_it_is_the_wall_of_a_point(joints: int, tmp_path: Path) -> None:
-    """The same margins, limits and proofs as of the arm held at a point."""
     arm = _arm(tmp_path, joints)
     point = read_arm(tmp_path / "arm.urdf", hold={f"j{i}": 0.03 * i for i in range(2, joints)})
     for stiffness in (200, 3000):
@@ -210,7 +196,6 @@ def test_without_rotational_stiffness_it_is_the_wall_of_a_point(joints: int, tmp
 @pytest.mark.parametrize("delay", [0, 2])
 @pytest.mark.parametrize("kind", ["coupled", "coupled and damped"])
 def test_no_closed_path_in_a_proved_region_takes_energy_out(kind: str, delay: int, tmp_path: Path) -> None:
-    """Random and alternating paths of three joints, small and across the region."""
     rng, seed = np.random.default_rng(delay), 1 + len(kind) % 2
     path = random_arm(tmp_path / "arm.urdf", seed, 2)
     arm: Any = read_arm(path, pose=True, rest={"j0": 0.2})
@@ -232,7 +217,6 @@ def test_no_closed_path_in_a_proved_region_takes_energy_out(kind: str, delay: in
 
 
 def test_the_loss_between_the_points_does_not_depend_on_units() -> None:
-    """Metres or millimetres: R, J and η change together; and it covers what changes by no more than η."""
     rng = np.random.default_rng(7)
     root, j = rng.normal(size=(6, 6)), rng.normal(size=(6, 4))
     need, parts, units = root @ root.T, np.array([0.02, 0.01]), np.diag([1000.0] * 3 + [1.0] * 3)
@@ -251,10 +235,8 @@ def test_the_loss_between_the_points_does_not_depend_on_units() -> None:
 
 
 def test_a_held_torque_in_pose() -> None:
-    """No closed path takes energy out about a wall with the forces and moments that were counted."""
-    arm = PlanarChain(
-        links=(0.1, 0.08), damping=(0.02, 0.015), joint_range=((0.2, 0.9), (0.5, 1.2)), pose=True
-    )
+    ranges = (0.2, 0.9), (0.5, 1.2)
+    arm = PlanarChain(links=(0.1, 0.08), damping=(0.02, 0.015), joint_range=ranges, pose=True)
     wall = zw.arms.MatrixWall.in_pose(100, 0.5, planar=True)
     free, held = (_space(arm, wall, 20, torque_held_up_to=up_to) for up_to in (None, (10, 3)))
     assert held.stiffness_factor < free.stiffness_factor
@@ -272,7 +254,6 @@ def test_a_held_torque_in_pose() -> None:
 
 
 def test_the_turn_costs_where_the_torque_is_held(tmp_path: Path) -> None:
-    """½ (h F + h_e M) T more of every joint, with h_e half the number of joints that turn the hand."""
     arm = _arm(tmp_path, 3)
     wall, held = zw.arms.MatrixWall.in_pose(100, 1), (4, 2)
     price = (arm.curvature * 4 + 1.5 * 2) * 0.001 / 2
@@ -282,7 +263,6 @@ def test_the_turn_costs_where_the_torque_is_held(tmp_path: Path) -> None:
 
 
 def test_the_map_keeps_metres_and_radians_apart(tmp_path: Path) -> None:
-    """Two encoder steps, two frictions, two limits; the worst direction in the joints and at the hand."""
     options: Any = {"resolution": (0.001,) * 6, "coulomb_friction": (0.02,) * 6, "torque_limit": (2.0,) * 6}
     arm = _arm(tmp_path, 6, **options)
     space = _space(arm, WALLS["coupled"], 8)
@@ -309,7 +289,6 @@ def test_the_map_keeps_metres_and_radians_apart(tmp_path: Path) -> None:
 
 
 def test_a_planar_chain_in_pose() -> None:
-    """The last link held: both sides of the limit, and the least damping proves the region."""
     arm = PlanarChain(links=(0.1, 0.08), damping=(0.02, 0.01), joint_range=((0.2, 0.9),) * 2, pose=True)
     wall = zw.arms.MatrixWall.in_pose(600, 8, planar=True)
     limit = _space(arm, wall).stiffness_factor
@@ -318,35 +297,31 @@ def test_a_planar_chain_in_pose() -> None:
     over = _space(arm, _times(wall, 2 * limit))
     assert "hand_z" not in over.data.coords
     better = arm.replace(damping=tuple(np.add(arm.damping, over.least_additions)))
-    assert _space(better, over.wall).outcome == "passive"  # type: ignore[arg-type]
+    assert _space(better, over.wall).outcome == "passive"
 
 
 def test_walls_and_hands_that_do_not_fit(tmp_path: Path) -> None:
-    """One message each, with what to give."""
-    posed, point = _arm(tmp_path, 2), built_in("two-link", damping=0.01)
-    for arm, wall, words in (
-        (_arm(tmp_path, 2, rest=None), WALLS["coupled"], "say where it rests"),
+    posed, anyhow, asked = _arm(tmp_path, 2), _arm(tmp_path, 2, rest=None), {"rate": 1000, "points": 4}
+    wall_of, planar = zw.arms.MatrixWall, zw.arms.MatrixWall.in_pose(1, 1, planar=True)
+    for ask, words in (
+        (lambda: zw.workspace(anyhow, WALLS["coupled"], **asked), "say where it rests"),
+        (lambda: zw.workspace(anyhow, wall_of(np.diag([1, 1, 1, 2, 2, 3]), turns=3), **asked), "every axis"),
+        (lambda: zw.workspace(posed, zw.Wall(500), **asked), "are not one stiffness"),
+        (lambda: zw.workspace(posed, wall_of(np.eye(6)), **asked), "turns=3"),
+        (lambda: zw.workspace(posed, planar, **asked), "turns=3"),
         (
-            _arm(tmp_path, 2, rest=None),
-            zw.arms.MatrixWall(np.diag([1, 1, 1, 2, 2, 3]), turns=3),
-            "every axis",
+            lambda: zw.workspace(PlanarChain(links=(0.1,), damping=(1,), pose=True), zw.Wall(1), **asked),
+            "planar=True",
         ),
-        (posed, zw.Wall(500), "are not one stiffness"),
-        (posed, zw.arms.MatrixWall(np.eye(6)), "turns=3"),
-        (posed, zw.arms.MatrixWall.in_pose(1, 1, planar=True), "turns=3"),
-        (PlanarChain(links=(0.1,), damping=(1,), pose=True), zw.Wall(1), "planar=True"),
-        (point, zw.arms.MatrixWall.in_pose(1, 1, planar=True), "held at a point"),
+        (lambda: zw.workspace(built_in("two-link", damping=1), planar, **asked), "held at a point"),
+        (lambda: wall_of(np.eye(4), turns=1), "3 and 1 in the plane"),
+        (lambda: zw.workspace(posed, WALLS["coupled"], **asked, torque_held_up_to=5), "largest moment"),
     ):
         with pytest.raises(zw.InputError, match=words):
-            zw.workspace(arm, wall, rate=1000, points=4)
-    with pytest.raises(zw.InputError, match="3 and 1 in the plane"):
-        zw.arms.MatrixWall(np.eye(4), turns=1)
-    with pytest.raises(zw.InputError, match="largest moment"):
-        zw.workspace(posed, WALLS["coupled"], rate=1000, points=4, torque_held_up_to=5)
+            ask()
 
 
 def test_a_wall_in_pose_in_words() -> None:
-    """Each unit with its numbers."""
     text = zw.arms.MatrixWall.in_pose(500, 5, 0.1).describe()
     assert text == (
         "wall of 6 coordinates, stiffness 500 to 500 N/m, virtual damping 0.1 to 0.1 N·s/m; "
@@ -375,7 +350,6 @@ def test_a_wrist_that_no_hand_can_hold_is_not_refuted(tmp_path: Path) -> None:
 
 
 def test_shows_itself_without_a_stiffness_in_one_unit(tmp_path: Path) -> None:
-    """In a console: a factor in the place of N/m."""
     space = _space(_arm(tmp_path, 3), zw.arms.MatrixWall.in_pose(10, 0.1), points=5)
     assert "times this one" in repr(space)
     assert len(repr(space)) < 600

@@ -131,7 +131,6 @@ def space_of(arm: Any, factor: float = 1, stiffness: tuple[float, float] = (500,
 @pytest.mark.parametrize("rest", [None, {}])
 @pytest.mark.parametrize("joints", [3, 6, 7])
 def test_both_sides_of_the_limit(joints: int, rest: Any, tmp_path: Path) -> None:
-    """0.99 of it certified, with one joint or two that move; 1.01 refused by the checker, too."""
     hold = {f"j{i}": 0.03 * i for i in range(2 if joints == 3 else 1, joints)}
     arm = read_arm(random_arm(tmp_path / "arm.urdf", 10 + joints, joints), pose=True, hold=hold, rest=rest)
     limit = space_of(arm).stiffness_factor
@@ -166,7 +165,6 @@ HELD = {"torque": "held", "largest_force_N": "0.4", "curvature_m_per_rad2": "5",
 
 @pytest.mark.parametrize(("size", "slides"), [(3, ()), (5, (1, 2))])
 def test_a_held_torque_pays_for_forces_and_turns(size: int, slides: tuple[int, ...]) -> None:
-    """½ (h F + h_e M) T from the diagonal, with h_e half the number of joints that turn."""
     free = chain_in_pose(4, size, True, slides)
     held = {**free, "loop": {**free["loop"], **HELD}}
     q = fractions([0.1] * size)
@@ -188,7 +186,6 @@ def planar() -> dict[str, Any]:
 
 
 def test_a_chain_in_the_plane() -> None:
-    """Its matrix is the one of the sum of the angles; joints that leave the plane have no such angle."""
     document = planar()
     stiffness = np.array(document["wall"]["stiffness_N_m_rad"], dtype=float)
     arm = PlanarChain(links=(0.1, 0.08), damping=(0.02, 0.01), pose=True)
@@ -247,7 +244,6 @@ def test_what_does_not_hold_is_refused(every: bool, path: str, value: Any, reaso
 
 @pytest.mark.parametrize("rest", [None, {}])
 def test_other_axes_and_a_larger_region_are_refused(rest: Any, tmp_path: Path) -> None:
-    """Close to the limit: an axis turned by 0.3 rad is another arm; so is one whose joints go further."""
     path = random_arm(tmp_path / "arm.urdf", 13, 3)
     arm = read_arm(path, pose=True, hold={"j2": 0.1}, rest=rest)
     document = space_of(arm, 0.98 * space_of(arm).stiffness_factor).certificate.documents[0]

@@ -29,7 +29,6 @@ def drawn(rng: random.Random) -> PlanarChain:
 
 @seeds(2)
 def test_the_wall_that_is_advised_is_proved(seed: int) -> None:
-    """The outcome at what is printed is passive; at what is said to fail, and a hair more, it is not."""
     rng = random.Random(seed)
     arm, delay = drawn(rng), rng.choice([0, 0, 0.002])
 
@@ -50,14 +49,12 @@ def test_the_wall_that_is_advised_is_proved(seed: int) -> None:
 
 
 def test_an_arm_that_no_checker_is_asked_of_says_so() -> None:
-    """Five joints: the points of the map are all there is."""
     arm = PlanarChain(links=[0.1] * 5, joint_range=[(0.3, 0.5)] * 5, damping=[0.01] * 5)
     text = dict(_changes(zw.workspace(arm, zw.Wall(2000), rate=1000, points=2)))["wall"]
     assert text.endswith("N/m, by the points of the map alone")
 
 
 def test_a_wall_in_pose_is_told_in_times() -> None:
-    """Its stiffness has two units."""
     arm = PlanarChain(links=[0.1, 0.1], joint_range=[(0, 0.4), (0.8, 1.2)], damping=[0.02, 0.02], pose=True)
     wall = zw.arms.MatrixWall.in_pose(2000, 0.5, planar=True)
     found = zw.workspace(arm, wall, rate=1000, points=12)

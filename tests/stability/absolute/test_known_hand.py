@@ -42,7 +42,6 @@ def swing_at_the_end(stiffness, gap, start, samples=12000):
 
 
 def test_criteria_of_the_wall(result):
-    """Each multiplier proves more than the one before; all but nothing is left below the linear limit."""
     slopes = [float(row.slope) for row in result.proved]
     assert slopes == sorted(slopes)
     assert slopes[0] < 170
@@ -51,7 +50,6 @@ def test_criteria_of_the_wall(result):
 
 
 def test_linear_limit_from_both_sides(result):
-    """Closed-loop poles of the sampled device, hand and spring are inside the circle below, outside above."""
     plant = result.plant
     for factor, stable in ((1 - 1e-6, True), (1 + 1e-6, False)):
         closed = plant.denominator.copy()
@@ -61,12 +59,10 @@ def test_linear_limit_from_both_sides(result):
 
 @pytest.mark.parametrize("gap", [-0.01, 0.0, 0.01])
 def test_below_what_is_proved_the_simulated_device_comes_to_rest(result, gap):
-    """At 95 % of the proved stiffness a motion falls to a thousandth, wherever the hand rests."""
     assert swing_at_the_end(0.95 * float(result.largest), gap, 0.05) < 1e-3 * 0.05
 
 
 def test_above_the_linear_limit_a_pressing_hand_vibrates(result):
-    """At 1800 N/m a periodic motion that was solved is played by the simulator, and attracts."""
     motion = periodic_motion(result.plant, 1800.0, -1.0)
     assert motion.slope > result.refuted
     assert motion.growth < 1
@@ -78,7 +74,6 @@ def test_above_the_linear_limit_a_pressing_hand_vibrates(result):
 
 
 def test_no_motion_is_found_where_stability_is_proved(result):
-    """Below the proved slope the search for periodic motions comes back with nothing."""
     for gap in (-1.0, 1.0):
         assert periodic_motion(result.plant, 0.99 * float(result.largest), gap) is None
 
@@ -104,7 +99,6 @@ def test_jury_lee_tends_to_the_passive_stiffness():
 
 
 def test_jury_lee_with_a_soft_hand():
-    """With a hand of 4 N/m Jury–Lee proves 2b/T to a percent, and Tsypkin nothing like it."""
     found = absolute(DEVICE, LinearHand(stiffness=4), motions=False)
     assert float(found.slope("Jury–Lee")) == pytest.approx(1600, rel=0.01)
     assert float(found.slope("Tsypkin")) < 1000
@@ -112,7 +106,6 @@ def test_jury_lee_with_a_soft_hand():
 
 @pytest.mark.parametrize("delay", ["0.0004", "0.001", "0.0023"])
 def test_late_forces(delay):
-    """With a late force the proof stays below the limit of the poles, and certificates verify."""
     found = absolute(DEVICE.replace(delay=delay), HAND, motions=False)
     assert 0.98 * found.linear_limit.slope < float(found.largest) <= found.linear_limit.slope < 1606
     assert all(row.certificate.verify() for row in found.proved)
@@ -127,7 +120,6 @@ def test_describing_function_is_a_fair_guess_for_a_pressing_hand(result):
 
 
 def test_saved_and_verified(result, tmp_path):
-    """What is saved is verified from the file; a slope raised in the file is not."""
     path = tmp_path / "wall.json"
     result.save(path)
     assert verify_document(read_document(path)).valid
@@ -147,7 +139,6 @@ def test_a_rotary_device_is_the_linear_one_in_other_units(result, tmp_path):
 
 
 def test_the_command_line_does_not_call_it_passive(result, tmp_path, capsys):
-    """`zwidth verify` says that the loop comes to rest, with the slope, and says nothing of passivity."""
     result.proved[0].certificate.save(tmp_path / "circle.json")
     assert main(["verify", str(tmp_path / "circle.json")]) == 0
     told = " ".join(capsys.readouterr().out.split())
@@ -158,7 +149,6 @@ def test_the_command_line_does_not_call_it_passive(result, tmp_path, capsys):
 
 @pytest.mark.parametrize(("slope", "gap", "longest"), [(0.0, 1.0, 10), (9.0, 0.0, 10), (9.0, 1.0, 1)])
 def test_motions_of_nothing_are_refused(result, slope, gap, longest):
-    """A slope of 0, a wall at the anchor or a period of one sample are refused."""
     with pytest.raises(zw.InputError, match="must be > 0"):
         periodic_motion(result.plant, slope, gap, longest)
 

@@ -43,10 +43,6 @@ of_each = pytest.mark.parametrize("number", sorted(PLANTS))
 
 @of_each
 def test_slopes_are_the_published_ones(number):
-    """Circle, Tsypkin and odd Zames–Falb to three digits; the linear limit is the Nyquist value.
-
-    The circle is implied by Tsypkin and by Jury–Lee, each of them by a Zames–Falb multiplier.
-    """
     result = found(number)
     names = ("circle", "Tsypkin", "Zames–Falb, odd")
     for name, value in zip(names, PUBLISHED[number], strict=True):
@@ -74,12 +70,10 @@ def test_certificates_verify_and_no_more_slope_does(number):
 
 
 def test_walls_that_are_not_odd_get_less():
-    """Example 6: 0.9115 for any monotone wall, 1.0870 for odd ones."""
     assert float(found(6).slope("Zames–Falb")) == pytest.approx(0.9115, abs=5e-5)
 
 
 def test_a_one_sided_wall_just_above_what_is_proved_for_it_vibrates():
-    """Example 6: a motion of three samples, below the linear limit, within a percent of the proof."""
     result = found(6)
     motion = result.pressing
     assert motion.period == 3
@@ -96,7 +90,6 @@ def test_a_one_sided_wall_just_above_what_is_proved_for_it_vibrates():
 
 
 def test_saved_with_the_result_and_verified(tmp_path, capsys) -> None:
-    """Slopes and motions are verified from one file; the command line says that it vibrates."""
     path = tmp_path / "six.json"
     found(6).save(path)
     assert verify_document(read_document(path)).valid

@@ -40,7 +40,6 @@ def touched() -> dict:
     ("off", "valid"), [(Fraction(1, 10**60), True), (-Fraction(1, 10**60), False), (0, False)]
 )
 def test_the_slope_at_which_a_motion_of_three_samples_appears(off: Fraction, valid: bool) -> None:
-    """Plant 6: 10⁻⁶⁰ above 175/192 there are two motions, one and two samples inside; not at it or below."""
     for second in (False, True):
         doc = six(slope=str(LIMIT + off), inside=[True, second, False])
         assert checker.verify(doc).valid == valid
@@ -79,7 +78,6 @@ def test_where_the_pattern_begins_and_the_size_do_not_matter(change: dict, valid
     ids=str,
 )
 def test_refuses_what_is_no_motion(change: dict, words: str) -> None:
-    """Another pattern, slope or plant, or one without contact made and broken."""
     found = checker.verify(six(**change))
     assert not found.valid
     assert words in found.reason
@@ -96,13 +94,11 @@ def test_refuses_what_is_no_motion(change: dict, words: str) -> None:
     ],
 )
 def test_a_touched_device_with_another_number(touched: dict, key: str, value: object) -> None:
-    """The motion of one device is accepted, and is none of the others."""
     assert checker.verify(touched).valid
     assert not checker.verify({**touched, "loop": {**touched["loop"], key: value}}).valid
 
 
 def test_a_touched_device_with_another_wall(touched: dict) -> None:
-    """Its pattern with one sample flipped, or with a slope that is proved to come to rest, is refused."""
     flipped = list(touched["inside"])
     edge = next(i for i in range(len(flipped)) if flipped[i] != flipped[i - 1])
     flipped[edge] = not flipped[edge]
@@ -119,7 +115,6 @@ def test_a_touched_device_with_another_wall(touched: dict) -> None:
     ],
 )
 def test_every_motion_found_has_a_certificate(top: list, bottom: list, slope: float) -> None:
-    """Published plants: what the search finds the checker accepts, and with half the slope refuses."""
     motion = periodic_motion(given_plant(zw.PulseTransferFunction(top, bottom)), slope, -1.0)
     assert motion.certificate.verify()
     (doc,) = motion.certificate.documents

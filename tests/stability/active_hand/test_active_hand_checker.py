@@ -30,7 +30,6 @@ def proofs(wall: zw.Wall) -> tuple[dict[str, Any], dict[str, Any]]:
 
 @pytest.mark.parametrize("wall", [zw.Wall(150), zw.Wall(100, 0.05), zw.Wall(20, 0.12), zw.Wall(300)])
 def test_accepted(wall: zw.Wall) -> None:
-    """Springs, damped walls, activity above b, and none at all."""
     for proof in proofs(wall):
         found = checker.verify(proof)
         assert found.valid, found.reason
@@ -63,14 +62,12 @@ def test_accepted(wall: zw.Wall) -> None:
     ],
 )
 def test_tampered(which: int, path: str, value: Any) -> None:
-    """Numbers no longer fit or suffice; contact broken, the loop proved has just the activity less."""
     proof = proofs(zw.Wall(100, 0.05))[which]
     assert not checker.verify(tampered(proof, path.split("."), value)).valid
 
 
 @pytest.mark.parametrize("hertz", [0.01, 10, 123.4, 499, 500])
 def test_ends_of_the_band(hertz: float) -> None:
-    """The cosine is from below and the angle from above, both sharp."""
     band = band_of(Fraction(str(hertz)), Fraction(1, 1000))
     angle = 2 * np.pi * hertz / 1000
     assert 0 <= float(band.angle) - angle < 1e-15
@@ -88,7 +85,6 @@ def test_an_angle_beyond_half_a_turn_covers_all(turn: str) -> None:
 
 
 def test_activity_is_in_its_unit() -> None:
-    """A number that is said to be in mN·s/m is not taken for one in N·s/m."""
     kept, _ = proofs(zw.Wall(100, 0.05))
     activity = kept.pop("activity_N_s_per_m")
     turned = checker.verify({**kept, "activity_N_m_s_per_rad": activity})

@@ -117,7 +117,6 @@ def test_against_the_discs_of_all_linear_hands(wall: zw.Wall, below: float, dela
     ],
 )
 def test_a_hand_that_is_too_active(wall: zw.Wall, delay: int) -> None:
-    """It is barely more active than allowed and shakes the loop; as active as is proved it does not."""
     found = tolerated(paddle(delay=delay * T), wall)
     hand = found.hand
     assert found.activity < hand.activity < found.activity * 1.003 + 1e-4
@@ -138,7 +137,6 @@ def test_that_hand_is_of_the_kind() -> None:
 
 
 def test_no_linear_hand_of_this_activity_shakes_the_loop() -> None:
-    """300 random masses, springs, dampers and resonances within the bound."""
     rng = np.random.default_rng(7)
     wall = zw.Wall(120, 0.03)
     allowed = tolerated(paddle(), wall).activity
@@ -194,7 +192,6 @@ def test_a_clamped_wall_is_covered_with_contact_broken() -> None:
 
 
 def test_the_table_of_the_documentation() -> None:
-    """Every row is computed again."""
     page = Path(__file__).parents[3] / "docs/theory/active-hand.md"
     rows = [line.split("|") for line in page.read_text(encoding="utf-8").splitlines() if " N/m" in line]
     rows = [row for row in rows if len(row) == 6]
@@ -209,7 +206,6 @@ def test_the_table_of_the_documentation() -> None:
 
 
 def test_slow_growth_is_told_in_minutes_and_hours() -> None:
-    """A hand at the limit takes that long; a quick one is told in seconds."""
     found = tolerated(paddle(), zw.Wall(290))
     assert found.hand.describe().endswith(f"doubles every {found.hand.doubling_time / 3600:.3g} h")
     quick = replace(found.hand, doubling_time=100.0)
@@ -218,7 +214,6 @@ def test_slow_growth_is_told_in_minutes_and_hours() -> None:
 
 
 def test_a_band_with_a_unit_and_a_device_that_turns() -> None:
-    """The band may be a text, as on the command line; the result shows in a line."""
     found = tolerated(paddle(), zw.Wall(100), "0.01 kHz")
     assert found.below == 10
     assert repr(found).startswith("<ToleratedActivity below 10 Hz: up to 0.1 N·s/m, contact kept; at any")

@@ -110,7 +110,6 @@ def test_the_wall_of_salcudean_and_vlaar() -> None:
 @pytest.mark.parametrize("delay", ["0", "0.00037", "0.001", "0.0017", "0.003"])
 @pytest.mark.parametrize("hand", [None, Finger(), Dowel(force=1, damping=0.2)])
 def test_whole_and_fractional_delays_and_hands(delay: str, hand: object) -> None:
-    """The spectral radius is that of one state matrix built with matrix exponentials."""
     device, held = PADDLE.replace(delay=delay), as_hand(hand)
     for k, b in ((300.0, 0.1), (2000.0, 5.0), (9000.0, 12.0)):
         found = coupled(device, zw.Wall(k, b), hand)
@@ -151,7 +150,6 @@ def test_a_wall_that_is_passive_is_stable_in_every_passive_hand() -> None:
 
 
 def test_an_interval_stands_for_every_hand_in_it() -> None:
-    """Stable over the box: no hand from it is unstable; the largest proved stiffness is below every one's."""
     box = Hand(mass=(0, "0.02"), stiffness=(0, 1000), damping=(0, 3))
     found = coupled(PADDLE, zw.Wall(1000, 1), box)
     assert found.outcome == "stable"
@@ -232,7 +230,6 @@ def test_what_cannot_be_asked(ask, said) -> None:
 
 
 def test_what_a_claim_rests_on() -> None:
-    """Friction and encoder are left out and named; the text begins with the outcome."""
     found = coupled(PADDLE, zw.Wall(300, 0.1, clamped=True), Finger())
     notes = " ".join(found.assumptions)
     assert "contact is kept" in notes
@@ -249,7 +246,6 @@ def test_a_result_shows_in_a_line() -> None:
 
 
 def test_a_hand_that_turns_says_its_numbers_in_rotary_units() -> None:
-    """The scope of a claim about a rotary device has no kilogram for an inertia."""
     knob = zw.rotary(damping="0.001", inertia="1e-5", rate=1000)
     hand = Hand(mass="2e-5", stiffness=(0, 3), damping="0.02")
     said = coupled(knob, zw.Wall(1), hand).scope.hands.impedance
@@ -258,7 +254,6 @@ def test_a_hand_that_turns_says_its_numbers_in_rotary_units() -> None:
 
 
 def test_roots_of_many_polynomials_are_those_of_each() -> None:
-    """To the bit, with zeros at either end, and of none."""
     rows = np.random.default_rng(3).normal(size=(40, 6))
     rows[10:20, 0] = rows[15:30, -1] = rows[28:33, :3] = rows[35] = 0.0
     rows[36, 1:] = 0.0
@@ -268,7 +263,6 @@ def test_roots_of_many_polynomials_are_those_of_each() -> None:
 
 @pytest.mark.parametrize("delay", [0, "0.4 ms", "3 ms"])
 def test_last_stable_stiffnesses_at_many_dampings_are_those_of_each(delay) -> None:
-    """To the bit."""
     device = zw.catalogue.device("haptic-paddle").replace(delay=delay)
     velocity = zw.rendering.BackwardDifference().transfer(PERIOD)
     polynomials = plain_of(motion_of(device, as_hand(Finger())), velocity)

@@ -50,7 +50,6 @@ def boxed() -> dict:
 def test_at_the_largest_stable_stiffness_and_a_millionth_above(
     delay: str, velocity: object, hand: object
 ) -> None:
-    """The wall of `max_stiffness` is certified stable, one a millionth stiffer is certified unstable."""
     device = PADDLE.replace(delay=delay)
     limit = coupled(device, zw.Wall(100, 2, velocity), hand).max_stiffness
     for factor, outcome, kind in ((1, "stable", "stability"), (1.000001, "unstable", "instability")):
@@ -106,7 +105,6 @@ def test_slow_hands_are_decided() -> None:
     ids=str,
 )
 def test_a_box_with_other_numbers(boxed: dict, loop: dict, valid: bool) -> None:
-    """A box that is widened into unstable hands, or another wall, is refused; a harmless change is not."""
     assert checker.verify(boxed).valid
     assert changed(boxed, **loop).valid == valid
 
@@ -135,7 +133,6 @@ def test_a_box_up_to_the_limit_and_past_it(side: str, far: float, beyond: float)
 
 
 def test_intervals_are_covered_where_random_hands_say_so() -> None:
-    """Random boxes: what is proved is certified, and no one of 20 random hands in it is unstable."""
     rng = np.random.default_rng(3)
     seen = set()
     for _ in range(25):
@@ -190,7 +187,6 @@ def test_what_is_no_loop(loop: dict, words: str) -> None:
 
 
 def test_what_the_checker_refuses_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A prover that says the contrary is not believed."""
     module = sys.modules["zwidth.passivity.stability.known_hand"]
     monkeypatch.setattr(module, "evidence", lambda *rest: {**evidence(*rest), "kind": "stability"})
     assert coupled(PADDLE, zw.Wall(100, 1)).outcome == "stable"
@@ -202,7 +198,6 @@ def test_what_the_checker_refuses_is_undecided(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_saved_and_read_by_the_command_line(tmp_path, capsys) -> None:
-    """`zwidth verify` says that the loop comes to rest, never that it is passive, and notices a change."""
     path = tmp_path / "known.json"
     hands = Hand(stiffness=(0, 100), damping=(1, 2))
     coupled(PADDLE.replace(motion="rotary"), zw.Wall(1000, 1), hands).certificate.save(path)
