@@ -196,7 +196,7 @@ def test_a_chain_in_the_plane() -> None:
     assert f"up to {stiffness[0, 0]:g} N/m and {stiffness[2, 2]:g} N·m/rad, in every orientation" in reason
     tilted = texts(Rotation.from_rotvec([0.1, 0, 0]).as_matrix())
     assert "same axis" in checker.verify(put(document, "arm__joints__1__rotation", tilted)).reason
-    stiffer = put(document, "wall__stiffness_N_m_rad/2/2", repr(1.1 * float(stiffness[2, 2])))
+    stiffer = put(document, "wall__stiffness_N_m_rad__2__2", repr(1.1 * float(stiffness[2, 2])))
     assert "not enough" in checker.verify(stiffer).reason
 
 
@@ -226,7 +226,7 @@ MIRROR = texts(np.diag([1.0, 1, -1]))
         (False, "arm__joints__1__rest_rad", "1e9", "too many turns"),
         (True, "arm__joints__1__rotation", MIRROR, "must not mirror"),
         (False, "arm__joints__1__rotation", MIRROR, "must not mirror"),
-        (True, "arm__joints__1__rotation/0/0", "2", "rows of a rotation"),
+        (True, "arm__joints__1__rotation__0__0", "2", "rows of a rotation"),
         (True, "arm__joints__0__high_rad", "100", "too many turns"),
         (True, "arm__joints__2__damping_N_m_s_per_rad", "0.0001", "not enough"),
         (True, "loop__delay_samples", 200, "not enough"),

@@ -208,6 +208,6 @@ def test_saved_and_read_by_the_command_line(tmp_path, capsys) -> None:
     doc = json.loads(path.read_text(encoding="utf-8"))
     path.write_text(json.dumps({"outcome": "passive", "certificate": doc}))
     assert main(["verify", str(path)]) == 1
-    doc["loop"]["stiffness_N_m_per_rad"] = "200000"
+    doc["loop"]["delay_s"] = "0.01"
     path.write_text(json.dumps(doc))
     assert main(["verify", str(path)]) == 1
