@@ -90,9 +90,7 @@ def greedy(ends: Ends) -> Callable[[int, float], float]:
 @pytest.mark.parametrize("friction", ["0", "0.12"])
 @pytest.mark.parametrize("resolution", ["0", "22.4e-6"])
 @pytest.mark.parametrize(("impedance", "late"), [("0.04", 0), ("0.15", 0), ("1", 0), ("0.15", 1), ("1", 3)])
-def test_two_hands_never_take_energy_out(
-    impedance: str, late: int, resolution: str, friction: str, seed: int
-) -> None:
+def test_two_hands_never_take_energy_out(impedance, late, resolution, friction, seed) -> None:
     """Not a joule, whatever impedance: in exact arithmetic, so that rounding is on the safe side too."""
     device = arm(friction=friction, resolution=resolution, delay=Fraction(late, 1000))
     ends = Ends([device, device], random.Random(seed), impedance=impedance)

@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from asked_forces import asked_of
 from scipy.linalg import expm
 from strategies import seeds
 
@@ -50,36 +51,22 @@ def forces_of_the_free_arm(question: HeldPair, path: np.ndarray) -> np.ndarray:
     """What its controller asks for along a path, sample by sample, from the definitions alone."""
     pair, period = question.pair, float(question.pair.sample_period)
     here = 0 if question.free == "leader" else 1
-    sides = [pair.sides[here], pair.sides[1 - here]]
     mass, damping, stiffness = (float(low) for low, _ in question.motion[:3])
-    late = float(sides[1].delay) / period
+    late = float(pair.sides[1 - here].delay) / period
     whole, part = int(late + 1e-9), late - int(late + 1e-9)
     a = np.array([[0, 1, 0], [-stiffness / mass, -damping / mass, -1 / mass], [0, 0, 0]])
     early, rest = expm(a * part * period), expm(a * (1 - part) * period)
-    ages = [round(float(side.link_delay) / period) for side in sides]
-    readings, asked, couplings = ([list[float](), list[float]()] for _ in range(3))
-    state = np.zeros(2)
+    state, read, asked = np.zeros(2), np.zeros((2, len(path))), np.zeros((2, len(path) + whole + 1))
 
-    def at(values: list[float], k: int) -> float:
-        return values[k] if k >= 0 else 0.0
-
-    def speed(values: list[float], k: int) -> float:
-        return (at(values, k) - at(values, k - 1)) / period
+    def reading(i: int, k: int) -> float:
+        return float(read[i, k]) if k >= 0 else 0.0
 
     for k, x in enumerate(path):
-        readings[0].append(float(x))
-        readings[1].append(float(state[0]))
-        for i, side in enumerate(sides):
-            own, other, sent = readings[i], readings[1 - i], k - ages[i]
-            spring = float(side.stiffness) * (own[k] - at(other, sent))
-            damper = float(side.virtual_damping) * (speed(own, k) - speed(other, sent))
-            couplings[i].append(spring + damper)
-        for i, side in enumerate(sides):
-            sent = float(side.reflection) * at(couplings[1 - i], k - ages[i])
-            asked[i].append(couplings[i][k] - sent + float(side.local_damping) * speed(readings[i], k))
-        for flow, force in ((early, at(asked[1], k - whole - 1)), (rest, at(asked[1], k - whole))):
+        read[here, k], read[1 - here, k] = x, state[0]
+        asked[:, k + whole + 1] = [asked_of(pair, i, k, reading) for i in (0, 1)]
+        for flow, force in ((early, asked[1 - here, k]), (rest, asked[1 - here, k + 1])):
             state = (flow @ np.array([*state, force]))[:2]
-    return np.array(asked[0])
+    return asked[here, whole + 1 :]
 
 
 @seeds(12)
@@ -182,9 +169,8 @@ def test_a_hand_within_intervals() -> None:
 )
 def test_what_is_no_linear_law_is_decided_by_two_hands_alone(change: dict, phrase: str) -> None:
     """Proved where they gain nothing; never said to be active for the law that would be felt without."""
-    found = zw.check(
-        PAIR.replace(leader=ARM.replace(coulomb_friction=2), stiffness=5000, **change), follower=HAND
-    )
+    pair = PAIR.replace(leader=ARM.replace(coulomb_friction=2), stiffness=5000, **change)
+    found = zw.check(pair, follower=HAND)
     assert found.outcome == "undecided"
     assert phrase in found.limit
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
 
 import zwidth as zw
@@ -53,8 +51,6 @@ SPRINGS = {"stiffness": 900, "delay": "0.002"}
     ],
     ids=["any two hands", "unequal springs", "one arm held", "neither says its delay", "one does not"],
 )
-def test_what_limits_a_verdict_on_two_arms(
-    pair: zw.Pair, asked: dict[str, Any], said: tuple[str, ...]
-) -> None:
+def test_what_limits_a_verdict_on_two_arms(pair, asked, said) -> None:
     found = pair_in_short(zw.check(pair, **asked))
     assert [part for part in said if part not in found] == []

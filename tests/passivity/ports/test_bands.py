@@ -42,23 +42,20 @@ def test_two_bands_each_with_a_motion():
     assert "violated 0.0954795 to 0.152316 Hz, 0.473955 to 0.558519 Hz" in repr(found)
 
 
-def test_what_touches_the_level_splits_no_band():
-    """Re G = (x − 1)² (x − 4)/(1 + x)³ with x = ω²: one band from 0 to 2 rad/s, though it is 0 at 1."""
-    (band,) = indices(control.tf([2, -3, -3, -8], [2, 6, 6, 2])).bands
-    assert (band.low, band.high) == (0, pytest.approx(1 / pi, rel=1e-12))
-
-
-def test_of_several_axes_the_least_eigenvalue_counts():
-    """(1 3; −3 1)/(s + 1) has the eigenvalues (1 ± 3ω)/(1 + ω²): below 0 from 1/3 rad/s on."""
-    g = control.tf([[[1], [3]], [[-3], [1]]], [[[1, 1]] * 2] * 2)
+@pytest.mark.parametrize(
+    ("g", "low", "high"),
+    [
+        # Re G = (x − 1)² (x − 4)/(1 + x)³ with x = ω²: what touches the level splits no band
+        (control.tf([2, -3, -3, -8], [2, 6, 6, 2]), 0, 1 / pi),
+        # (1 3; −3 1)/(s + 1) has the eigenvalues (1 ± 3ω)/(1 + ω²): below 0 from 1/3 rad/s on
+        (control.tf([[[1], [3]], [[-3], [1]]], [[[1, 1]] * 2] * 2), 1 / (6 * pi), inf),
+        # Re z⁻¹ = cos θ is below 0 from a quarter of the rate on, up to half of it
+        (control.tf([1], [1, 0], 0.02), 12.5, 25),
+    ],
+)
+def test_there_is_one_band(g, low, high):
     (band,) = indices(g).bands
-    assert (2 * pi * band.low, band.high) == (pytest.approx(1 / 3, rel=1e-14), inf)
-
-
-def test_sampled_systems_have_bands_up_to_half_the_rate():
-    """Re z⁻¹ = cos θ is below 0 from a quarter of the rate on."""
-    (band,) = indices(control.tf([1], [1, 0], 0.02)).bands
-    assert (band.low, band.high) == (pytest.approx(12.5, rel=1e-14), pytest.approx(25, rel=1e-14))
+    assert (band.low, band.high) == (pytest.approx(low, rel=1e-14), pytest.approx(high, rel=1e-14))
 
 
 @settings(max_examples=8, deadline=None)
@@ -86,9 +83,8 @@ def test_the_relative_index_is_the_largest_singular_value(seed, axes):
     assert relative.at_most(high)
     assert not relative.at_most(low)
     assert relative.at_most(1) == found.passive
-    assert [(x.low, x.high) for x in relative.bands()] == [
-        (pytest.approx(x.low), pytest.approx(x.high)) for x in found.bands
-    ]
+    ends = [[(band.low, band.high) for band in bands] for bands in (relative.bands(), found.bands)]
+    assert ends[0] == [pytest.approx(band) for band in ends[1]]
 
 
 def test_what_comes_back_whole_has_the_relative_index_1():

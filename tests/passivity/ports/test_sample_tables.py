@@ -69,14 +69,6 @@ def test_scattering_parameters_with_an_error():
     assert "wrong by more than the error" in found.assumptions[-1]
 
 
-def test_no_module_has_the_name_of_what_it_offers():
-    """Once such a module is loaded, for another of its names, it would stand in the place of the function."""
-    for package in (zw.ports, zw.coupling):
-        for name in dir(package):
-            module = getattr(getattr(package, name), "__module__", "")  # of a module that is public: none
-            assert module.rpartition(".")[2] != name
-
-
 def test_the_picture_tells_three_kinds_of_samples_apart():
     figure = FIVE.plot()
     (axes,) = figure.axes

@@ -1,15 +1,18 @@
-"""Documents of arms for tests of the checker: `from arm_documents import put, two_link`."""
+"""Arms, their documents and their motions: `from arm_documents import put, two_link`."""
 
 from __future__ import annotations
 
 import copy
 from collections.abc import Iterator
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from scipy.spatial.transform import Rotation
+
+from zwidth.model.arms.replay import replay_cycle
 
 IDENTITY = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
 GONE = object()
@@ -155,3 +158,36 @@ def chain_in_pose(seed: int, size: int, every: bool, slides: tuple[int, ...] = (
     arm = {"geometry": "chain", "joints": joints, "end_m": ["0.05", "-0.02", "0.08"]}
     rest = "every orientation" if every else "given"
     return _document(arm, (stiffness + stiffness.T) / 2, True, turns=3, rest=rest)
+
+
+def described(path: Path, joints: list[tuple[str, str, str, str, float]], holder: str, end: str) -> Path:
+    """An arm of joints (kind, axis, xyz, rpy, damping) in a row, the hand at `end` of the link `holder`."""
+    parts = [
+        f'<joint name="j{i}" type="{kind}"><parent link="l{i}"/><child link="l{i + 1}"/>'
+        f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{axis}"/>'
+        f'<limit lower="-0.3" upper="0.4" effort="1" velocity="1"/><dynamics damping="{damping}"/></joint>'
+        for i, (kind, axis, xyz, rpy, damping) in enumerate(joints)
+    ]
+    hand = f'<parent link="{holder}"/><child link="tip"/><origin xyz="{end}"/>'
+    parts.append(f'<joint name="t" type="fixed">{hand}</joint>')
+    links = "".join(f'<link name="{n}"/>' for n in [*(f"l{i}" for i in range(len(joints) + 1)), "tip"])
+    path.write_text(f'<robot name="arm">{links}{"".join(parts)}</robot>')
+    return path
+
+
+def least_left(arm: Any, wall: Any, delay: int, rng: np.random.Generator, cycles: int, most: int) -> float:
+    """Of random and alternating closed paths, small and across the region: none takes energy out.
+
+    The least energy of all, in parts of what the joints damp.
+    """
+    (low, high), least = np.array(arm.joint_range).T, np.inf
+    for _ in range(cycles):
+        middle, size, samples = rng.uniform(low, high), 10 ** rng.uniform(-4, 0), int(rng.integers(2, most))
+        shape = rng.normal(size=2) * np.cos(2 * np.pi / samples * np.arange(samples))[:, None]
+        if rng.random() < 0.5:
+            shape = rng.normal(size=(samples, 2))
+        motion = replay_cycle(arm, wall, 0.001, delay, np.clip(middle + size * shape, low, high))
+        assert motion.energy >= -1e-12 * motion.loss
+        if motion.loss:
+            least = min(least, motion.energy / motion.loss)
+    return least

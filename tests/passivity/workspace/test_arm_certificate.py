@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from arm_documents import fractions
+from arm_documents import described, fractions
 from checked import matrix_at
 
 import zwidth as zw
@@ -79,21 +79,6 @@ def test_the_whole_box_of_a_parallel_arm_in_space() -> None:
     assert [float(x) for x in document["arm"]["low_m"]] == pytest.approx([-0.03, -0.03, 0.11985])
     document["arm"]["low_m"][2], document["arm"]["high_m"][2] = "0.1", "0.14"
     assert checker.verify(document).valid
-
-
-def described(path: Path, joints: list[tuple[str, str, str, str, float]], holder: str, end: str) -> Path:
-    """An arm of joints (kind, axis, xyz, rpy, damping) in a row, the hand at `end` of the link `holder`."""
-    parts = [
-        f'<joint name="j{i}" type="{kind}"><parent link="l{i}"/><child link="l{i + 1}"/>'
-        f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{axis}"/>'
-        f'<limit lower="-0.3" upper="0.4" effort="1" velocity="1"/><dynamics damping="{damping}"/></joint>'
-        for i, (kind, axis, xyz, rpy, damping) in enumerate(joints)
-    ]
-    hand = f'<parent link="{holder}"/><child link="tip"/><origin xyz="{end}"/>'
-    parts.append(f'<joint name="t" type="fixed">{hand}</joint>')
-    links = "".join(f'<link name="{n}"/>' for n in [*(f"l{i}" for i in range(len(joints) + 1)), "tip"])
-    path.write_text(f'<robot name="arm">{links}{"".join(parts)}</robot>')
-    return path
 
 
 def test_described_arms_of_every_kind_of_joint(tmp_path: Path) -> None:
@@ -171,9 +156,7 @@ BENT = Bent(links=(0.1, 0.1), damping=(0.02, 0.012), joint_range=((0, 1), (0.5, 
     ],
     ids=["links that carry the hand otherwise", "a kind of one's own", "a budget too small"],
 )
-def test_what_has_no_certificate_stays_a_theorem(
-    arm: Any, stiffness: float, work: int, words: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_has_no_certificate_stays_a_theorem(arm, stiffness, work, words, monkeypatch) -> None:
     monkeypatch.setattr(arm_cells, "MOST_WORK", work)
     space = zw.workspace(arm, zw.Wall(stiffness), rate=1000, points=20)
     assert (space.outcome, space.certificate) == ("theorem", None)

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from arm_documents import described, least_left
 from described_arms import random_arm
 
 import zwidth as zw
 from zwidth.model.arms import Arm, PlanarChain, built_in, read_arm, wall_need
-from zwidth.model.arms.replay import replay_cycle
 from zwidth.model.arms.wall import loss_in_pose
 from zwidth.passivity.workspace import Workspace
 
@@ -79,52 +79,6 @@ def test_both_sides_wherever_the_wall_rests(kind: str, tmp_path: Path) -> None:
         assert _space(arm.replace(rest=q), wall).stiffness_factor >= limit * (1 - 1e-12)
 
 
-def test_no_closed_path_takes_energy_out_wherever_the_wall_rests(tmp_path: Path) -> None:
-    arm: Any = read_arm(random_arm(tmp_path / "arm.urdf", 21, 2), pose=True)
-    wall, rng, least = WALLS["rotation alone"], np.random.default_rng(10), np.inf
-    wall = _times(wall, 0.97 * _space(arm, wall, 20).stiffness_factor)
-    assert _space(arm, wall, 20).outcome == "passive"
-    low, high = np.array(arm.joint_range).T
-    for _ in range(300):
-        middle = rng.uniform(low, high)
-        rest = middle if rng.random() < 0.5 else rng.uniform(-7, 7, 2)
-        shape = rng.normal(size=2) * (-1.0) ** np.arange(2)[:, None]
-        path = np.clip(middle + 10 ** rng.uniform(-4, 0) * shape, low, high)
-        motion = replay_cycle(arm.resting(rest), wall, 0.001, 0, path)
-        assert motion.energy >= -1e-12 * motion.loss
-        least = min(least, motion.energy / motion.loss)
-    assert least < 0.2
-
-
-def test_the_work_of_a_held_force_is_that_of_the_difference(tmp_path: Path) -> None:
-    """∫ f·v + Eᵀg·ω over a period, with pinocchio's velocities and scipy's quaternion, is F·Δy."""
-    from scipy.integrate import quad_vec
-    from scipy.spatial.transform import Rotation
-
-    pin = pytest.importorskip("pinocchio")
-    arm: Any = _arm(tmp_path, 6)
-    model = pin.buildModelFromUrdf(str(tmp_path / "arm.urdf"))
-    rng, data = np.random.default_rng(11), model.createData()
-    start, end = rng.uniform(-0.4, 0.4, (2, 6))
-    force, number = rng.normal(size=6), model.getFrameId(arm.frame)
-
-    def frame(q: Array) -> tuple[Array, Array]:
-        pin.computeJointJacobians(model, data, q)
-        turned = pin.updateFramePlacement(model, data, number).rotation.copy()
-        return turned, pin.getFrameJacobian(model, data, number, pin.LOCAL_WORLD_ALIGNED)
-
-    rest = frame(np.array(arm.rest))[0]
-
-    def power(s: float) -> float:
-        turned, jacobian = frame(start + s * (end - start))
-        *v, w = Rotation.from_matrix(turned @ rest.T).as_quat(canonical=True)
-        moment = w * force[3:] + np.cross(v, force[3:])
-        return float(np.concatenate([force[:3], moment]) @ jacobian @ (end - start))
-
-    work = quad_vec(power, 0, 1, epsabs=1e-12)[0]
-    assert work == pytest.approx(force @ (arm.forward(end) - arm.forward(start)), rel=1e-9)
-
-
 def test_the_reported_energy_by_pinocchio(tmp_path: Path) -> None:
     """Summed again with rotation vectors from pinocchio, without the code that found it."""
     pin = pytest.importorskip("pinocchio")
@@ -134,22 +88,20 @@ def test_the_reported_energy_by_pinocchio(tmp_path: Path) -> None:
     motion = _space(arm, wall).motion
     model = pin.buildModelFromUrdf(str(tmp_path / "arm.urdf"))
     data, number = model.createData(), model.getFrameId(arm.frame)
-
-    def frame(q: Array) -> Any:
+    placed = []
+    for q in (np.array(arm.rest), *motion.joints):
         pin.forwardKinematics(model, data, q)
-        return pin.updateFramePlacement(model, data, number).copy()
-
-    rest, y = frame(np.array(arm.rest)), []
-    for q in motion.joints:
-        placed = frame(q)
-        r = pin.log3(placed.rotation @ rest.rotation.T)
-        phi = np.linalg.norm(r)
-        y.append(np.concatenate([placed.translation, 2 * np.sin(phi / 2) / phi * r]))
+        placed.append(pin.updateFramePlacement(model, data, number).copy())
+    turns = [pin.log3(each.rotation @ placed[0].rotation.T) for each in placed[1:]]
+    y = [
+        np.concatenate([each.translation, np.sinc(np.linalg.norm(r) / 2 / np.pi) * r])  # 2 sin(φ/2)/φ r
+        for each, r in zip(placed[1:], turns, strict=True)
+    ]
     energy = 0.0
     for k, now in enumerate(y):
-        following, turned = y[(k + 1) % len(y)], np.roll(motion.joints, -1, axis=0)[k] - motion.joints[k]
-        energy += (np.array(wall.stiffness) @ (now - y[0])) @ (following - now)
-        energy += np.array(arm.damping) @ turned**2 / 0.001
+        after = (k + 1) % len(y)
+        energy += (np.array(wall.stiffness) @ (now - y[0])) @ (y[after] - now)
+        energy += np.array(arm.damping) @ (motion.joints[after] - motion.joints[k]) ** 2 / 0.001
     assert energy == pytest.approx(motion.energy, rel=1e-6)
     assert energy < 0
 
@@ -202,18 +154,7 @@ def test_no_closed_path_in_a_proved_region_takes_energy_out(kind: str, delay: in
     wall, late = WALLS[kind], delay / 1000
     wall = _times(wall, 0.9 * _space(arm, wall, 20, delay=late).stiffness_factor)
     assert _space(arm, wall, 20, delay=late).outcome == "passive"
-    low, high = np.array(arm.joint_range).T
-    least = np.inf
-    for _ in range(200):
-        middle, size, samples = rng.uniform(low, high), 10 ** rng.uniform(-4, 0), int(rng.integers(2, 12))
-        shape = rng.normal(size=2) * np.cos(2 * np.pi / samples * np.arange(samples))[:, None]
-        if rng.random() < 0.5:
-            shape = rng.normal(size=(samples, 2))
-        motion = replay_cycle(arm, wall, 0.001, delay, np.clip(middle + size * shape, low, high))
-        assert motion.energy >= -1e-12 * motion.loss
-        if motion.loss:
-            least = min(least, motion.energy / motion.loss)
-    assert least < 0.7
+    assert least_left(arm, wall, delay, rng, 200, 12) < 0.7
 
 
 def test_the_loss_between_the_points_does_not_depend_on_units() -> None:
@@ -331,19 +272,11 @@ def test_a_wall_in_pose_in_words() -> None:
 
 def test_a_wrist_that_no_hand_can_hold_is_not_refuted(tmp_path: Path) -> None:
     """Four axes through the hand but for rounding: one motion of the joints leaves it where it is."""
-    path = tmp_path / "wrist.urdf"
     axes = ("1 0 0", "0 1 0", "0.6 0.8 0", "0 0 1")
-    path.write_text(
-        '<robot name="wrist">'
-        + "".join(f'<link name="l{i}"/>' for i in range(5))
-        + "".join(
-            f'<joint name="j{i}" type="revolute"><parent link="l{i}"/><child link="l{i + 1}"/>'
-            f'<origin xyz="{i}e-12 {i * i}e-12 0" rpy="0.1 0.2 0.3"/><axis xyz="{axis}"/>'
-            '<limit lower="-0.3" upper="0.4" effort="1" velocity="1"/><dynamics damping="0.01"/></joint>'
-            for i, axis in enumerate(axes)
-        )
-        + "</robot>"
-    )
+    joints = [
+        ("revolute", axis, f"{i}e-12 {i * i}e-12 0", "0.1 0.2 0.3", 0.01) for i, axis in enumerate(axes)
+    ]
+    path = described(tmp_path / "wrist.urdf", joints, "l4", "0 0 0")
     wall, arm = zw.arms.MatrixWall.in_pose(0, 1), read_arm(path, pose=True, hold={"j2": 0.1, "j3": 0.1})
     limit = _space(arm, wall, 10).stiffness_factor
     assert _space(arm, _times(wall, 1.5 * limit), 10).outcome == "undecided"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from arm_documents import GONE, chain_in_pose, fractions, left_over, put, texts
+from arm_documents import GONE, chain_in_pose, fractions, put, texts
 from checked import matrix_at
 from described_arms import random_arm
 from scipy.spatial.transform import Rotation
@@ -25,51 +25,6 @@ def whole(rows: list[list[float]]) -> Array:
     """A symmetric matrix from its rows from the diagonal on."""
     upper = np.array([[0.0] * i + list(row) for i, row in enumerate(rows)])
     return np.asarray(upper + np.triu(upper, 1).T)
-
-
-def placed(document: dict[str, Any], joints: npt.ArrayLike) -> tuple[Array, Rotation]:
-    """Where the hand is, and its rotation, by scipy."""
-    point, turned = np.zeros(3), Rotation.identity()
-    for joint, q in zip(document["arm"]["joints"], np.asarray(joints), strict=True):
-        point = point + turned.apply(np.array(joint["translation_m"], dtype=float))
-        turned = turned * Rotation.from_matrix(np.array(joint["rotation"], dtype=float))
-        if joint["kind"] == "prismatic":
-            point = point + turned.apply([0, 0, q])
-        else:
-            turned = turned * Rotation.from_rotvec([0, 0, q])
-    return point + turned.apply(np.array(document["arm"]["end_m"], dtype=float)), turned
-
-
-def pose(document: dict[str, Any], joints: Array, rest: Array) -> Array:
-    """(p, e) with e = 2 sin(φ/2) u, as long as φ < π."""
-    point, turned = placed(document, joints)
-    turn = (turned * placed(document, rest)[1].inv()).as_rotvec()
-    angle = np.linalg.norm(turn)
-    return np.concatenate([point, turn * (2 * np.sin(angle / 2) / angle if angle else 1.0)])
-
-
-def surplus_of(document: dict[str, Any], joints: Array, rest: Array) -> Array:
-    """δ_m − JᵀRJ with central differences."""
-    steps = 1e-5 * np.eye(len(joints))
-    j = [(pose(document, joints + h, rest) - pose(document, joints - h, rest)) / 2e-5 for h in steps]
-    return left_over(document, np.array(j).T)
-
-
-@pytest.mark.parametrize("every", [True, False])
-@pytest.mark.parametrize(("size", "slides"), [(3, ()), (6, (1, 3)), (7, ())])
-def test_the_matrix_is_that_of_the_motion(size: int, slides: tuple[int, ...], every: bool) -> None:
-    """Against differences of positions and rotation vectors, whose rotations are scipy's."""
-    document = chain_in_pose(size, size, every, slides)
-    rest = np.array([float(joint.get("rest_rad", 0)) for joint in document["arm"]["joints"]])
-    rng, compared = np.random.default_rng(size), 0
-    while compared < 5:
-        q = rng.uniform(-1, 1, size).round(6)
-        near = q if every else rest
-        if np.linalg.norm(pose(document, q, near)[3:]) > 1.6:  # the rotation vector is smooth below π
-            continue
-        found, expected = whole(matrix_at(document, fractions(q))), surplus_of(document, q, near)
-        assert found == pytest.approx(expected, abs=1e-8 * np.abs(expected).max())
-        compared += 1
 
 
 @pytest.mark.parametrize("joints", [3, 6, 7])

@@ -50,17 +50,12 @@ def test_the_energy_of_a_loop_is_the_integral_of_the_torque(regularization: floa
     def at(turn: float) -> np.ndarray:
         return centre + np.cos(turn) * first + np.sin(turn) * second
 
-    turns = 2 * np.pi / 200 * np.arange(200)
+    def power(turn: float) -> float:
+        torque = 0.5 * still(at(turn), regularization) @ (at(turn) - REST)
+        return float(torque @ (np.cos(turn) * second - np.sin(turn) * first))
+
     path = np.array([at(turn) for turn in 2 * np.pi / 20_000 * np.arange(20_000)])
-    work = (
-        0.5
-        * sum(
-            (still(at(turn), regularization) @ (at(turn) - REST))
-            @ (np.cos(turn) * second - np.sin(turn) * first)
-            for turn in turns
-        )
-        * (2 * np.pi / 200)
-    )
+    work = 2 * np.pi / 200 * sum(map(power, 2 * np.pi / 200 * np.arange(200)))
     motion = replay_both(FINGER, zw.Wall(1), spring, 1e-3, 0, path)
     assert abs(work) > 0.01
     assert motion.work == pytest.approx(work, rel=5e-3)  # the hold gives the rest
@@ -164,9 +159,7 @@ def test_the_damper_is_paid_for_by_the_joints(share: float, active: bool) -> Non
     assert damper.slow is None
 
 
-def test_on_the_command_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_on_the_command_line(tmp_path, capsys, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     arm = str(panda_like(tmp_path / "panda.urdf"))
     ready = "j2=-0.785,j4=-2.356,j6=1.571,j7=0.785"

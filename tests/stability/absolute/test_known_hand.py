@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.cli.main import main
 from zwidth.model.operator.operator import LinearHand
 from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.passivity.stability.absolute import (
@@ -119,32 +118,18 @@ def test_describing_function_is_a_fair_guess_for_a_pressing_hand(result):
     assert describing_guess(result.plant, 1500.0, -1.0) is None
 
 
-def test_saved_and_verified(result, tmp_path):
-    path = tmp_path / "wall.json"
-    result.save(path)
-    assert verify_document(read_document(path)).valid
-    data = json.loads(path.read_text(encoding="utf-8"))
-    data["certificate"]["corners"][0]["slope"] = "400"
-    path.write_text(json.dumps(data))
-    assert not verify_document(read_document(path)).valid
-
-
 def test_a_rotary_device_is_the_linear_one_in_other_units(result, tmp_path):
     """The same numbers in kg·m², N·m·s/rad and N·m/rad, and the hand as `HandImpedance`: the same slopes."""
     hand = zw.stability.HandImpedance(stiffness=400)
     turned = absolute(DEVICE.replace(motion="rotary"), hand, motions=False)
     assert [row.slope for row in turned.proved] == [row.slope for row in result.proved]
-    turned.save(tmp_path / "knob.json")
-    assert verify_document(read_document(tmp_path / "knob.json")).valid
-
-
-def test_the_command_line_does_not_call_it_passive(result, tmp_path, capsys):
-    result.proved[0].certificate.save(tmp_path / "circle.json")
-    assert main(["verify", str(tmp_path / "circle.json")]) == 0
-    told = " ".join(capsys.readouterr().out.split())
-    assert "166.1" in told
-    assert "to rest" in told
-    assert "passive" not in told
+    path = tmp_path / "knob.json"
+    turned.save(path)
+    assert verify_document(read_document(path)).valid
+    data = json.loads(path.read_text(encoding="utf-8"))
+    data["certificate"]["corners"][0]["slope"] = "400"
+    path.write_text(json.dumps(data))
+    assert not verify_document(read_document(path)).valid
 
 
 @pytest.mark.parametrize(("slope", "gap", "longest"), [(0.0, 1.0, 10), (9.0, 0.0, 10), (9.0, 1.0, 1)])

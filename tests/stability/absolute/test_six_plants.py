@@ -96,6 +96,7 @@ def test_saved_with_the_result_and_verified(tmp_path, capsys) -> None:
     assert main(["verify", str(path)]) == 0
     told = " ".join(capsys.readouterr().out.split())
     assert "to rest" in told
+    assert f"{float(found(6).largest):.4g}" in told
     assert "vibrates" in told
     assert "passive" not in told
     doc = json.loads(path.read_text(encoding="utf-8"))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import scipy.linalg
+from stepped_loop import radius
 
 import zwidth as zw
 from zwidth.passivity.stability.shaking_hand import ShakingHand
@@ -33,29 +33,16 @@ def impedance(hand: ShakingHand, omega: np.ndarray) -> np.ndarray:
     return np.asarray(hand.mass * s + hand.stiffness / s + hand.damping - drive * resonance)
 
 
-def radius(wall: zw.Wall, hand: ShakingHand, activity: float, delay: int = 0, mass: float = 0.036) -> float:
-    """The largest eigenvalue of device, wall and this hand with another activity."""
-    w1, whole = 2 * np.pi * hand.frequency, mass + hand.mass
-    wide, drive = 2 * hand.sharpness * w1, activity + hand.damping
+def shaken(wall: zw.Wall, hand: ShakingHand, activity: float, delay: int = 0) -> float:
+    """The largest pole of device, wall and this hand with another activity."""
+    w1, whole = 2 * np.pi * hand.frequency, 0.036 + hand.mass
+    wide, drive, drag = 2 * hand.sharpness * w1, activity + hand.damping, B + hand.damping
     flow = np.zeros((5, 5))
     flow[0, 1] = 1
-    flow[1] = [-hand.stiffness / whole, -(B + hand.damping) / whole, drive / whole, 0, -1 / whole]
+    flow[1] = [-hand.stiffness / whole, -drag / whole, drive / whole, 0, -1 / whole]
     flow[2, 1:4] = [wide, -wide, -w1]
     flow[3, 2] = w1
-    step = scipy.linalg.expm(flow * T)
-    size = 5 + delay
-    k, b = float(wall.stiffness), float(wall.damping) / T
-    loop = np.zeros((size, size))
-    loop[:4, :4] = step[:4, :4]
-    loop[4, 0] = 1
-    for j in range(1, delay + 1):
-        loop[4 + j, 3 + j] = 1
-    places = [0, *range(4, size)]  # x now, and before
-    force = np.zeros(size)
-    force[places[delay]] += k + b
-    force[places[delay + 1]] -= b
-    loop[:4] += np.outer(step[:4, 4], force)
-    return float(np.abs(np.linalg.eigvals(loop)).max())
+    return radius(flow, float(wall.stiffness), float(wall.damping), T, delay * T)
 
 
 def by_discs(wall: zw.Wall, below: float, delay: int = 0) -> float:
@@ -120,9 +107,9 @@ def test_a_hand_that_is_too_active(wall: zw.Wall, delay: int) -> None:
     found = tolerated(paddle(delay=delay * T), wall)
     hand = found.hand
     assert found.activity < hand.activity < found.activity * 1.003 + 1e-4
-    assert radius(wall, hand, hand.activity, delay) > 1
-    assert radius(wall, hand, found.activity, delay) < 1
-    grown = np.log(2) * T / np.log(radius(wall, hand, hand.activity, delay))
+    assert shaken(wall, hand, hand.activity, delay) > 1
+    assert shaken(wall, hand, found.activity, delay) < 1
+    grown = np.log(2) * T / np.log(shaken(wall, hand, hand.activity, delay))
     assert grown == pytest.approx(hand.doubling_time, rel=1e-3)
 
 
@@ -156,7 +143,7 @@ def test_no_linear_hand_of_this_activity_shakes_the_loop() -> None:
             sharpness=zeta,
             doubling_time=1.0,
         )
-        assert radius(wall, hand, hand.activity) < 1
+        assert shaken(wall, hand, hand.activity) < 1
 
 
 def test_more_active_than_the_device_is_damped() -> None:
@@ -166,7 +153,7 @@ def test_more_active_than_the_device_is_damped() -> None:
     hand = found.hand
     # alone with a spring in the place of the wall's
     free = replace(hand, stiffness=hand.stiffness + 20)
-    assert radius(zw.Wall(0), free, found.activity) > 1
+    assert shaken(zw.Wall(0), free, found.activity) > 1
 
 
 def test_at_single_frequencies() -> None:

@@ -47,9 +47,7 @@ def boxed() -> dict:
     ids=["backward", "window", "pole"],
 )
 @pytest.mark.parametrize("hand", [None, Finger()], ids=["no hand", "finger"])
-def test_at_the_largest_stable_stiffness_and_a_millionth_above(
-    delay: str, velocity: object, hand: object
-) -> None:
+def test_at_the_largest_stable_stiffness_and_a_millionth_above(delay, velocity, hand) -> None:
     device = PADDLE.replace(delay=delay)
     limit = coupled(device, zw.Wall(100, 2, velocity), hand).max_stiffness
     for factor, outcome, kind in ((1, "stable", "stability"), (1.000001, "unstable", "instability")):
