@@ -232,13 +232,13 @@ def test_the_map_keeps_metres_and_radians_apart(tmp_path: Path) -> None:
 def test_a_planar_chain_in_pose() -> None:
     arm = PlanarChain(links=(0.1, 0.08), damping=(0.02, 0.01), joint_range=((0.2, 0.9),) * 2, pose=True)
     wall = zw.arms.MatrixWall.in_pose(600, 8, planar=True)
-    limit = _space(arm, wall).stiffness_factor
-    assert _space(arm, _times(wall, 1.001 * limit)).outcome == "active"
-    assert _space(arm, _times(wall, 0.95 * limit)).outcome == "passive"
-    over = _space(arm, _times(wall, 2 * limit))
+    limit = _space(arm, wall, 20).stiffness_factor
+    assert _space(arm, _times(wall, 1.001 * limit), 20).outcome == "active"
+    assert _space(arm, _times(wall, 0.95 * limit), 20).outcome == "passive"
+    over = _space(arm, _times(wall, 2 * limit), 20)
     assert "hand_z" not in over.data.coords
     better = arm.replace(damping=tuple(np.add(arm.damping, over.least_additions)))
-    assert _space(better, over.wall).outcome == "passive"
+    assert _space(better, over.wall, 20).outcome == "passive"
 
 
 def test_walls_and_hands_that_do_not_fit(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ import zwidth as zw
 from zwidth.model.arms import BUILT_IN, PlanarChain, built_in, joint_margin, wall_need
 from zwidth.passivity.workspace import Workspace
 
+TWO_LINK = built_in("two-link", damping=(0.02, 0.012))
 DAMPING = {"hapkit": 0.001, "two-link": (0.02, 0.012), "haply-2diy": (0.003, 0.002), "falcon": 0.003}
 
 
@@ -58,11 +59,11 @@ def test_the_advice_is_enough_and_little_more_than_fails(name: str) -> None:
 def test_one_joint_can_be_enough() -> None:
     """A pantograph with one weak joint: damping that joint alone proves the region, and the map says so."""
     arm = built_in("haply-2diy", damping=(0.0015, 0.008), resolution=0)
-    space = zw.workspace(arm, zw.Wall(400), rate=1000, points=12)
+    space = zw.workspace(arm, zw.Wall(400), rate=1000, points=30)
     assert np.isfinite(space.additions[0])
     assert set(np.unique(space.data["joint_to_damp"])) <= {0.0, 1.0}
     better = arm.replace(damping=(0.0015 + space.additions[0], 0.008))
-    assert zw.workspace(better, zw.Wall(400), rate=1000, points=12).outcome == "passive"
+    assert zw.workspace(better, zw.Wall(400), rate=1000, points=30).outcome == "passive"
 
 
 @pytest.mark.parametrize("name", ["two-link", "haply-2diy", "falcon"])
@@ -104,23 +105,25 @@ def test_the_margin_is_that_at_the_hand() -> None:
 @pytest.mark.parametrize("damped", [False, True])
 def test_no_closed_path_in_a_proved_region_takes_energy_out(delay: int, damped: bool) -> None:
     rng = np.random.default_rng(delay + 10 * damped)
-    arm = built_in("two-link", damping=(0.02, 0.012))
     root = rng.normal(size=(2, 2))
     virtual = rng.normal(size=(2, 2)) * 0.02
     k, b = root @ root.T, damped * (virtual + virtual.T)
     asked: Any = {"rate": 1000, "delay": delay / 1000, "points": 20}
-    k *= 0.95 * zw.workspace(arm, zw.arms.MatrixWall(k, b), **asked).largest_stiffness / np.linalg.norm(k, 2)
+    k *= (
+        0.95
+        * zw.workspace(TWO_LINK, zw.arms.MatrixWall(k, b), **asked).largest_stiffness
+        / np.linalg.norm(k, 2)
+    )
     wall = zw.arms.MatrixWall(k, b)
-    assert zw.workspace(arm, wall, **asked).outcome == "passive"
-    assert least_left(arm, wall, delay, rng, 400, 20) < 0.6
+    assert zw.workspace(TWO_LINK, wall, **asked).outcome == "passive"
+    assert least_left(TWO_LINK, wall, delay, rng, 400, 20) < 0.6
 
 
 def test_a_wall_without_stiffness() -> None:
     """A damper alone: any stiffness would do where it needs nothing, and none where it asks too much."""
-    arm = built_in("two-link", damping=(0.02, 0.012))
-    free = zw.workspace(arm, zw.Wall(0), rate=1000, points=20)
+    free = zw.workspace(TWO_LINK, zw.Wall(0), rate=1000, points=20)
     assert (free.outcome, free.largest_stiffness) == ("passive", np.inf)
-    damped = zw.workspace(arm, zw.Wall(0, 3), rate=1000, points=20)
+    damped = zw.workspace(TWO_LINK, zw.Wall(0, 3), rate=1000, points=20)
     assert (damped.outcome, damped.largest_stiffness) == ("active", 0)
 
 
@@ -142,20 +145,21 @@ def test_the_reported_energy_is_that_of_the_reported_motion() -> None:
 
 def test_a_wall_with_one_normal_asks_for_less() -> None:
     arm = built_in("haply-2diy", damping=0.003)
-    every = zw.workspace(arm, zw.Wall(500), rate=1000, points=30)
-    one = zw.workspace(arm, zw.arms.MatrixWall([[500, 0], [0, 0]]), rate=1000, points=30)
+    every = zw.workspace(arm, zw.Wall(500), rate=1000, points=12)
+    one = zw.workspace(arm, zw.arms.MatrixWall([[500, 0], [0, 0]]), rate=1000, points=12)
     assert one.largest_stiffness > 1.02 * every.largest_stiffness
     over = zw.arms.MatrixWall([[1.01 * one.largest_stiffness, 0], [0, 0]])
-    assert zw.workspace(arm, over, rate=1000, points=30).outcome == "active"
+    assert zw.workspace(arm, over, rate=1000, points=12).outcome == "active"
 
 
 @pytest.mark.parametrize("delay", [0, 1, 2])
 def test_virtual_damping_and_delay(delay: int) -> None:
-    arm = built_in("two-link", damping=(0.02, 0.012))
-    free = zw.workspace(arm, zw.Wall(100), rate=1000, points=20, delay=delay / 1000).largest_stiffness
-    with_b = zw.workspace(arm, zw.Wall(100, 0.05), rate=1000, points=20, delay=delay / 1000)
+    free = zw.workspace(TWO_LINK, zw.Wall(100), rate=1000, points=20, delay=delay / 1000).largest_stiffness
+    with_b = zw.workspace(TWO_LINK, zw.Wall(100, 0.05), rate=1000, points=20, delay=delay / 1000)
     assert free - with_b.largest_stiffness == pytest.approx(2 * 0.05 / 0.001 / (2 * delay + 1))
-    assert zw.workspace(arm, zw.Wall(10, 2), rate=1000, points=20, delay=delay / 1000).outcome == "active"
+    assert (
+        zw.workspace(TWO_LINK, zw.Wall(10, 2), rate=1000, points=20, delay=delay / 1000).outcome == "active"
+    )
 
 
 def test_coulomb_friction_hides_small_motions_only() -> None:
@@ -227,12 +231,11 @@ def test_an_undamped_joint_is_refuted_and_told_what_it_lacks() -> None:
 
 def test_a_held_torque_asks_for_more() -> None:
     """c = h F T/2 of every joint; with that much more damping the margin is what it was."""
-    arm = built_in("two-link", damping=(0.02, 0.012))
-    free = zw.workspace(arm, zw.Wall(300), rate=1000, points=20)
-    held = zw.workspace(arm, zw.Wall(300), rate=1000, points=20, torque_held_up_to=8)
+    free = zw.workspace(TWO_LINK, zw.Wall(300), rate=1000, points=20)
+    held = zw.workspace(TWO_LINK, zw.Wall(300), rate=1000, points=20, torque_held_up_to=8)
     price = np.linalg.eigvalsh([[0.2, 0.1], [0.1, 0.1]])[-1] * 8 * 0.001 / 2
     assert held.largest_stiffness < free.largest_stiffness
-    more = arm.replace(damping=(0.02 + price, 0.012 + price))
+    more = TWO_LINK.replace(damping=(0.02 + price, 0.012 + price))
     repaid = zw.workspace(more, zw.Wall(300), rate=1000, points=20, torque_held_up_to=8)
     assert repaid.largest_stiffness == pytest.approx(free.largest_stiffness)
     assert "held over a period" in held.claim

@@ -89,22 +89,36 @@ def test_slow_hands_are_decided() -> None:
 
 
 @pytest.mark.parametrize(
-    ("loop", "valid"),
+    ("loop", "words"),
     [
-        ({"mass_kg": ["0.036", "0.06"]}, True),
-        ({"mass_kg": ["0.0002", "0.056"]}, False),
-        ({"damping_N_s_per_m": ["0.1", "3.15"]}, True),
-        ({"stiffness_N_per_m": ["70000", "90000"]}, False),
-        ({"delay_s": "0.004"}, False),
-        ({"sample_period_s": "0.01"}, False),
-        ({"numerator": ["11", "-1"]}, False),
-        ({"numerator": ["1", "-1"]}, False),
+        ({"mass_kg": ["0.036", "0.06"]}, ""),
+        ({"mass_kg": ["0.0002", "0.056"]}, "not confirmed"),
+        ({"damping_N_s_per_m": ["0.1", "3.15"]}, ""),
+        ({"stiffness_N_per_m": ["70000", "90000"]}, "not confirmed"),
+        ({"delay_s": "0.004"}, "could not be confirmed"),
+        ({"sample_period_s": "0.01"}, "could not be confirmed"),
+        ({"numerator": ["11", "-1"]}, "could not be confirmed"),
+        ({"numerator": ["1", "-1"]}, "not confirmed"),
+        ({"mass_kg": "0"}, "must be > 0"),
+        ({"damping_N_s_per_m": "-1"}, "≥ 0"),
+        ({"mass_kg": ["2", "1"]}, "smaller"),
+        ({"mass_kg": ["1", "2", "3"]}, "interval"),
+        ({"mass_kg_m2": "1"}, "of a rotary one"),
+        ({"delay_s": ["0", "1"]}, "expected a number"),
+        ({"delay_s": "9"}, "samples"),
+        ({"denominator": ["0", "1"]}, "proper"),
+        ({"numerator": []}, "numerator must have 1"),
+        ({"mass_kg": "1e-9"}, "too far"),
+        ({"mass_kg": None}, "expected a number"),
     ],
     ids=str,
 )
-def test_a_box_with_other_numbers(boxed: dict, loop: dict, valid: bool) -> None:
+def test_a_box_with_other_numbers(boxed: dict, loop: dict, words: str) -> None:
+    """Widened into unstable hands, before another wall, or no loop: refused; a harmless change is not."""
     assert checker.verify(boxed).valid
-    assert changed(boxed, **loop).valid == valid
+    found = changed(boxed, **loop)
+    assert found.valid is not bool(words)
+    assert words in found.reason
 
 
 @pytest.mark.parametrize(
@@ -159,29 +173,6 @@ def test_a_kind_cannot_be_exchanged() -> None:
     found = changed(unstable, mass_kg=["0.036", "0.037"])
     assert not found.valid
     assert "single values" in found.reason
-
-
-@pytest.mark.parametrize(
-    ("loop", "words"),
-    [
-        ({"mass_kg": "0"}, "must be > 0"),
-        ({"damping_N_s_per_m": "-1"}, "≥ 0"),
-        ({"mass_kg": ["2", "1"]}, "smaller"),
-        ({"mass_kg": ["1", "2", "3"]}, "interval"),
-        ({"mass_kg_m2": "1"}, "of a rotary one"),
-        ({"delay_s": ["0", "1"]}, "expected a number"),
-        ({"delay_s": "9"}, "samples"),
-        ({"denominator": ["0", "1"]}, "proper"),
-        ({"numerator": []}, "numerator must have 1"),
-        ({"mass_kg": "1e-9"}, "too far"),
-        ({"mass_kg": None}, "expected a number"),
-    ],
-    ids=str,
-)
-def test_what_is_no_loop(loop: dict, words: str) -> None:
-    found = changed(document(PADDLE, zw.Wall(1000, 1)), **loop)
-    assert not found.valid
-    assert words in found.reason
 
 
 def test_what_the_checker_refuses_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
