@@ -40,7 +40,6 @@ def file(tmp_path: Path) -> str:
 
 @pytest.fixture(scope="module")
 def compared() -> LinkComparison:
-    """One arm over a bad link."""
     return zw.links.compare(DEVICE, schedule=Schedule(delay="20 ms", jitter="10 ms", loss=0.5, burst=4))
 
 

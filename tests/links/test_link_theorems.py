@@ -14,7 +14,6 @@ DAMPING = Fraction(3, 20)
 
 
 def arm(**more: object) -> zw.Device:
-    """An arm at 1 kHz."""
     return zw.Device(**{"mass": 0.05, "damping": DAMPING, "rate": 1000, "delay": 0, **more})
 
 
@@ -81,7 +80,6 @@ def test_a_free_follower_adds_its_mass_and_w_tau() -> None:
 
 
 def test_arms_do_not_drift_apart_when_half_is_lost() -> None:
-    """After a stroke they come together again; the waves that each packet told alone would be lost."""
     device = arm(coulomb_friction="5 mN")
     stroke = lambda t: 0.02 * np.sin(np.pi * min(t, 1.0)) ** 2 + 0.01 * min(t, 1.0)  # noqa: E731
     link = Schedule(delay="2 ms", jitter="5 ms", loss=0.5, burst=4)

@@ -24,7 +24,6 @@ SCHEDULES = 2000
 
 
 def arm(damping: str = "0.15", friction: str = "0", resolution: str = "0", **more: object) -> zw.Device:
-    """An arm at 1 kHz."""
     return zw.Device(
         damping=damping, coulomb_friction=friction, resolution=resolution, rate=1000, **{"delay": 0, **more}
     )

@@ -23,7 +23,6 @@ PAIR = zw.Pair(ARM, ARM, stiffness=100, delay="2 ms", compensation=LAW)
 
 
 def both(**changes: object) -> dict[str, zw.Device]:
-    """Both arms alike."""
     return dict.fromkeys(("leader", "follower"), ARM.replace(**changes))
 
 

@@ -60,7 +60,6 @@ def drawn(rng: random.Random) -> zw.Pair:
 
 @seeds(6)
 def test_where_a_limit_is_looked_for_first_changes_nothing(seed: int) -> None:
-    """The advice is the same, to the bit, as without any closed form."""
     pair = drawn(random.Random(seed))
     knobs = [*_of_the_coupling(pair), *_of_the_arms(pair)]
     for kind in ("slack", "change"):
@@ -89,7 +88,6 @@ def turned(pair: zw.Pair, parameter: str, value: float | Fraction) -> zw.Pair:
 
 
 def holds(pair: zw.Pair, parameter: str, value: float | Fraction) -> bool:
-    """Whether `check` calls the pair with this value passive."""
     try:
         return bool(zw.check(turned(pair, parameter, value)).passive)
     except zw.InputError:

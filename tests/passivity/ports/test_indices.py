@@ -209,7 +209,6 @@ def test_a_motion_replayed_by_scipy(g, kind):
     ],
 )
 def test_a_discrete_motion_replayed_by_scipy(g):
-    """dlsim answers the samples; more comes out than goes in."""
     motion, system = indices(g).witness, in_state_space(g)
     u, y = (np.atleast_2d(x).T for x in motion.signals()[1:])
     _, replayed, _ = scipy.signal.dlsim((system.A, system.B, system.C, system.D, 0.01), u)

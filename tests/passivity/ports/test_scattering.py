@@ -53,7 +53,6 @@ def test_what_brings_back_more_is_shown_by_waves(name):
 
 
 def test_the_waves_answer_each_other():
-    """b of the waves is what scipy's response of S to a is."""
     found = zw.ports.scattering_passivity(ACTIVE["amplifier"][0])
     t, (a,), (b,) = (np.array(x) for x in found.waves(20001))
     answer = control.forced_response(ACTIVE["amplifier"][0], t, a).outputs
@@ -143,7 +142,6 @@ def test_samples_above_one_are_told_with_what_lies_beside_them():
 
 
 def test_samples_that_keep_the_bound_prove_nothing():
-    """No sample violates: that is said, and that it is no proof."""
     found = zw.ports.scattering_table(table(0.5, 0.6j, -1.0))
     assert not found.violates
     # Kurokawa's waves carry |a|² − |b|² at a complex reference too

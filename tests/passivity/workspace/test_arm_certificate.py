@@ -53,7 +53,6 @@ def test_a_plane_wall_whose_matrix_is_rounded() -> None:
 
 @pytest.mark.parametrize("delay", [0, 2])
 def test_virtual_damping_of_both_signs(delay: int) -> None:
-    """A certificate with a bound on |B| that the checker accepts; a smaller one it does not."""
     wall = zw.arms.MatrixWall([[90, 20], [20, 80]], [[0.03, 0.02], [0.02, -0.01]])
     space = zw.workspace(ARM, wall, rate=1000, delay=delay / 1000, points=20)
     assert space.outcome == "passive"
@@ -72,7 +71,6 @@ def test_a_held_torque_is_said() -> None:
 
 
 def test_the_whole_box_of_a_parallel_arm_in_space() -> None:
-    """The map is a thin layer; the same document for all heights is proved, too."""
     arm = built_in("falcon", damping=0.003)
     space = zw.workspace(arm, zw.Wall(100), rate=1000, points=10)
     document = copy.deepcopy(space.certificate.documents[0])
@@ -105,7 +103,6 @@ def test_described_arms_of_every_kind_of_joint(tmp_path: Path) -> None:
 
 
 def test_joints_beside_the_way_to_the_hand_are_left_out(tmp_path: Path) -> None:
-    """A gripper moves nothing that the wall feels; it is not in the document."""
     joints = [("revolute", "0 0 1", "0.1 0 0", "0 0 0", damping) for damping in (0.05, 0.04, 0.0)]
     path = described(tmp_path / "arm.urdf", joints, "l2", "0.1 0 0")
     read = zw.arms.read_arm(path, frame="tip", hold={"j2": 0.0}, damping=(0.05, 0.04, 0.001))

@@ -189,7 +189,6 @@ MIRROR = texts(np.diag([1.0, 1, -1]))
     ],
 )  # fmt: skip
 def test_what_does_not_hold_is_refused(every: bool, path: str, value: Any, reason: str) -> None:
-    """Each number that pose brings, changed for the worse, and each condition of its theorem."""
     document = chain_in_pose(4, 4, every)
     assert checker.verify(document).valid
     found = checker.verify(put(document, path, value))

@@ -57,7 +57,6 @@ def test_the_advice_is_enough_and_little_more_than_fails(name: str) -> None:
 
 
 def test_one_joint_can_be_enough() -> None:
-    """A pantograph with one weak joint: damping that joint alone proves the region, and the map says so."""
     arm = built_in("haply-2diy", damping=(0.0015, 0.008), resolution=0)
     space = zw.workspace(arm, zw.Wall(400), rate=1000, points=30)
     assert np.isfinite(space.additions[0])
@@ -163,7 +162,6 @@ def test_virtual_damping_and_delay(delay: int) -> None:
 
 
 def test_coulomb_friction_hides_small_motions_only() -> None:
-    """A large enough motion still takes energy out; with much friction none was found, and it says so."""
     arm = built_in("two-link", damping=0.006, coulomb_friction=0.004)
     space = zw.workspace(arm, zw.Wall(900), rate=1000, points=20)
     assert space.outcome == "active"
@@ -220,7 +218,6 @@ def test_an_arm_that_cannot_leave_its_plane_has_the_margins_in_it() -> None:
 
 
 def test_an_undamped_joint_is_refuted_and_told_what_it_lacks() -> None:
-    """No stiffness holds; damping in that joint alone would do."""
     arm = PlanarChain(links=(0.1, 0.1), damping=(0.02, 0.0), joint_range=((0, 1), (1, 2)))
     space = zw.workspace(arm, zw.Wall(500), rate=1000, points=30)
     assert (space.outcome, space.largest_stiffness) == ("active", 0)

@@ -100,7 +100,6 @@ def test_near_the_rest_friction_covers_it(regularization: float, tmp_path: Path)
 
 
 def test_of_an_arm_with_encoders_it_is_without_their_steps() -> None:
-    """They are in no proof, and the outcome says so."""
     read = FINGER.replace(resolution=(1e-4,) * 3)
     found = zw.null_space(read, zw.Wall(200), within=0.02, **ASKED)
     assert found.outcome == "passive without encoder steps"

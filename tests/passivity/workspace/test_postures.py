@@ -20,7 +20,6 @@ READY = (0, -np.pi / 4, 0, -3 * np.pi / 4, 0, np.pi / 2, np.pi / 4)
 
 @pytest.fixture(scope="module")
 def panda(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Its description."""
     return panda_like(tmp_path_factory.mktemp("arm") / "panda.urdf", damping=0.8)
 
 

@@ -17,7 +17,6 @@ _STIFFNESS = re.compile(r"([\d.]+(?:e[+-]\d+)?) N/m")
 
 
 def drawn(rng: random.Random) -> PlanarChain:
-    """One joint or two, with a part of its turn each."""
     joints = rng.choice([1, 2, 2])
     first = [rng.uniform(-1, 1), rng.uniform(0.3, 1)][:joints]
     return PlanarChain(

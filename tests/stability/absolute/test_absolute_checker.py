@@ -85,7 +85,6 @@ def test_sign_is_that_of_the_definition(seed):
     ],
 )
 def test_refuses_what_proves_nothing(change, reason):
-    """Each condition of the theorem is asked for: a document without it is refused for that reason."""
     found = checker.verify(document(slope="0.3", taps=[], **{}) | change)
     assert checker.verify(document(slope="0.3", taps=[])).valid
     assert not found.valid

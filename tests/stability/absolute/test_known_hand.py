@@ -111,7 +111,6 @@ def test_late_forces(delay):
 
 
 def test_describing_function_is_a_fair_guess_for_a_pressing_hand(result):
-    """At 1800 N/m its amplitude is within a tenth of the exact motion's; below the limit it expects none."""
     guess = describing_guess(result.plant, 1800.0, -1.0)
     motion = periodic_motion(result.plant, 1800.0, -1.0)
     assert 2 * guess.amplitude == pytest.approx(motion.swing, rel=0.1)

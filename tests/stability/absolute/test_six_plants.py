@@ -63,7 +63,6 @@ def test_slopes_are_the_published_ones(number):
 
 @of_each
 def test_certificates_verify_and_no_more_slope_does(number):
-    """Each certificate is accepted, and with one percent more slope the same multiplier is refused."""
     for row in found(number).proved:
         assert row.certificate.verify()
         (document,) = row.certificate.documents

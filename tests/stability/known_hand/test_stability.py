@@ -101,7 +101,6 @@ def test_whole_and_fractional_delays_and_hands(delay: str, hand: object) -> None
 
 @pytest.mark.parametrize("delay", ["0", "0.00037", "0.002"])
 def test_the_limit_is_where_the_spectral_radius_reaches_one(delay: str) -> None:
-    """Bisection on the reference matrix finds the same largest stiffness; both sides are decided."""
     device, held = PADDLE.replace(delay=delay), as_hand(Finger())
     limit = coupled(device, zw.Wall(100, 3), Finger()).max_stiffness
     low, high = 100.0, 1e5
@@ -143,7 +142,6 @@ def test_an_interval_stands_for_every_hand_in_it() -> None:
 
 
 def test_an_interval_with_one_unstable_hand_names_it() -> None:
-    """The unstable_hand, taken alone, is unstable; a hand at the other end is not."""
     box = Hand(damping=(0, 3))
     found = coupled(PADDLE, zw.Wall(3000, 1), box)
     assert found.outcome == "unstable"

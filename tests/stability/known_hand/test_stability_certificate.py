@@ -36,7 +36,6 @@ def changed(doc: dict, **loop: object) -> checker.Verification:
 
 @pytest.fixture(scope="module")
 def boxed() -> dict:
-    """Of a paddle and a wall, for every hand in a box."""
     return document(PADDLE, zw.Wall(1000, 1), BOX)
 
 
@@ -166,7 +165,6 @@ def test_intervals_are_covered_where_random_hands_say_so() -> None:
 
 
 def test_a_kind_cannot_be_exchanged() -> None:
-    """A stable loop is no proof of instability, nor the reverse; nor is an interval a unstable_hand."""
     stable, unstable = document(PADDLE, zw.Wall(1000, 1)), document(PADDLE, zw.Wall(99000, 1))
     assert not checker.verify({**stable, "kind": "instability"}).valid
     assert not checker.verify({**unstable, "kind": "stability"}).valid
