@@ -16,21 +16,18 @@ import zwidth as zw
 from zwidth import checker
 from zwidth.checker.port.index import _principal_sums
 
-indices = zw.ports.passivity_indices
-
-
-s = control.tf("s")
+indices, s = zw.ports.passivity_indices, control.tf("s")
 LEAD = ([1, 3], [1, 2])
 COUPLED = matrix([[LEAD, ([1], [1, 2])], [NOTHING, LEAD]])
 """Its input index is 1 − 1/32."""
 
+ELSE = {"index": "output", "system.time": "discrete"}
 PROOFS = [
     (
         (s + 2) / (s + 9),
-        {
+        ELSE
+        | {
             "level": "0.3",
-            "index": "output",
-            "system.time": "discrete",
             "system.denominator": ["1", "-9"],
             "system.numerator": ["1", "1"],
             "proof.offset": "-1",
@@ -39,10 +36,9 @@ PROOFS = [
     ),
     (
         COUPLED,
-        {
+        ELSE
+        | {
             "level": "0.99",
-            "index": "output",
-            "system.time": "discrete",
             "system.denominator": ["1", "-1"],
             "system.numerators.0.1": ["9"],
             "system.numerators": [["1"]],
