@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from cmath import exp
 from functools import reduce
 from itertools import combinations
+from math import cos, sin
 from operator import getitem
 
 import control
 import numpy as np
 import pytest
+from flint import fmpq
 from matrix_systems import LAG, NOTHING, diagonal, matrix, random_system
 from tampered import tampered
 
 import zwidth as zw
 from zwidth import checker
 from zwidth.checker.port.index import _principal_sums
+from zwidth.passivity.ports.circle import product
 
 indices, s = zw.ports.passivity_indices, control.tf("s")
 LEAD = ([1, 3], [1, 2])
@@ -126,3 +130,21 @@ def test_the_checkers_sums_of_principal_minors(size):
     for k in range(1, size + 1):
         minors = [np.linalg.det(a[np.ix_(s, s)]).real for s in combinations(range(size), k)]
         assert found[k - 1] == round(sum(minors))
+
+
+def test_numbers_on_the_circle():
+    """a(ζ) b̄(ζ) and products of such numbers against complex arithmetic at one angle."""
+    zeta = exp(-0.7j)
+    a, b, e = [1, -2, 3, 5], [4, 0, -1, 2], [2, 7, 1, -3]
+    c = fmpq(*cos(0.7).as_integer_ratio())
+
+    def at(x):
+        real, imaginary = (int(v.p) / int(v.q) for v in (x.real(c), x.imaginary(c)))
+        return real + 1j * sin(0.7) * imaginary
+
+    va, vb, ve = (sum(c * zeta**k for k, c in enumerate(p)) for p in (a, b, e))
+    first, second = product(a, b), product(e, a)
+    expected = va * vb.conjugate(), ve * va.conjugate()
+    assert at(first) == pytest.approx(expected[0])
+    assert at(first * second.conjugate()) == pytest.approx(expected[0] * expected[1].conjugate())
+    assert at(first - second / 3) == pytest.approx(expected[0] - expected[1] / 3)
