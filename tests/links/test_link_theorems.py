@@ -39,7 +39,6 @@ def test_the_limit_is_that_of_the_decimal_that_was_typed(damping: str) -> None:
 
 @pytest.mark.parametrize("friction", [0, "0.12", "0.5"])
 def test_an_encoder_makes_waves_without_a_ledger_active(friction: object) -> None:
-    """A hand over one edge, whatever Coulomb friction; with the ledger it is passive."""
     device = arm(coulomb_friction=friction, resolution="22.4 um")
     assert zw.links.check(HeldWaves(device)).outcome == "active"
     assert zw.links.check(WavePort(device)).outcome == "passive"

@@ -125,7 +125,6 @@ def test_a_hidden_mode_that_grows_is_told():
 
 
 def table(*gains, **more):
-    """One port, samples from 1 GHz on."""
     s = np.reshape(np.array(gains, complex), (-1, 1, 1))
     return SimpleNamespace(f=1e9 + 1e8 * np.arange(len(gains)), s=s, **more)
 

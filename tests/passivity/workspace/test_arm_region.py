@@ -250,7 +250,6 @@ def test_the_map_is_labelled() -> None:
 
 
 def test_a_redundant_arm_is_proved_and_refuted_by_hands_on_its_links() -> None:
-    """A hand at the end alone cannot hold every joint of three in the plane; claim and data say so."""
     arm = PlanarChain(links=(0.1, 0.08, 0.05), damping=(0.05, 0.03, 0.02), joint_range=((0.3, 0.9),) * 3)
     limit = zw.workspace(arm, zw.Wall(100), rate=1000, points=60).largest_stiffness
     assert zw.workspace(arm, zw.Wall(limit / 3), rate=1000, points=60).outcome == "passive"

@@ -65,7 +65,6 @@ def test_the_stiffest_wall_of_all() -> None:
 
 
 def test_no_virtual_damping_no_stability() -> None:
-    """B = 0 without friction: every spring, however soft, is unstable."""
     found = coupled(BARE, zw.Wall(1))
     assert found.outcome == "unstable"
     assert found.max_stiffness is None

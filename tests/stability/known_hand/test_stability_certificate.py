@@ -113,7 +113,6 @@ def test_slow_hands_are_decided() -> None:
     ids=str,
 )
 def test_a_box_with_other_numbers(boxed: dict, loop: dict, words: str) -> None:
-    """Widened into unstable hands, before another wall, or no loop: refused; a harmless change is not."""
     assert checker.verify(boxed).valid
     found = changed(boxed, **loop)
     assert found.valid is not bool(words)
