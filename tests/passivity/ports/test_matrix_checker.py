@@ -11,7 +11,7 @@ from operator import getitem
 import control
 import numpy as np
 import pytest
-from flint import fmpq
+from flint import fmpq, fmpq_mat
 from matrix_systems import LAG, NOTHING, diagonal, matrix, random_system
 from tampered import tampered
 
@@ -19,6 +19,7 @@ import zwidth as zw
 from zwidth import checker
 from zwidth.checker.port.index import _principal_sums
 from zwidth.passivity.ports.circle import product
+from zwidth.passivity.ports.port import leverrier, multiplied
 
 indices, s = zw.ports.passivity_indices, control.tf("s")
 LEAD = ([1, 3], [1, 2])
@@ -130,6 +131,18 @@ def test_the_checkers_sums_of_principal_minors(size):
     for k in range(1, size + 1):
         minors = [np.linalg.det(a[np.ix_(s, s)]).real for s in combinations(range(size), k)]
         assert found[k - 1] == round(sum(minors))
+
+
+@pytest.mark.parametrize("size", [1, 2, 3, 4])
+def test_leverrier_against_flint(size):
+    """Characteristic polynomial, determinant and adjugate of rational matrices."""
+    rng = np.random.default_rng(size)
+    top, bottom = rng.integers(-9, 9, (size, size)), rng.integers(1, 9, (size, size))
+    a = [[fmpq(int(p), int(q)) for p, q in zip(*row, strict=True)] for row in zip(top, bottom, strict=True)]
+    found, exact = leverrier(a, fmpq(1)), fmpq_mat(a)
+    assert [1, *found.minors] == [(-1) ** k * c for k, c in enumerate(exact.charpoly().coeffs()[::-1])]
+    one = fmpq_mat([[int(i == j) for j in range(size)] for i in range(size)])
+    assert multiplied(a, found.adjugate) == (exact.det() * one).tolist()
 
 
 def test_numbers_on_the_circle():
