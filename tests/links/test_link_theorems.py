@@ -14,7 +14,6 @@ DAMPING = Fraction(3, 20)
 
 
 def arm(**more: object) -> zw.Device:
-    """An arm at 1 kHz."""
     return zw.Device(**{"mass": 0.05, "damping": DAMPING, "rate": 1000, "delay": 0, **more})
 
 
@@ -27,7 +26,6 @@ def test_waves_are_passive_up_to_the_damping_of_the_device(delay: object, fricti
     at = zw.links.check(HeldWaves(device, impedance=DAMPING), link)
     beyond = zw.links.check(HeldWaves(device, impedance=DAMPING * Fraction(1001, 1000)), link)
     assert (at.outcome, beyond.outcome) == ("theorem", "active")
-    assert beyond.witness is not None
     assert beyond.witness.exact_energy > 0
 
 
@@ -39,22 +37,8 @@ def test_the_limit_is_that_of_the_decimal_that_was_typed(damping: str) -> None:
     assert zw.links.check(WavePort(device)).outcome == "passive"
 
 
-def test_the_motion_gains_what_the_theory_says() -> None:
-    """(w − b) s²/T − f_c s in a period, in the mean of a round there and back of 2 n periods."""
-    w, friction, s, n, period = Fraction(1, 5), Fraction(1, 50), Fraction(1, 10), 3, Fraction(1, 1000)
-    stiff, wave, gain = w / period, [Fraction(0)] * n, Fraction(0)
-    for k in range(2 * n):
-        way = s if k < n else -s
-        received = wave[k % n]
-        gain += 2 * stiff * received * way - DAMPING * way**2 / period - friction * abs(way)
-        wave[k % n] = received - way
-    assert gain == 2 * n * ((w - DAMPING) * s**2 / period - friction * s)
-    assert wave == [0] * n
-
-
 @pytest.mark.parametrize("friction", [0, "0.12", "0.5"])
 def test_an_encoder_makes_waves_without_a_ledger_active(friction: object) -> None:
-    """A hand over one edge, whatever Coulomb friction; with the ledger it is passive."""
     device = arm(coulomb_friction=friction, resolution="22.4 um")
     assert zw.links.check(HeldWaves(device)).outcome == "active"
     assert zw.links.check(WavePort(device)).outcome == "passive"
@@ -62,7 +46,6 @@ def test_an_encoder_makes_waves_without_a_ledger_active(friction: object) -> Non
 
 @pytest.mark.parametrize("late", [0, 2, 10])
 def test_waves_of_the_textbook_diverge_in_samples(late: int) -> None:
-    """A short push, and nobody on either side: 0.1 kg, 5 N·s/m; with the ledger it comes to rest."""
     device = arm(mass="0.1 kg", coulomb_friction=0, resolution=0)
     push = zw.operators.RecordedForce(np.r_[np.full(50, 0.1), np.zeros(1950)])
     link = Schedule(delay=Fraction(late, 1000))
@@ -96,23 +79,18 @@ def test_a_free_follower_adds_its_mass_and_w_tau() -> None:
 
 
 def test_arms_do_not_drift_apart_when_half_is_lost() -> None:
-    """After a stroke they come together again; the waves that each packet told alone would be lost."""
     device = arm(coulomb_friction="5 mN")
-    path = zw.operators.PrescribedMotion(
-        lambda t: 0.02 * np.sin(np.pi * min(t, 1.0)) ** 2 + 0.01 * min(t, 1.0)
-    )
+    stroke = lambda t: 0.02 * np.sin(np.pi * min(t, 1.0)) ** 2 + 0.01 * min(t, 1.0)  # noqa: E731
     link = Schedule(delay="2 ms", jitter="5 ms", loss=0.5, burst=4)
-    apart = {}
-    for kind in (WavePort, HeldWaves):
-        port = kind(device)
-        trace = zw.links.simulate(port, port, link, path, None, 3)
-        apart[kind] = float(abs(np.diff(trace["position"].values[:, -500:], axis=0)).mean())
-    assert apart[WavePort] < 1e-4
-    assert apart[HeldWaves] > 5e-3
+    apart = []
+    for port in (WavePort(device), HeldWaves(device)):
+        trace = zw.links.simulate(port, port, link, zw.operators.PrescribedMotion(stroke), None, 3)
+        apart.append(abs(np.diff(trace["position"].values[:, -500:], axis=0)).mean())
+    assert apart[0] < 1e-4
+    assert apart[1] > 5e-3
 
 
 def test_smoothing_takes_the_chatter_of_jitter() -> None:
-    """Two milliseconds: a fifth of the steps of the force from sample to sample, or less."""
     device = arm(coulomb_friction="0.05", resolution="22.4 um")
     link = Schedule(delay="20 ms", jitter="10 ms", loss=0.5, burst=4)
     path = zw.operators.PrescribedMotion(lambda t: 0.02 * np.sin(np.pi * min(t, 1.0)) ** 2)

@@ -1,10 +1,14 @@
-"""Packets as bytes, links as schedules, and what is refused."""
+"""Packets as bytes, links as schedules, what is refused, and what the page on links shows."""
 
 from __future__ import annotations
 
+import re
 import struct
 import zlib
+from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,62 +17,62 @@ import zwidth as zw
 from zwidth.links import Packet, Schedule, WavePort
 from zwidth.links.schedule import LOST
 
+PAGE = Path(__file__).parents[2] / "docs" / "links.md"
 PACKET = Packet(7, -1.5e-3, 2.25, -0.125, 2**64 - 1, 2**63)
 MS = Fraction(1, 1000)
+OLD = struct.pack("<Qddd", 7, 0.0, 1.0, 0.0)
+"""The first version had no runs, and 36 bytes."""
+LATER = b"zwp\x03" + PACKET.to_bytes()[4:-4] + bytes(9)
+"""Of what is still to come the length is not known."""
 
 
 def test_a_packet_comes_back_from_its_bytes() -> None:
-    """Runs, number, wave and sums, bit for bit."""
     data = PACKET.to_bytes()
     assert len(data) == Packet.SIZE == 56
     assert Packet.from_bytes(data) == PACKET
 
 
-@pytest.mark.parametrize("bit", range(0, 8 * Packet.SIZE, 7))
-def test_a_broken_packet_is_refused(bit: int) -> None:
-    """One wrong bit anywhere."""
+def broken(bit: int) -> bytes:
+    """With one wrong bit."""
     data = bytearray(PACKET.to_bytes())
     data[bit // 8] ^= 1 << bit % 8
-    with pytest.raises(zw.InputError, match="as if it were lost"):
-        Packet.from_bytes(bytes(data))
+    return bytes(data)
 
 
-@pytest.mark.parametrize("data", [b"", PACKET.to_bytes()[:-1], PACKET.to_bytes() + b"\0"])
-def test_other_lengths_are_refused(data: bytes) -> None:
-    """What is no packet at all."""
-    with pytest.raises(zw.InputError, match="56 bytes"):
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        *((broken(bit), "as if it were lost") for bit in range(0, 8 * Packet.SIZE, 7)),
+        *((data, "56 bytes") for data in (b"", PACKET.to_bytes()[:-1], PACKET.to_bytes() + b"\0")),
+        (OLD + struct.pack("<I", zlib.crc32(OLD)), "of version 1, and this port reads version 2"),
+        (LATER + struct.pack("<I", zlib.crc32(LATER)), "of version 3, and this port reads version 2"),
+    ],
+)
+def test_what_is_no_packet_is_refused(data: bytes, said: str) -> None:
+    with pytest.raises(zw.InputError, match=said):
         Packet.from_bytes(data)
 
 
 @pytest.mark.parametrize(
-    ("data", "version"),
-    [(struct.pack("<Qddd", 7, 0.0, 1.0, 0.0), 1), (b"zwp\x03" + PACKET.to_bytes()[4:-4] + bytes(9), 3)],
-)
-def test_packets_of_another_version_are_refused_in_a_sentence(data: bytes, version: int) -> None:
-    """The first had no runs, and 36 bytes; of what is still to come the length is not known."""
-    with pytest.raises(zw.InputError, match=f"of version {version}, and this port reads version 2"):
-        Packet.from_bytes(data + struct.pack("<I", zlib.crc32(data)))
-
-
-@pytest.mark.parametrize(
-    ("numbers", "said"),
+    ("whole", "given", "said"),
     [
-        ((-1, 0.0, 0.0, 0.0, 1), "counts from 0"),
-        ((0, float("nan"), 0.0, 0.0, 1), "wave of a packet"),
-        ((0, 0.0, -1.0, 0.0, 1), "must be ≥ 0 J"),
-        ((0, 0.0, 0.0, float("inf"), 1), "position of a packet"),
-        ((0, 0.0, 0.0, 0.0, 0), "run of a packet is whole, from 1"),
-        ((0, 0.0, 0.0, 0.0, 1, 2**64), "to of a packet is whole, from 0"),
+        (PACKET, {"number": -1}, "counts from 0"),
+        (PACKET, {"wave": float("nan")}, "wave of a packet"),
+        (PACKET, {"energy": -1.0}, "must be ≥ 0 J"),
+        (PACKET, {"position": float("inf")}, "position of a packet"),
+        (PACKET, {"run": 0}, "run of a packet is whole, from 1"),
+        (PACKET, {"to": 2**64}, "to of a packet is whole, from 0"),
+        (Schedule(), {"loss": 1}, "below 1"),
+        (Schedule(), {"duplicates": 2}, "at most 1"),
+        (Schedule(), {"delay": -1}, "≥ 0"),
     ],
 )
-def test_absurd_packets_are_refused(numbers: tuple[int, float, float, float, int], said: str) -> None:
-    """No port ever hears of them."""
+def test_numbers_that_cannot_be_are_refused(whole: Any, given: dict[str, Any], said: str) -> None:
     with pytest.raises(zw.InputError, match=said):
-        Packet(*numbers)
+        replace(whole, **given)
 
 
 def test_a_port_refuses_what_it_cannot_book() -> None:
-    """Bytes, displacements that are no counts or no numbers, delays of part of a sample."""
     device = zw.Device(damping=0.1, resolution="10 um", rate=1000, delay=0)
     port = WavePort(device)
     with pytest.raises(zw.InputError, match="Packet objects"):
@@ -86,7 +90,6 @@ def test_a_port_refuses_what_it_cannot_book() -> None:
 
 
 def test_a_schedule_keeps_to_its_numbers() -> None:
-    """Delay and jitter in samples, the shares of what is lost and doubled, bursts of the length asked for."""
     count = 20_000
     link = Schedule(delay="3 ms", jitter="2 ms", loss=0.3, burst=5, duplicates=0.1)
     when, again = link.arrivals(count, MS, 0)
@@ -101,7 +104,6 @@ def test_a_schedule_keeps_to_its_numbers() -> None:
 
 
 def test_a_schedule_is_the_same_again_and_another_on_the_way_back() -> None:
-    """By its seed."""
     link = Schedule(loss=0.5)
     there, same, back = (link.arrivals(100, MS, way)[0] for way in (0, 0, 1))
     other = Schedule(loss=0.5, seed=2).arrivals(100, MS, 0)[0]
@@ -113,10 +115,23 @@ def test_a_schedule_is_the_same_again_and_another_on_the_way_back() -> None:
     assert all(np.array_equal(a, b[:50]) for a, b in zip(few, more, strict=True))
 
 
-@pytest.mark.parametrize(
-    ("given", "said"), [({"loss": 1}, "below 1"), ({"duplicates": 2}, "at most 1"), ({"delay": -1}, "≥ 0")]
-)
-def test_links_that_cannot_be_are_refused(given: dict[str, int], said: str) -> None:
-    """With the bound."""
-    with pytest.raises(zw.InputError, match=said):
-        Schedule(**given)
+class Mail:
+    """A socket that does not block."""
+
+    def __init__(self, datagrams: list[bytes]) -> None:
+        self.datagrams = datagrams
+
+    def recv(self, _: int) -> bytes:
+        if not self.datagrams:
+            raise BlockingIOError
+        return self.datagrams.pop(0)
+
+
+def test_the_first_two_examples_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> None:
+    names: dict[str, Any] = {}
+    for block in re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)[:2]:
+        exec(block, names)
+    assert re.fullmatch(r"-?\d\.\d\d N\n", capsys.readouterr().out)
+    first, second = Packet(0, 0.0, 0.0, 0.0, 5), Packet(1, 1e-3, 1e-6, 2e-5, 5)
+    mail = Mail([first.to_bytes(), second.to_bytes()[:-1] + b"\0\0", second.to_bytes()])
+    assert names["arrived"](mail) == [first, second]

@@ -17,8 +17,13 @@ from zwidth.passivity.witness.motion import Motion
 
 BILLIONTH = Fraction(1, 10**9)
 ARM = zw.Device(damping=1, coulomb_friction="0.1", resolution=0, delay=0, rate="1 kHz")
-LAW = zw.FrictionCompensation(coulomb="0.3", viscous="0.06", speed="0.35")
+Law = zw.FrictionCompensation
+LAW = Law(coulomb="0.3", viscous="0.06", speed="0.35")
 PAIR = zw.Pair(ARM, ARM, stiffness=100, delay="2 ms", compensation=LAW)
+
+
+def both(**changes: object) -> dict[str, zw.Device]:
+    return dict.fromkeys(("leader", "follower"), ARM.replace(**changes))
 
 
 def with_share(pair: zw.Pair, share: Fraction) -> zw.Pair:
@@ -42,9 +47,7 @@ def largest_share(pair: zw.Pair) -> Fraction:
 def test_a_line_is_above_and_touches(seed):
     """F tanh(v/v_s) ≤ h + s v, and at v = v_s artanh r they are one."""
     random = np.random.default_rng(seed)
-    law = zw.FrictionCompensation(
-        coulomb=f"{random.uniform(0.1, 9):.3f}", speed=f"{random.uniform(0.01, 9):.3f}"
-    )
+    law = Law(coulomb=f"{random.uniform(0.1, 9):.3f}", speed=f"{random.uniform(0.01, 9):.3f}")
     r = 1 - Fraction(random.random()).limit_denominator(10**6) / 10 ** int(random.integers(0, 6))
     height, slope = map(float, line_of(law, r))
     most, speed = float(law.coulomb), float(law.speed)
@@ -54,23 +57,21 @@ def test_a_line_is_above_and_touches(seed):
     assert most * tanh(touched / speed) == pytest.approx(height + slope * touched, rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {},
-        {"drive_rate": "20 kHz"},
-        {"leader": ARM.replace(delay="2 ms"), "follower": ARM.replace(delay="2 ms")},
-        {"compensation": LAW.replace(viscous=0)},
-        {"leader": ARM.replace(coulomb_friction=0), "follower": ARM.replace(coulomb_friction=0)},
-        {"leader": ARM.replace(coulomb_friction=3), "follower": ARM.replace(coulomb_friction=3)},
-        {"compensation": zw.FrictionCompensation(coulomb="0.3")},
-        {"follower_stiffness": 100, "local_damping": "-0.1", "delay": ("1 ms", "5 ms")},
-    ],
-    ids=["springs", "drives", "delays", "tanh alone", "no friction", "all of it", "sign", "D"],
-)
-def test_both_sides_of_the_largest_share(changes):
-    """Equal arms: a part in 10⁹ below the checker accepts the certificate, above a motion gains."""
-    pair = PAIR.replace(**changes)
+SHAPES = {
+    "springs": {},
+    "drives": {"drive_rate": "20 kHz"},
+    "delays": both(delay="2 ms"),
+    "tanh alone": {"compensation": LAW.replace(viscous=0)},
+    "no friction": both(coulomb_friction=0),
+    "all of it": both(coulomb_friction=3),
+    "sign": {"compensation": Law(coulomb="0.3")},
+    "D": {"follower_stiffness": 100, "local_damping": "-0.1", "delay": ("1 ms", "5 ms")},
+}
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_both_sides_of_the_largest_share(shape):
+    pair = PAIR.replace(**SHAPES[shape])
     share = largest_share(pair)
     assert zw.check(pair).largest_compensation == pytest.approx(float(share), rel=1e-6)
     below = zw.check(with_share(pair, share * (1 - BILLIONTH)))
@@ -83,8 +84,7 @@ def test_both_sides_of_the_largest_share(changes):
 
 def test_a_delay_within_a_sample_leaves_a_gap():
     """What a hand wins there is reckoned with less damping than it has: a part in 10³ above it is active."""
-    late = ARM.replace(delay="1.3 ms")
-    pair = PAIR.replace(leader=late, follower=late)
+    pair = PAIR.replace(**both(delay="1.3 ms"))
     share = largest_share(pair)
     assert zw.check(with_share(pair, share)).passive
     above = zw.check(with_share(pair, share * Fraction("1.001")))
@@ -95,11 +95,10 @@ def test_a_delay_within_a_sample_leaves_a_gap():
 def test_what_it_costs_has_closed_forms():
     """Springs, equal arms: C + s ≤ b − K T (n + 1), s = F/v_s without friction, 0 with enough of it."""
     left = 1 - 100 * 0.001 * 3
-    without = PAIR.replace(leader=ARM.replace(coulomb_friction=0), follower=ARM.replace(coulomb_friction=0))
-    assert float(largest_share(without)) == pytest.approx(left / (0.06 + 0.3 / 0.35), rel=1e-9)
-    enough = PAIR.replace(leader=ARM.replace(coulomb_friction=9), follower=ARM.replace(coulomb_friction=9))
-    assert float(largest_share(enough)) == pytest.approx(left / 0.06, rel=1e-9)
-    dry = PAIR.replace(compensation=zw.FrictionCompensation(coulomb="0.1"))
+    for friction, taken in ((0, 0.06 + 0.3 / 0.35), (9, 0.06)):
+        share = largest_share(PAIR.replace(**both(coulomb_friction=friction)))
+        assert float(share) == pytest.approx(left / taken, rel=1e-9)
+    dry = PAIR.replace(compensation=Law(coulomb="0.1"))
     assert float(largest_share(dry)) == 1
 
 
@@ -113,27 +112,23 @@ def test_the_limit_is_where_constant_speeds_gain():
 
 
 def test_each_side_has_its_own():
-    """None on the follower: it needs what it needed before."""
-    one = PAIR.replace(follower_compensation=zw.FrictionCompensation())
+    one = PAIR.replace(follower_compensation=Law())
     bare = PAIR.replace(compensation=None)
     assert PAIR.compensations == (LAW, LAW)
-    assert one.compensations == (LAW, zw.FrictionCompensation())
-    assert bare.compensations == (zw.FrictionCompensation(),) * 2
+    assert one.compensations == (LAW, Law())
+    assert bare.compensations == (Law(),) * 2
     assert zw.check(one).largest_compensation > zw.check(PAIR).largest_compensation
     assert zw.check(one).required_friction[1] == 0
     assert zw.check(bare).largest_compensation is None
 
 
 def test_needs_are_limits():
-    """At the required damping and friction it is passive, a part in 10⁵ below them it is not."""
     pair = with_share(PAIR, Fraction("1.7")).replace(follower_compensation=LAW)
     verdict = zw.check(pair)
     assert verdict.outcome == "active"
     assert "compensation of friction" in verdict.limit
-    for key, needed in (
-        ("damping", verdict.required_damping),
-        ("coulomb_friction", verdict.required_friction),
-    ):
+    needs = {"damping": verdict.required_damping, "coulomb_friction": verdict.required_friction}
+    for key, needed in needs.items():
         for size, passive in ((1.00001, True), (0.99999, False)):
             leader = ARM.replace(**{key: needed[0] * size})
             assert zw.check(pair.replace(leader=leader)).passive is passive
@@ -195,7 +190,7 @@ def taken_with(pair: zw.Pair, x: np.ndarray, weights: np.ndarray) -> float:
 def test_late_and_filtered_speeds_gain_nothing_where_the_proof_covers_them(age, seed):
     """Rounds in which it comes a whole turn late drive most; with a little more straight ways gain."""
     random = np.random.default_rng(seed)
-    law = zw.FrictionCompensation(coulomb="0.3", viscous="0.2", speed="0.35")
+    law = Law(coulomb="0.3", viscous="0.2", speed="0.35")
     pair = PAIR.replace(stiffness=1, compensation=law)
     low, high = 0.0, 8.0
     for _ in range(40):
@@ -222,7 +217,7 @@ def test_encoders_are_paid_first():
     arm = ARM.replace(resolution="1e-4", coulomb_friction="0.5")
     pair = zw.Pair(arm, arm, stiffness=100, delay="2 ms", drive_rate="20 kHz")
     left = Fraction(1, 2) - 100 * Fraction("1e-4")
-    law = zw.FrictionCompensation(coulomb=left, speed="0.01")
+    law = Law(coulomb=left, speed="0.01")
     assert spending(pair.replace(compensation=law)).tangents == (1, 1)
     assert zw.check(pair.replace(compensation=law)).passive
     more = spending(pair.replace(compensation=law.replace(viscous="0.1")))
@@ -234,22 +229,19 @@ def test_encoders_are_paid_first():
 @pytest.mark.parametrize("drives", [False, True])
 @seeds(15)
 def test_no_motion_gains_where_none_is_said_to(drives, seed):
-    """Hands at any speed, at random, in rounds and straight on, near the limit of any two arms."""
     random = np.random.default_rng(seed)
 
     def number(low: float, high: float) -> str:
         return f"{np.exp(random.uniform(np.log(low), np.log(high))):.3g}"
 
+    arms = [ARM.replace(damping=number(0.5, 2), coulomb_friction=number(0.01, 1)) for _ in (0, 1)]
     pair = zw.Pair(
-        ARM.replace(damping=number(0.5, 2), coulomb_friction=number(0.01, 1)),
-        ARM.replace(damping=number(0.5, 2), coulomb_friction=number(0.01, 1)),
+        *arms,
         stiffness=100,
         damping=random.choice(["0", "0.1"]),
         delay="1 ms",
         drive_rate="4 kHz" if drives else None,
-        compensation=zw.FrictionCompensation(
-            coulomb=number(0.01, 2), viscous=number(0.01, 0.2), speed=number(0.01, 3)
-        ),
+        compensation=Law(coulomb=number(0.01, 2), viscous=number(0.01, 0.2), speed=number(0.01, 3)),
     )
     share = zw.check(pair).largest_compensation
     tight = with_share(pair, Fraction(repr(share)) * Fraction("0.999"))
@@ -273,6 +265,7 @@ def test_no_motion_gains_where_none_is_said_to(drives, seed):
 @pytest.mark.parametrize(
     ("given", "message"),
     [
+        ({"follower_compensation": 3}, "follower_compensation is a FrictionCompensation or None, got int"),
         ({"coulomb": -1}, "coulomb must be ≥ 0"),
         ({"viscous": "-1 N*s/m"}, "helps the motion"),
         ({"speed": -1}, "sign of the speed"),
@@ -281,21 +274,11 @@ def test_no_motion_gains_where_none_is_said_to(drives, seed):
     ],
 )
 def test_numbers_of_a_law_have_bounds(given, message):
-    """What was given, the bound, and why."""
     with pytest.raises(zw.InputError, match=message):
-        zw.FrictionCompensation(**given)
-
-
-def test_a_pair_takes_laws_alone():
-    """Not a number in the place of one."""
-    with pytest.raises(
-        zw.InputError, match="follower_compensation is a FrictionCompensation or None, got int"
-    ):
-        PAIR.replace(follower_compensation=3)
+        (PAIR.replace if "follower_compensation" in given else Law)(**given)
 
 
 def test_it_is_told():
-    """In the description of the pair, in what is taken for granted, and in the numbers."""
     verdict = zw.check(PAIR)
     assert "compensation of friction by 0.3 N tanh(v/(0.35 m/s)) and 0.06 N·s/m" in PAIR.describe()
     assert "any mean of each arm's moves over past samples" in " ".join(verdict.assumptions)

@@ -60,7 +60,6 @@ def drawn(rng: random.Random) -> zw.Pair:
 
 @seeds(6)
 def test_where_a_limit_is_looked_for_first_changes_nothing(seed: int) -> None:
-    """The advice is the same, to the bit, as without any closed form."""
     pair = drawn(random.Random(seed))
     knobs = [*_of_the_coupling(pair), *_of_the_arms(pair)]
     for kind in ("slack", "change"):
@@ -89,7 +88,6 @@ def turned(pair: zw.Pair, parameter: str, value: float | Fraction) -> zw.Pair:
 
 
 def holds(pair: zw.Pair, parameter: str, value: float | Fraction) -> bool:
-    """Whether `check` calls the pair with this value passive."""
     try:
         return bool(zw.check(turned(pair, parameter, value)).passive)
     except zw.InputError:
@@ -134,6 +132,5 @@ def _of_one(pair: zw.Pair, advice: Advice, rng: random.Random) -> Iterator[str]:
 
 @seeds(3)
 def test_advice_on_a_pair_is_the_bound_of_its_outcome(seed: int) -> None:
-    """At its value, and as it is printed, `check` says passive; just beyond it, it does not."""
     rng = random.Random(seed)
     assert list(faults(drawn(rng), rng)) == []

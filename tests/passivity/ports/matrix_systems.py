@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import control
 import numpy as np
+import scipy.linalg
+
+NOTHING, LAG = ([0], [1]), ([1], [1, 1])
 
 
 def matrix(rows, dt=0):
@@ -11,6 +14,29 @@ def matrix(rows, dt=0):
     num = [[entry[0] for entry in row] for row in rows]
     den = [[entry[1] for entry in row] for row in rows]
     return control.tf(num, den, dt)
+
+
+def diagonal(first, second):
+    """Two axes that do not act on each other."""
+    return matrix([[first, NOTHING], [NOTHING, second]])
+
+
+def over(den, rows):
+    """Numerators over one denominator."""
+    return matrix([[(num, den) for num in row] for row in rows])
+
+
+def in_state_space(g):
+    """Entry by entry: python-control converts several axes only with a library that is not asked for."""
+    if isinstance(g, control.StateSpace):
+        return g
+    rows = []
+    for i in range(g.noutputs):
+        entries = [control.ss(control.tf(g.num[i][j], g.den[i][j])) for j in range(g.ninputs)]
+        row = control.append(*entries)
+        rows.append((row.A, row.B, np.ones((1, len(entries))) @ row.C, row.D.sum(axis=0)[None]))
+    a, b, c, d = zip(*rows, strict=True)
+    return control.ss(scipy.linalg.block_diag(*a), np.vstack(b), scipy.linalg.block_diag(*c), np.vstack(d))
 
 
 def random_system(seed, order=4, axes=2, throughput=0.5, discrete=False):

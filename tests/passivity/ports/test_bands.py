@@ -10,15 +10,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matrix_systems import responses
 
 import zwidth as zw
 
+indices = zw.ports.passivity_indices
 s = control.tf("s")
 
 
 def test_a_band_begins_where_the_real_part_vanishes():
     """Re (s + 3)/(s + 1)² = (3 − ω²)/(1 + ω²)²: below 0 from ω = √3 on, below −1/20 where ω² is 4 … 13."""
-    index = zw.ports.passivity_indices((s + 3) / (s + 1) ** 2).input
+    index = indices((s + 3) / (s + 1) ** 2).input
     (band,) = index.bands()
     assert (band.low, band.high) == (pytest.approx(sqrt(3) / (2 * pi), rel=1e-14), inf)
     assert str(band) == "from 0.275664 Hz on"
@@ -29,9 +31,8 @@ def test_a_band_begins_where_the_real_part_vanishes():
 
 
 def test_two_bands_each_with_a_motion():
-    """Two pairs of zeros near the axis: two bands, and a burst inside each that the checker accepts."""
     zeros = (s**2 + 0.1 * s + 1) * (s**2 - 0.01 * s + 9)
-    found = zw.ports.passivity_indices(zeros / ((s + 1) ** 2 * (s + 2) ** 2))
+    found = indices(zeros / ((s + 1) ** 2 * (s + 2) ** 2))
     assert len(found.bands) == 2
     for band in found.bands:
         motion = found.input.refute_in(band)
@@ -41,23 +42,20 @@ def test_two_bands_each_with_a_motion():
     assert "violated 0.0954795 to 0.152316 Hz, 0.473955 to 0.558519 Hz" in repr(found)
 
 
-def test_what_touches_the_level_splits_no_band():
-    """Re G = (x − 1)² (x − 4)/(1 + x)³ with x = ω²: one band from 0 to 2 rad/s, though it is 0 at 1."""
-    (band,) = zw.ports.passivity_indices(control.tf([2, -3, -3, -8], [2, 6, 6, 2])).bands
-    assert (band.low, band.high) == (0, pytest.approx(1 / pi, rel=1e-12))
-
-
-def test_of_several_axes_the_least_eigenvalue_counts():
-    """(1 3; −3 1)/(s + 1) has the eigenvalues (1 ± 3ω)/(1 + ω²): below 0 from 1/3 rad/s on."""
-    g = control.tf([[[1], [3]], [[-3], [1]]], [[[1, 1]] * 2] * 2)
-    (band,) = zw.ports.passivity_indices(g).bands
-    assert (2 * pi * band.low, band.high) == (pytest.approx(1 / 3, rel=1e-14), inf)
-
-
-def test_sampled_systems_have_bands_up_to_half_the_rate():
-    """Re z⁻¹ = cos θ is below 0 from a quarter of the rate on."""
-    (band,) = zw.ports.passivity_indices(control.tf([1], [1, 0], 0.02)).bands
-    assert (band.low, band.high) == (pytest.approx(12.5, rel=1e-14), pytest.approx(25, rel=1e-14))
+@pytest.mark.parametrize(
+    ("g", "low", "high"),
+    [
+        # Re G = (x − 1)² (x − 4)/(1 + x)³ with x = ω²: what touches the level splits no band
+        (control.tf([2, -3, -3, -8], [2, 6, 6, 2]), 0, 1 / pi),
+        # (1 3; −3 1)/(s + 1) has the eigenvalues (1 ± 3ω)/(1 + ω²): below 0 from 1/3 rad/s on
+        (control.tf([[[1], [3]], [[-3], [1]]], [[[1, 1]] * 2] * 2), 1 / (6 * pi), inf),
+        # Re z⁻¹ = cos θ is below 0 from a quarter of the rate on, up to half of it
+        (control.tf([1], [1, 0], 0.02), 12.5, 25),
+    ],
+)
+def test_there_is_one_band(g, low, high):
+    (band,) = indices(g).bands
+    assert (band.low, band.high) == (pytest.approx(low, rel=1e-14), pytest.approx(high, rel=1e-14))
 
 
 @settings(max_examples=8, deadline=None)
@@ -70,15 +68,13 @@ def test_the_relative_index_is_the_largest_singular_value(seed, axes):
     a -= np.eye(order) * (max(np.linalg.eigvals(a).real.max(), 0) + rng.uniform(0.1, 1))
     b, c = rng.normal(size=(order, axes)), rng.normal(size=(axes, order))
     g = control.ss(*(np.round(m, 3) for m in (a, b, c, rng.uniform(0, 1) * np.eye(axes))))
-    found = zw.ports.passivity_indices(g)
+    found = indices(g)
     relative = found.relative(z)
     closed = np.linalg.eigvals(g.A - g.B @ np.linalg.solve(g.D + z * np.eye(axes), g.C))
     if closed.real.max() >= 0:
         assert relative.value == inf
         return
-    eye, omega = z * np.eye(axes), np.concatenate([[0], np.geomspace(1e-3, 1e4, 3001)])
-    states = 1j * omega[:, None, None] * np.eye(order) - g.A
-    at = g.C @ np.linalg.solve(states, np.broadcast_to(g.B, (len(omega), *g.B.shape))) + g.D
+    eye, at = z * np.eye(axes), responses(g, 1j * np.r_[0, np.geomspace(1e-3, 1e4, 3001)])
     most = np.linalg.norm((at - eye) @ np.linalg.inv(at + eye), 2, axis=(1, 2)).max()
     assert most <= relative.value * (1 + 1e-9)
     assert relative.value <= most * (1 + 1e-3)
@@ -87,21 +83,16 @@ def test_the_relative_index_is_the_largest_singular_value(seed, axes):
     assert relative.at_most(high)
     assert not relative.at_most(low)
     assert relative.at_most(1) == found.passive
-    assert [(x.low, x.high) for x in relative.bands()] == [
-        (pytest.approx(x.low), pytest.approx(x.high)) for x in found.bands
-    ]
+    ends = [[(band.low, band.high) for band in bands] for bands in (relative.bands(), found.bands)]
+    assert ends[0] == [pytest.approx(band) for band in ends[1]]
 
 
 def test_what_comes_back_whole_has_the_relative_index_1():
-    """A mass stores and takes nothing: R = 1, and no less is certified."""
-    relative = zw.ports.passivity_indices(0.25 * s).relative("0.3")
+    """A mass stores and takes nothing: R = 1, and no less is certified; a reference takes energy."""
+    relative = indices(0.25 * s).relative("0.3")
     assert relative.value == 1
     assert relative.certificate().verify()
     with pytest.raises(zw.InputError, match="give a higher level"):
         relative.certificate("0.999")
-
-
-def test_a_reference_is_positive():
-    """A wave is measured against something that takes energy."""
     with pytest.raises(zw.InputError, match="must be > 0"):
-        zw.ports.passivity_indices(1 / (s + 1)).relative(0)
+        indices(0.25 * s).relative(0)

@@ -12,7 +12,7 @@ from matrix_systems import matrix
 
 import zwidth as zw
 
-PERIOD = 0.001
+indices, PERIOD = zw.ports.passivity_indices, 0.001
 
 
 def wall(stiffness, damping, late=0):
@@ -20,7 +20,7 @@ def wall(stiffness, damping, late=0):
     k, b = np.array(stiffness), np.array(damping) * 1000
     den = [1, 0] + [0] * late
     return matrix(
-        [[([k[i][j] + b[i][j], -b[i][j]], den) for j in range(len(k))] for i in range(len(k))], PERIOD
+        [[([x + y, -y], den) for x, y in zip(*row, strict=True)] for row in zip(k, b, strict=True)], PERIOD
     )
 
 
@@ -28,7 +28,7 @@ def wall(stiffness, damping, late=0):
 def test_a_wall_of_two_axes(damping):
     """The largest eigenvalue of T K/2 ± B, of the theory of arms; B may be of both signs."""
     stiffness = np.array([[500, 100], [100, 300]])
-    found = zw.ports.passivity_indices(wall(stiffness, damping)).sampled_damping
+    found = indices(wall(stiffness, damping)).sampled_damping
     ends = [np.linalg.eigvalsh(PERIOD * stiffness / 2 + sign * np.array(damping)).max() for sign in (1, -1)]
     assert isclose(found.required, max(ends), rel_tol=1e-12)
     assert isclose(found.frequency, 500)
@@ -40,9 +40,9 @@ def test_a_late_spring_of_two_axes(late):
     stiffness = [[500, 100], [100, 300]]
     need = (2 * late + 1) * PERIOD / 2 * np.linalg.eigvalsh(stiffness).max()
     zero = np.zeros((2, 2))
-    own = zw.ports.passivity_indices(wall(stiffness, zero, late)).sampled_damping
+    own = indices(wall(stiffness, zero, late)).sampled_damping
     device = zw.Device(damping="1.5", rate=1000, delay=Fraction(late, 1000))
-    of_device = zw.ports.passivity_indices(wall(stiffness, zero), device).sampled_damping
+    of_device = indices(wall(stiffness, zero), device).sampled_damping
     for found in (own, of_device):
         assert isclose(found.required, need, rel_tol=1e-12)
         assert isclose(found.frequency, 0 if late else 500, abs_tol=1e-9)
@@ -50,19 +50,15 @@ def test_a_late_spring_of_two_axes(late):
 
 
 def test_axes_that_do_not_act_on_each_other_need_the_larger_damping():
-    """Two laws with memory, decided one by one by the criterion of one axis."""
-    parts = [([90, -60, 5], [1, -0.5, 0.25]), ([40, 30, -50], [1, 0.3, 0])]
-    alone = [zw.ports.passivity_indices(control.tf(*part, 0.002)).sampled_damping.required for part in parts]
-    nothing = ([0], [1])
-    both = zw.ports.passivity_indices(
-        matrix([[parts[0], nothing], [nothing, parts[1]]], 0.002)
-    ).sampled_damping
+    parts, nothing = [([90, -60, 5], [1, -0.5, 0.25]), ([40, 30, -50], [1, 0.3, 0])], ([0], [1])
+    alone = [indices(control.tf(*part, 0.002)).sampled_damping.required for part in parts]
+    both = indices(matrix([[parts[0], nothing], [nothing, parts[1]]], 0.002)).sampled_damping
     assert isclose(both.required, max(alone), rel_tol=1e-12)
 
 
 def test_a_stiffness_that_turns_cannot_be_damped():
     """K = (k κ; −κ k) pushes round: no damping is enough, however slow the circle."""
-    found = zw.ports.passivity_indices(wall([[500, 100], [-100, 500]], np.zeros((2, 2)))).sampled_damping
+    found = indices(wall([[500, 100], [-100, 500]], np.zeros((2, 2)))).sampled_damping
     assert found.required is None
     assert found.margin is None
     assert "no damping" in found.describe()
@@ -70,22 +66,14 @@ def test_a_stiffness_that_turns_cannot_be_damped():
 
 @pytest.mark.parametrize(
     ("device", "message"),
-    [
-        (zw.Device(damping=1, rate=2000), "made for the sample period"),
-        (zw.Device(damping=1, rate=1000, delay="0.0005"), "whole samples"),
-    ],
+    [({"rate": 2000}, "made for the sample period"), ({"rate": 1000, "delay": "0.0005"}, "whole samples")],
 )
 def test_devices_that_do_not_fit(device, message):
-    """Another rate, or a delay of part of a sample."""
     with pytest.raises(zw.InputError, match=message):
-        zw.ports.passivity_indices(wall([[500, 100], [100, 300]], np.zeros((2, 2))), device)
+        indices(wall([[500, 100], [100, 300]], np.zeros((2, 2))), zw.Device(damping=1, **device))
 
 
 def test_a_discrete_system_without_a_rate_has_no_sampled_damping():
     """dt = True says that it is discrete and no more."""
-    assert (
-        zw.ports.passivity_indices(
-            matrix([[([1], [1]), ([0], [1])], [([0], [1]), ([1], [1])]], True)
-        ).sampled_damping
-        is None
-    )
+    one, nothing = ([1], [1]), ([0], [1])
+    assert indices(matrix([[one, nothing], [nothing, one]], True)).sampled_damping is None

@@ -10,10 +10,12 @@ from figure_layout import faults
 
 import zwidth as zw
 
+FIVE = zw.ports.response_table([1, 2, 3, 4, 5], [1 + 2j, -0.2j, -0.3, -0.05 + 1j, 0.4], error=0.1)
+NETWORK = SimpleNamespace(f=[1.0, 2.0, 3.0], s=[[[0.96]], [[1.02j]], [[1.04]]])
+
 
 def test_a_measured_response_with_error_bars():
-    """Broken by more than the error, within it, and kept: by hand."""
-    found = zw.ports.response_table([1, 2, 3, 4, 5], [1 + 2j, -0.2j, -0.3, -0.05 + 1j, 0.4], error=0.1)
+    found = FIVE
     assert found.violated == (False, False, True, False, False)
     assert found.possible == (False, True, True, True, False)
     assert found.least == (-0.3, 3.0)
@@ -58,28 +60,17 @@ def test_what_a_sampled_law_needs_of_the_device():
 
 def test_scattering_parameters_with_an_error():
     """‖S‖ ≤ 1 + e may be of a passive network; with e = 0.03 a sample of 1.02 may."""
-    network = SimpleNamespace(f=[1.0, 2.0, 3.0], s=[[[0.96]], [[1.02j]], [[1.04]]])
-    assert zw.ports.scattering_table(network).violated == (False, True, True)
-    found = zw.ports.scattering_table(network, error=0.03)
+    assert zw.ports.scattering_table(NETWORK).violated == (False, True, True)
+    found = zw.ports.scattering_table(NETWORK, error=0.03)
     assert found.violated == (False, False, True)
     assert found.possible == (False, True, True)
     assert found.bands[0].worst == 1.04
-    assert zw.ports.scattering_table(network, error=0.04).violated == (False, False, False)
+    assert zw.ports.scattering_table(NETWORK, error=0.04).violated == (False, False, False)
     assert "wrong by more than the error" in found.assumptions[-1]
 
 
-def test_no_module_has_the_name_of_what_it_offers():
-    """Once such a module is loaded, for another of its names, it would stand in the place of the function."""
-    for package in (zw.ports, zw.coupling):
-        for name in dir(package):
-            module = getattr(getattr(package, name), "__module__", "")  # of a module that is public: none
-            assert module.rpartition(".")[2] != name
-
-
 def test_the_picture_tells_three_kinds_of_samples_apart():
-    """Each sample once, with its error, and the bands up to the samples beside them."""
-    found = zw.ports.response_table([1, 2, 3, 4, 5], [1 + 2j, -0.2j, -0.3, -0.05 + 1j, 0.4], error=0.1)
-    figure = found.plot()
+    figure = FIVE.plot()
     (axes,) = figure.axes
     assert axes.get_title(loc="left") == "1 of 5 samples violate"
     shown = {bars.get_label(): bars.lines[0].get_xydata().tolist() for bars in axes.containers}
@@ -93,8 +84,7 @@ def test_the_picture_tells_three_kinds_of_samples_apart():
     low, high = axes.get_ylim()
     assert low < -0.4 < 1.1 < high
     assert faults(figure) == []
-    network = SimpleNamespace(f=[1.0, 2.0, 3.0], s=[[[0.96]], [[1.02j]], [[1.04]]])
-    (axes,) = zw.ports.scattering_table(network).plot().axes
+    (axes,) = zw.ports.scattering_table(NETWORK).plot().axes
     assert (axes.get_ylabel(), axes.containers[1].get_label()) == ("|S| [1]", "violates")
 
 
@@ -111,6 +101,5 @@ def test_the_picture_tells_three_kinds_of_samples_apart():
     ],
 )
 def test_what_is_no_table_is_refused(given, message):
-    """One message each."""
     with pytest.raises(zw.InputError, match=message):
         zw.ports.response_table(*given)

@@ -20,7 +20,6 @@ READY = (0, -np.pi / 4, 0, -3 * np.pi / 4, 0, np.pi / 2, np.pi / 4)
 
 @pytest.fixture(scope="module")
 def panda(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Its description."""
     return panda_like(tmp_path_factory.mktemp("arm") / "panda.urdf", damping=0.8)
 
 
@@ -31,7 +30,6 @@ def test_the_joints_are_placed_as_published(panda: Path) -> None:
 
 
 def test_no_posture_of_others_is_worse(panda: Path) -> None:
-    """2b/T over the largest lever, at postures of another generator: none is below the one that was found."""
     arm = zw.arms.read_arm(panda, whole=True)
     found = zw.stiffness_over_postures(arm, zw.Wall(500), rate=1000, postures=3000)
     low, high = np.array(arm.joint_range).T
@@ -48,7 +46,6 @@ def test_no_posture_of_others_is_worse(panda: Path) -> None:
 
 
 def test_beyond_it_a_motion_of_the_joints_takes_energy_out(panda: Path) -> None:
-    """1 % stiffer, at the worst posture; 1 % less stiff there is none: the motion says who can make it."""
     arm = zw.arms.read_arm(panda, whole=True)
     limit = zw.stiffness_over_postures(arm, zw.Wall(500), rate=1000, postures=1000).largest_stiffness
     over = zw.stiffness_over_postures(arm, zw.Wall(1.01 * limit), rate=1000, postures=1000)
@@ -61,7 +58,6 @@ def test_beyond_it_a_motion_of_the_joints_takes_energy_out(panda: Path) -> None:
 
 
 def test_the_damper_is_told_what_the_joints_pay_for(panda: Path) -> None:
-    """With less of it no posture fails, with more one does; what gains is no slower than is said."""
     arm = zw.arms.read_arm(panda, whole=True)
     found = zw.stiffness_over_postures(arm, zw.Wall(300, 5), rate=1000, postures=300)
     share = found.damping_factor
@@ -79,7 +75,6 @@ def test_the_damper_is_told_what_the_joints_pay_for(panda: Path) -> None:
 
 
 def test_friction_covers_the_encoder_steps_of_a_wall(panda: Path) -> None:
-    """At each posture the most that half a step of every joint, this way or that, changes in any torque."""
     asked = {"coulomb_friction": (0.3, 0.3, 0.3, 0.2, 0.1, 0.1, 0.05), "resolution": (2e-4,)}
     arm = zw.arms.read_arm(panda, whole=True, **asked)
     found = zw.stiffness_over_postures(arm, zw.Wall(500), rate=1000, postures=300)
@@ -113,7 +108,6 @@ def test_in_pose_factors_are_told(panda: Path) -> None:
 
 
 def test_on_the_command_line(panda: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The report, the JSON and the map; what is of a map of two joints is refused."""
     asked = ["workspace", str(panda), "--stiffness", "500", "--postures", "500"]
     assert main([*asked, "-o", str(tmp_path / "map.nc"), "--plot", str(tmp_path / "map.png")]) == 3
     assert "at every posture tried" in capsys.readouterr().out
@@ -126,7 +120,6 @@ def test_on_the_command_line(panda: Path, tmp_path: Path, capsys: pytest.Capture
 
 
 def test_what_cannot_be_asked(panda: Path) -> None:
-    """A map of cells of seven joints, postures of an arm that is not described, too few of them."""
     arm = zw.arms.read_arm(panda, whole=True)
     with pytest.raises(zw.InputError, match="7 would move"):
         zw.workspace(arm, zw.Wall(500), rate=1000)

@@ -17,7 +17,6 @@ _STIFFNESS = re.compile(r"([\d.]+(?:e[+-]\d+)?) N/m")
 
 
 def drawn(rng: random.Random) -> PlanarChain:
-    """One joint or two, with a part of its turn each."""
     joints = rng.choice([1, 2, 2])
     first = [rng.uniform(-1, 1), rng.uniform(0.3, 1)][:joints]
     return PlanarChain(
@@ -29,7 +28,6 @@ def drawn(rng: random.Random) -> PlanarChain:
 
 @seeds(2)
 def test_the_wall_that_is_advised_is_proved(seed: int) -> None:
-    """The outcome at what is printed is passive; at what is said to fail, and a hair more, it is not."""
     rng = random.Random(seed)
     arm, delay = drawn(rng), rng.choice([0, 0, 0.002])
 
@@ -50,14 +48,12 @@ def test_the_wall_that_is_advised_is_proved(seed: int) -> None:
 
 
 def test_an_arm_that_no_checker_is_asked_of_says_so() -> None:
-    """Five joints: the points of the map are all there is."""
     arm = PlanarChain(links=[0.1] * 5, joint_range=[(0.3, 0.5)] * 5, damping=[0.01] * 5)
     text = dict(_changes(zw.workspace(arm, zw.Wall(2000), rate=1000, points=2)))["wall"]
     assert text.endswith("N/m, by the points of the map alone")
 
 
 def test_a_wall_in_pose_is_told_in_times() -> None:
-    """Its stiffness has two units."""
     arm = PlanarChain(links=[0.1, 0.1], joint_range=[(0, 0.4), (0.8, 1.2)], damping=[0.02, 0.02], pose=True)
     wall = zw.arms.MatrixWall.in_pose(2000, 0.5, planar=True)
     found = zw.workspace(arm, wall, rate=1000, points=12)
@@ -65,7 +61,6 @@ def test_a_wall_in_pose_is_told_in_times() -> None:
         r"its stiffness times ([\d.]+), and no more; more than ([\d.]+) times fails",
         dict(_changes(found))["wall"],
     )
-    assert said is not None
     proved, fails = map(float, said.groups())
     softer = [zw.arms.MatrixWall.in_pose(2000 * k, 0.5 * k, planar=True) for k in (proved, 1.001 * fails)]
     outcomes = [zw.workspace(arm, each, rate=1000, points=12).outcome for each in softer]

@@ -85,7 +85,6 @@ def test_sign_is_that_of_the_definition(seed):
     ],
 )
 def test_refuses_what_proves_nothing(change, reason):
-    """Each condition of the theorem is asked for: a document without it is refused for that reason."""
     found = checker.verify(document(slope="0.3", taps=[], **{}) | change)
     assert checker.verify(document(slope="0.3", taps=[])).valid
     assert not found.valid
@@ -93,7 +92,6 @@ def test_refuses_what_proves_nothing(change, reason):
 
 
 def test_plant_of_a_touched_device_by_another_road():
-    """The enclosed G(z) of a device with hand and late force is the response of a stepped state, to 1e-12."""
     told = {**document(), "loop": LOOP}
     del told["plant"]
     plant = plant_of(read(told), 320)
@@ -121,7 +119,6 @@ def test_plant_of_a_touched_device_by_another_road():
 
 @pytest.mark.parametrize("name", ["hand_stiffness_N_per_m", "mass_kg", "sample_period_s"])
 def test_plant_that_is_not_stable_is_refused(name):
-    """Without a spring, a mass or a period there is no stable G(z)."""
     doc = {k: v for k, v in document(slope="10", taps=[]).items() if k != "plant"}
     assert checker.verify({**doc, "loop": LOOP}).valid
     assert "must be > 0" in checker.verify({**doc, "loop": {**LOOP, name: "0"}}).reason

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+import json
+from functools import cache
+
 import pytest
 
 import zwidth as zw
+from zwidth import checker
+from zwidth.cli.main import main
+from zwidth.passivity.certificate import read_document, verify_document
+from zwidth.passivity.stability.absolute import given_plant, periodic_motion
 
 PLANTS = {
     1: (["0.1", 0], [1, "-1.8", "0.81"]),
@@ -26,68 +33,50 @@ NYQUIST = {1: 36.1, 2: 2.7455, 3: 0.3124, 4: 7.907, 5: 2.4475, 6: 1.0870}
 """−1/G at its first real negative value; 36.1, 2.7455, 7.907 are D(−1)/−N(−1) by hand."""
 
 
-@pytest.fixture(scope="module", params=sorted(PLANTS))
-def case(request):
-    """(number, result) of a plant, without the motions."""
-    top, bottom = PLANTS[request.param]
-    plant = zw.PulseTransferFunction(top, bottom)
-    return request.param, zw.stability.absolute_stability(plant, motions=False)
+@cache
+def found(number):
+    """What is proved of a plant; of the last one the motions, too."""
+    plant = zw.PulseTransferFunction(*PLANTS[number])
+    return zw.stability.absolute_stability(plant, motions=number == 6)
 
 
-def test_a_result_shows_in_a_line(case):
-    """What each criterion proves and what is refuted, without the certificates' numbers."""
-    _, result = case
-    words = repr(result)
-    assert words.startswith(
-        f"<AbsoluteStability proved: circle {float(result.slope('circle')):.6g}; Tsypkin "
-    )
-    assert words.endswith(f"refuted: {result.linear_limit.slope:.6g}>")
+of_each = pytest.mark.parametrize("number", sorted(PLANTS))
 
 
-def test_slopes_are_the_published_ones(case):
-    """Circle, Tsypkin and odd Zames–Falb agree with the paper to three digits."""
-    number, result = case
+@of_each
+def test_slopes_are_the_published_ones(number):
+    result = found(number)
     names = ("circle", "Tsypkin", "Zames–Falb, odd")
     for name, value in zip(names, PUBLISHED[number], strict=True):
         assert float(result.slope(name)) == pytest.approx(value, rel=5e-4)
-
-
-def test_linear_limit(case):
-    """The linear limit is the Nyquist value, and no criterion proves more."""
-    number, result = case
     assert result.linear_limit.slope == pytest.approx(NYQUIST[number], rel=5e-4)
-    assert max(float(row.slope) for row in result.proved) <= result.linear_limit.slope
+    circle, tsypkin, jury_lee, general, odd = slopes = [float(row.slope) for row in result.proved]
+    assert max(slopes) <= result.linear_limit.slope
+    near = 1 - 1e-4
+    assert min(tsypkin, jury_lee) >= circle * near
+    assert general >= max(tsypkin, jury_lee) * near
+    assert odd >= general * near
+    words = repr(result)
+    assert words.startswith(f"<AbsoluteStability proved: circle {circle:.6g}; Tsypkin ")
+    refuted = result.linear_limit if number < 6 else result.pressing
+    assert words.endswith(f"refuted: {refuted.slope:.6g}>")
 
 
-def test_certificates_verify_and_no_more_slope_does(case):
-    """Each certificate is accepted, and with one percent more slope the same multiplier is refused."""
-    _, result = case
-    for row in result.proved:
+@of_each
+def test_certificates_verify_and_no_more_slope_does(number):
+    for row in found(number).proved:
         assert row.certificate.verify()
         (document,) = row.certificate.documents
         more = {**document, "slope": str(float(row.slope) * 1.01)}
         assert not zw.Certificate((more,)).verify()
 
 
-def test_one_tap_is_at_least_tsypkin_and_jury_lee(case):
-    """Each of the two is implied by a Zames–Falb multiplier, and the circle by each of them."""
-    _, result = case
-    circle, tsypkin, jury_lee, general, odd = (float(row.slope) for row in result.proved)
-    near = 1 - 1e-4
-    assert min(tsypkin, jury_lee) >= circle * near
-    assert general >= max(tsypkin, jury_lee) * near
-    assert odd >= general * near
-
-
 def test_walls_that_are_not_odd_get_less():
-    """Example 6: 0.9115 for any monotone wall, 1.0870 for odd ones."""
-    result = zw.stability.absolute_stability(zw.PulseTransferFunction(*PLANTS[6]), motions=False)
-    assert float(result.slope("Zames–Falb")) == pytest.approx(0.9115, abs=5e-5)
+    assert float(found(6).slope("Zames–Falb")) == pytest.approx(0.9115, abs=5e-5)
 
 
 def test_a_one_sided_wall_just_above_what_is_proved_for_it_vibrates():
-    """Example 6: a motion of three samples, below the linear limit, within a percent of the proof."""
-    result = zw.stability.absolute_stability(zw.PulseTransferFunction(*PLANTS[6]))
+    result = found(6)
     motion = result.pressing
     assert motion.period == 3
     assert motion.slope == pytest.approx(175 / 192, rel=1e-6)  # x = −½, −¼ − K, −⅛ − 0.96 K with g = −1
@@ -100,3 +89,28 @@ def test_a_one_sided_wall_just_above_what_is_proved_for_it_vibrates():
         x.append(0.5 * x[-1] - 2 * f[-1] - 0.92 * f[-2])
         f.append(motion.slope * max(x[-1] - motion.gap, 0.0))
     assert x[-3:] == pytest.approx([motion.positions[(3002 - 3 + i) % 3] for i in range(3)], abs=1e-9)
+
+
+def test_saved_with_the_result_and_verified(tmp_path, capsys) -> None:
+    path = tmp_path / "six.json"
+    found(6).save(path)
+    assert verify_document(read_document(path)).valid
+    assert main(["verify", str(path)]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "to rest" in told
+    assert "0.911" in told
+    assert "vibrates" in told
+    assert "passive" not in told
+    doc = json.loads(path.read_text(encoding="utf-8"))
+    doc["witness"]["slope"] = "0.9"
+    path.write_text(json.dumps(doc))
+    assert main(["verify", str(path)]) == 1
+
+
+@pytest.mark.parametrize(("number", "slope"), [(1, 26.1), (2, 1.58), (4, 3.99)])
+def test_every_motion_found_has_a_certificate(number, slope):
+    motion = periodic_motion(given_plant(zw.PulseTransferFunction(*PLANTS[number])), slope, -1.0)
+    assert motion.certificate.verify()
+    (doc,) = motion.certificate.documents
+    assert sum(doc["inside"]) == sum(motion.inside)
+    assert not checker.verify({**doc, "slope": str(slope / 2)}).valid

@@ -18,26 +18,24 @@ from zwidth.passivity.stability.characteristic import decided, of_law
 from zwidth.passivity.stability.known_hand import evidence, motion_of
 
 PADDLE = zw.catalogue.device("haptic-paddle")
-BOX = zw.stability.HandImpedance(mass=(0, "0.02"), stiffness=(0, 1000), damping=(0, 3))
+coupled, Hand = zw.stability.coupled_stability, zw.stability.HandImpedance
+BOX = Hand(mass=(0, "0.02"), stiffness=(0, 1000), damping=(0, 3))
+KINDS = ("stability", "instability")
 MASS, PERIOD = Fraction("0.036"), Fraction("0.001")
 BARE = zw.Device(mass=MASS, damping=0, sample_period=PERIOD)
 
 
 def document(device: zw.Device, wall: object, hand: object = None) -> dict:
-    """What `stability` certifies."""
-    certificate = zw.stability.coupled_stability(device, wall, hand).certificate
-    assert certificate is not None
+    certificate = coupled(device, wall, hand).certificate
     return copy.deepcopy(certificate.documents[0])
 
 
 def changed(doc: dict, **loop: object) -> checker.Verification:
-    """What the checker says with other numbers in the loop."""
     return checker.verify({**doc, "loop": {**doc["loop"], **loop}})
 
 
 @pytest.fixture(scope="module")
 def boxed() -> dict:
-    """Of a paddle and a wall, for every hand in a box."""
     return document(PADDLE, zw.Wall(1000, 1), BOX)
 
 
@@ -48,17 +46,12 @@ def boxed() -> dict:
     ids=["backward", "window", "pole"],
 )
 @pytest.mark.parametrize("hand", [None, Finger()], ids=["no hand", "finger"])
-def test_at_the_largest_stable_stiffness_and_a_millionth_above(
-    delay: str, velocity: object, hand: object
-) -> None:
-    """The wall of `max_stiffness` is certified stable, one a millionth stiffer is certified unstable."""
+def test_at_the_largest_stable_stiffness_and_a_millionth_above(delay, velocity, hand) -> None:
     device = PADDLE.replace(delay=delay)
-    limit = zw.stability.coupled_stability(device, zw.Wall(100, 2, velocity), hand).max_stiffness
-    assert limit is not None
+    limit = coupled(device, zw.Wall(100, 2, velocity), hand).max_stiffness
     for factor, outcome, kind in ((1, "stable", "stability"), (1.000001, "unstable", "instability")):
-        found = zw.stability.coupled_stability(device, zw.Wall(limit * factor, 2, velocity), hand)
+        found = coupled(device, zw.Wall(limit * factor, 2, velocity), hand)
         assert found.outcome == outcome
-        assert found.certificate is not None
         assert found.certificate.kind == kind
         assert found.verify()
 
@@ -70,20 +63,15 @@ def test_the_limit_itself_is_decided_exactly_where_all_is_rational() -> None:
     doc = document(BARE, zw.Wall(1000, beta * MASS / PERIOD))
     for off, stable in ((-1, True), (0, False), (1, False)):
         k, b = (limit + off * Fraction(1, 10**900)) * MASS / PERIOD**2, beta * MASS / PERIOD
-        loop = {
-            **doc["loop"],
-            "numerator": [str(k + b / PERIOD), str(-b / PERIOD)],
-            "denominator": ["1", "0"],
-        }
-        answers = [
-            checker.verify({"kind": kind, "loop": loop}).valid for kind in ("stability", "instability")
-        ]
+        law = {"numerator": [str(k + b / PERIOD), str(-b / PERIOD)], "denominator": ["1", "0"]}
+        loop = doc["loop"] | law
+        answers = [checker.verify({"kind": kind, "loop": loop}).valid for kind in KINDS]
         assert answers == [stable, not stable]
 
 
 def test_a_free_device_in_a_damped_hand_drifts() -> None:
     """No wall and no spring: a root at z = 1 exactly, although e^{−δ} is not rational."""
-    found = zw.stability.coupled_stability(PADDLE, zw.Wall(0), zw.stability.HandImpedance(damping="0.3"))
+    found = coupled(PADDLE, zw.Wall(0), Hand(damping="0.3"))
     assert found.outcome == "unstable"
     assert found.verify()
 
@@ -93,30 +81,42 @@ def test_slow_hands_are_decided() -> None:
     device = zw.Device(mass=20, damping="0.002", sample_period="0.0001")
     for stiffness, outcome in (("0.001", "stable"), ("-0.001", "unstable")):
         law = zw.PulseTransferFunction([stiffness], [1])
-        found = zw.stability.coupled_stability(device, law, zw.stability.HandImpedance(damping="0.001"))
+        found = coupled(device, law, Hand(damping="0.001"))
         assert 1e-9 < abs(found.margin) < 1e-5
         assert found.outcome == outcome
         assert found.verify()
 
 
 @pytest.mark.parametrize(
-    ("loop", "valid"),
+    ("loop", "words"),
     [
-        ({"mass_kg": ["0.036", "0.06"]}, True),
-        ({"mass_kg": ["0.0002", "0.056"]}, False),
-        ({"damping_N_s_per_m": ["0.1", "3.15"]}, True),
-        ({"stiffness_N_per_m": ["70000", "90000"]}, False),
-        ({"delay_s": "0.004"}, False),
-        ({"sample_period_s": "0.01"}, False),
-        ({"numerator": ["11", "-1"]}, False),
-        ({"numerator": ["1", "-1"]}, False),
+        ({"mass_kg": ["0.036", "0.06"]}, ""),
+        ({"mass_kg": ["0.0002", "0.056"]}, "not confirmed"),
+        ({"damping_N_s_per_m": ["0.1", "3.15"]}, ""),
+        ({"stiffness_N_per_m": ["70000", "90000"]}, "not confirmed"),
+        ({"delay_s": "0.004"}, "could not be confirmed"),
+        ({"sample_period_s": "0.01"}, "could not be confirmed"),
+        ({"numerator": ["11", "-1"]}, "could not be confirmed"),
+        ({"numerator": ["1", "-1"]}, "not confirmed"),
+        ({"mass_kg": "0"}, "must be > 0"),
+        ({"damping_N_s_per_m": "-1"}, "≥ 0"),
+        ({"mass_kg": ["2", "1"]}, "smaller"),
+        ({"mass_kg": ["1", "2", "3"]}, "interval"),
+        ({"mass_kg_m2": "1"}, "of a rotary one"),
+        ({"delay_s": ["0", "1"]}, "expected a number"),
+        ({"delay_s": "9"}, "samples"),
+        ({"denominator": ["0", "1"]}, "proper"),
+        ({"numerator": []}, "numerator must have 1"),
+        ({"mass_kg": "1e-9"}, "too far"),
+        ({"mass_kg": None}, "expected a number"),
     ],
     ids=str,
 )
-def test_a_box_with_other_numbers(boxed: dict, loop: dict, valid: bool) -> None:
-    """A box that is widened into unstable hands, or another wall, is refused; a harmless change is not."""
+def test_a_box_with_other_numbers(boxed: dict, loop: dict, words: str) -> None:
     assert checker.verify(boxed).valid
-    assert changed(boxed, **loop).valid == valid
+    found = changed(boxed, **loop)
+    assert found.valid is not bool(words)
+    assert words in found.reason
 
 
 @pytest.mark.parametrize(
@@ -143,16 +143,13 @@ def test_a_box_up_to_the_limit_and_past_it(side: str, far: float, beyond: float)
 
 
 def test_intervals_are_covered_where_random_hands_say_so() -> None:
-    """Random boxes: what is proved is certified, and no one of 20 random hands in it is unstable."""
     rng = np.random.default_rng(3)
     seen = set()
     for _ in range(25):
         device = PADDLE.replace(delay=str(rng.choice(["0", "0.0004", "0.0021"])))
         wall = zw.Wall(round(10 ** rng.uniform(2, 3.5), 2), round(10 ** rng.uniform(-1, 1), 3))
         ends = [sorted(np.round(10 ** rng.uniform(a, b, 2), 4)) for a, b in ((-3, 0), (1, 3), (-1, 1))]
-        hand = zw.stability.HandImpedance(
-            mass=tuple(ends[0]), stiffness=tuple(ends[1]), damping=tuple(ends[2])
-        )
+        hand = Hand(mass=tuple(ends[0]), stiffness=tuple(ends[1]), damping=tuple(ends[2]))
         motion, law = motion_of(device, hand), wall.pulse_transfer_function(PERIOD)
         found = decided(motion, lambda box, law=law: of_law(box, law))
         seen.add(found.outcome)
@@ -161,13 +158,12 @@ def test_intervals_are_covered_where_random_hands_say_so() -> None:
         if found.outcome != "stable":
             continue
         for m, k, c in rng.uniform([e[0] for e in ends], [e[1] for e in ends], (20, 3)):
-            one = motion_of(device, zw.stability.HandImpedance(mass=m, stiffness=k, damping=c))
+            one = motion_of(device, Hand(mass=m, stiffness=k, damping=c))
             assert decided(one, lambda box, law=law: of_law(box, law)).outcome == "stable"
     assert {"stable", "unstable"} <= seen
 
 
 def test_a_kind_cannot_be_exchanged() -> None:
-    """A stable loop is no proof of instability, nor the reverse; nor is an interval a unstable_hand."""
     stable, unstable = document(PADDLE, zw.Wall(1000, 1)), document(PADDLE, zw.Wall(99000, 1))
     assert not checker.verify({**stable, "kind": "instability"}).valid
     assert not checker.verify({**unstable, "kind": "stability"}).valid
@@ -176,36 +172,11 @@ def test_a_kind_cannot_be_exchanged() -> None:
     assert "single values" in found.reason
 
 
-@pytest.mark.parametrize(
-    ("loop", "words"),
-    [
-        ({"mass_kg": "0"}, "must be > 0"),
-        ({"damping_N_s_per_m": "-1"}, "≥ 0"),
-        ({"mass_kg": ["2", "1"]}, "smaller"),
-        ({"mass_kg": ["1", "2", "3"]}, "interval"),
-        ({"mass_kg_m2": "1"}, "of a rotary one"),
-        ({"delay_s": ["0", "1"]}, "expected a number"),
-        ({"delay_s": "9"}, "samples"),
-        ({"denominator": ["0", "1"]}, "proper"),
-        ({"numerator": []}, "numerator must have 1"),
-        ({"mass_kg": "1e-9"}, "too far"),
-        ({"mass_kg": None}, "expected a number"),
-    ],
-    ids=str,
-)
-def test_what_is_no_loop(loop: dict, words: str) -> None:
-    """Each bound on the numbers of a document is asked for."""
-    found = changed(document(PADDLE, zw.Wall(1000, 1)), **loop)
-    assert not found.valid
-    assert words in found.reason
-
-
 def test_what_the_checker_refuses_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A prover that says the contrary is not believed."""
     module = sys.modules["zwidth.passivity.stability.known_hand"]
     monkeypatch.setattr(module, "evidence", lambda *rest: {**evidence(*rest), "kind": "stability"})
-    assert zw.stability.coupled_stability(PADDLE, zw.Wall(100, 1)).outcome == "stable"
-    found = zw.stability.coupled_stability(PADDLE, zw.Wall(99000, 1))
+    assert coupled(PADDLE, zw.Wall(100, 1)).outcome == "stable"
+    found = coupled(PADDLE, zw.Wall(99000, 1))
     assert found.outcome == "undecided"
     assert found.certificate is None
     assert not found.verify()
@@ -213,13 +184,9 @@ def test_what_the_checker_refuses_is_undecided(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_saved_and_read_by_the_command_line(tmp_path, capsys) -> None:
-    """`zwidth verify` says that the loop comes to rest, never that it is passive, and notices a change."""
     path = tmp_path / "known.json"
-    certificate = zw.stability.coupled_stability(
-        PADDLE.replace(motion="rotary"), zw.Wall(1000, 1), BOX
-    ).certificate
-    assert certificate is not None
-    certificate.save(path)
+    hands = Hand(stiffness=(0, 100), damping=(1, 2))
+    coupled(PADDLE.replace(motion="rotary"), zw.Wall(1000, 1), hands).certificate.save(path)
     assert main(["verify", str(path)]) == 0
     told = " ".join(capsys.readouterr().out.split())
     assert "come to rest" in told
@@ -227,6 +194,6 @@ def test_saved_and_read_by_the_command_line(tmp_path, capsys) -> None:
     doc = json.loads(path.read_text(encoding="utf-8"))
     path.write_text(json.dumps({"outcome": "passive", "certificate": doc}))
     assert main(["verify", str(path)]) == 1
-    doc["loop"]["stiffness_N_m_per_rad"] = "200000"
+    doc["loop"]["delay_s"] = "0.01"
     path.write_text(json.dumps(doc))
     assert main(["verify", str(path)]) == 1

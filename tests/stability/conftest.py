@@ -1,0 +1,1 @@
+"""Makes `from stepped_loop import radius` work."""
