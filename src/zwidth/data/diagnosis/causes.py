@@ -130,11 +130,12 @@ def _given(seen: Evidence, term: str) -> float:
 
 
 def _gives(seen: Evidence, term: str) -> bool:
-    return _given(seen, term) > _SPEAKS
+    """Whether a term gives enough to speak for its cause, and no other one much more."""
+    other = max(given for name, given in seen.supplied.items() if name != term)
+    return _given(seen, term) > _SPEAKS and other <= _MUCH_MORE * seen.supplied[term]
 
 
-_SPEAKS = 0.05
-"""Share of the energy from which a term speaks for its cause."""
+_SPEAKS, _MUCH_MORE = 0.05, 2.0
 
 
 def _share(seen: Evidence, term: str) -> str:
@@ -151,7 +152,7 @@ def _sampling(seen: Evidence) -> Iterator[str]:
 
 
 def _delay(seen: Evidence) -> Iterator[str]:
-    if seen.sees_delay or _gives(seen, "delay"):
+    if seen.sees_delay or _given(seen, "delay") > _SPEAKS:
         yield (
             f"the force comes up to {shown(seen.delay, 's', 3)} after its sample, "
             f"{seen.delay / seen.loop_period:.0f} samples; the hold alone is half a sample"
@@ -337,7 +338,7 @@ CAUSES: Mapping[str, Cause] = {
         Cause(
             "delay",
             "the force comes late: it still pushes out where a spring would have let go",
-            lambda s: (s.delay > 0 and _gives(s, "delay")) or (not s.sees_delay and _behind(s)),
+            lambda s: (s.delay > 0 and _given(s, "delay") > _SPEAKS) or (not s.sees_delay and _behind(s)),
             _delay,
             _BOTH,
         ),

@@ -99,7 +99,7 @@ def account(
     )
     return Drive(
         delay=delay, delay_to_a_sample=finer, gain=multiple,
-        by_gain=by_gain, by_nothing=left(np.clip(commanded, -top, top)), by_delay=left(delayed[delay]),
+        by_gain=by_gain, by_nothing=left(np.clip(commanded, -top, top)), by_delay=min(left(delayed[delay]), left(np.clip(_late(commanded, times, finer), -top, top))),
         by_damper=min(best, 1.0), by_rate=by_rate, damping=damping, damping_lag=damping_lag, rate=rate,
         applied=applied,
     )  # fmt: skip

@@ -27,6 +27,9 @@ LOWEST = 1.5
 SLOWEST = 0.4
 """[Hz] of a regular one."""
 
+_EDGE = 1.25
+"""Times the lower end of a search, below which its drift eats the motion: the other may see it better."""
+
 _ROUNDING = 1e-9
 """Of the position: what is smaller is no motion."""
 
@@ -82,10 +85,13 @@ def find(position: Array, period: float) -> Vibration | None:
     itself be so.
     """
     found = _above(LOWEST, position, period)
-    if found is None or found.regular < _IRREGULAR:
+    if found is None or found.regular < _IRREGULAR or found.frequency < _EDGE * LOWEST:
         slow = _above(SLOWEST, position, period)
-        near = found is not None and slow is not None and slow.frequency >= LOWEST
-        if slow is not None and not near and slow.regular > _REGULAR:
+        if slow is not None and slow.regular > _REGULAR and (
+            found is None
+            or (slow.frequency < LOWEST and found.regular < _IRREGULAR)
+            or (slow.frequency > found.frequency / _EDGE and slow.regular > found.regular)
+        ):
             return slow
     return found
 
