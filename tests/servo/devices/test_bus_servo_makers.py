@@ -7,7 +7,9 @@ import dynamixel_sdk
 import numpy as np
 import pytest
 import scservo_sdk
+from dynamixel_easy_sdk.connector import Connector
 from dynamixel_easy_sdk.control_table import ControlTable
+from dynamixel_easy_sdk.data_types import OperatingMode
 from hypothesis import given
 from hypothesis import strategies as st
 from servo.drive import drive
@@ -151,6 +153,21 @@ def test_what_a_dynamixel_does_not_take_is_told_to_its_maker():
         assert ROBOTIS.write1ByteTxRx(line, 1, 11, 0) == (0, 7)
         other.alert = True
         assert ROBOTIS.read1ByteTxRx(line, 1, 64) == (1, 0, 0x80)
+
+
+def test_robotis_own_motor_in_the_current_mode(monkeypatch):
+    """Its class of a motor sets the mode and the current that ours sets, of the same sign."""
+    monkeypatch.setattr(Connector, "_packet_handler", ROBOTIS)
+    with DynamixelEmulator([166]) as other:
+        bus = Connector.__new__(Connector)  # made by its own hand it gives an answer 34 ms
+        bus._port_handler = Line(other)
+        motor = bus.createMotor(1)
+        motor.setOperatingMode(OperatingMode.CURRENT)
+        motor.enableTorque()
+        motor.setGoalCurrent(-300)
+        assert motor.getPresentPosition() == 166
+        assert motor.getCurrentLimit() == 1193
+    assert (other.table[11], other.commands[-1].force) == (0, -300)
 
 
 CASES = {
