@@ -16,7 +16,7 @@ from zwidth.machine.servo.devices.moteus import Moteus
 from zwidth.machine.servo.devices.odrive import ODrive
 from zwidth.machine.servo.devices.registry import CONNECTIONS
 
-POSITIONS = {132, 224, 65} | {56}
+POSITIONS = {132, 224, 69} | {56}
 """Registers of a Dynamixel and of a Feetech servo: their positions, and what only makes questions differ."""
 
 

@@ -10,7 +10,7 @@ from servo.emulators.faults import Fault
 from servo.emulators.terminal import TerminalEmulator
 
 HEADER = b"\xff\xff\xfd\x00"
-_TORQUE, _WATCHDOG, _GOAL, _LIMIT, _MODE, _DRIVE = 64, 98, 102, 38, 11, 10
+_TORQUE, _WATCHDOG, _GOAL, _LIMIT, _MODE, _DRIVE, _RETURN_LEVEL = 64, 98, 102, 38, 11, 10, 68
 _X540 = (1110, 1120)
 """Models whose currents Reverse inverts as well: the e-Manual, "Drive Mode"."""
 _OTHER_VALUES, _REFUSED = 0x04, 0x07
@@ -34,7 +34,12 @@ def packet(identifier: int, body: bytes) -> bytes:
 
 
 class DynamixelEmulator(TerminalEmulator):
-    """Its position is scripted: counts at each exchange, of which the last one stays."""
+    """Its position is scripted: counts at each exchange, of which the last one stays.
+
+    `packet` frames what it says, and what it obeys is framed just so.
+    """
+
+    packet = staticmethod(packet)
 
     def __init__(
         self,
@@ -62,6 +67,7 @@ class DynamixelEmulator(TerminalEmulator):
         self.put(_MODE, 1, 3)
         self.put(_LIMIT, 2, 1193)
         self.put(36, 2, 885)
+        self.put(_RETURN_LEVEL, 1, 2)
         self.put(100, 2, 885)
         for i in range(self._room):
             self.put(168 + 2 * i, 2, indirect_data + i)
@@ -83,8 +89,8 @@ class DynamixelEmulator(TerminalEmulator):
                 return
             whole = self._heard[start : start + size]
             self._heard = self._heard[start + size :]
-            if remainder(whole[:-2]) == whole[-2:]:
-                body = whole[7:-2].replace(b"\xff\xff\xfd\xfd", b"\xff\xff\xfd")
+            body = whole[7:-2].replace(b"\xff\xff\xfd\xfd", b"\xff\xff\xfd")
+            if self.packet(whole[4], body) == whole:
                 self._obey(whole[4], body[0], body[1:])
 
     def with_wrong_checksum(self, frame: bytes) -> bytes:
@@ -102,11 +108,13 @@ class DynamixelEmulator(TerminalEmulator):
             self.write(self._status(0, bytes(self.table[:2]) + bytes([self.table[6]])))
         elif instruction == 0x02 and identifier == self.identifier:
             self._read(*struct.unpack("<HH", parameters))
-        elif instruction == 0x03 and identifier == self.identifier:
-            self.write(self._status(self._write(struct.unpack_from("<H", parameters)[0], parameters[2:])))
+        elif instruction == 0x03 and identifier in (self.identifier, 0xFE):
+            error = self._write(struct.unpack_from("<H", parameters)[0], parameters[2:])
+            if identifier != 0xFE and self.table[_RETURN_LEVEL] == 2:
+                self.write(self._status(error))
 
     def _status(self, error: int, parameters: bytes = b"") -> bytes:
-        return packet(self.identifier, bytes([0x55, error | (0x80 if self.alert else 0)]) + parameters)
+        return self.packet(self.identifier, bytes([0x55, error | (0x80 if self.alert else 0)]) + parameters)
 
     def _write(self, address: int, data: bytes) -> int:
         """What is wrong with it, as an answer says it; 0."""
@@ -129,6 +137,8 @@ class DynamixelEmulator(TerminalEmulator):
         return 0
 
     def _read(self, address: int, count: int) -> None:
+        if self.table[_RETURN_LEVEL] == 0:
+            return
         self.touched.add(address)
         counted = address == self.indirect_data and count >= 6
         index = min(self.exchange, len(self.positions) - 1)

@@ -3,7 +3,7 @@
 from servo.emulators.faults import Fault
 from servo.emulators.terminal import TerminalEmulator
 
-_MODE, _TORQUE, _DUTY, _LOCK, _POSITION = 33, 40, 44, 55, 56
+_RETURN_LEVEL, _MODE, _TORQUE, _DUTY, _LOCK, _POSITION = 8, 33, 40, 44, 55, 56
 
 
 def packet(identifier: int, body: bytes) -> bytes:
@@ -12,7 +12,12 @@ def packet(identifier: int, body: bytes) -> bytes:
 
 
 class FeetechEmulator(TerminalEmulator):
-    """Its position is scripted; what is written where it stays after switching off is kept in `saved`."""
+    """Its position is scripted; what is written where it stays after switching off is kept in `saved`.
+
+    `packet` frames what it says, and what it obeys is framed just so.
+    """
+
+    packet = staticmethod(packet)
 
     def __init__(
         self, positions: list[int], fault: Fault | None = None, at: int = 0, *, identifier: int = 1
@@ -22,7 +27,8 @@ class FeetechEmulator(TerminalEmulator):
         self.identifier = identifier
         self.state = 0
         self.table = bytearray(90)
-        self.table[7], self.table[30], self.table[_TORQUE] = 250, 1, 1
+        self.table[:5] = bytes([3, 10, 0]) + (777).to_bytes(2, "little")  # firmware; an STS3215
+        self.table[7], self.table[_RETURN_LEVEL], self.table[30], self.table[_TORQUE] = 250, 1, 1, 1
         self.table[48:50] = (1000).to_bytes(2, "little")
         self.saved: list[int] = []
         self.touched: set[int] = set()
@@ -39,7 +45,7 @@ class FeetechEmulator(TerminalEmulator):
                 return
             whole = self._heard[start : start + size]
             self._heard = self._heard[start + size :]
-            if sum(whole[2:]) % 256 == 255:
+            if self.packet(whole[2], whole[4:-1]) == whole:
                 self._obey(whole[2], whole[4], whole[5:-1])
 
     def with_wrong_checksum(self, frame: bytes) -> bytes:
@@ -58,8 +64,8 @@ class FeetechEmulator(TerminalEmulator):
         elif instruction in (0x01, 0x03) and identifier in (self.identifier, 0xFE):
             if instruction == 0x03:
                 self._write(parameters[0], parameters[1:])
-            if instruction == 0x01 or identifier != 0xFE:
-                self.write(packet(self.identifier, bytes([self.state])))
+            if instruction == 0x01 or (identifier != 0xFE and self.table[_RETURN_LEVEL]):
+                self.write(self.packet(self.identifier, bytes([self.state])))
 
     def _write(self, address: int, data: bytes) -> None:
         self.touched.add(address)
@@ -75,5 +81,5 @@ class FeetechEmulator(TerminalEmulator):
         position = self.positions[min(self.exchange, len(self.positions) - 1)]
         word = abs(position) | (0x8000 if position < 0 else 0)
         self.table[_POSITION : _POSITION + 2] = word.to_bytes(2, "little")
-        frame = packet(self.identifier, bytes([self.state]) + bytes(self.table[address : address + count]))
-        (self.answer if address == _POSITION else self.write)(frame)
+        said = bytes([self.state]) + bytes(self.table[address : address + count])
+        (self.answer if address == _POSITION else self.write)(self.packet(self.identifier, said))
