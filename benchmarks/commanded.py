@@ -119,7 +119,9 @@ def trapezoid(j: Joints, rng: np.random.Generator) -> Callable[[Array], Array]:
         p = _phase(j, t)
         s = np.where(p < 0.5, 2 * p, 2 - 2 * p)
         r = 0.1
-        eased = np.where(s < r, s * s / (2 * r), np.where(s > 1 - r, 1 - r - (1 - s) ** 2 / (2 * r), s - r / 2))
+        eased = np.where(
+            s < r, s * s / (2 * r), np.where(s > 1 - r, 1 - r - (1 - s) ** 2 / (2 * r), s - r / 2)
+        )
         return j.size * (2 * eased / (1 - r) - 1)
 
     return at
@@ -131,7 +133,9 @@ def teleoperated(j: Joints, rng: np.random.Generator) -> Callable[[Array], Array
     starts = rng.uniform(0, 2 * np.pi, (5, j.size.size))
     sizes = rng.uniform(0.2, 1.0, (5, j.size.size))
     return lambda t: (
-        j.size * (sizes * np.sin(2 * np.pi * shares * j.frequency * t + starts)).sum(axis=0) / sizes.sum(axis=0)
+        j.size
+        * (sizes * np.sin(2 * np.pi * shares * j.frequency * t + starts)).sum(axis=0)
+        / sizes.sum(axis=0)
     )
 
 
@@ -169,7 +173,9 @@ def gait(j: Joints, rng: np.random.Generator) -> Callable[[Array], Array]:
     def at(t: Array) -> Array:
         turn = 2 * np.pi * j.frequency * t
         return j.size * (
-            np.sin(turn) + parts[0] * np.sin(2 * turn + starts[0]) + 0.5 * parts[1] * np.sin(3 * turn + starts[1])
+            np.sin(turn)
+            + parts[0] * np.sin(2 * turn + starts[0])
+            + 0.5 * parts[1] * np.sin(3 * turn + starts[1])
         )
 
     return at
@@ -311,7 +317,9 @@ def main() -> int:
     parser.add_argument("--logs", type=int, default=300)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kinds", choices=KINDS, default="other")
-    parser.add_argument("--target", type=float, default=0.3, help="share of files with a column of the target")
+    parser.add_argument(
+        "--target", type=float, default=0.3, help="share of files with a column of the target"
+    )
     given = parser.parse_args()
     said: Counter[tuple[str, str]] = Counter()
     for kind, path, device, _ in logs(given.folder, given.logs, given.seed, given.kinds, given.target):

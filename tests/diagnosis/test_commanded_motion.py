@@ -1,4 +1,4 @@
-"""A joint that follows a target shakes for no reason of its own; a target that stands still takes nothing away."""
+"""A joint that follows a target has no fault; a target that stands still takes nothing away."""
 
 import numpy as np
 import pytest

@@ -64,8 +64,8 @@ def is_named(cause: str, p: float, seen: Evidence) -> bool:
 
 
 def likelihoods(seen: Evidence) -> dict[str, float]:
-    """p of each cause: from the features; of a command alone whose loop is known to feed itself, less what its
-    own energies speak against."""
+    """p of each cause by the features; of a command alone whose loop is known to feed itself, less what the
+    energies speak against."""
     learnt = by_features(seen)
     if not _feeds_itself(seen):
         return learnt
@@ -281,8 +281,8 @@ _MOST_UNEXPLAINED = 0.1
 
 
 def _brakes_late(seen: Evidence) -> bool:
-    """A damper accounts for what lies between the two forces, better than a delay; it feeds the motion, as far
-    as that is known."""
+    """A damper accounts for what lies between the two forces, better than a delay; it feeds the motion, as
+    far as that is known."""
     d = seen.drive
     feeds = seen.law is None or seen.supplied["drive damping"] > 0
     return d is not None and d.damping > 0 and d.by_damper < d.by_delay and feeds

@@ -76,6 +76,7 @@ def account(
     stride = round((lags[1] - lags[0]) / step)
     near = [delay + k * step for k in range(-stride + 1, stride) if delay + k * step > -0.5 * step]
     finer = min(near, key=lambda lag: left(np.clip(_late(commanded, times, lag), -top, top)))
+    by_delay = min(left(delayed[delay]), left(np.clip(_late(commanded, times, finer), -top, top)))
     by_gain, multiple, rough = min((*_scaled(delayed_by(lag)[used], applied[used]), lag) for lag in lags)
     around = [rough + k * step / 2 for k in range(-2 * stride + 1, 2 * stride)]
     by_gain, multiple = min(_scaled(delayed_by(lag)[used], applied[used]) for lag in around)
@@ -99,7 +100,7 @@ def account(
     )
     return Drive(
         delay=delay, delay_to_a_sample=finer, gain=multiple,
-        by_gain=by_gain, by_nothing=left(np.clip(commanded, -top, top)), by_delay=min(left(delayed[delay]), left(np.clip(_late(commanded, times, finer), -top, top))),
+        by_gain=by_gain, by_nothing=left(np.clip(commanded, -top, top)), by_delay=by_delay,
         by_damper=min(best, 1.0), by_rate=by_rate, damping=damping, damping_lag=damping_lag, rate=rate,
         applied=applied,
     )  # fmt: skip

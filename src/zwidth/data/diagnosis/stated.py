@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -30,7 +30,11 @@ from zwidth.quantity.text import shown
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from zwidth.model.rendering.rendering_law import RenderingLaw
+
     from zwidth.native.compiled import Array
+
+Last = TypeVar("Last", Saturation, FrictionCompensation)
 
 FOLLOWED = 0.02
 """Share of a command's variance that its own law may leave over."""
@@ -115,6 +119,12 @@ class Stated:
         )
 
 
+def _last(laws: list[RenderingLaw], kind: type[Last]) -> Last | None:
+    """The last law, taken off, where it is of that kind."""
+    last = laws.pop() if laws and isinstance(laws[-1], kind) else None
+    return last if isinstance(last, kind) else None
+
+
 class _Parts(NamedTuple):
     """A law, and what stands behind it."""
 
@@ -128,8 +138,7 @@ def _parts(environment: Environment) -> _Parts:
     if not isinstance(environment, Rendered):
         return _Parts(environment, None, np.inf)
     laws = list(environment.laws)
-    cut = laws.pop() if isinstance(laws[-1], Saturation) else None
-    helping = laws.pop() if laws and isinstance(laws[-1], FrictionCompensation) else None
+    cut, helping = _last(laws, Saturation), _last(laws, FrictionCompensation)
     if laws or (helping is not None and helping.viscous):
         raise InputError(
             f"{environment.describe()}: a recording is compared with an environment, behind which may stand "

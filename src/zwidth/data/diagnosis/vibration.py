@@ -87,10 +87,14 @@ def find(position: Array, period: float) -> Vibration | None:
     found = _above(LOWEST, position, period)
     if found is None or found.regular < _IRREGULAR or found.frequency < _EDGE * LOWEST:
         slow = _above(SLOWEST, position, period)
-        if slow is not None and slow.regular > _REGULAR and (
-            found is None
-            or (slow.frequency < LOWEST and found.regular < _IRREGULAR)
-            or (slow.frequency > found.frequency / _EDGE and slow.regular > found.regular)
+        if (
+            slow is not None
+            and slow.regular > _REGULAR
+            and (
+                found is None
+                or (slow.frequency < LOWEST and found.regular < _IRREGULAR)
+                or (slow.frequency > found.frequency / _EDGE and slow.regular > found.regular)
+            )
         ):
             return slow
     return found

@@ -375,8 +375,8 @@ def role_of_force(column: str) -> str | None:
     )
 
 
-_AIMED = set("target goal desired des reference ref setpoint command commanded cmd planned soll".split())
-_OF_A_PLACE = set("position pos q qpos x angle theta joint encoder displacement weg winkel lage".split())
+_AIMED = "target goal desired des reference ref setpoint command commanded cmd planned soll"
+_OF_A_PLACE = "position pos q qpos x angle theta joint encoder displacement weg winkel lage"
 
 
 def is_target(column: str) -> bool:
@@ -386,7 +386,8 @@ def is_target(column: str) -> bool:
     word = re.sub(r"^soll(?=position|weg|winkel|lage)", "soll_", name_and_unit(column, "position")[0])
     words = {each for each in word.split("_") if each and not each.isdigit()}
     alone = bool(words) and words <= {"target", "goal", "setpoint", "reference"}
-    return alone or (words <= _AIMED | _OF_A_PLACE and bool(words & _AIMED) and bool(words & _OF_A_PLACE))
+    aimed, place = set(_AIMED.split()), set(_OF_A_PLACE.split())
+    return alone or (words <= aimed | place and bool(words & aimed) and bool(words & place))
 
 
 def _counted(word: str) -> str | None:
@@ -426,8 +427,8 @@ def _checked(columns: Mapping[str, Any], chosen: Mapping[str, str | None], sourc
     for quantity, column in chosen.items():
         if column is not None and (other := taken.setdefault(column, quantity)) != quantity:
             raise InputError(
-                f'{source}: column "{column}" is given as the {other} and as the {quantity}; one column holds '
-                "one quantity: which is it?"
+                f'{source}: column "{column}" is given as the {other} and as the {quantity}; one column '
+                "holds one quantity: which is it?"
             )
     return {quantity: column for quantity, column in chosen.items() if column is not None}
 
