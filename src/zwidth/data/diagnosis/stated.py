@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from zwidth.model.rendering.rendering_law import RenderingLaw
-
     from zwidth.native.compiled import Array
 
 Last = TypeVar("Last", Saturation, FrictionCompensation)
