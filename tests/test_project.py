@@ -306,7 +306,7 @@ def test_every_parameter_is_on_the_command_line_page():
     assert not missing
 
 
-@pytest.mark.parametrize("command", [name for name in COMMANDS if name != "workspace"])
+@pytest.mark.parametrize("command", COMMANDS)
 def test_every_option_in_the_help_is_on_the_command_line_page(command):
     page = _command_line_page()
     assert f"zwidth {command}" in page
