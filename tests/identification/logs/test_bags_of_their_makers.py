@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import foxglove
 import pytest
 from identification.logs.test_log_files import assert_same
 from known_motion import Recording
+from mcap.writer import CompressionType, Writer
 from rosbags import rosbag1
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
@@ -45,10 +47,9 @@ def test_ros_1_by_rosbags(compression: str, recording: Recording, tmp_path: Path
 def test_mcap_by_its_own_library(
     compression: str, chunked: bool, recording: Recording, tmp_path: Path
 ) -> None:
-    mcap = pytest.importorskip("mcap.writer")
     with open(tmp_path / "run.mcap", "wb") as file:
-        kind = mcap.CompressionType[compression]
-        writer = mcap.Writer(file, chunk_size=9000, compression=kind, use_chunking=chunked)
+        kind = CompressionType[compression]
+        writer = Writer(file, chunk_size=9000, compression=kind, use_chunking=chunked)
         writer.start(profile="ros2", library="another")
         schema = writer.register_schema(NAME, "ros2msg", DEFINITION.encode())
         topic = writer.register_channel(TOPIC, "cdr", schema)
@@ -63,7 +64,6 @@ def test_mcap_by_its_own_library(
 def test_mcap_by_foxglove(
     compression: str | None, chunked: bool, recording: Recording, tmp_path: Path
 ) -> None:
-    foxglove = pytest.importorskip("foxglove")
     schema = foxglove.Schema(name=NAME, encoding="ros2msg", data=DEFINITION.encode())
     context = foxglove.Context()
     topic = foxglove.Channel(TOPIC, schema=schema, message_encoding="cdr", context=context)

@@ -5,13 +5,12 @@ from __future__ import annotations
 import struct
 from typing import Any
 
+import HaplyHAPI as hapi
 import pytest
 from servo.drive import drive
 from servo.emulators.haply import HaplyEmulator
 
 from zwidth.machine.servo.devices.haply import HaplyPantograph
-
-hapi = pytest.importorskip("HaplyHAPI")
 
 CW, CCW = 0, 1
 JOINTS = {

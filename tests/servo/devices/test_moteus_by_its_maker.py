@@ -6,8 +6,10 @@ import asyncio
 import io
 import math
 
+import moteus
 import numpy as np
 import pytest
+from moteus import fdcanusb_device, multiplex, protocol
 from servo.emulators.moteus import MoteusEmulator
 
 from zwidth.machine.servo.devices.moteus_frames import (
@@ -24,9 +26,6 @@ from zwidth.machine.servo.devices.moteus_frames import (
     remainder,
     understood,
 )
-
-moteus = pytest.importorskip("moteus")
-from moteus import fdcanusb_device, multiplex, protocol  # noqa: E402
 
 INT8, INT16, INT32, F32, IGNORE = range(5)
 OUT = np.zeros(512, np.uint8)

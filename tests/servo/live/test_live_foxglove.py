@@ -114,7 +114,8 @@ def test_ros_2_has_the_numbers_of_the_rows():
 @pytest.mark.parametrize("topic", [JSON_TOPIC, ROS2_TOPIC])
 def test_foxglove_s_own_server_says_it_in_the_same_bytes(topic):
     """The same reader at theirs: what is told of the topic, and every frame of a row."""
-    foxglove = pytest.importorskip("foxglove")
+    import foxglove
+
     with serve_foxglove(growing(), 0) as page, reading(page.address, topic) as (socket, ours):
         rows = messages(socket, 30)
     context = foxglove.Context()

@@ -160,14 +160,16 @@ def test_a_file_that_another_program_wrote_anew(record, tmp_path):
 
 def test_a_file_that_foxglove_wrote_anew(tmp_path):
     """Its numbers of messages begin at 1, its chunks are its own: the rows are the same."""
-    mcap_reader, foxglove = pytest.importorskip("mcap.reader"), pytest.importorskip("foxglove")
+    import foxglove
+    from mcap.reader import make_reader
+
     rows = WrittenRows(drawn(700))
     rows.events.append({"event": "began"})
     with Recorder(rows, tmp_path / "run.mcap"):
         rows.written = 700
     context = foxglove.Context()
     with open(tmp_path / "run.mcap", "rb") as file:
-        reader = mcap_reader.make_reader(file, validate_crcs=True)
+        reader = make_reader(file, validate_crcs=True)
         begins, ends = reader.iter_metadata()
         with foxglove.open_mcap(tmp_path / "anew.mcap", context=context) as writer:
             writer.write_metadata(begins.name, begins.metadata)
