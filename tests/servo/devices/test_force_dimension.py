@@ -1,12 +1,24 @@
 """A device of Force Dimension: the real package over a library made here; what is said where one lacks."""
 
+import ctypes
+import importlib
 import math
+import re
 import sys
 from types import SimpleNamespace
 
 import pytest
 from servo.drive import drive
-from servo.emulators.force_dimension import COMPILER, PACKAGE, Device, Failure, built, forget, installed
+from servo.emulators.force_dimension import (
+    COMPILER,
+    PACKAGE,
+    SOURCE,
+    Device,
+    Failure,
+    built,
+    forget,
+    installed,
+)
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.connection import GARBLED, GOOD, REFUSED, SILENT, STALE
@@ -67,6 +79,23 @@ def test_what_the_device_is_told_besides(device):
     connection.close()
     assert (device.state["opened"], device.state["force_enabled"]) == (-1, 0)
     assert device.forces[-1] == (0.0, 0.0, 0.0)
+
+
+def test_the_library_made_here_has_the_types_of_the_maker_s(sdk):
+    """As the package declares them: of every function that is made here, what goes in and what comes out."""
+    kinds = {"int": ctypes.c_int, "bool": ctypes.c_bool, "double": ctypes.c_double, "void": None}
+    kinds |= {"signed char": ctypes.c_byte, "unsigned char": ctypes.c_ubyte, "const char *": ctypes.c_char_p}
+    declared = importlib.import_module("forcedimension_core.runtime")._libdhd
+    made = re.findall(r"^(\w.*?)\s?\b(dhd\w+)\((.*?)\) {", SOURCE.read_text(encoding="utf-8"), re.M)
+    assert len(made) == 15
+    for result, name, arguments in made:
+        function = getattr(declared, name)
+        assert function.restype is kinds[result], name
+        taken = [getattr(one, "_type_", one) if "LP_" in one.__name__ else one for one in function.argtypes]
+        given = [re.sub(r" \*?\w+$", "", one) for one in arguments.split(", ") if one != "void"]
+        assert taken == [kinds[one] for one in given], name
+        pointers = ["LP_" in one.__name__ for one in function.argtypes]
+        assert pointers == ["*" in one for one in arguments.split(", ")][: len(given)], name
 
 
 def test_a_device_without_a_watchdog_is_said_to_have_none(sdk):

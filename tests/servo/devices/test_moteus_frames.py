@@ -1,7 +1,5 @@
-"""Lines of moteus, byte by byte; against mjbots' own package where it is installed."""
+"""Lines of moteus, byte by byte."""
 
-import importlib.util
-import math
 import struct
 
 import numpy as np
@@ -128,36 +126,3 @@ def test_no_data_read_beyond_their_end(data):
     kind, memory = read(b"rcv 170 " + data.hex().encode())
     assert kind in (RIGHT, BROKEN)
     assert (kind == RIGHT) <= (not np.isnan(memory[MODE]) and not np.isnan(memory[FAULT]))
-
-
-@pytest.mark.skipif(
-    importlib.util.find_spec("moteus") is None, reason="mjbots' package moteus is not installed"
-)
-@pytest.mark.parametrize("torque", [0.0, -0.37, 12.5])
-def test_the_same_frames_as_mjbots_own_package(torque):
-    """Its encoder of position commands and of queries, with the same types of registers."""
-    moteus = importlib.import_module("moteus")
-    types = importlib.import_module("moteus.multiplex")
-    protocol = importlib.import_module("moteus.protocol")
-    how = moteus.PositionResolution()
-    how.maximum_torque = how.stop_position = types.IGNORE
-    how.position = how.velocity = how.kp_scale = how.kd_scale = how.ilimit_scale = types.INT8
-    how.feedforward_torque, how.watchdog_timeout = types.F32, types.INT16
-    controller = moteus.Controller(id=1, position_resolution=how, transport=object())
-    theirs = controller.make_position(
-        position=math.nan,
-        velocity=0.0,
-        feedforward_torque=torque,
-        kp_scale=0.0,
-        kd_scale=0.0,
-        ilimit_scale=0.0,
-        watchdog_timeout=0.25,
-        query=False,
-    )
-    ours = text(put_torque(OUT, 1, torque, 250, False)).split()
-    assert bytes.fromhex(ours[3].decode()) == theirs.data
-    assert int(ours[2], 16) == theirs.source << 8 | theirs.destination
-    _, memory = read(f"rcv 170 {answer(10, 0.375, 0)}".encode())
-    parsed = protocol.parse_reply(bytes.fromhex(answer(10, 0.375, 0)))
-    assert parsed[moteus.Register.POSITION] == memory[TURNS]
-    assert parsed[moteus.Register.MODE] == memory[MODE]

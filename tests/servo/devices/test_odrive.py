@@ -22,6 +22,45 @@ def served(motor, periods, **options):
     return drive(ODrive(motor.port), periods, wall, **options)
 
 
+GAIN = "axis0.controller.config.vel_gain"
+
+
+@pytest.mark.parametrize(
+    ("line", "answer"),
+    [
+        ("r axis0.current_state", "1"),
+        ("r axis0.motor.config.torque_lim*17", "inf*97"),
+        (f"r {GAIN}*120", "0.166667*24"),
+        (f"w {GAIN} 0.05*70\nr {GAIN}*120", "0.050000*27"),
+        (f"w {GAIN} 100*108\nr {GAIN}*120", "100.00000*47"),
+        (f"w {GAIN} 12345678.5\nr {GAIN}", "12345678."),
+        (f"w {GAIN} -123456.7\nr {GAIN}", "-123456.7"),
+        (f"w {GAIN} 1e9\nr {GAIN}", "100000000"),
+        (f"w {GAIN} nan\nr {GAIN}", "nan"),
+        (f"w {GAIN} -inf\nr {GAIN}", "-inf"),
+        ("w axis0.error 2147483648\nr axis0.error", "214748364"),
+        ("r axis0.nothing*50", "invalid property*86"),
+        ("w axis0.nothing 1*38", "invalid property*86"),
+        ("w axis0.config.enable_watchdog yes*122", "not implemented*59"),
+        ("r*114", "invalid command format*21"),
+        ("f*102", "invalid command format*21"),
+        ("c 0*115", "invalid command format*21"),
+        ("c 2 0*97", "invalid motor 2*40"),
+        ("f 2*116", "invalid motor 2*40"),
+        ("x*120", "unknown command*47"),
+        ("", "unknown command"),
+        ("r axis0.current_state*1", None),
+    ],
+)
+def test_the_emulator_answers_as_the_firmware(line, answer):
+    """What ascii_protocol.cpp of 0.5.6 (f9b5419c), compiled for a computer, answered on 2026-11-28."""
+    said = []
+    with ODriveEmulator() as motor:
+        motor.write = said.append
+        motor.hear(f"{line}\n".encode())
+    assert said == ([] if answer is None else [f"{answer}\r\n".encode()])
+
+
 def test_one_lost_answer_about_the_state_costs_one_sample():
     """No position is asked for before it comes, since an ODrive drops a second answer."""
     expected = [GOOD, SILENT] + [GOOD] * 58

@@ -86,14 +86,15 @@ class ODriveEmulator(TerminalEmulator):
             case ["f", "0"]:
                 return self._feedback()
             case ["r", name]:
-                return self.properties.get(name, "invalid property")
+                return self.properties[name][:9] if name in self.properties else "invalid property"
             case ["w", name, value] if name in self.properties:
-                self._set(name, value)
-                return None
-            case ["w", *_]:
+                return self._set(name, value)
+            case ["w", _, _]:
                 return "invalid property"
-            case ["f" | "c", *_]:
-                return "invalid motor 1"
+            case ["f", motor] | ["c", motor, _]:
+                return f"invalid motor {motor}"
+            case ["r" | "f" | "c", *_]:
+                return "invalid command format"
             case _:
                 return "unknown command"
 
@@ -127,8 +128,13 @@ class ODriveEmulator(TerminalEmulator):
     def _number(self, name: str) -> float:
         return float(self.properties[f"axis0.{name}"])
 
-    def _set(self, name: str, value: str) -> None:
+    def _set(self, name: str, value: str) -> str | None:
+        try:
+            value = str(int(value)) if self.properties[name].isdigit() else f"{float(value):f}"
+        except ValueError:
+            return "not implemented"
         if name not in self.frozen:
             self.properties[name] = value
         if name == "axis0.requested_state" and (value != "8" or self._starts):
             self.properties["axis0.current_state"] = value
+        return None

@@ -111,6 +111,32 @@ def test_ros_2_has_the_numbers_of_the_rows():
         np.testing.assert_array_equal(found, written[row.time_s])
 
 
+@pytest.mark.parametrize("topic", [JSON_TOPIC, ROS2_TOPIC])
+def test_foxglove_s_own_server_says_it_in_the_same_bytes(topic):
+    """The same reader at theirs: what is told of the topic, and every frame of a row."""
+    import foxglove
+
+    with serve_foxglove(growing(), 0) as page, reading(page.address, topic) as (socket, ours):
+        rows = messages(socket, 30)
+    context = foxglove.Context()
+    schema = foxglove.Schema(
+        name=ours["schemaName"], encoding=ours["schemaEncoding"], data=ours["schema"].encode()
+    )
+    channel = foxglove.Channel(topic, schema=schema, message_encoding=ours["encoding"], context=context)
+    server = foxglove.start_server(port=0, context=context)
+    try:
+        with reading(f"ws://127.0.0.1:{server.port}", topic) as (socket, theirs):
+            until = time.monotonic() + HANGS
+            while not channel.has_sinks() and time.monotonic() < until:  # until it has heard the subscription
+                time.sleep(1e-3)
+            for stamp, data in rows:
+                channel.log(data, log_time=stamp)
+            assert messages(socket, 30) == rows
+    finally:
+        server.stop()
+    assert {**theirs, "id": ours["id"]} == ours
+
+
 def test_names_of_ros_2_are_its_own():
     """Small letters, digits, single underscores; the column as it is in a comment, with its unit."""
     definition = ros2_schema(["force_N", "wished_force_N_m", "motor__Current_A_", "x0_m"]).decode()

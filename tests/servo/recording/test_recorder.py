@@ -156,3 +156,33 @@ def test_a_file_that_another_program_wrote_anew(record, tmp_path):
     assert stacked(found).tobytes() == drawn(700).tobytes()
     assert found.events == [{"event": "began"}]
     assert found.whole
+
+
+def test_a_file_that_foxglove_wrote_anew(tmp_path):
+    """Its numbers of messages begin at 1, its chunks are its own: the rows are the same."""
+    import foxglove
+    from mcap.reader import make_reader
+
+    rows = WrittenRows(drawn(700))
+    rows.events.append({"event": "began"})
+    with Recorder(rows, tmp_path / "run.mcap"):
+        rows.written = 700
+    context = foxglove.Context()
+    with open(tmp_path / "run.mcap", "rb") as file:
+        reader = make_reader(file, validate_crcs=True)
+        begins, ends = reader.iter_metadata()
+        with foxglove.open_mcap(tmp_path / "anew.mcap", context=context) as writer:
+            writer.write_metadata(begins.name, begins.metadata)
+            topics = {}
+            for schema, channel, message in reader.iter_messages():
+                kind = foxglove.Schema(name=schema.name, encoding=schema.encoding, data=schema.data)
+                if channel.topic not in topics:
+                    topics[channel.topic] = foxglove.Channel(
+                        channel.topic, schema=kind, message_encoding="cdr", context=context
+                    )
+                topics[channel.topic].log(message.data, log_time=message.log_time)
+            writer.write_metadata(ends.name, ends.metadata)
+    found = read_recording(tmp_path / "anew.mcap")
+    assert stacked(found).tobytes() == drawn(700).tobytes()
+    assert found.events == rows.events
+    assert found.whole

@@ -1,0 +1,81 @@
+"""Bags as the makers' own writers write them: the same samples, chunked, compressed and indexed or not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import foxglove
+import pytest
+from identification.logs.test_log_files import assert_same
+from known_motion import Recording
+from mcap.writer import CompressionType, Writer
+from rosbags import rosbag1
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+import zwidth as zw
+
+NAME, DEFINITION, TOPIC = "maker/msg/Sample", "float64 position_m\nfloat64 hand_force_n\n", "/sample"
+STAMP = 1_700_000_000_000_000_000
+
+
+def messages(recording: Recording, ros: int) -> list[tuple[int, bytes]]:
+    """Each sample with its time [ns], as ROS 1 or 2 has it."""
+    store = get_typestore(Stores.EMPTY)
+    store.register(get_types_from_msg(DEFINITION, NAME))
+    write = store.serialize_ros1 if ros == 1 else store.serialize_cdr
+    made = store.types[NAME]
+    samples = zip(*recording, strict=True)
+    return [(STAMP + round(t * 1e9), bytes(write(made(x, f), NAME))) for t, x, f in samples]
+
+
+@pytest.mark.parametrize("compression", ["NONE", "BZ2", "LZ4"])
+def test_ros_1_by_rosbags(compression: str, recording: Recording, tmp_path: Path) -> None:
+    store = get_typestore(Stores.EMPTY)
+    store.register(get_types_from_msg(DEFINITION, NAME))
+    writer = rosbag1.Writer(tmp_path / "run.bag")
+    if compression != "NONE":
+        writer.set_compression(rosbag1.Writer.CompressionFormat[compression])
+    with writer:
+        topic = writer.add_connection(TOPIC, NAME, typestore=store)
+        for stamp, data in messages(recording, 1):
+            writer.write(topic, stamp, data)
+    assert_same(zw.read_log(tmp_path / "run.bag"), recording)
+
+
+@pytest.mark.parametrize(
+    ("compression", "chunked"), [("NONE", True), ("NONE", False), ("LZ4", True), ("ZSTD", True)]
+)
+def test_mcap_by_its_own_library(
+    compression: str, chunked: bool, recording: Recording, tmp_path: Path
+) -> None:
+    with open(tmp_path / "run.mcap", "wb") as file:
+        kind = CompressionType[compression]
+        writer = Writer(file, chunk_size=9000, compression=kind, use_chunking=chunked)
+        writer.start(profile="ros2", library="another")
+        schema = writer.register_schema(NAME, "ros2msg", DEFINITION.encode())
+        topic = writer.register_channel(TOPIC, "cdr", schema)
+        for stamp, data in messages(recording, 2):
+            writer.add_message(topic, stamp, data, stamp)
+        writer.finish()
+    assert_same(zw.read_log(tmp_path / "run.mcap"), recording)
+
+
+@pytest.mark.parametrize(
+    ("compression", "chunked"), [(None, True), (None, False), ("Lz4", True), ("Zstd", True)]
+)
+def test_mcap_by_foxglove(
+    compression: str | None, chunked: bool, recording: Recording, tmp_path: Path
+) -> None:
+    schema = foxglove.Schema(name=NAME, encoding="ros2msg", data=DEFINITION.encode())
+    context = foxglove.Context()
+    topic = foxglove.Channel(TOPIC, schema=schema, message_encoding="cdr", context=context)
+    options = foxglove.mcap.MCAPWriteOptions(
+        profile="ros2",
+        chunk_size=9000,
+        use_chunks=chunked,
+        compression=compression and getattr(foxglove.mcap.MCAPCompression, compression),
+    )
+    with foxglove.open_mcap(tmp_path / "run.mcap", context=context, writer_options=options):
+        for stamp, data in messages(recording, 2):
+            topic.log(data, log_time=stamp)
+    assert_same(zw.read_log(tmp_path / "run.mcap"), recording)
