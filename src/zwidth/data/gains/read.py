@@ -44,6 +44,15 @@ FAMILIES: Mapping[str, Callable[[GainTable], bool]] = MappingProxyType(
 )
 """By name, what recognises a file."""
 
+_WANTED = {
+    OPENARM: "LeaderArmParam, FollowerArmParam or Bilateral",
+    I2RT: "kp, kd and motor_list",
+    FEETECH: "position_p_coefficient, or type: so101_follower",
+    LEROBOT: "position_kp",
+    PIPER: "piper",
+}
+"""What is looked for in a file."""
+
 
 def read_gains(
     *paths: str | Path,
@@ -82,7 +91,7 @@ def read_gains(
             f"gains are read from one file, or from two of leader and follower, got {len(paths)}"
         )
     tables = [read_table(path) for path in paths]
-    name = _recognised(tables) if family is None else _known(family)
+    name = _recognised(tables) if family is None else _known(family, tables)
     if bilateral_kp is not None and name != I2RT:
         raise InputError(f"--bilateral-kp belongs to gains of {I2RT}, these are of {name}; leave it out")
     if supply_voltage is not None and name != FEETECH:
@@ -119,20 +128,38 @@ def _recognised(tables: list[GainTable]) -> str:
     for table in tables:
         name = next((name for name, fits in FAMILIES.items() if fits(table)), None)
         if name is None:
-            raise InputError(
-                f"{table.label}: no gains of a known arm; read are LeaderArmParam, FollowerArmParam "
-                "(OpenArm), kp, kd and motor_list (i2rt), position_p_coefficient or position_kp (LeRobot), "
-                "piper"
-            )
+            raise _nothing(table, None)
         found.append(name)
     if len(set(found)) > 1:
         raise InputError(f"the files are of {' and '.join(found)}; give leader and follower of one kind")
     return found[0]
 
 
-def _known(family: str) -> str:
+def _known(family: str, tables: list[GainTable]) -> str:
+    """A family that is given; its law is then taken of files that lack what it is recognised by."""
     if family not in FAMILIES:
         raise InputError(
             f"there is no family {quoted(str(family))} of gain files; {suggestion(str(family), FAMILIES)}"
         )
+    for table in tables:
+        if not (FAMILIES[family](table) or (family == I2RT and "kp" in table)):
+            raise _nothing(table, family)
     return family
+
+
+def _nothing(table: GainTable, family: str | None) -> InputError:
+    """Says what a file is that has no gains of a family, or of any."""
+    if any("homing_offset" in inner for inner in table.below()):
+        return InputError(
+            f"{table.label}: a LeRobot calibration (homing_offset, range_min, range_max), which holds no "
+            "gains. They are in the robot's configuration: position_p_coefficient of bus servos, 16 where it "
+            'is not there, so that {"type": "so101_follower"} is such a file; position_kp and position_kd of '
+            "Damiao motors"
+        )
+    if family is not None:
+        return InputError(f"{table.label}: no gains of {family}; there should be {_WANTED[family]}")
+    wanted = "; ".join(f"{name}: {keys}" for name, keys in _WANTED.items())
+    return InputError(
+        f"{table.label}: no gains of a known arm. Read are files with these keys. {wanted}; one arm in ROS: "
+        "gains or pid with p, i, d, k_gains, stiffness, below a type or ros__parameters"
+    )
