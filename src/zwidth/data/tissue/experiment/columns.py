@@ -164,8 +164,8 @@ def _column(table: Table, quantity: str, chosen: Mapping[str, str], taken: list[
         raise InputError(
             f"{table.source}: a table of load against depth, {listed([names[0] for names in others])}, "
             "without time: how a tissue relaxes is not in it. Export the time of each row, or write it in a "
-            "column time_s where rows came at a steady rate; the steepest slope is the stiffness of a wall to "
-            "ask about, zwidth check --stiffness"
+            "column time_s where rows came at a steady rate; the steepest slope is the stiffness of a wall "
+            "to ask about, zwidth check --stiffness"
         )
     if not candidates:
         raise InputError(
