@@ -19,7 +19,7 @@ fzi-forschungszentrum-informatik/cartesian_controllers.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import sqrt
 from pathlib import Path
@@ -34,6 +34,7 @@ from zwidth.model.specification.table import quoted
 from zwidth.quantity.text import shown
 
 _AXES = ("x", "y", "z")
+_MANAGER = ("controller_manager", "ros__parameters")
 _MOTIONS = tuple(f"{kind}_{axis}" for kind in ("trans", "rot") for axis in _AXES)
 _OF_ADMITTANCE = ("stiffness", "pd_gains", "pid_gains")
 """Tables with keys for such motions are of FZI's cartesian_controllers: positions are commanded, no force."""
@@ -47,8 +48,7 @@ _MOST_KP, _MOST_KD = Fraction(500), Fraction(5)
 _JOINT_NOTES = (
     "the target rests: each joint is a spring and a damper to the ground, on both sides",
     "the speed of the d gain is taken as the difference of two readings; what the hardware reports is "
-    "filtered "
-    "in a way of its own",
+    "filtered in a way of its own",
 )
 _OF_RATIOS = (
     "d is damping_ratio √kp of the numbers, at most 5 N·m·s/rad, and kp at most 500 N·m/rad, as in the code "
@@ -169,7 +169,7 @@ class Controllers:
     cartesian: tuple[CartesianGains, ...]
     rate: Fraction | None
     notes: tuple[str, ...]
-    manager: tuple[str, ...] = ("controller_manager", "ros__parameters")
+    manager: tuple[str, ...] = _MANAGER
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
@@ -241,11 +241,11 @@ def read_controllers(path: str | Path) -> Controllers:
         if not any(own[: len(keys)] == keys for own in seen):
             others.append(f"{name}: it has no gains that are read")
     notes += [f"left out: {text}" for text in others]
-    manager = _manager(table)
-    found = tuple(joints), tuple(cartesian)
-    if manager is None:
-        return Controllers(*found, None, tuple(notes))
-    return Controllers(*found, manager.number("update_rate", "Hz"), tuple(notes), manager.keys)
+    found = Controllers(tuple(joints), tuple(cartesian), None, tuple(notes))
+    for inner in table.below():
+        if inner.keys[-2:] == _MANAGER and "update_rate" in inner:
+            return replace(found, rate=inner.number("update_rate", "Hz"), manager=inner.keys)
+    return found
 
 
 def is_of_controllers(table: GainTable) -> bool:
@@ -265,10 +265,15 @@ def _controllers(table: GainTable) -> Iterator[tuple[str, tuple[str, ...]]]:
             yield f"{'/'.join(inner.keys)} ({kind})", inner.keys
 
 
+def _inner(table: GainTable, key: str) -> Mapping[str, Any]:
+    """What stands below a key; nothing where no keys do."""
+    inner = table.values.get(key)
+    return inner if isinstance(inner, Mapping) else {}
+
+
 def _fits(table: GainTable) -> bool:
     return (
-        any(isinstance(table.values.get(key), Mapping) for key in ("pid", "pid_gains"))
-        or "k_gains" in table
+        bool("k_gains" in table or _inner(table, "pid") or _inner(table, "pid_gains"))
         or _rows(table, "gains", "p")
         or _rows(table, "joints", "damping_ratio")
         or _is_cartesian(table)
@@ -278,26 +283,18 @@ def _fits(table: GainTable) -> bool:
 
 def _rows(table: GainTable, key: str, inside: str) -> bool:
     """True where a table has a key in it for each joint, with `inside` in that."""
-    rows = table.values.get(key)
-    return isinstance(rows, Mapping) and any(
-        isinstance(row, Mapping) and inside in row for row in rows.values()
-    )
+    return any(isinstance(row, Mapping) and inside in row for row in _inner(table, key).values())
 
 
 def _is_cartesian(table: GainTable) -> bool:
-    inner, task = table.values.get("stiffness"), table.values.get("task")
-    return (isinstance(inner, Mapping) and "translation" in inner) or (
-        isinstance(task, Mapping) and any(str(key).startswith(("k_pos_", "k_rot_")) for key in task)
-    )
+    task = any(str(key).startswith(("k_pos_", "k_rot_")) for key in _inner(table, "task"))
+    return task or "translation" in _inner(table, "stiffness")
 
 
 def _admittance(table: GainTable) -> str | None:
     """The key by which an admittance is known."""
-    for key in _OF_ADMITTANCE:
-        inner = table.values.get(key)
-        if isinstance(inner, Mapping) and any(motion in inner for motion in _MOTIONS):
-            return key
-    return "admittance" if isinstance(table.values.get("admittance"), Mapping) else None
+    found = (key for key in _OF_ADMITTANCE if not _inner(table, key).keys().isdisjoint(_MOTIONS))
+    return next(found, "admittance" if _inner(table, "admittance") else None)
 
 
 def _joints(table: GainTable) -> Iterator[JointLaw]:
@@ -318,7 +315,7 @@ def _joints(table: GainTable) -> Iterator[JointLaw]:
         for n, (k, d) in enumerate(zip(stiffness, damping, strict=True)):
             where = table.where(f"k_gains[{n}]")
             yield JointLaw(f"joint{n + 1}", k, Fraction(0), d, where, table.keys, "k_gains")
-    if isinstance(table.values.get("pid"), Mapping):
+    if _inner(table, "pid"):
         _commands_efforts(table, "pid")
         name = table.values.get("joint", table.keys[-1] if table.keys else "joint")
         yield _pid(str(name), table.table("pid"), table, "pid")
@@ -363,10 +360,8 @@ def _of_ratio(name: str, row: GainTable, table: GainTable) -> JointLaw:
 def _cartesian(table: GainTable) -> Iterator[CartesianGains]:
     if not _is_cartesian(table):
         return
-    if of_task := "task" in table:
-        k, factors = _of_task(table)
-    else:
-        k, factors = _of_factors(table)
+    of_task = "task" in table
+    k, factors = (_of_task if of_task else _of_factors)(table)
     if min(k) < 0 or min(factors) < 0:
         raise InputError(f"{table.label}: stiffness and damping factors must be ≥ 0: a spring pulls back")
     rate = table.number("update_frequency", "Hz") if "update_frequency" in table else None
@@ -431,11 +426,3 @@ def _three(table: GainTable, key: str, unit: str) -> Sequence[float]:
     if missing:
         raise InputError(f"{inner.label}: {missing[0]} is missing; give x, y and z [{unit}]")
     return [float(inner.number(axis, unit)) for axis in _AXES]
-
-
-def _manager(table: GainTable) -> GainTable | None:
-    """The parameters of the controller manager, where its update_rate stands."""
-    for inner in table.below():
-        if inner.keys[-2:] == ("controller_manager", "ros__parameters") and "update_rate" in inner:
-            return inner
-    return None

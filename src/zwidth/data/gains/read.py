@@ -6,24 +6,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 
+from zwidth.data.gains import families
 from zwidth.data.gains.arms import ArmGains
-from zwidth.data.gains.families import (
-    FEETECH,
-    I2RT,
-    LEROBOT,
-    OPENARM,
-    PIPER,
-    fits_feetech,
-    fits_i2rt,
-    fits_lerobot,
-    fits_openarm,
-    fits_piper,
-    read_feetech,
-    read_i2rt,
-    read_lerobot,
-    read_openarm,
-    read_piper,
-)
+from zwidth.data.gains.families import FEETECH, I2RT, LEROBOT, OPENARM, PIPER
 from zwidth.data.gains.file import GainTable, read_table
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted, suggestion
@@ -35,11 +20,11 @@ BILATERAL_KP = "0.2"
 
 FAMILIES: Mapping[str, Callable[[GainTable], bool]] = MappingProxyType(
     {
-        OPENARM: fits_openarm,
-        I2RT: fits_i2rt,
-        FEETECH: fits_feetech,
-        LEROBOT: fits_lerobot,
-        PIPER: fits_piper,
+        OPENARM: families.fits_openarm,
+        I2RT: families.fits_i2rt,
+        FEETECH: families.fits_feetech,
+        LEROBOT: families.fits_lerobot,
+        PIPER: families.fits_piper,
     }
 )
 """By name, what recognises a file."""
@@ -112,15 +97,13 @@ def _read(
         share = parse_number(BILATERAL_KP if bilateral_kp is None else bilateral_kp, "1", "bilateral_kp")
         if share < 0:
             raise InputError(f"bilateral_kp must be ≥ 0, got {float(share):g}: a spring pulls back")
-        return read_i2rt(tables, share.fraction)
+        return families.read_i2rt(tables, share.fraction)
     if name == FEETECH:
         volts = None if supply_voltage is None else parse_number(supply_voltage, "V", "supply_voltage")
-        return read_feetech(tables, None if volts is None else volts.fraction, both)
-    if name == LEROBOT:
-        return read_lerobot(tables, both)
-    if name == PIPER:
-        return read_piper(tables, both)
-    return read_openarm(tables)
+        return families.read_feetech(tables, None if volts is None else volts.fraction, both)
+    if name == OPENARM:
+        return families.read_openarm(tables)
+    return (families.read_lerobot if name == LEROBOT else families.read_piper)(tables, both)
 
 
 def _recognised(tables: list[GainTable]) -> str:
