@@ -45,12 +45,7 @@ _TRUTH = ("auto", "true", "false")
 _LETTERS = "xyz"
 
 _COULOMB = "is Coulomb friction, which covers encoder steps and no spring"
-_NO_DAMPING_OF_MJCF = {
-    "frictionloss": _COULOMB,
-    "armature": "is inertia",
-    "kv": "damps by a controller",
-    "dampratio": "damps by a controller",
-}
+_NO_DAMPING_OF_MJCF = {"frictionloss": _COULOMB, "armature": "is inertia", "dampratio": "is a controller's"}
 _NO_DAMPING_OF_URDF = {"friction": _COULOMB}
 """What a file may have in the place of damping, which a person would take for it."""
 

@@ -63,8 +63,8 @@ class Search:
         self.effort, self.most, self.progress = effort, most, progress
         self.start = time.monotonic()
         self.evaluations = 0
-        self.refused: tuple[Exact, str] | None = None
-        """The value nearest to the first that nothing decides, and why."""
+        self.refused: dict[Exact, str] = {}
+        """Why nothing decides a value."""
         self.first = Exact(parameter.now or 1.0)
 
     def by_closed_forms(self, every_law: bool = False) -> Found | None:
@@ -86,8 +86,7 @@ class Search:
                 except InputError as error:  # a delay of more samples than a proof has room for
                     if value == self.first:
                         raise
-                    self._refuse(value, str(error))
-                    verdicts[value] = None
+                    self.refused[value], verdicts[value] = str(error), None
             return verdicts[value]
 
         def proved(value: Exact, _: float) -> bool:
@@ -110,19 +109,13 @@ class Search:
         motion, violation = (None, None) if bad is None else (bad.witness, bad.violation)
         return Found(passive, active, proof, motion, known.scope, violation)
 
-    def _refuse(self, value: Exact, why: str) -> None:
-        """Keep the nearest."""
-        apart = abs(log2(value / self.first))
-        if self.refused is None or apart < abs(log2(self.refused[0] / self.first)):
-            self.refused = value, why
-
     @property
     def beyond(self) -> str:
         """Why no value further on was decided."""
-        if self.refused is None:
+        if not self.refused:
             return ""
-        value, why = self.refused
-        return f"the search ended at {shown(float(value), self.parameter.unit, 6)}: {why}"
+        value = min(self.refused, key=lambda each: abs(log2(each / self.first)))
+        return f"the search ended at {shown(float(value), self.parameter.unit, 6)}: {self.refused[value]}"
 
     def bracket(
         self,

@@ -328,17 +328,14 @@ def _why_zero(identified: IdentifiedNumbers, limit: Limit, confidence: float) ->
     at = f"at {told_quantity(identified.speed, 'friction_speed', identified.motion, 3)}"
     ways = {"into the wall": "inward", "out of the wall": "outward"}
     known = [("it", limit.estimate, "a longer log")]
-    if limit.parameter == "damping":
-        for way, name in ways.items():
-            known.append((f"that {way}", getattr(identified.directions, name), f"more strokes {way}"))
-            slope = getattr(identified.slopes, name)
-            known.append((f"the slope of friction {at} {way}", slope, f"more strokes {way} {at}"))
+    for way, name in ways.items() if limit.parameter == "damping" else ():
+        known.append((f"that {way}", getattr(identified.directions, name), f"more strokes {way}"))
+        slope = getattr(identified.slopes, name)
+        known.append((f"the slope of friction {at} {way}", slope, f"more strokes {way} {at}"))
     what, estimate, more = min(known, key=lambda each: each[1].interval(confidence)[0])
     low, high = estimate.interval(confidence)
     if low > 0:
-        return (
-            "lower bounds of friction at each speed leave none of it above the damping; slower strokes tell"
-        )
+        return "lower bounds of friction by speed leave none above the damping; slower strokes would tell"
     factor, unit = spoken(estimate.unit.replace(" ", "*"))
     ends_ = f"{factor * low:.2g} … {factor * high:.2g} {unit_text(unit)}"
     return f"{what} is known only to {ends_}, {percent(confidence)}; {more} would tell"
